@@ -57,6 +57,7 @@ Surface surface_of(const Image& image) {
   const int stride = cairo_image_surface_get_stride(out.get());
   for (int y = 0; y < image.height(); ++y) {
     auto* row = reinterpret_cast<std::uint32_t*>(rows + static_cast<std::ptrdiff_t>(y) * stride);
+    // Straight to premultiplied alpha, in cairo's 32-bit native-endian ARGB.
     for (int x = 0; x < image.width(); ++x) {
       const Rgba p = image.at(x, y);
       const auto part = [&](std::uint8_t c) { return static_cast<std::uint32_t>(div255(c * p.a)); };
@@ -111,6 +112,7 @@ class CairoCanvas : public Canvas {
     cairo_text_extents(c_, t.text.c_str(), &size);
     const double share = t.align == Align::left ? 0 : t.align == Align::centre ? 0.5 : 1;
     const double x = t.at.x() - share * size.x_advance, y = t.at.y() + kBaseline * t.height;
+    // The halo is the outline of the glyphs, stroked beneath the text.
     if (t.halo.a > 0) {
       cairo_move_to(c_, x, y);
       cairo_text_path(c_, t.text.c_str());
@@ -181,6 +183,7 @@ std::string paint_pdf(const PaperPage& page, const std::function<void(Canvas&)>&
   const Surface surface(cairo_pdf_surface_create_for_stream(append, &out, page.width, page.height));
   check(cairo_surface_status(surface.get()));
   cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_5);
+  // No creation date: equal pages give equal files.
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
   if (!page.title.empty())
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, page.title.c_str());
@@ -199,6 +202,7 @@ Image paint_pixels(const PaperPage& page, double dpi, const std::function<void(C
             static_cast<int>(std::ceil(page.height * scale - kRounding)), kTransparent);
   const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, out.width(), out.height()));
   check(cairo_surface_status(surface.get()));
+  // The page is enlarged to whole pixels, so that its background covers the last row and column.
   PaperPage whole = page;
   whole.width = out.width() / scale, whole.height = out.height() / scale;
   paint_page(surface.get(), scale, whole, paint);
@@ -208,6 +212,7 @@ Image paint_pixels(const PaperPage& page, double dpi, const std::function<void(C
   for (int y = 0; y < out.height(); ++y) {
     const auto* row = reinterpret_cast<const std::uint32_t*>(rows + static_cast<std::ptrdiff_t>(y) * stride);
     for (int x = 0; x < out.width(); ++x) {
+      // Premultiplied to straight, rounded to nearest.
       const auto a = static_cast<int>(row[x] >> 24);
       if (a == 0) continue;
       const auto part = [&](int shift) {

@@ -37,6 +37,7 @@ constexpr double kSteepest = 0.49 * std::numbers::pi;  ///< orbit() lifts a came
 Matrix3d axes_of(const Vector3d& forward, const Vector3d& up) {
   Matrix3d axes;
   const Vector3d f = forward.normalized();
+  // `up` may be parallel to the view: fall back to other axes.
   Vector3d right = f.cross(up);
   if (!(right.squaredNorm() > 0)) right = f.cross(Vector3d::UnitY());
   if (!(right.squaredNorm() > 0)) right = f.cross(Vector3d::UnitX());
@@ -91,6 +92,7 @@ ViewDirection view_beside(const Vector3d& axis, const Vector3d& up, double eleva
 Camera fit_camera(std::span<const Vector3d> points, double width, double height, const FitOptions& options) {
   check_points(points);
   if (!(options.view.from.squaredNorm() > 0)) throw InputError("a camera's direction must not be zero");
+  // Step 1: the direction is given, so only a translation is unknown. Work in the camera's axes.
   const Matrix3d axes = axes_of(-options.view.from, options.view.up);
   Vector3d origin = Vector3d::Zero();  // points are measured from their middle, to keep digits when they are
                                        // far from the origin
@@ -98,11 +100,14 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
   for (const Vector3d& p : points) box.extend(p);
   origin = box.center();
 
+  // Step 2: the opening angles inside the margins.
   const double free = options.margin * std::min(width, height);
   const double inner_x = std::max(0.05, 1 - 2 * free / width),
                inner_y = std::max(0.05, 1 - 2 * free / height);
   const double tan_y = options.orthographic ? 0 : std::tan(0.5 * options.fov_y);
   const double slope_x = tan_y * width / height * inner_x, slope_y = tan_y * inner_y;
+  // Step 3: in these axes, each side plane of the frustum has a fixed normal. Its support over the points
+  // gives the position at which it touches them: exact and linear in their number.
   Support x, y, z;
   for (const Vector3d& p : points) {
     const Vector3d e = axes * (p - origin);
@@ -113,6 +118,7 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
   const double size =
       std::max({box.diagonal().norm(), kLeastExtent * origin.cwiseAbs().maxCoeff(), kLeastLength});
 
+  // Step 4: centre the eye between opposite planes, and move it back until both pairs enclose the points.
   Camera camera;
   camera.up = options.view.up;
   camera.orthographic = options.orthographic;
@@ -150,6 +156,7 @@ Camera fit_contact(std::span<const Vector3d> contact, const Eigen::AlignedBox3d&
   check_points(contact);
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : contact) box.extend(p);
+  // A cube inscribed in a ball around the contact; the ball grows with the contact and with the scene.
   const double radius = 0.5 * (context * box.diagonal().norm() + least * scene.diagonal().norm());
   const Vector3d r = Vector3d::Constant(radius / std::sqrt(3.0));
   FitOptions fit = options;
@@ -172,6 +179,7 @@ Camera fit_contact(std::span<const Vector3d> contact, const Eigen::AlignedBox3d&
 
 Camera orbit(const Camera& camera, double azimuth, double elevation) {
   const Vector3d up = camera.up.normalized();
+  // Rotate about the vertical first, then lift within limits, so that the camera never turns over.
   Vector3d arm = Eigen::AngleAxisd(azimuth, up) * (camera.eye - camera.target);
   if (elevation != 0) {
     const double now = std::asin(std::clamp(arm.normalized().dot(up), -1.0, 1.0));
@@ -191,9 +199,11 @@ Projection::Projection(const Camera& camera, double width, double height, const 
     throw InputError("the camera's eye and target must be finite and differ");
   }
   axes_ = axes_of(forward, camera.up);
+  // Pixels per unit: at distance 1 in perspective, everywhere in orthographic views.
   focal_ = 0.5 * height / (orthographic_ ? camera.half_height : std::tan(0.5 * camera.fov_y));
   if (!std::isfinite(focal_) || !(focal_ > 0))
     throw InputError("the camera's opening must be finite and positive");
+  // The depth range is fitted to the scene for the best resolution.
   double lo = 1, hi = 2;
   if (!scene.isEmpty()) {
     lo = std::numeric_limits<double>::infinity(), hi = -lo;
@@ -207,6 +217,7 @@ Projection::Projection(const Camera& camera, double width, double height, const 
   near_ = lo - slack;
   if (!orthographic_) {
     if (!(far_ > 0)) far_ = 1;
+    // In perspective, resolution is lost in proportion to far / near: keep the near plane away from the eye.
     near_ = std::max({near_, kNearShare * far_, std::min(kNearFocus * forward.norm(), 0.5 * far_)});
   }
 }
@@ -224,12 +235,14 @@ Vector3d Projection::to_screen(const Vector3d& e) const {
 double Projection::nearer(double depth, double heights) const {
   const double way = heights * height_ / focal_;  // perspective: at distance 1
   if (orthographic_) return depth - 2 * way / (far_ - near_);
+  // With depth = infinite - c / z, moving a point to z (1 - way) scales its difference from `infinite`.
   const double infinite = (far_ + near_) / (far_ - near_);
   return infinite - (infinite - depth) / (1 - way);
 }
 
 std::optional<Eigen::Vector2d> Projection::to_pixel(const Vector3d& world) const {
   const Vector3d e = to_eye(world);
+  // Points behind the near plane have no picture.
   if (!orthographic_ && e.z() < near_) return std::nullopt;
   const Vector3d s = to_screen(e);
   return Eigen::Vector2d(s.x(), height_ - s.y());

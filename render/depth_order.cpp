@@ -1,3 +1,6 @@
+// Exact painting order by binary space partitioning (Fuchs, Kedem and Naylor 1980). Large sets are halved by
+// planes perpendicular to an axis, small ones are split by the planes of their own polygons.
+
 #include "render/depth_order.hpp"
 
 #include <algorithm>
@@ -41,11 +44,15 @@ class Sorter {
       return;
     }
     Plane plane;
+    // Axis planes keep the tree balanced; a polygon's own plane always makes progress, as it removes that
+    // polygon.
     const bool by_axis = polygons.size() > kLeaf && median_plane(polygons, plane);
     if (!by_axis) plane = best_own_plane(polygons);
     Sides sides;
     for (EyePolygon& p : polygons) split(std::move(p), plane, sides);
     polygons.clear();
+    // Everything on the far side of the plane is painted first. The eye is at the origin, or infinitely far
+    // away along -z.
     const bool viewer_in_front = orthographic_ ? plane.normal.z() < 0 : plane.offset < 0;
     sort(std::move(viewer_in_front ? sides.back : sides.front), depth + 1);
     for (EyePolygon& p : sides.on) out_.push_back(std::move(p));
@@ -71,6 +78,7 @@ class Sorter {
     std::vector<double> at;
     for (const EyePolygon& p : polygons) at.push_back(centre(p)[axis]);
     const auto middle = at.begin() + static_cast<std::ptrdiff_t>(at.size() / 2);
+    // The median centre along the longest axis.
     std::nth_element(at.begin(), middle, at.end());
     plane = {Vector3d::Unit(axis), *middle};
     const Count n = count(polygons, plane);
@@ -83,6 +91,7 @@ class Sorter {
   Plane best_own_plane(const std::vector<EyePolygon>& polygons) const {
     Plane best{};
     std::size_t least = std::numeric_limits<std::size_t>::max();
+    // A bounded number of candidates: each costs one pass over the polygons.
     for (std::size_t i = 0; i < std::min(polygons.size(), kLeaf); ++i) {
       Plane plane{polygons[i].normal.normalized(), 0};
       plane.offset = plane.normal.dot(centre(polygons[i]));
@@ -100,6 +109,7 @@ class Sorter {
   Count count(const std::vector<EyePolygon>& polygons, const Plane& plane) const {
     Count n;
     for (const EyePolygon& p : polygons) {
+      // Within the tolerance a corner counts as on the plane, so rounding makes no slivers.
       const auto [low, high] = heights(p, plane);
       if (low < -tolerance_ && high > tolerance_)
         ++n.cut;
@@ -157,6 +167,7 @@ std::vector<EyePolygon> back_to_front(std::vector<EyePolygon> polygons, bool ort
   std::erase_if(polygons, [](const EyePolygon& p) { return !(p.normal.squaredNorm() > 0); });
   double size = 0;
   for (const EyePolygon& p : polygons) {
+    // The tolerance is relative to the largest coordinate.
     for (const Vector3d& x : p.x) size = std::max(size, x.cwiseAbs().maxCoeff());
   }
   std::vector<EyePolygon> out;

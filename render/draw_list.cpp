@@ -58,6 +58,7 @@ std::uint8_t DrawList::edge_style(const EdgeStyle& style) {
   const auto same = [&](const EdgeStyle& s) {
     return s.colour == style.colour && s.width == style.width && s.back == style.back;
   };
+  // A linear search: lists have a handful of styles.
   const auto found = std::find_if(edge_styles.begin(), edge_styles.end(), same);
   const auto index = static_cast<std::size_t>(found - edge_styles.begin());
   if (found == edge_styles.end()) {
@@ -70,6 +71,7 @@ std::uint8_t DrawList::edge_style(const EdgeStyle& style) {
 void DrawList::add_polygon(const std::vector<Eigen::Vector3d>& corners, const DrawTriangle& like) {
   const std::size_t n = corners.size();
   for (std::size_t i = 1; i + 1 < n; ++i) {
+    // Fan of the polygon. Its diagonals must not be drawn as edges.
     DrawTriangle t = like;
     t.x = {corners[0], corners[i], corners[i + 1]};
     if (like.edges !=
@@ -82,6 +84,7 @@ void DrawList::add_polygon(const std::vector<Eigen::Vector3d>& corners, const Dr
 
 void DrawList::append(const DrawList& other) {
   for (DrawTriangle t : other.triangles) {
+    // Styles are indices into the other list: translate them.
     t.edge_style = edge_style(other.edge_styles[t.edge_style]);
     triangles.push_back(t);
   }

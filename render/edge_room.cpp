@@ -26,6 +26,7 @@ std::optional<OnScreen> on_screen(const DrawTriangle& t, const Projection& proje
   }
   const Eigen::Vector2d u = at[1] - at[0], v = at[2] - at[0];
   const double twice_area = std::abs(u.x() * v.y() - u.y() * v.x());
+  // The lowest altitude is that on the longest edge.
   const double longest = std::max({u.norm(), v.norm(), (v - u).norm()});
   return OnScreen{longest > 0 ? twice_area / longest : 0, twice_area / 2};
 }
@@ -48,6 +49,7 @@ bool before(const Corner& a, const Corner& b) {
 
 std::vector<double> edge_room(const DrawList& list, const Projection& projection) {
   std::vector<double> own(list.triangles.size(), 0), room(list.triangles.size(), 0);
+  // Step 1: the room of each triangle, and its corners with their exact coordinates.
   std::vector<Corner> corners;
   for (std::uint32_t i = 0; i < list.triangles.size(); ++i) {
     const DrawTriangle& t = list.triangles[i];
@@ -61,6 +63,7 @@ std::vector<double> edge_room(const DrawList& list, const Projection& projection
     return before(a, b) ||
            (!before(b, a) && a.triangle < b.triangle);  // so that sums are taken in one order everywhere
   });
+  // Step 2: average over the triangles at each vertex, and give each of them a third: neighbours fade alike.
   for (std::size_t first = 0, end = 0; first < corners.size(); first = end) {
     double sum = 0;
     for (end = first; end < corners.size() && !before(corners[first], corners[end]); ++end) {
@@ -73,6 +76,7 @@ std::vector<double> edge_room(const DrawList& list, const Projection& projection
 }
 
 std::vector<double> even_edge_room(const DrawList& list, const Projection& projection) {
+  // Step 1: the visible triangles of each style.
   std::vector<std::vector<OnScreen>> styles(list.edge_styles.size());
   for (const DrawTriangle& t : list.triangles) {
     if (t.edges == 0) continue;
@@ -82,6 +86,7 @@ std::vector<double> even_edge_room(const DrawList& list, const Projection& proje
   for (std::vector<OnScreen>& parts : styles) {
     std::sort(parts.begin(), parts.end(),
               [](const OnScreen& x, const OnScreen& y) { return x.altitude > y.altitude; });
+    // Step 2: the area-weighted median of the altitudes.
     double all = 0, sum = 0, half = projection.height();
     for (const OnScreen& p : parts) all += p.area;
     for (const OnScreen& p : parts) {
@@ -97,6 +102,7 @@ std::vector<double> even_edge_room(const DrawList& list, const Projection& proje
 }
 
 double fade_between(double x, double gone, double full) {
+  // Smoothstep: no visible kink at either end.
   const double t = std::clamp((x - gone) / (full - gone), 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }

@@ -161,6 +161,7 @@ std::vector<MeshFault> kinds(const MeshReport& report) {
       return std::find(flat.begin(), flat.end(), Element{e[0], kNull}) != flat.end();
     };
     if (kind == MeshFault::repeated_corner && std::all_of(first.begin(), first.end(), is_flat)) continue;
+    // If all intersecting pairs are doubled faces, do not report them twice.
     const MeshFinding& doubled = report[MeshFault::duplicate_face];
     if (kind == MeshFault::self_intersection && report.findings[i].count == doubled.count &&
         first == doubled.first)
@@ -212,6 +213,7 @@ CloseUp close_up_of_loop(const Mesh& mesh, const BoundaryLoop& loop) {
     const Vector3d x = mesh.vertices[loop.vertices[i]];
     out.points.push_back(x);
     // The rim runs with its faces on the left, so that a lid's normal is the other way round.
+    // The sum is the loop's area vector; the loop need not be planar.
     n += (mesh.vertices[loop.vertices[(i + 1) % loop.vertices.size()]] - first).cross(x - first);
   }
   if (!(n.norm() > 0)) return out;
@@ -232,6 +234,7 @@ std::vector<Vector3d> whole(const Mesh& mesh, const MeshReport& report) {
 CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind,
                  std::span<const BoundaryLoop> loops) {
   if (kind == MeshFault::open_edge && !loops.empty()) return close_up_of_loop(mesh, loops[0]);
+  // Step 1: the affected faces, and an average normal.
   const Parts parts = parts_of(mesh, kind, report[kind].first.front());
   const std::vector<FaceId> at = faces_at(mesh, parts);
   const bool doubtful = kind == MeshFault::flipped_face || kind == MeshFault::duplicate_face;
@@ -240,9 +243,11 @@ CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind,
   std::set<VertexId> own(parts.vertices.begin(), parts.vertices.end());
   for (const FaceId f : at) {
     const Vector3d m = normal(mesh, f);
+    // Opposite normals would cancel: flip to agree with the sum so far.
     n += doubtful && n.dot(m) < 0 ? -m : m;
     if (!parts.faces.empty()) own.insert(mesh.face(f).begin(), mesh.face(f).end());
   }
+  // Step 2: the neighbourhood, which gives context.
   std::set<VertexId> around = own;
   if (kind != MeshFault::self_intersection && kind != MeshFault::inside_out)
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
@@ -258,6 +263,7 @@ CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind,
       out.points.insert(out.points.end(), all.begin(), all.end());
   }
   if (kind == MeshFault::inside_out || kind == MeshFault::unused_vertex) return out;
+  // Step 3: look from outside, at an angle.
   if (!at.empty() && is_inside_out(mesh, report, at[0])) n = -n;
   if (doubtful && n.dot(middle) < 0) n = -n;
   if (!(n.norm() > 0)) n = middle;

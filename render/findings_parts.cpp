@@ -64,6 +64,7 @@ Vector3d normal(const Mesh& mesh, FaceId f) {
 }
 
 std::vector<FaceId> component(const Mesh& mesh, FaceId first) {
+  // Components by shared vertices.
   DisjointSets sets(mesh.vertices.size());
   for (FaceId f = 0; f < mesh.face_count(); ++f)
     for (const VertexId v : mesh.face(f)) sets.join(mesh.face(f)[0], v);
@@ -84,9 +85,11 @@ using Triangle = std::array<Vector3d, 3>;
 /// Returns the point in which a segment passes through a triangle.
 std::optional<Vector3d> passage(const Vector3d& p, const Vector3d& q, const Triangle& b) {
   const Vector3d n = (b[1] - b[0]).cross(b[2] - b[0]);
+  // Signed distances of the ends from the plane; on the same side there is no crossing.
   const double dp = n.dot(p - b[0]), dq = n.dot(q - b[0]);
   if ((dp > 0) == (dq > 0) || dp == dq) return std::nullopt;
   const Vector3d x = p + dp / (dp - dq) * (q - p);
+  // Inside if to the left of all three edges. Floating point: pictures only.
   for (std::size_t k = 0; k < 3; ++k)
     if (n.dot((b[(k + 1) % 3] - b[k]).cross(x - b[k])) < 0) return std::nullopt;
   return x;
@@ -109,6 +112,7 @@ bool passes_through(const Mesh& mesh, FaceId f, const Vector3d& from, const Vect
 std::vector<Vector3d> cut(const Mesh& mesh, FaceId f, FaceId g) {
   const std::vector<Vector3d> x = corners(mesh, f), y = corners(mesh, g);
   std::vector<Vector3d> found;
+  // Segments: Cramer's rule, parallel ones have no single point.
   if (mesh.dim == 2) {
     const Vector3d u = x[1] - x[0], v = y[1] - y[0];
     const double turn = u.cross(v).z();
@@ -117,6 +121,8 @@ std::vector<Vector3d> cut(const Mesh& mesh, FaceId f, FaceId g) {
   }
   for (std::size_t i = 1; i + 1 < x.size(); ++i)
     for (std::size_t k = 1; k + 1 < y.size(); ++k) {
+      // Edges of each triangle through the other one. The cut of two triangles is a segment between two of
+      // these points.
       add_cuts({x[0], x[i], x[i + 1]}, {y[0], y[k], y[k + 1]}, found);
       add_cuts({y[0], y[k], y[k + 1]}, {x[0], x[i], x[i + 1]}, found);
     }
@@ -126,6 +132,7 @@ std::vector<Vector3d> cut(const Mesh& mesh, FaceId f, FaceId g) {
       return (p - from).squaredNorm() < (q - from).squaredNorm();
     });
   };
+  // The points are collinear up to rounding, so two steps find both ends.
   const Vector3d one = far(found[0], found), other = far(one, found);
   const double size = (x[1] - x[0]).norm() + (y[1] - y[0]).norm();
   if (!((other - one).norm() > kLeastCut * size)) return {};

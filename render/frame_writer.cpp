@@ -19,6 +19,7 @@ FrameWriter::~FrameWriter() {
 
 void FrameWriter::push(std::string path, Image image, PngOptions options) {
   std::unique_lock lock(mutex_);
+  // Back pressure: wait while the queue is full, so that memory is bounded.
   changed_.wait(lock, [&] { return jobs_.size() < capacity_ || error_; });
   rethrow();
   jobs_.push_back({std::move(path), std::move(image), std::move(options)});
@@ -43,6 +44,7 @@ void FrameWriter::run() {
     const Job job = std::move(jobs_.front());
     jobs_.pop_front();
     busy_ = true;
+    // Encode without the lock: rendering continues meanwhile.
     lock.unlock();
     std::exception_ptr error;
     try {

@@ -21,6 +21,7 @@ int columns_for(const std::vector<Panel>& panels) {
   double least = std::numeric_limits<double>::infinity();
   const int n = static_cast<int>(panels.size());
   for (int columns = 1; columns <= n; ++columns) {
+    // Compare the logarithm of the aspect ratio, with a penalty on empty cells.
     const int rows = (n + columns - 1) / columns, gaps = rows * columns - n;
     const double shape =
         static_cast<double>(columns * panels[0].image.width()) / (rows * panels[0].image.height());
@@ -48,6 +49,7 @@ TextStyle caption_style(float height, const Style& look = style_of(StyleName::sc
 
 std::string panel_letter(std::size_t index) {
   std::string letters;
+  // Bijective base 26: (a) to (z), then (aa).
   for (std::size_t n = index + 1; n > 0; n = (n - 1) / 26) {
     letters.insert(letters.begin(), static_cast<char>('a' + (n - 1) % 26));
   }
@@ -59,6 +61,7 @@ MontageLayout lay_out(const std::vector<Panel>& panels, const MontageOptions& op
   const std::size_t columns = std::min(
       panels.size(), static_cast<std::size_t>(options.columns > 0 ? options.columns : columns_for(panels)));
   const std::size_t rows = (panels.size() + columns - 1) / columns;
+  // Step 1: columns and rows are as large as their largest panel.
   std::vector<int> column_width(columns, 0), row_height(rows, 0), caption_height(rows, 0);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     column_width[i % columns] = std::max(column_width[i % columns], panels[i].image.width());

@@ -58,6 +58,7 @@ std::size_t mesas_address_space() {
   constexpr std::size_t kMiB = std::size_t{1} << 20, kStack = 8 * kMiB, kArena = 64 * kMiB,
                         kRest = 100 * kMiB;
   constexpr std::size_t kMostRasterThreads = 32, kArenasPerCore = 8;
+  // llvmpipe's default number of threads, unless the environment sets it.
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   const char* given = std::getenv("LP_NUM_THREADS");
   const std::size_t raster =
@@ -70,6 +71,7 @@ std::size_t mesas_address_space() {
 /// crashes.
 void require_address_space() {
   const std::size_t needed = mesas_address_space();
+  // Reserve without committing: this tests the limit and costs no memory.
   void* const room = mmap(nullptr, needed, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED)
     throw EnvironmentError("drawing needs " + std::to_string(needed >> 20) +
@@ -81,6 +83,7 @@ void require_address_space() {
 }  // namespace
 
 Offscreen::Offscreen() {
+  // Settings that crash Mesa must be found before a context exists.
   for (const Finding& f : check_gl_environment()) {
     if (f.level == Finding::Level::error) throw EnvironmentError(f.what + ": " + f.detail);
   }
@@ -94,6 +97,7 @@ Offscreen::Offscreen() {
     throw EnvironmentError("OSMesa has no function gl" #Name ": its version is too old");
   LRB_GL_FUNCTIONS(LRB_GL)
 #undef LRB_GL
+  // A framebuffer is limited by both textures and viewports.
   GLint texture = 0;
   std::array<GLint, 2> viewport{};
   gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);

@@ -22,6 +22,7 @@ constexpr const char* kRoom = "0\u202f000";
 std::vector<double> log_ticks(double low, double high) {
   constexpr double kRounding = 1e-9, kLong = 1e3;
   std::vector<double> out;
+  // The tolerance keeps ticks at both ends of the scale despite rounding.
   for (int power = static_cast<int>(std::floor(std::log10(low))); std::pow(10, power) <= high; ++power)
     for (const int digit : {1, 2, 5}) {
       if (digit > 1 && high > kLong * low) continue;
@@ -71,6 +72,8 @@ class Layouter {
   }
 
   OverlayLayout run() {
+    // The picture gets what header and footer leave. The footer is measured first, because it is aligned to
+    // the bottom.
     const int top = header();
     const int below = footer(0);
     const int bottom = below == 0 ? height_ : height_ - below - margin_;
@@ -114,6 +117,7 @@ class Layouter {
 
   /// Lays out the strip below the picture from y on and returns its height; y = 0 only measures it.
   int footer(int y) {
+    // Texts that are added while measuring are removed again.
     const bool measuring = y == 0;
     const std::size_t texts = out_.texts.size();
     out_.key_marks.clear();
@@ -153,6 +157,7 @@ class Layouter {
   /// Lays out the scale at the right: the quantity above, then the bar, then values below it. Returns its
   /// width.
   int place_log_scale(int y) {
+    // The bar is wide enough for all values side by side.
     const std::vector<double> values = log_ticks(o_.scale->low, o_.scale->high);
     int widest = 0;
     for (const double v : values) widest = std::max(widest, text_width(short_number(v)));
@@ -174,6 +179,7 @@ class Layouter {
   int place_linear_scale(int y) {
     const std::string low = short_number(o_.scale->low), high = short_number(o_.scale->high);
     const int low_width = text_width(low), high_width = text_width(high), gap = margin_ / 2;
+    // The bar fills the width of the title, or more.
     const int bar = std::max(8 * mark_, text_width(o_.scale->text) - low_width - high_width - 2 * gap);
     const int total = low_width + high_width + bar + 2 * gap, left = width_ - margin_ - total;
     add_text({0, y, width_, row_}, left + (total - text_width(o_.scale->text)) / 2, o_.scale->text);
@@ -200,6 +206,7 @@ bool fits(const OverlayLayout& layout, int width, int height) {
 
 /// Returns true if there is more than one colour along the rim.
 bool runs_over(const Image& picture) {
+  // A picture with a uniform border needs no frame.
   const Rgba first = picture.at(0, 0);
   for (int x = 0; x < picture.width(); ++x) {
     if (picture.at(x, 0) != first || picture.at(x, picture.height() - 1) != first) return true;
@@ -230,6 +237,7 @@ void draw_mark(Image& image, const PixelRect& r, const LegendItem& item, int thi
       image.fill({r.x, r.y + (r.height - thick) / 2, r.width, thick}, item.colour);
       break;
     case LegendItem::Mark::dashed:
+      // Three dashes with gaps of the same width.
       for (int part = 0; part < 5; part += 2) {
         const int x0 = r.x + r.width * part / 5, x1 = r.x + r.width * (part + 1) / 5;
         image.fill({x0, r.y + (r.height - thick) / 2, x1 - x0, thick}, item.colour);
@@ -268,6 +276,7 @@ OverlayLayout lay_out(const Overlay& overlay, int width, int height, float scale
   // its width.
   const double side = std::min<double>(height, width * 0.75) / scale;
   float text = std::clamp(static_cast<float>(std::round(2 * kTextShare * side) / 2), kLeastText, kMostText);
+  // Reduce the text until everything fits.
   for (;; text -= 0.5F) {
     OverlayLayout layout = Layouter(overlay, width, height, text * scale).run();
     layout.scale = scale;
@@ -282,6 +291,7 @@ PixelRect common_picture(std::span<const OverlayLayout> layouts) {
   if (layouts.empty()) return {};
   PixelRect out = layouts[0].picture;
   for (const OverlayLayout& l : layouts) {
+    // The intersection of all: panels of a series have pictures of the same size.
     const int top = std::max(out.y, l.picture.y), bottom = std::min(out.bottom(), l.picture.bottom());
     out.y = top;
     out.height = std::max(1, bottom - top);
@@ -291,6 +301,7 @@ PixelRect common_picture(std::span<const OverlayLayout> layouts) {
 
 void draw_overlay(Image& image, const Overlay& overlay, const OverlayLayout& layout) {
   const Style& style = style_of(overlay.style);
+  // The mark of the event, the key, the scale, then all texts over them.
   if (layout.event_mark.width > 0) {
     image.fill(layout.event_mark, overlay.event_colour);
     image.stroke(layout.event_mark, style.edge_of(overlay.event_colour), hairline(layout.scale));

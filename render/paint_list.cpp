@@ -32,6 +32,7 @@ struct Less {
 
 /// Joins segments, in any order and direction, where they share an end exactly.
 std::vector<std::vector<Vector3d>> loops(const std::vector<std::array<Vector3d, 2>>& segments) {
+  // Both ends of each segment, by their exact coordinates.
   std::multimap<Vector3d, std::size_t, Less> at;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     at.emplace(segments[i][0], i);
@@ -42,6 +43,7 @@ std::vector<std::vector<Vector3d>> loops(const std::vector<std::array<Vector3d, 
   for (std::size_t start = 0; start < segments.size(); ++start) {
     if (used[start]) continue;
     std::vector<Vector3d> loop{segments[start][0]};
+    // Follow unused segments from end to end until the loop closes or no segment is left.
     for (std::size_t i = start; i < segments.size();) {
       used[i] = true;
       const Vector3d end = segments[i][0] == loop.back() ? segments[i][1] : segments[i][0];
@@ -131,6 +133,8 @@ class HiddenLines {
 
   /// Returns a line's parts, in order, in pixels of the projection.
   std::vector<Run> runs(const DrawLine& l) const {
+    // A line is tested as if it were moved towards the viewer by half its width: lines along faces are
+    // visible.
     const double heights = l.nudge * kNudge + (0.5 * l.width + l.halo_width) / projection_.height();
     std::vector<Run> out;
     const std::size_t n = l.points.size(), segments = l.closed && n > 2 ? n : n - 1;
@@ -139,6 +143,7 @@ class HiddenLines {
   }
 
   bool seen(const DrawPoint& p) const {
+    // Behind the eye there is no depth to compare with.
     const Vector3d eye = projection_.to_eye(p.x);
     if (!in_front(eye)) return true;
     return seen(projection_.to_screen(eye),
@@ -151,6 +156,7 @@ class HiddenLines {
   }
 
   bool seen(const Vector3d& screen, double heights) const {
+    // Nearest pixel of the depth image; outside of it nothing hides.
     const int x = static_cast<int>(std::floor(screen.x() / unit_));
     const int y = static_cast<int>(std::floor((projection_.height() - screen.y()) / unit_));
     if (x < 0 || y < 0 || x >= depths_.width || y >= depths_.height) return true;
@@ -166,10 +172,13 @@ class HiddenLines {
       const Vector3d at = p + t * (q - p);
       return Vector2d(at.x(), projection_.height() - at.y());
     };
+    // Two samples for each pixel of the depth image. Straight lines stay straight, so the parameter is
+    // linear.
     const int steps = 1 + static_cast<int>(2 * (q - p).head<2>().norm() / unit_);
     for (int i = 0; i < steps; ++i) {
       const double t = (i + 0.5) / steps;
       const bool now = seen(p + t * (q - p), heights);
+      // The visibility changes: end the run halfway between the samples, and start the next one there.
       if (out.empty() || out.back().seen != now) {
         const Vector2d cut = place(i == 0 ? 0 : static_cast<double>(i) / steps);
         if (!out.empty() && i > 0) out.back().points.push_back(cut);
@@ -182,6 +191,7 @@ class HiddenLines {
   /// Takes runs that are too short to be told apart together with what is around them.
   std::vector<Run> joined(std::vector<Run> runs) const {
     std::vector<Run> out;
+    // Runs below the resolution of the depth image are noise, as at the silhouette of a face.
     for (Run& run : runs) {
       if (runs.size() > 1 && length_of(run) < kLeastRun * unit_ && !out.empty()) run.seen = out.back().seen;
       if (!out.empty() && out.back().seen == run.seen) {
@@ -210,6 +220,7 @@ void paint_run(Canvas& canvas, const DrawLine& l, const Run& run, bool closed) {
 void paint_ring(Canvas& canvas, const Vector2d& at, const DrawPoint& p) {
   constexpr int kCorners = 32;
   Canvas::Loop ring;
+  // A hidden point is a ring: a polygon that no eye can tell from a circle at this size.
   for (int i = 0; i < kCorners; ++i) {
     const double angle = 2 * std::numbers::pi * i / kCorners;
     ring.push_back(at + kRingRadius * p.radius * Vector2d(std::cos(angle), std::sin(angle)));
@@ -222,6 +233,7 @@ void paint_ring(Canvas& canvas, const Vector2d& at, const DrawPoint& p) {
 void paint_flat(Canvas& canvas, const DrawList& list, const Projection& projection, const Vector2d& origin) {
   if (!list.triangles.empty()) throw InputError("a scene with depth cannot be painted as if it were flat");
   ListPainter painter(canvas, projection, origin);
+  // Without depth, the order of painting is the order of the layers.
   for (const DrawFill& f : list.fills) painter.fill(f);
   for (int layer = 0; layer < kLayers; ++layer) {
     for (const DrawLine& l : list.lines)
@@ -254,6 +266,7 @@ void paint_over(Canvas& canvas, const DrawList& list, const Projection& projecti
     }
   }
   ListPainter painter(canvas, projection, origin);
+  // Points cover lines, and labels cover both.
   for (const DrawPoint& p : list.points) {
     if (p.layer != Layer::on_top) continue;
     if (hidden.seen(p)) {

@@ -35,6 +35,7 @@ struct Complaint {
 };
 
 [[noreturn]] void complain(png_structp png, png_const_charp text) {
+  // Never returns: control goes back to setjmp in succeeds().
   auto& out = static_cast<Complaint*>(png_get_error_ptr(png))->text;
   std::strncpy(out.data(), text, out.size() - 1);
   png_longjmp(png, 1);
@@ -54,6 +55,7 @@ bool succeeds(png_structp png, const Body& body) {
 /// Makes a text chunk: plain ASCII becomes tEXt, other text (UTF-8) iTXt.
 png_text as_chunk(const PngText& text) {
   const auto& [key, value] = text;
+  // Limits of the PNG specification.
   if (key.empty() || key.size() > 79)
     throw InputError("PNG text keyword '" + key + "': 1 to 79 characters needed");
   const bool ascii =
@@ -89,6 +91,7 @@ class PngWriter {
 
  private:
   void write_header(const Image& image, const std::vector<png_text>& text, png_uint_32 per_metre) {
+    // Without transparency three channels suffice.
     const bool rgb = image.opaque();
     const auto width = static_cast<png_uint_32>(image.width()),
                height = static_cast<png_uint_32>(image.height());
@@ -96,6 +99,7 @@ class PngWriter {
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
     png_set_compression_level(png_, kZlibLevel);
+    // A buffer for the whole compressed stream: a single IDAT chunk.
     const std::size_t raw = std::size_t{height} * (1 + std::size_t{width} * (rgb ? 3 : 4));
     png_set_compression_buffer_size(png_, compressBound(raw));  // pixels in one chunk
     if (per_metre > 0) png_set_pHYs(png_, info_, per_metre, per_metre, PNG_RESOLUTION_METER);
@@ -105,6 +109,7 @@ class PngWriter {
   }
 
   static void append(png_structp png, png_bytep data, std::size_t size) {
+    // Exceptions must not cross libpng's C frames.
     bool room = true;
     try {
       Bytes& bytes = static_cast<PngWriter*>(png_get_io_ptr(png))->bytes;
@@ -150,6 +155,7 @@ class PngReader {
   /// Reads a PNG of any kind to the end of the file: `rows` of RGBA, 8 bits each.
   bool read_pixels(std::vector<png_bytep>& rows) {
     return succeeds(png_, [&] {
+      // Convert every colour type and depth to 8-bit RGBA.
       png_set_expand(png_);
       png_set_strip_16(png_);
       png_set_gray_to_rgb(png_);
@@ -177,6 +183,7 @@ class PngReader {
  private:
   static void take(png_structp png, png_bytep to, std::size_t size) {
     auto& rest = static_cast<PngReader*>(png_get_io_ptr(png))->rest_;
+    // Truncated file: the error unwinds to succeeds().
     if (size > rest.size()) png_error(png, "it ends too early");
     std::memcpy(to, rest.data(), size);
     rest = rest.subspan(size);
@@ -192,12 +199,14 @@ class PngReader {
 void check_size(const PngReader& reader, std::size_t file_bytes, const std::string& name,
                 std::uint64_t most_pixels) {
   const std::string size = std::to_string(reader.width()) + "x" + std::to_string(reader.height()) + " pixels";
+  // No allocation before these checks: the header may be forged.
   if (reader.width() * reader.height() > most_pixels)
     throw InputError(name + ": has " + size + ", more than the " + std::to_string(most_pixels) +
                      " that are expected at most");
   if (std::max(reader.width(), reader.height()) > Image::kMaxSide)
     throw InputError(name + ": has " + size + ", a side longer than the " + std::to_string(Image::kMaxSide) +
                      " of an image");
+  // Deflate cannot expand by more than this, so larger pictures cannot be in the file.
   constexpr std::uint64_t kDeflateMost = 1032;  // bytes from one, by its format
   if (reader.raw_bytes() > kDeflateMost * file_bytes)
     throw InputError(name + ": not a readable PNG (" + size + " cannot be in " + std::to_string(file_bytes) +
@@ -228,6 +237,7 @@ DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& na
   check_size(reader, bytes.size(), name, most_pixels);
   DecodedPng out;
   out.image = Image(static_cast<int>(reader.width()), static_cast<int>(reader.height()));
+  // libpng decodes directly into the image.
   std::vector<png_bytep> rows;
   rows.reserve(reader.height());
   for (int y = 0; y < out.image.height(); ++y)

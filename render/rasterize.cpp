@@ -1,3 +1,7 @@
+// Off-screen rendering with OpenGL. One frame: project the draw list on the CPU (screen_mesh.hpp), then paint
+// in layers: fills by stencil, opaque faces and lines by depth test, translucent faces in sorted order, and
+// what is on top with its hidden part weakened. At last the supersampled image is averaged in integers.
+
 #include "render/rasterize.hpp"
 
 #include <algorithm>
@@ -33,11 +37,13 @@ Image downsample(const std::vector<std::uint8_t>& samples, int width, int height
   for (int y = 0; y < height; ++y) {
     const std::uint8_t* block_row = samples.data() + static_cast<std::size_t>(height - 1 - y) * n * stride;
     for (int x = 0; x < width; ++x) {
+      // Sums of premultiplied colours: transparent samples contribute nothing to the colour.
       int r = 0, g = 0, b = 0, a = 0;
       for (int j = 0; j < n; ++j) {
         const std::uint8_t* s = block_row + j * stride + static_cast<std::size_t>(x) * n * 4;
         for (int i = 0; i < n; ++i, s += 4) r += s[0], g += s[1], b += s[2], a += s[3];
       }
+      // Divide by the alpha to get straight colours, rounded to nearest.
       if (a == 0) {
         out.at(x, y) = kTransparent;
       } else {
@@ -76,6 +82,7 @@ struct Rasterizer::State {
     ghost = make_program(gl, "ghost", shaders::kFaceVertex, common + shaders::kGhostFragment);
     id = make_program(gl, "id", shaders::kFaceVertex, shaders::kIdFragment);
     line = make_program(gl, "line", shaders::kLineVertex, shaders::kLineFragment);
+    // The layouts must match the attribute locations in shaders.hpp.
     faces = make_mesh();
     using F = FaceVertex;
     const GLsizei f = sizeof(F);
@@ -125,6 +132,7 @@ struct Rasterizer::State {
   // ---- targets
 
   GlObject texture(GLenum internal, GLenum format, GLenum type, int w, int h) {
+    // Integer and exact colour textures must not be filtered.
     GlObject t = make_texture(gl);
     gl.BindTexture(GL_TEXTURE_2D, t);
     gl.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal), w, h, 0, format, type, nullptr);
@@ -158,6 +166,7 @@ struct Rasterizer::State {
 
   void resize(int w, int h) {
     check_size(w, h);
+    // Frames of a series share one target.
     if (w == width && h == height) return;
     scene = scene_target(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, w, h);
     width = w, height = h;
@@ -174,6 +183,7 @@ struct Rasterizer::State {
     gl.Disable(GL_CULL_FACE);
     gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     gl.DepthMask(GL_TRUE);
+    // Depth 1 is the far plane.
     gl.ClearBufferfi(GL_DEPTH_STENCIL, 0, 1, 0);
   }
 
@@ -186,14 +196,17 @@ struct Rasterizer::State {
   /// the cover paints where it is set and clears it.
   void draw_fills(const ScreenMesh& mesh, bool blend) {
     if (mesh.fills.empty()) return;
+    // Stencil, then cover. Fills are flat and lie behind everything, in the order of the list.
     gl.Disable(GL_DEPTH_TEST);
     gl.Enable(GL_STENCIL_TEST);
     if (blend) blend_over();
     for (const FillRange& fill : mesh.fills) {
+      // Step 1: the fan inverts the stencil; a pixel that it covers an odd number of times is inside.
       gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
       gl.StencilFunc(GL_ALWAYS, 0, 1);
       gl.StencilOp(GL_INVERT, GL_INVERT, GL_INVERT);
       draw(faces, fill.fan);
+      // Step 2: paint the bounding rectangle where the stencil is set. This also clears it for the next fill.
       gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
       gl.StencilFunc(GL_NOTEQUAL, 0, 1);
       gl.StencilOp(GL_ZERO, GL_ZERO, GL_ZERO);
@@ -205,6 +218,7 @@ struct Rasterizer::State {
 
   void draw_opaque(const ScreenMesh& mesh) {
     const auto layer = static_cast<std::size_t>(Layer::opaque);
+    // Faces do not blend here, so their order does not matter. Lines have soft borders and come afterwards.
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_LESS);
     gl.UseProgram(face);
@@ -217,6 +231,7 @@ struct Rasterizer::State {
     blend_over();
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(depth);
+    // Only opaque lines occlude what is drawn later.
     gl.DepthMask(write ? GL_TRUE : GL_FALSE);
     set(line, "ghost", ghosted ? 1 : 0);
     draw(lines, range);
@@ -231,6 +246,7 @@ struct Rasterizer::State {
       blend_over();
       gl.Enable(GL_DEPTH_TEST);
       gl.DepthFunc(GL_LESS);
+      // Test against opaque faces, but do not write: translucent faces must not occlude each other.
       gl.DepthMask(GL_FALSE);
       gl.UseProgram(face);
       draw(faces, mesh.face_layers[layer]);
@@ -242,6 +258,7 @@ struct Rasterizer::State {
   /// What is hidden is drawn first, ghosted, and then what is seen.
   void draw_on_top(const ScreenMesh& mesh) {
     const auto layer = static_cast<std::size_t>(Layer::on_top);
+    // The reversed depth test selects the hidden fragments.
     for (const bool hidden : {true, false}) {
       if (mesh.face_layers[layer].count > 0) {
         blend_over();
@@ -261,15 +278,18 @@ struct Rasterizer::State {
   Image draw_list(const DrawList& list, const Camera& camera, const RasterOptions& options) {
     const int n = options.supersample;
     if (n < 1 || n > 4) throw InputError("supersampling must be 1 to 4 samples per pixel and axis");
+    // Step 1: project everything at the resolution of the samples.
     check_size(options.width * n, options.height * n);
     context.make_current();
     const Projection projection(camera, options.width * n, options.height * n, bounds(list));
     const ScreenMesh mesh =
         make_screen_mesh(list, projection, n * options.unit, options.lighting, options.even_edges);
+    // Step 2: targets and buffers.
     resize(options.width * n, options.height * n);
     upload(faces, mesh.faces);
     upload(lines, mesh.lines);
     begin(scene, width, height);
+    // Step 3: the layers, from back to front.
     const Rgba back = options.background ? with_alpha(*options.background, 255) : kTransparent;
     gl.ClearBufferfv(GL_COLOR, 0, glm::value_ptr(to_unit(back)));
     gl.UseProgram(face);
@@ -277,6 +297,7 @@ struct Rasterizer::State {
     draw_opaque(mesh);
     draw_translucent(mesh);
     draw_on_top(mesh);
+    // Step 4: read the samples and average them.
     samples.resize(static_cast<std::size_t>(width) * height * 4);
     gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
     gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, samples.data());
@@ -301,11 +322,13 @@ struct Rasterizer::State {
     const auto [mesh, target] = begin_faces(list, camera, w, h);
     gl.ClearBufferuiv(GL_COLOR, 0, glm::value_ptr(glm::uvec4(kNoId, 0, 0, 0)));
     gl.UseProgram(id);
+    // Ids are integers: no blending, one sample per pixel.
     draw_fills(mesh, false);
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_LESS);
     draw(faces, mesh.face_layers[static_cast<std::size_t>(Layer::opaque)]);
     if (translucent) draw(faces, mesh.face_layers[static_cast<std::size_t>(Layer::translucent)]);
+    // OpenGL's rows begin at the bottom, ours at the top.
     std::vector<std::uint32_t> rows(static_cast<std::size_t>(w) * h);
     gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
     gl.ReadPixels(0, 0, w, h, GL_RED_INTEGER, GL_UNSIGNED_INT, rows.data());
@@ -330,6 +353,7 @@ struct Rasterizer::State {
     gl.ReadPixels(0, 0, w, h, GL_DEPTH_COMPONENT, GL_FLOAT, rows.data());
     context.check("drawing depths");
     DepthImage out{w, h, {}};
+    // From OpenGL's window depth in [0, 1] to [-1, 1], with the rows flipped.
     out.depths.reserve(rows.size());
     for (int y = h - 1; y >= 0; --y)
       for (int x = 0; x < w; ++x) out.depths.push_back(2 * rows[static_cast<std::size_t>(y) * w + x] - 1);

@@ -63,6 +63,7 @@ Rgba Context::region_colour(RegionId r) const {
 }
 
 Rgba Context::colour_of(FaceId f, CellId cell) const {
+  // Faces without a value are pale; the others are on the scale.
   if (options.colour_by == ColourBy::value) {
     if (!has_value(f)) return style().pale(colour(), 0.78);
     const double range = value_high - value_low;
@@ -81,12 +82,14 @@ std::vector<Chain> chains(const std::vector<std::array<VertexId, 2>>& segments) 
   std::multimap<VertexId, std::size_t> from;
   std::map<VertexId, int>
       balance;  // number of segments that end here minus number that start here: an open chain starts at -1
+  // Index the segments by their start, and find where open chains begin.
   for (std::size_t i = 0; i < segments.size(); ++i) {
     from.emplace(segments[i][0], i);
     --balance[segments[i][0]];
     ++balance[segments[i][1]];
   }
   std::vector<Chain> out;
+  // Follow and consume segments until the chain closes or ends.
   const auto follow = [&](VertexId v) {
     Chain chain{{v}, false};
     for (auto next = from.find(v); next != from.end(); next = from.find(v)) {
@@ -100,11 +103,13 @@ std::vector<Chain> chains(const std::vector<std::array<VertexId, 2>>& segments) 
     }
     out.push_back(std::move(chain));
   };
+  // Open chains first: starting a closed one inside them would cut them in two.
   for (const auto& [v, surplus] : balance) {
     for (int i = surplus; i < 0; ++i) {
       if (from.contains(v)) follow(v);
     }
   }
+  // Only loops are left.
   while (!from.empty()) follow(from.begin()->first);
   return out;
 }
@@ -127,6 +132,7 @@ void check(std::span<const SceneBody> bodies, const SceneHighlight& highlight, c
   for (std::size_t i = 0; i < 2; ++i) {
     static const std::vector<RegionId> kNone;
     const std::vector<RegionId>& built = i == 0 && highlight.built ? *highlight.built : kNone;
+    // Validate all indices once, so that drawing need not.
     for (const auto* regions : {&highlight.refining[i], &options.isolate[i], &built}) {
       for (const RegionId r : *regions) {
         if (i < bodies.size() && r < bodies[i].rep->region_count()) continue;
@@ -166,6 +172,7 @@ void add_pair_under_test(std::span<const SceneBody> bodies, const SceneHighlight
     const auto corner = [&](int k) {
       return body.pose.apply(body.rep->vertices()[ids[static_cast<std::size_t>(k)]]);
     };
+    // The outline with a halo marks the simplex even if it is tiny on the screen.
     DrawLine outline;
     const int n = body.rep->simplex_size();
     for (int k = 0; k < n; ++k) outline.points.push_back(corner(k));
@@ -203,6 +210,7 @@ void add_contacts(const SceneHighlight& highlight, const SceneOptions& options, 
       dot.x = region.centroid;
       out.list.points.push_back(dot);
     }
+    // The intersection curves, whose extent decides whether a dot is needed.
     Eigen::AlignedBox3d curves;
     for (const ContactLoop& loop : region.loops) {
       if (loop.points.size() == 1) {
@@ -237,6 +245,7 @@ void add_contacts(const SceneHighlight& highlight, const SceneOptions& options, 
 Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highlight,
                   const SceneOptions& options) {
   check(bodies, highlight, options);
+  // Values and layers are common to all bodies, so that colours can be compared.
   const auto [low, high] = value_range(bodies, options);
   const bool flat = bodies[0].rep->dim() == 2;
   std::uint32_t layers = 1;
@@ -253,6 +262,7 @@ Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highl
         flat ? LegendItem{Mark::solid, style.pale(style.refining, scene::kRefining2d), "region being refined"}
              : LegendItem{Mark::translucent, style.refining, "region being refined"});
   }
+  // The size of the bodies, before marks are added.
   const double size = bounds(out.list).isEmpty() ? 0 : bounds(out.list).diagonal().norm();
   if (highlight.under_test) add_pair_under_test(bodies, highlight, options, out);
   add_contacts(highlight, options, size, flat, out);
@@ -286,6 +296,8 @@ Eigen::Vector3d middle(const LrbRep& rep, const Pose& pose, std::span<const Face
 
 Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, RegionId r, double explode) {
   constexpr double kLayerStep = 0.12;  // in space: extra way per layer, as a share of the body's radius
+  // Regions move away from the centre of the outermost wrapper. Extra distance per layer separates nested
+  // regions.
   const Eigen::Vector3d centre = middle(rep, pose, rep.outermost_faces());
   const Eigen::Vector3d out = middle(rep, pose, rep.collector(r)) - centre;
   if (rep.dim() == 2) return explode * out;

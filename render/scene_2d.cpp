@@ -19,6 +19,7 @@ class Scene2dBuilder {
       : c_(c), rep_(*c.body.rep), style_(c.style()), body_(c.colour()), scale_(c.options.scale) {}
 
   void run() {
+    // Fills first, then lines over them, with contacts last.
     for (RegionId r = 0; r < rep_.region_count(); ++r) region(r);
     solid();
     if (c_.isolating() || c_.options.explode > 0) {
@@ -48,6 +49,7 @@ class Scene2dBuilder {
     if (!shown(r)) return;
     DrawFill fill;
     fill.id = region_id(c_.side, r);
+    // By priority: construction, refinement, colouring by layer or region, the body's colour.
     const bool telling = c_.options.colour_by == ColourBy::layer || c_.options.colour_by == ColourBy::region;
     fill.colour = telling ? style_.pale(c_.region_colour(r), 0.35) : with_alpha(body_, 78);
     if (c_.refining(r)) fill.colour = style_.pale(style_.refining, kRefining2d);
@@ -107,6 +109,7 @@ class Scene2dBuilder {
   /// Draws thin lines between regions, dashed between those that have been refined away.
   void region_lines() {
     std::vector<FaceId> inside, gone;
+    // Each pseudo face is between a region and another cell: classify it by the state of the region inside.
     for (FaceId f(rep_.real_face_count()); f < rep_.face_count(); ++f) {
       const CellId in = rep_.inner_cell(f);
       if (!is_region(in)) continue;
@@ -144,6 +147,7 @@ class Scene2dBuilder {
                  const Vector3d& by = Vector3d::Zero()) {
     std::vector<std::array<VertexId, 2>> segments;
     for (const FaceId f : faces) segments.push_back({rep_.face(f)[0], rep_.face(f)[1]});
+    // Chains, so that dashes and joins run through vertices.
     for (const Chain& chain : chains(segments)) {
       DrawLine line;
       for (const VertexId v : chain.vertices)

@@ -61,11 +61,13 @@ class Scene3dBuilder {
     std::vector<FaceId> lids;
     for (const FaceId f : c_.body.wrapper->boundary()) {
       const CellId behind = rep_.inner_cell(f);
+      // Lids that are highlighted are drawn later in another style.
       const bool drawn_apart =
           is_region(behind) && (c_.refining(behind.as_region()) || c_.built(behind.as_region()));
       if (!rep_.is_real(f) && !c_.in_contact(f) && !drawn_apart) lids.push_back(f);
     }
     const bool telling = c_.options.colour_by != ColourBy::kind;
+    // Translucent, in the painting order that the rasterizer determines.
     for (const FaceId f : lids) {
       DrawTriangle t = translucent(lid_colour(f));
       // Edges of faces, not lines, so that those behind other lids show through them instead of lying on
@@ -89,6 +91,7 @@ class Scene3dBuilder {
       std::vector<FaceId> lids;
       for (const FaceId f : rep_.lids(r))
         if (c_.on_boundary(f)) lids.push_back(f);
+      // Real faces are opaque, and coloured by the highest priority that applies: contact, value, kind.
       DrawTriangle t;
       t.colour = c_.built_colour(r);
       t.nudge = 2;  // where they lie on what they cover
@@ -161,6 +164,7 @@ class Scene3dBuilder {
 
   void refining(RegionId r) {
     std::vector<FaceId> lids(rep_.lids(r).begin(), rep_.lids(r).end()), floor;
+    // Real floor faces are drawn already; pseudo ones contribute their edges only.
     for (const FaceId f : rep_.floor(r)) {
       if (!rep_.is_real(f)) floor.push_back(f);
     }
@@ -212,6 +216,7 @@ class Scene3dBuilder {
   void region(RegionId r, const Vector3d& moved, bool open) {
     Rgba colour = c_.region_colour(r);
     if (c_.options.colour_by == ColourBy::kind) colour = style_.pale(colour, 0.5);
+    // A face of the collector is a lid if the region is on its inner side, else floor.
     for (const FaceId f : rep_.collector(r)) {
       const bool lid = rep_.inner_cell(f) == r;
       DrawTriangle t;
@@ -254,6 +259,7 @@ class Scene3dBuilder {
   /// Draws edges of faces as lines, each once. Lines keep their width at outlines, where edges of faces show
   /// half of it.
   void add_outlines(const std::vector<FaceId>& faces, const EdgeStyle& style, Edges which = Edges::all) {
+    // Undirected edges of all faces, sorted so that equal ones are neighbours.
     std::vector<std::array<VertexId, 2>> edges;
     for (const FaceId f : faces) {
       const auto corners = rep_.face(f);
@@ -267,6 +273,7 @@ class Scene3dBuilder {
     for (std::size_t first = 0; first < edges.size(); first = end) {
       const auto [a, b] = edges[first];
       for (end = first; end < edges.size() && edges[end] == edges[first];) ++end;
+      // An edge of two faces is not on the boundary of the set.
       if (which != Edges::all && end - first > 1) continue;
       DrawLine line;
       line.points = {c_.body.pose.apply(rep_.vertices()[a]), c_.body.pose.apply(rep_.vertices()[b])};

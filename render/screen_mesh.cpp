@@ -1,3 +1,6 @@
+// Projects a draw list to screen triangles. Clipping, snapping, lighting and the widths of lines and edges
+// are computed here in double, so that the rasterizer only interpolates and pictures are reproducible.
+
 #include "render/screen_mesh.hpp"
 
 #include <algorithm>
@@ -46,6 +49,7 @@ class ScreenMeshBuilder {
                     const Lighting& lighting, bool even_edges)
       : list_(list), p_(projection), scale_(scale), lighting_(lighting), soft_(lighting) {
     room_ = even_edges ? even_edge_room(list, projection) : edge_room(list, projection);
+    // Softer lighting: part of each directional light moves to the ambient one.
     soft_.ambient = lighting.ambient + kSoften * (1 - lighting.ambient);
     for (double* share : {&soft_.head, &soft_.key, &soft_.fill}) *share *= 1 - kSoften;
   }
@@ -59,6 +63,7 @@ class ScreenMeshBuilder {
  private:
   void add_layer(Layer layer) {
     const auto index = static_cast<std::size_t>(layer);
+    // Each layer is a contiguous range of vertices: one draw call.
     mesh_.face_layers[index].first = mesh_.faces.size();
     if (layer == Layer::opaque) {
       for (const DrawTriangle& t : list_.triangles) {
@@ -84,6 +89,7 @@ class ScreenMeshBuilder {
     std::vector<EyePolygon> polygons;
     for (std::uint32_t i = 0; i < list_.triangles.size(); ++i) {
       if (list_.triangles[i].layer != layer) continue;
+      // Clip first: depth order is computed for the visible parts only.
       EyePolygon p{visible_part(list_.triangles[i]), Vector3d::Zero(), i};
       if (p.x.size() < 3) continue;
       for (std::size_t j = 1; j + 1 < p.x.size(); ++j)
@@ -98,6 +104,7 @@ class ScreenMeshBuilder {
   // ---- faces
 
   glm::vec3 device(const Vector3d& screen, double nudge) const {
+    // Normalised device coordinates; the nudge is applied in depth, so pixels do not move.
     const double z = std::clamp(p_.nearer(screen.z(), nudge * kNudge), -1.0, 1.0);
     return to_float(Vector3d(2 * screen.x() / p_.width() - 1, 2 * screen.y() / p_.height() - 1, z));
   }
@@ -128,6 +135,7 @@ class ScreenMeshBuilder {
   static constexpr int kPlanes = 5;
 
   void clip(std::vector<Vector3d>& polygon) const {
+    // Sutherland and Hodgman 1974: one plane after the other.
     for (int plane = 0; plane < kPlanes && !polygon.empty(); ++plane) {
       std::vector<Vector3d> out;
       for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -142,6 +150,7 @@ class ScreenMeshBuilder {
 
   /// Returns the line of an edge on the screen: (a, b, c) with a x + b y + c w = distance in pixels times w.
   static Vector3d edge_line(const Vector3d& p, const Vector3d& q) {
+    // The line through two homogeneous points; scaled so that a, b is a unit normal.
     const Vector3d line = p.cross(q);
     const double norm = std::hypot(line.x(), line.y());
     return norm > 0 ? Vector3d(line / norm) : Vector3d::Zero();
@@ -152,6 +161,7 @@ class ScreenMeshBuilder {
   std::vector<Vector3d> visible_part(const DrawTriangle& t) const {
     std::vector<Vector3d> polygon;
     for (const Vector3d& x : t.x) polygon.push_back(p_.to_eye(x));
+    // Most triangles are entirely inside, and are not copied.
     const bool crosses = std::any_of(polygon.begin(), polygon.end(), [&](const Vector3d& e) {
       for (int plane = 0; plane < kPlanes; ++plane) {
         if (inside(e, plane) < 0) return true;
@@ -165,6 +175,7 @@ class ScreenMeshBuilder {
   /// Adds a convex part of a triangle, given in the eye's frame.
   void add_face(const DrawTriangle& t, const std::vector<Vector3d>& polygon) {
     if (polygon.size() < 3) return;
+    // Flat shading, from the normal in world coordinates.
     const Vector3d normal = (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]);
     const double length = normal.norm();
     FaceVertex v;
@@ -175,6 +186,8 @@ class ScreenMeshBuilder {
     }
     v.colour = to_bytes(colour);
     v.id = t.id;
+    // Distances to the edges of the whole triangle are stored at each corner; the shader draws edges from
+    // these.
     const std::array<Vector3d, 3> h = {homogeneous(p_, p_.to_eye(t.x[0])), homogeneous(p_, p_.to_eye(t.x[1])),
                                        homogeneous(p_, p_.to_eye(t.x[2]))};
     const std::array<Vector3d, 3> lines = edge_lines(t, h, v);
@@ -183,10 +196,12 @@ class ScreenMeshBuilder {
       const Vector3d at = homogeneous(p_, e);
       v.x = device(snapped_screen(e), t.nudge);
       for (int i = 0; i < 3; ++i) {
+        // Bit i: edge i is drawn.
         v.edge[i] = (t.edges >> i & 1) != 0 ? to_float(std::abs(lines[i].dot(at) / at.z())) : kNoEdge;
       }
       corners_.push_back(v);
     }
+    // A clipped triangle is convex: a fan covers it.
     for (std::size_t i = 1; i + 1 < corners_.size(); ++i) {
       mesh_.faces.insert(mesh_.faces.end(), {corners_[0], corners_[i], corners_[i + 1]});
     }
@@ -205,6 +220,7 @@ class ScreenMeshBuilder {
     for (int i = 0; i < 3; ++i) lines[i] = edge_line(h[i], h[(i + 1) % 3]);
     if (t.edges == 0) return lines;
     const EdgeStyle& style = list_.edge_styles[t.edge_style];
+    // Fade colour and width where the face has little room on the screen.
     const double room = room_[static_cast<std::size_t>(&t - list_.triangles.data())] / (style.width * scale_);
     const double fade = fade_between(room, kEdgesGone, kEdgesFull), back = shows_back(t) ? style.back : 1;
     const double width = style.width * (kLeastWidth + (1 - kLeastWidth) * fade) * (0.5 + 0.5 * back);
@@ -233,6 +249,7 @@ class ScreenMeshBuilder {
       s.z() = 0;
       return device(s, 0);
     };
+    // One triangle per segment with a common pivot; overlaps cancel in the even-odd count.
     const glm::vec3 pivot = corner(fill.segments[0][0]);
     glm::vec2 low(1), high(-1);
     for (const auto& [a, b] : fill.segments) {
@@ -244,6 +261,7 @@ class ScreenMeshBuilder {
       }
     }
     range.fan.count = mesh_.faces.size() - range.fan.first;
+    // The covering rectangle, limited to the picture.
     low = glm::clamp(low, -1.0F, 1.0F);
     high = glm::clamp(high, -1.0F, 1.0F);
     range.cover.first = mesh_.faces.size();
@@ -259,6 +277,7 @@ class ScreenMeshBuilder {
 
   void add_line(const DrawLine& l) {
     if (l.points.empty()) return;
+    // The halo goes first and slightly behind its line.
     const double nudge = l.nudge + lift(l.layer, 0.5 * l.width + l.halo_width);
     if (l.halo.a > 0 && l.halo_width > 0) {
       add_polyline(l, l.halo, l.width + 2 * l.halo_width, kNeverDashed, nudge - kHaloNudge);
@@ -282,6 +301,7 @@ class ScreenMeshBuilder {
     double before = 0;
     const std::size_t n = l.points.size(), segments = l.closed && n > 2 ? n : std::max<std::size_t>(n - 1, 1);
     for (std::size_t i = 0; i < segments; ++i) {
+      // Dashes continue around corners.
       v.dash_start = to_float(before);
       before += add_segment(l.points[i], l.points[n == 1 ? 0 : (i + 1) % n], v, nudge);
     }
@@ -303,12 +323,14 @@ class ScreenMeshBuilder {
   /// Returns the segment's length on the screen.
   double add_segment(const Vector3d& from, const Vector3d& to, LineVertex v, double nudge) {
     Vector3d a = p_.to_eye(from), b = p_.to_eye(to);
+    // Clip the segment to the guard region.
     for (int plane = 0; plane < kPlanes; ++plane) {
       const double da = inside(a, plane), db = inside(b, plane);
       if (da < 0 && db < 0) return 0;
       if (da < 0) a += (b - a) * (da / (da - db));
       if (db < 0) b += (a - b) * (db / (db - da));
     }
+    // A rectangle around the segment, with room for round ends and a soft border.
     const Vector3d sa = snapped_screen(a), sb = snapped_screen(b);
     const Vector2d d = (sb - sa).head<2>();
     const double length = d.norm();
@@ -342,6 +364,7 @@ class ScreenMeshBuilder {
 }  // namespace
 
 Rgba shade(Rgba colour, const Vector3d& normal, const Eigen::Matrix3d& axes, const Lighting& lighting) {
+  // Eye coordinates with z towards the viewer. Both sides of a face are lit.
   Vector3d n(axes.row(0).dot(normal), axes.row(1).dot(normal), -axes.row(2).dot(normal));
   if (n.z() < 0) n = -n;
   const auto from = [&](const Vector3d& light) { return std::max(0.0, n.dot(light.normalized())); };

@@ -52,6 +52,7 @@ void SvgCanvas::text(const PaperText& t) {
   if (t.bold) out_ += attribute("font-weight", "bold");
   if (t.align != Align::left) out_ += attribute("text-anchor", t.align == Align::centre ? "middle" : "end");
   out_ += paint("fill", t.colour);
+  // paint-order draws the stroke beneath the fill, so the glyphs keep their shape.
   if (t.halo.a > 0)
     out_ += paint("stroke", t.halo) + attribute("stroke-width", number(2 * kTextHalo * t.height)) +
             attribute("stroke-linejoin", "round") + attribute("paint-order", "stroke");

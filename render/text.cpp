@@ -42,6 +42,7 @@ Mask dilate(const Mask& mask, float radius) {
   struct Tap {
     int x, y, weight;
   };
+  // The disc's coverage, with a border one pixel wide.
   std::vector<Tap> taps;
   const int reach = static_cast<int>(std::ceil(radius));
   for (int y = -reach; y <= reach; ++y) {
@@ -54,6 +55,7 @@ Mask dilate(const Mask& mask, float radius) {
   Mask out(mask.width, mask.height);
   for (int y = 0; y < mask.height; ++y) {
     for (int x = 0; x < mask.width; ++x) {
+      // Maximum, not sum: overlapping copies must not exceed full coverage.
       if (mask(x, y) == 0) continue;
       for (const Tap& t : taps) {
         const int i = x + t.x, j = y + t.y;
@@ -68,6 +70,7 @@ Mask dilate(const Mask& mask, float radius) {
 }  // namespace
 
 std::string find_font(bool bold) {
+  // The environment comes first, then the font of the build, then the usual folders.
   for (const char* variable : {bold ? "LRB_FONT_BOLD" : "LRB_FONT", "LRB_FONT"}) {
     const char* path = std::getenv(variable);
     if (path == nullptr || *path == '\0') continue;
@@ -107,6 +110,7 @@ struct Font::Faces {
       float x = 0;
       int previous = 0;
       while (!text.empty()) {
+        // Kerning depends on the pair of glyphs.
         const int glyph = stbtt_FindGlyphIndex(&info, static_cast<int>(next_code_point(text)));
         if (previous != 0) x += scale * static_cast<float>(stbtt_GetGlyphKernAdvance(&info, previous, glyph));
         visit(glyph, x);
@@ -127,6 +131,7 @@ Font::Font(Font&&) noexcept = default;
 
 TextSize Font::measure(std::string_view text, const TextStyle& style) const {
   const auto& face = style.bold ? faces_->bold : faces_->regular;
+  // Round outward, so that nothing is cut off.
   const float scale = stbtt_ScaleForPixelHeight(&face.info, style.height);
   TextSize size;
   size.width = static_cast<int>(std::ceil(face.walk(text, scale, [](int, float) {})));
@@ -145,6 +150,7 @@ void Font::draw(Image& image, std::string_view text, int x, int y, const TextSty
 
   const int pad =
       2 + static_cast<int>(std::ceil(style.halo_width));  // glyphs may reach a little beyond the advance
+  // Step 1: render all glyphs into one coverage mask, at subpixel positions.
   Mask ink(size.width + 2 * pad, size.height + 2 * pad);
   face.walk(text, scale, [&](int glyph, float at) {
     const float whole = std::floor(at), part = at - whole;
@@ -162,6 +168,7 @@ void Font::draw(Image& image, std::string_view text, int x, int y, const TextSty
     stbtt_FreeBitmap(bitmap, nullptr);
   });
 
+  // Step 2: paint the mask, over its dilation if there is a halo.
   const auto paint = [&](const Mask& mask, Rgba colour) {
     for (int j = 0; j < mask.height; ++j) {
       for (int i = 0; i < mask.width; ++i) {
@@ -177,6 +184,7 @@ std::vector<std::string> Font::wrap(std::string_view text, int width, const Text
   const auto fits = [&](const std::string& s) { return measure(s, style).width <= width; };
   std::vector<std::string> lines;
   std::string line;
+  // Greedy line breaking. A word wider than the line is broken between code points.
   const auto add_word = [&](std::string_view word) {
     const std::string joined = line.empty() ? std::string(word) : line + " " + std::string(word);
     if (fits(joined)) {
@@ -216,6 +224,7 @@ char32_t next_code_point(std::string_view& text) {
   constexpr char32_t kBad = 0xFFFD;
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
+  // The first byte determines the length; bytes that cannot start a sequence are replaced one at a time.
   const std::size_t length = first < 0x80 ? 1 : first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : first >= 0xC2 ? 2 : 0;
   if (length == 0 || length > text.size() || first > 0xF4) {
     text.remove_prefix(1);
@@ -227,6 +236,7 @@ char32_t next_code_point(std::string_view& text) {
       text.remove_prefix(i);
       return kBad;
     }
+    // Continuation bytes carry six bits each.
     code = code << 6 | (byte(i) & 0x3F);
   }
   text.remove_prefix(length);

@@ -91,11 +91,13 @@ Trace ConstructRecorder::take(const LrbRep& rep, const Pose& pose) {
   header.clock = settings_.clock;
   header.event_cap = settings_.event_cap;
   header.construction = true;
+  // A construction is one step whose result is the body itself.
   Step step;
   step.pose_a = pose;
   step.events_seen = trace_.events_seen = seen_;
   trace_.steps.push_back(std::move(step));
 
+  // Regions are known only now: replay them outward from the mesh to add face counts.
   const LrbRep* reps[] = {&rep};
   Replay hull(reps, header.request.wrapper, true);
   for (Event& e : trace_.events) {
@@ -111,6 +113,7 @@ Trace ConstructRecorder::take(const LrbRep& rep, const Pose& pose) {
 
 Trace known_construction(const LrbRep& rep, const Pose& pose, const RecorderSettings& settings) {
   ConstructRecorder recorder(settings);
+  // Without a builder, one pass per layer stands in for the construction.
   for (std::uint32_t layer = 0; layer < rep.layer_count(); ++layer) {
     recorder.pass({BuildStage::known, layer, 0, 0});
     for (RegionId r = 0; r < rep.region_count(); ++r)

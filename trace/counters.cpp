@@ -43,6 +43,7 @@ class WrapperSizes {
 };
 
 std::array<std::uint32_t, 2> largest_wrappers(const Trace& trace, std::span<const Event> events) {
+  // The sizes at the beginning of the range count as well.
   WrapperSizes sizes(trace);
   std::array<std::uint32_t, 2> most = sizes.faces;
   for (const Event& e : events) {
@@ -65,6 +66,7 @@ Totals count_events(std::span<const Event> events) {
   t.events = events.size();
   for (const Event& e : events) {
     const auto side = static_cast<std::size_t>(e.side);
+    // Every kind is listed, so that the compiler reports a new one.
     switch (e.kind) {
       case EventKind::face_test:
         ++t.face_tests;
@@ -120,6 +122,7 @@ std::vector<Statistic> statistics(const Trace& trace) {
       {"contacts_per_step", ratio(t.contacts, steps), "", "contacts / time steps"},
   };
   constexpr std::string_view kShares[] = {"largest_wrapper_share_a", "largest_wrapper_share_b"};
+  // Shares relate the work to its worst case: all faces of a body, all pairs of faces.
   const auto most = largest_wrappers(trace, trace.events);
   double pairs = static_cast<double>(steps);
   for (std::size_t i = 0; i < trace.header.bodies.size(); ++i) {
@@ -161,6 +164,7 @@ Histogram refinements_by_size(const Trace& trace) {
               {}};
   for (const Event& e : trace.events) {
     if (e.kind != EventKind::refine) continue;
+    // Logarithmic bins: bit_width(n) is 0 for 0, else floor(log2 n) + 1.
     const auto bin = static_cast<std::size_t>(std::bit_width(e.b));
     if (bin >= h.counts.size()) h.counts.resize(bin + 1);
     ++h.counts[bin];
@@ -181,6 +185,7 @@ Histogram steps_by_tests(const Trace& trace, std::size_t bins) {
   for (std::size_t i = 0; i < trace.steps.size(); ++i)
     tests.push_back(count_events(trace.events_of(i)).face_tests);
   const std::uint64_t most = tests.empty() ? 0 : *std::max_element(tests.begin(), tests.end());
+  // Rounded up, so that the maximum falls into the last bin at most.
   const std::uint64_t width = most / bins + 1;
   for (const std::uint64_t n : tests) ++h.counts[n / width];
   for (std::size_t i = 0; i <= bins; ++i) h.edges.push_back(static_cast<double>(i * width));
@@ -193,6 +198,8 @@ FaceCounts count_faces(const LrbRep& rep, Side side, std::span<const Event> even
   FaceCounts counts{none, none, none, none, none, none, none};
   const auto face_of = [&](const Event& e) { return rep.face_of_simplex(e.simplex(side)); };
   for (const Event& e : events) {
+    // Each event is attributed to one face of this side; a refinement to all real faces and lids of its
+    // region.
     if (e.kind == EventKind::face_test) {
       const FaceId face = face_of(e);
       ++counts.tests[face];
@@ -221,6 +228,7 @@ Chart chart_over_events(const Trace& trace, std::size_t max_points) {
                   {"refinements", "", "regions refined in the time step so far", {}},
                   {"contacts", "", "real pairs found in the time step so far", {}}};
   const std::size_t n = trace.events.size();
+  // Sample every stride-th event, and the last. Work restarts at each step.
   const std::size_t stride = std::max<std::size_t>(1, n / std::max<std::size_t>(max_points, 1));
   WrapperSizes sizes(trace);
   std::array<std::uint64_t, 4> work{};
@@ -238,6 +246,7 @@ Chart chart_over_events(const Trace& trace, std::size_t max_points) {
     for (std::size_t s = 0; s < work.size(); ++s)
       chart.series[2 + s].values.push_back(static_cast<double>(work[s]));
   }
+  // The rows are computed for two bodies: drop the curve of the missing one.
   if (trace.header.bodies.size() < 2) chart.series.erase(chart.series.begin() + 1);
   return chart;
 }
@@ -256,6 +265,7 @@ Chart chart_over_steps(const Trace& trace) {
     const std::span<const Event> events = trace.events_of(i);
     const Totals t = count_events(events);
     const auto most = largest_wrappers(trace, events);
+    // One row per step, in the order of the series.
     const double row[] = {static_cast<double>(t.face_tests),
                           static_cast<double>(t.hits),
                           static_cast<double>(t.refinements[0] + t.refinements[1]),

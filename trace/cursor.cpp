@@ -41,6 +41,7 @@ Cursor::Cursor(const Trace& trace, std::vector<const LrbRep*> reps)
                      " bodies, given " + std::to_string(reps.size()) + "; replay needs the same ones");
   for (std::size_t i = 0; i < reps.size(); ++i)
     require_same_body(trace.header.bodies[i], *reps[i], std::string(name_of(static_cast<Side>(i))));
+  // Index the events that change a wrapper: seeking replays only these.
   for (EventId e = 0; e < trace.events.size(); ++e) {
     const Event& event = trace.events[e];
     if (event.kind == EventKind::step || event.changes_wrapper()) changes_.push_back(e);
@@ -70,6 +71,7 @@ void Cursor::seek(EventId event) {
     throw std::out_of_range("Cursor::seek: event " + std::to_string(event) + " of " +
                             std::to_string(trace_->events.size()));
   if (event == kNull) return rewind();
+  // The number of changes up to the target determines the state of the wrappers.
   const std::size_t step = trace_->step_of(event);
   const auto count_up_to = [&](EventId e) {
     return static_cast<std::size_t>(std::upper_bound(changes_.begin(), changes_.end(), e) - changes_.begin());
@@ -121,6 +123,7 @@ std::optional<TestedPair> Cursor::pair_under_test() const {
     const EventKind kind = trace_->events[e].kind;
     return kind == EventKind::face_test || kind == EventKind::contact;
   };
+  // A refinement has no pair of its own; its cause is the test that hit.
   if (!is_pair(id)) id = event().cause;
   if (id == kNull || !is_pair(id)) return std::nullopt;
   const Event& e = trace_->events[id];
@@ -136,6 +139,7 @@ std::vector<RefinedRegion> Cursor::refined() const {
   std::vector<RefinedRegion> out;
   if (at_start()) return out;
   const EventId cause = event().cause;
+  // Walk back over consecutive refinements of the same cause.
   for (EventId id = position_;; --id) {
     const Event& e = trace_->events[id];
     if (e.kind != EventKind::refine || e.cause != cause) break;

@@ -1,3 +1,7 @@
+// First difference of two traces, in causal order: bodies, request, then each step's poses, events and
+// results. A comparison that has found a difference ignores all that follow, so the checks are written in
+// sequence.
+
 #include "trace/divergence.hpp"
 
 #include <algorithm>
@@ -90,6 +94,7 @@ void compare_bodies(Comparison& c, const TraceHeader& x, const TraceHeader& y) {
   c.same("number of bodies", std::uint64_t{x.bodies.size()}, std::uint64_t{y.bodies.size()});
   for (std::size_t i = 0; i < x.bodies.size() && !c.differs(); ++i) {
     const BodyInfo &p = x.bodies[i], &q = y.bodies[i];
+    // The hash covers the whole LRB-rep; face and region counts only help the reader.
     if (p.hash == q.hash) continue;
     const auto tell = [](const BodyInfo& b) {
       return to_hex(b.hash) + " (" + std::to_string(b.real_faces) + " real faces, " +
@@ -128,10 +133,12 @@ void compare_nodes(Comparison& c, const Event& x, const Event& y) {
 }
 
 void compare_events(Comparison& c, const Event& x, const Event& y) {
+  // Fields mean different things for different kinds: compare these first.
   c.same("kind", x.kind, y.kind);
   if (c.differs()) return;
   const auto [a, b] = fields_of(x.kind);
   c.same("side", x.side, y.side);
+  // Fields a and b: enumerators are reported by name, numbers as they are.
   if (x.kind == EventKind::result)
     c.same("relation", static_cast<Relation>(x.a), static_cast<Relation>(y.a));
   else if (x.kind == EventKind::begin || x.kind == EventKind::end)
@@ -140,6 +147,7 @@ void compare_events(Comparison& c, const Event& x, const Event& y) {
     c.same_or_none(std::string(a), x.a, y.a);
   c.same_or_none(std::string(b), x.b, y.b);
   c.same("meet", x.meet, y.meet);
+  // The depth fields are reused by construction events; report them under their meaning.
   c.same_or_none(x.kind < EventKind::pass     ? "depth of A"
                  : x.kind == EventKind::patch ? "interior vertices"
                  : x.kind == EventKind::cap   ? "careful"
@@ -151,6 +159,7 @@ void compare_events(Comparison& c, const Event& x, const Event& y) {
   if (x.kind == EventKind::point) c.same("where", x.where(), y.where());
   if (x.kind == EventKind::pass) c.same("stage", x.stage(), y.stage());
   if (x.kind == EventKind::cap) c.same("verdict", x.verdict(), y.verdict());
+  // Likewise `boundary`: packed work, a float deviation, or a number of faces.
   if (x.kind == EventKind::node_pair)
     compare_nodes(c, x, y);
   else if (x.kind == EventKind::pass || x.kind == EventKind::cap)
@@ -168,6 +177,7 @@ void compare_results(Comparison& c, const Step& x, const Step& y) {
 void compare_step_events(Comparison& c, const Trace& x, const Trace& y, std::size_t step) {
   const std::span<const Event> p = x.events_of(step), q = y.events_of(step);
   const EventId first = x.steps[step].first_event;
+  // The common prefix: equal events are skipped by one comparison each.
   for (std::size_t i = 0; i < std::min(p.size(), q.size()); ++i) {
     if (p[i] == q[i]) continue;
     c.at(first + static_cast<EventId>(i), step);
@@ -175,6 +185,7 @@ void compare_step_events(Comparison& c, const Trace& x, const Trace& y, std::siz
     return;
   }
   if (p.size() == q.size()) return;
+  // One run has more events: the first extra one is the difference.
   const std::size_t i = std::min(p.size(), q.size());
   c.at(first + static_cast<EventId>(i), step);
   const std::string end = "the end of the step";
@@ -186,9 +197,11 @@ void compare_steps(Comparison& c, const Trace& x, const Trace& y) {
     const Step &p = x.steps[i], &q = y.steps[i];
     c.at(std::nullopt, i);
     c.same("index of the step", std::uint64_t{p.index}, std::uint64_t{q.index});
+    // Poses are inputs: if they differ, different events are a consequence.
     if (!equal(p.pose_a, q.pose_a)) c.found("pose of A", words(p.pose_a), words(q.pose_a));
     if (!equal(p.pose_b, q.pose_b)) c.found("pose of B", words(p.pose_b), words(q.pose_b));
     if (!c.differs()) compare_step_events(c, x, y, i);
+    // Events come before results, because they usually explain them.
     c.at(std::nullopt, i);
     compare_results(c, p, q);
   }

@@ -4,9 +4,11 @@ namespace lrb::trace {
 
 template <class Floating>
 void JsonOut::floating(Floating value) {
+  // JSON has no infinity and no NaN.
   if (!std::isfinite(value)) return raw("null");
   reserve_number();
   char* const begin = buffer_.data() + used_;
+  // Shortest form that reads back to the same double. A fraction marks it as floating point.
   char* end = std::to_chars(begin, begin + kNumber, value).ptr;
   if (std::string_view(begin, static_cast<std::size_t>(end - begin)).find_first_of(".e") ==
       std::string_view::npos) {
@@ -33,6 +35,8 @@ std::size_t utf8_length(std::string_view text) {
     return i < text.size() && byte(i) >= low && byte(i) <= high;
   };
   const unsigned first = byte(0);
+  // ASCII, then sequences of two, three and four bytes. The second byte's range excludes overlong forms and
+  // surrogates.
   if (first < 0x80) return 1;
   if (first >= 0xc2 && first <= 0xdf) return within(1, 0x80, 0xbf) ? 2 : 0;
   if (first >= 0xe0 && first <= 0xef) {
@@ -52,6 +56,7 @@ void JsonOut::string(std::string_view text) {
   raw('"');
   while (!text.empty()) {
     const char c = text[0];
+    // Invalid bytes become U+FFFD one by one, so the output is always valid UTF-8.
     const std::size_t length = utf8_length(text);
     if (length == 0) {
       raw("\xef\xbf\xbd");

@@ -46,6 +46,7 @@ void check_format(const TraceNode& metadata, const std::string& name, std::strin
   if (!metadata.has("format") || metadata.at("format").string() != format)
     throw InputError(name + ": /metadata/format: expected \"" + std::string(format) +
                      "\"; this is some other file");
+  // Older versions are read; newer ones are rejected with the version that wrote them.
   const auto found = metadata.at("version").integer<std::uint32_t>();
   if (found > version)
     throw InputError(name + ": /metadata/version: written in format " + std::to_string(found) +
@@ -155,6 +156,7 @@ template <class Record>
 void read_record(const TraceNode& node, Record& record, bool coarse) {
   for_each_field<Record>([&](const auto& field) {
     const char* const name = field.name.data();
+    // The table of fields decides: absence is an error, or the default.
     const bool must_be = field.kept == Kept::always || (field.kept == Kept::if_coarse && coarse);
     if (!node.has(name) && (!must_be || field.form == Form::or_infinite)) {
       if (must_be) node.at(name).fail("a number of at least 0, or null");

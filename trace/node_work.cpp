@@ -20,6 +20,7 @@ const ObbTree& walked_tree(const LrbRep& rep, std::uint32_t walked) {
 NodeCounts count_nodes(const TreeShape& tree, Side side, std::span<const Event> events) {
   const std::vector<std::uint32_t> none(tree.size());
   NodeCounts counts{none, none, none};
+  // Node numbers of levels of detail refer to other trees: count the body's own traversal only.
   bool is_body = true;
   for (const Event& e : events) {
     if (e.kind == EventKind::begin && walks_trees(e.phase()))
@@ -40,6 +41,8 @@ NodeCounts count_nodes(const TreeShape& tree, Side side, std::span<const Event> 
 std::vector<double> box_tests_by_face(const LrbRep& rep, const TreeShape& tree, const NodeCounts& counts) {
   std::vector<double> out(rep.face_count());
   std::vector<double> share(tree.size());  // of the node and those above, for each simplex
+  // Distribute each node's tests evenly over the simplices beneath it, as a prefix sum from the root:
+  // O(nodes).
   for (const std::uint32_t node : tree.from_root()) {
     share[node] += static_cast<double>(counts.box_tests[node]) / tree.beneath(node);
     for (const std::uint32_t child : tree.children(node)) share[child] = share[node];
@@ -55,6 +58,7 @@ std::vector<DepthWork> work_by_depth(const TreeShape& tree, const NodeCounts& co
     if (tree.depth(n) >= out.size()) out.resize(tree.depth(n) + 1);
     DepthWork& w = out[tree.depth(n)];
     ++w.nodes;
+    // Surface area heuristic: the probability that a line through the root also hits the node.
     w.expected += root > 0 ? tree.box(n).area() / root : 0;
     w.nodes_visited += counts.visits[n] > 0;
     w.visits += counts.visits[n];

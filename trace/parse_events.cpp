@@ -1,3 +1,6 @@
+// Streaming parser for traces, on nlohmann's SAX interface. Events are delivered one at a time and discarded,
+// so its own memory is bounded by the largest event and the metadata, not by the length of the trace.
+
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -56,16 +59,19 @@ class EventParser final : public nlohmann::json_sax<Json> {
   bool start_object(std::size_t /*size*/) override { return open(Json::object()); }
   bool start_array(std::size_t /*size*/) override { return open(Json::array()); }
   bool key(string_t& v) override {
+    // A key at the top level: only the array under "traceEvents" is streamed.
     if (stack_.size() == 1) in_events_ = v == "traceEvents";
     hold(kMember + v.size());
     member_ = &(*stack_.back())[v];
     return true;
   }
   bool end_object() override {
+    // Depth 3: the document, the array, the event.
     const bool is_event = in_events_ && stack_.size() == 3;
     if (is_event) take_(TraceNode::element(*stack_.back(), events_, event_count_++));
     stack_.pop_back();
     if (!is_event) return true;
+    // Drop the event from the array, and its bytes from the account.
     stack_.back()->get_ref<Json::array_t&>().pop_back();
     held_ = before_event_;
     return true;
@@ -77,6 +83,7 @@ class EventParser final : public nlohmann::json_sax<Json> {
 
   [[noreturn]] bool parse_error(std::size_t offset, const std::string& /*token*/,
                                 const Json::exception& error) override {
+    // nlohmann's exception id out_of_range.406: the number exceeds the range of double.
     constexpr int kNumberTooLarge = 406;
     if (error.id == kNumberTooLarge)
       throw InputError(name_ + ": a number is too large for a double; the trace is damaged: record it again");
@@ -103,6 +110,7 @@ class EventParser final : public nlohmann::json_sax<Json> {
   }
 
   bool open(Json container) {
+    // Bounds the recursion of later traversals of the tree.
     if (stack_.size() > kMaxDepth)
       throw InputError(name_ + ": containers nested more than " + std::to_string(kMaxDepth) +
                        " deep: this is not a trace of lrbscope");

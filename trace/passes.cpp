@@ -21,6 +21,7 @@ PassSummary begin_pass(EventId id, const Event& e, std::uint32_t faces) {
 }
 
 void take_cap(PassSummary& p, const Event& e, const Event* tried_before) {
+  // A second cap over the same patch replaces the verdict of the first.
   if (tried_before) {
     --p.caps[tried_before->detail];
     ++p.retried;
@@ -77,6 +78,7 @@ std::vector<std::size_t> by_frequency(const Caps& caps) {
 std::vector<PassSummary> passes_of(const Trace& trace) {
   std::vector<PassSummary> out;
   if (!trace.header.construction) return out;
+  // The size of the front is carried from pass to pass.
   std::uint32_t faces = trace.header.bodies[0].real_faces;
   bool open = false;
   for (EventId id = 0; id < trace.events.size(); ++id) {
@@ -100,6 +102,7 @@ Chart chart_over_construction(const Trace& trace) {
   for (EventId id = 0; id < trace.events.size(); ++id) {
     const Event& e = trace.events[id];
     if (e.kind == EventKind::region) faces = e.boundary;
+    // Only regions change the front; the last event extends the curve to the end.
     if (e.kind != EventKind::region && e.kind != EventKind::step && id + 1 != trace.events.size()) continue;
     chart.x.push_back(id);
     chart.series[0].values.push_back(faces);
@@ -110,6 +113,7 @@ Chart chart_over_construction(const Trace& trace) {
 Chart chart_over_passes(const Trace& trace) {
   constexpr std::size_t kMostReasons = 4;
   const std::vector<PassSummary> passes = passes_of(trace);
+  // Accepted caps first, then the most frequent reasons for rejection.
   std::vector<std::size_t> shown = by_frequency(caps_of(passes));
   shown.resize(std::min(shown.size(), kMostReasons));
   shown.insert(shown.begin(), std::size_t{0});

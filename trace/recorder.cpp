@@ -18,6 +18,7 @@ void find_causes(std::vector<Event>& events) {
   std::unordered_map<std::uint64_t, EventId> tests;
   for (EventId i = 0; i < events.size(); ++i) {
     Event& e = events[i];
+    // Later tests of the same pair overwrite earlier ones. Pairs do not carry over between steps.
     const std::uint64_t pair = std::uint64_t{e.a} << 32 | e.b;
     if (e.kind == EventKind::step) tests.clear();
     if (e.kind == EventKind::face_test) tests[pair] = i;
@@ -34,9 +35,12 @@ void find_axes(Trace& trace, const std::array<const LrbRep*, 2>& reps) {
   for (EventId i = 0; i < trace.events.size(); ++i) {
     Event& e = trace.events[i];
     if (e.kind == EventKind::step) step = trace.step_of(i);
+    // Node numbers refer to the tree that the current phase traverses: the body's or that of a level of
+    // detail.
     if (e.kind == EventKind::begin && walks_trees(e.phase()))
       tree = {&walked_tree(*reps[0], e.depth_a), &walked_tree(*reps[1], e.depth_b)};
     if (e.kind != EventKind::node_pair || e.work().met != 0) continue;
+    // Repeat the box test with axes: the query does not record them, to stay fast.
     BoxPair boxes;
     compare_boxes(box_of(*tree[0], e.a, kWhole, trace.steps[step].pose_a),
                   box_of(*tree[1], e.b, kWhole, trace.steps[step].pose_b), boxes);
@@ -60,6 +64,7 @@ Recorder::Recorder(const LrbRep& a, RecorderSettings settings)
 }
 
 void Recorder::start_over() {
+  // Event ids must fit: kNull is reserved.
   settings_.event_cap = std::min(settings_.event_cap, kMaxId);
   trace_ = {};
   TraceHeader& header = trace_.header;
@@ -93,9 +98,11 @@ void Recorder::begin_step(std::uint32_t index, const Pose& pose_a, const Pose& p
                        ": its pose has a number that is not finite; give 12 finite numbers");
   if (!trace_.steps.empty() && index <= trace_.steps.back().index)
     throw std::logic_error("Recorder::begin_step: indices must ascend");
+  // The step before ends here; its count includes events beyond the cap.
   close_step();
   seen_before_step_ = seen_;
   step_event_ = static_cast<EventId>(trace_.events.size());
+  // Causes never cross the boundary of a step.
   last_hit_ = last_test_ = last_pair_ = phase_ = kNull;
   Step step;
   step.index = index;
@@ -140,8 +147,10 @@ Trace Recorder::take() {
     throw std::logic_error("Recorder: events came before begin_step()");
   close_step();
   trace_.events_seen = seen_;
+  // Post-processing, outside the measured time: causes of coarse contacts, separating axes, wrapper sizes.
   if (settings_.request.is_coarse()) find_causes(trace_.events);
   if (settings_.level != EventLevel::faces && settings_.engine.empty()) find_axes(trace_, reps_);
+  // Replay the wrappers to add their sizes to the events.
   Replay replay(reps_, settings_.request.wrapper);
   for (Event& event : trace_.events)
     if (replay.apply(event, trace_.events)) event.boundary = replay.boundary_size(event.side);

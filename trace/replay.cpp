@@ -18,6 +18,7 @@ std::uint32_t visible_faces(const Wrapper& wrapper, RegionId region) {
 FaceId refined_face(const Event& event, std::span<const Event> events, const LrbRep& rep) {
   if (event.cause == kNull || events[event.cause].kind != EventKind::face_test) return kNull;
   const Event& test = events[event.cause];
+  // The tested face alone is removed if it is a lid of the region; otherwise the whole region is refined.
   const FaceId face = rep.face_of_simplex(test.simplex(event.side));
   return rep.inner_cell(face) == event.region() ? face : kNull;
 }
@@ -56,6 +57,7 @@ bool Replay::apply(const Event& event, std::span<const Event> events) {
   if (event.kind == EventKind::step) reset();
   if (!event.changes_wrapper()) return false;
   const auto side = static_cast<std::size_t>(event.side);
+  // Only faces of the region itself can change sides: update the boundary's size by their difference.
   const std::uint32_t before = visible_faces(wrappers_[side], event.region());
   change(wrappers_[side], event, events);
   sizes_[side] += visible_faces(wrappers_[side], event.region()) - before;

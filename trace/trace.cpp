@@ -31,6 +31,7 @@ BodyInfo describe_body(const LrbRep& rep, std::string source) {
 }
 
 std::span<const Event> Trace::events_of(std::size_t step) const {
+  // Both ends are clamped: a trace cut off by its cap has steps without stored events.
   const std::size_t begin = std::min<std::size_t>(steps[step].first_event, events.size());
   const std::size_t end = step + 1 < steps.size()
                               ? std::min<std::size_t>(steps[step + 1].first_event, events.size())
@@ -39,12 +40,14 @@ std::span<const Event> Trace::events_of(std::size_t step) const {
 }
 
 std::size_t Trace::step_of(EventId event) const {
+  // Binary search for the last step that begins at or before the event.
   const auto after = std::upper_bound(steps.begin(), steps.end(), event,
                                       [](EventId e, const Step& s) { return e < s.first_event; });
   return static_cast<std::size_t>(after - steps.begin()) - 1;
 }
 
 bool equal(const Pose& x, const Pose& y) {
+  // Bitwise, so that -0 and 0 differ and NaN equals itself.
   const auto same = [](double p, double q) {
     return std::bit_cast<std::uint64_t>(p) == std::bit_cast<std::uint64_t>(q);
   };
@@ -88,6 +91,7 @@ class Checker {
   }
 
   void check_sizes() const {
+    // Array sizes first: later checks index by them.
     require(t_.header.bodies.size() == 1 || t_.header.bodies.size() == 2, "expected one body or two");
     require(!t_.header.construction || t_.header.bodies.size() == 1, "a construction has one body");
     require(t_.events.size() <= kMaxId, "too many events");
@@ -102,6 +106,7 @@ class Checker {
   }
 
   void check_steps() const {
+    // Steps partition the events: their counts add up, and each stored step begins with its step event.
     std::uint64_t seen = 0;
     for (std::size_t i = 0; i < t_.steps.size(); ++i) check_step(i), seen += t_.steps[i].events_seen;
     if (seen != t_.events_seen) fail("the steps' events do not add up to all");
@@ -144,11 +149,14 @@ class Checker {
     const auto bad = [&](const char* what) {
       fail("event " + std::to_string(id) + " (" + std::string(name_of(e.kind)) + "): " + what);
     };
+    // Enumerators before their use: a damaged file may hold any byte.
     if (static_cast<std::size_t>(e.kind) >= kEventKinds) bad("unknown kind");
     if (e.side != Side::a && e.side != Side::b) bad("unknown side");
     if (static_cast<std::size_t>(e.meet) >= kWords<exact::Meet>.size()) bad("unknown meet");
     if (e.cause != kNull && e.cause >= id) bad("its cause is not an earlier event");
     const std::size_t bodies = t_.header.bodies.size();
+    // References to simplices and regions must exist in the recorded bodies: replay and pictures index by
+    // them.
     switch (e.kind) {
       case EventKind::face_test:
       case EventKind::contact:
@@ -204,6 +212,7 @@ class Checker {
       return e.cause != kNull &&
              std::find(kinds.begin(), kinds.end(), t_.events[e.cause].kind) != kinds.end();
     };
+    // Construction events occur in construction traces only, and have causes of fixed kinds.
     if (!t_.header.construction) bad("the trace is not that of a construction");
     if (e.side != Side::a) bad("there is no such body");
     const bool names_region = e.kind == EventKind::region || e.kind == EventKind::merged;

@@ -48,8 +48,10 @@ class GzipSink final : public ByteSink {
   static constexpr std::size_t kChunk = 1 << 16;
 
   void deflate_all(std::string_view bytes, int flush) {
+    // zlib's interface predates const; deflate does not write to its input.
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
     stream_.avail_in = static_cast<uInt>(bytes.size());  // JsonOut hands over 64 kB at a time, or one string
+    // A full output buffer means that more may follow.
     do {
       stream_.next_out = reinterpret_cast<Bytef*>(out_.data());
       stream_.avail_out = static_cast<uInt>(out_.size());
@@ -81,6 +83,7 @@ std::uint64_t most_unpacked(std::uint64_t packed) {
 
 /// Reads all bytes of a file and decompresses them if they are gzip's.
 std::string read_all(const std::string& path, std::uint64_t max_bytes) {
+  // Directories and devices are rejected before zlib opens them.
   const std::string_view kind = what_is_no_file(path);
   if (!kind.empty()) fail_to_read(path, "it is " + std::string(kind));
   const std::unique_ptr<gzFile_s, GzClose> file(gzopen(path.c_str(), "rb"));
@@ -93,6 +96,7 @@ std::string read_all(const std::string& path, std::uint64_t max_bytes) {
     const int got = gzread(file.get(), chunk.data(), kChunk);
     int code = Z_OK;
     const char* why = gzerror(file.get(), &code);
+    // A truncated gzip stream is an error here, not an early end.
     if (got < 0 || (code != Z_OK && code != Z_STREAM_END))
       fail_to_read(path, code == Z_ERRNO       ? std::strerror(errno)
                          : code == Z_BUF_ERROR ? "the compressed file ends too early"
@@ -100,6 +104,7 @@ std::string read_all(const std::string& path, std::uint64_t max_bytes) {
     if (got == 0) return text;
     if (text.size() + static_cast<std::size_t>(got) > max_bytes)
       fail_to_read(path, "it has more than " + std::to_string(max_bytes) + " bytes of text");
+    // Protection from decompression bombs: limit the ratio as well as the total.
     const auto packed = static_cast<std::uint64_t>(std::max<z_off_t>(gzoffset(file.get()), 0));
     if (gzdirect(file.get()) == 0 && text.size() + static_cast<std::size_t>(got) > most_unpacked(packed))
       fail_to_read(path, "its first " + std::to_string(packed) + " bytes unpack to more than " +

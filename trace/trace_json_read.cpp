@@ -114,13 +114,16 @@ class Reader {
   Reader(std::string_view text, const std::string& name) : text_(text), name_(name) {}
 
   Trace run() {
+    // Events are consumed during parsing; only the rest of the document is kept as JSON.
     const nlohmann::json document =
         parse_events(text_, name_, [this](const TraceNode& event) { take_event(event); });
     const TraceNode root(document, name_);
     const TraceNode metadata = root.at("metadata");
+    // The version first, so that a newer format is reported as such and not as damage.
     check_format(metadata, name_, kTraceFormat, kTraceVersion);
     read_header(metadata);
     read_steps(metadata.at("steps"));
+    // Cross-check the counts, then all invariants of the trace.
     check_counts(metadata.at("events"));
     check_trace(t_, name_);
     return std::move(t_);
@@ -129,6 +132,7 @@ class Reader {
  private:
   void take_event(const TraceNode& node) {
     if (node.at("ph").string() != "X") return;  // names, counters and flows follow from the rest
+    // Event numbers are 32-bit ids, and must be consecutive.
     if (t_.events.size() >= kMaxId) node.fail("fewer events");
     Event e;
     e.kind = kind_of(node);
@@ -143,6 +147,7 @@ class Reader {
 
   void read_header(const TraceNode& metadata) {
     TraceHeader& h = t_.header;
+    // Optional keys were added by later versions: if absent, the defaults of TraceHeader apply.
     h.lrbscope = metadata.at("lrbscope").string();
     const TraceNode scenario = metadata.at("scenario");
     h.scenario = scenario.at("name").string();

@@ -120,6 +120,8 @@ std::string_view category_of(EventKind kind) {
 class TraceWriter {
  public:
   TraceWriter(const Trace& trace, ByteSink& sink) : t_(trace), out_(sink) {
+    // First scan: everything that a line needs to know about later events. The writing itself is a single
+    // pass.
     for (const PassSummary& p : passes_of(t_)) passes_[p.first] = p;
     find_ends();
     find_arrows();
@@ -127,6 +129,8 @@ class TraceWriter {
   }
 
   void run() {
+    // The events come before the metadata, so that a reader can process them while it parses.
+    // The process and its threads get names and an order by metadata events ("M").
     out_.raw("{\"traceEvents\": [\n");
     write_names();
     for (EventId i = 0; i < t_.events.size(); ++i) write_event(i);
@@ -169,6 +173,7 @@ class TraceWriter {
     const std::span<const ThreadName> threads =
         t_.header.construction ? std::span<const ThreadName>(kBuildThreads) : kThreads;
     for (const auto& [thread, name, from] : threads) {
+      // Threads without events at this detail would show as empty tracks.
       if (t_.header.level < from) continue;
       write_thread_field(thread, "thread_name", "name");
       out_.string(name);
@@ -229,6 +234,7 @@ class TraceWriter {
 
   void write_event(EventId i) {
     const Event& e = t_.events[i];
+    // Each event is a complete slice ("X") with its number and fields as arguments.
     const Parts& parts = parts_[static_cast<std::size_t>(e.kind)];
     out_.raw(",\n{\"name\":\"");
     write_name(e, i);
@@ -246,9 +252,11 @@ class TraceWriter {
       out_.number(t_.wall_ns[i]);
     }
     out_.raw("}}");
+    // Then the records attached to it: arrows, counters, convergence curves.
     write_flows(i);
     count(e, i);
     if (e.kind == EventKind::result) write_measured(i);
+    // On the wall clock, the search for the first contact has no time range of its own.
     if (i == 0 && t_.header.first_contact && !wall()) write_first_contact(*t_.header.first_contact);
   }
 
@@ -288,6 +296,7 @@ class TraceWriter {
   void write_fields(const Event& e, const Parts& parts) {
     if (e.kind == EventKind::refine || e.kind == EventKind::coarsen)
       out_.raw(e.side == Side::a ? ",\"side\":\"A\"" : ",\"side\":\"B\"");
+    // The order of the fields is fixed, so that equal traces give equal files.
     if (e.kind == EventKind::contact) return write_contact(e, parts);
     if (!parts.a.empty()) {
       out_.raw(parts.a);
@@ -310,6 +319,7 @@ class TraceWriter {
       out_.number(std::uint64_t{e.depth_b});
       if (e.tested_by() != TestedBy::untold) write_word("decided by", name_of(e.tested_by()));
     }
+    // From here on, fields that depend on the kind of the event and on the detail of the trace.
     if (e.kind == EventKind::node_pair) return write_node_pair(e);
     if (e.kind == EventKind::plane_test) write_word("plane of", name_of(e.side));
     if (e.kind == EventKind::pass || e.kind == EventKind::cap) return write_built(e);
@@ -323,6 +333,7 @@ class TraceWriter {
       write_number("level of A", e.depth_a);
       write_number("level of B", e.depth_b);
     }
+    // The size of the wrapper after the event; not every event has one.
     if (e.boundary != kNull) {
       out_.raw(",\"wrapper faces\":");
       out_.number(std::uint64_t{e.boundary});
@@ -409,6 +420,7 @@ class TraceWriter {
     out_.raw(phase);
     out_.raw("\",\"id\":");
     out_.number(std::uint64_t{effect});
+    // bp "e": the arrow binds to the slice that encloses its time.
     out_.raw(",\"bp\":\"e\",\"pid\":1,\"tid\":");
     out_.number(static_cast<std::uint64_t>(thread_of(t_.events[at])));
     out_.raw(",\"ts\":");
@@ -427,6 +439,7 @@ class TraceWriter {
 
   void find_arrows() {
     for (EventId i = 0; i < t_.events.size(); ++i)
+      // Sorted by cause, so that writing needs one advancing index instead of a search.
       if (has_arrow(t_.events[i])) arrows_.push_back({t_.events[i].cause, i});
     std::sort(arrows_.begin(), arrows_.end());
   }
@@ -439,6 +452,7 @@ class TraceWriter {
   }
 
   void count(const Event& e, EventId i) {
+    // Step 1: update the running totals of the time step.
     switch (e.kind) {
       case EventKind::step:
         begin_counting();
@@ -477,8 +491,11 @@ class TraceWriter {
         pending_pairs_ = pending_tests_ = 0;
         break;
     }
+    // Step 2: the size of the wrapper that the event changed.
     const bool change = e.changes_wrapper();
     if (change && e.boundary != kNull) faces_[static_cast<std::size_t>(e.side)] = e.boundary;
+    // Step 3: emit counters ("C"). Wrapper sizes at each change, work at regular intervals and at both ends
+    // of a step.
     if (t_.header.construction) {
       if (change || e.kind == EventKind::step) write_hull_counter(i);
       return;
@@ -492,6 +509,7 @@ class TraceWriter {
   /// Counts what a pair of nodes leaves to be done.
   void count_pending(const Event& e) {
     const NodeWork work = e.work();
+    // The pair itself is done. Its overlapping child pairs, or face pairs at leaves, are what it adds.
     if (pending_pairs_ > 0) --pending_pairs_;
     if (e.node_end().step == NodeStep::leaves)
       pending_tests_ += work.met - std::min(work.met, work.parted);

@@ -10,6 +10,7 @@ namespace lrb::trace {
 
 double ShapeBox::area() const {
   constexpr int kSides = 2, kSquareOfHalf = 4;
+  // Three pairs of sides; each is a parallelogram spanned by two full axes, twice the half axes.
   return kSides * kSquareOfHalf *
          (half[0].cross(half[1]).norm() + half[1].cross(half[2]).norm() + half[2].cross(half[0]).norm());
 }
@@ -43,6 +44,7 @@ void TreeShape::finish() {
   beneath_.assign(size(), 0);
   order_.clear();
   if (size() > 0) order_.push_back(0);
+  // Breadth-first order from the root. More nodes than exist means a node with two parents, or a cycle.
   for (std::size_t i = 0; i < order_.size(); ++i)
     for (const std::uint32_t child : children(order_[i])) {
       if (child == 0 || child >= size() || order_.size() >= size())
@@ -52,6 +54,7 @@ void TreeShape::finish() {
     }
   if (order_.size() != size())
     throw std::invalid_argument("TreeShape: there are nodes that no other leads to");
+  // In reverse order children come first: sum the simplices bottom up.
   for (auto i = order_.rbegin(); i != order_.rend(); ++i) {
     beneath_[*i] += static_cast<std::uint32_t>(simplices(*i).size());
     for (const std::uint32_t child : children(*i)) beneath_[*i] += beneath_[child];

@@ -76,6 +76,7 @@ std::vector<WorkOutcome> outcomes_of_step(const Trace& trace, const WorkChart& c
 WorkChart work_chart(const Trace& trace) {
   constexpr std::size_t kParts = kPartWords.size();
   constexpr double kNanosecond = 1e-9;
+  // Step 1: one cell for each traversal and kind of work.
   std::vector<WorkOutcome> all(kWalks * kParts);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const PartWords& words = kPartWords[i % kParts];
@@ -84,6 +85,7 @@ WorkChart work_chart(const Trace& trace) {
   }
   WorkChart out;
   out.of_event.assign(trace.events.size(), WorkChart::kNone);
+  // Step 2: attribute each event to a cell. Work outside traversals uses the first row.
   WalkFollower follower(trace);
   for (EventId i = 0; i < trace.events.size(); ++i) {
     const Event& e = trace.events[i];
@@ -98,11 +100,12 @@ WorkChart work_chart(const Trace& trace) {
     if (!trace.wall_ns.empty())
       all[at].seconds += kNanosecond * static_cast<double>(trace.wall_ns[i] - trace.wall_ns[i - 1]);
   }
-  // Walks come first, then the phases after them.
+  // Step 3: drop empty cells, with traversals before the other phases.
   std::vector<std::size_t> order;
   for (const bool of_walk : {true, false})
     for (std::size_t i = 0; i < all.size(); ++i)
       if (all[i].events > 0 && kPartWords[i % kParts].phase.empty() == of_walk) order.push_back(i);
+  // Step 4: renumber the events' cells accordingly.
   std::vector<std::uint8_t> place(all.size(), WorkChart::kNone);
   for (const std::size_t i : order) {
     place[i] = static_cast<std::uint8_t>(out.outcomes.size());

@@ -137,6 +137,7 @@ std::vector<WorkShare> work_shares(const Trace& trace) {
     ++share.events;
     share.count += work_count(e);
     if (e.kind == EventKind::node_pair) share.box_tests += e.work().box_tests;
+    // An event is recorded when its work is done, so its time is the difference to the event before.
     if (!trace.wall_ns.empty())
       share.seconds += kNanosecond * static_cast<double>(trace.wall_ns[i] - trace.wall_ns[i - 1]);
   }

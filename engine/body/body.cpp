@@ -1,3 +1,6 @@
+// Bodies from matrices, arrays, meshes, LRB-reps and files. Every path checks its input, makes an LRB-rep,
+// and collects notes on what was changed and what cannot be queried. Errors in arrays name the element.
+
 #include "engine/body/body.hpp"
 
 #include <utility>
@@ -18,21 +21,24 @@ struct Rows {
   std::size_t each;  ///< numbers in a row
 };
 
-/// Returns why the shapes of two arrays are not those of vertices and faces; empty: they are.
+/// Returns the error in the shapes of the two arrays, or an empty text if they are vertices and faces.
 template <class Number>
 std::string shape_fault(const Rows<double>& vertices, const Rows<Number>& faces) {
+  // Two corners per face: segments, that is, a body in 2D.
   const bool is_flat = faces.each == 2;
   if (faces.each < 2)
     return "faces have " + std::to_string(faces.each) + " corners; give 3 or more, or 2 in the plane";
   if (vertices.each != 3 && !(is_flat && vertices.each == 2))
     return "vertices have " + std::to_string(vertices.each) + " coordinates; give " +
            (is_flat ? "2 or 3" : "3");
+  // Incomplete rows.
   if (vertices.numbers.size() % vertices.each != 0)
     return std::to_string(vertices.numbers.size()) + " coordinates do not make vertices of " +
            std::to_string(vertices.each);
   if (faces.numbers.size() % faces.each != 0)
     return std::to_string(faces.numbers.size()) + " corners do not make faces of " +
            std::to_string(faces.each);
+  // Indices are 32 bits wide.
   if (vertices.numbers.size() / vertices.each > kMaxId || faces.numbers.size() > kMaxId)
     return "it has more vertices or corners than 32 bits count; give " + std::to_string(kMaxId) + " at most";
   return {};
@@ -46,6 +52,7 @@ Expected<Mesh> mesh_of(const Rows<double>& vertices, const Rows<Number>& faces, 
   Mesh mesh;
   mesh.name = who;
   mesh.dim = faces.each == 2 ? 2 : 3;
+  // Pass 1: vertices. Missing z coordinates are 0. Whether numbers are finite is checked with the mesh.
   const std::size_t count = vertices.numbers.size() / vertices.each;
   mesh.vertices.reserve(count);
   for (std::size_t v = 0; v < count; ++v) {
@@ -54,6 +61,7 @@ Expected<Mesh> mesh_of(const Rows<double>& vertices, const Rows<Number>& faces, 
     if (mesh.dim == 2 && mesh.vertices.back().z() != 0)
       return Refusal{who + ": vertex " + std::to_string(v) + " of a body in the plane has a z; give 0"};
   }
+  // Pass 2: faces. std::cmp_* compare integers of any signedness and width correctly.
   mesh.face_vertices.reserve(faces.numbers.size());
   mesh.face_offsets.reserve(faces.numbers.size() / faces.each + 1);
   for (std::size_t i = 0; i < faces.numbers.size(); ++i) {
@@ -75,14 +83,14 @@ Expected<Body> body_of(const Rows<double>& vertices, const Rows<Number>& faces, 
   return Body::from(std::move(*mesh), options);
 }
 
-/// Says what cannot be asked of a body that bounds no solid.
+/// Returns the note on a body that bounds no solid: which answers it does not support.
 std::string note_no_solid(const LrbRep& rep) {
   return rep.name() +
          ": bounds no solid: pairs, contacts and distances are exact; nothing is inside it, and where its surface "
          "meets no other although their boxes do, the relation is `undefined`";
 }
 
-/// Adds what cannot be asked of a body.
+/// Adds a note on each kind of answer that a body does not support.
 void add_notes_on(const LrbRep& rep, std::vector<std::string>& notes) {
   if (!rep.closed())
     notes.push_back(note_no_solid(rep));
@@ -93,6 +101,7 @@ void add_notes_on(const LrbRep& rep, std::vector<std::string>& notes) {
 }  // namespace
 
 Body Body::made(Mesh mesh, const BodyOptions& options, std::vector<std::string> notes) {
+  // Check, then build, with or without regions. Both throw InputError if the mesh cannot be queried at all.
   CheckedMesh checked = check(std::move(mesh));
   MadeBody made = options.regions ? make_body(std::move(checked), options.build, options.turn)
                                   : make_body_of_faces(std::move(checked), options.turn);
@@ -135,6 +144,7 @@ Body Body::from(LrbRep rep) {
 }
 
 Body Body::from(std::shared_ptr<const LrbRep> rep) {
+  // An LRB-rep from elsewhere is not trusted: if the proof of its cells fails, only its real faces are kept.
   std::vector<std::string> notes;
   if (std::string fault = note_unproven(*rep); !fault.empty()) {
     notes.push_back(std::move(fault));
@@ -145,6 +155,7 @@ Body Body::from(std::shared_ptr<const LrbRep> rep) {
 }
 
 Expected<Body> Body::load(const std::string& path, const BodyOptions& options) try {
+  // By content, not by extension.
   if (is_lrb_file(path)) return from(load_lrb(path));
   Mesh mesh = read_mesh(path);
   std::vector<std::string> notes;

@@ -1,3 +1,9 @@
+// From a checked mesh to an LRB-rep.
+// 1. Reject meshes that cannot be queried at all.
+// 2. Orient components outwards, if requested and needed.
+// 3. Build the regions and prove the cells closed (validate_cells()).
+// 4. If the mesh cannot have regions or the proof fails, keep the real faces only and note the reason.
+
 #include "engine/body/body_of_mesh.hpp"
 
 #include <chrono>
@@ -40,7 +46,8 @@ bool can_be_built(const CheckedMesh& mesh, bool turn) {
 }  // namespace
 
 bool is_lrb_file(const std::string& path) {
-  std::error_code ignored;  // what is read from a pipe is gone, and a named pipe would have to be waited for
+  std::error_code ignored;
+  // Only regular files: bytes read from a pipe are gone, and opening a named pipe would block.
   if (!std::filesystem::is_regular_file(path, ignored)) return false;
   constexpr std::size_t kEnough = 64;  // bytes: more than any magic
   std::ifstream in(path, std::ios::binary);
@@ -62,6 +69,7 @@ std::string obstacles_to_build(const CheckedMesh& mesh) {
 }
 
 std::string note_unproven(const LrbRep& rep) {
+  // Without regions there are no cells to prove.
   if (rep.region_count() == 0) return {};
   const ValidateReport report = validate_cells(rep);
   if (report.valid) return {};
@@ -88,6 +96,7 @@ MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
   using Clock = std::chrono::steady_clock;
   refuse_unless_queryable(mesh);
   std::vector<std::string> notes;
+  // Steps 2 and 3. The time includes the proof.
   if (can_be_built(mesh, turn)) {
     const std::uint32_t turned = turn ? turn_outward(mesh, notes) : 0;
     const auto begin = Clock::now();
@@ -95,6 +104,7 @@ MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     return {std::move(rep), std::move(notes), seconds, turned};
   }
+  // Step 4. Without regions, the body still records whether it intersects itself.
   notes.push_back(note_without_regions(mesh, turn));
   Workers workers(options.threads);
   const bool self_intersecting = !mesh.self_intersecting_faces(workers).empty();

@@ -1,3 +1,6 @@
+// Dynamic AABB tree: built top down by median splits on the longest axis of the centroids, O(n log n).
+// Afterwards it is only refitted: boxes grow along the path to the root.
+
 #include "engine/construct/aabb_tree.hpp"
 
 #include <algorithm>
@@ -21,17 +24,22 @@ AabbTree::AabbTree(const HullMesh& hull) : AabbTree(hull.alive_slots(), boxes_of
 
 AabbTree::AabbTree(std::vector<Slot> slots, std::span<const Box> boxes)
     : slots_(std::move(slots)), centres_(boxes.size()), place_(boxes.size(), kNull) {
+  // Step 1: the topology, from centroids alone.
   if (slots_.empty()) return;
   for (const Slot s : slots_)
     centres_[s] = boxes[s].min() / 2 + boxes[s].max() / 2;  // halved first: no overflow
   leaf_.resize(slots_.size());
+  // A leaf holds at least two slots unless there is only one, so there are no more nodes than slots.
   nodes_.reserve(slots_.size());
   build(0, static_cast<std::uint32_t>(slots_.size()), kNull);
   boxes_.resize(slots_.size());
+  // Step 2: the boxes in leaf order, and the position of each slot.
   for (std::uint32_t i = 0; i < slots_.size(); ++i) {
     place_[slots_[i]] = i;
     boxes_[i] = boxes[slots_[i]];
   }
+  // Step 3: fit the boxes bottom up. Children have larger numbers than their parents, so one backward pass is
+  // enough.
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
     if (node.right == 0)
@@ -48,16 +56,19 @@ std::uint32_t AabbTree::build(std::uint32_t first, std::uint32_t last, std::uint
     for (std::uint32_t i = first; i < last; ++i) leaf_[i] = index;
     return index;
   }
+  // Split the axis in which the centroids, not the boxes, extend furthest.
   Box spread;
   for (std::uint32_t i = first; i < last; ++i) spread.extend(centres_[slots_[i]]);
   int axis = 0;
   spread.sizes().maxCoeff(&axis);
   const std::uint32_t middle = first + (last - first) / 2;
+  // Equal halves bound the depth by log2 n. Ties are broken by slot, so the tree is the same everywhere.
   std::nth_element(slots_.begin() + first, slots_.begin() + middle, slots_.begin() + last,
                    [&](Slot s, Slot t) {
                      const double a = centres_[s][axis], b = centres_[t][axis];
                      return a != b ? a < b : s < t;
                    });
+  // Preorder: the left child follows its parent. The vector may move, so refer to the node by index.
   build(first, middle, index);
   const std::uint32_t right = build(middle, last, index);
   nodes_[index].right = right;
@@ -65,6 +76,8 @@ std::uint32_t AabbTree::build(std::uint32_t first, std::uint32_t last, std::uint
 }
 
 void AabbTree::update(Slot s, const Box& box) {
+  // Refit upwards until an ancestor contains the box already. Boxes never shrink; fits() requests a rebuild
+  // when too many slots are empty.
   const std::uint32_t place = place_[s];
   boxes_[place] = box;
   for (std::uint32_t n = leaf_[place]; n != kNull && !nodes_[n].box.contains(box); n = nodes_[n].parent)

@@ -12,6 +12,7 @@ namespace {
 
 /// Returns everything that prevents an LRB-rep from being built, on one line.
 std::string refusal(const Mesh& mesh, const MeshReport& report) {
+  // All obstacles at once, so that the user can fix them in one go.
   std::string text;
   for (const std::string& line : report.obstacles(mesh)) text += (text.empty() ? "" : " | ") + line;
   return text;
@@ -20,12 +21,15 @@ std::string refusal(const Mesh& mesh, const MeshReport& report) {
 /// `meeting`: the faces that meet others in more than they share.
 LrbRep build(const Mesh& mesh, const std::vector<FaceUse>& use, const std::vector<FaceId>& meeting,
              const BuildOptions& options) {
+  // Step 1: the faces that intersect others. Do interiors of the body overlap, or do its faces only touch?
   const auto meets = [&](FaceId f) { return std::binary_search(meeting.begin(), meeting.end(), f); };
   const bool overlapping = !meeting.empty() && overlaps_itself(mesh, use, [&](FaceId f, FaceId g) {
     return meets(f) && meets(g);
   });
+  // Step 2: the regions, from the mesh outward.
   LrbData data = mesh.dim == 2 ? construct::build_by_chains(mesh, meeting, options)
                                : construct::build_by_patches(mesh, meeting, options);
+  // Step 3: the trees for queries are built by the LrbRep itself.
   data.self_intersecting = overlapping;
   return LrbRep(std::move(data), options.threads);
 }
@@ -33,12 +37,14 @@ LrbRep build(const Mesh& mesh, const std::vector<FaceUse>& use, const std::vecto
 }  // namespace
 
 LrbRep build_lrb(const CheckedMesh& checked, const BuildOptions& options) {
+  // The mesh was examined before; its results are reused.
   if (!checked.report().buildable()) throw InputError(refusal(checked.mesh(), checked.report()));
   Workers workers(options.threads);
   return build(checked.mesh(), checked.use(), checked.self_intersecting_faces(workers), options);
 }
 
 LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options) {
+  // Reject what cannot be built before the more expensive search for self-intersections.
   const MeshFindings found = examine(mesh);
   if (!found.report.buildable()) throw InputError(refusal(mesh, found.report));
   Workers workers(options.threads);

@@ -1,3 +1,8 @@
+// Finds the faces of a self-intersecting body that lie inside other components:
+// 1. Connect the triangles that intersect nothing into sheets. A sheet is on one side of every component.
+// 2. Count for one vertex of each sheet how many solids cover the space in front of it, by exact rays.
+// 3. A sheet with a positive count is buried.
+
 #include "engine/construct/buried_faces.hpp"
 
 #include <algorithm>
@@ -13,6 +18,7 @@ using Slot = HullMesh::Slot;
 
 /// Returns +1 for components that are solid, -1 for voids.
 std::vector<int> signs_of(const Mesh& mesh, const HullMesh& hull) {
+  // Faces per component, without repetition: the triangles of a polygon are consecutive.
   std::vector<std::vector<FaceId>> faces(hull.component_count());
   for (Slot s = 0; s < hull.slot_count(); ++s) {
     auto& own = faces[hull[s].component];
@@ -26,11 +32,13 @@ std::vector<int> signs_of(const Mesh& mesh, const HullMesh& hull) {
 }  // namespace
 
 std::vector<FaceId> find_buried(const Mesh& mesh, const HullMesh& hull, const std::vector<FaceId>& meeting) {
+  // Nothing can be buried in a body that does not cross itself, or that has a single component.
   if (meeting.empty() || hull.component_count() == 1) return {};
   const auto meets = [&](Slot s) { return std::binary_search(meeting.begin(), meeting.end(), hull[s].face); };
   std::vector<std::uint32_t> component_of(mesh.face_count(), kNull);
   DisjointSets sheets(hull.slot_count());  // connected over edges; nothing passes through one
   for (Slot s = 0; s < hull.slot_count(); ++s) {
+    // Step 1. Intersecting triangles are the borders of sheets.
     component_of[hull[s].face] = hull[s].component;
     if (meets(s)) continue;
     for (const Slot t : hull[s].across)
@@ -39,9 +47,10 @@ std::vector<FaceId> find_buried(const Mesh& mesh, const HullMesh& hull, const st
   const SideFinder finder(mesh, std::move(component_of));
   const std::vector<int> signs = signs_of(mesh, hull);
   enum class SheetKind : std::uint8_t { unknown, free, buried };
-  // By how often the space in front of a face is covered by solids; unknown where its first corner lies on
-  // another component's surface.
+  // Step 2. The space in front of a face is in a solid if more solids than voids contain it. Undecided where
+  // the first vertex is on another component's surface.
   const auto look_at = [&](Slot s) {
+    // In front of a void's wall, the component itself counts as a void.
     int solids = signs[hull[s].component] < 0 ? -1 : 0;
     for (const SideFinder::Side& side : finder.sides(hull.x(hull[s].v[0]))) {
       if (side.surface == hull[s].component) continue;
@@ -51,9 +60,12 @@ std::vector<FaceId> find_buried(const Mesh& mesh, const HullMesh& hull, const st
     return solids > 0 ? SheetKind::buried : SheetKind::free;
   };
   std::vector<SheetKind> known(hull.slot_count(), SheetKind::unknown);  // at a sheet's leader
+  // A sheet with an undecided vertex is tried again from its next triangle. At worst, this is one query for
+  // each triangle.
   for (Slot s = 0; s < hull.slot_count(); ++s)
     if (SheetKind& sheet = known[sheets.leader(s)]; !meets(s) && sheet == SheetKind::unknown)
       sheet = look_at(s);
+  // Step 3. Undecided sheets count as buried: covering them could not be proven safe.
   std::vector<FaceId> buried;
   for (Slot s = 0; s < hull.slot_count(); ++s)
     if (!meets(s) && known[sheets.leader(s)] != SheetKind::free) buried.push_back(hull[s].face);

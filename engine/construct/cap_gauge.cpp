@@ -1,3 +1,6 @@
+// Estimates the deviation of a cap while it is being collapsed. Three tests for each collapse: at the new
+// vertex, above the covered vertices of the patch, and at sample points of each new triangle.
+
 #include "engine/construct/cap_gauge.hpp"
 
 #include <algorithm>
@@ -14,6 +17,7 @@ using Eigen::Vector3d;
 void CapGauge::load(const HullMesh& hull, const Patch& patch, const CapSurface& cap, double most) {
   floor_.load(hull, patch, most);
   most_ = most;
+  // At first each face of the cap is a triangle of the floor, so it is near itself.
   under_.resize(cap.faces().size());
   for (std::size_t f = 0; f < under_.size(); ++f) under_[f] = static_cast<int>(f);
   cover_.assign(cap.first_new(), -1);
@@ -25,6 +29,7 @@ void CapGauge::find_covered(const CapSurface& cap, const CapSurface::Star& star)
   ++marker_;
   for (const int f : star.faces) face_mark_[f] = marker_;
   covered_.clear();
+  // Old interior vertices: under a face of the star, or still in the cap and removed by this collapse.
   for (int p = cap.ring_size(); p < cap.first_new(); ++p)
     if (cover_[p] >= 0 ? face_mark_[cover_[p]] == marker_ : p == star.u || (p == star.v && !cap.is_ring(p)))
       covered_.push_back(p);
@@ -33,10 +38,12 @@ void CapGauge::find_covered(const CapSurface& cap, const CapSurface::Star& star)
 /// Lays the rim and what is covered into the star's mean plane. Returns false if it has none.
 bool CapGauge::flatten(const CapSurface& cap, const CapSurface::Star& star) {
   Vector3d outward = Vector3d::Zero();
+  // The area-weighted normal of the star.
   for (const int f : star.faces) outward += cap.faces()[f].plane.n * cap.faces()[f].plane.area;
   const double length = outward.norm();
   if (!(length > 0)) return false;
   outward /= length;
+  // An orthonormal frame; the coordinate axis with the smallest component keeps the cross product stable.
   int least = 0;
   outward.cwiseAbs().minCoeff(&least);
   along_x_ = outward.cross(Vector3d::Unit(least)).normalized();
@@ -53,6 +60,7 @@ bool CapGauge::flatten(const CapSurface& cap, const CapSurface::Star& star) {
 /// so.
 std::size_t CapGauge::sector(const Flat& q, const Flat& centre) const {
   std::size_t best = 0;
+  // Walk around the rim and reuse the cross product of each spoke with q.
   double most = -std::numeric_limits<double>::infinity();
   const double qx = q.x - centre.x, qy = q.y - centre.y;
   double ax = flat_rim_[0].x - centre.x, ay = flat_rim_[0].y - centre.y;
@@ -60,7 +68,9 @@ std::size_t CapGauge::sector(const Flat& q, const Flat& centre) const {
   for (std::size_t k = 0; k + 1 < flat_rim_.size(); ++k) {
     const double bx = flat_rim_[k + 1].x - centre.x, by = flat_rim_[k + 1].y - centre.y;
     const double left_of_b = bx * qy - by * qx;
+    // Non-negative if q is to the left of spoke a and to the right of spoke b.
     const double inside = std::min(left_of_a, -left_of_b);
+    // Only sectors on the same side of the centre as q: an opposite one could have the smallest violation.
     if (ax * qx + ay * qy + bx * qx + by * qy > 0 || (qx == 0 && qy == 0)) {
       if (inside >= 0 && ax * by - ay * bx > 0) return k;
       if (inside > most) most = inside, best = k;
@@ -76,17 +86,21 @@ bool CapGauge::prepare(const CapSurface& cap, const CapSurface::Star& star) {
 }
 
 bool CapGauge::may_stand(const CapSurface& cap, const CapSurface::Star& star, const Vector3d& w) {
+  // Test 1: the new vertex. Vertices on the ring do not move.
   int under = under_[star.faces[0]];
   if (!cap.is_ring(star.v) && !floor_.is_within(w, under)) return false;
   if (!prepare(cap, star)) return false;
+  // Test 2: the height of the new surface above each covered vertex.
   const Flat centre = flat(w);
   for (std::size_t i = 0; i < covered_.size(); ++i) {
+    // Height of the plane a, b, w above p. Comparing squares avoids the root in most cases.
     const auto& r = star.rim[sector(flat_covered_[i], centre)];
     const Vector3d &a = cap.x(r.a), &p = cap.x(covered_[i]);
     const Vector3d normal = (cap.x(r.b) - a).cross(w - a);
     const double square = normal.squaredNorm(), height = normal.dot(w - p);  // times the normal's length
     const double left = most_ - cap.off(covered_[i]);
     if (!(square > 0) || height <= 0 || (left > 0 && height * height <= left * left * square)) continue;
+    // The vertex's own bound is not enough: look for a closer floor triangle.
     if (!floor_.is_within(p + normal * (height / square), under)) return false;
   }
   return true;
@@ -94,6 +108,7 @@ bool CapGauge::may_stand(const CapSurface& cap, const CapSurface::Star& star, co
 
 bool CapGauge::is_near(const CapSurface& cap, const CapSurface::Star& star, const Vector3d& w) {
   const bool open = cap.is_ring(star.v);
+  // Test 3: five points of each new triangle, its spoke included.
   for (std::size_t k = 0; k < star.rim.size(); ++k) {
     const Vector3d &a = cap.x(star.rim[k].a), &b = cap.x(star.rim[k].b);
     int& under = under_[star.rim[k].face];
@@ -118,6 +133,7 @@ void CapGauge::settle(CapSurface& cap, const CapSurface::Star& star, int w) {
 
 /// Raises what a face is off beyond its corners to what a vertex under it shows.
 void CapGauge::raise_extra(CapSurface& cap, int face, int covered) const {
+  // The deviation shown by p: its height below the face, plus its own deviation.
   const auto& f = cap.faces()[face];
   const Vector3d& p = cap.x(covered);
   const double height = f.plane.d - f.plane.n.dot(p);
@@ -125,12 +141,14 @@ void CapGauge::raise_extra(CapSurface& cap, int face, int covered) const {
   double by_corners = 0;
   for (int i = 0; i < 3; ++i) by_corners += foot.weight[i] * cap.off(f.v[i]);
   const double over = height + cap.off(covered);
+  // Already accounted for by the interpolated corners and the excess.
   if (over <= by_corners + f.extra) return;
   const double off = std::min(over, floor_.off(p + f.plane.n * height));
   if (off - by_corners > f.extra) cap.set_extra(face, off - by_corners);
 }
 
 bool CapGauge::measure_again(CapSurface& cap) const {
+  // Barycentric sample points: the centroid, and the midpoints of the edges and of the medians.
   constexpr double kAt[7][3] = {{1 / 3., 1 / 3., 1 / 3.}, {.5, .5, 0},    {0, .5, .5},   {.5, 0, .5},
                                 {.5, .25, .25},           {.25, .5, .25}, {.25, .25, .5}};
   for (int f = 0; f < static_cast<int>(cap.faces().size()); ++f) {
@@ -145,6 +163,7 @@ bool CapGauge::measure_again(CapSurface& cap) const {
         by_corners += at[i] * cap.off(face.v[i]);
       }
       const double off = floor_.off(q);
+      // Written so that NaN is rejected.
       if (!(off <= most_)) return false;
       extra = std::max(extra, off - by_corners);
     }

@@ -1,3 +1,6 @@
+// The surface of a cap under edge collapses: half-edge-like adjacency (the face across each edge) over local
+// vertex numbers. A collapse replaces the star of an edge by a fan from one vertex over the star's rim.
+
 #include "engine/construct/cap_surface.hpp"
 
 #include <algorithm>
@@ -14,9 +17,12 @@ void CapSurface::load(const HullMesh& hull, const Patch& patch, VertexId first_i
 }
 
 void CapSurface::load_points(const HullMesh& hull, const Patch& patch) {
+  // The maps are never cleared: an entry is valid only if the local element refers back to it. Loading thus
+  // costs time in the size of the patch, not of the front.
   if (local_point_.size() < hull.point_count()) local_point_.resize(hull.point_count(), -1);
   points_.clear();
   corners_.clear();
+  // Ring vertices first, in order: is_ring() is a comparison, and ring edge k starts at vertex k.
   for (const auto* list : {&patch.ring, &patch.interior}) {
     for (const HullMesh::Corner v : *list) {
       local_point_[v] = vertex_count();
@@ -44,6 +50,7 @@ void CapSurface::load_faces(const HullMesh& hull, const Patch& patch) {
     Face& face = faces_[f];
     for (int i = 0; i < 3; ++i) {
       face.v[i] = local_point_[t.v[i]];
+      // A neighbour outside the patch becomes -1 here, and the code of its ring edge below.
       face.across[i] = local_face(patch, t.across[i]);
     }
     for (int i = 0; i < 3; ++i) {
@@ -69,6 +76,7 @@ void CapSurface::load_faces(const HullMesh& hull, const Patch& patch) {
 void CapSurface::load_surroundings(const HullMesh& hull, const Patch& patch) {
   beyond_.resize(patch.ring.size());
   chords_.assign(patch.ring.size() * patch.ring.size(), false);
+  // Local number of a ring vertex, or -1.
   const auto local = [&](HullMesh::Corner c) {
     const int v = local_point_[c];
     return v >= 0 && v < ring_size_ && corners_[v] == c ? v : -1;
@@ -77,9 +85,11 @@ void CapSurface::load_surroundings(const HullMesh& hull, const Patch& patch) {
     const HullMesh::Slot s = patch.outside[k];
     const int next = (k + 1) % ring_size_;
     const int i = hull.index_of(s, patch.ring[next]);  // it runs against the ring
+    // The outer neighbour's third vertex and plane: they limit where vertices near the ring may go.
     beyond_[k].tip = hull.x(hull[s].v[(i + 2) % 3]);
     const Eigen::Vector3d &a = hull.x(hull[s].v[0]), &b = hull.x(hull[s].v[1]), &c = hull.x(hull[s].v[2]);
     const Eigen::Vector3d normal = (b - a).cross(c - a);
+    // A triangle without area has no plane: its normal is zero.
     const double length = normal.norm();
     beyond_[k].plane.n = length > 0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d(0, 0, 0);
     beyond_[k].plane.d = beyond_[k].plane.n.dot(a);
@@ -111,12 +121,14 @@ bool CapSurface::find_star(int u, int v, Star& star) {
   star.rim.clear();
   star.since = 0;
   ++marker_;
+  // Step 1: find the triangle u, v, x by walking around u.
   int first = face_of_[u];
   for (int i = index_of(first, u); faces_[first].v[(i + 1) % 3] != v; i = index_of(first, u)) {
     first = faces_[first].across[(i + 2) % 3];
     if (first == face_of_[u]) return false;  // u and v are no longer neighbours
   }
-  // Go round u, from the triangle u, v, x to the triangle u, y, v.
+  // Step 2: walk around u from the triangle u, v, x to the triangle u, y, v. Mark its neighbours and collect
+  // its rim.
   int last = first;
   for (int f = first;;) {
     const int i = index_of(f, u);
@@ -124,6 +136,7 @@ bool CapSurface::find_star(int u, int v, Star& star) {
     const int a = t.v[(i + 1) % 3], b = t.v[(i + 2) % 3];
     star.faces.push_back(f);
     mark_[a] = marker_;
+    // The two triangles at the edge u, v vanish; all others leave one rim edge each.
     if (a != v && b != v) add_to_rim(star, {a, b, t.across[(i + 1) % 3], f});
     star.since = std::max(star.since, t.since);
     if (a == v) star.across_first = t.across[(i + 1) % 3];
@@ -133,12 +146,17 @@ bool CapSurface::find_star(int u, int v, Star& star) {
     if (f == first) break;
   }
   mark_[v] = 0;
+  // Link condition (Dey, Edelsbrunner, Guha and Nekhayev 1999): u and v must have exactly two common
+  // neighbours.
   if (is_ring(v)) {
     if (count_marked_neighbours_of_ring(v) != 2) return false;
+    // The fan from v has new edges to rim vertices. An edge between ring vertices may exist in the front
+    // already.
     for (const auto& r : star.rim)
       if (is_ring(r.b) && r.b != v && &r != &star.rim.back() && chord_outside(r.b, v)) return false;
     return true;
   }
+  // Step 3: the same around v, and the rest of the rim.
   int common = 0;
   for (int f = last;;) {
     const int i = index_of(f, v);
@@ -153,6 +171,7 @@ bool CapSurface::find_star(int u, int v, Star& star) {
     f = t.across[(i + 2) % 3];
     if (f == last) break;
   }
+  // A rim of two edges would leave two triangles on the same three vertices.
   return common == 2 && star.rim.size() >= 3;
 }
 
@@ -165,6 +184,7 @@ bool CapSurface::is_behind_a_face_at(int u, int v) const {
   int f = face_of_[u];
   do {
     const Face& t = faces_[f];
+    // Collapsing u onto v would cut below this triangle.
     if (t.v[0] != v && t.v[1] != v && t.v[2] != v && t.plane.n.dot(x(v)) < t.plane.d) return true;
     f = t.across[(index_of(f, u) + 2) % 3];
   } while (f != face_of_[u]);
@@ -173,6 +193,7 @@ bool CapSurface::is_behind_a_face_at(int u, int v) const {
 
 int CapSurface::count_marked_neighbours_of_ring(int r) const {
   int f = face_of_[r];
+  // A ring vertex has an open fan: start at its ring edge and go round until the other ring edge.
   int i = index_of(f, r);
   int count = mark_[faces_[f].v[(i + 1) % 3]] == marker_;
   for (;;) {
@@ -184,6 +205,7 @@ int CapSurface::count_marked_neighbours_of_ring(int r) const {
 }
 
 int CapSurface::collapse_to_new(const Star& star, const Eigen::Vector3d& position) {
+  // The new vertex is placed by the caller; ids are provisional, see id().
   const int w = vertex_count();
   points_.push_back({position, next_id_++});
   face_of_.push_back(-1);
@@ -197,7 +219,9 @@ void CapSurface::collapse_onto_ring(const Star& star) {
 }
 
 void CapSurface::move(int v, const Eigen::Vector3d& position) {
+  // Only the planes of its fan change.
   points_[v].x = position;
+  // Step 1: retire the star's faces.
   ++version_;
   int f = face_of_[v];
   do {
@@ -217,6 +241,8 @@ void CapSurface::replace(const Star& star, int w) {
   }
   alive_ -= static_cast<int>(star.faces.size());
   const int count = static_cast<int>(star.rim.size());
+  // Step 2: one new face per rim edge, stored in the slot of the old face at that edge. Around a ring vertex
+  // the fan is open.
   const bool open = w == star.v;
   face_of_[star.u] = -1;
   if (!open) face_of_[star.v] = -1;
@@ -233,11 +259,13 @@ void CapSurface::replace(const Star& star, int w) {
     face.extra = 0;
     face.since = version_;
     face.refused = {};
+    // The neighbour beyond the rim, or the ring, refers back to it.
     set_across(r.across, r.a, r.b, r.face);
     if (!is_ring(r.a)) face_of_[r.a] = r.face;
     if (!is_ring(r.b)) face_of_[r.b] = r.face;
   }
   alive_ += count;
+  // Step 3: an open fan also has the two edges at w itself.
   if (open) {
     set_across(star.across_first, w, star.rim.front().a, star.rim.front().face);
     set_across(star.across_last, star.rim.back().b, w, star.rim.back().face);

@@ -1,3 +1,12 @@
+// The builder in 2D. The front is a set of closed polylines, at first the mesh itself:
+// 1. Plan the outermost wrapper, so that no front grows beyond it.
+// 2. Passes: propose a cap over every short chain of segments, sort by added area per saved segment, and
+// apply them greedily where they are proven to keep the front embedded.
+// 3. Fit first (the allowed deviation grows from pass to pass), then simplify without a limit on the
+// deviation.
+// 4. Bridge the pockets to the convex hull if too many segments are left.
+// 5. Fill each hole with one region, and close with the wrapper of step 1.
+
 #include "engine/construct/chain_builder.hpp"
 
 #include <algorithm>
@@ -36,6 +45,7 @@ class ChainBuilder {
         frozen_(mesh.face_count(), false),
         boxes_(hull_.component_count()),
         passes_(options) {
+    // Segments that intersect others are never covered: embedding can only be proven for the others.
     for (const FaceId f : meeting) frozen_[f] = true;
     for (Slot s = 0; s < hull_.slot_count(); ++s) boxes_[hull_[s].component].extend(box_of(hull_, s));
     find_nesting(mesh);
@@ -43,12 +53,16 @@ class ChainBuilder {
 
   LrbData run() {
     plan_polygon();
+    // Lean bodies skip the fitted levels and start with the largest savings.
     if (!options_.lean) fit();
+    // First only caps that save much, then those that still save something.
     simplify(kCapWorth);
     simplify(kLastCapWorth);
+    // Bridging changes the shape, so chains that had no cap before may have one now.
     if (outer_size() > max_outer_ && bridge()) simplify(kLastCapWorth);
     fill();
     const std::uint32_t outer = outer_size();
+    // No wrapper is needed if the front itself has few enough segments.
     const bool is_closed = outer > max_outer_ && close();
     if (options_.probe) options_.probe->closed(is_closed ? polygon_size() : outer);
     return complex_.finish(true, false);
@@ -74,11 +88,14 @@ class ChainBuilder {
   /// Finds the hole in front of each component: the component itself if it is a hole, kNull for the outside.
   void find_nesting(const Mesh& mesh) {
     const std::uint32_t count = hull_.component_count();
+    // Step 1: holes are the components with negative area. A hole is its own home.
     std::vector<std::vector<FaceId>> faces(count);
     for (Slot s = 0; s < hull_.slot_count(); ++s) faces[hull_[s].component].push_back(hull_[s].face);
     home_.assign(count, kNull);
     for (std::uint32_t c = 0; c < count; ++c)
       if (volume_sign(mesh, faces[c]) < 0) home_[c] = c;
+    // Step 2: the components that contain each one, decided by its first vertex; ambiguous only if they
+    // cross.
     std::vector<std::uint32_t> component_of(mesh.face_count(), kNull);
     for (std::uint32_t c = 0; c < count; ++c)
       for (const FaceId f : faces[c]) component_of[f] = c;
@@ -91,6 +108,7 @@ class ChainBuilder {
     const auto is_inside = [&](std::uint32_t inner, std::uint32_t outer) {
       return std::binary_search(holders[inner].begin(), holders[inner].end(), outer);
     };
+    // Step 3: the innermost hole around each solid component. It lies within all the others around it.
     const std::vector<std::uint32_t> holes = home_;
     for (std::uint32_t c = 0; c < count; ++c) {
       if (holes[c] != kNull) continue;
@@ -102,17 +120,21 @@ class ChainBuilder {
   /// Plans the outermost wrapper first, so that all hulls stay inside it.
   void plan_polygon() {
     const auto points = outer_points();
+    // The front is still the mesh itself here, so the wrapper is as tight as it can be.
     polygon_ = enclosing_polygon(points, max_outer_, kPolytopeDistance);
     Box box;
     for (const Vector3& p : polygon_) box.extend(p);
     for (std::size_t i = 0; i < polygon_.size(); ++i) {
       const Vector3 &a = polygon_[i], &b = polygon_[(i + 1) % polygon_.size()];
+      // The inward normal of a side. The front keeps a small distance, so that rounding cannot put it
+      // outside.
       const Vector3 n = Vector3(a.y() - b.y(), b.x() - a.x(), 0).normalized();
       bounds_.push_back({n, n.dot(a) + kHullDistance * box.sizes().maxCoeff()});
     }
   }
 
   void fit() {
+    // The deviations of the schedule are relative to the largest side of the body's box.
     Box box;
     for (const Box& b : boxes_) box.extend(b);
     fit_hulls(
@@ -125,8 +147,10 @@ class ChainBuilder {
   void simplify(double worth) {
     for (;;) {
       const std::uint32_t before = hull_.segment_count();
+      // Simple enough already.
       if (before <= max_outer_) return;
       pass(BuildStage::simplify, {worth});
+      // Diminishing returns.
       if (hull_.segment_count() > kLeastGain * before) return;
     }
   }
@@ -140,27 +164,34 @@ class ChainBuilder {
 
   /// Puts on the caps that add least area for each segment they save, on chains that do not overlap.
   void pass(BuildStage stage, const CapGoal& goal) {
+    // Step 1: an AABB tree over the front. It follows the caps of this pass.
     const std::vector<Slot> slots = hull_.alive_slots();
     std::vector<Box> slot_boxes(hull_.slot_count());
     for (const Slot s : slots) slot_boxes[s] = box_of(hull_, s);
     AabbTree tree(slots, slot_boxes);
     passes_.tell_begin(stage, hull_.segment_count(), goal.off);
     PassEnd end;
+    // Step 2: exclude frozen segments, and below everything that this pass has covered or made.
     std::vector<bool> taken(hull_.slot_count(), false);
     for (const Slot s : slots) {
       taken[s] = hull_[s].face < frozen_.size() && frozen_[hull_[s].face];
       end.barred += taken[s];
     }
+    // Step 3: greedy selection. An earlier cap may have taken part of the chain, or may now be in the way.
     for (const Proposal& p : find_proposals(slots, taken, goal)) {
       const auto chain = chain_of_untaken(p.cap, taken);
+      // The proof is made now, against the front as it is, not when the cap was proposed.
       const CapVerdict verdict =
           chain.empty() ? CapVerdict::overlaps : judge_chain_cap(hull_, tree, p.cap, boxes_);
       tell_cap(p, verdict, goal.off);
       if (verdict != CapVerdict::stands) continue;
       for (const Slot s : replace(p.cap, chain)) {
+        // New segments are not covered again in this pass, so that a region and the one on top differ in
+        // layer.
         taken[s] = true;
         tree.update(s, box_of(hull_, s));
       }
+      // Also the slots that are empty now.
       for (const Slot s : chain) taken[s] = true;
     }
     end.hull_faces = hull_.segment_count();
@@ -173,19 +204,26 @@ class ChainBuilder {
   std::vector<Proposal> find_proposals(const std::vector<Slot>& slots, const std::vector<bool>& taken,
                                        const CapGoal& goal) const {
     std::vector<Proposal> proposals;
+    // The patch size counts vertices in 3D. Here a quarter of it, plus one, is the longest chain: O(longest)
+    // proposals for each segment.
     const std::uint32_t longest = std::max(options_.patch_interior / 4, 1u) + 1;
+    // All chains that start at each segment. They may not overlap taken segments, nor run around the whole
+    // loop.
     for (const Slot s : slots) {
       std::uint32_t length = 1;
       std::optional<Proposal> refused;
       const std::size_t before = proposals.size();
       for (Slot t = s; length <= longest && !taken[t] && hull_[t].next != s; t = hull_[t].next, ++length) {
+        // A single segment cannot be simplified.
         if (length < 2) continue;
         const Proposal p = propose(s, length, goal);
         if (p.verdict == CapVerdict::stands) proposals.push_back(p);
+        // For the probe: of all lengths that failed, the reason that comes first in CapVerdict.
         if (!refused || p.verdict < refused->verdict) refused = p;
       }
       if (refused && proposals.size() == before) tell_cap(*refused, refused->verdict, 0);
     }
+    // Stable, so that equal costs keep the order of the slots: the result is deterministic.
     std::stable_sort(proposals.begin(), proposals.end(),
                      [](const Proposal& p, const Proposal& q) { return p.cost < q.cost; });
     return proposals;
@@ -194,12 +232,16 @@ class ChainBuilder {
   /// Finds a cap over a chain; it stands if it is worth it, whatever else it may meet.
   Proposal propose(Slot first, std::uint32_t length, const CapGoal& goal) const {
     CapVerdict why = CapVerdict::stands;
+    // The geometry, without regard to the rest of the front.
     auto cap = find_cap(hull_, first, length, bounds_, kCapVolumeLimit, why);
     const VertexId start = hull_[first].a;
     if (!cap) return {0, ChainCap{first, length, std::nullopt, 0, 0, {0, 0}}, why, start};
+    // It must save segments, and enough of them to be worth a region.
     if (cap->segments() >= length || cap->segments() > goal.worth * length)
       return {0, *cap, CapVerdict::too_many_faces, start};
+    // Fitting: the deviation must remain within this pass's limit.
     if (goal.off > 0 && !measure_cap(hull_, *cap, goal.off)) return {0, *cap, CapVerdict::too_thick, start};
+    // The price of a saved segment.
     return {cap->area / (length - cap->segments()), *cap, CapVerdict::stands, start};
   }
 
@@ -207,6 +249,7 @@ class ChainBuilder {
   void tell_cap(const Proposal& p, CapVerdict verdict, double most_off) const {
     if (!options_.probe) return;
     const ChainCap& cap = p.cap;
+    // Rejected caps have no deviation to report.
     const bool measured = verdict == CapVerdict::stands && most_off > 0;
     options_.probe->patch({p.start, cap.length, cap.length - 1});
     options_.probe->cap(
@@ -217,6 +260,7 @@ class ChainBuilder {
   std::vector<Slot> chain_of_untaken(const ChainCap& cap, const std::vector<bool>& taken) const {
     std::vector<Slot> chain;
     for (Slot s = cap.first; chain.size() < cap.length; s = hull_[s].next) {
+      // The links of taken slots may have changed, but the first taken one ends the walk.
       if (taken[s]) return {};
       chain.push_back(s);
     }
@@ -224,8 +268,10 @@ class ChainBuilder {
   }
 
   std::vector<Slot> replace(const ChainCap& cap, const std::vector<Slot>& chain) {
+    // The chain becomes the floor of the new region: the region is on its outer side now.
     const RegionId region = complex_.add_region(passes_.layer());
     for (const Slot s : chain) complex_.set_outer_cell(hull_[s].face, region);
+    // The cap's polyline, with or without an apex. Front and complex number their vertices alike.
     const VertexId a = hull_[chain.front()].a, b = hull_[chain.back()].b;
     std::vector<VertexId> corners = {a, b};
     if (cap.apex) corners = {a, hull_.add_point(*cap.apex, cap.apex_off), b};
@@ -239,24 +285,28 @@ class ChainBuilder {
   /// Puts the polyline in place of the chain, with the region behind it.
   std::vector<Slot> add_segments(const std::vector<Slot>& chain, const std::vector<VertexId>& corners,
                                  RegionId region) {
+    // Read the neighbours before the chain's slots are emptied.
     const Slot before = hull_[chain.front()].prev, after = hull_[chain.back()].next;
     const std::uint32_t component = hull_[chain.front()].component;
     hull_.remove(chain);
     std::vector<Slot> added;
     Slot last = before;
     for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+      // The new segments reuse the chain's first slots: a cap has fewer segments than its chain.
       const VertexId ends[2] = {corners[i], corners[i + 1]};
       hull_.place(chain[i], ends[0], ends[1], complex_.add_pseudo_face(ends, region, kOutside), component);
       hull_.join(last, chain[i]);
       last = chain[i];
       added.push_back(last);
     }
+    // Close the loop.
     hull_.join(last, after);
     return added;
   }
 
   /// Makes regions of the pockets between a single outline and its convex hull.
   bool bridge() {
+    // Find all pockets first: bridging is accepted as a whole or not at all.
     passes_.tell_begin(BuildStage::bridge, hull_.segment_count());
     std::vector<ChainCap> caps;
     const CapVerdict verdict = find_bridge(caps);
@@ -274,25 +324,31 @@ class ChainBuilder {
   /// Finds the sides of the convex hull that are not the outline's own. Returns whether they may stand.
   CapVerdict find_bridge(std::vector<ChainCap>& caps) const {
     const std::vector<Slot> slots = outer_slots();
+    // Pockets between several outlines would connect them; that is not supported in 2D.
     for (const Slot s : slots)
       if (hull_[s].component != hull_[slots[0]].component) return CapVerdict::several_outlines;
-    // Use positions along the outline, so that a side of the hull covers the chain between its ends.
+    // Vertices are numbered along the outline, so that a hull side from i to j covers the chain between them.
     const std::vector<Slot> outline = chain_of(hull_, slots[0], static_cast<std::uint32_t>(slots.size()));
     std::vector<Vector3> points;
     for (const Slot s : outline) points.push_back(hull_.start(s));
     std::vector<std::uint32_t> corners = convex_outline(points);
     if (corners.size() < 3) return CapVerdict::flat;
+    // Along a simple polygon, the hull's vertices occur in order.
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
     if (!std::is_sorted(corners.begin(), corners.end()))
       return CapVerdict::flat;  // the outline crosses itself
+    // An AABB tree over all components for the exact tests.
     std::vector<Box> slot_boxes(hull_.slot_count());
     for (const Slot s : hull_.alive_slots()) slot_boxes[s] = box_of(hull_, s);
     const AabbTree tree(hull_.alive_slots(), slot_boxes);
     for (std::size_t i = 0; i < corners.size(); ++i) {
+      // The last side wraps around to the first corner.
       const std::uint32_t next =
           i + 1 < corners.size() ? corners[i + 1] : corners[0] + static_cast<std::uint32_t>(points.size());
       const ChainCap cap{outline[corners[i]], next - corners[i], std::nullopt, 0, 0, {0, 0}};
+      // A hull side that is a segment of the outline already.
       if (cap.length < 2) continue;
+      // The caps cannot intersect each other, as sides of one convex hull, so each is tested alone.
       caps.push_back(cap);
       const CapVerdict verdict = judge_chain_cap(hull_, tree, cap, boxes_);
       if (verdict != CapVerdict::stands) return verdict;
@@ -310,6 +366,7 @@ class ChainBuilder {
 
   void fill() {
     const std::uint32_t before = complex_.region_count(), faces = hull_.segment_count();
+    // What remains of each hole is one region with a floor but no lid.
     fill_voids(hull_, home_, passes_.layer(), complex_);
     if (complex_.region_count() == before) return;
     passes_.tell_begin(BuildStage::fill, faces);
@@ -321,6 +378,7 @@ class ChainBuilder {
   bool close() {
     const std::uint32_t outer = outer_size(), before = complex_.region_count();
     passes_.tell_begin(BuildStage::close, outer);
+    // The wrapper becomes the outer boundary of one last region around all outer outlines.
     const CapVerdict verdict = find_closing();
     tell_whole_cap(polygon_size(), outer, verdict);
     const bool stands = verdict == CapVerdict::stands;
@@ -337,8 +395,11 @@ class ChainBuilder {
       return std::all_of(points.begin(), points.end(),
                          [&](const Vector3& p) { return holds_2d(polygon_, p); });
     };
+    // The planned polygon usually still contains the front. Rounding, or a bridge, may have spoiled that:
+    // plan again.
     if (polygon_.empty() || !holds_all()) polygon_ = enclosing_polygon(points, max_outer_, kPolytopeDistance);
     if (polygon_.empty()) return CapVerdict::too_far_out;
+    // The final confirmation is exact.
     return holds_all() ? CapVerdict::stands : CapVerdict::leaves_out;
   }
 
@@ -348,6 +409,7 @@ class ChainBuilder {
     Mesh mesh;
     mesh.dim = 2;
     mesh.vertices = polygon;
+    // One face for each side, counter-clockwise: the inside is on the left.
     const auto count = static_cast<std::uint32_t>(polygon.size());
     for (VertexId v = 0; v < count; ++v) mesh.add_face(std::array{v, VertexId((v + 1) % count)});
     return mesh;

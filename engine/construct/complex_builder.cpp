@@ -8,6 +8,7 @@ ComplexBuilder::ComplexBuilder(int dim, std::string name) {
 }
 
 ComplexBuilder::ComplexBuilder(const Mesh& mesh) : ComplexBuilder(mesh.dim, mesh.name) {
+  // A mesh is a complex without regions: every face separates the solid from the outside.
   d_.vertices = mesh.vertices;
   d_.face_offsets = mesh.face_offsets;
   d_.face_vertices = mesh.face_vertices;
@@ -34,6 +35,7 @@ FaceId ComplexBuilder::add_pseudo_face(std::span<const VertexId> corners, Region
 }
 
 FaceId ComplexBuilder::add_face(std::span<const VertexId> corners, CellId inner, CellId outer) {
+  // Compressed rows: the corners of all faces in one array, delimited by offsets.
   d_.face_vertices.insert(d_.face_vertices.end(), corners.begin(), corners.end());
   d_.face_offsets.push_back(static_cast<std::uint32_t>(d_.face_vertices.size()));
   d_.inner_cell.push_back(inner);
@@ -44,6 +46,7 @@ FaceId ComplexBuilder::add_face(std::span<const VertexId> corners, CellId inner,
 LrbData ComplexBuilder::finish(bool closed, bool self_intersecting) {
   d_.closed = closed;
   d_.self_intersecting = self_intersecting;
+  // Stable partition in two passes: real faces first, both kinds in the order of their creation.
   ComplexBuilder sorted(d_.dim);
   for (const bool real : {true, false}) {
     for (FaceId f = 0; f < face_count(); ++f)
@@ -51,6 +54,7 @@ LrbData ComplexBuilder::finish(bool closed, bool self_intersecting) {
         sorted.add_face(d_.face(f), d_.inner_cell[f], d_.outer_cell[f]);
     if (real) d_.real_face_count = sorted.face_count();
   }
+  // Only the face arrays change; vertices and regions keep their numbers.
   d_.face_offsets = std::move(sorted.d_.face_offsets);
   d_.face_vertices = std::move(sorted.d_.face_vertices);
   d_.inner_cell = std::move(sorted.d_.inner_cell);

@@ -1,3 +1,11 @@
+// Exact convex hull of points in 3D by Quickhull (Barber, Dobkin and Huhdanpaa 1996), with symbolic
+// perturbation:
+// 1. Start with a tetrahedron of positive volume; assign every other point to one facet that it sees.
+// 2. Take a facet with points; its furthest point p becomes a vertex of the hull.
+// 3. Find the facets visible from p by a search over neighbours; the edges at which it ends are the horizon.
+// 4. Join p to every horizon edge, and reassign the points of the removed facets to the new ones.
+// 5. Repeat from 2 until no facet has points. Points that see no facet are inside and were dropped.
+
 #include "engine/construct/convex_hull.hpp"
 
 #include <algorithm>
@@ -13,23 +21,27 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Quickhull: each point that is still outside waits at one facet that it sees; the furthest point that waits
-/// at a facet becomes a corner, and those that waited at the facets it replaces look for new ones.
+/// Quickhull: each point that is still outside the hull is in the list of one facet that it sees. The
+/// furthest point of a facet's list becomes a vertex, and the points of the facets that it replaces are
+/// redistributed.
 ///
-/// The order in which corners are added makes no difference, because no four points count as lying in one
-/// plane: each point is thought of as moved towards a point inside by an infinitesimal share, every point by
-/// infinitely more than those before it. So a point is behind the planes of earlier points that it lies in,
-/// just as if points were added in order; and the hull of the moved points is unique.
+/// The order of insertion does not change the result, because no four points count as coplanar: each point is
+/// thought of as moved towards an interior point by an infinitesimal share of the way, every point by
+/// infinitely more than those before it. So a point is behind the planes of earlier points that contain it,
+/// just as if points were added in order. The hull of the moved points is unique.
 class Hull {
  public:
   explicit Hull(std::span<const Eigen::Vector3d> points)
       : points_(points), next_(points.size(), kNull), facet_from_(points.size(), kNull) {}
 
   std::vector<Triangle> run() {
+    // No tetrahedron with volume: all points are coplanar, and there is no hull.
     if (!start()) return {};
     while (!pending_.empty()) {
       const std::uint32_t f = pending_.back();
       pending_.pop_back();
+      // A facet can be listed and removed before its turn. Removed facets have no points left, so they are
+      // skipped here.
       if (facets_[f].waiting != kNull) add(facets_[f].furthest, f);
     }
     return in_order();
@@ -57,19 +69,25 @@ class Hull {
   bool start() {
     const auto count = static_cast<std::uint32_t>(points_.size());
     std::uint32_t b = 1, c, d;
+    // Grow a simplex by dimension: the first point that differs, the first off the line, the first off the
+    // plane.
     while (b < count && points_[b] == points_[0]) ++b;
+    // All tests are exact, so the volume is positive however flat the tetrahedron is.
     for (c = b + 1; c < count && exact::collinear3d(at(0), at(b), at(c));) ++c;
     int side = 0;
     for (d = c + 1; d < count && (side = exact::orient3d(at(0), at(b), at(c), at(d))) == 0;) ++d;
     if (side == 0) return false;
+    // Orient the base so that d is behind it. The other three facets then face outward too.
     if (side > 0) std::swap(b, c);
     first_ = {0, b, c, d};
     for (const Triangle& t : {Triangle{0, b, c}, Triangle{0, d, b}, Triangle{b, d, c}, Triangle{c, d, 0}})
       make(t);
+    // The adjacency of a tetrahedron, written out for these four vertex orders.
     facets_[0].across = {1, 2, 3};
     facets_[1].across = {3, 2, 0};
     facets_[2].across = {1, 3, 0};
     facets_[3].across = {2, 1, 0};
+    // Initial partition of the points: O(4 n) plane tests. Points inside the tetrahedron are dropped.
     for (std::uint32_t p = 0; p < count; ++p)
       if (!is_first(p)) wait(p);
     expect_points();
@@ -83,6 +101,7 @@ class Hull {
   std::uint32_t make(const Triangle& t) {
     const Facet facet{t, exact::PlaneSide(at(t[0]), at(t[1]), at(t[2]))};
     std::uint32_t f;
+    // Slots of removed facets are used again, so that memory stays linear in the size of the hull.
     if (free_.empty()) {
       f = static_cast<std::uint32_t>(facets_.size());
       facets_.push_back(facet);
@@ -96,6 +115,7 @@ class Hull {
   }
 
   bool sees(std::uint32_t p, const Facet& f) const {
+    // Filtered exact sign of the orientation; only coplanar points need the perturbation.
     const int side = f.plane.side(at(p));
     return side != 0 ? side > 0 : sees_in_plane(p, f.corners);
   }
@@ -105,10 +125,14 @@ class Hull {
   /// opposite edge, and p is in front if it is on the corner's side of that edge; if p is on the edge's line,
   /// the next point decides.
   bool sees_in_plane(std::uint32_t p, const Triangle& t) const {
+    // Later points move infinitely more, so their moves dominate: examine the corners from the last to the
+    // first.
     std::array<int, 3> order = {0, 1, 2};
     std::sort(order.begin(), order.end(), [&](int i, int j) { return rank(t[i]) > rank(t[j]); });
     for (const int k : order) {
+      // Now p itself dominates. It moves inward, hence behind the plane.
       if (rank(t[k]) < rank(p)) return false;
+      // Corner k dominates. Its move tilts the plane about the opposite edge.
       const int side = side_of_edge(t[(k + 1) % 3], t[(k + 2) % 3], t[k], p);
       if (side != 0) return side > 0;
     }
@@ -118,9 +142,12 @@ class Hull {
   /// Returns, for four points in one plane, +1 if p is on the same side of the line a, b as c, and -1 if it
   /// is on the other.
   int side_of_edge(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t p) const {
+    // Project along a coordinate axis in which the triangle keeps its area; signs in the projection decide
+    // exactly.
     for (int x = 0; x < 3; ++x) {
       const int y = (x + 1) % 3;
       const int turn = exact::orient_axes(at(a), at(b), at(c), x, y);
+      // The product of the two orientations is independent of the direction in which the triangle is seen.
       if (turn != 0) return turn * exact::orient_axes(at(a), at(b), at(p), x, y);
     }
     return 0;
@@ -129,11 +156,13 @@ class Hull {
   /// Puts p on the list of the first of the new facets that it sees. If it sees none of them it is inside: a
   /// point that sees a facet that goes and one that stays also sees a new one between them.
   void wait(std::uint32_t p) {
+    // One facet is enough: if that facet is removed, the point is redistributed.
     for (const std::uint32_t f : made_) {
       Facet& facet = facets_[f];
       if (!sees(p, facet)) continue;
       next_[p] = facet.waiting;
       facet.waiting = p;
+      // Rounded heights choose the vertex that is inserted next. They affect the running time, not the hull.
       const double height = facet.plane.rough_height(at(p));
       if (facet.furthest == kNull || height > facet.height) {
         facet.furthest = p;
@@ -150,22 +179,29 @@ class Hull {
 
   /// Makes p, which sees facet f, a corner.
   void add(std::uint32_t p, std::uint32_t f) {
+    // Step 1: the facets that p sees, and the horizon around them.
     find_visible(p, f);
+    // Step 2: one new facet over each horizon edge, linked to the facet that remains beyond it.
     for (const HorizonEdge& e : horizon_) {
       const std::uint32_t n = make({e.a, e.b, p});
       facets_[n].across[0] = e.beyond;
       Facet& beyond = facets_[e.beyond];
       for (int i = 0; i < 3; ++i)
+        // The edge runs b -> a in the facet beyond.
         if (beyond.corners[i] == e.b) beyond.across[i] = n;
       facet_from_[e.a] = n;
     }
+    // Step 3: link neighbouring new facets. The horizon is a simple cycle, so its start vertices identify
+    // them.
     for (const std::uint32_t n : made_) {
       const std::uint32_t following = facet_from_[facets_[n].corners[1]];
       facets_[n].across[1] = following;
       facets_[following].across[2] = n;
     }
+    // Step 4: redistribute the points of the removed facets. Each point is tested against new facets only.
     for (const std::uint32_t v : visible_) {
       for (std::uint32_t q = facets_[v].waiting; q != kNull;) {
+        // Read the link first: wait() overwrites it.
         const std::uint32_t following = next_[q];
         if (q != p) wait(q);
         q = following;
@@ -181,6 +217,7 @@ class Hull {
 
   /// Finds the facets that p sees, which are connected, and marks them as gone.
   void find_visible(std::uint32_t p, std::uint32_t f) {
+    // Breadth-first search. The visible facets are connected because the hull is convex.
     visible_ = {f};
     horizon_.clear();
     facets_[f].alive = false;
@@ -188,11 +225,13 @@ class Hull {
       const Facet& facet = facets_[visible_[i]];
       for (int k = 0; k < 3; ++k) {
         Facet& other = facets_[facet.across[k]];
+        // Already found to be visible.
         if (!other.alive) continue;
         if (sees(p, other)) {
           other.alive = false;
           visible_.push_back(facet.across[k]);
         } else {
+          // A visible facet next to an invisible one: their common edge is on the horizon.
           horizon_.push_back({facet.corners[k], facet.corners[(k + 1) % 3], facet.across[k]});
         }
       }
@@ -207,12 +246,14 @@ class Hull {
       if (!facets_[f].alive) continue;
       Triangle t = facets_[f].corners;
       if (f >= first_.size()) {
+        // Every other facet was made by its last corner, with the horizon edge before it in front.
         const auto last = std::max_element(
             t.begin(), t.end(), [&](std::uint32_t u, std::uint32_t v) { return rank(u) < rank(v); });
         std::rotate(t.begin(), last + 1, t.end());
       }
       triangles.push_back(t);
     }
+    // The remaining facets of the tetrahedron come first, in their own order.
     const auto of_first = std::count_if(facets_.begin(), facets_.begin() + first_.size(),
                                         [](const Facet& f) { return f.alive; });
     std::sort(triangles.begin() + of_first, triangles.end(), [](const Triangle& t, const Triangle& u) {
@@ -245,6 +286,7 @@ Mesh convex_hull_mesh(std::span<const Eigen::Vector3d> points) {
   for (const Triangle& t : convex_hull(points)) {
     VertexId corners[3];
     for (int i = 0; i < 3; ++i) {
+      // Number the vertices in the order of their first use; interior points get no number.
       VertexId& v = number[t[i]];
       if (v == kNull) {
         v = static_cast<VertexId>(mesh.vertices.size());

@@ -1,3 +1,11 @@
+// Exact proof that a cap leaves the front (the current progressive hull) embedded:
+// 1. At each ring edge, the cap starts between the patch and the outer neighbour, on the outer side.
+// 2. New triangles meet each other only in shared vertices and edges.
+// 3. They meet the patch that they cover in the same way.
+// 4. They meet the rest of the front in the same way; an AABB tree and plane tests cull the pairs.
+// 5. No other component lies between patch and cap.
+// Every decision is an exact predicate. Floating point only culls, conservatively.
+
 #include "engine/construct/embed_check.hpp"
 
 #include <algorithm>
@@ -26,9 +34,14 @@ int side(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d)
 /// Returns true if, turning about the edge a, b from the old triangle (a, b, p) through the space in front of
 /// it, one reaches the new triangle (a, b, w) before the neighbour (b, a, q).
 bool turns_outward(const Vector3& a, const Vector3& b, const Vector3& p, const Vector3& w, const Vector3& q) {
+  // Measure angles about the edge from the old triangle. Three signs order w and q without computing angles.
   const int new_side = side(a, b, p, w), far_side = side(a, b, p, q);
+  // w is at less than 180 degrees. q comes later if it is at 180 or more, or in front of the new triangle.
   if (new_side > 0) return far_side <= 0 || side(a, b, w, q) > 0;
+  // w is at 180 degrees, so q must be beyond. (At 0 degrees it overlaps the patch, which the overlap test
+  // finds.)
   if (new_side == 0) return far_side < 0;
+  // w is at more than 180 degrees: q must be, too, and in front of the new triangle.
   return far_side < 0 && side(a, b, w, q) > 0;
 }
 
@@ -49,39 +62,50 @@ TriangleReach::TriangleReach(const CheckedTriangle& t)
     : box_(t.box), corner_(t.x[0][0], t.x[0][1], t.x[0][2]) {
   const Vector3 u = Vector3(t.x[1][0], t.x[1][1], t.x[1][2]) - corner_;
   const Vector3 v = Vector3(t.x[2][0], t.x[2][1], t.x[2][2]) - corner_;
+  // The unnormalised normal saves a square root: all terms of the plane test scale with it.
   normal_ = u.cross(v);
-  // The normal is off by under 2^-50 |u| |v|, and so is each product with it, relative to the other factor.
+  // The normal has an error below 2^-50 |u| |v|, and so has a product with it, times the other factor. The
+  // slack of 2^-40 exceeds their sum by far.
   slack_ = 0x1p-40 * u.norm() * v.norm();
 }
 
 bool TriangleReach::may_meet(const Box& other) const {
   if (!box_.intersects(other)) return false;
+  // Plane against box (Ericson 2005): the radius of the box along the normal, plus the rounding slack.
   const Vector3 half = other.sizes() / 2, from_corner = other.center() - corner_;
   const double reach = normal_.cwiseAbs().dot(half) + slack_ * (half.norm() + from_corner.norm());
+  // Written so that NaN and infinity keep the box.
   return !(std::abs(normal_.dot(from_corner)) > reach);
 }
 
 CapVerdict EmbedCheck::judge_cap(const Patch& patch, const CapSurface& cap) {
+  // Step 1 is local and cheap, and excludes most inward caps.
   if (!ring_turns_outward(patch, cap)) return CapVerdict::turns_inward;
   added_.clear();
   obstacles_.clear();
   Box box;
+  // The checked triangles refer to these points, which therefore may not move: reserve first.
   std::vector<HullMesh::Point> points;
   points.reserve(cap.vertex_count());
   for (int v = 0; v < cap.vertex_count(); ++v) points.push_back(point_of(cap, v));
   for (const auto& f : cap.faces()) {
+    // Kept triangles belong to the front already, so they need no test.
     if (!f.alive || f.kept >= 0) continue;
     added_.emplace_back(points[f.v[0]], points[f.v[1]], points[f.v[2]]);
     box.extend(added_.back().box);
   }
+  // Step 2. Quadratic, but a cap has at most a few dozen faces.
   if (added_meet_each_other()) return CapVerdict::meets_itself;
+  // Steps 3 and 4. The patch goes first in the list, so that the verdict can name the obstacle.
   add_patch(patch);
   const std::size_t of_patch = obstacles_.size();
   if (component_boxes_.size() > 1)  // another component may lie in between, under the cap and clear of it
     for (const CheckedTriangle& t : obstacles_) box.extend(t.box);
+  // For a body of one component, the box of the new triangles suffices.
   gather_hull(patch, cap, box);
   const CapVerdict verdict = judge_added(of_patch);
   if (verdict != CapVerdict::stands || component_boxes_.size() < 2) return verdict;
+  // Step 5, only where there are several components.
   return encloses_component(patch, cap, box) ? CapVerdict::holds_component : CapVerdict::stands;
 }
 
@@ -91,13 +115,17 @@ CapVerdict EmbedCheck::judge_fan(const Patch& patch, const CapSurface& cap, cons
   added_.clear();
   obstacles_.clear();
   Box box;
+  // The same steps for a single collapse; the cap's own new faces are obstacles too. An enclosed component is
+  // not searched for: judge_cap() does that once, for the finished cap.
   std::vector<HullMesh::Point> points;
   points.reserve(cap.vertex_count());
   for (int v = 0; v < cap.vertex_count(); ++v) points.push_back(point_of(cap, v));
+  // The fan from w over the star's rim.
   for (const auto& r : star.rim) {
     added_.emplace_back(points[r.a], points[r.b], w);
     box.extend(added_.back().box);
   }
+  // This includes the star's faces, which the fan is about to cover: it may touch them in the rim only.
   for (const auto& f : cap.faces())
     if (f.alive && f.kept < 0) obstacles_.emplace_back(points[f.v[0]], points[f.v[1]], points[f.v[2]]);
   if (added_meet_each_other()) return CapVerdict::meets_itself;
@@ -117,14 +145,18 @@ void EmbedCheck::add_patch(const Patch& patch) {
 /// Looks at what the new triangles may meet only: the box of a cap that spans a good part of a component
 /// holds all that is nested in it.
 void EmbedCheck::gather_hull(const Patch& patch, const CapSurface& cap, const Box& box) {
+  // Record the region of space that the verdict depends on: a later change outside it cannot invalidate the
+  // proof.
   seen_.extend(box);
   reach_.clear();
   for (const CheckedTriangle& t : added_) reach_.emplace_back(t);
+  // A box that no single new triangle can reach is culled with its whole subtree.
   const auto near = [&](const Box& other) {
     return std::any_of(reach_.begin(), reach_.end(),
                        [&](const TriangleReach& t) { return t.may_meet(other); });
   };
   tree_.for_each_near(box, near, [&](HullMesh::Slot s) {
+    // The tree keeps empty slots; the patch's own triangles are listed already.
     if (!hull_.alive(s) || cap.local_face(patch, s) >= 0) return;
     const auto& t = hull_[s];
     obstacles_.emplace_back(hull_.point(t.v[0]), hull_.point(t.v[1]), hull_.point(t.v[2]));
@@ -140,8 +172,10 @@ void EmbedCheck::gather_strangers(const Patch& patch, const Box& box) {
   tree_.for_each_in(box, [&](HullMesh::Slot s) {
     if (!hull_.alive(s)) return;
     const std::uint32_t component = hull_[s].component;
+    // One triangle per component is enough: it represents the whole component.
     if (component == own || met_[component] == stamp_) return;
     met_[component] = stamp_;
+    // Only a component that is entirely within the box can be enclosed without crossing the boundary.
     if (box.contains(component_boxes_[component])) strangers_.push_back(s);
   });
 }
@@ -167,12 +201,15 @@ bool EmbedCheck::ring_turns_outward(const Patch& patch, const CapSurface& cap) c
   const int size = cap.ring_size();
   for (int k = 0; k < size; ++k) {
     const auto& face = cap.faces()[cap.face_at_ring(k)];
+    // Nothing changes at this ring edge.
     if (face.kept >= 0) continue;
     const HullMesh::Corner a = patch.ring[k], b = patch.ring[(k + 1) % size];
+    // In the outer triangle the ring edge runs from b to a.
     const auto third = [&](const auto& t, auto first) {
       return t.v[0] == first ? t.v[2] : t.v[1] == first ? t.v[0] : t.v[1];
     };
     const HullMesh::Slot beyond = patch.outside[k];
+    // The patch's own triangle at the edge.
     const auto& old = hull_[hull_[beyond].across[hull_.index_of(beyond, b)]];
     if (!turns_outward(hull_.x(a), hull_.x(b), hull_.x(third(old, a)), cap.x(third(face, k)),
                        cap.tip_beyond(k)))
@@ -188,6 +225,7 @@ bool EmbedCheck::rim_turns_outward(const CapSurface& cap, const CapSurface::Star
     return v[0] != a && v[0] != b ? v[0] : v[1] != a && v[1] != b ? v[1] : v[2];
   };
   for (const auto& r : star.rim) {
+    // The vertex opposite the rim edge: beyond the ring it belongs to the front, else to the cap.
     const Vector3& tip = r.across < 0 ? cap.tip_beyond(-1 - r.across) : cap.x(third(r.across, r.a, r.b));
     if (!turns_outward(cap.x(r.a), cap.x(r.b), cap.x(third(r.face, r.a, r.b)), w, tip)) return false;
   }
@@ -197,9 +235,12 @@ bool EmbedCheck::rim_turns_outward(const CapSurface& cap, const CapSurface::Star
 /// Returns true if another component may lie in the region between patch and cap. If it does, it lies there
 /// as a whole.
 bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, const Box& box) {
+  // Step 1: the candidates, of which there are usually none.
   gather_strangers(patch, box);
   Mesh region;
   for (const HullMesh::Slot stranger : strangers_) {
+    // Step 2, once: the boundary of the region, made of cap and patch. Its orientation does not matter for
+    // the parity of ray crossings, and triangles that are in both cancel.
     if (region.vertices.empty()) {
       for (int v = 0; v < cap.vertex_count(); ++v) region.vertices.push_back(cap.x(v));
       for (const auto& f : cap.faces()) {
@@ -208,6 +249,7 @@ bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, c
         for (int i = 0; i < 3; ++i) corners[i] = VertexId(static_cast<std::uint32_t>(f.v[i]));
         region.add_face(corners);
       }
+      // The patch is indexed separately: the point test needs no connectivity.
       for (const HullMesh::Slot s : patch.slots) {
         VertexId corners[3];
         for (int i = 0; i < 3; ++i) {
@@ -219,6 +261,7 @@ bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, c
     }
     std::vector<FaceId> faces(region.face_count());
     for (FaceId f = 0; f < faces.size(); ++f) faces[f] = f;
+    // Step 3: the component does not cross the boundary, so one vertex that is not on it decides.
     bool decided = false;
     for (const HullMesh::Corner c : hull_[stranger].v) {
       const PointSide where = point_side(region, faces, hull_.x(c));
@@ -227,6 +270,7 @@ bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, c
       decided = true;
       break;
     }
+    // All three vertices are on the boundary: assume the worst.
     if (!decided) return true;
   }
   return false;

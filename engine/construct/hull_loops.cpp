@@ -3,6 +3,7 @@
 namespace lrb::construct {
 
 HullLoops::HullLoops(const Mesh& mesh) : points_(mesh.vertices), off_(mesh.vertices.size(), 0) {
+  // Every vertex has exactly one outgoing segment, which follows the one that ends there.
   std::vector<Slot> leaving(points_.size(), kNull);
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     const auto c = mesh.face(f);
@@ -11,6 +12,7 @@ HullLoops::HullLoops(const Mesh& mesh) : points_(mesh.vertices), off_(mesh.verti
   }
   alive_ = slot_count();
   for (Slot s = 0; s < slot_count(); ++s) join(s, leaving[segments_[s].b]);
+  // Each closed loop is one component.
   for (Slot first = 0; first < slot_count(); ++first) {
     if (segments_[first].component != kNull) continue;
     for (Slot s = first; segments_[s].component == kNull; s = segments_[s].next)

@@ -1,3 +1,6 @@
+// The front as a triangle mesh with face adjacency. From a closed mesh: split polygons into triangles, pair
+// opposite edges, give each fan of triangles its own vertex, label the connected components.
+
 #include "engine/construct/hull_mesh.hpp"
 
 #include <algorithm>
@@ -15,8 +18,10 @@ void triangulate(const Mesh& mesh, std::span<const VertexId> corners,
   triangles.clear();
   if (corners.size() > 3) {
     const auto plane = spanning_corners(mesh, corners);
+    // Flat: a triangulation without degenerate triangles exists, and all triangulations have the same shape.
     if (plane && is_planar(mesh, corners, *plane)) return triangulate_convex(mesh, corners, triangles);
   }
+  // Not flat: the fan from the first corner is the polygon's shape by definition (see Mesh).
   for (std::size_t i = 1; i + 1 < corners.size(); ++i)
     triangles.push_back({corners[0], corners[i], corners[i + 1]});
 }
@@ -32,10 +37,12 @@ HullMesh::HullMesh(const Mesh& mesh) : real_faces_(static_cast<std::uint32_t>(me
 }
 
 void HullMesh::add_faces(const Mesh& mesh) {
+  // A pure triangle mesh needs no table of polygons.
   const bool polygons = mesh.face_vertices.size() != 3 * mesh.face_count();
   std::vector<std::array<VertexId, 3>> parts;
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     triangulate(mesh, mesh.face(f), parts);
+    // Triangles of a polygon are consecutive, so that unit() is an index range.
     const Slot first = slot_count();
     for (const auto& part : parts) {
       triangles_.push_back({{part[0], part[1], part[2]}, {kNull, kNull, kNull}, f, kNull});
@@ -48,17 +55,19 @@ void HullMesh::add_faces(const Mesh& mesh) {
 }
 
 void HullMesh::find_neighbours() {
-  // Sort the edges by the vertex that they start at.
+  // Counting sort of the directed edges by their start vertices. The counts are two entries ahead, so that
+  // filling the buckets leaves offsets[v] and offsets[v + 1] as the ends of bucket v.
   std::vector<std::uint32_t> offsets(points_.size() + 2, 0);
   for (const Triangle& t : triangles_)
     for (const Corner v : t.v) ++offsets[v + 2];
   for (std::size_t i = 2; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
+  // An edge is coded as 3 * triangle + index.
   std::vector<std::uint32_t> edges(3 * triangles_.size());
   for (Slot s = 0; s < slot_count(); ++s)
     for (std::uint32_t i = 0; i < 3; ++i) edges[offsets[triangles_[s].v[i] + 1]++] = 3 * s + i;
   const auto end_of = [&](std::uint32_t edge) { return triangles_[edge / 3].v[(edge % 3 + 1) % 3]; };
-  // Where very many start at one vertex, in order of their ends: looking through all of them for each would
-  // take too long.
+  // High-valence vertices: sort their buckets by end vertex, for binary search. Linear search at such a
+  // vertex would take quadratic time in all.
   constexpr std::uint32_t kFew = 32;
   const auto at = [&](std::uint32_t e) { return edges.begin() + e; };
   for (Corner v = 0; v < points_.size(); ++v)
@@ -66,6 +75,7 @@ void HullMesh::find_neighbours() {
       std::stable_sort(at(offsets[v]), at(offsets[v + 1]),
                        [&](std::uint32_t e, std::uint32_t f) { return end_of(e) < end_of(f); });
   const auto last_edge = [&](Corner from, Corner to) {
+    // Small buckets: linear search from the back. Large ones: the upper bound, then one comparison.
     std::uint32_t first = offsets[from], last = offsets[from + 1];
     if (last - first > kFew)
       last = static_cast<std::uint32_t>(
@@ -78,6 +88,7 @@ void HullMesh::find_neighbours() {
     }
     return NoId::kValue;
   };
+  // The neighbour over a -> b is the triangle with the edge b -> a. The mesh is closed, so there is one.
   for (Slot s = 0; s < slot_count(); ++s) {
     for (std::uint32_t i = 0; i < 3; ++i) {
       const std::uint32_t opposite = last_edge(triangles_[s].v[(i + 1) % 3], triangles_[s].v[i]);
@@ -89,16 +100,20 @@ void HullMesh::find_neighbours() {
 void HullMesh::split_fans() {
   slot_of_.assign(points_.size(), kNull);
   degree_.assign(points_.size(), 0);
+  // Each corner of each triangle is visited once: linear time.
   std::vector<bool> seen(3 * triangles_.size(), false);
   for (Slot first = 0; first < slot_count(); ++first) {
     for (int corner = 0; corner < 3; ++corner) {
       if (seen[3 * first + corner]) continue;
       const Corner old = triangles_[first].v[corner];
       Corner v = old;
+      // The vertex is non-manifold: several fans touch in it. Later fans get copies with the same id, so that
+      // no walk around a vertex misses a triangle.
       if (slot_of_[old] != kNull) {  // another fan has this vertex
         v = add_point(Eigen::Vector3d(points_[old].x), points_[old].id);
       }
       slot_of_[v] = first;
+      // Walk around the old vertex and renumber its corner in every triangle of the fan.
       Slot s = first;
       do {
         const int i = index_of(s, old);
@@ -112,6 +127,7 @@ void HullMesh::split_fans() {
 }
 
 void HullMesh::find_components() {
+  // Flood fill over edges with an explicit stack: the recursion would be as deep as the mesh is large.
   std::vector<Slot> stack;
   for (Slot first = 0; first < slot_count(); ++first) {
     if (triangles_[first].component != kNull) continue;
@@ -139,6 +155,7 @@ HullMesh::Corner HullMesh::add_point(const Eigen::Vector3d& x, VertexId id, doub
 
 void HullMesh::remove(std::span<const Slot> slots) {
   for (const Slot s : slots) {
+    // A vertex without triangles is no longer in use.
     for (const Corner v : triangles_[s].v)
       if (--degree_[v] == 0) slot_of_[v] = kNull;
     triangles_[s].face = kNull;
@@ -166,6 +183,7 @@ std::vector<HullMesh::Slot> HullMesh::alive_slots() const {
 
 double HullMesh::volume_sixfold(std::span<const Slot> slots) const {
   if (slots.empty()) return 0;
+  // Divergence theorem, relative to a vertex to limit cancellation.
   const Eigen::Vector3d origin = x(triangles_[slots[0]].v[0]);
   double sum = 0;
   for (const Slot s : slots) {

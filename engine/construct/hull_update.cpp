@@ -1,3 +1,6 @@
+// Applies a cap to the front. make_sheet() computes, without changing anything, the regions under the cap and
+// the neighbours across each of its edges; cover() then updates complex and front.
+
 #include "engine/construct/hull_update.hpp"
 
 #include <algorithm>
@@ -10,6 +13,7 @@ using Corner = HullMesh::Corner;
 
 /// Numbers the corners of both sides of the sheet from 0, and finds its regions and neighbours.
 void work_out(const HullMesh& hull, Sheet& sheet) {
+  // Step 1: compress the vertices of both sheets to 0 .. n - 1 for the local algorithms.
   std::sort(sheet.removed.begin(), sheet.removed.end());
   std::vector<Corner> corners;
   for (const Slot slot : sheet.removed)
@@ -20,6 +24,7 @@ void work_out(const HullMesh& hull, Sheet& sheet) {
   std::vector<Eigen::Vector3d> points;
   points.reserve(corners.size());
   for (const Corner c : corners)
+    // New vertices do not exist in the front yet.
     points.push_back(c < Sheet::kNewPoint ? hull.x(c) : sheet.new_points[c - Sheet::kNewPoint]);
   const auto local = [&](const PointTriangle& t) {
     PointTriangle out;
@@ -28,6 +33,7 @@ void work_out(const HullMesh& hull, Sheet& sheet) {
                                           corners.begin());
     return out;
   };
+  // Step 2: the regions between the covered triangles and the cap.
   std::vector<PointTriangle> old, added;
   std::vector<std::uint32_t> old_face;
   for (const Slot slot : sheet.removed) {
@@ -36,6 +42,8 @@ void work_out(const HullMesh& hull, Sheet& sheet) {
   }
   for (const PointTriangle& t : sheet.added) added.push_back(local(t));
   sheet.pieces = split_region(old, old_face, added, points);
+  // Step 3: the neighbour across each new edge: another new triangle, or at the boundary the one that was
+  // across the same edge of the covered triangle.
   const EdgeIndex old_edges(old), added_edges(added);
   sheet.beyond.resize(added.size());
   for (std::size_t i = 0; i < added.size(); ++i) {
@@ -65,6 +73,7 @@ Sheet make_sheet(const HullMesh& hull, std::span<const Slot> removed, std::span<
 
 Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap) {
   Sheet sheet;
+  // Collapses leave unused vertices: number only those that remain, in order.
   std::vector<Corner> corners(cap.vertex_count(), kNull);
   for (int v = 0; v < cap.vertex_count(); ++v) {
     if (!cap.is_used(v)) continue;
@@ -79,6 +88,7 @@ Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap
   std::vector<bool> stays(patch.slots.size(), false);
   for (const auto& f : cap.faces()) {
     if (!f.alive) continue;
+    // Triangles that no collapse touched stay in the front.
     if (f.kept >= 0) {
       stays[f.kept] = true;
     } else {
@@ -94,6 +104,7 @@ Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap
 
 std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sheet, std::uint16_t layer,
                         std::uint32_t component, ConstructProbe* probe) {
+  // Step 1: vertices and regions get their final numbers.
   const Corner first_new = hull.point_count();
   for (std::size_t i = 0; i < sheet.new_points.size(); ++i)
     hull.add_point(sheet.new_points[i], complex.add_vertex(sheet.new_points[i]),
@@ -101,13 +112,16 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
   const std::vector<Slot>& removed = sheet.removed;
   const std::uint32_t first_region = complex.region_count();
   for (std::uint32_t p = 0; p < sheet.pieces.count; ++p) complex.add_region(layer);
+  // Step 2: the covered faces become the floors of the regions.
   for (std::size_t i = 0; i < removed.size(); ++i)
     complex.set_outer_cell(hull[removed[i]].face, RegionId(first_region + sheet.pieces.of_old[i]));
 
+  // Step 3: new triangles reuse the covered ones' slots, then append.
   std::vector<Slot> slots;
   for (std::size_t i = 0; i < sheet.added.size(); ++i)
     slots.push_back(i < removed.size() ? removed[i]
                                        : hull.slot_count() + static_cast<Slot>(i - removed.size()));
+  // Step 4: prepare the triangles while the covered ones still exist, because their neighbours are read.
   std::vector<HullMesh::Triangle> triangles(sheet.added.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     HullMesh::Triangle& t = triangles[i];
@@ -124,6 +138,7 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
       } else {
         const Slot old = removed[beyond.removed];
         t.across[k] = hull[old].across[hull.index_of(old, t.v[k])];
+        // The outer neighbour refers back to the new triangle.
         hull.link(t.across[k], t.v[(k + 1) % 3], slots[i]);
       }
     }
@@ -131,6 +146,7 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
     t.component = component;
     if (!sheet.added_extra.empty()) t.extra = sheet.added_extra[i];
   }
+  // Step 5: swap them.
   hull.remove(removed);
   for (std::size_t i = 0; i < slots.size(); ++i) hull.add(slots[i], triangles[i]);
   if (probe) tell(*probe, first_region, sheet.pieces);

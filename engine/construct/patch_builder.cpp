@@ -39,6 +39,7 @@ class PatchBuilder {
         frozen_(mesh.face_count(), false),
         component_boxes_(hull_.component_count()),
         passes_(options) {
+    // Faces that intersect others, or are buried in other components, are never covered.
     for (const FaceId f : meeting) frozen_[f] = true;
     for (const FaceId f : find_buried(mesh, hull_, meeting)) frozen_[f] = true;
     for (Slot s = 0; s < hull_.slot_count(); ++s)
@@ -46,6 +47,7 @@ class PatchBuilder {
   }
 
   LrbData run() {
+    // Fitted levels first, then simplification without a limit on the deviation, then bridging and closing.
     if (!options_.lean) fit();
     simplify(kCapWorth);
     simplify(kLastCapWorth);
@@ -82,6 +84,7 @@ class PatchBuilder {
         box.sizes().maxCoeff(), kFitDownTo, [&] { return hull_.triangle_count(); },
         [&](std::uint32_t before, double off) {
           const std::size_t real = frozen_.size();
+          // Prices rise while fewer pseudo faces were spent than planned.
           const double correction = fitting_correction(before, real, complex_.face_count() - real);
           pass(BuildStage::fit, {fitting_worth(before, real, correction), off});
         });
@@ -99,11 +102,13 @@ class PatchBuilder {
 
   void pass(BuildStage stage, const CapGoal& goal) {
     const std::uint32_t triangles = hull_.triangle_count();
+    // From here on the front stays inside the planned wrapper.
     if (triangles <= kPolytopeFrom) plan_polytope();
     // On a small hull patches are small, so that there are still several.
     const std::uint32_t most =
         goal.off > 0 ? kFitPatch * options_.patch_interior / 4 : options_.patch_interior;
     const std::uint32_t interior = std::max(kLeastInterior, std::min(most, triangles / kLeastPatches));
+    // Rebuild the tree only when it has degraded; otherwise it was refitted.
     if (!tree_ || !tree_->fits(hull_)) tree_.emplace(hull_);
     passes_.tell_begin(stage, triangles, goal.off);
     PatchPass pass(hull_, *tree_, complex_, bounds_, frozen_, component_boxes_, workers_, options_.probe);
@@ -119,6 +124,7 @@ class PatchBuilder {
     const bool stands = bridge_pockets();
     passes_.tell_end({.hull_faces = hull_.triangle_count()});
     if (!stands) return false;
+    // Bridging replaced large parts of the front.
     tree_.reset();
     end_pass();
     return true;
@@ -160,6 +166,7 @@ class PatchBuilder {
     if (polytope_.face_count() > 0) return;
     polytope_ = enclosing_polytope(outer_points(), options_.max_outer_faces, kPolytopeDistance, workers_);
     if (polytope_.face_count() == 0) return;
+    // The front keeps a margin from the wrapper, so that the exact confirmation in find_closing() succeeds.
     bounds_ = BodyBounds(polytope_, kHullDistance * size_of(polytope_));
   }
 
@@ -189,6 +196,7 @@ class PatchBuilder {
       return std::all_of(points.begin(), points.end(), [&](const auto& p) { return holds(polytope_, p); });
     };
     if (polytope_.face_count() == 0) return CapVerdict::too_far_out;
+    // Rounding or bridging may have moved the front outside: plan again around the front as it is.
     if (!holds_all())
       polytope_ = enclosing_polytope(points, options_.max_outer_faces, kPolytopeDistance, workers_);
     if (polytope_.face_count() == 0) return CapVerdict::too_far_out;

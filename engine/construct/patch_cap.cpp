@@ -1,3 +1,6 @@
+// Edge collapses that only move outward (progressive hulls: Sander, Gu, Gortler, Hoppe and Snyder 2000), with
+// a lazily updated priority queue: a popped candidate is evaluated again if its star has changed.
+
 #include "engine/construct/patch_cap.hpp"
 
 #include <algorithm>
@@ -26,6 +29,7 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
   for (std::uint32_t before = cap_.version() + 1; before != cap_.version();) {
     before = cap_.version();
     propose_all();
+    // Lazy deletion: candidates that became stale are detected when they are popped.
     while (!queue_.empty() && cap_.alive_faces() > limits_.faces) {
       std::pop_heap(queue_.begin(), queue_.end());
       const Candidate c = queue_.back();
@@ -33,6 +37,7 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
       if (!cap_.is_used(c.u) || !cap_.is_used(c.v)) continue;
       const auto now = evaluate_again(c);
       if (!now) continue;
+      // Its cost has risen: put it back, others may be cheaper now.
       if (now->cost > c.cost) {
         queue_.push_back(*now);
         std::push_heap(queue_.begin(), queue_.end());
@@ -50,6 +55,7 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
 void PatchCap::collapse(const Candidate& c) {
   const bool onto_ring = cap_.is_ring(c.v);
   int w = c.v;
+  // The gauge needs the star before and after the collapse.
   if (limits_.gauge) limits_.gauge->prepare(cap_, star_);
   if (onto_ring)
     cap_.collapse_onto_ring(star_);
@@ -69,6 +75,7 @@ void PatchCap::collapse(const Candidate& c) {
 
 void PatchCap::propose_all() {
   queue_.clear();
+  // Each edge once; edges between two ring vertices never collapse.
   for (int u = cap_.ring_size(); u < cap_.vertex_count(); ++u) {
     if (!cap_.is_used(u)) continue;
     cap_.for_each_neighbour(u, [&](int v) {
@@ -95,6 +102,7 @@ void PatchCap::propose(int u, int v) {
 
 /// Evaluates the collapse of an edge; leaves the edge's star in star_.
 std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
+  // Cheap rejection before the star is gathered.
   if (fits() && cap_.is_ring(v) && cap_.is_behind_a_face_at(u, v)) return std::nullopt;  // four in five are
   if (!cap_.find_star(u, v, star_) || cap_.was_refused(star_)) return std::nullopt;
   return evaluate_star(u, v);
@@ -116,12 +124,14 @@ std::optional<PatchCap::Candidate> PatchCap::evaluate_star(int u, int v) {
 
 /// Does that, but takes no note of refusals.
 std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
+  // Step 1: centre and radius of the rim give the scale of all tolerances.
   Vector3 centre = Vector3::Zero();
   for (const auto& r : star_.rim) centre += cap_.x(r.a);
   centre /= static_cast<double>(star_.rim.size());
   double radius_sq = 0;
   for (const auto& r : star_.rim) radius_sq = std::max(radius_sq, (cap_.x(r.a) - centre).squaredNorm());
   const double radius = std::sqrt(radius_sq);
+  // Step 2: the position of the fan's centre: the ring vertex as it is, or a new vertex.
   Candidate c{0, u, v, cap_.version(), {}};
   if (cap_.is_ring(v)) {
     if (!ring_vertex_is_in_front(v, radius)) return refuse(CapVerdict::no_place);
@@ -131,7 +141,9 @@ std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
     if (!w) return refuse(CapVerdict::no_place);
     c.w = *w;
   }
+  // Step 3: the deviation, if it is limited.
   if (fits() && !limits_.gauge->may_stand(cap_, star_, c.w)) return refuse(CapVerdict::too_thick);
+  // Step 4: the added volume, as pyramids from w over the star's triangles; then a penalty for needles.
   double volume = 0, area = 0;
   for (const int f : star_.faces) {
     const auto& plane = cap_.faces()[f].plane;
@@ -149,6 +161,7 @@ std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
 /// the planes' polyhedron, so that the vertex comes to lie above the middle of the star, as low as possible.
 /// (The lowest vertex by a linear program slides away sideways where the star is flat.)
 std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
+  // The margin keeps the floating-point position strictly in front, so that the exact confirmation succeeds.
   const double margin = kPlacementMargin * radius, slack = kPlacementSlack * radius;
   Vector3 outward = Vector3::Zero();
   for (const int f : star_.faces) outward += cap_.faces()[f].plane.n * cap_.faces()[f].plane.area;
@@ -156,6 +169,8 @@ std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   if (!(length > 0)) return std::nullopt;
   collect_half_spaces(centre, margin);
   const Vector3 target = outward * (-limits_.depth * radius / length);
+  // Few of the planes are active, so the most violated one first is faster; lean builds keep the original
+  // order.
   const auto nearest = [&] {
     return fits() ? nearest_point_worst_first(target, half_spaces_, slack)
                   : nearest_point(target, half_spaces_, slack);
@@ -163,6 +178,7 @@ std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   auto w = nearest();
   if (!w) return std::nullopt;
   const double reach = 2 * radius;
+  // The bounds are rarely active: add them only if the position violates them.
   if (w->cwiseAbs().maxCoeff() > reach || !bounds_.contains(*w + centre)) {
     for (int i = 0; i < 3; ++i)
       for (const double sign : {-1.0, 1.0}) half_spaces_.push_back({sign * Vector3::Unit(i), -reach});
@@ -177,12 +193,14 @@ std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
 /// front of the neighbours' planes there.
 void PatchCap::collect_half_spaces(const Vector3& centre, double margin) {
   half_spaces_.clear();
+  // In front of the star itself.
   for (const int f : star_.faces) {
     const auto& p = cap_.faces()[f].plane;
     half_spaces_.push_back({p.n, p.d - p.n.dot(centre) + margin});
   }
   for (const auto& r : star_.rim) {
     const auto& own = cap_.faces()[r.face].plane;
+    // In front of the neighbour at a reflex rim edge, where the fan could cut into it.
     if (r.across < 0) {
       const auto& p = cap_.plane_beyond(-1 - r.across);
       if (own.n.dot(cap_.tip_beyond(-1 - r.across)) > own.d)
@@ -200,6 +218,7 @@ void PatchCap::collect_half_spaces(const Vector3& centre, double margin) {
 
 bool PatchCap::ring_vertex_is_in_front(int r, double radius) const {
   const Vector3& x = cap_.x(r);
+  // Triangles with the corner r vanish: no condition.
   for (const int f : star_.faces) {
     const auto& face = cap_.faces()[f];
     if (face.v[0] == r || face.v[1] == r || face.v[2] == r) continue;
@@ -212,6 +231,7 @@ bool PatchCap::ring_vertex_is_in_front(int r, double radius) const {
 /// area.
 double PatchCap::shape_of_fan(const Vector3& w) const {
   double worst = std::numeric_limits<double>::infinity();
+  // Quality: area over the sum of squared edges, scaled so that an equilateral triangle has 1.
   for (const auto& r : star_.rim) {
     const Vector3 a = cap_.x(r.a) - w, b = cap_.x(r.b) - w;
     const double twice_area = a.cross(b).norm();
@@ -222,11 +242,13 @@ double PatchCap::shape_of_fan(const Vector3& w) const {
 
 /// Returns CapVerdict::stands if the collapse may be made, else why not.
 CapVerdict PatchCap::confirm(const Candidate& c) const {
+  // Sample points first: cheaper than the exact tests.
   if (limits_.gauge && !limits_.gauge->is_near(cap_, star_, c.w)) return CapVerdict::too_thick;
   for (const int f : star_.faces) {
     const auto& v = cap_.faces()[f].v;
     if (v[0] == c.v && cap_.is_ring(c.v)) continue;
     if ((v[1] == c.v || v[2] == c.v) && cap_.is_ring(c.v)) continue;
+    // Strictly in front of every triangle that it covers, exactly.
     if (exact::PlaneSide(cap_.x(v[0]).data(), cap_.x(v[1]).data(), cap_.x(v[2]).data()).side(c.w.data()) <= 0)
       return CapVerdict::no_place;
   }
@@ -242,6 +264,8 @@ CapVerdict PatchCap::verdict_on_edge(int u, int v) {
 }
 
 CapVerdict PatchCap::what_holds_back() {
+  // Count the verdicts of all remaining edges, then report the most frequent one of the first non-empty
+  // class.
   std::array<std::uint32_t, kWords<CapVerdict>.size()> edges{};
   for (int u = cap_.ring_size(); u < cap_.vertex_count(); ++u) {
     if (!cap_.is_used(u)) continue;

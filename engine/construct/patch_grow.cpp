@@ -30,6 +30,7 @@ void PatchGrower::begin_batch() {
 }
 
 void PatchGrower::add_to_batch(const Patch& patch) {
+  // Stamps mark the vertices of the batch; raising the stamp clears them all at once.
   for (const auto* list : {&patch.ring, &patch.interior})
     for (const Corner v : *list) batch_stamp_[v] = batch_;
   batch_is_empty_ = false;
@@ -53,10 +54,13 @@ bool PatchGrower::grow(Corner seed, Patch& patch) {
   patch.outside.clear();
   rim_.clear();
   ++stamp_;
+  // Start with the seed's star, then add the star of the best boundary vertex until the patch has enough
+  // interior vertices.
   met_batch_ = is_in_batch(seed);
   if (!add_star(seed, patch)) return false;
   double reach_sq = 0;
   for (const Corner v : rim_) reach_sq = std::max(reach_sq, (hull_.x(v) - hull_.x(seed)).squaredNorm());
+  // A star that does not fit now is not tried again for this patch.
   while (patch.interior.size() < limits_.interior) {
     const Corner v = best_candidate(seed, reach_sq, patch);
     if (v == kNull) break;
@@ -70,6 +74,7 @@ bool PatchGrower::grow(Corner seed, Patch& patch) {
 /// Euler characteristic stays what it is (or, from nothing, becomes 1): the new triangles are connected round
 /// v and share an edge with the patch.
 bool PatchGrower::add_star(Corner v, Patch& patch) {
+  // Mark first and undo on failure: the Euler characteristic is counted with the new triangles in place.
   const bool free = mark_star(v);
   if (!batch_is_empty_) look_for_batch();
   const std::size_t limit = patch.slots.empty() ? added_.size() : limits_.triangles;
@@ -84,6 +89,7 @@ bool PatchGrower::add_star(Corner v, Patch& patch) {
     return false;
   }
   patch.slots.insert(patch.slots.end(), added_.begin(), added_.end());
+  // A vertex with all of its triangles in the patch has become interior.
   std::erase_if(rim_, [&](Corner u) {
     if (inside_[u] < hull_.degree(u)) return false;
     patch.interior.push_back(u);
@@ -149,6 +155,7 @@ std::int64_t PatchGrower::euler_change(std::size_t new_points) const {
       ++(is_new ? among_new : to_old);
     }
   }
+  // Euler characteristic: each new triangle brings three edges, less those that are shared.
   const std::size_t new_edges = 3 * added_.size() - among_new / 2 - to_old;
   return static_cast<std::int64_t>(new_points + added_.size()) - static_cast<std::int64_t>(new_edges);
 }
@@ -158,6 +165,8 @@ Corner PatchGrower::best_candidate(Corner seed, double reach_sq, const Patch& pa
   double least = 0;
   for (const Corner v : rim_) {
     if (refused_[v] == stamp_) continue;
+    // The fewest new triangles first; the distance penalty keeps the patch round. Ties go to the lower
+    // vertex.
     const std::uint32_t missing = hull_.degree(v) - inside_[v];
     if (patch.slots.size() + missing > limits_.triangles) continue;
     const double score = missing + kDistancePenalty * ((hull_.x(v) - hull_.x(seed)).squaredNorm() / reach_sq);

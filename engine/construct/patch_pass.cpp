@@ -1,3 +1,7 @@
+// A pass in batches: grow disjoint patches in order, make their caps in parallel, apply them in order. A cap
+// is made again if an earlier one of its batch changed space that its proof depended on, so the result is
+// that of the serial algorithm.
+
 #include "engine/construct/patch_pass.hpp"
 
 #include <algorithm>
@@ -33,6 +37,7 @@ PatchPass::PatchPass(HullMesh& hull, AabbTree& tree, ComplexBuilder& complex, co
                      const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes,
                      Workers& workers, ConstructProbe* probe)
     : hull_(hull), complex_(complex), frozen_(frozen), workers_(workers), tree_(tree), probe_(probe) {
+  // Scratch memory per worker. One worker needs no batches.
   for (unsigned w = 0; w < workers.count(); ++w)
     benches_.push_back(std::make_unique<Bench>(hull, tree_, bounds, component_boxes));
   jobs_.resize(workers.count() == 1 ? 1 : kBatchPerThread * workers.count());
@@ -56,6 +61,7 @@ std::vector<Corner> PatchPass::find_seeds(double off, Random& random, std::uint3
   std::vector<Corner> seeds;
   for (Corner v = 0; v < hull_.point_count(); ++v) {
     if (hull_.degree(v) == 0) continue;
+    // A vertex waits until the limit reaches the value at which a cap may exist there.
     if (off == 0 || hull_.point(v).patience <= off)
       seeds.push_back(v);
     else
@@ -75,9 +81,11 @@ PassEnd PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint1
   no_patch_ = 0;
   std::size_t tried = 0, found = 0;
   while (next_seed_ < seeds_.size()) {
+    // Step 1: a batch of disjoint patches, then all of their caps in parallel on the unchanged front.
     grow_batch(grower);
     workers_.for_each(batch_,
                       [&](std::size_t i, unsigned worker) { make_cap(jobs_[i], goal, *benches_[worker]); });
+    // Step 2: apply them in order, repairing those whose proof is out of date.
     changed_.clear();
     for (std::size_t i = 0; i < batch_; ++i) {
       Job& job = jobs_[i];
@@ -91,6 +99,7 @@ PassEnd PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint1
       found += job.has_cap;
       if (!job.has_cap)
         for (const Corner v : job.patch.interior) hull_.set_patience(v, job.next_off);
+      // Fitting only: too few caps are accepted at this deviation.
       if (tried >= kTries && kLeastCaps * found < tried) {
         end.given_up = true;
         return end;
@@ -109,6 +118,7 @@ void PatchPass::grow_batch(PatchGrower& grower) {
     if (tried_[seed] || hull_.degree(seed) == 0) continue;
     Patch& patch = jobs_[batch_].patch;
     const bool grown = grower.grow(seed, patch);
+    // Its growth depends on an earlier patch of the batch: it starts the next batch.
     if (grower.met_batch()) return;
     if (!grown) {
       ++no_patch_;
@@ -122,6 +132,7 @@ void PatchPass::grow_batch(PatchGrower& grower) {
 }
 
 void PatchPass::make_cap(Job& job, const CapGoal& goal, Bench& bench) const {
+  // Record what the proof reads, to detect conflicts within the batch.
   bench.check.forget_seen();
   find_cap(job, goal, bench);
   if (goal.off > 0 && !job.has_cap) job.next_off = goal.off * patience(job.patch, bench.cap, goal.worth);
@@ -134,6 +145,8 @@ void PatchPass::make_cap(Job& job, const CapGoal& goal, Bench& bench) const {
 void PatchPass::find_cap(Job& job, const CapGoal& goal, Bench& bench) const {
   job.has_cap = false;
   job.tries = 0;
+  // Optimistic first: one proof for the finished cap. The careful attempt proves each collapse, and costs
+  // more.
   for (const bool careful : {false, true}) {
     CapVerdict verdict = simplify(job.patch, goal, bench, careful);
     const bool is_simple = verdict == CapVerdict::stands;
@@ -155,6 +168,7 @@ CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& b
   CapSurface& cap = bench.cap;
   cap.load(hull_, patch, static_cast<VertexId>(complex_.vertices().size()));
   const double area = cap.patch_area();
+  // The volume limit scales with area^1.5, so it is independent of the body's size.
   PatchCap::Limits limits;
   limits.volume = kCapVolumeLimit * area * std::sqrt(area);
   limits.check = careful ? &bench.check : nullptr;
@@ -165,6 +179,7 @@ CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& b
   }
   bench.collapse.simplify(patch, limits);
   if (!cap.keep_polygons_whole(hull_, patch)) return CapVerdict::splits_polygon;
+  // Only triangles that were replaced count in the ratio.
   const int kept = cap.alive_faces() - cap.new_faces();
   const int removed = static_cast<int>(patch.slots.size()) - kept;
   if (cap.new_faces() > goal.worth * removed || removed == 0)
@@ -177,6 +192,7 @@ CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& b
 double PatchPass::off_of(const CapSurface& cap) {
   double most = 0;
   for (const CapSurface::Face& f : cap.faces())
+    // The largest corner plus the excess is an upper bound of the estimate on the triangle.
     if (f.alive && f.kept < 0)
       most = std::max(most, std::max({cap.off(f.v[0]), cap.off(f.v[1]), cap.off(f.v[2])}) + f.extra);
   return most;
@@ -198,6 +214,7 @@ double PatchPass::patience(const Patch& patch, const CapSurface& cap, double wor
 }
 
 void PatchPass::put_on(const Job& job, std::uint16_t layer, PatchGrower& grower) {
+  // The box of all triangles that vanish or appear: later proofs of the batch that read from it are repeated.
   Eigen::AlignedBox3d changed;
   for (const Slot s : job.patch.slots) changed.extend(box_of(hull_, s));
   const std::uint32_t component = hull_[job.patch.slots[0]].component;

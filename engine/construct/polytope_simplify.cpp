@@ -1,3 +1,10 @@
+// Outward simplification of a convex polytope, in steps of decreasing size:
+// 1. Collapse edges outward, as for caps (progressive hulls, Sander et al. 2000).
+// 2. Take the convex hull of the result.
+// 3. Tighten: coordinate descent on the volume. One vertex at a time moves to its best position with the
+// points still behind its faces.
+// 4. Take the convex hull again, and repeat from 1 until there are few enough faces.
+
 #include "engine/construct/polytope_simplify.hpp"
 
 #include <algorithm>
@@ -31,6 +38,7 @@ constexpr int kRounds = 3, kLastRounds = 20;
 class PolytopeStep {
  public:
   PolytopeStep(const Mesh& convex, const std::vector<Vector3>& points) : points_(points), hull_(convex) {
+    // The whole closed surface is one patch: it has no ring, and every vertex is interior.
     all_.slots = hull_.alive_slots();
     for (HullMesh::Corner v = 0; v < hull_.point_count(); ++v) all_.interior.push_back(v);
     surface_.load(hull_, all_, 0);
@@ -41,6 +49,7 @@ class PolytopeStep {
 
   void collapse(std::size_t wanted_faces, double depth) {
     const BodyBounds bounds(points_, kSwell);
+    // Cost only orders the collapses: the number of faces is limited, the volume is not.
     PatchCap::Limits limits;
     limits.volume = std::numeric_limits<double>::infinity();
     limits.faces = static_cast<int>(wanted_faces);
@@ -49,18 +58,22 @@ class PolytopeStep {
   }
 
   void tighten(int rounds) {
+    // Gauss-Seidel rounds over the vertices: every move reduces the volume.
     for (int round = 0; round < rounds; ++round) {
       double gain = 0;
       for (int v = 0; v < surface_.vertex_count(); ++v) {
         if (!surface_.is_used(v)) continue;
+        // Only the fan of v changes. The volume changes by that of the cone over its boundary loop.
         rim_.clear();
         surface_.for_each_rim_edge(v, [&](int a, int b) { rim_.push_back({surface_.x(a), surface_.x(b)}); });
         const auto w = place();
         const double change = w ? cone_volume(*w) - cone_volume(surface_.x(v)) : 0;
+        // Written so that NaN counts as no gain.
         if (!(change < 0)) continue;
         surface_.move(v, *w);
         gain -= change;
       }
+      // Diminishing returns: stop before the last round.
       if (gain < kLeastGain * volume()) return;
     }
   }
@@ -72,6 +85,7 @@ class PolytopeStep {
       if (!f.alive) continue;
       VertexId corners[3];
       for (int i = 0; i < 3; ++i) {
+        // Collapses leave unused vertices behind: copy only those with faces.
         VertexId& v = number[f.v[i]];
         if (v == kNull) {
           v = static_cast<VertexId>(mesh.vertices.size());
@@ -90,6 +104,7 @@ class PolytopeStep {
   };
 
   double volume() const {
+    // Divergence theorem: signed tetrahedra from a point close to the surface, to limit cancellation.
     double sixfold = 0;
     const Vector3& origin = points_[0];
     for (const auto& f : surface_.faces())
@@ -101,6 +116,7 @@ class PolytopeStep {
 
   double cone_volume(const Vector3& w) const {
     double sixfold = 0;
+    // The base of the cone is arbitrary, because only differences of these volumes are compared.
     for (const Edge& e : rim_) sixfold += (w - rim_[0].a).dot((e.a - rim_[0].a).cross(e.b - rim_[0].a));
     return sixfold / 6;
   }
@@ -109,6 +125,7 @@ class PolytopeStep {
   /// rim's area vectors, so a point far along that way is projected onto what is allowed.
   std::optional<Vector3> place() {
     Vector3 centre = Vector3::Zero(), area = Vector3::Zero();
+    // Work relative to the centre of the boundary loop, so that slack and depth scale with its radius.
     for (const Edge& e : rim_) centre += e.a;
     centre /= static_cast<double>(rim_.size());
     double radius_sq = 0;
@@ -116,8 +133,12 @@ class PolytopeStep {
     for (const Edge& e : rim_) {
       area += (e.a - centre).cross(e.b - centre);
       radius_sq = std::max(radius_sq, (e.a - centre).squaredNorm());
+      // The faces over this edge must leave all points behind them.
       for (const Vector3& n : touching_normals(e)) half_spaces_.push_back({n, n.dot(e.a - centre)});
     }
+    // The volume is linear in w. Its gradient is the loop's area vector, so the best w is the extreme point
+    // of the allowed polyhedron against that vector. Projecting a far target approximates this linear
+    // programme, and it stays bounded where the linear programme is not.
     const double radius = std::sqrt(radius_sq), length = area.norm();
     if (!(length > 0)) return std::nullopt;
     const auto w = nearest_point(area * (-kDepth * radius / length), half_spaces_, kPlacementSlack * radius);
@@ -131,6 +152,8 @@ class PolytopeStep {
   std::array<Vector3, 2> touching_normals(const Edge& e) const {
     const Vector3 along = e.b - e.a;
     std::array<Vector3, 2> normals = {Vector3::Zero(), Vector3::Zero()};
+    // The planes through the edge form a pencil. Rotate two of them about the edge until no point is in front
+    // of the first, and none behind the second. O(points) for each edge.
     for (const Vector3& p : points_) {
       const Vector3 to = p - e.a, normal = along.cross(to);
       if (normal.squaredNorm() <= kParallelSineSq * along.squaredNorm() * size_sq_) continue;  // on the edge
@@ -158,13 +181,17 @@ class PolytopeStep {
 
 Mesh simplify_polytope(const Mesh& convex, std::uint32_t max_faces, double depth) {
   Mesh mesh = convex;
+  // Stop without success if a step removes no face.
   for (std::size_t before = 0; mesh.face_count() > max_faces && mesh.face_count() != before;) {
     before = mesh.face_count();
+    // Large steps while there are many faces, where tightening costs much and matters little.
     const std::size_t step =
         before > kTightenFrom ? before - kTightenFrom : std::max<std::size_t>(2, before / kStepShare);
     const std::size_t wanted = std::max<std::size_t>(max_faces, before - step);
+    // The points that must stay inside are always the input's, so errors do not accumulate over the steps.
     PolytopeStep fewer(mesh, convex.vertices);
     fewer.collapse(wanted, depth);
+    // Moving single vertices needs a convex start, and leaves a surface that may have dents.
     PolytopeStep tighter(convex_hull_mesh(fewer.result().vertices), convex.vertices);
     tighter.tighten(wanted == max_faces ? kLastRounds : kRounds);
     mesh = convex_hull_mesh(tighter.result().vertices);

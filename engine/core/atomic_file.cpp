@@ -1,3 +1,9 @@
+// Atomic replacement of a file, by the rename idiom of POSIX.
+// 1. Create a temporary file beside the target, on the same file system, and register it.
+// 2. Write to it through a buffer.
+// 3. commit(): close it and rename it over the target, which is atomic for readers.
+// Without commit(), the destructor removes it. There is no fsync: a crash of the machine may lose the data.
+
 #include "engine/core/atomic_file.hpp"
 
 #include <atomic>
@@ -25,7 +31,7 @@ bool is_machines_fault(int reason) {
          reason == EMFILE || reason == ENFILE;
 }
 
-/// Follows symbolic links to their end, so that the file is replaced and not the link.
+/// Resolves symbolic links, so that the file is replaced and not the link.
 std::string behind_links(const std::string& path) {
   std::error_code error;
   const auto real = std::filesystem::weakly_canonical(path, error);
@@ -52,9 +58,12 @@ Unfinished& unfinished() {
 int create_temporary(const std::string& name) {
   static constexpr mode_t kAll = 0666;  // less the umask
   Unfinished& all = unfinished();
+  // Register before creating: abandon_atomic_files() must not miss a file. Once it has the lock, none is
+  // created.
   const std::lock_guard lock(all.mutex);
   const auto entry = all.files.insert(name).first;
   const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kAll);
+  // erase() may change errno, which the caller reports.
   const int reason = errno;
   if (file < 0) all.files.erase(entry);
   errno = reason;
@@ -67,6 +76,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(behind_li
   struct stat status {};
   const bool exists = stat(target_.c_str(), &status) == 0;
   if (exists && S_ISDIR(status.st_mode)) fail("write", EISDIR);
+  // Pipes and devices cannot be replaced: write to them directly.
   if (exists && !S_ISREG(status.st_mode)) {
     file_ = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
   } else {
@@ -85,6 +95,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(behind_li
 AtomicFile::~AtomicFile() {
   if (file_ >= 0) close(file_);
   if (temporary_.empty()) return;
+  // Not committed: the target stays as it was.
   const std::lock_guard lock(unfinished().mutex);
   unlink(temporary_.c_str());
   unfinished().files.erase(temporary_);
@@ -99,6 +110,7 @@ void AtomicFile::flush() {
   const char* at = buffer_.data();
   for (std::size_t left = buffer_.size(); left > 0;) {
     const ssize_t written = ::write(file_, at, left);
+    // A signal interrupted the call, or it wrote only a part: go on with the rest.
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail("write", errno);
     at += written;
@@ -109,11 +121,14 @@ void AtomicFile::flush() {
 
 void AtomicFile::commit() {
   flush();
+  // close() must not be repeated after an error, so forget the descriptor first. It reports delayed write
+  // errors.
   const int file = file_;
   file_ = -1;
   if (close(file) != 0) fail("write", errno);
   if (temporary_.empty()) return;
   {
+    // Rename under the lock, so that abandon_atomic_files() sees the file either unfinished or in place.
     const std::lock_guard lock(unfinished().mutex);
     if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail("replace", errno);
     unfinished().files.erase(temporary_);
@@ -130,6 +145,7 @@ void AtomicFile::fail(const char* doing, int reason) const {
 
 void abandon_atomic_files() {
   Unfinished& all = unfinished();
+  // Never unlocked: no thread can create or commit a file from here on.
   all.mutex.lock();
   for (const std::string& file : all.files) unlink(file.c_str());
 }

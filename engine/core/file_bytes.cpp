@@ -18,6 +18,7 @@ std::string escaped(std::string_view text, bool keep_high) {
   std::string out;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
+    // Printable ASCII as it is. Bytes from 0x80 may be UTF-8, and are kept on request. Others as \xhh.
     if ((byte >= 0x20 && byte < 0x7f) || (keep_high && byte >= 0x80)) {
       out += c;
     } else {
@@ -31,8 +32,8 @@ std::string escaped(std::string_view text, bool keep_high) {
   throw InputError(printable_name(path) + ": " + why);
 }
 
-/// A pipe without a name, as <(...) and | make it: whoever fills it decides how much there is. One with a
-/// name may have nobody at its other end, and opening it waits for somebody.
+/// Returns true if a FIFO has a name. A pipe without one, as <(...) and | make it, is filled by the process
+/// at its other end. Opening a named one blocks until somebody writes to it.
 bool has_name(const char* fifo) {
   constexpr long kPipeFileSystem = 0x50495045;  // PIPEFS_MAGIC
   struct statfs where {};
@@ -78,6 +79,7 @@ std::string read_file(const std::string& path, std::uint64_t most) {
   }
   std::error_code ignored;
   std::string bytes;
+  // Reject large files before reading. Pipes have no size, so the limit is checked again after each chunk.
   const auto size = std::filesystem::file_size(path, ignored);
   if (!ignored && size > most) too_large(path, most);
   if (!ignored) bytes.reserve(size + 1);  // pipes have no size and grow as they come
@@ -88,6 +90,7 @@ std::string read_file(const std::string& path, std::uint64_t most) {
     const std::size_t got = std::fread(bytes.data() + before, 1, kChunk, file.get());
     bytes.resize(before + got);
     if (bytes.size() > most) too_large(path, most);
+    // A short read is the end of the file or an error.
     if (got == kChunk) continue;
     if (std::ferror(file.get())) cannot_read(path, "reading failed; check the disk or copy the file again");
     return bytes;

@@ -31,22 +31,25 @@ Workers::Workers(unsigned threads)
 Workers::~Workers() = default;
 
 void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsigned)>& work) {
+  // On one thread: a plain loop. The first exception leaves it, which is that of the lowest index.
   if (!pool_ || n < 2) {
     for (std::size_t i = 0; i < n; ++i) work(i, 0);
     return;
   }
-  // Calls above the lowest that failed so far are left out, those below it are not: so the lowest of all is
-  // found.
+  // Calls above the lowest index that has failed are skipped, those below it still run. The exception of the
+  // lowest index is therefore found whatever the schedule.
   std::atomic<std::size_t> failed = n;
   std::exception_ptr failure;
   std::mutex one_at_a_time;
   pool_->arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+      // Relaxed is enough: a stale value only runs a call that could have been skipped.
       if (i > failed.load(std::memory_order_relaxed)) return;
       try {
         work(i, static_cast<unsigned>(tbb::this_task_arena::current_thread_index()));
       } catch (...) {
         const std::lock_guard lock(one_at_a_time);
+        // Another call with a lower index failed meanwhile.
         if (i > failed) return;
         failed = i;
         failure = std::current_exception();
@@ -62,6 +65,7 @@ void Workers::both(const std::function<void()>& one, const std::function<void()>
     other();
     return;
   }
+  // parallel_invoke may run nested calls on the same threads, so recursion cannot run out of them.
   pool_->arena.execute([&] { tbb::parallel_invoke(one, other); });
 }
 

@@ -1,6 +1,7 @@
-// Workers on threads of the standard library. ThreadSanitizer sees all of what they do, while it takes the
-// inside of an oneTBB that was not compiled for it for races: the build that proves threads free of races has
-// these.
+// Workers on threads of the standard library, for the build that is checked by ThreadSanitizer: it sees
+// everything that these threads do, while it reports false races in a oneTBB that was not compiled for it.
+// Each call takes idle worker numbers from the pool, runs a thread for each, and gives the numbers back.
+// An atomic counter distributes the work.
 
 #include <algorithm>
 #include <atomic>
@@ -15,12 +16,12 @@
 namespace lrb {
 
 struct Workers::Pool {
-  /// The numbers that no thread has: 0 is the thread's that made the pool.
+  /// Makes a pool of idle worker numbers. 0 belongs to the thread that made the pool.
   explicit Pool(unsigned threads) {
     for (unsigned number = threads; number-- > 1;) free.push_back(number);
   }
 
-  /// Up to `wanted` of them.
+  /// Takes up to `wanted` idle numbers; fewer if nested or concurrent calls have them.
   std::vector<unsigned> take(std::size_t wanted) {
     const std::lock_guard lock(mutex);
     std::vector<unsigned> taken;
@@ -38,15 +39,16 @@ struct Workers::Pool {
 
 namespace {
 
-/// The worker that this thread is, in a pool that it works for.
+/// The pool for which this thread works, and its number there.
 thread_local std::pair<const void*, unsigned> current{nullptr, 0};
 
-/// Runs work(number) on a thread for each number and on this one, and hands on the first exception.
+/// Runs work(number) on a new thread for each number and on this one, and rethrows the first exception.
 template <class Work>
 void run_on(const void* pool, const std::vector<unsigned>& numbers, const Work& work) {
   std::mutex mutex;
   std::exception_ptr failure;
   const auto run = [&](unsigned number) {
+    // Saved and restored, because calls may be nested, also of different pools.
     const auto before = std::exchange(current, {pool, number});
     try {
       work(number);
@@ -56,6 +58,7 @@ void run_on(const void* pool, const std::vector<unsigned>& numbers, const Work& 
     }
     current = before;
   };
+  // In a nested call the thread keeps its number; otherwise it is worker 0.
   const unsigned own = current.first == pool ? current.second : 0;
   std::vector<std::thread> threads;
   threads.reserve(numbers.size());
@@ -77,6 +80,7 @@ Workers::~Workers() = default;
 void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsigned)>& work) {
   const std::vector<unsigned> helpers =
       pool_ && n > 1 ? pool_->take(std::min<std::size_t>(n, count_) - 1) : std::vector<unsigned>{};
+  // Each worker fetches the next index until none is left.
   std::atomic<std::size_t> next{0};
   const auto take_part = [&](unsigned worker) {
     for (std::size_t i = next++; i < n; i = next++) work(i, worker);
@@ -95,6 +99,7 @@ void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsi
 
 void Workers::both(const std::function<void()>& one, const std::function<void()>& other) {
   const std::vector<unsigned> helper = pool_ ? pool_->take(1) : std::vector<unsigned>{};
+  // No idle worker: run both on this thread. Nested calls therefore never wait for one.
   if (helper.empty()) {
     one();
     other();

@@ -12,6 +12,7 @@ constexpr std::size_t kRow = 4;  // numbers in a row
 std::string fault_of(std::span<const double> n) {
   if (n.size() != kOf3x4 && n.size() != kOf4x4)
     return "has " + std::to_string(n.size()) + " numbers; give 12 (3 x 4) or 16 (4 x 4), row by row";
+  // An affine map has the last row 0 0 0 1. The comparison also rejects NaN.
   if (n.size() == kOf4x4 && !(n[12] == 0 && n[13] == 0 && n[14] == 0 && n[15] == 1))
     return "has a last row other than 0 0 0 1; give a matrix that columns are multiplied by, without perspective";
   return {};
@@ -38,6 +39,7 @@ Expected<Pose> pose_of(const Eigen::MatrixXd& matrix) {
   if (matrix.cols() != 4 || (matrix.rows() != 3 && matrix.rows() != 4))
     return Refusal{"the pose is a matrix of " + std::to_string(matrix.rows()) + " x " +
                    std::to_string(matrix.cols()) + "; give one of 3 x 4 or 4 x 4"};
+  // Eigen stores columns; the common path reads rows.
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = matrix;
   return pose_of_rows({rows.data(), static_cast<std::size_t>(rows.size())});
 }
@@ -45,6 +47,7 @@ Expected<Pose> pose_of(const Eigen::MatrixXd& matrix) {
 Expected<std::vector<Pose>> poses_of_rows(std::span<const double> numbers, std::size_t count) {
   std::vector<Pose> poses;
   if (count == 0 && numbers.empty()) return poses;
+  // All poses have the same shape, so the number of values decides between 3 x 4 and 4 x 4.
   const std::size_t each = count == 0 ? 0 : numbers.size() / count;
   if (count == 0 || numbers.size() % count != 0 || (each != kOf3x4 && each != kOf4x4))
     return Refusal{std::to_string(numbers.size()) + " numbers are not " + std::to_string(count) +

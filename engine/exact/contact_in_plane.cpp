@@ -1,4 +1,8 @@
-// Contacts of coplanar triangles and of segments in the plane.
+// The intersection of two coplanar triangles with area, and of two segments in the plane. The first is a
+// convex polygon, whose corners are corners of A in B, corners of B in A, and crossings of two edges.
+// 1. Project to two coordinates and compute the side of each corner on each edge of the other triangle.
+// 2. Collect the corners of all three kinds. These signs decide everything; coordinates are only output.
+// 3. Order the corners around the polygon.
 
 #include <algorithm>
 #include <utility>
@@ -18,6 +22,7 @@ struct EdgeSides {
 };
 
 EdgeSides edge_sides(const double* const edges[3], const double* const corners[3], const Axes& axes) {
+  // The projection may reverse the triangle. `turn` makes +1 the inner side of each edge.
   const int turn = orient_axes(edges[0], edges[1], edges[2], axes.x, axes.y);
   EdgeSides r;
   for (int i = 0; i < 3; ++i) {
@@ -30,6 +35,7 @@ EdgeSides edge_sides(const double* const edges[3], const double* const corners[3
 
 /// Finds where corner k lies in the triangle of the edges; returns false if it is outside.
 bool locate_corner(const EdgeSides& s, int k, Feature& f) {
+  // Strictly outside one edge is outside the triangle. The zeros count the edges on which the corner lies.
   int zeros = 0, zero_edge = 0;
   for (int i = 0; i < 3; ++i) {
     if (s.side[i][k] < 0) return false;
@@ -58,8 +64,9 @@ bool are_neighbours(const ContactCorner& p, const ContactCorner& q) {
   return false;
 }
 
-/// Sorts the corners into an order round the polygon.
+/// Sorts the corners into an order around the polygon.
 void order_round(PairContact& r) {
+  // Selection: move a neighbour of the previous corner to place i. There are at most six corners.
   for (int i = 1; i < r.corner_count; ++i) {
     const auto from = r.corners.begin() + i;
     const auto end = r.corners.begin() + r.corner_count;
@@ -90,12 +97,14 @@ Feature end_or_inside(int side_of_0, int side_of_1) {
 /// Finds where a point p, which is on the line of segment s, lies on s; returns false if it is beyond the
 /// ends.
 bool locate_on_segment(const double* p, const double* const s[2], Feature& f) {
+  // The ends first, so that the feature of least dimension is reported.
   for (int i = 0; i < 2; ++i) {
     if (p[0] == s[i][0] && p[1] == s[i][1]) {
       f = corner(i);
       return true;
     }
   }
+  // p is on the line of s, so it is on s exactly if it is in the bounding box of s.
   for (int k = 0; k < 2; ++k) {
     const auto [low, high] = std::minmax(s[0][k], s[1][k]);
     if (p[k] < low || p[k] > high) return false;
@@ -108,6 +117,7 @@ bool locate_on_segment(const double* p, const double* const s[2], Feature& f) {
 PairContact contact_on_one_line(const double* const a[2], const double* const b[2]) {
   PairContact r;
   r.coplanar = true;
+  // An end that both segments have in common is found twice and added once.
   const auto add = [&](const double* p, Feature on_a, Feature on_b) {
     for (int i = 0; i < r.corner_count; ++i) {
       const Eigen::Vector3d& x = r.corners[static_cast<std::size_t>(i)].x;
@@ -131,9 +141,12 @@ PairContact contact_on_one_line(const double* const a[2], const double* const b[
 PairContact contact_in_plane(const double* const a[3], const double* const b[3]) {
   PairContact r;
   r.coplanar = true;
+  // Step 1: 18 signs in a projection that keeps the triangles' area.
   const Axes axes = axes_for(a[0], a[1], a[2]);
   const EdgeSides b_in_a = edge_sides(a, b, axes), a_in_b = edge_sides(b, a, axes);
   Feature f;
+  // Step 2: corners of A in B, corners of B in A, crossings of edges. Only crossings have rounded
+  // coordinates.
   for (int k = 0; k < 3; ++k) {
     if (locate_corner(a_in_b, k, f)) append(r, at_corner(a[k], corner(k), f));
   }
@@ -147,6 +160,7 @@ PairContact contact_in_plane(const double* const a[3], const double* const b[3])
       append(r, {x, edge_between(i, (i + 1) % 3), edge_between(j, (j + 1) % 3)});
     }
   }
+  // Step 3. Coplanar triangles never cross: by definition their contact is a touch.
   order_round(r);
   r.meet = r.corner_count > 0 ? Meet::touch : Meet::disjoint;
   return r;
@@ -155,11 +169,16 @@ PairContact contact_in_plane(const double* const a[3], const double* const b[3])
 PairContact contact_of_segments(const double* const a[2], const double* const b[2]) {
   const int b0 = orient2d(a[0], a[1], b[0]), b1 = orient2d(a[0], a[1], b[1]);
   const int a0 = orient2d(b[0], b[1], a[0]), a1 = orient2d(b[0], b[1], a[1]);
+  // All four ends are on one line.
   if (a0 == 0 && a1 == 0 && b0 == 0 && b1 == 0) return contact_on_one_line(a, b);
   PairContact r;
+  // One segment lies strictly on one side of the other's line. A segment that is a point ends here at the
+  // latest.
   if (a0 * a1 > 0 || b0 * b1 > 0) return r;
+  // The lines cross in one point, which lies on both segments. No zero among the signs: a proper crossing.
   r.meet = a0 * a1 < 0 && b0 * b1 < 0 ? Meet::cross : Meet::touch;
   const Feature on_a = end_or_inside(a0, a1), on_b = end_or_inside(b0, b1);
+  // Copy the coordinates of an end if the point is one. Otherwise compute the crossing.
   if (on_a.dim == 0) {
     append(r, {planar(a[on_a.index]), on_a, on_b});
   } else if (on_b.dim == 0) {

@@ -1,3 +1,10 @@
+// Exact signs of orient2d and orient3d, for points on which the floating-point filter cannot decide.
+// 0. Return 0 for coincident points and axis-aligned planes, without arithmetic.
+// 1. 64-bit fixed point (fixed_point.hpp), if the coordinates on each axis span fewer than 62 bits.
+// 2. Floating-point expansions (Shewchuk 1997), if no product can overflow or underflow.
+// 3. Long integers, for all finite doubles.
+// Steps 1 and 3 scale each axis by its own power of two, which changes no sign of a determinant.
+
 #include "engine/exact/exact_sign.hpp"
 
 #include <algorithm>
@@ -56,6 +63,7 @@ bool all_in_range(const std::array<double, N>& x) {
 /// two, which changes no sign of a determinant.
 template <std::size_t N>
 std::array<cpp_int, N> scaled_to_integers(const std::array<double, N>& x) {
+  // Pass 1: write each coordinate as an integer of 53 bits times a power of two, and find the least exponent.
   constexpr int kMantissaBits = 53;
   std::array<std::int64_t, N> mantissa{};
   std::array<int, N> exponent{};
@@ -69,6 +77,7 @@ std::array<cpp_int, N> scaled_to_integers(const std::array<double, N>& x) {
     least = any ? std::min(least, e) : e;
     any = true;
   }
+  // Pass 2: shift all to that exponent. The range of doubles bounds the result by about 2,150 bits.
   std::array<cpp_int, N> r;
   for (std::size_t i = 0; i < N; ++i) {
     r[i] = mantissa[i];
@@ -80,6 +89,7 @@ std::array<cpp_int, N> scaled_to_integers(const std::array<double, N>& x) {
 int orient2d_integer(const std::array<double, 3>& x, const std::array<double, 3>& y) {
   const auto px = scaled_to_integers(x);
   const auto py = scaled_to_integers(y);
+  // The determinant is left - right. Comparing the products saves the subtraction.
   const cpp_int left = (px[1] - px[0]) * (py[2] - py[0]);
   const cpp_int right = (py[1] - py[0]) * (px[2] - px[0]);
   return (left > right) - (left < right);
@@ -99,6 +109,7 @@ int orient3d_integer(const Coordinates4& x) {
     const auto p = scaled_to_integers(x[k]);
     for (std::size_t i = 0; i < 3; ++i) m[i][k] = p[i + 1] - p[0];
   }
+  // Expand the determinant along its last row: the normal of (a, b, c), times d - a.
   const cpp_int nx = m[0][1] * m[1][2] - m[0][2] * m[1][1];
   const cpp_int ny = m[0][2] * m[1][0] - m[0][0] * m[1][2];
   const cpp_int nz = m[0][0] * m[1][1] - m[0][1] * m[1][0];
@@ -111,12 +122,14 @@ bool expansions_apply(const Coordinates4& p) {
 }
 
 int orient3d_expansion(const Coordinates4& p) {
+  // Each difference of two doubles is a sum of two doubles, exactly (Knuth's two-sum).
   std::array<Expansion<2>, 3> u, v, w;
   for (std::size_t k = 0; k < 3; ++k) {
     u[k] = difference(p[k][1], p[k][0]);
     v[k] = difference(p[k][2], p[k][0]);
     w[k] = difference(p[k][3], p[k][0]);
   }
+  // Cofactors of the last row. A minor has at most 16 components, a product 64, the sum of all three 192.
   const auto x = product(minor(u[1], u[2], v[1], v[2]), w[0]);
   const auto y = product(minor(u[2], u[0], v[2], v[0]), w[1]);
   const auto z = product(minor(u[0], u[1], v[0], v[1]), w[2]);
@@ -149,6 +162,7 @@ int orient2d_exact(const double* a, const double* b, const double* c, int x, int
   ++fallback_count;
   const std::array<double, 3> px{a[x], b[x], c[x]}, py{a[y], b[y], c[y]};
   std::array<std::int64_t, 3> fx, fy;
+  // Fastest method first. The order affects the running time only: every method is exact where it applies.
   if (to_fixed_point(px, fx) && to_fixed_point(py, fy)) return orient2d_fixed(fx, fy);
   if (!all_in_range(px) || !all_in_range(py)) return orient2d_integer(px, py);
   return minor(difference(px[1], px[0]), difference(py[1], py[0]), difference(px[2], px[0]),
@@ -158,9 +172,11 @@ int orient2d_exact(const double* a, const double* b, const double* c, int x, int
 
 int orient3d_exact(const double* a, const double* b, const double* c, const double* d) {
   if (floating_only) return orient3d_floating(a, b, c, d);
+  // All four points in a plane across an axis: coplanar.
   for (int k = 0; k < 3; ++k) {
     if (a[k] == b[k] && a[k] == c[k] && a[k] == d[k]) return 0;
   }
+  // Two coincident points leave at most three different ones, and those are coplanar.
   if (same_point(a, d) || same_point(b, d) || same_point(c, d)) return 0;
   if (same_point(a, b) || same_point(b, c) || same_point(a, c)) return 0;
   ++fallback_count;

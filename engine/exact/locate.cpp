@@ -1,3 +1,12 @@
+// The crossing of a ray in direction +x with one face, for point location by parity. The start is moved by
+// (0, eps, eps^2), symbolically (Edelsbrunner and Muecke 1990, "Simulation of Simplicity"): no ray then hits
+// an edge, a corner, or a face edge-on.
+// 1. Reject faces whose bounding box the ray misses.
+// 2. Look along x: sides of the point on the three edges. Strictly on both sides: a miss.
+// 3. Test exactly whether the point is on the face.
+// 4. Replace zero sides by those of the moved point. All equal: the ray's line crosses the face.
+// 5. The side of the plane decides whether the crossing is ahead of the point or behind it.
+
 #include "engine/exact/locate.hpp"
 
 #include <algorithm>
@@ -12,7 +21,7 @@ namespace {
 
 constexpr int kX = 0, kY = 1, kZ = 2;
 
-/// A point that answers questions about signs: one of doubles here, a rational one below.
+/// The predicates of a query point: here for doubles, below for rational coordinates.
 struct DoubleProbe {
   const double* p;
 
@@ -27,6 +36,7 @@ struct RationalProbe {
   const RationalPoint::Coordinates& p;
 
   int compare(int axis, double x) const {
+    // The enclosing doubles decide nearly always. Rational numbers are compared only inside that interval.
     if (surely_below(axis, x)) return -1;
     if (surely_above(axis, x)) return 1;
     const Rational& own = p.x[static_cast<std::size_t>(axis)];
@@ -56,12 +66,14 @@ bool in_box_of_segment(const Probe& p, const double* a, const double* b, int dim
 /// triangle.
 template <class Probe>
 bool on_flat_triangle(const Probe& p, const double* const t[3]) {
+  // Closed triangle: not strictly outside any edge, in a projection that keeps its area.
   const Axes axes = axes_for(t[0], t[1], t[2]);
   if (axes.turn != 0) {
     return p.orient(t[0], t[1], axes.x, axes.y) != -axes.turn &&
            p.orient(t[1], t[2], axes.x, axes.y) != -axes.turn &&
            p.orient(t[2], t[0], axes.x, axes.y) != -axes.turn;
   }
+  // No area: the triangle is the segment or point that its corners span.
   const Hull h = hull_of(t);
   const double *a = h.corner[0], *b = h.corner[h.dim];
   return in_box_of_segment(p, a, b, 3) && p.orient(a, b, kX, kY) == 0 && p.orient(a, b, kY, kZ) == 0 &&
@@ -71,6 +83,7 @@ bool on_flat_triangle(const Probe& p, const double* const t[3]) {
 /// Returns true if the ray, its start included, misses the triangle's box.
 template <class Probe>
 bool passes_box(const Probe& p, const double* const t[3]) {
+  // Strict comparisons: a start level with a face of the box is left to the exact test.
   for (int k : {kY, kZ}) {
     if (p.surely_below(k, std::min({t[0][k], t[1][k], t[2][k]}))) return true;
     if (p.surely_above(k, std::max({t[0][k], t[1][k], t[2][k]}))) return true;
@@ -81,6 +94,8 @@ bool passes_box(const Probe& p, const double* const t[3]) {
 /// Returns the side of the line a, b, seen along x, on which the moved point lies; `side` is that of the
 /// point itself. The determinant changes with eps by -(b_z - a_z), and with eps^2 by b_y - a_y.
 int moved_side(int side, const double* a, const double* b) {
+  // Nonzero sides do not change under an infinitesimal motion. Otherwise the first nonzero derivative
+  // decides.
   if (side != 0) return side;
   if (a[kZ] != b[kZ]) return b[kZ] < a[kZ] ? 1 : -1;
   return (b[kY] > a[kY]) - (b[kY] < a[kY]);
@@ -96,11 +111,13 @@ RayHit ray_triangle(const Probe& p, const double* const t[3]) {
     left |= s[i] > 0;
     right |= s[i] < 0;
   }
-  // Seen along x, the point is off the triangle by more than eps.
+  // In the projection along x, the point is strictly outside the triangle, and so is the moved point.
   if (left && right) return RayHit::misses;
+  // The point itself is on the plane: on the triangle, or the moved ray misses it.
   const int side = p.side(t);
   if (side == 0 && on_flat_triangle(p, t)) return RayHit::on_face;
   if (side == 0) return RayHit::misses;
+  // turn = 0: the edge is a point when seen along x, so the triangle is seen edge-on and has no inside.
   const int turn = moved_side(s[0], t[0], t[1]);
   if (turn == 0 || moved_side(s[1], t[1], t[2]) != turn || moved_side(s[2], t[2], t[0]) != turn) {
     return RayHit::misses;
@@ -112,13 +129,14 @@ RayHit ray_triangle(const Probe& p, const double* const t[3]) {
 
 template <class Probe>
 RayHit ray_segment(const Probe& p, const double* const s[2]) {
+  // Orient the segment upwards, so that "left" means smaller x.
   const double* lower = s[0][kY] <= s[1][kY] ? s[0] : s[1];
   const double* upper = s[0][kY] <= s[1][kY] ? s[1] : s[0];
   if (p.surely_below(kY, lower[kY]) || p.surely_above(kY, upper[kY])) return RayHit::misses;
   if (p.surely_above(kX, std::max(s[0][kX], s[1][kX]))) return RayHit::misses;
   const int left = p.orient(lower, upper, kX, kY);
   if (left == 0 && in_box_of_segment(p, lower, upper, 2)) return RayHit::on_face;
-  // The moved point is above everything that p is level with.
+  // The moved point is above every end that p is level with: the interval is closed below and open above.
   const bool spans = p.compare(kY, lower[kY]) >= 0 && p.compare(kY, upper[kY]) < 0;
   return spans && left > 0 ? RayHit::crosses : RayHit::misses;
 }

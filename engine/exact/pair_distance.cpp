@@ -1,8 +1,8 @@
-/// The squared distance of two simplices is the least of those between their corners and edges, between lines
-/// of edges that are nearest in the inside of both edges, and between corners and planes whose nearest point
-/// is inside the triangle (Ericson, "Real-Time Collision Detection", 5.1). Each is a fraction of two
-/// integers, because doubles are integers times a power of two; which is least, and whether a point is
-/// inside, are signs of integers.
+// The distance of two disjoint simplices, exactly (Ericson, "Real-Time Collision Detection", 2005, 5.1).
+// 1. Scale all coordinates by one power of two, so that they become integers.
+// 2. Candidates: corner to edge, corner to the inside of a triangle, inside of an edge to inside of an edge.
+// Each squared distance is a fraction of two integers; every comparison is a sign of an integer.
+// 3. Take the least squared distance, and enclose its root in two neighbouring doubles.
 
 #include "engine/exact/pair_distance.hpp"
 
@@ -36,6 +36,7 @@ struct Fraction {
 };
 
 bool less(const Fraction& x, const Fraction& y) {
+  // Denominators are positive, so cross multiplication keeps the order.
   return x.num * y.den < y.num * x.den;
 }
 
@@ -56,7 +57,7 @@ struct Nearest {
   Spot spot[2];
 };
 
-/// The smallest exponent of a bit that is set in any of some numbers.
+/// The exponent of the last mantissa bit of the number for which it is smallest, among those seen.
 struct LastBit {
   int exponent = std::numeric_limits<int>::max();
   static constexpr int kMantissaBits = 53;
@@ -70,6 +71,7 @@ struct LastBit {
   cpp_int to_integer(double x) const {
     if (x == 0) return 0;
     int e = 0;
+    // x = mantissa 2^(e - 53) with an integer mantissa, and the remaining shift is not negative.
     const double mantissa = std::ldexp(std::frexp(x, &e), kMantissaBits);
     return static_cast<cpp_int>(static_cast<std::int64_t>(mantissa)) << (e - kMantissaBits - exponent);
   }
@@ -84,6 +86,7 @@ class Pair {
     for (const auto* simplex : given)
       for (int k = 0; k < n; ++k)
         for (int axis = 0; axis < n; ++axis) last_.see(simplex[k][axis]);
+    // All coordinates are 0: any power of two will do.
     if (last_.exponent == std::numeric_limits<int>::max()) last_.exponent = 0;
     for (int side = 0; side < 2; ++side)
       for (int k = 0; k < n; ++k)
@@ -103,6 +106,8 @@ class Pair {
   Whole3 edge(int side, int k) const { return minus(corner(side, k + 1), corner(side, k)); }
 
   void find() {
+    // Every corner against the boundary and the inside of the other simplex. A foot on a triangle's boundary
+    // is found by its edges, so the inside is open.
     for (int side = 0; side < 2; ++side)
       for (int k = 0; k < n_; ++k) {
         for (int j = 0; j < edges(); ++j) corner_to_edge(side, k, j);
@@ -115,6 +120,7 @@ class Pair {
 
   /// `spot`: of the simplex of `side`, and of the other one.
   void see(Fraction square, int side, Spot spot, Spot other) {
+    // Of equal distances the first one found is kept, so that the result is reproducible.
     if (found_ && !less(square, nearest_.square)) return;
     found_ = true;
     nearest_.square = std::move(square);
@@ -128,14 +134,18 @@ class Pair {
 
   void corner_to_edge(int side, int k, int j) {
     const Whole3 way = minus(corner(side, k), corner(1 - side, j)), along = edge(1 - side, j);
+    // The foot of the perpendicular is at / length along the edge. An edge of length 0 takes the first
+    // branch.
     const cpp_int at = dot(way, along), length = dot(along, along);
     const Spot here{feature(0, k), {}};
+    // Voronoi regions of the edge (Ericson 2005, 5.1.2): its first end, its second end, its inside.
     if (at <= 0) {
       see({dot(way, way), 1}, side, here, {feature(0, j), {}});
     } else if (at >= length) {
       const Whole3 from_end = minus(corner(side, k), corner(1 - side, j + 1));
       see({dot(from_end, from_end), 1}, side, here, {feature(0, (j + 1) % n_), {}});
     } else {
+      // Pythagoras: the squared distance is |way|^2 - at^2 / length.
       see({length * dot(way, way) - at * at, length}, side, here, {feature(1, j), {{at, length}, {}}});
     }
   }
@@ -144,10 +154,14 @@ class Pair {
     const Whole3 u = edge(1 - side, 0), v = minus(corner(1 - side, 2), corner(1 - side, 0));
     const Whole3 way = minus(corner(side, k), corner(1 - side, 0)), normal = cross(u, v);
     const cpp_int area = dot(normal, normal);
+    // `area` is the squared length of the normal. If it is 0, the edges cover the triangle.
     if (area == 0) return;
     const cpp_int uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, way), vw = dot(v, way);
+    // Cramer's rule for the normal equations. Their determinant uu vv - uv^2 is |u x v|^2 (Lagrange's
+    // identity).
     const cpp_int s = vv * uw - uv * vw, t = uu * vw - uv * uw;
     if (s <= 0 || t <= 0 || s + t >= area) return;
+    // The distance to the plane is height / |normal|.
     const cpp_int height = dot(normal, way);
     see({height * height, area}, side, {feature(0, k), {}}, {feature(2, 0), {{s, area}, {t, area}}});
   }
@@ -156,8 +170,11 @@ class Pair {
     const Whole3 u = edge(0, i), v = edge(1, j), way = minus(corner(0, i), corner(1, j)),
                  normal = cross(u, v);
     const cpp_int sine = dot(normal, normal);
+    // Parallel edges: the distance is also attained at an end of one of them.
     if (sine == 0) return;
     const cpp_int uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, way), vw = dot(v, way);
+    // The closest points of the two lines. They count only strictly inside both edges; ends are handled
+    // above.
     const cpp_int s = uv * vw - vv * uw, t = uu * vw - uv * uw;
     if (s <= 0 || t <= 0 || s >= sine || t >= sine) return;
     const cpp_int height = dot(normal, way);
@@ -171,7 +188,7 @@ class Pair {
   Nearest nearest_;
 };
 
-/// Sets doubles that hold sqrt(square) 2^exponent.
+/// Sets two doubles that enclose sqrt(square) 2^exponent: equal if the root is a double, else neighbours.
 void enclose_root(const Fraction& square, int exponent, double& lower, double& upper) {
   if (square.num == 0) {
     lower = upper = 0;
@@ -179,13 +196,17 @@ void enclose_root(const Fraction& square, int exponent, double& lower, double& u
   }
   constexpr int kBits = 130, kMantissaBits = 53;  // of the fraction, so that its root has 64 or more
   int shift = kBits - static_cast<int>(msb(square.num)) + static_cast<int>(msb(square.den));
+  // An even shift, because the root of 2^shift must be a power of two.
   shift += shift & 1;
   const cpp_int above = shift > 0 ? square.num << shift : square.num;
   const cpp_int below = shift < 0 ? square.den << -shift : square.den;
   const cpp_int whole = above / below;
+  // Both the quotient and the root are rounded down, so `low` is at most the true root and low + 1 is above
+  // it.
   const cpp_int root = sqrt(whole);
   const int spare = static_cast<int>(msb(root)) + 1 - kMantissaBits;
   const cpp_int low = root >> spare;
+  // Exact only if no step dropped a bit: the division, the root and the cut to 53 bits.
   const bool is_exact = whole * below == above && root * root == whole && (low << spare) == root;
   const int scale = exponent - shift / 2 + spare;
   const auto scaled = [scale](const cpp_int& x) { return std::ldexp(x.convert_to<double>(), scale); };
@@ -199,13 +220,14 @@ void enclose_root(const Fraction& square, int exponent, double& lower, double& u
   if (std::isinf(lower)) lower = std::numeric_limits<double>::max();
 }
 
-/// Returns a spot in doubles.
+/// Returns the coordinates of a point of a simplex in doubles.
 Eigen::Vector3d place(const Spot& spot, const double* const* corners, int n) {
   const auto at = [&](int k) {
     const double* x = corners[k % n];
     return Eigen::Vector3d(x[0], x[1], n == 3 ? x[2] : 0);
   };
   if (spot.on.dim == 0) return at(spot.on.index);
+  // Barycentric combination. s and t are within 2^-53 of the exact parameters.
   const int first = spot.on.dim == 1 ? spot.on.index : 0;
   const double s = as_share(spot.along[0]), t = spot.on.dim == 2 ? as_share(spot.along[1]) : 0;
   return (1 - s - t) * at(first) + s * at(first + 1) + t * at(first + 2);
@@ -227,6 +249,7 @@ PairDistance distance_of_simplices(const double* const* a, const double* const* 
 
 int compare_distance(const double* const* a, const double* const* b, int n, double distance) {
   const Pair pair(a, b, n, distance);
+  // Compare squares: both are non-negative, so the order is that of the distances.
   const cpp_int whole = pair.to_integer(distance);
   const Fraction &square = pair.nearest().square, given{whole * whole, 1};
   return less(square, given) ? -1 : less(given, square) ? 1 : 0;

@@ -7,6 +7,7 @@
 namespace lrb::exact {
 
 RationalPoint::Coordinates::Coordinates(RationalVec coordinates) : x(std::move(coordinates)) {
+  // The conversion is off by an ulp at most. Step outwards until the doubles provably enclose the coordinate.
   for (std::size_t k = 0; k < 3; ++k) {
     low[k] = high[k] = x[k].convert_to<double>();
     while (to_rational(low[k]) > x[k]) low[k] = std::nextafter(low[k], -kInfinity);
@@ -23,6 +24,7 @@ RationalPoint RationalPoint::midpoint(const RationalPoint& a, const RationalPoin
 
 RationalPoint RationalPoint::combination(std::span<const RationalPoint> points,
                                          std::span<const double> weights) {
+  // Weights are doubles, so sums and the quotient are exact rationals.
   RationalVec sum;
   Rational total = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -1,4 +1,10 @@
-// Finds the cells of a face that others cut, and a point in each.
+// The cells into which cuts divide a face, and a sample point in each cell. The method is the slab
+// decomposition of an arrangement of segments (Dobkin and Lipton 1976), all in rational coordinates.
+// 1. Intersect the face with each other triangle, clip the result to the face, and project it: the cuts.
+// 2. Sort the abscissas of all end points and crossings of cuts. Between two of them lies a slab.
+// 3. In a slab no cut ends or crosses another: the cuts that span it divide it into trapezoids (gaps).
+// 4. Unite the gaps of neighbouring slabs that open to each other: the cells.
+// 5. Lift the centre of one gap of each cell back to the plane of the face.
 
 #include <algorithm>
 #include <utility>
@@ -12,11 +18,12 @@
 #include "engine/exact/rational_point.hpp"
 
 namespace lrb::exact {
-/// Named, because CutFace keeps what is in it.
+/// A named namespace, because CutFace::Parts has members of these types.
 namespace cutting {
 
-/// Every end and crossing of cuts divides the cells further, into gaps, and the work is done gap by gap.
-/// Larger: faces with a hundred cuts are decided too, in minutes each.
+/// Largest number of gaps per requested cell. End points and crossings of cuts divide cells into gaps, and
+/// the time grows with the number of gaps. Larger: faces with a hundred cuts are decided as well, in minutes
+/// each.
 constexpr std::size_t kGapsPerCell = 16;
 
 /// A point in the triangle's projection.
@@ -46,19 +53,24 @@ class CutTriangle {
       exact_[i] = to_rational(tri[i]);
       corner_[i] = project(exact_[i]);
     }
+    // The edges are cuts too: they bound the outermost gaps, so that no gap lies outside the triangle.
     for (std::size_t i = 0; i < 3; ++i) add(corner_[i], corner_[(i + 1) % 3]);
   }
 
   void cut_by(const double* const other[3]) {
     const Sides sides = sides_of(plane_, other);
+    // All corners lie strictly on one side of the plane: no cut.
     if (sides.all_strictly_same()) return;
     std::vector<Planar> points;
+    // Collect the points of the other triangle's boundary in this plane: corners on it, and crossings of its
+    // edges.
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;
       if (sides.s[i] == 0) points.push_back(project(to_rational(other[i])));
       if (sides.s[i] * sides.s[j] < 0)
         points.push_back(where_edge_cuts(to_rational(other[i]), to_rational(other[j])));
     }
+    // Two points give one cut. Three points belong to a coplanar triangle, and its edges are the cuts.
     for (std::size_t i = 0; i < points.size(); ++i) {
       for (std::size_t j = i + 1; j < points.size(); ++j) add_clipped(points[i], points[j]);
     }
@@ -73,6 +85,7 @@ class CutTriangle {
 
   /// Returns the point of the triangle's plane that has this projection.
   RationalPoint lift(const Planar& p) const {
+    // Barycentric coordinates survive the projection, because it is affine and one to one on the plane.
     const Rational area = cross(corner_[0], corner_[1], corner_[2]);
     const Rational u = cross(corner_[0], p, corner_[2]) / area, v = cross(corner_[0], corner_[1], p) / area;
     RationalVec r;
@@ -84,12 +97,15 @@ class CutTriangle {
 
  private:
   Planar where_edge_cuts(const RationalVec& p, const RationalVec& q) const {
+    // hp and hq are the heights of p and q over the plane. They have opposite signs, so hp - hq is not 0.
     const Rational hp = volume_determinant(exact_[0], exact_[1], exact_[2], p);
     const Rational hq = volume_determinant(exact_[0], exact_[1], exact_[2], q);
     return project(between(p, q, hp / (hp - hq)));
   }
 
   void add_clipped(const Planar& p, const Planar& q) {
+    // Clip the segment by the three edge lines (Cyrus and Beck 1978). axes_.turn makes the inner side
+    // positive.
     RationalInterval part;
     for (std::size_t i = 0; i < 3 && !part.empty; ++i) {
       const Planar &a = corner_[i], &b = corner_[(i + 1) % 3];
@@ -103,8 +119,8 @@ class CutTriangle {
   void add(const Planar& p, const Planar& q) {
     if (p == q) return;  // a point cuts nothing
     Cut cut = p < q ? Cut{p, q} : Cut{q, p};
-    // Two faces that share an edge both bring it, and the work grows with the third power of the number of
-    // cuts.
+    // Two faces that share an edge contribute the same cut twice. Dropping one pays, because the time is
+    // cubic in the number of cuts.
     if (std::find(cuts_.begin(), cuts_.end(), cut) == cuts_.end()) cuts_.push_back(std::move(cut));
   }
 
@@ -117,8 +133,10 @@ class CutTriangle {
 
 /// Adds the abscissa at which two cuts cross (the ends of overlapping cuts are events anyway).
 void add_crossing(const Cut& a, const Cut& b, std::vector<Rational>& events) {
+  // No crossing if both ends of b lie strictly on one side of a, or if the cuts are collinear.
   const Rational b_from = cross(a.from, a.to, b.from), b_to = cross(a.from, a.to, b.to);
   if (b_from * b_to > 0 || (b_from == 0 && b_to == 0)) return;
+  // The same with a and b exchanged. The cuts are not parallel here, so a_from - a_to is not 0.
   const Rational a_from = cross(b.from, b.to, a.from), a_to = cross(b.from, b.to, a.to);
   if (a_from * a_to > 0) return;
   events.push_back(a.from.x + (a.to.x - a.from.x) * a_from / (a_from - a_to));
@@ -126,6 +144,7 @@ void add_crossing(const Cut& a, const Cut& b, std::vector<Rational>& events) {
 
 std::vector<Rational> events_of(const std::vector<Cut>& cuts) {
   std::vector<Rational> events;
+  // Test all pairs of cuts: quadratic, which is small beside the sorting of cuts in each slab.
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     events.push_back(cuts[i].from.x);
     events.push_back(cuts[i].to.x);
@@ -136,7 +155,7 @@ std::vector<Rational> events_of(const std::vector<Cut>& cuts) {
   return events;
 }
 
-/// A cut that spans a slab. The layers of a slab run upwards; where cuts coincide, the first stands for all.
+/// A cut that spans a slab. The layers of a slab run upwards. Of coincident cuts only the first is listed.
 struct Layer {
   Rational y;  ///< at the slab's middle
   std::size_t cut;
@@ -144,12 +163,14 @@ struct Layer {
 
 std::vector<Layer> layers_between(const std::vector<Cut>& cuts, const Rational& left, const Rational& right) {
   std::vector<Layer> layers;
+  // No two cuts cross inside the slab, so their order at its centre is their order everywhere in it.
   const Rational middle = (left + right) / 2;
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     if (!cuts[i].is_vertical() && cuts[i].from.x <= left && cuts[i].to.x >= right) {
       layers.push_back({cuts[i].y_at(middle), i});
     }
   }
+  // Coincident cuts have the same ordinate, and the one of lowest index is kept.
   std::sort(layers.begin(), layers.end(),
             [](const Layer& a, const Layer& b) { return a.y != b.y ? a.y < b.y : a.cut < b.cut; });
   const auto same = [](const Layer& a, const Layer& b) { return a.y == b.y; };
@@ -171,6 +192,7 @@ class Slabs {
   Slabs(const std::vector<Cut>& cuts, std::size_t limit) : cuts_(cuts) {
     events_ = events_of(cuts);
     std::size_t previous = 0;
+    // Work from left to right. The gaps of the current slab are linked to those of the previous one only.
     for (std::size_t e = 0; e + 1 < events_.size() && gaps_.size() <= limit; ++e) {
       const std::size_t first = gaps_.size();
       first_gap_.push_back(first);
@@ -189,6 +211,7 @@ class Slabs {
   /// point has a gap of it along the edge; a vertical edge ends the first slab or the last.
   std::size_t gap_beside(std::size_t edge, const Planar& p) const {
     const bool vertical = cuts_[edge].is_vertical();
+    // Find a slab that contains p, then the gap of that slab that touches the edge at p.
     for (std::size_t e = 0; e + 1 < events_.size(); ++e) {
       if (p.x < events_[e] || p.x > events_[e + 1]) continue;
       for (std::size_t i = first_gap_[e]; i < first_gap_[e + 1]; ++i) {
@@ -204,6 +227,7 @@ class Slabs {
   /// Returns the first gap of each cell.
   std::vector<std::size_t> cells() const {
     std::vector<std::size_t> r;
+    // A gap that links to itself is the first of its cell.
     for (std::size_t i = 0; i < gaps_.size(); ++i) {
       if (gaps_[i].link == i) r.push_back(i);
     }
@@ -226,6 +250,7 @@ class Slabs {
   };
 
   void add_gaps(const Rational& left, const Rational& right) {
+    // Consecutive cuts bound a gap. Its centre is off all cuts, because the gap is convex and has an inside.
     const std::vector<Layer> layers = layers_between(cuts_, left, right);
     for (std::size_t i = 0; i + 1 < layers.size(); ++i) {
       const Planar middle{(left + right) / 2, (layers[i].y + layers[i + 1].y) / 2};
@@ -234,6 +259,8 @@ class Slabs {
   }
 
   std::size_t first_of(std::size_t i) const {
+    // Union-find without path compression. Links lead to lower indices only, so the root is the cell's first
+    // gap.
     while (gaps_[i].link != i) i = gaps_[i].link;
     return i;
   }
@@ -246,18 +273,21 @@ class Slabs {
     return r;
   }
 
-  /// Joins gaps across x, where the slab of the gaps [left, middle) and that of [middle, end) meet: gaps that
-  /// open to each other there belong to one cell. Both run upwards, so one walk through both finds all such
-  /// pairs.
+  /// Unites gaps across x, where the slab of the gaps [left, middle) borders on that of [middle, end): gaps
+  /// that open to each other there belong to one cell. Both lists run upwards, so one pass through both finds
+  /// all such pairs.
   void join_neighbours(std::size_t left, std::size_t middle, const Rational& x) {
     const std::vector<Opening> l = openings(left, middle, x), r = openings(middle, gaps_.size(), x);
     const std::vector<const Cut*> walls = walls_at(x);
+    // A merge of two sorted lists of intervals on the line at x: linear in the number of gaps.
     for (std::size_t i = 0, j = 0; i < l.size() && j < r.size();) {
       const Rational &low = std::max(l[i].low, r[j].low), &high = std::min(l[i].high, r[j].high);
+      // The openings overlap in more than a point, and no vertical cut closes the overlap: one cell.
       if (low < high && !walled_off(walls, low, high)) {
         const std::size_t a = first_of(left + i), b = first_of(middle + j);
         gaps_[std::max(a, b)].link = std::min(a, b);
       }
+      // Advance past the opening that ends first: no later opening of the other side can overlap it.
       if (l[i].high <= r[j].high)
         ++i;
       else
@@ -277,6 +307,7 @@ class Slabs {
 
   /// Returns true if the walls cover everything from low to high.
   static bool walled_off(const std::vector<const Cut*>& walls, Rational low, const Rational& high) {
+    // Move `low` up over the walls that begin at or below it. The walls are sorted, so one pass is enough.
     for (const Cut* c : walls) {
       if (c->from.y <= low) low = std::max(low, c->to.y);
     }
@@ -310,6 +341,7 @@ std::optional<CutFace> CutFace::make(const double* const tri[3],
   const auto parts = std::make_shared<Parts>(tri, axes);
   for (const auto& other : others) {
     parts->triangle.cut_by(other.data());
+    // The triangle's own three edges do not count against the limit.
     if (parts->triangle.cuts().size() > limit + 3) return std::nullopt;
   }
   parts->slabs = std::make_unique<Slabs>(parts->triangle.cuts(), kGapsPerCell * limit);
@@ -324,23 +356,26 @@ std::optional<CutFace> CutFace::make(const double* const tri[3],
 std::size_t CutFace::cell_beside(int edge, const RationalPoint& p) const {
   const std::size_t gap =
       parts_->slabs->gap_beside(static_cast<std::size_t>(edge), parts_->triangle.project(p.coordinates().x));
+  // Cells are listed in ascending order of their first gaps.
   const auto cell = std::lower_bound(parts_->cells.begin(), parts_->cells.end(), gap);
   return static_cast<std::size_t>(cell - parts_->cells.begin());
 }
 
 namespace {
 
-/// Adds the shares of the segment p, q at which its line meets the edges of a triangle in whose plane it
-/// lies. Returns false if the triangle has no area.
+/// Adds the parameters at which the line of the segment p, q intersects the edge lines of a triangle that
+/// lies in the same plane as the segment. Returns false if the triangle has no area.
 bool add_shares_in_plane(const RationalVec& p, const RationalVec& q, const double* const t[3],
                          std::vector<Rational>& shares) {
   const Axes axes = axes_for(t[0], t[1], t[2]);
   if (axes.turn == 0) return false;
+  // A coordinate in which p and q differ gives the parameter of a point on their line.
   const std::size_t k = p[0] != q[0] ? 0 : p[1] != q[1] ? 1 : 2;
   for (int i = 0; i < 3; ++i) {
     const RationalVec a = to_rational(t[i]), b = to_rational(t[(i + 1) % 3]);
     const Rational at_p = area_determinant(a, b, p, axes.x, axes.y);
     const Rational at_q = area_determinant(a, b, q, axes.x, axes.y);
+    // The edge is collinear with the segment: the segment is cut at both ends of the edge.
     if (at_p == 0 && at_q == 0) {
       shares.push_back((a[k] - p[k]) / (q[k] - p[k]));
       shares.push_back((b[k] - p[k]) / (q[k] - p[k]));
@@ -361,11 +396,13 @@ std::optional<std::vector<RationalPoint>> sample_edge(
   for (const auto& t : triangles) {
     const RationalVec a = to_rational(t[0]), b = to_rational(t[1]), c = to_rational(t[2]);
     const Rational at_p = volume_determinant(a, b, c, p), at_q = volume_determinant(a, b, c, q);
+    // The plane crosses the segment's line in one point. Equal heights: the line is parallel to it or in it.
     if (at_p != at_q)
       all.push_back(at_p / (at_p - at_q));
     else if (at_p == 0 && !add_shares_in_plane(p, q, t.data(), all))
       return std::nullopt;
   }
+  // Keep the parameters in (0, 1), each once. One sample is taken at the centre of each part.
   std::sort(all.begin(), all.end());
   for (const Rational& t : all)
     if (t > shares.back() && t < 1) shares.push_back(t);
@@ -385,6 +422,7 @@ std::optional<std::vector<RationalPoint>> sample_cells(const double* const tri[3
   CutTriangle triangle(tri, axes);
   for (const auto& other : others) {
     triangle.cut_by(other.data());
+    // Give up early: the time below is cubic in the number of cuts.
     if (triangle.cuts().size() > limit + 3) return std::nullopt;  // 3: its own edges
   }
   const Slabs slabs(triangle.cuts(), kGapsPerCell * limit);
@@ -400,19 +438,23 @@ std::optional<std::vector<RationalPoint>> sample_cells_2d(
   const int axis = seg[0][0] != seg[1][0] ? 0 : 1;
   if (seg[0][axis] == seg[1][axis]) return samples;
   const RationalVec s = to_rational(seg[0], 2), e = to_rational(seg[1], 2);
+  // Cuts are parameters along the segment. Only those strictly between its ends divide it.
   std::vector<Rational> cuts{Rational(0), Rational(1)};
   const auto add = [&](const Rational& t) {
     if (t > 0 && t < 1) cuts.push_back(t);
   };
   for (const auto& other : others) {
     const int side0 = orient2d(seg[0], seg[1], other[0]), side1 = orient2d(seg[0], seg[1], other[1]);
+    // The other segment lies strictly on one side of this one's line: no cut.
     if (side0 * side1 > 0) continue;
     const RationalVec p = to_rational(other[0], 2), q = to_rational(other[1], 2);
+    // Collinear: the ends of the other segment cut this one.
     if (side0 == 0 && side1 == 0) {
       const auto k = static_cast<std::size_t>(axis);
       add((p[k] - s[k]) / (e[k] - s[k]));
       add((q[k] - s[k]) / (e[k] - s[k]));
     } else {
+      // Not collinear: its line cuts this one where the signed area changes sign.
       const Rational hs = area_determinant(p, q, s, 0, 1), he = area_determinant(p, q, e, 0, 1);
       add(hs / (hs - he));
     }

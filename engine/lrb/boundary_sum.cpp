@@ -1,3 +1,9 @@
+// A set of oriented faces is closed if its boundary, a sum of oriented edges, is zero (the boundary operator
+// of homology). Edges are numbered once:
+// 1. The edge that starts at each corner, as a pair of vertices, with its direction.
+// 2. Corners sorted by edge: a counting sort by the first vertex, a sort by the second within each vertex.
+// 3. Runs of equal pairs get one number.
+// Then each face adds its directions to the sums of its edges, and only the edges touched are tested.
 #include "engine/lrb/boundary_sum.hpp"
 
 #include <algorithm>
@@ -17,6 +23,7 @@ BoundarySum::BoundarySum(const LrbRep& rep) : rep_(rep) {
     const auto face = rep.face(f);
     for (std::size_t i = 0; i < face.size(); ++i) {
       const std::size_t c = d.face_offsets[f] + i;
+      // An edge between a vertex and itself (v == w) has direction 0 and cancels.
       const VertexId v = face[i], w = face[(i + 1) % face.size()];
       ends[c] = rep.dim() == 2 ? std::pair{v, v} : std::pair{std::min(v, w), std::max(v, w)};
       direction_[c] = rep.dim() == 2 ? (i == 0 ? 1 : -1) : v == w ? 0 : v < w ? 1 : -1;
@@ -28,9 +35,11 @@ BoundarySum::BoundarySum(const LrbRep& rep) : rep_(rep) {
   for (const auto& end : ends) ++offsets[end.first];
   std::exclusive_scan(offsets.begin(), offsets.end(), offsets.begin(), 0u);
   for (std::uint32_t c = 0; c < corners; ++c) order[offsets[ends[c].first]++] = c;
+  // The counting sort has moved each offset to the end of its vertex' range, which is the start of the next.
   for (std::size_t v = 0, begin = 0; v + 1 < offsets.size(); begin = offsets[v++])
     std::sort(order.begin() + begin, order.begin() + offsets[v],
               [&](auto x, auto y) { return std::pair(ends[x].second, x) < std::pair(ends[y].second, y); });
+  // Equal pairs are adjacent now: number the runs. One corner per edge is kept, to name the edge.
   for (std::size_t k = 0; k < corners; ++k) {
     if (k == 0 || ends[order[k]] != ends[order[k - 1]]) corner_of_edge_.push_back(order[k]);
     edge_of_corner_[order[k]] = static_cast<std::uint32_t>(corner_of_edge_.size() - 1);
@@ -47,11 +56,13 @@ void BoundarySum::change(FaceId f, int sign) {
 }
 
 bool BoundarySum::take_closed(VertexId open_at[2]) {
+  // Edges not touched have sum 0. Every touched sum is reset, also after the first open edge is found.
   bool closed = true;
   for (const std::uint32_t e : touched_) {
     if (sum_[e] != 0 && closed) {
       closed = false;
       const auto& d = rep_.data();
+      // Name the edge: the face of its corner is found by binary search in the offsets.
       const std::uint32_t c = corner_of_edge_[e];
       const auto f = static_cast<FaceId>(std::upper_bound(d.face_offsets.begin(), d.face_offsets.end(), c) -
                                          d.face_offsets.begin() - 1);

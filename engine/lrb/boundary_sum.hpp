@@ -6,7 +6,7 @@
 
 namespace lrb {
 
-/// Tells whether a set of oriented faces is closed: whether along every edge (2D: at every vertex) as many
+/// Decides if a set of oriented faces is closed: if along every edge (2D: at every vertex) as many
 /// faces run one way as the other. Edges are numbered once; each question then costs O(faces added).
 class BoundarySum {
  public:

@@ -51,6 +51,7 @@ class Reader {
 
   template <class T>
   T value() {
+    // Values in a file are not aligned, so they are copied.
     need(sizeof(T));
     T x;
     std::memcpy(&x, bytes_.data() + at_, sizeof x);
@@ -61,6 +62,8 @@ class Reader {
   template <class T>
   std::vector<T> array() {
     const auto count = value<std::uint64_t>();
+    // Division avoids the overflow of count * sizeof(T). Checked before allocation, so that a damaged length
+    // cannot exhaust the memory.
     if (count > (bytes_.size() - at_) / sizeof(T))
       refuse("an array of " + std::to_string(count) + " elements does not fit into the rest of the file");
     std::vector<T> x(count);
@@ -81,10 +84,11 @@ class Reader {
   std::size_t at_ = kMagic.size();
 };
 
-/// Writes whether there are levels, and what they cannot be made from quickly.
+/// Writes a flag for the presence of levels, then the parts that take long to compute.
 void write_levels(const LrbRep& rep, Writer& w) {
   w.value(static_cast<std::uint32_t>(rep.has_levels()));
   if (!rep.has_levels()) return;
+  // The tolerances and the trees take long to compute. The faces of each level follow from the tolerances.
   const WrapperLevels& levels = rep.levels();
   w.array(levels.needed().data(), levels.needed().size());
   w.value(static_cast<std::uint64_t>(levels.all().size()));
@@ -118,6 +122,7 @@ std::optional<StoredLevels> read_levels(Reader& r) {
 }  // namespace
 
 std::uint64_t lrb_checksum(std::string_view bytes, std::uint32_t version) {
+  // Since version 2 by words, at the speed of memory; version 1 byte by byte (FNV-1a).
   if (version >= kFirstWithTree) return fnv64_of_words(bytes.data(), bytes.size());
   Fnv64 h;
   h.add_bytes(bytes.data(), bytes.size());
@@ -127,6 +132,7 @@ std::uint64_t lrb_checksum(std::string_view bytes, std::uint32_t version) {
 void save_lrb(const LrbRep& rep, const std::string& path) {
   const LrbData& d = rep.data();
   Writer w;
+  // Header, then the complex, then data derived from it, then the checksum of everything before.
   w.bytes().append(kMagic);
   w.value(kLrbFileVersion);
   w.value(static_cast<std::uint32_t>(d.dim));
@@ -139,11 +145,13 @@ void save_lrb(const LrbRep& rep, const std::string& path) {
   w.array(d.inner_cell);
   w.array(d.outer_cell);
   w.array(d.region_layer);
+  // Derived data: stored because it takes longer to compute than to read.
   w.value(rep.hash());
   w.array(rep.tree().nodes());
   w.array(rep.tree().blocks());
   write_levels(rep, w);
   w.value(lrb_checksum(w.bytes()));
+  // Written as a whole, so that no reader finds half a file.
   write_file(path, w.bytes());
 }
 
@@ -156,16 +164,19 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
     throw InputError(printable_name(name) +
                      ": byte 0: this is not a .lrb file; build one with `lrbscope build MESH -o FILE.lrb`");
   Reader r(bytes, name);
+  // The version comes first: it decides the checksum and the fields that follow.
   const auto version = r.value<std::uint32_t>();
   if (version > kLrbFileVersion)
     throw InputError(printable_name(name) + ": byte 8: the file has version " + std::to_string(version) +
                      ", this program reads up to " + std::to_string(kLrbFileVersion) +
                      "; use a newer lrbscope");
+  // The checksum is verified before any other field is interpreted.
   if (bytes.size() < r.at() + sizeof(std::uint64_t)) r.refuse("the file is cut short");
   std::uint64_t stored;
   std::memcpy(&stored, bytes.data() + bytes.size() - sizeof stored, sizeof stored);
   if (stored != lrb_checksum(bytes.substr(0, bytes.size() - sizeof stored), version))
     r.refuse("the checksum does not match: the file is damaged or cut short");
+  // The complex, field by field in the order of save_lrb().
   LrbData d;
   d.dim = static_cast<int>(r.value<std::uint32_t>());
   d.real_face_count = r.value<std::uint32_t>();
@@ -180,14 +191,17 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
   d.inner_cell = r.array<CellId>();
   d.outer_cell = r.array<CellId>();
   d.region_layer = r.array<std::uint16_t>();
+  // Derived data, as far as the version has it. Missing parts are computed.
   const bool with_tree = version >= kFirstWithTree;
   const auto hash = with_tree ? r.value<std::uint64_t>() : 0;
   auto nodes = with_tree ? r.array<TreeNode>() : std::vector<TreeNode>();
   auto blocks = with_tree ? r.array<LeafBlock>() : std::vector<LeafBlock>();
   auto levels = version >= kFirstWithLevels ? read_levels(r) : std::nullopt;
   if (r.at() + sizeof stored != bytes.size()) r.refuse("there are bytes after the end of the .lrb data");
+  // LrbData::face_count() subtracts 1 from the number of offsets.
   if (d.face_offsets.empty()) r.refuse("the offsets of the faces are missing");
   try {
+    // The constructors check the structure: indices, cells, the shape of the trees, the order of the levels.
     LrbRep rep =
         with_tree ? LrbRep(std::move(d), std::move(nodes), std::move(blocks), hash) : LrbRep(std::move(d));
     if (levels) rep.keep_levels(WrapperLevels(rep, std::move(levels->needed), std::move(levels->levels)));

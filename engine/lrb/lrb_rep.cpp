@@ -27,11 +27,13 @@ namespace {
 void check_face(const LrbData& d, FaceId f) {
   const auto corners = d.face(f);
   const std::string face = "face " + std::to_string(f);
+  // Corners: the right number for the dimension, and every index within the vertex array.
   if (d.dim == 2 ? corners.size() != 2 : corners.size() < 3)
     refuse(d, face + " has " + std::to_string(corners.size()) + " corners");
   for (const VertexId v : corners)
     if (v >= d.vertices.size())
       refuse(d, face + " names vertex " + std::to_string(v) + ", which does not exist");
+  // Cells: only a real face has the solid behind it, and a face separates two different cells.
   const CellId inner = d.inner_cell[f], outer = d.outer_cell[f];
   const auto is_known = [&](CellId c) { return !is_region(c) || c < d.region_layer.size(); };
   if (!is_known(inner) || !is_known(outer)) refuse(d, face + " names a region that does not exist");
@@ -43,11 +45,13 @@ void check_face(const LrbData& d, FaceId f) {
 
 void check(const LrbData& d) {
   if (d.dim != 2 && d.dim != 3) refuse(d, "dimension " + std::to_string(d.dim) + " is neither 2 nor 3");
+  // Array lengths first: the loops over elements below rely on them.
   const std::size_t faces = d.face_count();
   if (d.vertices.size() > kMaxId || d.face_vertices.size() > kMaxId)
     refuse(d, "more than 2^32 - 4 vertices or corners");
   if (d.inner_cell.size() != faces || d.outer_cell.size() != faces || d.real_face_count > faces)
     refuse(d, "the arrays of faces and of their cells differ in length");
+  // Ascending offsets that end at the number of corners keep every face() span within its array.
   if (d.face_offsets.front() != 0 || d.face_offsets.back() != d.face_vertices.size() ||
       !std::is_sorted(d.face_offsets.begin(), d.face_offsets.end()))
     refuse(d, "the offsets of the faces' corners are not ascending");
@@ -64,6 +68,8 @@ void check(const LrbData& d) {
 double face_size(const LrbData& d, FaceId f) {
   const auto c = d.face(f);
   if (d.dim == 2) return (d.vertices[c[1]] - d.vertices[c[0]]).norm();
+  // Vector area of the fan, times 2. It underestimates polygons that are not planar, which affects only the
+  // choice of parents.
   Eigen::Vector3d twice = Eigen::Vector3d::Zero();
   for (std::size_t i = 1; i + 1 < c.size(); ++i)
     twice += (d.vertices[c[i]] - d.vertices[c[0]]).cross(d.vertices[c[i + 1]] - d.vertices[c[0]]);
@@ -111,15 +117,20 @@ SimplexView LrbRep::simplices() const {
 
 /// Derives everything but the tree and the hash.
 void LrbRep::derive() {
+  // All that follows indexes without checks, so validation comes first.
   check(d_);
   link_faces_to_regions();
   find_parents();
   find_components();
+  // The leading faces that are simplices themselves share their numbers with the simplices: no table is
+  // needed for them. In 2D these are all faces.
   const auto simplex_size = static_cast<std::size_t>(d_.dim);
   while (whole_faces_ < face_count() && d_.face(FaceId(whole_faces_)).size() == simplex_size) ++whole_faces_;
+  // Otherwise a table from simplex to face covers all simplices, including the leading ones.
   if (whole_faces_ < face_count())
     for (FaceId f = 0; f < face_count(); ++f)
       face_of_simplex_.insert(face_of_simplex_.end(), Mesh::simplices_of(d_.face(f).size(), 3), f);
+  // Unique in the process. Copies keep the serial, so caches made for one copy serve the others.
   static std::atomic<std::uint64_t> next_serial{1};
   serial_ = next_serial++;
   levels_ = std::make_shared<MadeLevels>();
@@ -127,8 +138,10 @@ void LrbRep::derive() {
 }
 
 bool LrbRep::overlaps_itself() const {
+  // The builder has determined the flag for bodies with regions.
   if (region_count() > 0) return d_.self_intersecting;
   std::call_once(overlap_->once, [this] {
+    // Without regions there are no pseudo faces, so the face arrays are those of the mesh.
     Mesh mesh;
     mesh.dim = d_.dim;
     mesh.vertices = d_.vertices;
@@ -141,8 +154,10 @@ bool LrbRep::overlaps_itself() const {
 }
 
 const WrapperLevels& LrbRep::levels(unsigned threads) const {
+  // Double-checked locking: this acquire pairs with the release in keep().
   if (const WrapperLevels* const made = levels_->made.load(std::memory_order_acquire)) return *made;
   const std::lock_guard<std::mutex> lock(levels_->making);
+  // Another thread may have made the levels while this one waited for the lock.
   if (const WrapperLevels* const made = levels_->made.load(std::memory_order_relaxed)) return *made;
   return levels_->keep(WrapperLevels(*this, threads));
 }
@@ -171,9 +186,11 @@ LrbRep LrbRep::without_regions(const Mesh& mesh, bool closed, bool self_intersec
 }
 
 LrbRep LrbRep::without_regions(const LrbRep& rep) {
+  // Real faces come first, so truncating the arrays removes exactly the pseudo faces.
   LrbData d = rep.d_;
   d.face_offsets.resize(d.real_face_count + 1);
   d.face_vertices.resize(d.face_offsets.back());
+  // Every remaining face now separates the solid from the outside.
   d.inner_cell.assign(d.real_face_count, kSolid);
   d.outer_cell.assign(d.real_face_count, kOutside);
   d.region_layer.clear();
@@ -184,11 +201,13 @@ void LrbRep::link_faces_to_regions() {
   const std::uint32_t regions = region_count();
   std::vector<std::uint32_t> floor_count(regions, 0);
   lid_count_.assign(regions, 0);
+  // Pass 1: count the lids and floor faces of each region, and collect the outermost faces.
   for (FaceId f = 0; f < face_count(); ++f) {
     if (is_region(inner_cell(f))) ++lid_count_[inner_cell(f)];
     if (is_region(outer_cell(f))) ++floor_count[outer_cell(f)];
     if (outer_cell(f) == kOutside) outermost_.push_back(f);
   }
+  // Prefix sums assign each region one contiguous slice (compressed rows): its lids, then its floor.
   collector_offsets_.assign(regions + 1, 0);
   for (RegionId r = 0; r < regions; ++r)
     collector_offsets_[r + 1] = collector_offsets_[r] + lid_count_[r] + floor_count[r];
@@ -196,6 +215,7 @@ void LrbRep::link_faces_to_regions() {
   std::vector<std::uint32_t> next_lid(collector_offsets_.begin(), collector_offsets_.end() - 1),
       next_floor(regions);
   for (RegionId r = 0; r < regions; ++r) next_floor[r] = next_lid[r] + lid_count_[r];
+  // Pass 2: fill the slices. Faces arrive in ascending order, so both parts of a slice are ascending.
   for (FaceId f = 0; f < face_count(); ++f) {
     if (is_region(inner_cell(f))) collector_faces_[next_lid[inner_cell(f)]++] = f;
     if (is_region(outer_cell(f))) collector_faces_[next_floor[outer_cell(f)]++] = f;
@@ -207,6 +227,7 @@ void LrbRep::find_parents() {
   parent_.assign(regions, kOutside);
   for (RegionId r = 0; r < regions; ++r) {
     layer_count_ = std::max(layer_count_, d_.region_layer[r] + 1u);
+    // Accumulate the lid area shared with each outer neighbour, then take the largest.
     std::map<CellId, double> shared;  // ordered: ties go to the smaller id on every machine
     for (const FaceId lid : lids(r)) shared[outer_cell(lid)] += face_size(d_, lid);
     double most = -1;
@@ -216,12 +237,15 @@ void LrbRep::find_parents() {
         parent_[r] = cell;
       }
   }
+  // Depth: follow parents to the outside or to a region of known depth, then number the path on the way back.
+  // Each region is numbered once, so this takes O(|R|) steps.
   depth_.assign(regions, 0);
   std::vector<RegionId> path;
   for (RegionId r = 0; r < regions; ++r) {
     CellId c = r;
     for (; is_region(c) && depth_[c] == 0; c = parent_[c]) {
       path.push_back(c.as_region());
+      // A path longer than the number of regions contains a cycle, in which no depth is ever known.
       if (path.size() > regions) refuse(d_, "region " + std::to_string(r) + " hides itself");
     }
     std::uint32_t depth = is_region(c) ? depth_[c] : 0;
@@ -230,12 +254,14 @@ void LrbRep::find_parents() {
 }
 
 void LrbRep::find_components() {
+  // Only real faces count: pieces that lids connect are still separate pieces of the body.
   std::vector<FaceId> real(d_.real_face_count);
   std::iota(real.begin(), real.end(), FaceId{0});
   component_vertices_ = piece_vertices(*this, real);
 }
 
 std::uint32_t LrbRep::simplex_count() const {
+  // A fan of n corners has n - 2 triangles, so the sum over all faces is the number of corners less 2 |F|.
   return d_.dim == 2 ? face_count() : static_cast<std::uint32_t>(d_.face_vertices.size()) - 2 * face_count();
 }
 
@@ -253,6 +279,7 @@ std::size_t LrbRep::memory_bytes() const {
 }
 
 std::uint64_t hash_of(const LrbData& d) {
+  // A fixed order of fields. The name is left out, so that renaming a body keeps its hash.
   Fnv64 h;
   h.add_value(static_cast<std::uint32_t>(d.dim));
   h.add_array(d.vertices);

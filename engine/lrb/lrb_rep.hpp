@@ -9,8 +9,8 @@
 /// its faces: its *lids* (the faces that it lies behind) and its *floor* (the faces that it lies in front
 /// of). A region may have zero volume.
 ///
-/// An LRB-rep does not change once built, so that threads and bodies can share one. What it keeps beside the
-/// complex, its levels, is made once by whoever asks first, and shared by all copies.
+/// An LRB-rep does not change once built, so that threads and bodies can share one. Its levels are made by
+/// the first request for them, and shared by all copies.
 ///
 /// It departs from the paper in one point: each face keeps an "inner" and an "outer" cell instead of an
 /// unordered pair, which costs nothing and makes "which cell hides which" a look-up. A mesh that cannot be

@@ -6,11 +6,11 @@
 //
 // Pieces are cut, worst first, until the bound is within kTight of a distance that some point of the lids
 // really has. Which face is near is found by walking from the face that the piece has to its neighbours, and
-// in the tree only where the walk ends further off than anything found so far, that is, where it would raise
-// what the bound is compared with: on 100,000 faces one walk in 28, and a quarter of the time that the tree
-// took for each piece. A piece that hangs over the border of its face is cut there: its other part is nearer
-// another face. So a flat lid over a floor of many coplanar faces takes as many pieces as there are faces
-// under it.
+// in the tree only where the walk ends at a larger distance than any found so far, because that would raise
+// the value that the bound is compared with. On 100,000 faces this is one walk in 28, and takes a quarter of
+// the time of searching the tree for each piece. A piece that hangs over the border of its face is cut
+// there: its other part is nearer another face. So a flat lid over a floor of many coplanar faces takes as
+// many pieces as there are faces under it.
 //
 // Rounding. A cut puts a new corner on an edge, up to 2^-50 beside it (in units, in which coordinates are
 // about 1 at most): a point of the piece is then that far from a point of the two new ones, at the same place
@@ -38,9 +38,9 @@ using Eigen::Vector3d;
 /// The bound may be this many times a distance that was found. 1.05: 2 to 7 % more faces for a tolerance (six
 /// real meshes), in about the same time, for most cuts are those at the borders of faces.
 constexpr double kTight = 1.01;
-/// Distances below this share of the unit count as this: bounds so small need not be tight.
+/// Distances below this (in units) count as this, because bounds below it need not be tight.
 constexpr double kSmall = 1e-6;
-/// Cuts that lead to one piece, and pieces of one region, after which the bound stays as it is.
+/// Cuts that lead to one piece, and pieces of one region, after which the bound is not refined any more.
 constexpr std::uint32_t kMostCuts = 256;
 constexpr std::size_t kMostPieces = 20000;
 /// A piece this many times as long as its face is halved, no matter where the face ends.
@@ -67,7 +67,7 @@ struct Waiting {
 /// Where a piece is to be cut: between two of its corners.
 struct Cut {
   int from, to;
-  double share;  ///< of the way between them
+  double share;  ///< position on the segment from `from` to `to`, 0 to 1
 };
 
 /// Returns the longest edge of the first `corners` corners, halved, and its squared length.
@@ -82,7 +82,10 @@ std::pair<Cut, double> longest_edge(const Simplex& x, int corners) {
 
 /// Returns the direction, in a simplex, that leads out of it over its e-th border (an edge; in 2D an end).
 Vector3d border_normal(const Simplex& t, int corners, int e) {
+  // 2D: the direction from the other end to this one.
   if (corners == 2) return t[e] - t[1 - e];
+  // 3D: perpendicular to the edge, away from the third corner, with the triangle's height as its length. An
+  // edge of length 0 has no normal; the zero vector then never counts as crossed.
   const Vector3d edge = t[(e + 1) % 3] - t[e], other = t[(e + 2) % 3] - t[e];
   const double square = edge.squaredNorm();
   return square > 0 ? Vector3d(edge * (edge.dot(other) / square) - other) : Vector3d(0, 0, 0);
@@ -95,10 +98,13 @@ Cut cut_at_border(const Simplex& piece, int worst, const Simplex& face, int corn
   double furthest = 0;
   for (int e = 0; e < corners; ++e) {
     const Vector3d outward = border_normal(face, corners, e);
+    // Both `beyond` and `there` are scaled by the normal's length, which cancels in their quotient.
     const double beyond = outward.dot(piece[worst] - face[e]);
     if (!(beyond > furthest)) continue;
     furthest = beyond;
+    // Forget the cut at an earlier border: only the border that is exceeded most is considered.
     best.share = 0;
+    // Cut towards the corner deepest on the near side, where the edge between the two passes the border.
     double least = 0;
     for (int k = 0; k < corners; ++k) {
       const double there = outward.dot(piece[k] - face[e]);
@@ -124,8 +130,11 @@ class RegionMeter {
     heap_.clear();
     pieces_.clear();
     most_ = found_ = 0;
+    // Lower bound: the lids' corners are points of the lids. It controls only where the search stops, so its
+    // rounding cannot make the result too small.
     for (const FaceId f : rep_.lids(r))
       for (const VertexId v : rep_.face(f)) found_ = std::max(found_, near_[v].distance);
+    // Upper bound: initial pieces, one per simplex of a lid, then refinement.
     for (const FaceId f : rep_.lids(r))
       if (!add_lid(f)) return std::numeric_limits<double>::infinity();
     cut_worst();
@@ -146,6 +155,7 @@ class RegionMeter {
       rep_.simplex(SimplexId(rep_.first_simplex(f) + i), v);
       Piece piece;
       piece.x = corners_of(v);
+      // Candidates: the faces near the corners. try_face() keeps the one with the least bound.
       for (int k = 0; k < corners_; ++k)
         if (near_[v[k]].simplex != kNull) try_face(piece, near_[v[k]].simplex);
       if (piece.face == kNull) return false;
@@ -154,12 +164,14 @@ class RegionMeter {
     return true;
   }
 
-  /// Gives the piece this face if it is better than the one it has.
+  /// Assigns this face to the piece if it bounds the piece better than the current one.
   void try_face(Piece& piece, SimplexId s) const {
     if (s == piece.face) return;
     std::array<double, 3> off{};
     double most = 0;
     for (int k = 0; k < corners_; ++k) {
+      // A face is better if all its corner distances are below the current bound: stop at the first that is
+      // not.
       off[k] = nearest_.distance(piece.x[k], s);
       if (!(off[k] < piece.most)) return;  // also if it overflows
       most = std::max(most, off[k]);
@@ -173,14 +185,16 @@ class RegionMeter {
     return middle / corners_;
   }
 
-  /// Looks for a better face for a piece that has one already. Returns true if the piece is within the limit
-  /// then.
+  /// Searches for a better face for a piece that has one already. Returns true if the piece is within the
+  /// limit then.
   bool is_settled(Piece& piece) {
     if (piece.most > limit()) {
+      // The face near the centroid often bounds the entire piece better.
       const Vector3d middle = middle_of(piece);
       NearFace near = nearest_.walk(middle, piece.face, neighbours_);
-      // The walk may end where the body is near by way of other faces only.
+      // The walk may end in a local minimum: another part of the surface may be closer.
       if (near.distance > found_) near = nearest_.find(middle, near);
+      // The centroid is a point of the lid, so its distance raises the lower bound.
       found_ = std::max(found_, near.distance);
       try_face(piece, near.simplex);
     }
@@ -202,6 +216,7 @@ class RegionMeter {
 
   /// Cuts the worst piece that waits until it is within the limit, or there are too many.
   void cut_worst() {
+    // Best-first branch and bound: the heap's top has the largest upper bound of all open pieces.
     for (std::size_t cuts = 0; !heap_.empty(); ++cuts) {
       const Waiting worst = heap_.front();
       Piece& piece = pieces_[worst.piece];
@@ -211,14 +226,18 @@ class RegionMeter {
       }
       std::pop_heap(heap_.begin(), heap_.end());
       heap_.pop_back();
+      // Split; keep one part in the slot of the whole. add() may reallocate pieces_, so `piece` is not used
+      // after it.
       Piece part = divide(piece, choose_cut(piece));
       if (!is_settled(piece)) wait(worst.piece);
       add(part);
     }
   }
 
-  /// Leaves one part in its place. Returns the other.
+  /// Cuts a piece in two: `piece` becomes one part, the other is returned.
   Piece divide(Piece& piece, const Cut& cut) const {
+    // The distance to one face is convex, so the new corner is no further from it than the worse end of the
+    // cut edge: neither part has a larger bound than the whole.
     const Vector3d between = piece.x[cut.from] + cut.share * (piece.x[cut.to] - piece.x[cut.from]);
     const double off = nearest_.distance(between, piece.face);
     ++piece.cuts;
@@ -238,8 +257,11 @@ class RegionMeter {
     VertexId v[3] = {};
     rep_.simplex(piece.face, v);
     const Simplex face = corners_of(v);
+    // A piece much longer than its face spans many faces: bisect its longest edge (fast progress on large
+    // lids).
     const auto [longest, length_sq] = longest_edge(piece.x, corners_);
     if (length_sq > kMuchLonger * kMuchLonger * longest_edge(face, corners_).second) return longest;
+    // Otherwise separate the worst corner along the border of the face; bisect if no such cut exists.
     const auto worst = std::max_element(piece.off.begin(), piece.off.begin() + corners_) - piece.off.begin();
     const Cut at_border = cut_at_border(piece.x, static_cast<int>(worst), face, corners_);
     return at_border.share > 0 ? at_border : longest;
@@ -260,11 +282,13 @@ class RegionMeter {
 /// Returns a real simplex near each vertex: one of its own where it has one.
 std::vector<NearFace> near_vertices(const LrbRep& rep, const std::vector<Vector3d>& x, Workers& workers) {
   std::vector<NearFace> near(x.size());
+  // A vertex of a real simplex lies on it: distance 0.
   for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
     VertexId v[3];
     rep.simplex(s, v);
     for (int k = 0; k < rep.dim(); ++k) near[v[k]] = {s, 0};
   }
+  // Vertices of pseudo faces are searched in the tree. Each worker has its own search stack.
   std::vector<NearestFace> finders(workers.count(), NearestFace(rep, x));
   workers.for_each(x.size(), [&](std::size_t v, unsigned worker) {
     if (near[v].simplex == kNull) near[v] = finders[worker].find(x[v]);
@@ -279,6 +303,7 @@ std::vector<double> region_thickness(const LrbRep& rep, unsigned threads) {
   const std::vector<Vector3d> x = vertices_in_units(rep);
   const std::vector<Across> neighbours = real_neighbours(rep);
   const std::vector<NearFace> near = near_vertices(rep, x, workers);
+  // Regions are independent. Each worker measures them with its own meter, whose state is reset per region.
   std::vector<RegionMeter> meters(workers.count(), RegionMeter(rep, x, neighbours, near));
   std::vector<double> out(rep.region_count());
   workers.for_each(out.size(), [&](std::size_t r, unsigned worker) {

@@ -1,3 +1,11 @@
+// Validation of an LRB-rep, weakest invariant first:
+// 1. Cells: the solid and each region are bounded by closed oriented surfaces, and their volumes add up.
+// 2. Derived data: hash, bounds of the trees, thickness of the regions.
+// 3. Embedding: all pairs of simplices whose bounds overlap are tested exactly.
+// 4. Random wrapper states: closed, with the volume of their cells, and enclosing sampled vertices by ray
+//    parity.
+// Step 1 alone does not exclude overlaps, because the sum of volumes telescopes. Step 3 is the proof of
+// embedding.
 #include "engine/lrb/validate.hpp"
 
 #include <algorithm>
@@ -32,6 +40,8 @@ class Validator {
   ValidateReport run() {
     check_cells();
     check_derived();
+    // Embedding and wrapper states run at the same time. The second validator has its own boundary sum and
+    // report, and needs only the volumes computed so far.
     Validator states(rep_, options_, workers_);
     states.volume_ = volume_;
     states.report_.volume_outer = report_.volume_outer;
@@ -40,6 +50,8 @@ class Validator {
           if (options_.embedding) check_embedding();
         },
         [&] { states.check_wrapper_states(); });
+    // Messages on the embedding come first, whichever check finished first. If they fill the list, those on
+    // states are omitted.
     if (report_.valid || report_.violation_count < options_.max_messages) append(states.report_);
     return std::move(report_);
   }
@@ -47,6 +59,7 @@ class Validator {
  private:
   void append(const ValidateReport& states) {
     report_.states = states.states;
+    // violation() counts each message that was kept. The violations beyond the limit are added by number.
     for (const std::string& text : states.violations) violation(text);
     report_.violation_count += states.violation_count - states.violations.size();
   }
@@ -58,16 +71,19 @@ class Validator {
 
   /// Checks what a file stores beside the complex.
   void check_derived() {
+    // The bounds of the query's tree: the completeness of queries rests on them.
     const bool tree_holds = rep_.tree().bounds_hold(rep_.simplices());
     if (!tree_holds) violation("the query's tree has bounds that do not hold its faces");
     if (hash_of(rep_.data()) != rep_.hash()) violation("the stored hash is not that of the complex");
-    // The thickness of regions is measured with the tree: with wrong bounds it would be wrong, too.
+    // The thickness of regions is measured with the tree, so its bounds must be right first.
     if (tree_holds && rep_.has_levels()) check_levels(rep_.levels());
   }
 
   /// Checks what is taken on trust of levels from a file; the rest was checked when they were read.
   void check_levels(const WrapperLevels& levels) {
     if (levels.needed().empty()) return;
+    // Computed again. The stored tolerance may be larger than the thickness (it covers all hidden regions),
+    // never smaller.
     const std::vector<double> thickness = region_thickness(rep_);
     for (RegionId r = 0; r < rep_.region_count(); ++r)
       if (levels.needed()[r] < thickness[r])
@@ -85,6 +101,8 @@ class Validator {
   }
 
   void check_cells() {
+    // The solid is bounded by the real faces, normals outward. An open mesh bounds nothing: its sum is only
+    // reset.
     std::vector<FaceId> real(rep_.real_face_count());
     for (FaceId f = 0; f < real.size(); ++f) {
       real[f] = f;
@@ -97,6 +115,7 @@ class Validator {
     report_.volume_solid = enclosed_volume(rep_, real);
     report_.volume_outer = enclosed_volume(rep_, rep_.outermost_faces());
     const double noise = kVolumeRounding * std::abs(report_.volume_outer);
+    // A region is bounded by its lids, and by its floor seen from the other side.
     for (RegionId r = 0; r < rep_.region_count(); ++r) {
       for (const FaceId f : rep_.lids(r)) sum_.add(f);
       for (const FaceId f : rep_.floor(r)) sum_.add_reversed(f);
@@ -109,11 +128,15 @@ class Validator {
         violation("region " + std::to_string(r) + " has the negative volume " +
                   std::to_string(volume_.back()));
     }
+    // Follows from closed cells, because the two uses of a face between cells cancel. Cheap, so it is checked
+    // as well.
     for (const FaceId f : rep_.outermost_faces()) sum_.add(f);
     if (rep_.closed())
       check_closed("the outermost wrapper");
     else
       sum_.take_closed(unused_);
+    // Volumes must add up: each face between two cells occurs once with either sign, so only rounding
+    // remains.
     const double gap = std::abs(report_.volume_solid + report_.volume_regions - report_.volume_outer);
     report_.volume_error = report_.volume_outer != 0 ? gap / std::abs(report_.volume_outer) : gap;
     if (rep_.region_count() > 0 && report_.volume_error > kVolumeRounding)
@@ -122,6 +145,7 @@ class Validator {
 
   /// Returns a body whose real faces are all faces of the complex.
   LrbRep complex_as_soup() const {
+    // Every face becomes real, so that the tree of the new body covers pseudo faces as well.
     LrbData d = rep_.data();
     d.real_face_count = rep_.face_count();
     d.inner_cell.assign(rep_.face_count(), kSolid);
@@ -131,10 +155,12 @@ class Validator {
   }
 
   void check_embedding() {
+    // At a vertex with n simplices all bounds overlap, so the plain search has n^2 / 2 pairs.
     if (has_hubs()) return check_embedding_with_hubs();
     const LrbRep soup = complex_as_soup();
     std::vector<Pair> pairs;
     for_each_self_pair(soup.tree(), [&](SimplexId s, SimplexId t) {
+      // Batches bound the memory and give the workers enough to share.
       pairs.push_back({s, t});
       if (pairs.size() == kPairsAtOnce) judge(soup, pairs);
     });
@@ -145,6 +171,7 @@ class Validator {
   bool has_hubs() const {
     if (rep_.dim() == 2) return false;
     std::vector<std::uint32_t> degree(rep_.vertices().size(), 0);
+    // Counts simplices per vertex and stops at the first high-valence one.
     VertexId v[3] = {};
     for (SimplexId s = 0; s < rep_.simplex_count(); ++s) {
       rep_.simplex(s, v);
@@ -157,6 +184,7 @@ class Validator {
   /// Checks the same, but searches differently for pairs that may meet. (A simplex without area is convex,
   /// too.)
   void check_embedding_with_hubs() {
+    // One face per simplex, so that face numbers of this mesh are simplex numbers.
     Mesh simplices;
     simplices.vertices = rep_.data().vertices;
     VertexId v[3] = {};
@@ -166,6 +194,7 @@ class Validator {
     }
     const FacePairs search(simplices, std::vector<FaceUse>(simplices.face_count(), FaceUse::convex));
     std::vector<Pair> pairs;
+    // One thread, because the callback appends to a single list. The exact tests in judge() use all threads.
     Workers alone;
     search.for_each(
         [&](FaceId s, FaceId t) {
@@ -196,6 +225,7 @@ class Validator {
 
   /// Tests many pairs at the same time, then reports on them in order; empties the list.
   void judge(const LrbRep& soup, std::vector<Pair>& pairs) {
+    // Pass 1, on all threads: exact tests. Each thread writes only to its own pairs.
     workers_.for_each((pairs.size() + kPairsShared - 1) / kPairsShared, [&](std::size_t i, unsigned) {
       const std::size_t end = std::min(pairs.size(), (i + 1) * kPairsShared);
       for (std::size_t k = i * kPairsShared; k < end; ++k) {
@@ -204,6 +234,7 @@ class Validator {
                                         : exact::meet_only_in_shared_2d(s.x, s.id, t.x, t.id);
       }
     });
+    // Pass 2, in the order of the pairs: the report does not depend on the number of threads.
     report_.embedding_pairs += pairs.size();
     for (const Pair& p : pairs)
       if (!p.good)
@@ -213,6 +244,8 @@ class Validator {
   }
 
   void judge_meeting(FaceId f, FaceId g, const double* const* cf, const double* const* cg) {
+    // Two real faces: a fault of the mesh. Face and lid over it: a region of no thickness, which is allowed.
+    // Everything else breaks the embedding.
     if (rep_.is_real(f) && rep_.is_real(g)) {
       ++report_.real_pairs_meeting;
     } else if (touches_from_behind(f, g, cf, cg) || touches_from_behind(g, f, cg, cf)) {
@@ -224,11 +257,12 @@ class Validator {
     }
   }
 
-  /// Returns true if the lid hides the face and the face touches it from behind, nowhere going beyond the
-  /// lid's plane: where a rim lies in the lid's plane, what lies behind the lid has no thickness there.
+  /// Returns true if the lid hides the face and no corner of the face is in front of the lid's plane. Such a
+  /// face touches the lid from behind: the region between the two has no thickness there.
   bool touches_from_behind(FaceId lid, FaceId face, const double* const* cl, const double* const* cf) const {
     if (!hides(lid, face)) return false;
     for (int k = 0; k < rep_.dim(); ++k) {
+      // Positive: in front of the lid. In 2D the left of a segment is behind it, hence the minus sign.
       const int side = rep_.dim() == 2 ? -exact::orient2d(cl[0], cl[1], cf[k])
                                        : exact::orient3d(cl[0], cl[1], cl[2], cf[k]);
       if (side > 0) return false;
@@ -238,12 +272,15 @@ class Validator {
 
   bool hides(FaceId lid, FaceId face) const {
     if (rep_.is_real(lid)) return false;
+    // Walks outward from the cell in front of the face to the cell behind the lid, along parents only. The
+    // constructor rejects cycles of parents, so the loop ends.
     CellId c = rep_.outer_cell(face);
     while (is_region(c) && c != rep_.inner_cell(lid)) c = rep_.parent(c.as_region());
     return is_region(c);
   }
 
   void check_wrapper_states() {
+    // Without regions the outermost wrapper is the only state.
     if (rep_.region_count() == 0 || !rep_.closed()) return;
     std::mt19937_64 random(options_.seed);
     for (std::uint32_t state = 0; state < options_.wrapper_states; ++state) {
@@ -253,6 +290,7 @@ class Validator {
       double volume = report_.volume_outer;
       for (RegionId r = 0; r < rep_.region_count(); ++r)
         if (std::generate_canonical<double, 53>(random) < share) {
+          // Any set of regions is a legal state. Its volume does not depend on the order of refinement.
           w.refine(r);
           volume -= volume_[r];
         }
@@ -273,8 +311,10 @@ class Validator {
       (outward ? as_is : reversed).push_back(f);
       for (const VertexId v : rep_.face(f)) touched[v] = true;
     }
+    // Closedness: the oriented boundary faces must cancel along every edge.
     const std::string name = "wrapper state " + std::to_string(report_.states);
     check_closed(name);
+    // Volume: the boundary's must be that of the included cells, up to rounding.
     if (std::abs(enclosed_volume(rep_, as_is, reversed) - volume) >
         kVolumeRounding * std::abs(report_.volume_outer))
       violation(name + " encloses a volume other than that of its cells");
@@ -286,6 +326,7 @@ class Validator {
                        const std::string& name, std::mt19937_64& random) {
     for (int sample = 0; sample < kEnclosureSamples; ++sample) {
       const FaceId f = static_cast<FaceId>(random() % rep_.real_face_count());
+      // Vertices of the boundary itself may lie on it; all others must be inside.
       const VertexId v = rep_.face(f)[0];
       if (touched[v]) continue;
       if (!holds(boundary, v)) violation(name + " leaves real vertex " + std::to_string(v) + " outside");
@@ -294,6 +335,8 @@ class Validator {
 
   /// Returns true if the vertex lies behind the boundary or on it.
   bool holds(const std::vector<FaceId>& boundary, VertexId v) const {
+    // Parity of the crossings of an exact ray. Orientation does not matter for parity, so reversed faces need
+    // no care.
     const double* p = rep_.vertices()[v].data();
     bool inside = false, on_face = false;
     const auto note = [&](exact::RayHit hit) {
@@ -307,6 +350,7 @@ class Validator {
         const double* c[2] = {at(0), at(1)};
         note(exact::ray_crosses_2d(p, c));
       }
+      // The fan of a polygon. Empty in 2D, where a face has two corners.
       for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
         const double* c[3] = {at(0), at(i), at(i + 1)};
         note(exact::ray_crosses(p, c));

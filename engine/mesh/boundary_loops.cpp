@@ -1,3 +1,9 @@
+// Boundary loops, as in a half-edge structure that is built for the purpose:
+// 1. Sort the sides (half-edges) of all faces by edge. Edges with one side are open; two opposite sides are
+//    twins.
+// 2. The successor of an open side: rotate around its end through twins until the next open side.
+// 3. Follow successors. Whenever a vertex repeats, the part since its first visit is cut off as a loop.
+// 4. Measure each loop: length, box, exact planarity.
 #include "engine/mesh/boundary_loops.hpp"
 
 #include <algorithm>
@@ -18,12 +24,14 @@ class LoopFinder {
     std::sort(sides_.begin(), sides_.end());
     for (std::size_t i = 0, end = 0; i < sides_.size(); i = end) {
       while (end < sides_.size() && sides_[end].edge == sides_[i].edge) ++end;
+      // A run of equal keys: all sides of one edge.
       pair_sides(i, end);
     }
     std::sort(open_.begin(), open_.end());
   }
 
   std::vector<BoundaryLoop> run() {
+    // Link the open sides to chains.
     std::vector<bool> has_predecessor(next_.size(), false);
     successor_.assign(next_.size(), kNull);
     for (const std::uint32_t side : open_) {
@@ -32,11 +40,13 @@ class LoopFinder {
     }
     seen_.assign(next_.size(), false);
     place_.assign(mesh_.vertices.size(), kNull);
+    // Chains that are interrupted first, from their start. The open sides not visited by then form cycles.
     for (const std::uint32_t side : open_)
       if (!has_predecessor[side]) follow(side);
     for (const std::uint32_t side : open_)
       if (!seen_[side]) follow(side);
     for (BoundaryLoop& loop : loops_) measure(loop);
+    // Longest first. The stable sort keeps ties in the order in which they were found.
     std::stable_sort(loops_.begin(), loops_.end(),
                      [](const auto& a, const auto& b) { return a.length > b.length; });
     return std::move(loops_);
@@ -60,6 +70,7 @@ class LoopFinder {
   void add_sides(FaceId f) {
     const auto corners = mesh_.face(f);
     const std::uint32_t first = mesh_.face_offsets[f];
+    // Faces with fewer than three different corners cover no area; their sides cancel and are ignored.
     std::vector<VertexId> different(corners.begin(), corners.end());
     std::sort(different.begin(), different.end());
     if (std::unique(different.begin(), different.end()) - different.begin() < 3) return;
@@ -69,6 +80,7 @@ class LoopFinder {
       std::uint32_t k = (i + 1) % n;
       if (a == corners[k]) continue;  // a corner named twice in a row: no side
       sides_.push_back({std::uint64_t{std::min(a, corners[k])} << 32 | std::max(a, corners[k]), first + i});
+      // Skip repetitions of the end corner: the next side starts at the last of them.
       while (corners[k] == corners[(k + 1) % n]) k = (k + 1) % n;
       next_[first + i] = first + k;
     }
@@ -77,6 +89,7 @@ class LoopFinder {
   void pair_sides(std::size_t i, std::size_t end) {
     const std::uint32_t s = sides_[i].side, t = sides_[end - 1].side;
     if (end - i == 1) open_.push_back(s);
+    // Twins are exactly two sides in opposite directions. Non-manifold and flipped edges have none.
     if (end - i != 2 || start(s) == start(t)) return;
     twin_[s] = t;
     twin_[t] = s;
@@ -87,6 +100,7 @@ class LoopFinder {
   /// Turns about the end of an open side, through the faces there, to the open side that leaves it; kNull if
   /// the faces do not lead to one.
   std::uint32_t next_open(std::uint32_t from) const {
+    // The maps next_ and twin_ are injective and `from` is no twin, so the rotation cannot run in a circle.
     std::uint32_t side = next_[from];
     while (!is_open(side)) {
       if (twin_[side] == kNull) return kNull;
@@ -104,11 +118,14 @@ class LoopFinder {
       seen_[side] = true;
       last = side;
       const VertexId end = start(next_[side]);
+      // A new vertex extends the chain.
       if (place_[end] == kNull) {
         place_[end] = static_cast<std::uint32_t>(row.size());
         row.push_back(end);
         continue;
       }
+      // A vertex of the chain comes again: the part since its first visit is a loop. The rest goes on from
+      // that vertex.
       BoundaryLoop& loop = loops_.emplace_back();
       loop.is_loop = true;
       loop.face = face_of(side);
@@ -116,6 +133,7 @@ class LoopFinder {
       for (std::size_t i = place_[end] + std::size_t{1}; i < row.size(); ++i) place_[row[i]] = kNull;
       row.resize(place_[end] + std::size_t{1}, VertexId(0));
     }
+    // Reset only the entries used. A row of one vertex is left when everything was cut off as loops.
     for (const VertexId v : row) place_[v] = kNull;
     if (row.size() < 2) return;
     BoundaryLoop& rest = loops_.emplace_back();
@@ -127,6 +145,7 @@ class LoopFinder {
     const auto& x = mesh_.vertices;
     for (std::size_t i = 0; i < loop.edges(); ++i)
       loop.length += (x[loop.vertices[(i + 1) % loop.vertices.size()]] - x[loop.vertices[i]]).norm();
+    // Exact predicates need finite coordinates; without them planarity stays false.
     bool finite = true;
     for (const VertexId v : loop.vertices) {
       loop.box.extend(x[v]);

@@ -1,5 +1,5 @@
 #pragma once
-/// A mesh together with what is known of it, so that nobody need ask twice.
+/// A mesh together with the findings of its checks, so that no check runs twice.
 
 #include <cstdint>
 #include <optional>

@@ -1,3 +1,13 @@
+// Hole filling with proof:
+// 1. Find the boundary loops. Reverse each to the direction of its fill, and choose an axis of projection for
+//    it.
+// 2. Fill planar loops that contain planar loops of the other orientation as rings: bridges join them to one
+//    polygon, which is triangulated by ear clipping.
+// 3. Fill all others alone. Candidates: minimum-area triangulation (Klincsek 1980; used for holes by Barequet
+//    and Sharir 1995), ear clipping, fan about the centroid.
+// 4. Candidates are tried in rounds. A round adds the current candidate of each hole to a copy of the mesh,
+//    finds all intersections at once, and keeps candidates greedily in order. The others go on to their next
+//    candidate.
 #include "engine/mesh/close_holes.hpp"
 
 #include <algorithm>
@@ -33,6 +43,7 @@ struct Attempt {
 class HoleCloser {
  public:
   explicit HoleCloser(const CheckedMesh& mesh) : checked_(mesh), mesh_(mesh.mesh()), use_(mesh.use()) {
+    // Holes are the boundary loops; edges_ lists all edges that a fill must not create a second time.
     for (BoundaryLoop& loop : find_boundary_loops(mesh_, use_)) out_.holes.push_back({std::move(loop)});
     for (FaceId f = 0; f < mesh_.face_count(); ++f) {
       const auto corners = mesh_.face(f);
@@ -44,8 +55,10 @@ class HoleCloser {
   }
 
   ClosedHoles run() {
+    // Rings before single holes: a disk over an outer loop would block the ring.
     for (std::size_t i = 0; i < out_.holes.size(); ++i) look_at(i);
     try_all(rings());
+    // Holes that no ring has closed.
     std::vector<Attempt> alone;
     for (std::size_t i = 0; i < out_.holes.size(); ++i)
       if (views_[i] && !is_closed(i)) alone.push_back(attempt_for(i));
@@ -62,8 +75,10 @@ class HoleCloser {
   /// Fills in the rim as its lid has to run, and how to see it.
   void look_at(std::size_t i) {
     Hole& hole = out_.holes[i];
+    // The fill's faces pass the boundary edges in the opposite direction to the faces along the loop.
     rims_.emplace_back(hole.loop.vertices.rbegin(), hole.loop.vertices.rend());
     views_.emplace_back();
+    // Each check that passes moves the state on: it always states why the hole is still open.
     if (!hole.loop.is_loop || !hole.loop.box.sizes().allFinite()) return;
     hole.state = HoleState::no_area;
     if (!spanning_corners(mesh_, rims_[i])) return;
@@ -73,6 +88,7 @@ class HoleCloser {
 
   /// Returns an attempt for each flat hole that has flat holes in it which run the other way round.
   std::vector<Attempt> rings() const {
+    // Assign each hole to the smallest one around it.
     std::vector<std::vector<std::size_t>> inner(rims_.size());
     for (std::size_t i = 0; i < rims_.size(); ++i)
       if (const auto home = home_of(i)) inner[*home].push_back(i);
@@ -81,6 +97,8 @@ class HoleCloser {
       if (inner[i].empty()) continue;
       std::vector<std::vector<VertexId>> holes;
       for (const std::size_t k : inner[i]) holes.push_back(rims_[k]);
+      // Connect the inner loops to the outer one by bridges; the result is one polygon that may visit
+      // vertices twice.
       const auto rim = lids::bridge_holes(mesh_, rims_[i], std::move(holes), *views_[i]);
       if (!rim) continue;
       Attempt& ring = out.emplace_back();
@@ -97,8 +115,11 @@ class HoleCloser {
     const auto size = [&](std::size_t k) { return out_.holes[k].loop.box.diagonal().norm(); };
     std::optional<std::size_t> home;
     for (std::size_t k = 0; k < rims_.size(); ++k) {
+      // Swapped projections mean the same plane axis and opposite orientation.
       const bool opposite = views_[k] && views_[i]->x == views_[k]->y && views_[i]->y == views_[k]->x;
       if (!opposite || !out_.holes[k].loop.planar || (home && size(*home) <= size(k))) continue;
+      // Exact tests: in the same plane, and inside the polygon. Boundary loops may touch, so one vertex
+      // decides only up to the later proof.
       if (is_planar(mesh_, rims_[i], *spanning_corners(mesh_, rims_[k])) &&
           lids::lies_inside(mesh_, rims_[k], rims_[i][0], *views_[k]))
         home = k;
@@ -114,15 +135,19 @@ class HoleCloser {
   Attempt attempt_for(std::size_t i) const {
     Attempt a;
     a.holes = {i};
+    // A planar polygon has the same area in any triangulation, so only curved loops are optimised.
     if (!out_.holes[i].loop.planar) a.ways.push_back(lids::least_area(mesh_, rims_[i], allowed()));
     a.ways.push_back(lids::cut_corners(mesh_, rims_[i], *views_[i], allowed()));
+    // A triangle needs no extra vertex.
     if (rims_[i].size() > 3) a.ways.push_back(lids::fan_about_middle(mesh_, rims_[i]));
     return a;
   }
 
-  /// Tries the ways of each attempt, one after the other, until one stands or none is left.
+  /// Tries the candidates of each attempt, one after the other, until one is accepted or none is left.
   void try_all(std::vector<Attempt> attempts) {
     while (!attempts.empty()) {
+      // Skip candidates that do not exist or whose inner edges are taken by now. Every round advances each
+      // attempt, so the loop ends.
       for (Attempt& a : attempts)
         while (a.way < a.ways.size() && !(a.ways[a.way] && edges_are_free(a.lid()))) ++a.way;
       std::erase_if(attempts, [](const Attempt& a) { return a.way == a.ways.size(); });
@@ -132,6 +157,8 @@ class HoleCloser {
 
   /// Returns the edges of a lid that join two vertices of its rim, without being a part of it.
   static Edges inner_edges(const Lid& lid) {
+    // An edge of two triangles is an inner edge; one of the boundary loop occurs once. A bridge counts as
+    // inner. Spokes of a fan end at a new vertex and cannot coincide with existing edges.
     Edges once, twice;
     for (const auto& t : lid.triangles)
       for (std::size_t i = 0; i < 3; ++i) {
@@ -146,23 +173,27 @@ class HoleCloser {
     return std::none_of(inner.begin(), inner.end(), [&](const Edge& e) { return edges_.contains(e); });
   }
 
-  /// What a lid was found to meet: nothing, a face that stands, or other lids of the round.
+  /// The intersections found for one candidate: with itself, with a face of the mesh, with other candidates.
   struct Meetings {
     bool itself = false;
     std::optional<FaceId> face;
     std::vector<std::size_t> lids;
   };
 
-  /// Puts the lids of all attempts on at once, sees what they meet, and keeps those that stand: an earlier
-  /// one before a later one that it meets.
+  /// Adds the current candidates of all attempts at once, finds their intersections, and keeps the valid
+  /// ones. Of two that intersect, the earlier one is kept.
   void try_round(std::vector<Attempt>& attempts) {
+    // Pass 1: add the candidates of all attempts to a copy of the mesh.
     Mesh trial = out_.mesh;
     std::vector<std::size_t> owner;  // of new faces: the attempt
     for (std::size_t i = 0; i < attempts.size(); ++i) {
       add(attempts[i].lid(), trial);
       owner.resize(trial.face_count() - out_.mesh.face_count(), i);
     }
+    // Pass 2: one search for all intersections that involve new faces.
     const std::vector<Meetings> meetings = find_meetings(trial, owner, attempts.size());
+    // Pass 3: greedy choice. A candidate conflicts only with faces of the mesh, with itself, and with
+    // candidates accepted before it.
     std::vector<bool> stands(attempts.size(), false);
     for (std::size_t i = 0; i < attempts.size(); ++i) {
       const auto in_way = std::find_if(meetings[i].lids.begin(), meetings[i].lids.end(),
@@ -179,6 +210,8 @@ class HoleCloser {
         hole.state = HoleState::meets_itself;
         hole.obstacle = kNull;
       } else {
+        // The inner edges were checked again above, because an earlier candidate of this round may have added
+        // one.
         stands[i] = true;
         keep(attempts[i]);
       }
@@ -198,14 +231,17 @@ class HoleCloser {
   std::vector<Meetings> find_meetings(const Mesh& trial, const std::vector<std::size_t>& owner,
                                       std::size_t attempts) const {
     std::vector<FaceUse> use = use_;
+    // New faces are triangles, so they are planar and convex.
     use.resize(trial.face_count(), FaceUse::convex);
     const auto standing = static_cast<std::uint32_t>(out_.mesh.face_count());
     std::vector<Meetings> out(attempts);
     find_self_intersections(
+        // Pairs have f < g, so g is new if either is. Pairs of old faces are faults of the input.
         trial, use, [&](FaceId, FaceId g) { return g >= standing; },
         [&](FaceId f, FaceId g) {
           Meetings& of_g = out[owner[g - standing]];
           if (f < standing) {
+            // The smallest face number is reported, whatever the order of the search.
             of_g.face = of_g.face ? std::min(*of_g.face, f) : f;
           } else if (owner[f - standing] == owner[g - standing]) {
             of_g.itself = true;
@@ -219,6 +255,7 @@ class HoleCloser {
 
   static void add(const Lid& lid, Mesh& mesh) {
     const auto middle = static_cast<VertexId>(mesh.vertices.size());
+    // The fan's centre becomes a new vertex, which takes the place of kMiddle.
     if (lid.middle) mesh.vertices.push_back(*lid.middle);
     for (std::array<VertexId, 3> t : lid.triangles) {
       std::replace(t.begin(), t.end(), lids::kMiddle, middle);

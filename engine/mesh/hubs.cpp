@@ -20,13 +20,16 @@ Box directions(const Mesh& mesh, FaceId f, VertexId v) {
   const std::size_t n = corners.size();
   const auto at = static_cast<std::size_t>(std::find(corners.begin(), corners.end(), v) - corners.begin());
   const Eigen::Vector3d centre = mesh.vertices[v];
+  // Directions to both neighbours of v in the face: the ends of the arc.
   const Eigen::Vector3d p = (mesh.vertices[corners[(at + 1) % n]] - centre).stableNormalized(),
                         q = (mesh.vertices[corners[(at + n - 1) % n]] - centre).stableNormalized();
   const auto is_direction = [](const Eigen::Vector3d& d) {  // neither overflow nor a neighbour in v's place
     return d.allFinite() && std::abs(d.squaredNorm() - 1) < 0x1p-40;
   };
+  // No usable direction: a box around the entire sphere, which overlaps all others.
   if (!is_direction(p) || !is_direction(q))
     return {Eigen::Vector3d::Constant(-2), Eigen::Vector3d::Constant(2)};
+  // The chord's box, enlarged by the bound on the distance between arc and chord.
   Box box(p);
   box.extend(q);
   const Eigen::Vector3d room = Eigen::Vector3d::Constant((p - q).squaredNorm() / 4 + kRoom);
@@ -37,6 +40,7 @@ Box directions(const Mesh& mesh, FaceId f, VertexId v) {
 
 Hubs::Hubs(const Mesh& mesh, const std::vector<FaceUse>& use) {
   if (mesh.dim == 2) return;
+  // Valence of each vertex among convex faces. For others the argument about arcs does not hold.
   std::vector<std::uint32_t> degree(mesh.vertices.size(), 0);
   for (FaceId f = 0; f < mesh.face_count(); ++f)
     if (use[f] == FaceUse::convex)
@@ -50,6 +54,7 @@ Hubs::Hubs(const Mesh& mesh, const std::vector<FaceUse>& use) {
   if (hubs.empty()) return;
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     if (use[f] != FaceUse::convex) continue;
+    // Each face goes to the hub of highest valence among its corners, where most of its pairs are.
     VertexId best = kNull;
     for (const VertexId v : mesh.face(f))
       if (degree[v] > kFewNeighbours &&
@@ -61,6 +66,7 @@ Hubs::Hubs(const Mesh& mesh, const std::vector<FaceUse>& use) {
 
 void for_each_pair_at(const Mesh& mesh, const Hubs::Hub& hub,
                       const std::function<void(FaceId, FaceId)>& visit, Workers& workers) {
+  // Pairs of arcs by a tree of boxes on the unit sphere.
   std::vector<Box> arcs;
   arcs.reserve(hub.faces.size());
   for (const FaceId f : hub.faces) arcs.push_back(directions(mesh, f, hub.vertex));

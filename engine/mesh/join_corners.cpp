@@ -1,3 +1,9 @@
+// Merging of coincident vertices along open edges:
+// 1. Number the different positions of vertices. Sides of faces are sorted by the positions of their ends.
+// 2. A side is open if no other side at the same positions has the same (merged) vertices.
+// 3. Merge the ends of open sides that match one to one in opposite directions, until nothing changes.
+// 4. Then merge all open sides at each position once. If that changed anything, go back to step 3.
+// 5. Replace each merged vertex by the smallest of its set.
 #include "engine/mesh/join_corners.hpp"
 
 #include <algorithm>
@@ -26,10 +32,13 @@ class CornerJoiner {
     find_places();
     for (FaceId f = 0; f < mesh_.face_count(); ++f) add_sides(f);
     out_.before = out_.after = static_cast<std::uint32_t>(std::count(used_.begin(), used_.end(), true));
+    // All vertices have different positions: nothing can be merged.
     if (places_ == mesh_.vertices.size()) return out_;
     std::sort(sides_.begin(), sides_.end(),
               [](const PlacedSide& a, const PlacedSide& b) { return a.place < b.place; });
     out_.open_before = count_open();
+    // Pairs to a fixed point first, since each merge may make further sides unambiguous. Each round merges
+    // sets, so this ends.
     do {
       while (join_groups(true)) {
       }
@@ -63,6 +72,7 @@ class CornerJoiner {
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const VertexId v = corners[i], w = corners[(i + 1) % corners.size()];
       used_[v] = true;
+      // Sides between vertices in one position have no length and are skipped.
       const std::uint32_t p = place_[v], q = place_[w];
       if (mesh_.dim == 2)
         sides_.push_back({{p, p}, {v, v}, i == 0});
@@ -80,10 +90,12 @@ class CornerJoiner {
     for (std::size_t i = 0, end = 0; i < sides_.size(); i = end) {
       there.clear();
       for (; end < sides_.size() && sides_[end].place == sides_[i].place; ++end)
+        // Names change as sets are merged, so they are looked up at each visit.
         there.push_back({{sets_.leader(sides_[end].vertex[0]), sets_.leader(sides_[end].vertex[1])}, end});
       std::sort(there.begin(), there.end());
       open.clear();
       for (std::size_t k = 0; k < there.size(); ++k)
+        // Open: the only side with these two vertices at this place.
         if ((k == 0 || there[k - 1].first != there[k].first) &&
             (k + 1 == there.size() || there[k + 1].first != there[k].first))
           open.push_back(&sides_[there[k].second]);
@@ -104,6 +116,7 @@ class CornerJoiner {
     for_each_place([&](const std::vector<const PlacedSide*>& open) {
       if (open.size() < 2 || (only_pairs && (open.size() > 2 || open[0]->forward == open[1]->forward)))
         return;
+      // Both ends are merged, in the order of positions, which is independent of direction.
       for (const PlacedSide* side : open)
         for (int end = 0; end < 2; ++end) any |= sets_.join(open[0]->vertex[end], side->vertex[end]);
     });
@@ -115,6 +128,7 @@ class CornerJoiner {
       if (can_be_used(f))
         for (std::uint32_t i = mesh_.face_offsets[f]; i < mesh_.face_offsets[f + 1]; ++i)
           mesh_.face_vertices[i] = VertexId(sets_.leader(mesh_.face_vertices[i]));
+    // Vertices that are not the leader of their set are no longer referred to.
     for (VertexId v = 0; v < used_.size(); ++v)
       if (used_[v] && sets_.leader(v) != v) mesh_.joined.push_back(v);
     out_.after = out_.before - static_cast<std::uint32_t>(mesh_.joined.size());

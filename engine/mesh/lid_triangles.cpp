@@ -1,3 +1,9 @@
+// Triangulations of a polygon in space, seen in a projection along one axis:
+// 1. cut_corners(): ear clipping (Meisters 1975), best-shaped ear first, with exact orientation tests.
+// 2. least_area(): minimum-area triangulation by dynamic programming (Klincsek 1980), O(n^3).
+// 3. fan_about_middle(): a fan about the centroid of the vertices.
+// 4. bridge_holes(): merges holes into the outer polygon along the shortest visible bridges, for ear
+//    clipping.
 #include "engine/mesh/lid_triangles.hpp"
 
 #include <algorithm>
@@ -15,7 +21,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Says on which side of the line from a to b, in a view, c lies.
+/// Returns the sign of the orientation of a, b, c in a projection: +1 if c is left of the line from a to b.
+/// Exact.
 int turn(const Mesh& mesh, const LidView& view, VertexId a, VertexId b, VertexId c) {
   const auto& x = mesh.vertices;
   return exact::orient_axes(x[a].data(), x[b].data(), x[c].data(), view.x, view.y);
@@ -33,8 +40,10 @@ class CornerCutter {
 
   std::optional<Lid> run() {
     Lid lid;
+    // Cut the best ear. Values are cached: cutting an ear changes the triangles of its two neighbours only.
     while (rim_.size() > 3) {
       std::size_t best = find_best();
+      // No cached ear is left. Vertices that blocked others may be gone, so evaluate all once more.
       if (worth_[best] <= 0) {  // what was in the way may have been cut off
         std::fill(worth_.begin(), worth_.end(), kUnknown);
         best = find_best();
@@ -43,6 +52,7 @@ class CornerCutter {
       lid.triangles.push_back({at(best, -1), rim_[best], at(best, +1)});
       erase(best);
     }
+    // The last triangle must be oriented as the rest.
     if (turn(mesh_, view_, rim_[0], rim_[1], rim_[2]) <= 0) return std::nullopt;
     lid.triangles.push_back({rim_[0], rim_[1], rim_[2]});
     return lid;
@@ -56,6 +66,7 @@ class CornerCutter {
   }
 
   void erase(std::size_t i) {
+    // The diagonal has changed the angles at both neighbours.
     rim_.erase(rim_.begin() + static_cast<std::ptrdiff_t>(i));
     worth_.erase(worth_.begin() + static_cast<std::ptrdiff_t>(i));
     worth_[i % rim_.size()] = worth_[(i + rim_.size() - 1) % rim_.size()] = kUnknown;
@@ -69,16 +80,21 @@ class CornerCutter {
 
   /// Returns 0 for a corner that cannot be cut off, else how good its triangle is.
   double worth(std::size_t i) const {
+    // Not an ear: a reflex or straight corner, or a diagonal that may not be added.
     const VertexId a = at(i, -1), b = rim_[i], c = at(i, +1);
     if (a == c || turn(mesh_, view_, a, b, c) <= 0 || (rim_.size() > 3 && !allowed_(a, c))) return 0;
+    // Not an ear: another vertex is in the closed triangle. A second visit of a corner (end of a bridge) is
+    // skipped by its index.
     for (const VertexId v : rim_)
       if (v != a && v != b && v != c && turn(mesh_, view_, a, b, v) >= 0 &&
           turn(mesh_, view_, b, c, v) >= 0 && turn(mesh_, view_, c, a, v) >= 0)
         return 0;
     const auto& x = mesh_.vertices;
+    // Shape: height over the longest edge, 0 for needles, 0.87 for equilateral triangles.
     const double longest = std::max({(x[a] - x[b]).norm(), (x[b] - x[c]).norm(), (x[c] - x[a]).norm()});
     const double area = (x[b] - x[a]).cross(x[c] - x[a]).norm();
     const double shape = area / longest / longest;
+    // An ear is proven by exact tests, so it never counts as impossible for numerical reasons.
     return std::isfinite(shape) && shape > 0 ? shape : std::numeric_limits<double>::min();
   }
 
@@ -92,6 +108,7 @@ class CornerCutter {
 /// Returns true if the open segment from a to b passes through or touches the closed one from c to d, which
 /// may share ends with it.
 bool is_blocked(const Mesh& mesh, const LidView& view, VertexId a, VertexId b, VertexId c, VertexId d) {
+  // An end of cd in the interior of ab counts as touching.
   const auto between = [&](VertexId v) {
     if (v == a || v == b || turn(mesh, view, a, b, v) != 0) return false;
     const auto& x = mesh.vertices;
@@ -99,7 +116,9 @@ bool is_blocked(const Mesh& mesh, const LidView& view, VertexId a, VertexId b, V
     return (x[v][k] > std::min(x[a][k], x[b][k])) && (x[v][k] < std::max(x[a][k], x[b][k]));
   };
   if (between(c) || between(d)) return true;
+  // A common end: apart from the cases above the segments have only that end in common.
   if (a == c || a == d || b == c || b == d) return false;
+  // Proper crossing: each segment has its ends on both sides of the other.
   return turn(mesh, view, a, b, c) * turn(mesh, view, a, b, d) < 0 &&
          turn(mesh, view, c, d, a) * turn(mesh, view, c, d, b) < 0;
 }
@@ -114,6 +133,8 @@ bool is_blocked_by(const Mesh& mesh, const LidView& view, VertexId a, VertexId b
 /// Returns true if the way to b leaves the polygon's i-th corner into the polygon.
 bool leaves_inward(const Mesh& mesh, const LidView& view, std::span<const VertexId> rim, std::size_t i,
                    VertexId b) {
+  // Local cone test (O'Rourke, Computational Geometry in C): left of both edges at a convex corner, left of
+  // one at a reflex one.
   const VertexId before = rim[(i + rim.size() - 1) % rim.size()], v = rim[i],
                  after = rim[(i + 1) % rim.size()];
   const bool left_of_in = turn(mesh, view, before, v, b) > 0, left_of_out = turn(mesh, view, v, after, b) > 0;
@@ -125,12 +146,14 @@ struct Bridge {
   double length_sq = 0;
 };
 
-/// Holes with more pairs of corners than this are left: nobody waits for so many.
+/// Holes with more corner pairs than this are not closed, to bound the running time.
 constexpr std::size_t kMostBridges = 4'000'000;
 
 /// Returns the shortest bridge that passes between all edges.
 std::optional<Bridge> find_bridge(const Mesh& mesh, std::span<const VertexId> rim,
                                   const std::vector<std::vector<VertexId>>& holes, const LidView& view) {
+  // All pairs of a corner of the polygon and a corner of a hole, shortest first. The stable sort keeps ties
+  // in a fixed order.
   std::size_t corners = 0;
   for (const auto& hole : holes) corners += hole.size();
   if (corners * rim.size() > kMostBridges) return std::nullopt;
@@ -141,6 +164,8 @@ std::optional<Bridge> find_bridge(const Mesh& mesh, std::span<const VertexId> ri
         bridges.push_back({h, i, k, (mesh.vertices[rim[i]] - mesh.vertices[holes[h][k]]).squaredNorm()});
   std::stable_sort(bridges.begin(), bridges.end(),
                    [](const Bridge& a, const Bridge& b) { return a.length_sq < b.length_sq; });
+  // The first pair that is visible: it starts into the polygon and passes no edge of the polygon or of any
+  // hole.
   for (const Bridge& bridge : bridges) {
     const VertexId a = rim[bridge.from], b = holes[bridge.hole][bridge.to];
     const auto in_way = [&](const auto& hole) { return is_blocked_by(mesh, view, a, b, hole); };
@@ -154,12 +179,14 @@ std::optional<Bridge> find_bridge(const Mesh& mesh, std::span<const VertexId> ri
 }  // namespace
 
 std::optional<LidView> view_of(const Mesh& mesh, std::span<const VertexId> rim) {
+  // Vector area of the polygon's fan (Newell). Its largest component gives the axis of projection.
   Vector3d normal = Vector3d::Zero();
   const Vector3d o = mesh.vertices[rim[0]];
   for (std::size_t i = 1; i + 1 < rim.size(); ++i)
     normal += (mesh.vertices[rim[i]] - o).cross(mesh.vertices[rim[i + 1]] - o);
   int axis = 0;
   if (!(normal.cwiseAbs().maxCoeff(&axis) > 0) || !normal.allFinite()) return std::nullopt;
+  // Swap the axes if the polygon would be clockwise.
   const int x = (axis + 1) % 3, y = (axis + 2) % 3;
   return normal[axis] > 0 ? LidView{x, y} : LidView{y, x};
 }
@@ -173,6 +200,7 @@ std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, c
   const std::size_t n = rim.size();
   if (n > kMostForLeastArea) return std::nullopt;
   const auto x = [&](std::size_t i) -> const Vector3d& { return mesh.vertices[rim[i]]; };
+  // Twice the area, which orders triangulations the same way. Triangles without area are excluded, exactly.
   const auto area = [&](std::size_t i, std::size_t k, std::size_t j) {
     if (exact::collinear3d(x(i).data(), x(k).data(), x(j).data())) return kInfinity;
     return (x(k) - x(i)).cross(x(j) - x(i)).norm();
@@ -180,12 +208,15 @@ std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, c
   // cost[i n + j]: the least area between the rim from i to j and the edge that joins them (Klincsek 1980).
   std::vector<double> cost(n * n, 0);
   std::vector<std::size_t> third(n * n, 0);
+  // By increasing length of the part, so that both smaller parts are known.
   for (std::size_t span = 2; span < n; ++span)
     for (std::size_t i = 0; i + span < n; ++i) {
       const std::size_t j = i + span;
       double& best = cost[i * n + j] = kInfinity;
+      // The edge from the first to the last vertex is a side of the polygon, not a diagonal.
       if (span + 1 < n && !allowed(rim[i], rim[j])) continue;
       for (std::size_t k = i + 1; k < j; ++k) {
+        // The parts alone cost too much: no need to compute the triangle.
         const double rest = cost[i * n + k] + cost[k * n + j];
         if (!(rest < best)) continue;
         const double sum = rest + area(i, k, j);
@@ -193,6 +224,7 @@ std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, c
       }
     }
   if (!(cost[n - 1] < kInfinity)) return std::nullopt;
+  // Backtracking: split each part at its best third vertex. An explicit stack instead of recursion.
   Lid lid;
   std::vector<std::array<std::size_t, 2>> open = {{0, n - 1}};
   while (!open.empty()) {
@@ -210,6 +242,7 @@ std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, c
 Lid fan_about_middle(const Mesh& mesh, std::span<const VertexId> rim) {
   Lid lid;
   Vector3d middle = Vector3d::Zero();
+  // Divide before adding, against overflow.
   for (const VertexId v : rim) middle += mesh.vertices[v] / static_cast<double>(rim.size());
   lid.middle = middle;
   for (std::size_t i = 0; i < rim.size(); ++i)
@@ -225,6 +258,8 @@ std::optional<std::vector<VertexId>> bridge_holes(const Mesh& mesh, std::vector<
     if (!bridge) return std::nullopt;
     const std::vector<VertexId>& hole = holes[bridge->hole];
     const auto from = static_cast<std::ptrdiff_t>(bridge->from);
+    // Walk the polygon to the bridge, around the hole back to the bridge's end, and on: both ends occur
+    // twice.
     std::vector<VertexId> joined(rim.begin(), rim.begin() + from + 1);
     for (std::size_t i = 0; i <= hole.size(); ++i) joined.push_back(hole[(bridge->to + i) % hole.size()]);
     joined.insert(joined.end(), rim.begin() + from, rim.end());
@@ -235,6 +270,8 @@ std::optional<std::vector<VertexId>> bridge_holes(const Mesh& mesh, std::vector<
 }
 
 bool lies_inside(const Mesh& mesh, std::span<const VertexId> rim, VertexId point, const LidView& view) {
+  // Crossing parity along the ray towards +x. Edges count as half-open in y, so that a vertex at the ray's
+  // height counts once.
   bool inside = false;
   const auto& x = mesh.vertices;
   const double height = x[point][view.y];
@@ -242,10 +279,12 @@ bool lies_inside(const Mesh& mesh, std::span<const VertexId> rim, VertexId point
     const VertexId a = rim[i], b = rim[(i + 1) % rim.size()];
     const bool a_above = x[a][view.y] > height, b_above = x[b][view.y] > height;
     const int side = turn(mesh, view, a, b, point);
+    // On the edge: within its bounding box as well as on its line.
     if (side == 0 && std::min(x[a][view.x], x[b][view.x]) <= x[point][view.x] &&
         x[point][view.x] <= std::max(x[a][view.x], x[b][view.x]) &&
         std::min(x[a][view.y], x[b][view.y]) <= height && height <= std::max(x[a][view.y], x[b][view.y]))
       return false;
+    // An edge upward passes right of the point if the point is on its left, and vice versa.
     if (a_above != b_above && (side > 0) == b_above) inside = !inside;
   }
   return inside;

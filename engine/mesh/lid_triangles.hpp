@@ -19,7 +19,7 @@ struct Lid {
   std::optional<Eigen::Vector3d> middle;  ///< where kMiddle is to lie
 };
 
-/// Tells whether a triangulation may have this edge inside.
+/// Returns true if a triangulation may contain this edge as a diagonal.
 using EdgeAllowed = std::function<bool(VertexId, VertexId)>;
 
 /// Two coordinates in which a polygon is seen, so that it turns left.

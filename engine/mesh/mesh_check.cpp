@@ -23,6 +23,7 @@ void turn(Mesh& mesh, FaceId f) {
     std::reverse(first, last);
     return;
   }
+  // Reversing all but the first corner flips the orientation and keeps the fan's apex.
   std::reverse(first + 1, last);
   if (last - first == 4) std::rotate(first, first + 2, last);
 }
@@ -30,10 +31,12 @@ void turn(Mesh& mesh, FaceId f) {
 /// Returns true if the directed edges (2D: ends of segments) cancel: the boundary of the faces, as a sum, is
 /// empty.
 bool is_cycle(const Mesh& mesh, const std::vector<FaceUse>& use) {
+  // Signed count of each edge: +1 from the smaller to the larger vertex.
   std::map<std::array<VertexId, 2>, std::int64_t> sum;
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     if (use[f] == FaceUse::nothing) return false;
     const auto c = mesh.face(f);
+    // 2D: the boundary of a segment is its start less its end.
     if (mesh.dim == 2) {
       ++sum[{c[0], c[0]}];
       --sum[{c[1], c[1]}];
@@ -49,9 +52,11 @@ bool is_cycle(const Mesh& mesh, const std::vector<FaceUse>& use) {
 
 /// Returns for each component whether it is a sheet: has an open edge, and lies in one plane. Exact.
 std::vector<bool> find_sheets(const Mesh& mesh, const MeshFindings& found) {
+  // Only components with an open edge can be sheets.
   std::vector<bool> sheet = found.topology.component_open;
   if (mesh.dim == 2) sheet.assign(sheet.size(), false);
   if (std::find(sheet.begin(), sheet.end(), true) == sheet.end()) return sheet;
+  // All corners of each candidate, to be tested against one plane.
   std::vector<std::vector<VertexId>> corners(sheet.size());
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     const std::uint32_t component = found.topology.component_of_face[f];
@@ -61,6 +66,7 @@ std::vector<bool> find_sheets(const Mesh& mesh, const MeshFindings& found) {
     else
       corners[component].insert(corners[component].end(), mesh.face(f).begin(), mesh.face(f).end());
   }
+  // Exact: three corners that span a plane, and all others in it.
   for (std::size_t i = 0; i < sheet.size(); ++i) {
     const auto plane = sheet[i] ? spanning_corners(mesh, corners[i]) : std::nullopt;
     sheet[i] = plane && is_planar(mesh, corners[i], *plane);
@@ -75,16 +81,20 @@ MeshFindings examine(const Mesh& mesh, std::size_t kept) {
   MeshReport& report = found.report;
   report.kept = kept;
   if (mesh.face_count() == 0) ++report.findings[static_cast<std::size_t>(MeshFault::no_faces)].count;
+  // Faces one by one, then duplicates, then vertices.
   found.use = check_faces(mesh, report);
   check_duplicates(mesh, found.use, report);
   check_vertices(mesh, report);
+  // Neighbourhood of faces: components, closedness, genus.
   found.topology = analyse_topology(mesh, found.use, report);
   report.components = found.topology.components;
   report.closed = found.topology.closed;
   report.bounds_solid = report.closed || is_cycle(mesh, found.use);
   report.genus = found.topology.genus;
+  // Orientation of closed components by nesting depth; each is named by its first face.
   found.inside_out = wrongly_facing_components(mesh, found.use, found.topology);
   for (const auto& faces : found.inside_out) note(report, MeshFault::inside_out, faces.front());
+  // Open components that lie in one plane bound nothing.
   found.sheet = find_sheets(mesh, found);
   const auto& open = found.topology.component_open;
   report.open_components = static_cast<std::uint32_t>(std::count(open.begin(), open.end(), true));

@@ -138,6 +138,7 @@ std::string_view text_of(MeshFault fault, int dim) {
 /// Returns what to do about open edges, which depends on whether there is a hole at all.
 std::string advice_on_openings(const MeshReport& report) {
   const std::uint32_t sheets = report.sheets, open = report.open_components;
+  // Only sheets: closing them would make a body of no volume.
   if (sheets > 0 && sheets == open)
     return sheets == 1 ? "this is a sheet: it bounds nothing"
                        : "these are " + std::to_string(sheets) + " sheets: they bound nothing";
@@ -152,6 +153,7 @@ std::string line_for(const Mesh& mesh, MeshFault fault, const MeshReport& report
   const Help help = help_for(fault);
   std::string line = mesh.name.empty() ? "mesh" : mesh.name;
   line.append(": ").append(text_of(fault, mesh.dim));
+  // Number of findings, then the first affected elements in the order of the file.
   if (help.offender != Offender::none) {
     line.append(" (").append(std::to_string(finding.count)).append(finding.count == 1 ? " time" : " times");
     line.append("): ").append(noun(help.offender, mesh.dim)).append(" ");
@@ -162,6 +164,7 @@ std::string line_for(const Mesh& mesh, MeshFault fault, const MeshReport& report
     line.append(", counted from 0 in file order");
   }
   line.append("; ");
+  // In 2D an open edge is a loose end, for which the advice on sheets does not apply.
   return fault == MeshFault::open_edge && mesh.dim == 3 ? line + advice_on_openings(report)
                                                         : line.append(help.advice);
 }

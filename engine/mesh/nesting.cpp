@@ -1,3 +1,8 @@
+// Orientation of closed components by nesting depth:
+// 1. Candidates: component A is in B if a vertex of A is inside B (ray parity, all components in one
+//    traversal).
+// 2. Candidates whose surfaces cross are dropped, because neither is then entirely inside the other.
+// 3. A component inside an even number of others must have positive volume, at odd depth negative.
 #include "engine/mesh/nesting.hpp"
 
 #include <algorithm>
@@ -27,6 +32,7 @@ class Nesting {
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
       const std::uint32_t c = topology.component_of_face[f];
       if (c == kNull) continue;
+      // A coordinate that is not finite: exact tests cannot use the component.
       if (use[f] < FaceUse::points) usable_[c] = false;
       faces_[c].push_back(f);
       for (const VertexId v : mesh.face(f)) boxes_[c].extend(mesh.vertices[v]);
@@ -34,6 +40,7 @@ class Nesting {
   }
 
   std::vector<std::vector<FaceId>> wrongly_facing() {
+    // Depth is the number of components around. The sign of the volume is exact.
     std::vector<Pair> nested = find_nested();
     drop_crossing(nested);
     for (const Pair& p : nested) ++depth_[p.first];
@@ -46,22 +53,26 @@ class Nesting {
 
  private:
   /// Finds which components lie in which others. One lies in another if one of its vertices does. A vertex on
-  /// the other's surface does not tell, so the next one is tried. If all vertices lie there, the two have
-  /// their surface in common and neither is a void of the other.
+  /// the other's surface does not decide, so the next one is tried. If all tried vertices are on it, the two
+  /// count as sharing their surface, and neither is a void of the other.
   std::vector<Pair> find_nested() const {
     std::vector<Pair> nested;
+    // Nesting takes two components.
     if (std::count(usable_.begin(), usable_.end(), true) < 2) return nested;
+    // Only usable components take part in the search.
     std::vector<std::uint32_t> surface = topology_.component_of_face;
     for (std::uint32_t& c : surface)
       if (c != kNull && !usable_[c]) c = kNull;
     const SideFinder finder(mesh_, std::move(surface));
     for (std::uint32_t inner = 0; inner < faces_.size(); ++inner) {
       if (!usable_[inner]) continue;
+      // A bounded number of vertices is tried, so the cost per component is bounded.
       const std::vector<VertexId> tried = first_corners(inner);
       const auto point = [&](std::size_t i) {
         return i < tried.size() ? &mesh_.vertices[tried[i]] : nullptr;
       };
       for (const std::uint32_t outer : finder.around(inner, point))
+        // Necessary for nesting, and cheap: discards components that only reach into each other.
         if (boxes_[outer].contains(boxes_[inner])) nested.emplace_back(inner, outer);
     }
     return nested;
@@ -81,6 +92,7 @@ class Nesting {
 
   void drop_crossing(std::vector<Pair>& nested) const {
     if (nested.empty()) return;
+    // Sorted for binary search: the filter below runs for every pair of faces with overlapping boxes.
     std::sort(nested.begin(), nested.end());
     const auto is_candidate = [&](std::uint32_t a, std::uint32_t b) {
       return std::binary_search(nested.begin(), nested.end(), Pair(a, b));
@@ -91,6 +103,7 @@ class Nesting {
     };
     const auto wanted = [&](FaceId f, FaceId g) {
       const auto [a, b] = components(f, g);
+      // Exact tests only for candidates that are not refuted yet.
       return a != b && (is_candidate(a, b) || is_candidate(b, a)) && !crossing.contains({a, b});
     };
     find_crossings(mesh_, use_, wanted, [&](FaceId f, FaceId g) {

@@ -1,3 +1,5 @@
+// Point location by ray parity. The exact ray predicate resolves degenerate hits by Simulation of Simplicity
+// (Edelsbrunner and Muecke 1990), so each face either is crossed or not.
 #include "engine/mesh/point_inside.hpp"
 
 #include <algorithm>
@@ -29,6 +31,7 @@ bool cast_at_face(const Mesh& mesh, FaceId f, const Eigen::Vector3d& p, Visit vi
 }  // namespace
 
 PointSide point_side(const Mesh& mesh, std::span<const FaceId> faces, const Eigen::Vector3d& p) {
+  // Every crossing toggles the side. A hit on the surface itself ends the count.
   bool inside = false;
   const auto count = [&](exact::RayHit hit) {
     inside ^= hit == exact::RayHit::crosses;
@@ -56,6 +59,7 @@ std::uint32_t SideFinder::build(std::uint32_t first, std::uint32_t last) {
   nodes_.push_back({{}, first, last, 0});
   for (std::uint32_t i = first; i < last; ++i) nodes_[index].box.extend(boxes_[order_[i]]);
   if (last - first <= kLeafSize) return index;
+  // Median split along the longest extent. Halved coordinates cannot overflow.
   const Eigen::AlignedBox3d& box = nodes_[index].box;
   int axis = 0;
   (box.max() / 2 - box.min() / 2).maxCoeff(&axis);
@@ -76,6 +80,7 @@ std::vector<SideFinder::Side> SideFinder::sides(const Eigen::Vector3d& p) const 
     return box.max().x() >= p.x() && box.min().y() <= p.y() && p.y() <= box.max().y() &&
            (mesh_.dim == 2 || (box.min().z() <= p.z() && p.z() <= box.max().z()));
   };
+  // One parity per surface that the ray's boxes reach. on_surface is final.
   std::map<std::uint32_t, PointSide> found;
   const auto cast = [&](FaceId f) {
     PointSide& side = found.try_emplace(surface_of_face_[f], PointSide::outside).first->second;
@@ -87,6 +92,7 @@ std::vector<SideFinder::Side> SideFinder::sides(const Eigen::Vector3d& p) const 
       return true;
     });
   };
+  // Traverse only nodes that the ray reaches: O(log n + hits) for usual meshes.
   std::vector<std::uint32_t> stack;
   if (!nodes_.empty()) stack.push_back(0);
   while (!stack.empty()) {
@@ -102,6 +108,7 @@ std::vector<SideFinder::Side> SideFinder::sides(const Eigen::Vector3d& p) const 
     for (std::uint32_t i = node.first; i < node.last; ++i)
       if (is_on_ray(boxes_[order_[i]])) cast(order_[i]);
   }
+  // Only surfaces that the point is in or on are returned. The map lists them in ascending order.
   std::vector<Side> out;
   for (const auto& [surface, side] : found)
     if (side != PointSide::outside) out.push_back({surface, side});

@@ -1,3 +1,8 @@
+// Exact tests of a polygon's shape, and triangulations without degenerate triangles.
+// 1. Convexity: project along an axis close to the normal. All turns must have the same sign, and the sides
+//    must change between left-to-right and right-to-left twice, which excludes polygons that wind more than
+//    once.
+// 2. Triangulations: no triangle has all three corners on one straight side.
 #include "engine/mesh/polygon_shape.hpp"
 
 #include <algorithm>
@@ -17,6 +22,7 @@ const double* point(const Mesh& mesh, VertexId v) {
 /// Returns the axes, beginning with the one nearest to the polygon's normal (Newell's, of the polygon scaled
 /// to size 1).
 std::array<int, 3> axes_by_normal(const Mesh& mesh, std::span<const VertexId> corners) {
+  // Scaled by the largest coordinate, against overflow. Rounding only affects which axis is tried first.
   double size = 0;
   for (const VertexId v : corners) size = std::max(size, mesh.vertices[v].cwiseAbs().maxCoeff());
   const Eigen::Vector3d origin = mesh.vertices[corners[0]] / size;
@@ -60,6 +66,7 @@ Round go_round(const std::vector<Eigen::Vector2d>& p) {
   Round round;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const auto &a = p[i], &b = p[(i + 1) % p.size()], &c = p[(i + 2) % p.size()];
+    // Exact turn at b, and whether the lexicographic direction changes there.
     const int turn = exact::orient2d(a.data(), b.data(), c.data());
     round.left |= turn > 0;
     round.right |= turn < 0;
@@ -87,10 +94,12 @@ struct ProperRing {
 
 ProperRing proper_ring(const Mesh& mesh, std::span<const VertexId> corners) {
   const std::size_t n = corners.size();
+  // Proper corners are those where the polygon turns. Three of them are needed for an area.
   std::vector<std::size_t> proper;
   for (std::size_t i = 0; i < n; ++i)
     if (!is_straight(mesh, corners[(i + n - 1) % n], corners[i], corners[(i + 1) % n])) proper.push_back(i);
   if (proper.size() < 3) return {};
+  // Rotate so that the first proper corner is corner 0; the other numbers shift accordingly.
   ProperRing out{{corners.begin(), corners.end()}, proper[1] - proper[0], proper.back() - proper[0]};
   std::rotate(out.ring.begin(), out.ring.begin() + static_cast<std::ptrdiff_t>(proper[0]), out.ring.end());
   return out;
@@ -101,6 +110,7 @@ ProperRing proper_ring(const Mesh& mesh, std::span<const VertexId> corners) {
 std::optional<std::array<VertexId, 3>> spanning_corners(const Mesh& mesh, std::span<const VertexId> corners) {
   if (corners.size() < 3) return std::nullopt;
   const VertexId a = corners[0];
+  // a, then the first corner at another position, then the first corner off the line through both.
   std::size_t i = 1;
   while (i < corners.size() && mesh.vertices[corners[i]] == mesh.vertices[a]) ++i;
   for (std::size_t k = i + 1; k < corners.size(); ++k)
@@ -126,6 +136,7 @@ bool is_convex(const Mesh& mesh, std::span<const VertexId> corners) {
 void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
                         std::vector<std::array<VertexId, 3>>& triangles) {
   triangles.clear();
+  // The plain fan if it has no degenerate triangle, which is nearly always so.
   const ProperRing p =
       corners.size() == 3 || fan_has_area(mesh, corners) ? ProperRing{} : proper_ring(mesh, corners);
   if (p.ring.empty()) {
@@ -154,6 +165,7 @@ class Chords {
  public:
   Chords(const Mesh& mesh, std::span<const VertexId> ring) : side_(ring.size(), 0) {
     for (std::size_t i = 1; i < ring.size(); ++i)
+      // Consecutive corners on one straight side get the same number.
       side_[i] =
           side_[i - 1] + (is_straight(mesh, ring[i - 1], ring[i], ring[(i + 1) % ring.size()]) ? 0 : 1);
   }
@@ -162,10 +174,13 @@ class Chords {
   /// along a straight side with corners in its middle. The chord from i to j must be such a one; then there
   /// is one: beyond the first side's end and before the last one's start, or next to i, or next to j.
   std::size_t middle(std::size_t i, std::size_t j) const {
+    // Binary searches in the ascending numbers: the end of the side that starts at i, and the start of the
+    // side that ends at j.
     const auto begin = side_.begin() + static_cast<std::ptrdiff_t>(i),
                end = side_.begin() + static_cast<std::ptrdiff_t>(j);
     const auto first_end = i + static_cast<std::size_t>(std::upper_bound(begin, end, *begin) - begin);
     const auto last_start = i + static_cast<std::size_t>(std::lower_bound(begin, end, *(end - 1)) - begin);
+    // The median, moved past the ends of both sides if necessary.
     if (first_end + 1 < last_start) return std::clamp(i + (j - i) / 2, first_end + 1, last_start - 1);
     return i + 2 == j || side_[i + 1] != side_[j - 1] ? i + 1 : j - 1;
   }
@@ -178,6 +193,7 @@ class Chords {
 
 void triangulate_by_halves(const Mesh& mesh, std::span<const VertexId> corners,
                            std::vector<std::array<VertexId, 3>>& triangles) {
+  // Without proper corners fall back to the fan.
   const ProperRing p = proper_ring(mesh, corners);
   const std::size_t n = p.ring.size();
   if (n == 0) return triangulate_convex(mesh, corners, triangles);

@@ -1,3 +1,8 @@
+// Self-intersections of a mesh, exactly:
+// 1. Polygons become triangles: exact ones for planar convex faces, the fan for others.
+// 2. FacePairs finds the pairs of faces whose bounds overlap.
+// 3. Each pair is decided by exact tests of its triangles. A face with very many corners has a tree of its
+//    triangles, so that a pair of such faces does not cost the product of their triangle counts.
 #include "engine/mesh/self_intersections.hpp"
 
 #include <algorithm>
@@ -22,12 +27,16 @@ using Triangle = std::array<VertexId, 3>;
 
 /// Returns true if two triangles lie in one plane, face the same way and share more than points and lines.
 bool cover_each_other(const double* const a[3], const double* const b[3]) {
+  // The triangles are coplanar. Project along the first axis that leaves a its area; orientations are the
+  // same in the projection.
   for (int x = 0; x < 3; ++x) {
     const int y = (x + 1) % 3;
     const int turn = exact::orient_axes(a[0], a[1], a[2], x, y);
     if (turn == 0) continue;
+    // Opposite orientation: the solids are on different sides of the plane and only touch.
     if (exact::orient_axes(b[0], b[1], b[2], x, y) != turn) return false;
-    // If two convex figures have nothing in common but their rims, a side of one has the other beyond it.
+    // Separating axis theorem in 2D: if the interiors of two convex polygons are disjoint, the line of a
+    // side of one of them separates them.
     const auto parted = [&](const double* const p[3], const double* const q[3]) {
       for (int i = 0; i < 3; ++i) {
         bool beyond = true;
@@ -43,6 +52,7 @@ bool cover_each_other(const double* const a[3], const double* const b[3]) {
 }
 
 bool overlap_3d(const double* const a[3], const double* const b[3]) {
+  // If some corner of b is off the plane of a, only a proper crossing counts as overlap.
   for (int k = 0; k < 3; ++k)
     if (exact::orient3d(a[0], a[1], a[2], b[k]) != 0)
       return exact::meet_triangles(a, b) == exact::Meet::cross;
@@ -52,15 +62,18 @@ bool overlap_3d(const double* const a[3], const double* const b[3]) {
 /// Returns true if two segments, which have the solid on their left, cross, or overlap on one line and run
 /// the same way.
 bool overlap_2d(const double* const a[2], const double* const b[2]) {
+  // Not on one line: only a proper crossing counts.
   if (exact::orient2d(a[0], a[1], b[0]) != 0 || exact::orient2d(a[0], a[1], b[1]) != 0)
     return exact::meet_segments(a, b) == exact::Meet::cross;
+  // On one line, compare as intervals on an axis along which a has an extent. Different directions have the
+  // solid on different sides. Open intervals: a shared end is no overlap.
   const int k = a[0][0] != a[1][0] ? 0 : 1;
   const bool forward = a[0][k] < a[1][k];
   if (forward != (b[0][k] < b[1][k])) return false;
   return forward ? a[0][k] < b[1][k] && b[0][k] < a[1][k] : a[0][k] > b[1][k] && b[0][k] > a[1][k];
 }
 
-/// Tells which corners of a face with very many corners are neighbours.
+/// Adjacency of the corners of a face with very many corners.
 class Ring {
  public:
   explicit Ring(std::span<const VertexId> corners) {
@@ -68,6 +81,7 @@ class Ring {
     std::sort(places_.begin(), places_.end());
   }
   bool are_neighbours(VertexId v, VertexId w) const {
+    // Each corner occurs once: a face with a repeated corner does not count as convex.
     const auto n = static_cast<std::uint32_t>(places_.size());
     const std::uint32_t i = place(v), j = place(w);
     return (i + 1) % n == j || (j + 1) % n == i;
@@ -95,6 +109,7 @@ class Pieces {
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
       offsets_.push_back(static_cast<std::uint32_t>(triangles_.size()));
       if (use[f] < FaceUse::area || mesh.dim == 2) continue;
+      // Only proper faces take part. Segments are used as they are.
       pairs_.is_large(f) ? add_large(f, use[f]) : add_triangles(f, use[f]);
     }
     offsets_.push_back(static_cast<std::uint32_t>(triangles_.size()));
@@ -112,6 +127,8 @@ class Pieces {
       const double* const pb[2] = {point(b[0]), point(b[1])};
       return !exact::meet_only_in_shared_2d(pa, a.data(), pb, b.data());
     }
+    // Triangles of a large face may share a chord of it with the other face, which the index test would
+    // excuse.
     const bool large = pairs_.is_large(f) || pairs_.is_large(g);
     return any_pair(f, g, [&](const Triangle& s, const Triangle& t) {
       const auto a = points(s), b = points(t);
@@ -171,6 +188,7 @@ class Pieces {
     std::vector<Triangle> triangles;
     std::optional<Ring> ring;
     if (use == FaceUse::convex) {
+      // Convex: triangles of all sizes, whose boxes overlap less than those of a fan.
       triangulate_by_halves(mesh_, mesh_.face(f), triangles);
       ring.emplace(mesh_.face(f));
     } else {
@@ -183,6 +201,7 @@ class Pieces {
   template <class Test>
   bool any_pair(FaceId f, FaceId g, Test test) const {
     if (pairs_.is_large(f) || pairs_.is_large(g)) return any_pair_of_trees(f, g, test);
+    // All pairs of triangles: neither face has more than kFewNeighbours corners.
     for (std::uint32_t i = offsets_[f]; i < offsets_[f + 1]; ++i)
       for (std::uint32_t j = offsets_[g]; j < offsets_[g + 1]; ++j)
         if (test(triangles_[i], triangles_[j])) return true;
@@ -191,6 +210,7 @@ class Pieces {
 
   template <class Test>
   bool any_pair_of_trees(FaceId f, FaceId g, Test& test) const {
+    // The smaller face gets a temporary tree; it has few triangles, so the tree is a single leaf.
     const auto tree_of = [&](FaceId face, std::optional<TriangleTree>& made) -> const TriangleTree* {
       if (pairs_.is_large(face)) return &large_.at(face).tree;
       const auto at = [&](std::uint32_t i) { return triangles_.begin() + i; };
@@ -207,6 +227,7 @@ class Pieces {
   /// The triangles have a side in common that is no side of one of the faces, but a chord through its inside:
   /// there the faces meet, though the triangles do no more than share a side.
   bool share_a_chord(FaceId f, const Triangle& s, FaceId g, const Triangle& t) const {
+    // Corners in common, by index.
     VertexId shared[3];
     int count = 0;
     for (const VertexId v : s)
@@ -214,10 +235,11 @@ class Pieces {
     return count == 2 && !(is_side(f, shared[0], shared[1]) && is_side(g, shared[0], shared[1]));
   }
 
-  /// Two corners of one triangle of a face are neighbours in the face. (One that is not planar and convex is
-  /// its fan, all sides of which are its own.)
+  /// Two corners of one triangle of a face are neighbours in the face. (A face that is not planar and convex
+  /// is its fan, and all sides of the fan count as its own.)
   bool is_side(FaceId f, VertexId v, VertexId w) const {
     if (pairs_.is_large(f)) {
+      // Binary search in the sorted corners: a linear search for every triangle would be quadratic.
       const auto& ring = large_.at(f).ring;
       return !ring || ring->are_neighbours(v, w);
     }
@@ -237,10 +259,11 @@ class Pieces {
   std::vector<Triangle> scratch_;
 };
 
-/// Calls found(f, g) for the pairs that may meet and of which test(pieces, f, g) holds.
+/// Calls found(f, g) for the candidate pairs for which test(pieces, f, g) is true.
 template <class Test>
 void find_pairs(const Mesh& mesh, const std::vector<FaceUse>& use, const Test& test,
                 const std::function<void(FaceId, FaceId)>& found) {
+  // One thread, because callers' functions are not required to be thread-safe.
   const Pieces pieces(mesh, use);
   Workers alone;
   pieces.for_each_pair(
@@ -273,6 +296,8 @@ std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<
   std::vector<std::atomic<bool>> meets(mesh.face_count());
   pieces.for_each_pair(
       [&](FaceId f, FaceId g) {
+        // Skips the exact test if both faces are known. Flags only change from false to true, so races
+        // between threads do no harm.
         if (!(meets[f] && meets[g]) && pieces.meet_outside_shared(f, g)) meets[f] = meets[g] = true;
       },
       workers);
@@ -294,6 +319,7 @@ void find_crossings(const Mesh& mesh, const std::vector<FaceUse>& use,
 bool overlaps_itself(const Mesh& mesh, const std::vector<FaceUse>& use,
                      const std::function<bool(FaceId, FaceId)>& wanted) {
   bool found = false;
+  // After the first hit, `wanted` rejects all pairs, so no more exact tests run.
   find_overlaps(
       mesh, use, [&](FaceId f, FaceId g) { return !found && (!wanted || wanted(f, g)); },
       [&](FaceId, FaceId) { found = true; });

@@ -1,3 +1,10 @@
+// Topology of a polygon mesh by sorting and union-find, in O(n log n):
+// 1. Sort all sides of faces by edge (2D: ends of segments by vertex).
+// 2. Join the faces at each edge to components, and the corners of these faces to fans around the edge's
+//    vertices.
+// 3. Judge each edge: closed manifold edges have two sides in opposite directions.
+// 4. Judge each vertex: manifold vertices have one fan.
+// 5. Genus by Euler's formula, if the surface is closed and manifold.
 #include "engine/mesh/surface_topology.hpp"
 
 #include <algorithm>
@@ -31,6 +38,7 @@ class Analysis {
         faces_(mesh.face_count()),
         corners_(mesh.face_vertices.size()),
         fans_(mesh.vertices.size(), 0) {
+    // Faces that cannot be used keep kNull as their component.
     out_.component_of_face.assign(mesh.face_count(), kNull);
     all_usable_ = true;
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
@@ -43,6 +51,7 @@ class Analysis {
   }
 
   SurfaceTopology run() {
+    // Components first, because judging an edge marks its component.
     for_each_edge([&](std::span<const SideUse> edge) { join(edge); });
     number_components();
     for_each_edge([&](std::span<const SideUse> edge) { judge(edge); });
@@ -60,9 +69,11 @@ class Analysis {
     const std::uint32_t first = mesh_.face_offsets[f];
     out_.component_of_face[f] = f;  // for now: a face in use
     ++faces_used_;
+    // Each corner starts as a fan of its own. Every join of two fans lowers the count.
     for (const VertexId v : corners) ++fans_[v];
     for (std::uint32_t i = 0; i < corners.size(); ++i) {
       const VertexId a = corners[i], b = corners[(i + 1) % corners.size()];
+      // 2D: the key is the vertex. The first end leaves it (the segment starts there), the second enters it.
       if (mesh_.dim == 2)
         sides_.push_back({a, f, first + i, i == 0});
       else if (a != b)
@@ -93,6 +104,7 @@ class Analysis {
 
   /// Joins the fans of two faces at an edge: they are in one fan at both of its ends.
   void join_fans(const SideUse& s, const SideUse& t) {
+    // The corners of both faces at the smaller and at the larger vertex of the edge.
     const std::uint32_t low_s = s.forward ? s.corner : next_corner(s),
                         high_s = s.forward ? next_corner(s) : s.corner;
     const std::uint32_t low_t = t.forward ? t.corner : next_corner(t),
@@ -113,12 +125,15 @@ class Analysis {
   }
 
   void judge(std::span<const SideUse> edge) {
+    // The regular case: two sides, consistently oriented.
     const bool opposite = edge.size() == 2 && edge[0].forward != edge[1].forward;
     if (opposite) return;
     out_.component_closed[out_.component_of_face[edge[0].face]] = false;
+    // Two sides in the same direction: one face is flipped.
     if (edge.size() == 2) return note(report_, MeshFault::flipped_face, edge[0].face, edge[1].face);
     if (edge.size() == 1) out_.component_open[out_.component_of_face[edge[0].face]] = true;
     const MeshFault fault = edge.size() == 1 ? MeshFault::open_edge : MeshFault::non_manifold_edge;
+    // The key is the edge: its vertices are the upper and the lower 32 bits.
     if (mesh_.dim == 2) return note(report_, fault, static_cast<VertexId>(edge[0].key));
     note(report_, fault, static_cast<VertexId>(edge[0].key >> 32), static_cast<VertexId>(edge[0].key));
   }
@@ -129,6 +144,7 @@ class Analysis {
     if (mesh_.dim == 2) return true;
     bool manifold = true;
     for (VertexId v = 0; v < fans_.size(); ++v) {
+      // A vertex without fans is unused and does not count for Euler's formula.
       vertices_used_ += fans_[v] > 0;
       if (fans_[v] <= 1) continue;
       manifold = false;

@@ -1,3 +1,5 @@
+// Sign of an enclosed volume, exactly: a sum of determinants (divergence theorem), first in doubles with an
+// error bound, then in integers if the bound cannot decide. Doubles become integers by a common power of two.
 #include "engine/mesh/volume_sign.hpp"
 
 #include <algorithm>
@@ -39,6 +41,8 @@ int sign_by_doubles(const Mesh& mesh, std::span<const FaceId> faces) {
     sum += x * y * z;
     size += std::abs(x * y * z);
   };
+  // Determinant of three edges from the origin, expanded to six products. In 2D the third is the unit vector
+  // along z.
   for_each_simplex(mesh, faces, [&](VertexId ia, VertexId ib, VertexId ic) {
     const Eigen::Vector3d a = mesh.vertices[ia] - origin, b = mesh.vertices[ib] - origin;
     const Eigen::Vector3d c = mesh.dim == 2 ? Eigen::Vector3d(0, 0, 1) : mesh.vertices[ic] - origin;
@@ -53,6 +57,7 @@ int sign_by_doubles(const Mesh& mesh, std::span<const FaceId> faces) {
   });
   static constexpr double kU = 0x1p-53, kTiny = 0x1p-700, kLarge = 0x1p200;
   const double bound = 2 * (n + 8) * kU * size;
+  // Outside this range underflow or overflow could invalidate the bound. Also catches NaN.
   if (!(size > kTiny) || !(largest < kLarge)) return 0;
   if (sum > bound) return 1;
   return sum < -bound ? -1 : 0;
@@ -64,6 +69,7 @@ class IntegerPoints {
   IntegerPoints(const Mesh& mesh, std::span<const FaceId> faces) : mesh_(mesh) {
     for (const FaceId f : faces)
       for (const VertexId v : mesh.face(f))
+        // The smallest exponent of a last bit among all coordinates: every coordinate is a multiple of it.
         for (const double x : mesh.vertices[v])
           if (x != 0) shift_ = std::min(shift_, std::ilogb(x) - 52);
   }
@@ -72,6 +78,7 @@ class IntegerPoints {
     const double x = mesh_.vertices[v][axis];
     if (x == 0) return 0;
     const int exponent = std::ilogb(x) - 52;  // exponent of the last of its 53 bits
+    // The 53-bit significand as an integer, then shifted to the common exponent.
     cpp_int value = static_cast<std::int64_t>(std::ldexp(x, -exponent));
     value <<= exponent - shift_;
     return value;
@@ -86,6 +93,8 @@ int sign_by_integers(const Mesh& mesh, std::span<const FaceId> faces) {
   const IntegerPoints at(mesh, faces);
   cpp_int sum = 0;
   for_each_simplex(mesh, faces, [&](VertexId a, VertexId b, VertexId c) {
+    // Scaling does not change the sign, so the shift need not be undone. The origin is zero: no differences
+    // are needed.
     const cpp_int xy = at(a, 0) * at(b, 1) - at(a, 1) * at(b, 0);
     if (mesh.dim == 2) {
       sum += xy;

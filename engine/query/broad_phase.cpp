@@ -1,3 +1,9 @@
+/// Sort and sweep (Baraff 1992) along one axis.
+///
+/// 1. Choose the least crowded axis.
+/// 2. Sort the boxes by their lower ends: by insertion, as bodies move little from step to step.
+/// 3. Sweep: compare each box on the other axes with those that begin before it ends.
+
 #include "engine/query/broad_phase.hpp"
 
 #include <algorithm>
@@ -24,6 +30,7 @@ double crowding(std::span<const Box> boxes, int axis) {
   for (const Box& b : boxes) {
     if (b.isEmpty()) continue;
     const double from = b.min()[axis] / 2, to = b.max()[axis] / 2;
+    // An infinite box would hide how the others lie.
     if (!std::isfinite(from) || !std::isfinite(to)) continue;
     low = any ? std::min(low, from) : from;
     high = any ? std::max(high, to) : to;
@@ -39,6 +46,7 @@ void SweepAndPrune::choose_axis(std::span<const Box> boxes) {
   constexpr double kWorthChanging = 2;
   const std::array<double, 3> crowded = {crowding(boxes, 0), crowding(boxes, 1), crowding(boxes, 2)};
   const auto best = static_cast<int>(std::min_element(crowded.begin(), crowded.end()) - crowded.begin());
+  // Hysteresis: a new axis needs a full sort, so it must be at least twice as good.
   const bool change =
       kWorthChanging * crowded[static_cast<std::size_t>(best)] < crowded[static_cast<std::size_t>(axis_)];
   work_.sorted_afresh = order_.size() != boxes.size() || (change && best != axis_);
@@ -46,6 +54,7 @@ void SweepAndPrune::choose_axis(std::span<const Box> boxes) {
 }
 
 void SweepAndPrune::sort(std::span<const Box> boxes) {
+  // Ties are broken by index: the order is strict and deterministic.
   const auto before = [&](std::uint32_t i, std::uint32_t j) {
     const double x = boxes[i].min()[axis_], y = boxes[j].min()[axis_];
     return x != y ? x < y : i < j;
@@ -56,8 +65,9 @@ void SweepAndPrune::sort(std::span<const Box> boxes) {
     std::sort(order_.begin(), order_.end(), before);
     return;
   }
+  // Insertion sort of the last order: linear in the number of bodies and swaps.
   for (std::size_t k = 1; k < order_.size(); ++k) {
-    if (work_.swaps > kSwapsOfABody * order_.size()) {  // the order is no help: bodies have jumped
+    if (work_.swaps > kSwapsOfABody * order_.size()) {  // bodies have jumped: the last order is no help
       std::sort(order_.begin(), order_.end(), before);
       return;
     }
@@ -78,12 +88,15 @@ const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes) {
     const std::uint32_t i = order_[k];
     const Box& a = boxes[i];
     if (a.isEmpty()) continue;
+    // All boxes that begin before `a` ends overlap it on this axis.
     for (std::size_t l = k + 1; l < order_.size(); ++l) {
       const std::uint32_t j = order_[l];
       const Box& b = boxes[j];
+      // The boxes that follow begin even later.
       if (b.min()[axis_] > a.max()[axis_]) break;
       if (b.isEmpty()) continue;
       ++work_.box_tests;
+      // Compare the other two axes; equal ends count as overlap.
       if (a.min()[u] <= b.max()[u] && b.min()[u] <= a.max()[u] && a.min()[v] <= b.max()[v] &&
           b.min()[v] <= a.max()[v])
         pairs_.push_back({std::min(i, j), std::max(i, j)});

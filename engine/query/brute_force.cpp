@@ -11,6 +11,7 @@ namespace {
 
 struct WorldBody {
   WorldBody(const LrbRep& r, const Pose& pose) : rep(r) {
+    // World coordinates by the same function as in the query: exact tests then see the same doubles.
     for (const auto& v : r.vertices()) x.push_back(pose.apply(v));
   }
   void corners(SimplexId s, const double* out[3]) const {
@@ -21,6 +22,7 @@ struct WorldBody {
   bool holds(const double* point) const {
     int crossings = 0;
     const double* c[3];
+    // Parity of the crossings of a ray, over all simplices.
     for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
       corners(s, c);
       const exact::RayHit hit =
@@ -47,9 +49,11 @@ std::size_t held(const WorldBody& inner, const WorldBody& outer) {
 }
 
 Relation relation_without_contact(const WorldBody& a, const WorldBody& b) {
+  // A surface that is not closed has no inside: only disjoint boxes decide.
   if (!a.rep.closed() || !b.rep.closed())
     return a.box().intersects(b.box()) ? Relation::undefined : Relation::separate;
   const std::size_t a_in_b = held(a, b), b_in_a = held(b, a);
+  // A inside B unless all of B, but not all of A, is inside the other: wholly enclosed bodies count first.
   if (a_in_b > 0 &&
       (a_in_b == a.rep.component_vertices().size() || b_in_a != b.rep.component_vertices().size()))
     return Relation::a_inside_b;
@@ -63,6 +67,7 @@ BruteForceResult brute_force(const LrbRep& a, const Pose& pose_a, const LrbRep& 
   BruteForceResult result;
   bool crosses = false;
   const double *ca[3], *cb[3];
+  // Every pair is tested exactly, without any culling: quadratic.
   for (SimplexId s = 0; s < a.real_simplex_count(); ++s) {
     wa.corners(s, ca);
     for (SimplexId t = 0; t < b.real_simplex_count(); ++t) {

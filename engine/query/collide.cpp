@@ -11,9 +11,10 @@ namespace lrb {
 namespace {
 
 /// Throws InputError if a vertex of the body has a world coordinate that is not finite. Few poses come near
-/// overflow: only then are the vertices looked at.
+/// overflow: only then are the vertices checked.
 void check_world(const LrbRep& rep, const Pose& pose, char name) {
   if (world_size(pose, rep.tree()) <= 0.5 * std::numeric_limits<double>::max()) return;
+  // Near overflow: look for a vertex to name in the message.
   const auto vertices = rep.vertices();
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const Eigen::Vector3d x = pose.apply(vertices[v]);
@@ -24,7 +25,7 @@ void check_world(const LrbRep& rep, const Pose& pose, char name) {
   }
 }
 
-/// A number that is not finite, less itself, is no number, nor is any sum with it.
+/// inf - inf and NaN - NaN are NaN, which a sum propagates: one comparison checks twelve numbers.
 bool is_finite(const Pose& p) {
   return (p.r - p.r).sum() + (p.t - p.t).sum() == 0;
 }

@@ -1,3 +1,10 @@
+/// Explains how the complete query decides about two faces.
+///
+/// 1. Follow the paths from both roots to the leaves of the faces, running the query's kernel on one pair of
+///    nodes at a time; stop where boxes separate nodes.
+/// 2. At the leaves, report which test decides: boxes, planes, floats, or the exact test.
+/// 3. Add the facts that do not depend on the traversal: signs, contact, closest points, regions.
+
 #include "engine/query/explain.hpp"
 
 #include <algorithm>
@@ -19,7 +26,7 @@ namespace {
 using namespace explain;
 using Eigen::Vector3d;
 
-/// Where the simplices of a tree stand.
+/// Locations of simplices in a tree.
 struct Places {
   std::vector<std::uint32_t> parent;  ///< (nodes) the node above
   std::vector<std::uint32_t> leaf;    ///< (simplices) the leaf that holds it
@@ -30,6 +37,7 @@ struct Places {
     const std::vector<TreeNode>& all = tree.nodes();
     for (std::uint32_t n = 0; n < all.size(); ++n)
       for (std::uint32_t k = 0; k < all[n].count; ++k) {
+        // The children of an inner node are contiguous; a leaf refers to a block of simplices.
         if (all[n].is_leaf == 0) {
           parent[all[n].first + k] = n;
           continue;
@@ -41,13 +49,14 @@ struct Places {
   }
 };
 
-/// The way to a simplex in a tree.
+/// The path to a simplex in a tree.
 struct Path {
   std::vector<std::uint32_t> nodes;  ///< from the root to the leaf
   std::vector<int> child;            ///< (|nodes|) which child of its parent; kWhole: the root
   int place;                         ///< of the simplex in its leaf
 
   Path(const ObbTree& tree, const Places& places, SimplexId s) : place(places.place[s]) {
+    // Climb from the leaf to the root, then reverse.
     for (std::uint32_t n = places.leaf[s];; n = places.parent[n]) {
       nodes.push_back(n);
       child.push_back(n == 0 ? kWhole : static_cast<int>(n - tree.nodes()[places.parent[n]].first));
@@ -58,7 +67,7 @@ struct Path {
   }
 };
 
-/// Follows the way from the roots to two simplices.
+/// Follows the paths from the roots to two simplices.
 class Way {
  public:
   Way(QueryContext& ctx, Stepper& stepper, const std::array<Places, 2>& places, PairExplanation& out)
@@ -68,19 +77,24 @@ class Way {
         path_{Path(tree(Side::a), places[0], out.pair.a), Path(tree(Side::b), places[1], out.pair.b)} {}
 
   void follow() {
+    // The roots have no parents: show their own boxes.
     add_nodes({kWhole, kWhole});
     for (;;) {
       const std::array<std::uint32_t, 2> here = {node(0), node(1)};
+      // Let the query's own kernel do this pair of nodes.
       const Stepper::Outcome outcome = stepper_.step({here[0], here[1]});
       if (outcome.parts_whole) {
         if (at_[0] + at_[1] > 0) add_nodes({kWhole, kWhole});  // the roots' own are there already
         return end_at_nodes();
       }
+      // Two leaves: the simplices themselves are next.
       if (stepper_.is_leaf(Side::a, here[0]) && stepper_.is_leaf(Side::b, here[1]))
         return compare_faces(outcome);
+      // Descend in the same tree or trees as the query.
       const std::array<bool, 2> moves = moves_to(outcome);
       for (int s = 0; s < 2; ++s) at_[s] += moves[s];
       add_nodes({moves[0] ? path_[0].child[at_[0]] : kWhole, moves[1] ? path_[1].child[at_[1]] : kWhole});
+      // The next pair on the path was rejected: its boxes decide.
       if (!goes_on_) return end_at_nodes();
     }
   }
@@ -111,18 +125,20 @@ class Way {
     out_.nodes.push_back(pair);
   }
 
-  /// Tells which of the two nodes the query descends here, and whether it goes on to the next pair of the
-  /// way.
+  /// Returns which of the two nodes the query descends here. Sets goes_on_ to whether it reaches the next
+  /// pair of the path.
   std::array<bool, 2> moves_to(const Stepper::Outcome& outcome) {
     goes_on_ = false;
     std::optional<std::array<bool, 2>> kind;  // of any pair of children: they all descend the same nodes
     for (const NodePair& c : outcome.children) {
+      // Where a node differs from the current one, its tree was descended.
       kind = {c.a != node(0), c.b != node(1)};
       const bool on_way = c.a == ((*kind)[0] ? next(0) : node(0)) && c.b == ((*kind)[1] ? next(1) : node(1));
       if (on_way) goes_on_ = true;
     }
     if (kind) return *kind;
-    // No two boxes met, so that nothing shows which were compared: those of both nodes where both have some.
+    // No boxes overlapped, so that nothing shows which were compared. Assume the children of both nodes,
+    // unless one is a leaf.
     const bool leaf_a = stepper_.is_leaf(Side::a, node(0)), leaf_b = stepper_.is_leaf(Side::b, node(1));
     return {!leaf_a, !leaf_b};
   }
@@ -133,6 +149,7 @@ class Way {
     compare_boxes(box_of(tree(Side::a), node(0), path_[0].place, ctx_[Side::a].world.pose()),
                   box_of(tree(Side::b), node(1), path_[1].place, ctx_[Side::b].world.pose()),
                   out_.face_boxes);
+    // The kernel returns only simplices that boxes and planes did not separate.
     const auto found =
         std::find_if(outcome.candidates.begin(), outcome.candidates.end(),
                      [&](const Candidate& c) { return c.a == out_.pair.a && c.b == out_.pair.b; });
@@ -154,6 +171,7 @@ class Way {
 
 PlaneSides sides_of(int dim, const Corners& corners, const Corners& plane) {
   PlaneSides out;
+  // Signed distance in plain doubles, for display.
   const Vector3d origin = point(plane[0]), u = point(plane[1]) - origin;
   const Vector3d normal = dim == 3 ? Vector3d(u.cross(point(plane[2]) - origin)) : Vector3d(-u.y(), u.x(), 0);
   const double length = normal.norm();
@@ -162,6 +180,7 @@ PlaneSides sides_of(int dim, const Corners& corners, const Corners& plane) {
       return dim == 3 ? exact::orient3d(plane[0], plane[1], plane[2], corners[i])
                       : exact::orient2d(plane[0], plane[1], corners[i]);
     };
+    // First exactly, then without the exact fallback, to show where rounding gives a wrong sign.
     out.exact[i] = sign();
     const exact::FloatingPredicates floating;
     out.in_double[i] = sign();
@@ -174,7 +193,7 @@ double ulp_of(double x) {
   return std::nextafter(x, std::numeric_limits<double>::infinity()) - x;
 }
 
-/// Fills in what does not depend on the way.
+/// Fills in the facts that do not depend on the traversal.
 void explain_faces(QueryContext& ctx, PairExplanation& out) {
   const int dim = ctx[Side::a].rep().dim();
   Corners a{}, b{};
@@ -185,9 +204,11 @@ void explain_faces(QueryContext& ctx, PairExplanation& out) {
   if (out.meet != exact::Meet::disjoint)
     out.contact = dim == 3 ? exact::contact_of_triangles(a.data(), b.data())
                            : exact::contact_of_segments(a.data(), b.data());
+  // Closest points, in doubles; faces that intersect have distance 0 whatever these say.
   const NearPoints near = nearest_points(dim, a, b);
   out.nearest = {near.a, near.b};
   out.distance = out.meet == exact::Meet::disjoint ? std::sqrt(near.distance_sq) : 0;
+  // One unit in the last place of the largest coordinate shows how fine the doubles are there.
   double most = 0;
   for (const Corners& corners : {a, b})
     for (int i = 0; i < dim; ++i) most = std::max(most, point(corners[i]).cwiseAbs().maxCoeff());
@@ -196,6 +217,7 @@ void explain_faces(QueryContext& ctx, PairExplanation& out) {
     const LrbRep& rep = ctx[side].rep();
     std::vector<RegionId>& regions = out.hidden_by[static_cast<int>(side)];
     const SimplexId s = side == Side::a ? out.pair.a : out.pair.b;
+    // Climb from the face outward through its regions, then list them from the outside inward.
     for (CellId c = rep.outer_cell(rep.face_of_simplex(s)); is_region(c); c = rep.parent(c.as_region()))
       regions.push_back(c.as_region());
     std::reverse(regions.begin(), regions.end());

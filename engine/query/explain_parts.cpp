@@ -16,6 +16,7 @@ void begin(QueryContext& ctx, const LrbRep& a, const Pose& pose_a, const LrbRep&
 }
 
 Stepper::Outcome Stepper::step(const NodePair& pair) {
+  // Make this pair the only one on the stack, and stop the kernel after it.
   start_at(k_, pair);
   k_.out_size = k_.parted_nodes_size = 0;
   k_.parted_nodes = parted_nodes_.data();
@@ -35,12 +36,14 @@ void NearPoints::see(const Vector3d& of_a, const Vector3d& of_b) {
 
 namespace {
 
-/// Sees the nearest points of the lines through two segments, if they are on the segments. (Else a corner of
-/// one is nearest to the other.)
+/// Considers the closest points of the lines through two segments, if they are on the segments. (Otherwise a
+/// corner of one is closest to the other.)
 void see_edges(const Vector3d& p, const Vector3d& q, const Vector3d& r, const Vector3d& s, NearPoints& out) {
+  // Closest points of two lines (Ericson 2005, section 5.1.8).
   const Vector3d d = q - p, e = s - r, w = p - r;
   const double dd = d.dot(d), ee = e.dot(e), de = d.dot(e), dw = d.dot(w), ew = e.dot(w);
   const double det = dd * ee - de * de;
+  // Parallel lines: a corner is among the closest points.
   if (!(det > 0)) return;
   const double x = (de * ew - ee * dw) / det, y = (dd * ew - de * dw) / det;
   if (x >= 0 && x <= 1 && y >= 0 && y <= 1) out.see(p + x * d, r + y * e);
@@ -57,6 +60,7 @@ NearPoints nearest_points(int dim, const Corners& a, const Corners& b) {
     if (dim == 3) x += n.weight[2] * point(t[2]);
     return x;
   };
+  // Closest points of disjoint simplices include a corner, or lie on an edge of each.
   for (int i = 0; i < dim; ++i) {
     out.see(point(a[i]), on(point(a[i]), b));
     out.see(on(point(b[i]), a), point(b[i]));

@@ -1,3 +1,10 @@
+// Collisions and distances among many moving bodies.
+// collide(): 1. Recompute the world AABBs of moved bodies.
+// 2. Broad phase: within a scene, sort and sweep, coherent from call to call; otherwise a one-axis sweep.
+// 3. Narrow phase: an exact query for each pair, as one batch.
+// nearest(): branch and bound over pairs in ascending order of the gaps of their AABBs.
+// Candidate pairs are sorted by gap and keys, so no result depends on the number of threads.
+
 #include "engine/scene/scene.hpp"
 
 #include <algorithm>
@@ -15,20 +22,21 @@
 namespace lrb {
 namespace scene {
 
-/// A body where it stands.
+/// A placed body: one slot of a scene.
 struct Standing {
   BodyKey key{};
   const LrbRep* rep = nullptr;
   Pose pose;
 };
 
-/// Bodies with their boxes: those of a scene, or one alone. Where nobody stands the box is empty.
+/// The bodies of one side of a query with their world AABBs: a whole scene or a single body. A free slot has
+/// an empty box.
 struct Party {
   std::span<const Box> boxes;
   std::span<const Standing> standing;
 };
 
-/// Two bodies to be asked about, by their places in their parties.
+/// A candidate pair, by slot indices. Ordered by gap, then by keys.
 struct Near {
   double gap = 0;  ///< of their boxes
   BodyKey key_a{}, key_b{};
@@ -55,12 +63,12 @@ Near near_of_two(const Party& a, const Party& b, std::uint32_t i, std::uint32_t 
   return {gap, a.standing[i].key, b.standing[j].key, i, j};
 }
 
-/// Whose pairs are asked about: those of one party, or of two.
+/// The two sides of a query. `is_one`: both are the same scene, and each unordered pair counts once.
 struct Parties {
   Party a, b;
   bool is_one = false;
 
-  /// Calls see(near) for the pairs whose boxes are no further apart than `limit`, which see() may lower.
+  /// Calls see(near) for the pairs whose boxes are at most `limit` apart. see() may lower the limit.
   template <class See>
   void each_near(const double& limit, const See& see) const {
     if (is_one)
@@ -78,11 +86,13 @@ struct Parties {
   }
 };
 
-/// Returns the pair whose boxes are nearest to each other.
+/// Returns the pair of least gap between AABBs; of equal gaps, the pair of lowest keys. Returns nullopt if
+/// there is no pair.
 std::optional<Near> nearest_of(const Parties& parties) {
   std::optional<Near> nearest;
   double limit = std::numeric_limits<double>::infinity();
   parties.each_near(limit, [&](const Near& n) {
+    // Lowering the limit while the sweep runs prunes the rest of it.
     if (nearest && !(n < *nearest)) return;
     nearest = n;
     limit = n.gap;
@@ -94,7 +104,7 @@ double distance_of(const DistanceResult& found, Apart apart) {
   return apart == Apart::solids ? found.solids_upper() : found.upper;
 }
 
-/// Returns true if an answer is one that a scene tells.
+/// Returns true if collide() reports an answer: an error, or any contact or containment.
 bool is_told(const Expected<CollideResult>& answer) {
   return !answer || (answer->relation != Relation::separate && answer->relation != Relation::undefined);
 }
@@ -119,8 +129,8 @@ class Scene::Held {
 
   void reserve(std::size_t bodies);
 
-  /// Return whose pairs are asked about, with boxes as they stand now: those of the scene; of a body from
-  /// outside and one of the scene; of the scene and another.
+  /// Return the two sides of a query, with up-to-date boxes: the scene's own pairs; a body from outside and
+  /// the scene; the scene and another one.
   Parties own();
   Parties with(const Party& outside) { return {outside, party(), false}; }
   Parties with(Held& other);
@@ -178,9 +188,10 @@ std::vector<BodyKey> Scene::Held::keys() const {
   return out;
 }
 
-/// Adds places where nobody stands. The broad phase gives up its order when it sees more boxes than before.
+/// Adds free slots. The broad phase discards its order when it sees more boxes than before.
 void Scene::Held::add_places(std::size_t more) {
   const std::size_t before = slots_.size();
+  // Reverse order: slots are taken from the back of free_, so the lowest index is used first.
   for (std::size_t i = before + more; i-- > before;) free_.push_back(static_cast<std::uint32_t>(i));
   slots_.resize(before + more);
   standing_.resize(before + more);
@@ -193,6 +204,7 @@ void Scene::Held::reserve(std::size_t bodies) {
 
 std::uint32_t Scene::Held::free_place() {
   constexpr std::size_t kFew = 16;
+  // Grow by half: amortised constant time per body.
   if (free_.empty()) add_places(std::max(kFew, slots_.size() / 2));
   const std::uint32_t place = free_.back();
   free_.pop_back();
@@ -200,6 +212,7 @@ std::uint32_t Scene::Held::free_place() {
 }
 
 std::shared_ptr<const BodyExtent> Scene::Held::extent_of(const LrbRep& rep) {
+  // Copies of a body share its extent. The map holds weak references: the slots own it.
   std::weak_ptr<const BodyExtent>& known = extents_[rep.serial()];
   std::shared_ptr<const BodyExtent> extent = known.lock();
   if (!extent) known = extent = std::make_shared<const BodyExtent>(rep);
@@ -214,6 +227,7 @@ BodyKey Scene::Held::add(Body body, const Pose& pose) {
   standing_[place] = {key, &body.rep(), pose};
   slot.body = std::move(body);
   slot.last = {};
+  // The flag keeps each slot in moved_ at most once.
   if (!std::exchange(slot.has_moved, true)) moved_.push_back(place);
   place_of_[key] = place;
   ++came_and_gone_;
@@ -225,6 +239,7 @@ bool Scene::Held::remove(BodyKey key) {
   if (found == place_of_.end()) return false;
   const std::uint32_t place = found->second;
   const std::uint64_t serial = standing_[place].rep->serial();
+  // The last copy of a body takes the shared extent with it; then the map entry can go.
   slots_[place].extent.reset();
   if (extents_[serial].expired()) extents_.erase(serial);
   slots_[place].body.reset();
@@ -247,6 +262,7 @@ bool Scene::Held::move(BodyKey key, const Pose& pose) {
 
 Party Scene::Held::party() {
   work.moved = moved_.size();
+  // Recompute the AABBs of moved bodies only, in parallel: each task writes its own slot.
   workers_.for_each(moved_.size(), [&](std::size_t k, unsigned) {
     const std::uint32_t place = moved_[k];
     Slot& slot = slots_[place];
@@ -267,10 +283,11 @@ Parties Scene::Held::with(Held& other) {
   return {party(), others, false};
 }
 
-/// Finds the pairs of a scene whose boxes meet, by the broad phase.
+/// Finds the pairs of a scene whose boxes intersect, by the broad phase.
 std::vector<Near> Scene::Held::sweep(const Party& all) {
+  // The insertion sort moves each new box through the order. If more than 1 in 8 bodies came or went, start
+  // afresh with a full sort.
   constexpr std::size_t kShareThatStays = 8;
-  // Each body that comes or goes is carried through the order: of many, sorting is quicker.
   if (std::exchange(came_and_gone_, 0) > slots_.size() / kShareThatStays) sweep_ = {};
   std::vector<Near> near;
   for (const BodyPair& p : sweep_.update(all.boxes)) near.push_back(near_of_one(all, p.i, p.j, 0));
@@ -280,10 +297,12 @@ std::vector<Near> Scene::Held::sweep(const Party& all) {
 
 std::vector<Near> Scene::Held::find_near(const Parties& parties, double within) {
   std::vector<Near> near;
+  // Within one scene and at distance 0, the coherent broad phase applies. Otherwise sweep along one axis.
   if (parties.is_one && !(within > 0))
     near = sweep(parties.a);
   else
     parties.each_near(within, [&](const Near& n) { near.push_back(n); });
+  // A unique order, whichever method found the pairs.
   std::sort(near.begin(), near.end());
   work.near = near.size();
   return near;
@@ -305,6 +324,7 @@ std::span<const SceneAnswer> Scene::Held::collide(const Parties& parties, const 
   const std::vector<Near> near = find_near(parties, 0);
   questions_.clear();
   for (const Near& n : near) questions_.push_back(parties.posed(n));
+  // The narrow phase runs all exact queries as one batch.
   batch_.collide(questions_, request, answers_);
   std::size_t count = 0;
   for (std::size_t i = 0; i < near.size(); ++i) {
@@ -312,13 +332,15 @@ std::span<const SceneAnswer> Scene::Held::collide(const Parties& parties, const 
     if (told_.size() == count) told_.emplace_back();
     told_[count].a = near[i].key_a;
     told_[count].b = near[i].key_b;
-    std::swap(told_[count].result, answers_[i]);  // what was told before is memory for the next answers
+    // Swap instead of move: the buffers of earlier results become the memory of the next ones.
+    std::swap(told_[count].result, answers_[i]);
     ++count;
   }
   return std::span<const SceneAnswer>(told_).first(count);
 }
 
-/// Asks how far pairs are apart, into distances_.
+/// Computes the distances of pairs, into distances_. The `within` of the request is ignored: a bound is
+/// needed for every pair.
 void Scene::Held::measure(const Parties& parties, std::span<const Near> near, DistanceRequest request) {
   request.within.reset();
   questions_.clear();
@@ -328,22 +350,26 @@ void Scene::Held::measure(const Parties& parties, std::span<const Near> near, Di
 
 std::optional<SceneDistance> Scene::Held::nearest(const Parties& parties, const DistanceRequest& request,
                                                   Apart apart) {
-  // Asks about this many at a time, whatever the number of threads: what they find spares queries about the
-  // next.
+  // Pairs per batch, independent of the number of threads. Distances found in a batch prune later ones.
   constexpr std::size_t kAtATime = 64;
+  // Step 1: an upper bound, from the pair with the least gap between AABBs.
   const std::optional<Near> likely = nearest_of(parties);
   if (!likely) return {};
   measure(parties, std::span(&*likely, 1), request);
   SceneDistance best{likely->key_a, likely->key_b, distances_[0]};
   if (!best.result) return best;
+  // Step 2: only pairs whose gap is within that bound can be nearer. They come in ascending order of gap.
   const std::vector<Near> near = find_near(parties, distance_of(*best.result, apart));
   for (std::size_t asked = 0; asked < near.size(); asked += kAtATime) {
     const double upper = distance_of(*best.result, apart);
+    // The gap bounds the distance from below: no pair from here on can be nearer.
     if (upper == 0 || near[asked].gap > upper) break;
     const auto some = std::span(near).subspan(asked, std::min(kAtATime, near.size() - asked));
+    // Step 3: exact distances of the next batch, which may lower the bound.
     measure(parties, some, request);
     for (std::size_t i = 0; i < some.size(); ++i) {
       const SceneDistance found{some[i].key_a, some[i].key_b, distances_[i]};
+      // An error is the answer, because this pair might have been the nearest.
       if (!found.result) return found;
       if (distance_of(*found.result, apart) < distance_of(*best.result, apart)) best = found;
     }

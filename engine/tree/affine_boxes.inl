@@ -1,6 +1,6 @@
 #pragma once
-// Part of affine_kernel.inl: how two nodes lie to each other under maps that are no rotations, their boxes,
-// and their triangles. What the maps are is in affine_pose.hpp.
+// Part of affine_kernel.inl: the relative position of two nodes under maps that are not rotations, their
+// boxes, and their triangles. affine_pose.hpp explains the maps.
 
 #include "engine/tree/kernel_triangles.inl"
 
@@ -31,12 +31,13 @@ inline void put_rows(const Float4* rows, float (*to)[4], float (*sizes)[4]) {
   }
 }
 
-/// Computes a map's matrix times the transposed frame of the node that it is applied to.
+/// Computes a map's matrix times the transposed frame of a node: from node coordinates to the map's target
+/// axes.
 inline void from_node(const KernelMap& map, const Columns& node, Float4* rows) {
   for (int i = 0; i < 3; ++i) rows[i] = combine(map.rows[i], node.c);
 }
 
-/// Computes the same on another node's axes.
+/// Computes the same, on the axes of the node `onto`.
 inline void from_node_to(const TreeNode& onto, const KernelMap& map, const Columns& node, float (*to)[4],
                          float (*sizes)[4]) {
   Float4 half_way[3], r[3];
@@ -67,20 +68,24 @@ struct Scaled {
   float radius() const { return n.radius * ratio; }
 };
 
-/// Moves both nodes to the axes of `self`. Errors are as those of between(), with two differences: nothing is
-/// turned back by a transposed matrix, and what is flat is turned on its own axes, too. Each body's rotation
-/// (16 u for each entry), the transposition of its frame (8 u), decoding (3 u), products and sums take 48 u
-/// of its size, the offset 8 u: less than the 64 u in kKernelRounding.
+/// Moves both nodes to the axes of `self`. Errors are as those of between(), with two differences: no
+/// transposed matrix serves as an inverse, and the boxes of a flat body are transformed on its own axes as
+/// well. Each body's rotation (16 u for each entry), the transposition of its frame (8 u), decoding (3 u),
+/// products and sums take 48 u of its size, the offset 8 u: less than the 64 u in kKernelRounding.
 inline void see_on(const AffineTerms::Axes& axes, const Scaled& self, const Scaled& other, OnAxes& on) {
+  // The other node's boxes on the axes of `self`: a 3 x 3 matrix and an offset.
   from_node_to(self.n, axes.other, other.columns, on.r, on.abs_r);
+  // The difference of the origins in double: both may be large.
   const Float4 offset = __builtin_convertvector(mapped_origin(axes.other, other.n, other.ratio) +
                                                     *reinterpret_cast<const Double4*>(axes.origin) -
                                                     mapped_origin(axes.own, self.n, self.ratio),
                                                 Float4);
   const float parts[3] = {offset[0], offset[1], offset[2]};
+  // Rotate the offset to the node's own axes.
   const Float4 t = combine(parts, self.columns.c);
   __builtin_memcpy(on.t, &t, sizeof t);
   on.flat = axes.flat;
+  // A flattened body's own boxes are not axis-aligned there, so they are transformed as well.
   if (on.flat) from_node_to(self.n, axes.own, self.columns, on.own, on.abs_own);
   on.error = axes.slack + kKernelRounding * (axes.own.size * self.radius() +
                                              axes.other.size * other.radius() + sum_of_sizes(offset));
@@ -89,6 +94,8 @@ inline void see_on(const AffineTerms::Axes& axes, const Scaled& self, const Scal
 inline Skewed between_skewed(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
   const Scaled of_a{a, k.ratio_a, columns_of(a)}, of_b{b, k.ratio_b, columns_of(b)};
   Skewed w;
+  // There is no common rotation, so each side gets its own transformation; neither is the inverse of the
+  // other.
   see_on(k.affine->axes[0], of_a, of_b, w.on[0]);
   see_on(k.affine->axes[1], of_b, of_a, w.on[1]);
   return w;
@@ -103,7 +110,9 @@ inline Float8 dot3(const float* row, const Float8* x) {
 
 inline Boxes boxes_on_own(const Boxes& boxes, Side side, const Skewed& w) {
   const OnAxes& on = w.on[static_cast<int>(side)];
+  // Well-conditioned maps: the own map is taken as the identity, and the difference is in the slack.
   if (!on.flat) return boxes;
+  // Bounding box of the image: half extents |own| half (Arvo 1990).
   Boxes o;
   for (int i = 0; i < 3; ++i) {
     o.centre[i] = dot3(on.own[i], boxes.centre);
@@ -124,6 +133,7 @@ inline Whole whole_on_own(const Whole& whole, Side side, const Skewed& w) {
 }
 
 inline Turned turn(const Boxes& boxes, const OnAxes& on) {
+  // The same with an offset, and grown by the error of both nodes together.
   Turned o;
   for (int i = 0; i < 3; ++i) {
     o.centre[i] = splat(on.t[i]) + dot3(on.r[i], boxes.centre);
@@ -162,6 +172,7 @@ inline Whole turn_whole_a(const Whole& a, const Skewed& w) {
 inline void to_world(const KernelMap& map, const Scaled& node, const LeafBlock& block, const float* offset,
                      Corners& to) {
   Float4 rows[3];
+  // Straight from node axes to world axes: for triangles nothing is gained by the body's axes.
   from_node(map, node.columns, rows);
   for (int corner = 0; corner < 3; ++corner) {
     Float8 own[3];
@@ -173,11 +184,12 @@ inline void to_world(const KernelMap& map, const Scaled& node, const LeafBlock& 
   }
 }
 
-/// Moves the corners of two leaves to the world's axes, seen from the origin of A's leaf: there nothing is
-/// stretched. Errors are as those of between(), with corners of A turned as those of B are, without an
+/// Moves the corners of two leaves to the world's axes, relative to the origin of A's leaf: there nothing is
+/// stretched. Errors are as those of between(), with corners of A rotated as those of B are, without an
 /// offset.
 inline Between corners_of(const TreeKernel& k, const TreeNode& a, const TreeNode& b, const Skewed&,
                           Corners& of_a, Corners& of_b) {
+  // Positions are relative to the origin of A's leaf, which keeps coordinates small.
   const AffineTerms& f = *k.affine;
   const Scaled node_a{a, k.ratio_a, columns_of(a)}, node_b{b, k.ratio_b, columns_of(b)};
   const Float4 offset = __builtin_convertvector(mapped_origin(f.world[1], b, k.ratio_b) +
@@ -189,8 +201,11 @@ inline Between corners_of(const TreeKernel& k, const TreeNode& a, const TreeNode
   to_world(f.world[1], node_b, k.blocks_b[b.first], parts, of_b);
   Between w;
   const float size_a = f.world[0].size * node_a.radius(), size_b = f.world[1].size * node_b.radius();
+  // `reach` bounds every difference of a corner of A and one of B.
   w.reach = size_a + size_b + sum_of_sizes(offset);
   w.error = f.world_slack + kKernelRounding * w.reach;
+  // A's corners are rotated here too, so both bodies have the error of rotated edges. Only B's contain the
+  // offset.
   w.edge_error[0] = 2 * f.world_slack + kTurnedEdgeRounding * size_a;
   w.edge_error[1] = 2 * f.world_slack + kTurnedEdgeRounding * size_b + kFarEdgeRounding * w.reach;
   return w;

@@ -1,4 +1,4 @@
-// Compiled once per instruction set by affine_kernel_*.cpp, which define LRB_AFFINE_KERNEL_NAME. It is apart
+// Compiled once per instruction set by affine_kernel_*.cpp, which define LRB_AFFINE_KERNEL_NAME. Separate
 // from the tree kernel, because that one's speed depends on what the compiler inlines into its one loop. See
 // tree_kernel.inl.
 
@@ -22,6 +22,7 @@ struct AffineWalk {
 }  // namespace
 
 void LRB_AFFINE_KERNEL_NAME(TreeKernel& k) {
+  // No batched test of node boxes here: it assumes that the relative map is a rotation.
   if (k.nearest_first) run_nearest<AffineWalk>(k);
   run<AffineWalk, false>(k, k.most_node_pairs);
 }

@@ -1,3 +1,9 @@
+// Sets up the tree kernel for any affine maps. affine_pose.hpp derives the method and its error bounds.
+// 1. Write each map as a power of two times a matrix with entries up to 1.
+// 2. Invert the matrix, or a version with raised singular values if it is nearly singular.
+// 3. Choose the query's unit, and express both bodies on the axes of each, and in the world, in that unit.
+// 4. Bound the rounding of world coordinates, and carry the bound over to each set of axes.
+
 #include "engine/tree/affine_pose.hpp"
 
 #include <algorithm>
@@ -32,11 +38,12 @@ int exponent_of(double x) {
 /// Returns 2^exponent x; mostly by a product, which is faster.
 template <class Matrix>
 Matrix scaled(const Matrix& x, int exponent) {
+  // Beyond that, 2^exponent itself may overflow or underflow although the products do not.
   if (std::abs(exponent) <= 1000) return x * std::ldexp(1.0, exponent);
   return x.unaryExpr([exponent](double c) { return std::ldexp(c, exponent); });
 }
 
-/// Returns the part of a map that counts for a plane body, where z = 0; its third axis stays in place.
+/// Returns the part of a map that acts on a body in 2D, where z = 0. The third axis stays in place.
 Matrix3d map_in_plane(Matrix3d r) {
   r(2, 2) = r.topLeftCorner<2, 2>().cwiseAbs().maxCoeff();
   return r;
@@ -48,8 +55,10 @@ double norm_of(const Matrix3d& m) {
 }
 
 Matrix3d raised_inverse(const Matrix3d& r) {
+  // A regularised pseudo-inverse: R = U S V^T becomes V S'^-1 U^T with S' bounded from below.
   const Eigen::JacobiSVD<Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vector3d& values = svd.singularValues();
+  // The map to a point, or NaN: any G is valid (see the header), so take the identity.
   if (!(values[0] > 0)) return Matrix3d::Identity();
   const Vector3d raised = values.cwiseMax(kFlatness * values[0]);
   return svd.matrixV() * raised.cwiseInverse().asDiagonal() * svd.matrixU().transpose();
@@ -58,6 +67,7 @@ Matrix3d raised_inverse(const Matrix3d& r) {
 /// Returns the exponent of the query's unit: that of the larger body in the world, or more if the bodies are
 /// so far apart that floats would overflow.
 int query_exponent(const AffineMap& a, const Pose& pose_a, const AffineMap& b, const Pose& pose_b) {
+  // Halves, so that the difference cannot overflow. Floats have room for distances of 2^kFarOff units.
   constexpr int kFarOff = 60, kLeast = -1022;
   const double apart = (pose_b.t / 2 - pose_a.t / 2).cwiseAbs().maxCoeff();
   return std::max({a.exponent, b.exponent, exponent_of(apart) - kFarOff, kLeast});
@@ -89,13 +99,17 @@ double row_size(const Matrix3d& r) {
 
 AffineMap::AffineMap(const Pose& pose, const ObbTree& tree, int dim)
     : r(dim == 2 ? map_in_plane(pose.r) : pose.r) {
+  // Step 1: normalise by the largest entry. The power of two moves to the exponent, together with the tree's
+  // unit.
   const int e = exponent_of(r.cwiseAbs().maxCoeff());
   exponent = e == kNoExponent ? e : e + std::ilogb(tree.unit());
   if (e != kNoExponent) r = scaled(r, -e);
+  // Step 2: size * back_size is the condition number in the Euclidean (Frobenius) norm.
   size = norm_of(r);
   back = r.inverse();
   back_size = norm_of(back);
   flat = !(back_size * size * kFlatness <= 1);  // also where it is not a number
+  // Nearly singular: use the regularised inverse, under which the own map is not the identity.
   if (flat) {
     back = raised_inverse(r);
     back_size = norm_of(back);
@@ -103,12 +117,14 @@ AffineMap::AffineMap(const Pose& pose, const ObbTree& tree, int dim)
     defect = 0;
   } else {
     own = Matrix3d::Identity();
+    // The residual of the inverse, as a norm. It is added to the slack below.
     defect = (back * r - own).norm();
   }
 }
 
 TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b,
                                 int dim, AffineTerms& terms) {
+  // Steps 1 and 2 for both bodies, and step 3: the unit.
   const AffineMap maps[2] = {AffineMap(pose_a, a, dim), AffineMap(pose_b, b, dim)};
   const int exponent = query_exponent(maps[0], pose_a, maps[1], pose_b);
   TreeKernel k{};
@@ -120,14 +136,17 @@ TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbT
   k.nodes_b = b.nodes().data();
   k.blocks_a = a.blocks().data();
   k.blocks_b = b.blocks().data();
+  // Powers of two at most 1: scaling a tree's coordinates to the query's unit is exact, but for underflow.
   k.ratio_a = std::ldexp(1.0F, maps[0].exponent - exponent);
   k.ratio_b = std::ldexp(1.0F, maps[1].exponent - exponent);
   const float ratios[2] = {k.ratio_a, k.ratio_b};
   const Vector3d t[2] = {scaled(pose_a.t, -exponent), scaled(pose_b.t, -exponent)}, between = t[1] - t[0];
+  // Step 4: the rounding of world coordinates, relative to the sum of the largest terms of both bodies.
   double size = std::ldexp(kWorldUnderflow, -exponent);  // a bound on every term of a world coordinate
   for (int side = 0; side < 2; ++side)
     size += row_size(maps[side].r) * kMostUnits * ratios[side] + t[side].cwiseAbs().maxCoeff();
   const double rounding = kWorldRounding * size;
+  // For each body: both bodies' maps on its axes, and the slack there.
   for (int side = 0; side < 2; ++side) {
     const AffineMap &self = maps[side], &other = maps[1 - side];
     AffineTerms::Axes& axes = terms.axes[side];
@@ -137,9 +156,11 @@ TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbT
     put(origin, axes.origin);
     axes.flat = self.flat;
     put(self.own, self.flat ? norm_of(self.own) : 1, axes.own);
+    // Own map off the identity, plus the world's rounding stretched by G.
     const double off = self.defect * kMostUnits * ratios[side];
     axes.slack = rounded_up(kPoseSafety * (off + self.back_size * rounding));
     put(self.r, self.size, terms.world[side]);
+    // Only for choosing which node to descend, so rounding does not matter.
     terms.span[side] = static_cast<float>(self.size) * ratios[side];
   }
   put(between, terms.between);

@@ -1,3 +1,11 @@
+// Builds a binary tree top-down by the surface area heuristic (Goldsmith and Salmon 1987).
+// 1. Split large ranges by boxes on the coordinate axes: at the best boundary between bins (Wald 2007) or, on
+// request, at the best of all cuts.
+// 2. Split small ranges by the cost of the boxes that fit their halves (FittedCuts).
+// 3. Compute all boxes on the coordinate axes in one pass from the leaves upwards.
+// The place of every node follows from the number of simplices in each half. Threads build subtrees without
+// synchronisation, and the tree is the same for any number of threads.
+
 #include "engine/tree/binary_tree.hpp"
 
 #include <algorithm>
@@ -31,31 +39,34 @@ class BinaryBuilder {
   /// Returns the number of nodes for some simplices.
   static std::uint32_t nodes_for(std::uint32_t simplices) { return 2 * leaves_for(simplices) - 1; }
 
-  /// Returns true if so many simplices are split so that boxes fit.
+  /// Returns true if ranges of this many simplices are split by the boxes that fit their halves.
   bool is_fitted(std::uint32_t simplices) const { return simplices <= std::max(splits_.fitted, kTreeWidth); }
 
   /// Builds a subtree, but for boxes.
   void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
+    // FittedCuts keeps the simplices sorted along all axes, so it takes over the whole subtree.
     if (is_fitted(end - begin)) {
       FittedCuts cuts(soup_, soup_.listed(begin, end), splits_.effort);
       build_fitted(self, begin, end, cuts.whole_cost(), cuts, begin);
       std::ranges::copy(cuts.order(), soup_.order.begin() + begin);
       return;
     }
+    // A large range: reorder the simplices around the cut, then build both halves, possibly in parallel.
     const std::uint32_t middle = split(begin, end);
     const auto [left, right] = fork(self, begin, middle, end, 0);
     workers_.both([&, left = left] { build(left, begin, middle); },
                   [&, right = right] { build(right, middle, end); });
   }
 
-  /// Builds part of a subtree that `cuts` cuts. cost: of its root; first: where the simplices of `cuts`
-  /// begin.
+  /// Builds a part of the subtree that `cuts` divides. cost: of its root; first: begin of the range of
+  /// `cuts`.
   void build_fitted(std::uint32_t self, std::uint32_t begin, std::uint32_t end, double cost, FittedCuts& cuts,
                     std::uint32_t first) {
     if (end - begin <= kTreeWidth) {
       nodes_[self] = {begin, end, kNull, kNull, {}, cost};
       return;
     }
+    // The halves' costs were computed to choose the cut, and are stored in the children.
     const FittedCuts::Halves halves = cuts.cut(begin - first, end - first);
     const std::uint32_t middle = first + halves.middle;
     const auto [left, right] = fork(self, begin, middle, end, cost);
@@ -63,10 +74,11 @@ class BinaryBuilder {
     build_fitted(right, middle, end, halves.right_cost, cuts, first);
   }
 
-  /// Makes a node whose subtrees hold the simplices before `middle` and the rest. cost: 0 if measure() is to
-  /// find it. Returns the subtrees' roots.
+  /// Makes an inner node. Its subtrees contain the simplices before `middle` and the rest. cost: 0 if
+  /// measure() is to compute it. Returns the roots of the subtrees.
   std::pair<std::uint32_t, std::uint32_t> fork(std::uint32_t self, std::uint32_t begin, std::uint32_t middle,
                                                std::uint32_t end, double cost) {
+    // Preorder: the left subtree follows its parent, and its size is known from the number of its leaves.
     const std::uint32_t left = self + 1, right = left + nodes_for(middle - begin);
     nodes_[self] = {begin, end, left, right, {}, cost};
     return {left, right};
@@ -74,6 +86,7 @@ class BinaryBuilder {
 
   /// Finds all nodes' boxes, children's first, and the costs of those that are not fitted.
   void measure() {
+    // Children come after parents, so reverse order visits children first.
     for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
       if (node->is_leaf())
         for (const std::uint32_t s : soup_.listed(node->begin, node->end)) node->box.extend(soup_.box[s]);
@@ -93,16 +106,20 @@ class BinaryBuilder {
   std::uint32_t split(std::uint32_t begin, std::uint32_t end) {
     const Split best = splits_.all_cuts ? best_of_all(begin, end) : best_binned(begin, end);
     const auto first = soup_.order.begin() + begin;
+    // A partition in linear time: the order inside the halves does not matter.
     std::nth_element(first, first + best.left, first + (end - begin), soup_.order_on(best.axis));
     return begin + best.left;
   }
 
   Split best_binned(std::uint32_t begin, std::uint32_t end) const {
     Box centres;
+    // Bins divide the range of centres, not of boxes, so that every bin is on one side of each cut.
     for (std::uint32_t i = begin; i < end; ++i) centres.extend(soup_.centre[soup_.order[i]]);
     Split best;
     for (int axis = 0; axis < 3; ++axis) try_axis(begin, end, centres, axis, best.cost, best.axis, best.left);
     const std::uint32_t n = end - begin;
+    // Move the cut to the nearest multiple of kTreeWidth, so that all leaves but the last are full. Keep both
+    // halves nonempty.
     if (best.left == 0) best.left = n / 2;  // all centres coincide: any half will do
     best.left = (best.left + kTreeWidth / 2) / kTreeWidth * kTreeWidth;
     best.left = std::clamp(best.left, kTreeWidth, (n - 1) / kTreeWidth * kTreeWidth);
@@ -116,6 +133,7 @@ class BinaryBuilder {
     Split best;
     best.left = kTreeWidth;
     for (int axis = 0; axis < 3; ++axis) {
+      // Sweep from the right and record the costs of all right halves; then sweep from the left and add.
       std::sort(order.begin(), order.end(), soup_.order_on(axis));
       Box right, left;
       for (std::uint32_t i = n; i-- > 0;) {
@@ -126,6 +144,7 @@ class BinaryBuilder {
         left.extend(soup_.box[order[i - 1]]);
         if (i % kTreeWidth != 0) continue;
         const double cost = box_cost(left) * leaves_for(i) + right_cost[i];
+        // Of equal costs, the most even cut: simplices in one place are halved instead of peeled off.
         if (cost < best.cost || (cost == best.cost && larger_side(i, n) < larger_side(best.left, n)))
           best = {cost, axis, i};
       }
@@ -137,15 +156,18 @@ class BinaryBuilder {
                 int& best_axis, std::uint32_t& best_left) const {
     const double from = centres.min()[axis], width = centres.sizes()[axis];
     const double bins = kBins / width;  // for a unit of length
+    // The centres coincide on this axis, or very nearly: no cut across it.
     if (!std::isfinite(bins)) return;
     std::array<Box, kBins> bin_box;
     std::array<std::uint32_t, kBins> bin_count{};
+    // Pass 1: the box and number of simplices of each bin.
     for (std::uint32_t i = begin; i < end; ++i) {
       const std::uint32_t s = soup_.order[i];
       const int b = std::min(kBins - 1, static_cast<int>((soup_.centre[s][axis] - from) * bins));
       bin_box[b].extend(soup_.box[s]);
       ++bin_count[b];
     }
+    // Pass 2, from the right: the cost of everything right of each boundary.
     std::array<double, kBins> right_cost{};
     Box right;
     std::uint32_t right_count = 0;
@@ -154,6 +176,7 @@ class BinaryBuilder {
       right_count += bin_count[b];
       right_cost[b] = right_count ? box_cost(right) * leaves_for(right_count) : 0;
     }
+    // Pass 3, from the left: the cost of each cut. Costs are box cost times number of leaves.
     Box left;
     std::uint32_t left_count = 0;
     for (int b = 1; b < kBins; ++b) {

@@ -1,3 +1,10 @@
+// Chooses where to cut ranges of simplices by the surface area heuristic, for oriented boxes.
+// 1. Moments of each simplex are summed over the range: its covariance gives the principal axes.
+// 2. All cuts across the coordinate axes and some principal axes are ranked by the moments of both halves,
+// with prefix sums, in time linear in the number of simplices.
+// 3. The best ranked cuts are measured with the boxes that fit the halves, and the cheapest one is taken.
+// 4. The orders along the coordinate axes are partitioned stably, so that no half is ever sorted again.
+
 #include "engine/tree/fitted_cut.hpp"
 
 #include <algorithm>
@@ -17,10 +24,11 @@ using Box = Eigen::AlignedBox3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Returns about what the box that fits costs, up to a factor. Half its surface is about the root of the sum
-/// of the squares of the three products of two standard deviations along principal axes. It takes no such
-/// axes: what is under the root is the sum of the principal minors of the covariance.
+/// Estimates the cost of the fitting box, up to a factor. Half the surface of a box is about the root of the
+/// sum of the squares of the three products of two standard deviations along principal axes. No axes are
+/// needed: the radicand is the sum of the principal minors of the covariance.
 double ranked_cost(const Spread& spread) {
+  // Covariance from raw moments. Cancellation is bounded by measuring small ranges anew (kMeasureAgain).
   const double whole = 1 / spread.weight;
   const Vector3d mean = spread.first * whole;
   const Vector3d square = spread.squares * whole - mean.cwiseProduct(mean);
@@ -32,9 +40,11 @@ double ranked_cost(const Spread& spread) {
   return std::sqrt(std::max(0.0, minors)) + kLengthCost * std::max(0.0, square.sum());
 }
 
-/// A simplex by its place along a direction, as one number that is sorted fast: in front, bits that grow with
-/// the place, then the simplex's number.
+/// A simplex with its position along a direction, as one integer that sorts fast: the high bits grow with the
+/// position, the low bits are the simplex's number.
 std::uint64_t place_at(float x, std::uint32_t number) {
+  // Floats of one sign are ordered like their bits. Flip all bits of negative ones, and the sign of the
+  // others.
   const auto bits = std::bit_cast<std::uint32_t>(x + 0.0f);  // -0 is in the same place as 0
   const std::uint32_t growing = bits >> 31 != 0 ? ~bits : bits | 0x80000000u;
   return std::uint64_t{growing} << 32 | number;
@@ -57,8 +67,10 @@ bool FittedCuts::Cut::operator<(const Cut& y) const {
 
 FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplices, CutEffort effort)
     : soup_(soup), effort_(effort), simplices_(simplices.begin(), simplices.end()) {
+  // Number the simplices in an order that does not depend on earlier splits, so that ties are broken alike.
   std::sort(simplices_.begin(), simplices_.end());
   const std::size_t n = simplices_.size();
+  // The only sorts along coordinate axes; cuts keep these orders.
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<std::uint32_t>& order = coordinate_[axis];
     order.resize(n);
@@ -73,6 +85,7 @@ FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplice
 }
 
 FittedCuts::Halves FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
+  // Step 1: the moments of the range.
   begin_ = begin;
   size_ = end - begin;
   const auto sum = [&] {
@@ -81,17 +94,21 @@ FittedCuts::Halves FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
     return all;
   };
   all_ = sum();
+  // The range has become small beside the one that it was measured with: use a closer origin and scale.
   if (all_.variance() < kMeasureAgain) {
     measure();
     all_ = sum();
   }
+  // Eigenvalues ascend, so column 2 is the longest axis.
   if (effort_.principal > 0) {
     const Matrix3d axes = eigenvectors_of_symmetric(all_.covariance());
     for (int k = 0; k < effort_.principal; ++k) order_along_principal(k, axes.col(2 - k));
   }
+  // Step 2: rank all cuts.
   cuts_.clear();
   for (int way = 0; way < 3 + effort_.principal; ++way) rank(way);
   constexpr std::size_t kPerCut = 128;  // ranks are less sure where there are more simplices
+  // Step 3: measure the best ranked ones, in order of rank.
   const std::size_t few = std::min(std::max<std::size_t>(effort_.tried, size_ / kPerCut), cuts_.size());
   std::partial_sort(cuts_.begin(), cuts_.begin() + static_cast<std::ptrdiff_t>(few), cuts_.end());
   Cut best = cuts_.front();
@@ -100,10 +117,12 @@ FittedCuts::Halves FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
   for (Cut cut : std::span(cuts_).first(few)) {
     const Halves tried = measured(cut, best.cost);
     cut.cost = sum_of_costs(tried, cut.left, size_ - cut.left);
+    // Ties go to the most even cut.
     if (!(cut < best)) continue;
     best = cut;
     halves = tried;
   }
+  // Step 4.
   part(best);
   halves.middle = begin + best.left;
   return halves;
@@ -123,6 +142,7 @@ std::span<const std::uint32_t> FittedCuts::along(int way) const {
 
 /// Measures how the simplices of the range are spread.
 void FittedCuts::measure() {
+  // Moments are taken about the centre of the range and scaled by its diagonal, which limits cancellation.
   Box bounds;
   for (const std::uint32_t i : along(0)) bounds.extend(soup_.box[simplices_[i]]);
   const Vector3d origin = bounds.center();
@@ -146,6 +166,7 @@ void FittedCuts::order_along_principal(int k, const Vector3d& direction) {
 
 /// Adds all cuts across one direction.
 void FittedCuts::rank(int way) {
+  // Moments of the left half grow by one simplex per step; those of the right half are the rest.
   const std::span<const std::uint32_t> order = along(way);
   Spread left;
   for (std::uint32_t i = 1; i < size_; ++i) {
@@ -161,6 +182,7 @@ void FittedCuts::rank(int way) {
 FittedCuts::Halves FittedCuts::measured(const Cut& cut, float most) const {
   const std::span<const std::uint32_t> order = along(cut.way);
   Halves halves{0, fitted_box_cost(order.first(cut.left)), 0};
+  // Stop early: costs only add up, so the cut has lost.
   const bool too_much = sum_of_costs(halves, cut.left, 0) > most;
   halves.right_cost = too_much ? kInfinity : fitted_box_cost(order.subspan(cut.left));
   return halves;
@@ -169,6 +191,7 @@ FittedCuts::Halves FittedCuts::measured(const Cut& cut, float most) const {
 /// Returns what the box costs that fits some of the simplices.
 double FittedCuts::fitted_box_cost(std::span<const std::uint32_t> some) const {
   Spread spread;
+  // The candidates of fit_frame(): the coordinate axes and the principal axes.
   Box straight, turned;
   for (const std::uint32_t i : some) {
     spread += spread_[i];
@@ -184,6 +207,7 @@ double FittedCuts::fitted_box_cost(std::span<const std::uint32_t> some) const {
 /// Cuts the range: puts the simplices on the left first along each axis, and keeps both sides in order.
 void FittedCuts::part(const Cut& cut) {
   const std::span<const std::uint32_t> order = along(cut.way);
+  // Mark the sides once, then partition each order in place; the right half goes through a buffer.
   for (std::uint32_t k = 0; k < size_; ++k) is_left_[order[k]] = k < cut.left;
   for (std::vector<std::uint32_t>& all : coordinate_) {
     right_.clear();

@@ -9,6 +9,7 @@ InstructionSet best_instruction_set() {
 #if defined(__x86_64__)
   const char* const wish = std::getenv("LRB_SIMD");
   const std::string_view most = wish != nullptr ? wish : "";
+  // All features that the AVX-512 kernels are compiled with must be present.
   const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
                           __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&

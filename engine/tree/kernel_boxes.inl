@@ -1,6 +1,6 @@
 #pragma once
-// Part of tree_kernel.inl and pair_kernel.inl: two nodes, their positions relative to each other, and which
-// of their boxes meet.
+// Part of tree_kernel.inl and pair_kernel.inl: two nodes, their relative position, and which of their boxes
+// intersect.
 
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/kernel_lanes.inl"
@@ -16,6 +16,7 @@ struct Whole {
 
 inline Whole whole_of(const TreeNode& n, float ratio) {
   Whole w;
+  // The node box spans the codes 0 to 255 on each axis.
   for (int i = 0; i < 3; ++i) {
     w.half[i] = n.scale[i] * ratio * (0.5f * kQuantizedMost);
     w.centre[i] = n.base[i] * ratio + w.half[i];
@@ -31,6 +32,7 @@ struct Boxes {
 inline Boxes decode(const TreeNode& n, float ratio) {
   Boxes b;
   for (int i = 0; i < 3; ++i) {
+    // Centre and half extent from the sum and difference of the codes, which are exact integers in float.
     const float base = n.base[i] * ratio, half_scale = n.scale[i] * ratio * 0.5f;
     const Int8 lo = bytes_to_int(n.lo[i]), hi = bytes_to_int(n.hi[i]);
     b.centre[i] = splat(base) + splat(half_scale) * __builtin_convertvector(lo + hi, Float8);
@@ -54,9 +56,9 @@ struct Between {
   float margin;  ///< how much further any of its points may move
 };
 
-/// Sets the error bounds. radius_a, radius_b: radius of a ball that holds what is transformed of each body,
-/// or the length of its edges. reach: bound on the differences of a corner of A and one of B that occur;
-/// whole: bound on the coordinates from which corners of B are transformed.
+/// Sets the error bounds. radius_a, radius_b: radius of a ball that contains what is transformed of each
+/// body, or the length of its edges. reach: bound on the differences of a corner of A and one of B that
+/// occur; whole: bound on the coordinates from which corners of B are transformed.
 inline void set_errors(Between& w, float slack, float m_size, float radius_a, float radius_b, float reach,
                        float whole) {
   w.reach = reach;
@@ -90,9 +92,10 @@ inline Float4 combine(const float* x, const Float4* column) {
   return splat4(x[0]) * column[0] + splat4(x[1]) * column[1] + splat4(x[2]) * column[2];
 }
 
-/// Finds the displacement by which a node of B is swept, on A's axes. Returns the sum of its coordinates'
-/// sizes.
+/// Finds the displacement by which a node of B is swept, on A's axes. Returns the sum of the magnitudes of
+/// its coordinates.
 inline float sweep(const TreeKernel& k, const TreeNode& b, const Columns& a_columns, Between& w) {
+  // In double first, because the node's origin may be far from the body's. Then rounded to float and rotated.
   const Double4* m = reinterpret_cast<const Double4*>(k.sweep);
   const Double4 swept =
       ((m[0] * splat4d(b.origin[0]) + m[1] * splat4d(b.origin[1])) + m[2] * splat4d(b.origin[2])) *
@@ -107,6 +110,7 @@ inline float sweep(const TreeKernel& k, const TreeNode& b, const Columns& a_colu
 
 /// Returns how far the origin of B's node is from that of A's, on A's axes.
 inline Float4 offset_between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
+  // Double precision: the origins may be large and nearly equal, and their difference would cancel in float.
   const Double4* m = reinterpret_cast<const Double4*>(k.m);
   const Double4 origin_a{a.origin[0], a.origin[1], a.origin[2], 0};
   const Double4 d =
@@ -117,9 +121,9 @@ inline Float4 offset_between(const TreeKernel& k, const TreeNode& a, const TreeN
   return __builtin_convertvector(d, Float4);
 }
 
-/// Finds how two nodes lie to each other. kMargin: allow for k.margin. If simplices meet at a point after a
-/// motion, they now have two points that the motion brings together. A slab between the simplices that is
-/// wider than the motion is long across it therefore proves that they do not meet.
+/// Computes the relative position of two nodes. kMargin: allows for k.margin. If simplices intersect at a
+/// point after a motion, they now have two points that the motion brings together. A slab between the
+/// simplices that is wider than the motion is long across it therefore proves that they do not intersect.
 template <bool kMargin = false>
 inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
   Between w;
@@ -127,6 +131,7 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
   const float df[3] = {offset[0], offset[1], offset[2]};
   const Columns b_columns = columns_of(frame_row(b, 0), frame_row(b, 1), frame_row(b, 2));
   const Columns a_columns = columns_of(frame_row(a, 0), frame_row(a, 1), frame_row(a, 2));
+  // r = frame_a m frame_b^T, in two products of 3 x 3 matrices.
   Float4 mb[3], r[3];  // rows of m * (axes of B), and of r
   for (int i = 0; i < 3; ++i) mb[i] = combine(k.m_rows[i], b_columns.c);
   for (int i = 0; i < 3; ++i) {
@@ -135,15 +140,18 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
     const Float4 size = abs4(r[i]);
     __builtin_memcpy(w.abs_r[i], &size, sizeof size);
   }
+  // The offset on A's axes, and minus the offset on B's axes. r is inverted by transposition.
   const Float4 t = combine(df, a_columns.c);
   __builtin_memcpy(w.t, &t, sizeof t);
   const float t_parts[3] = {t[0], t[1], t[2]};
   const Float4 back = -combine(t_parts, r);
   __builtin_memcpy(w.back, &back, sizeof back);
+  // `whole` bounds every number that occurs on the way, and the error bounds are relative to it.
   const float radius_a = a.radius * k.ratio_a, radius_b = b.radius * k.ratio_b;
   const float whole = k.m_size * (radius_a + radius_b + __builtin_fabsf(df[0]) + __builtin_fabsf(df[1]) +
                                   __builtin_fabsf(df[2]));
   float reach = whole;
+  // The sweep of B's origin goes into w.way. The margin covers by how much other points of the node differ.
   if constexpr (kMargin) {
     const float size = sweep(k, b, a_columns, w);
     w.margin = k.margin + k.sweep_turn * radius_b + kSweepRounding * size;
@@ -151,6 +159,7 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
   }
   set_errors(w, k.slack, k.m_size, radius_a, radius_b, reach, whole);
   if constexpr (kMargin) {
+    // The sweep widens boxes by its extent on each axis, in both directions.
     const Float4 on_a{w.way[0], w.way[1], w.way[2], 0}, on_b = combine(w.way, r);
     const Float4 grow[2] = {splat4(w.error + w.margin) + abs4(on_a), splat4(w.error + w.margin) + abs4(on_b)};
     __builtin_memcpy(w.grow, grow, sizeof grow);
@@ -172,10 +181,11 @@ inline const Whole& whole_on_own(const Whole& whole, Side, const Between&) {
   return whole;
 }
 
-/// Returns the box of all of B's node on A's axes, grown.
+/// Returns the node box of B on A's axes, grown by the error bound.
 template <bool kMargin>
 inline Whole turn_whole_b(const Whole& b, const Between& w) {
   Whole o;
+  // The box on other axes has the half extents |r| half (Arvo 1990).
   for (int i = 0; i < 3; ++i) {
     o.centre[i] = w.t[i] + w.r[i][0] * b.centre[0] + w.r[i][1] * b.centre[1] + w.r[i][2] * b.centre[2];
     o.half[i] = grow_of<kMargin>(w, 0, i) + w.abs_r[i][0] * b.half[0] + w.abs_r[i][1] * b.half[1] +
@@ -184,10 +194,11 @@ inline Whole turn_whole_b(const Whole& b, const Between& w) {
   return o;
 }
 
-/// Returns the box of all of A's node on B's axes, grown.
+/// Returns the node box of A on B's axes, grown by the error bound.
 template <bool kMargin>
 inline Whole turn_whole_a(const Whole& a, const Between& w) {
   Whole o;
+  // Columns of r in place of rows: the inverse of a rotation is its transpose.
   for (int j = 0; j < 3; ++j) {
     o.centre[j] = w.back[j] + w.r[0][j] * a.centre[0] + w.r[1][j] * a.centre[1] + w.r[2][j] * a.centre[2];
     o.half[j] = grow_of<kMargin>(w, 1, j) + w.abs_r[0][j] * a.half[0] + w.abs_r[1][j] * a.half[1] +
@@ -196,7 +207,7 @@ inline Whole turn_whole_a(const Whole& a, const Between& w) {
   return o;
 }
 
-/// Boxes of one node in the other's frame: axis-aligned there, grown by the error.
+/// Boxes of one node on the axes of the other: axis-aligned there, and grown by the error bound.
 struct Turned {
   Float8 centre[3], half[3];
 };
@@ -204,6 +215,7 @@ struct Turned {
 template <bool kMargin>
 inline Turned turn_b(const Boxes& b, const Between& w) {
   Turned o;
+  // The same as turn_whole_b(), for eight boxes at once.
   for (int i = 0; i < 3; ++i) {
     o.centre[i] = splat(w.t[i]) + splat(w.r[i][0]) * b.centre[0] + splat(w.r[i][1]) * b.centre[1] +
                   splat(w.r[i][2]) * b.centre[2];
@@ -225,11 +237,12 @@ inline Turned turn_a(const Boxes& a, const Between& w) {
   return o;
 }
 
-/// Returns the lanes whose boxes are separated on some axis. Written so that NaN (an overflow) counts as "not
-/// separated".
+/// Returns the lanes whose boxes are separated on some axis. A comparison with NaN (an overflow) is false and
+/// counts as "not separated".
 inline Lanes apart(const Float8* centre, const Float8* half, const float* other_centre,
                    const float* other_half) {
   Lanes result = kNoLanes;
+  // No early exit: a box that one axis separates shares its vector with seven that it may not.
   for (int i = 0; i < 3; ++i)
     result |= greater(abs8(centre[i] - splat(other_centre[i])), half[i] + splat(other_half[i]));
   return result;

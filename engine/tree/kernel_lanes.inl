@@ -45,6 +45,7 @@ using Lanes = std::uint8_t;
 constexpr Lanes kAllLanes = 255, kNoLanes = 0;
 
 inline Lanes greater(Float8 x, Float8 y) {
+  // OQ: ordered and quiet. A comparison with NaN is false, as with the operator > below.
   return _mm256_cmp_ps_mask(reinterpret_cast<__m256>(x), reinterpret_cast<__m256>(y), _CMP_GT_OQ);
 }
 
@@ -67,6 +68,7 @@ inline Lanes greater(Float8 x, Float8 y) {
 /// Returns a number whose bit k is set if lane k is true.
 inline std::uint32_t bits(Lanes lanes) {
 #if defined(__AVX__)
+  // The sign bit of each lane. A lane is all ones or all zeros.
   return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
 #elif defined(__SSE2__)
   const auto* half = reinterpret_cast<const __m128*>(&lanes);
@@ -105,6 +107,7 @@ inline Lanes select(Lanes which, Lanes x, Lanes y) {
 /// Returns x where it is greater than y, else y: also where either is NaN.
 inline Float8 larger(Float8 x, Float8 y) {
 #if defined(__AVX__)
+  // maxps returns its second operand if either is NaN, which is what the other branch does.
   return reinterpret_cast<Float8>(_mm256_max_ps(reinterpret_cast<__m256>(x), reinterpret_cast<__m256>(y)));
 #else
   return select(greater(x, y), x, y);
@@ -115,6 +118,7 @@ inline Int8 bytes_to_int(const std::uint8_t* q) {
 #if defined(__AVX2__)
   return reinterpret_cast<Int8>(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(q))));
 #elif defined(__SSE2__)
+  // Interleave with zero bytes twice: 8 to 16 to 32 bits.
   const __m128i zero = _mm_setzero_si128();
   const __m128i words = _mm_unpacklo_epi8(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(q)), zero);
   union {
@@ -143,6 +147,7 @@ inline Float8 join(Float4 low, Float4 high) {
 inline void transpose(const Float4* row, Float8* column) {
   Float8 pair[4];  // rows 0 and 4, 1 and 5, 2 and 6, 3 and 7
   for (int i = 0; i < 4; ++i) pair[i] = join(row[i], row[4 + i]);
+  // Interleave rows in pairs within each half of a vector, then pairs of pairs. The halves never mix.
   const Float8 low01 = __builtin_shufflevector(pair[0], pair[1], 0, 8, 1, 9, 4, 12, 5, 13);
   const Float8 low23 = __builtin_shufflevector(pair[2], pair[3], 0, 8, 1, 9, 4, 12, 5, 13);
   const Float8 high01 = __builtin_shufflevector(pair[0], pair[1], 2, 10, 3, 11, 6, 14, 7, 15);

@@ -1,3 +1,8 @@
+// Sets up the dual traversal: one relative pose, and a bound on all errors that come with it.
+// 1. Compute B's pose relative to A, and how far the matrices are from rotations.
+// 2. Nearly rotations: the rigid kernel, with the bounds derived at kernel_of().
+// 3. Anything else, or bodies so far apart that floats could overflow: the affine kernel (affine_pose.hpp).
+
 #include "engine/tree/kernel_setup.hpp"
 
 #include <cmath>
@@ -41,10 +46,12 @@ TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pos
   k.nodes_b = b.nodes().data();
   k.blocks_a = a.blocks().data();
   k.blocks_b = b.blocks().data();
+  // Powers of two at most 1, so scaling to the query's unit is exact.
   const double unit = query_unit(a, b);
   k.ratio_a = static_cast<float>(a.unit() / unit);
   k.ratio_b = static_cast<float>(b.unit() / unit);
 
+  // m twice: in double for the offsets of nodes, in float for the rotation of boxes.
   const Eigen::Matrix3d& m = turn.m;
   const Eigen::Vector3d t = pose_a.r.transpose() * (pose_b.t - pose_a.t) / unit;
   for (int i = 0; i < 3; ++i) {
@@ -54,10 +61,12 @@ TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pos
     }
     k.t[i] = t[i];
   }
+  // The bounds of the derivation above: on_a for A's axes, on_b for B's. One slack covers both.
   const double size = (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow) / unit;
   const double turn_a = std::sqrt(1 + turn.defect_a), turn_m = std::sqrt(1 + turn.defect_m);
   const double on_a = turn.defect_a * (a.extent() / unit) + turn_a * kWorldRounding * size;
   const double on_b = turn.defect_m * (b.extent() / unit) + turn_m * on_a;
+  // Rounded up, because the conversion to float may round down.
   k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * kFloatUp + kKernelTiny;
   k.m_size = static_cast<float>(turn_m) * kFloatUp;
   k.most_node_pairs = kNoLimit;
@@ -84,6 +93,7 @@ TreeKernel set_up_any_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree
 }
 
 void start_at_roots(TreeKernel& k, const ObbTree& a, const ObbTree& b, std::vector<NodePair>& room) {
+  // One allocation for both stacks, kept from query to query.
   const std::size_t each = stack_room(a.height(), b.height());
   if (room.size() < 2 * each) room.resize(2 * each);
   k.stack = room.data();
@@ -92,6 +102,7 @@ void start_at_roots(TreeKernel& k, const ObbTree& a, const ObbTree& b, std::vect
 }
 
 void allow_for_wrappers(TreeKernel& k) {
+  // A larger slack leaves more pairs to the exact tests, and never drops one.
   k.slack *= kWrapperSlack;
   if (k.affine == nullptr) return;
   for (AffineTerms::Axes& axes : k.affine->axes) axes.slack *= kWrapperSlack;

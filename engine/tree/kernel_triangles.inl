@@ -1,6 +1,6 @@
 #pragma once
-// Part of tree_kernel.inl and pair_kernel.inl: eight pairs of triangles, and what float arithmetic can say
-// about them for certain.
+// Part of tree_kernel.inl and pair_kernel.inl: eight pairs of triangles, and what float arithmetic can prove
+// about them.
 
 #include "engine/tree/kernel_boxes.inl"
 
@@ -26,6 +26,7 @@ struct Normal {
   Float8 n[3], size, bound;
 
   Normal(const Float8* u, float u_error, const Float8* v, float v_error, float reach, float error) {
+    // The largest coordinates bound U and V of the derivation above.
     Float8 u_max{}, v_max{};
     for (int axis = 0; axis < 3; ++axis) {
       u_max = larger(abs8(u[axis]), u_max);
@@ -36,6 +37,7 @@ struct Normal {
       n[x] = u[y] * v[z] - u[z] * v[y];
     }
     size = abs8(n[0]) + abs8(n[1]) + abs8(n[2]);
+    // The four terms of the bound: the position of d, the errors of v and of u, and their product.
     const float far = 4 * (reach + 2 * error);
     bound = splat(2 * error) * size + splat(far * v_error) * u_max + splat(far * u_error) * v_max +
             splat(far * u_error * v_error + kKernelTiny);
@@ -67,10 +69,12 @@ template <bool kMargin = false>
 inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, const Between& w,
                                  float plane_edge_error) {
   Float8 e1[3], e2[3];
+  // The unnormalised normals of the planes. Heights are compared with bounds of the same scale.
   subtract(planes.x[1], planes.x[0], e1);
   subtract(planes.x[2], planes.x[0], e2);
   const Normal n(e1, plane_edge_error, e2, plane_edge_error, w.reach, w.error);
   Float8 bound = n.bound;
+  // The plane must separate by more than the margin and by more than the sweep's extent along the normal.
   if constexpr (kMargin)  // the size is more than the normal's length
     bound += splat(w.margin) * n.size +
              abs8(n.n[0] * splat(w.way[0]) + n.n[1] * splat(w.way[1]) + n.n[2] * splat(w.way[2]));
@@ -80,6 +84,7 @@ inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, c
   for (int corner = 0; corner < 3; ++corner) {
     Float8 d[3];
     subtract(points.x[corner], planes.x[0], d);
+    // Certain only beyond the bound. A NaN compares false on both sides and leaves the corner undecided.
     const Float8 height = n.dot(d);
     sides.positive[corner] = greater(height, bound);
     sides.negative[corner] = greater(-bound, height);
@@ -97,6 +102,7 @@ struct TipFirst {
   Lanes positive;  ///< lanes whose tip is on the positive side
 
   TipFirst(const Corners& from, const SideLanes& s) {
+    // The two corners on the same side are the ends; the third is the tip. Selection, because lanes differ.
     const Lanes first = equal(s.positive[1], s.positive[2]), second = equal(s.positive[0], s.positive[2]);
     for (int corner = 0; corner < 3; ++corner)
       for (int axis = 0; axis < 3; ++axis)
@@ -107,27 +113,31 @@ struct TipFirst {
   }
 };
 
-/// What is certain about pairs of triangles, lane by lane.
+/// Proven relations of pairs of triangles, lane by lane.
 struct Verdict {
   Lanes cross, disjoint;
 };
 
-/// Tells whether two triangles overlap on the line in which their planes cross, where each has corners
+/// Decides whether two triangles overlap on the line in which their planes cross, if each has corners
 /// certainly on both sides of the other's plane. Decides this as engine/exact/planes_cross.hpp does, whose
 /// orient3d(tip of a, end of a, tip of b, end of b) is -(edge of a x edge of b) . (tip of b - tip of a). A
-/// sign that is certain here is also that of the world coordinates: a world point, seen in the leaf's frame,
-/// is an affine image, which may be mirrored but preserves what meets what, and every corner is within
-/// `error` of its own image.
+/// sign that is certain here is also that of the world coordinates: a world point in the leaf's frame is an
+/// affine image, which may be mirrored but preserves intersections, and every corner is within `error` of its
+/// own image.
 inline Verdict overlap(const Corners& a, const SideLanes& a_sides, const Corners& b, const SideLanes& b_sides,
                        const Between& w) {
+  // Step 1: rotate both triangles so that their tips come first.
   const TipFirst ta(a, a_sides), tb(b, b_sides);
   const Lanes alike = equal(ta.positive, tb.positive);
   Float8 between_tips[3], ua[2][3], ub[2][3];
   subtract(tb.t.x[0], ta.t.x[0], between_tips);
+  // Step 2: pair each end of A with the opposite end of B (low with high). Which end of B that is depends on
+  // whether the tips are on like sides.
   for (int end = 0; end < 2; ++end) subtract(ta.t.x[1 + end], ta.t.x[0], ua[end]);
   for (int end = 0; end < 2; ++end)
     for (int axis = 0; axis < 3; ++axis)
       ub[end][axis] = select(alike, tb.t.x[1 + end][axis], tb.t.x[2 - end][axis]) - tb.t.x[0][axis];
+  // Step 3: the two comparisons of interval overlap, each as a certified sign.
   Lanes low[2], high[2];
   for (int end = 0; end < 2; ++end) {
     const Normal n(ua[end], w.edge_error[0], ub[end], w.edge_error[1], w.reach, w.error);
@@ -135,6 +145,7 @@ inline Verdict overlap(const Corners& a, const SideLanes& a_sides, const Corners
     low[end] = greater(-n.bound, value);
     high[end] = greater(value, n.bound);
   }
+  // Both comparisons in favour: the triangles cross. One against: they are disjoint. Otherwise undecided.
   const Lanes certain = both(a_sides.certain, b_sides.certain);
   return {both(certain, select(tb.positive, both(high[0], low[1]), both(low[0], high[1]))),
           both(certain, select(tb.positive, either(low[0], high[1]), either(high[0], low[1])))};
@@ -150,9 +161,9 @@ struct EightCertainties {
   void tell(int lane, Candidate& c) const {
     const auto is = [lane](std::uint32_t lanes) { return lanes >> lane & 1; };
     const auto value = [](Certainty certainty) { return static_cast<std::uint32_t>(certainty); };
-    // A triangle whose certain corners are on one side of a plane meets it in the hull of those that may lie
-    // in it: if these are corners of the other triangle too, that hull is an edge or a corner of it, or all
-    // of it.
+    // A triangle whose certain corners are on one side of a plane intersects it in the hull of those that may
+    // lie in it. If these are corners of the other triangle too, that hull is a corner or an edge of it, or
+    // all of it. Report A's corners if A is such a triangle, otherwise B's.
     const std::uint32_t of = is(one_side[0]) ^ 1, touch = is(uncertain) & (is(one_side[0]) | is(one_side[1]));
     c.certainty = static_cast<Certainty>(is(cross) * value(Certainty::cross) +
                                          is(disjoint) * value(Certainty::disjoint) +
@@ -166,12 +177,14 @@ struct EightCertainties {
 inline EightCertainties certainties_of(const Corners& a, const SideLanes& a_sides, const Corners& b,
                                        const SideLanes& b_sides, const Between& w, std::uint32_t which) {
   EightCertainties c;
+  // Pairs with all six corners off the other's plane: compare the spans on the common line.
   const std::uint32_t certain = bits(both(a_sides.certain, b_sides.certain)) & which;
   if (certain != 0) {
     const Verdict v = overlap(a, a_sides, b, b_sides, w);
     c.cross = bits(v.cross);
     c.disjoint = bits(v.disjoint);
   }
+  // The rest has corners that may lie in a plane. Record which, for a test of shared corners.
   if (certain == which) return c;
   c.uncertain = which & ~certain;
   const SideLanes* const sides[2] = {&a_sides, &b_sides};

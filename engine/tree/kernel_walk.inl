@@ -1,6 +1,6 @@
 #pragma once
-// Part of tree_kernel.inl and affine_kernel.inl: the descent of two trees. The type Walk knows how nodes lie
-// to each other.
+// Part of tree_kernel.inl and affine_kernel.inl: the dual traversal of two trees. The type Walk computes the
+// relative position of two nodes.
 
 #include "engine/tree/kernel_triangles.inl"
 #include "engine/tree/kernel_whole.inl"
@@ -8,8 +8,7 @@
 namespace lrb {
 namespace {
 
-/// Returns the gap between boxes on the axis on which they are furthest apart; negative if they overlap on
-/// all axes.
+/// Returns the largest gap between boxes on any axis; negative if they overlap on all axes.
 inline Float8 gap_between(const Float8* centre, const Float8* half, const float* other_centre,
                           const float* other_half) {
   Float8 gap = abs8(centre[0] - splat(other_centre[0])) - (half[0] + splat(other_half[0]));
@@ -18,7 +17,8 @@ inline Float8 gap_between(const Float8* centre, const Float8* half, const float*
   return gap;
 }
 
-/// Where two or more pairs may meet: the gaps (see gap_between()) from box i of A to the boxes of B.
+/// The gaps (see gap_between()) from box i of A to the boxes of B. Set only if two or more pairs may
+/// intersect.
 struct Gaps {
   Float8 of[8];
 };
@@ -44,22 +44,26 @@ inline Float8 gaps_of(const Row& row, const Boxes& own_b, const Turned& bt) {
                 gap_between(own_b.centre, own_b.half, row.turned_centre, row.turned_half));
 }
 
-/// Finds which of A's boxes may meet which of B's: mask[k] has a bit for each of B's boxes that A's box k may
-/// meet. Most pairs of nodes are apart, and most of these show it in the first test. kGaps: finds the gaps,
-/// too.
+/// Finds the pairs of boxes that may intersect: bit 8 i + j of the result is set for box i of A and box j of
+/// B. The separating axes are the six face normals, without the edge directions ("SAT lite", van den Bergen
+/// 1997). Most pairs of nodes are disjoint, and most of these are rejected by the first test. kGaps: also
+/// finds the gaps.
 template <bool kMargin, bool kGaps, class Lie>
 inline std::uint64_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Lie& w,
                                 Gaps* gaps = nullptr) {
+  // Step 1: B's boxes against the node box of A, on A's axes.
   k.box_tests += na.count + nb.count;
   const Whole whole_a = whole_on_own(whole_of(na, k.ratio_a), Side::a, w);
   const Boxes b = decode(nb, k.ratio_b);
   const Turned bt = turn_b<kMargin>(b, w);
   const std::uint32_t mask_b = ~bits(apart(bt.centre, bt.half, whole_a.centre, whole_a.half)) & present(nb);
   if (mask_b == 0) return 0;
+  // Step 2: A's boxes against the node box of B, on B's axes.
   const Whole whole_b = whole_on_own(whole_of(nb, k.ratio_b), Side::b, w);
   const Boxes a = decode(na, k.ratio_a);
   const Turned at = turn_a<kMargin>(a, w);
   const std::uint32_t mask_a = ~bits(apart(at.centre, at.half, whole_b.centre, whole_b.half)) & present(na);
+  // Step 3: each remaining box of A against all boxes of B at once, on the axes of both.
   const Boxes &own_a = boxes_on_own(a, Side::a, w), &own_b = boxes_on_own(b, Side::b, w);
   const auto in_mask_b = static_cast<unsigned>(__builtin_popcount(mask_b));
   std::uint64_t all = 0;
@@ -70,10 +74,13 @@ inline std::uint64_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
     const Row row = row_of(own_a, at, i);
     const Lanes gap = either(apart(bt.centre, bt.half, row.own_centre, row.own_half),
                              apart(own_b.centre, own_b.half, row.turned_centre, row.turned_half));
+    // Boxes of B that step 1 rejected stay rejected.
     const std::uint32_t mask = ~bits(gap) & mask_b;
     k.box_tests += in_mask_b;
     if constexpr (kGaps) {
       if (mask == 0) continue;
+      // A single pair needs no gap, because there is nothing to sort. Its row is computed once a second pair
+      // appears.
       if (all == 0 && (mask & (mask - 1)) == 0) {
         alone = i;
       } else {
@@ -91,6 +98,7 @@ inline std::uint64_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
 /// returns the bounds on their errors: those of the two nodes.
 inline const Between& corners_of(const TreeKernel& k, const TreeNode& na, const TreeNode& nb,
                                  const Between& w, Corners& a, Corners& b) {
+  // A's corners are scaled only: A's leaf frame is the common frame. B's are rotated and translated to it.
   const LeafBlock& block_a = k.blocks_a[na.first];
   const LeafBlock& block_b = k.blocks_b[nb.first];
   for (int corner = 0; corner < 3; ++corner) {
@@ -108,21 +116,24 @@ inline const Between& corners_of(const TreeKernel& k, const TreeNode& na, const 
 
 /// Fetches all cache lines of a node.
 inline void prefetch(const TreeNode& n) {
+  // A node has 192 bytes, three cache lines.
   constexpr std::size_t kLine = 64;
   for (std::size_t at = 0; at < sizeof n; at += kLine)
     __builtin_prefetch(reinterpret_cast<const char*>(&n) + at);
 }
 
 inline void push(TreeKernel& k, std::uint32_t a, std::uint32_t b) {
+  // Prefetch now: in a depth-first traversal the pair is read a few steps later.
   prefetch(k.nodes_a[a]);
   prefetch(k.nodes_b[b]);
   k.stack[k.stack_size++] = {a, b};
 }
 
-/// Sorts the pairs that were pushed last, so that the one with the least gap comes last; if there are many,
-/// moves only that one.
+/// Sorts the pairs that were pushed last so that the one with the least gap is on top of the stack. If there
+/// are many, moves only that one.
 inline void nearest_last(NodePair* pairs, float* gaps, std::uint32_t size) {
   constexpr std::uint32_t kFew = 8;
+  // Insertion sort by descending gap, for a short list.
   if (size <= kFew) {
     for (std::uint32_t i = 1; i < size; ++i) {
       const NodePair pair = pairs[i];
@@ -137,6 +148,7 @@ inline void nearest_last(NodePair* pairs, float* gaps, std::uint32_t size) {
     }
     return;
   }
+  // Many pairs: one linear pass finds the nearest, in place of a sort.
   std::uint32_t nearest = 0;
   for (std::uint32_t i = 1; i < size; ++i)
     if (gaps[i] < gaps[nearest]) nearest = i;
@@ -145,10 +157,11 @@ inline void nearest_last(NodePair* pairs, float* gaps, std::uint32_t size) {
   pairs[nearest] = last;
 }
 
-/// Descends both nodes. kNearest: first into the pair whose boxes overlap most. Where one pair of simplices
-/// is enough, it is likely to be there.
+/// Descends both nodes. kNearest: visits the pair with the deepest overlap of boxes first. If one pair of
+/// simplices is enough, it is likely to be found there.
 template <class Walk, bool kNearest>
 inline void descend_both(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
+  // All 64 combinations of children are decided before any is pushed.
   Gaps gaps;
   const std::uint64_t pairs = pair_masks<Walk::kMargin, kNearest>(k, na, nb, Walk::between(k, na, nb), &gaps);
   float gap_of[64];
@@ -161,7 +174,7 @@ inline void descend_both(TreeKernel& k, const TreeNode& na, const TreeNode& nb) 
   if constexpr (kNearest) nearest_last(k.stack + bottom, gap_of, k.stack_size - bottom);
 }
 
-/// Descends A's node only: its boxes against the whole box of B's, in both frames.
+/// Descends A's node only: its boxes against the node box of B, in both frames.
 template <class Walk>
 inline void descend_a(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t b_index) {
   const Boxes a = decode(na, k.ratio_a);
@@ -170,6 +183,7 @@ inline void descend_a(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std
   const Turned at = turn_a<Walk::kMargin>(a, w);
   const Whole bt = turn_whole_b<Walk::kMargin>(b, w), own_b = whole_on_own(b, Side::b, w);
   const Boxes& own_a = boxes_on_own(a, Side::a, w);
+  // Six separating axes for each of A's boxes, in one pass over eight lanes.
   const Lanes gap = either(apart(at.centre, at.half, own_b.centre, own_b.half),
                            apart(own_a.centre, own_a.half, bt.centre, bt.half));
   k.box_tests += na.count;
@@ -200,16 +214,18 @@ struct PairList {
 };
 
 inline void list_pairs(std::uint64_t pairs, PairList& list) {
+  // Unpack bit 8 i + j into (i, j), lowest bit first.
   for (; pairs != 0; pairs &= pairs - 1) {
     const int at = __builtin_ctzll(pairs);
     list.a[list.size] = static_cast<std::uint8_t>(at / 8);
     list.b[list.size++] = static_cast<std::uint8_t>(at % 8);
   }
+  // Pad to a multiple of eight with simplex 0: lanes beyond the list are computed and masked out.
   __builtin_memset(list.a + list.size, 0, 8);
   __builtin_memset(list.b + list.size, 0, 8);
 }
 
-/// Notes the pairs that planes part, of eight in a list.
+/// Records which pairs of eight in a list are separated by a plane of one of their simplices.
 [[gnu::noinline, gnu::cold]] inline void note_parted(TreeKernel& k, const LeafBlock& a, const LeafBlock& b,
                                                      const PairList& list, std::uint32_t begin,
                                                      std::uint32_t by_a, std::uint32_t by_b) {
@@ -224,8 +240,10 @@ template <class Walk>
 inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   constexpr bool kMargin = Walk::kMargin;
   const auto w = Walk::between(k, na, nb);
+  // Pass 1: boxes of the simplices.
   const std::uint64_t pairs = pair_masks<kMargin, false>(k, na, nb, w);
   if (pairs == 0) return;
+  // Pass 2: list the surviving pairs, so that the lanes of the next passes are full.
   const LeafBlock& block_a = k.blocks_a[na.first];
   const LeafBlock& block_b = k.blocks_b[nb.first];
   PairList list;
@@ -234,13 +252,16 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   Corners a, b;
   const Between& errors = corners_of(k, na, nb, w, a, b);
   for (std::uint32_t begin = 0; begin < list.size; begin += 8) {
+    // Pass 3: planes. A pair is separated if all corners of one lie on one side of the other's plane.
     const Corners some_a = pick(a, list.a + begin), some_b = pick(b, list.b + begin);
     const SideLanes b_sides = sides_of_planes<kMargin>(some_a, some_b, errors, errors.edge_error[0]);
     const SideLanes a_sides = sides_of_planes<kMargin>(some_b, some_a, errors, errors.edge_error[1]);
+    // `here` masks the lanes in use; only the last batch may have fewer than eight.
     const std::uint32_t here = list.size - begin < 8 ? (1u << (list.size - begin)) - 1 : 255u;
     const std::uint32_t left = ~bits(either(a_sides.parted, b_sides.parted)) & here;
     if (k.parted != nullptr && left != here) [[unlikely]]
       note_parted(k, block_a, block_b, list, begin, bits(b_sides.parted) & here, bits(a_sides.parted) & here);
+    // Pass 4: decide what float arithmetic can prove about the rest. The exact tests get what is undecided.
     if (left == 0) continue;
     EightCertainties certainties;
     if constexpr (!kMargin) certainties = certainties_of(some_a, a_sides, some_b, b_sides, errors, left);
@@ -254,7 +275,7 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   }
 }
 
-/// Compares what is in two nodes. Puts pairs of their children that may meet on the stack.
+/// Compares the boxes in two nodes. Pushes the pairs of their children that may intersect.
 template <class Walk, bool kNearest>
 inline void open(TreeKernel& k, const NodePair& pair) {
   const TreeNode& a = k.nodes_a[pair.a];
@@ -262,6 +283,7 @@ inline void open(TreeKernel& k, const NodePair& pair) {
   ++k.node_pairs;
   k.opened = pair;
   k.opened_at = k.stack_size;
+  // Descend both nodes, or only the larger one if the other is a leaf or much smaller.
   const float size_a = Walk::size(k, a, Side::a), size_b = Walk::size(k, b, Side::b);
   const bool hold_a = a.is_leaf || size_b > kMuchLarger * size_a;
   const bool hold_b = b.is_leaf || size_a > kMuchLarger * size_b;
@@ -275,26 +297,27 @@ inline void open(TreeKernel& k, const NodePair& pair) {
     descend_both<Walk, kNearest>(k, a, b);
 }
 
-/// Returns true if there is room for what may come of a pair of leaves, and not yet `end` pairs of nodes.
+/// Returns true if `out` has room for all 64 pairs of two leaves, and fewer than `end` pairs of nodes have
+/// been visited.
 inline bool may_go_on(const TreeKernel& k, std::uint64_t end) {
   return k.out_capacity - k.out_size >= 64 && k.node_pairs < end;
 }
 
 template <class Walk, bool kNearest>
 void run(TreeKernel& k, std::uint64_t end) {
+  // Depth-first traversal with an explicit stack. It can stop after any pair and be resumed.
   while (k.stack_size != 0 && may_go_on(k, end)) {
     const NodePair pair = k.stack[--k.stack_size];
     open<Walk, kNearest>(k, pair);
   }
 }
 
-/// Notes the pairs of nodes that are parted as wholes.
+/// Records the pairs of nodes whose node boxes are disjoint.
 [[gnu::noinline]] inline void note_parted_nodes(TreeKernel& k, const NodePair* pairs, std::uint32_t apart) {
   for (; apart != 0; apart &= apart - 1) k.parted_nodes[k.parted_nodes_size++] = pairs[__builtin_ctz(apart)];
 }
 
-/// Compares whole nodes, the first pairs on the stack, and moves those that may meet to `tested`. `count`: at
-/// most 8.
+/// Compares the node boxes of up to 8 pairs and moves those that may intersect to `tested`.
 inline void test_wholes(TreeKernel& k, const NodePair* pairs, std::uint32_t count) {
   const std::uint32_t apart = pairs_apart(k, pairs, count);
   const auto parted = static_cast<unsigned>(__builtin_popcount(apart));
@@ -306,18 +329,21 @@ inline void test_wholes(TreeKernel& k, const NodePair* pairs, std::uint32_t coun
     k.tested[k.tested_size++] = pairs[__builtin_ctz(c)];
 }
 
-/// Does so for all full eights that have come onto the stack, and if nothing else is to be done for the rest
-/// of them, too, or for the last ones of those that waited before.
+/// Does so for all complete batches of eight pairs on the stack. If no tested pair is left to expand, also
+/// tests an incomplete batch, or the last pairs below `base`.
 inline void test_stack(TreeKernel& k) {
+  // Complete batches first: SIMD lanes are full.
   const std::uint32_t came = k.stack_size - k.base, eights = came - came % 8;
   NodePair* const pairs = k.stack + k.base;
   for (std::uint32_t at = 0; at < eights; at += 8) test_wholes(k, pairs + at, 8);
   std::uint32_t left = came - eights;
+  // There is other work: the incomplete batch waits at the bottom of the stack for more pairs.
   if (k.tested_size != 0) {
     for (std::uint32_t i = 0; i < left; ++i) pairs[i] = pairs[eights + i];
     k.stack_size = k.base + left;
     return;
   }
+  // Nothing new: take up to eight of the pairs that the search for the nearest boxes left.
   if (came == 0) {
     left = k.base < 8 ? k.base : 8;
     k.base -= left;
@@ -326,11 +352,13 @@ inline void test_stack(TreeKernel& k) {
   if (left != 0) test_wholes(k, k.stack + (k.base + eights), left);
 }
 
-/// Does what run() does, but compares whole nodes before what is in them: half of the pairs end there, for a
-/// fraction of the work, if eight are compared at a time. So that there are eight, pairs wait for others.
+/// Does what run() does, but tests node boxes before the boxes inside: half of the pairs end there, for a
+/// fraction of the work if eight are compared at a time. To fill batches of eight, pairs wait for others.
 template <class Walk>
 void run_tested(TreeKernel& k, std::uint64_t end) {
   while (k.stack_size + k.tested_size != 0 && may_go_on(k, end)) {
+    // Test when a batch is complete or nothing else can be done. Otherwise expand a tested pair, which may
+    // push more.
     if (k.stack_size - k.base >= 8 || k.tested_size == 0) {
       test_stack(k);
     } else {
@@ -341,16 +369,18 @@ void run_tested(TreeKernel& k, std::uint64_t end) {
   }
 }
 
-/// The nearest pair of boxes is looked for in the first so many pairs of nodes: bodies that meet mostly show
-/// it in these, and for bodies that do not meet any order is as good.
+/// Number of pairs of nodes in which the nearest boxes are visited first. Bodies that intersect mostly show
+/// it within these, and for disjoint bodies any order is as good.
 constexpr std::uint64_t kNearestPairs = 8;
 
 /// Begins with the nearest boxes, where one pair of simplices is enough.
 template <class Walk>
 void run_nearest(TreeKernel& k) {
+  // A resumed traversal has done this already.
   if (k.node_pairs >= kNearestPairs) return;
   const std::uint64_t most = k.most_node_pairs;
   run<Walk, true>(k, kNearestPairs < most ? kNearestPairs : most);
+  // The pairs left so far stay at the bottom of the stack, below `base`; run_tested() takes them last.
   k.base = k.stack_size;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Part of kernel_walk.inl: the boxes of whole nodes, on their own axes and across their edges, for eight
-// pairs of nodes at a time or for one.
+// Part of kernel_walk.inl: the separating axis test of two node OBBs with all 15 axes (Gottschalk, Lin and
+// Manocha 1996), for eight pairs of nodes at a time or for one.
 
 #include "engine/tree/kernel_boxes.inl"
 
@@ -19,8 +19,8 @@ struct Offsets {
   V of[3];
 };
 
-/// So few pairs are compared one by one: of more, eight at a time are faster. Where processors have four
-/// lanes only, they are not.
+/// Up to this number of pairs are compared one by one. With more, eight at a time are faster, except on
+/// processors with four lanes only.
 #if defined(__AVX2__)
 constexpr std::uint32_t kFewPairs = 2;
 #else
@@ -30,7 +30,7 @@ constexpr std::uint32_t kFewPairs = 8;
 /// A node's frame, base and scale are read as these many numbers.
 constexpr int kWholeNumbers = 15;
 
-/// Sets whole nodes from those numbers, in the tree's unit.
+/// Computes node boxes from those numbers, in query units.
 template <class V>
 inline WholeNodes<V> whole_nodes(const V* numbers, float ratio) {
   WholeNodes<V> out;
@@ -45,6 +45,8 @@ inline WholeNodes<V> whole_nodes(const V* numbers, float ratio) {
 /// Reads eight nodes. nodes: where each of them is.
 inline WholeNodes<Float8> read_wholes(const TreeNode* const* nodes, float ratio, Float8) {
   static_assert(__builtin_offsetof(TreeNode, scale) == 12 * sizeof(float));
+  // Each node's first 16 floats are four rows of four; transposing them puts one number of all eight nodes in
+  // a vector.
   Float8 numbers[16];  // the last one is what follows
   for (int part = 0; part < 4; ++part) {
     Float4 row[8];
@@ -109,6 +111,7 @@ inline std::uint32_t is_greater(float x, float y) {
 template <class V>
 inline std::uint32_t wholes_apart(const TreeKernel& k, const TreeNode* const* nodes_a,
                                   const TreeNode* const* nodes_b) {
+  // Step 1: B's axes and centre relative to A, and the bound on the error.
   const WholeNodes<V> a = read_wholes(nodes_a, k.ratio_a, V{}), b = read_wholes(nodes_b, k.ratio_b, V{});
   const Offsets<V> offset = offsets_between(k, nodes_a, nodes_b, V{});
   V turned[3][3], r[3][3], abs_r[3][3], c[3];  // B's axes on A's body's; on A's node's; B's middle from A's
@@ -120,7 +123,9 @@ inline std::uint32_t wholes_apart(const TreeKernel& k, const TreeNode* const* no
     size +=
         absolute(offset.of[i]) + (absolute(a.centre[i]) + a.half[i]) + (absolute(b.centre[i]) + b.half[i]);
   }
+  // `size` bounds all coordinates involved, so the error is relative to it.
   const V error = k.slack + (kWholeRounding * k.m_size * k.m_size) * size;
+  // Step 2: A's three face normals.
   std::uint32_t apart = 0;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -133,11 +138,15 @@ inline std::uint32_t wholes_apart(const TreeKernel& k, const TreeNode* const* no
         absolute(c[i]),
         a.half[i] + error + (abs_r[i][0] * b.half[0] + abs_r[i][1] * b.half[1] + abs_r[i][2] * b.half[2]));
   }
+  // Step 3: B's three face normals.
   for (int j = 0; j < 3; ++j)
     apart |= is_greater(
         absolute(r[0][j] * c[0] + r[1][j] * c[1] + r[2][j] * c[2]),
         b.half[j] + error + (abs_r[0][j] * a.half[0] + abs_r[1][j] * a.half[1] + abs_r[2][j] * a.half[2]));
+  // A single pair can stop here. Of eight pairs, the lanes that are left need the other axes.
   if (sizeof(V) == sizeof(float) && apart != 0) return apart;
+  // Step 4: the nine cross products of an axis of A and one of B. Nearly parallel axes give a direction near
+  // 0, and then the error term keeps the test from separating.
   const V error_across = 4 * error;
   for (int i = 0; i < 3; ++i) {
     const int p = (i + 1) % 3, q = (i + 2) % 3;
@@ -151,8 +160,9 @@ inline std::uint32_t wholes_apart(const TreeKernel& k, const TreeNode* const* no
   return apart;
 }
 
-/// Returns a bit for each pair of nodes in a list, of at most eight, whose boxes are apart.
+/// Returns a bit for each pair of nodes in a list of at most eight whose boxes are disjoint.
 inline std::uint32_t pairs_apart(const TreeKernel& k, const NodePair* pairs, std::uint32_t count) {
+  // Unused lanes repeat the first pair, so that they read valid memory.
   const TreeNode *a[8], *b[8];
   for (std::uint32_t i = 0; i < 8; ++i) {
     const NodePair& pair = pairs[i < count ? i : 0];

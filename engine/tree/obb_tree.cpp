@@ -1,3 +1,10 @@
+// Builds the 8-wide tree of oriented boxes (principal axes: Gottschalk, Lin and Manocha 1996; quantized child
+// boxes: Ylitie, Karras and Laine 2017).
+// 1. Choose the unit, a power of two, so that coordinates are at most about 1.
+// 2. Build a binary tree (binary_tree.hpp), and collapse it to eight children per node (collapse.hpp).
+// 3. Lay out nodes and blocks depth first.
+// 4. Fill each node by itself, in parallel: fit a frame, compute the boxes in it, quantize them outwards.
+
 #include "engine/tree/obb_tree.hpp"
 
 #include <algorithm>
@@ -57,10 +64,12 @@ class ObbTreeBuilder {
   void lay_out(const Collapse& collapse, std::uint32_t wide, std::uint32_t binary, std::uint32_t height) {
     tree_.height_ = std::max(tree_.height_, height);
     binary_of_[wide] = binary;
+    // A leaf: `first` is the number of its block.
     if (binary_[binary].is_leaf()) {
       tree_.nodes_[wide].first = block_count_++;
       return;
     }
+    // Children are contiguous. Their places are reserved before any of their subtrees.
     const std::vector<std::uint32_t> children = collapse.children(binary);
     const auto first = static_cast<std::uint32_t>(tree_.nodes_.size());
     tree_.nodes_.resize(first + children.size());
@@ -72,6 +81,7 @@ class ObbTreeBuilder {
 
   void fill(std::uint32_t wide) {
     const BinaryNode& b = binary_[binary_of_[wide]];
+    // The boxes of children are recomputed from the simplices in this frame: a box of a box would be looser.
     const Frame frame = fit_frame(soup_, soup_.listed(b.begin, b.end), b.box);
     TreeNode& node = tree_.nodes_[wide];
     const std::uint32_t first = node.first;
@@ -84,6 +94,7 @@ class ObbTreeBuilder {
         boxes.push_back(box_in_frame(soup_, soup_.listed(child.begin, child.end), frame));
       }
     }
+    // quantize() overwrites the whole node.
     quantize(node, frame, boxes);
     node.first = first;
     node.is_leaf = b.is_leaf();
@@ -94,6 +105,7 @@ class ObbTreeBuilder {
     block = {};
     std::fill(std::begin(block.simplex), std::end(block.simplex), kNull);
     for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
+      // Absent simplices repeat the last one, so that all eight lanes contain valid coordinates.
       const std::uint32_t s = soup_.order[std::min(b.begin + k, b.end - 1)];
       for (int corner = 0; corner < 3; ++corner) {
         const Vector3d x = frame.axes * (soup_.corners[s][corner] - frame.origin);
@@ -117,16 +129,19 @@ class ObbTreeBuilder {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) node.frame[i][j] = static_cast<float>(frame.axes(i, j));
       node.origin[i] = frame.origin[i];
+      // The range is widened by twice the margin: the boxes grow by one, and the codes must still cover them.
       const double lo = all.min()[i] - 2 * margin, hi = all.max()[i] + 2 * margin;
       node.base[i] = std::nextafter(static_cast<float>(lo), -INFINITY);
       node.scale[i] = std::nextafter(static_cast<float>((hi - node.base[i]) / kQuantizedMost), INFINITY);
       for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
+        // Absent children have lo > hi.
         node.lo[i][k] =
             k < boxes.size() ? quantize_down(node, i, boxes[k].min()[i] - margin) : kQuantizedMost;
         node.hi[i][k] = k < boxes.size() ? quantize_up(node, i, boxes[k].max()[i] + margin) : 0;
       }
     }
     node.count = static_cast<std::uint8_t>(boxes.size());
+    // The origin is 0 in this frame, so the farthest corner of the common box bounds the radius.
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner)
       farthest = std::max(farthest, all.corner(static_cast<Box::CornerType>(corner)).norm());
@@ -137,11 +152,14 @@ class ObbTreeBuilder {
     return node.base[axis] + node.scale[axis] * static_cast<float>(q);
   }
   static std::uint8_t quantize_down(const TreeNode& node, int axis, double x) {
+    // Start one code too high and step down until the decoded value is at or below x. The float decoding
+    // itself decides, so no estimate of its rounding is needed here.
     int q = std::clamp(static_cast<int>((x - node.base[axis]) / node.scale[axis]) + 1, 0, kQuantizedMost);
     while (q > 0 && decode(node, axis, q) > x) --q;
     return static_cast<std::uint8_t>(q);
   }
   static std::uint8_t quantize_up(const TreeNode& node, int axis, double x) {
+    // The mirror image: the decoded value is at or above x.
     int q = std::clamp(static_cast<int>((x - node.base[axis]) / node.scale[axis]) - 1, 0, kQuantizedMost);
     while (q < kQuantizedMost && decode(node, axis, q) < x) ++q;
     return static_cast<std::uint8_t>(q);
@@ -161,6 +179,7 @@ void ObbTree::measure(const SimplexView& body, std::span<const SimplexId> simpli
     for (int k = 0; k < body.dim; ++k) extent_ = std::max(extent_, body.vertices[v[k]].cwiseAbs().maxCoeff());
   }
   if (simplices.empty()) return;
+  // The least power of two above the extent, kept inside the range of normal doubles.
   int exponent = 0;
   std::frexp(extent_, &exponent);
   unit_ = std::ldexp(1.0, std::clamp(exponent, -1022, 1023));

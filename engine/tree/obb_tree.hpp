@@ -45,7 +45,7 @@ static_assert(sizeof(TreeNode) == 192);
 /// The simplices of a leaf: corners in the leaf's coordinates, eight simplices side by side. A segment
 /// repeats its second corner.
 struct alignas(64) LeafBlock {
-  float corner[3][3][kTreeWidth];  ///< [corner][axis][simplex]; absent simplices repeat the first
+  float corner[3][3][kTreeWidth];  ///< [corner][axis][simplex]; absent simplices repeat the last one
   SimplexId simplex[kTreeWidth];   ///< kNull where absent
 };
 static_assert(sizeof(LeafBlock) == 320);

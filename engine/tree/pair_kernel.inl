@@ -1,4 +1,4 @@
-// Compiled once per instruction set by pair_kernel_*.cpp, which define LRB_PAIR_KERNEL_NAME. It is apart from
+// Compiled once per instruction set by pair_kernel_*.cpp, which define LRB_PAIR_KERNEL_NAME. Separate from
 // the tree kernel, because that one's speed depends on what the compiler inlines into its one loop.
 
 #include "engine/tree/kernel_triangles.inl"
@@ -21,6 +21,7 @@ inline Float8 smaller(Float8 x, Float8 y) {
 }
 
 inline float largest_of(Float8 x) {
+  // Horizontal maximum in three steps: halves, quarters, neighbours.
   x = larger(x, __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3));
   x = larger(x, __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5));
   x = larger(x, __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6));
@@ -32,6 +33,7 @@ struct EightSimplices {
   Float8 corner[3], edge[2][3], longest;
 
   EightSimplices(const CachedSimplex* table, const std::uint32_t* which) {  // every second entry of `which`
+    // Gather by transposing: 12 floats per simplex are three rows of four.
     Float8 column[3][4];
     for (int part = 0; part < 3; ++part) {
       Float4 row[8];
@@ -63,6 +65,7 @@ struct EightPairs {
   Between w;
 
   EightPairs(const PairKernel& k, const CachedPair* pairs) {
+    // Relative to A's first corner, coordinates and errors are small if the simplices are small and near.
     const EightSimplices of_a(k.a, &pairs->a), of_b(k.b, &pairs->b);
     const float edge_a = largest_of(of_a.longest);
     edge_b = largest_of(of_b.longest);
@@ -80,6 +83,7 @@ struct EightPairs {
         b.x[1 + which][x] = b.x[0][x] + turned(of_b.edge[which]);
       }
     }
+    // Bounds for all eight pairs together, from the largest of each quantity.
     const float whole = k.m_size * (k.radius_a + k.radius_b + __builtin_fabsf(k.t[0]) +
                                     __builtin_fabsf(k.t[1]) + __builtin_fabsf(k.t[2]) + edge_b);
     const float error = k.slack + kKernelRounding * whole;
@@ -107,9 +111,11 @@ struct Across {
   /// scaled so that its square neither overflows nor vanishes; no direction at all gives NaN, which proves
   /// nothing.
   Across(const Float8* direction, const EightPairs& p) {
+    // The largest component of d becomes 1.
     const Float8 scale =
         splat(1) / larger(larger(abs8(direction[0]), abs8(direction[1])), abs8(direction[2]));
     for (int x = 0; x < 3; ++x) d[x] = direction[x] * scale;
+    // Project both simplices. A's first corner is the origin.
     const auto along = [this](const Float8* x) { return d[0] * x[0] + d[1] * x[1] + d[2] * x[2]; };
     size = abs8(d[0]) + abs8(d[1]) + abs8(d[2]);
     compare({Float8{}, along(p.a.x[1]), along(p.a.x[2])}, {along(p.b.x[0]), along(p.b.x[1]), along(p.b.x[2])},
@@ -123,13 +129,14 @@ struct Across {
 
  private:
   void compare(const Shadow& a, const Shadow& b, Float8 error) {
+    // Lower bounds on the gap: the error is subtracted, so a positive value proves a separation.
     a_above = a.low - b.high - error - splat(kKernelTiny);
     b_above = b.low - a.high - error - splat(kKernelTiny);
   }
 };
 
 /// Calls see() with directions along which pairs may be separated: the normals of both, the axes, and the
-/// line between the middles.
+/// line between the centroids.
 template <class See>
 inline void for_directions(const EightPairs& p, See&& see) {
   Float8 d[3];
@@ -156,21 +163,24 @@ struct Span {
   void not_after(Float8 x) { to = select(greater(to, x), x, to); }
 };
 
-/// Returns the lengths of motions after which the pairs may meet: at least the width of the widest slab
+/// Returns the lengths of motions after which the pairs may intersect: at least the width of the widest slab
 /// between the two.
 inline Span span_of_lengths(const EightPairs& p) {
   Span span{Float8{}, splat(__builtin_inff())};
   for_directions(p, [&](const Across& x) {
+    // The slab has the width gap / |d|. |d| is rounded up, so the quotient is a lower bound.
     const Float8 length = root8(x.d[0] * x.d[0] + x.d[1] * x.d[1] + x.d[2] * x.d[2]) * splat(kFloatUp);
     span.not_before(larger(x.a_above, x.b_above) / length);
   });
   return span;
 }
 
-/// Returns the parts of a sweep in which the pairs may meet. Along each direction B moves at a constant rate,
-/// give or take `spared`: it comes from one side of A and leaves on the other.
+/// Returns the parts of a sweep in which the pairs may intersect. Along each direction B moves at a constant
+/// rate, up to `spared`: it comes from one side of A and leaves on the other.
 inline Span span_of_sweep(const PairKernel& k, const EightPairs& p) {
   Span span{splat(-__builtin_inff()), splat(__builtin_inff())};
+  // `spared` bounds how far the motion of any point of B's simplex differs from the sweep of its first
+  // corner.
   const float longest = k.sweep_turn * k.radius_b + __builtin_fabsf(k.sweep_t[0]) +
                         __builtin_fabsf(k.sweep_t[1]) + __builtin_fabsf(k.sweep_t[2]);
   const Float8 spared = splat(k.margin + k.sweep_turn * p.edge_b + kSweepRounding * longest);
@@ -179,8 +189,11 @@ inline Span span_of_sweep(const PairKernel& k, const EightPairs& p) {
     way[x] = splat(k.sweep_t[x]) + splat(k.sweep[x][0]) * p.corner_b[0] +
              splat(k.sweep[x][1]) * p.corner_b[1] + splat(k.sweep[x][2]) * p.corner_b[2];
   for_directions(p, [&](const Across& x) {
+    // As in the slab test of rays (Kay and Kajiya 1986): B enters A's slab at one time and leaves it at
+    // another.
     const Float8 rate = x.d[0] * way[0] + x.d[1] * way[1] + x.d[2] * way[2];
     const Lanes rises = greater(rate, Float8{});
+    // A rate of 0 gives infinity, or NaN, which Span ignores.
     const Float8 per_rate = splat(1) / abs8(rate), spare = spared * x.size;
     span.not_before((select(rises, x.a_above, x.b_above) - spare) * per_rate);
     span.not_after((spare - select(rises, x.b_above, x.a_above)) * per_rate);
@@ -192,6 +205,7 @@ inline PairVerdicts verdicts_of(const EightPairs& p) {
   const SideLanes b_sides = sides_of_planes(p.a, p.b, p.w, p.w.edge_error[0]);
   const SideLanes a_sides = sides_of_planes(p.b, p.a, p.w, p.w.edge_error[1]);
   const std::uint32_t parted = bits(either(a_sides.parted, b_sides.parted));
+  // All eight pairs are separated by planes: the common line need not be looked at.
   if (parted == 255u) return {0, 255u};
   const Verdict v = overlap(p.a, a_sides, p.b, b_sides, p.w);  // for the others
   return {static_cast<std::uint8_t>(bits(v.cross) & ~parted),

@@ -1,3 +1,7 @@
+// The simplices of a tree in its unit, and frames that fit some of them: principal axes of the covariance of
+// the surface's points, not of the vertices, so that the tessellation does not matter (Gottschalk, Lin and
+// Manocha 1996).
+
 #include "engine/tree/soup.hpp"
 
 #include <cmath>
@@ -23,6 +27,7 @@ bool is_orthonormal(const Matrix3d& axes) {
 
 Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, double unit)
     : simplices(simplices_) {
+  // The unit is a power of two: 2^(exponent - 1).
   int exponent = 0;
   std::frexp(unit, &exponent);
   const auto to_units = [e = 1 - exponent](const Vector3d& x) -> Vector3d {
@@ -37,11 +42,13 @@ Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, doubl
   for (std::uint32_t s = 0; s < n; ++s) {
     VertexId v[3];
     body.simplex(simplices[s], v);
+    // A segment is a triangle whose last two corners coincide.
     if (body.dim == 2) v[2] = v[1];
     for (int k = 0; k < 3; ++k) {
       corners[s][k] = to_units(body.vertices[v[k]]);
       box[s].extend(corners[s][k]);
     }
+    // The centre of the box, not the centroid: cuts are judged by boxes.
     centre[s] = 0.5 * (box[s].min() + box[s].max());
   }
 }
@@ -49,6 +56,8 @@ Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, doubl
 Spread::Spread(const std::array<Vector3d, 3>& corners, const Vector3d& origin, double scale) {
   const Vector3d p = scale * (corners[0] - origin), q = scale * (corners[1] - origin),
                  r = scale * (corners[2] - origin);
+  // Exact integrals over the triangle: mean (p + q + r) / 3, and second moments (sum^2 + p^2 + q^2 + r^2) /
+  // 12.
   weight = (q - p).cross(r - p).norm() + kFrameCornerWeight;
   const Vector3d sum = p + q + r;
   first = weight / 3 * sum;
@@ -60,6 +69,7 @@ Spread::Spread(const std::array<Vector3d, 3>& corners, const Vector3d& origin, d
 }
 
 Matrix3d Spread::covariance() const {
+  // E[x x^T] - mean mean^T.
   const Vector3d mean = first / weight;
   Matrix3d c;
   for (int i = 0; i < 3; ++i) {
@@ -78,14 +88,18 @@ Box box_in_frame(const Soup& soup, std::span<const std::uint32_t> which, const F
 }
 
 Frame fit_frame(const Soup& soup, std::span<const std::uint32_t> which, const Box& bounds) {
+  // Without extent there are no principal axes: 1 / 0 is not finite.
   const Frame straight{Matrix3d::Identity(), 0.5 * (bounds.min() + bounds.max())};
   const double scale = 1 / bounds.sizes().norm();
   if (!std::isfinite(scale)) return straight;
   Spread spread;
   for (const std::uint32_t s : which) spread += Spread(soup.corners[s], straight.origin, scale);
   const Matrix3d axes = eigenvectors_of_symmetric(spread.covariance()).transpose();
+  // Round the axes to float before measuring. If rounding spoils orthonormality, fall back to the coordinate
+  // axes.
   const Frame principal{axes.cast<float>().cast<double>(), straight.origin};
   if (!principal.axes.allFinite() || !is_orthonormal(principal.axes)) return straight;
+  // Principal axes are not always best: a cube's are arbitrary. Keep the smaller box.
   return half_area(box_in_frame(soup, which, principal)) < half_area(bounds) ? principal : straight;
 }
 

@@ -39,6 +39,7 @@ Kernels best_kernels() {
 }
 
 const Kernels& kernels() {
+  // Chosen once, at the first call. The initialisation of a local static is thread-safe.
   static const Kernels best = best_kernels();
   return best;
 }

@@ -25,7 +25,9 @@ struct RigidWalk {
 }  // namespace
 
 void LRB_KERNEL_NAME(TreeKernel& k) {
+  // The batched test of node boxes allows for no margin: traverse without it.
   if (k.margin > 0) return run<RigidWalk<true>, false>(k, k.most_node_pairs);
+  // The first few pairs of nodes in order of distance, the rest in batches of eight.
   if (k.nearest_first) run_nearest<RigidWalk<false>>(k);
   run_tested<RigidWalk<false>>(k, k.most_node_pairs);
 }

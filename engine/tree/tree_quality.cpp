@@ -4,6 +4,7 @@ namespace lrb {
 namespace {
 
 bool children_overlap(const TreeNode& n, int x, int y) {
+  // Codes on the parent's axes. Boxes that only touch do not count.
   for (int axis = 0; axis < 3; ++axis)
     if (n.lo[axis][x] >= n.hi[axis][y] || n.lo[axis][y] >= n.hi[axis][x]) return false;
   return true;
@@ -23,6 +24,8 @@ TreeQuality tree_quality(const ObbTree& tree) {
   if (tree.empty()) return q;
   q.height = tree.height();
   std::uint64_t children = 0, pairs = 0, overlapping = 0;
+  // A random line that hits the root hits a node with probability area / root area (Goldsmith and Salmon
+  // 1987).
   const double root = area_of(tree.nodes()[0]);
   for (const TreeNode& n : tree.nodes()) {
     const double share = root > 0 ? area_of(n) / root : 0;
@@ -35,6 +38,7 @@ TreeQuality tree_quality(const ObbTree& tree) {
     }
     q.sah_inner += share;
     children += n.count;
+    // At most 28 pairs of siblings per node.
     for (int x = 0; x < n.count; ++x)
       for (int y = 0; y < x; ++y) {
         ++pairs;

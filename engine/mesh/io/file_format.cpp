@@ -1,3 +1,6 @@
+// Format detection by content, with the file's extension as a fallback. The order matters: the size of a
+// binary STL is the most specific evidence, keywords come next, files known to be something else are rejected
+// with their name, and the extension decides only what is left.
 #include "engine/mesh/io/file_format.hpp"
 
 #include <algorithm>
@@ -70,6 +73,7 @@ std::string lower(std::string_view text) {
 
 std::optional<std::string_view> looks_like(std::string_view bytes) {
   static constexpr std::size_t kLongest = 32;
+  // Compared both as it is and without leading blanks, because binary signatures may begin with any byte.
   const std::size_t text = bytes.find_first_not_of(" \t\r\n");
   const std::string raw = lower(bytes.substr(0, kLongest)), start = lower(bytes.substr(text, kLongest));
   for (const Lookalike& l : kLookalikes)
@@ -79,6 +83,7 @@ std::optional<std::string_view> looks_like(std::string_view bytes) {
 
 /// Returns true for UTF-16 without a byte order mark: every second byte of ASCII is zero.
 bool is_utf16_without_mark(std::string_view bytes) {
+  // Two characters are enough: ASCII and zero bytes alternate.
   if (bytes.size() < 4) return false;
   return (bytes[0] != 0 && bytes[1] == 0 && bytes[2] != 0 && bytes[3] == 0) ||
          (bytes[0] == 0 && bytes[1] != 0 && bytes[2] == 0 && bytes[3] != 0);
@@ -87,6 +92,7 @@ bool is_utf16_without_mark(std::string_view bytes) {
 bool is_text(std::string_view bytes) {
   static constexpr std::size_t kSample = 1024;
   const std::string_view sample = bytes.substr(0, kSample);
+  // Bytes above 127 count as text: names and comments may be in UTF-8 or Latin-1.
   return std::none_of(sample.begin(), sample.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r' && c != '\v' &&
            c != '\f';
@@ -106,22 +112,28 @@ std::string extension_of(std::string_view path) {
 
 MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   const std::string extension = extension_of(name);
+  // The header of a binary STL may begin with "solid", so its size is tested before that keyword.
   if (has_size_of_binary_stl(bytes)) return MeshFormat::stl_binary;
   if (bytes.find_first_not_of(" \t\r\n\v\f") == std::string_view::npos)
     refuse(name, bytes.empty() ? "an empty file" : "a file of blanks", "export or copy the file again");
 
+  // First token with and without "#" comments: PLY and STL have none.
   const std::string_view first = TextCursor(bytes, name, {.hash_comments = true}).any_token();
   const std::string_view first_of_all = TextCursor(bytes, name, {}).any_token();
   if (first_of_all == "ply") return MeshFormat::ply;
+  // A binary STL of a wrong size may also begin with "solid"; its reader reports the sizes.
   if (lower(first_of_all) == "solid") return is_text(bytes) ? MeshFormat::stl_ascii : MeshFormat::stl_binary;
   if (parse_off_header(first)) return MeshFormat::off;
+  // Formats that are not supported are named in the message.
   if (const auto what = looks_like(bytes)) refuse(name, *what);
   if (is_utf16_without_mark(bytes)) refuse(name, "UTF-16 text (save it as UTF-8)");
+  // Binary data: only the extension is left as evidence.
   if (!is_text(bytes)) {
     if (extension == "stl") return MeshFormat::stl_binary;
     if (extension != "obj") refuse(name, "binary data of no known kind");
   }
   if (first.empty()) refuse(name, "nothing but comments", "export or copy the file again");
+  // OBJ has no signature, so its first statement identifies it.
   if (std::find(kObjWords.begin(), kObjWords.end(), first) != kObjWords.end()) return MeshFormat::obj;
   if (extension == "obj") return MeshFormat::obj;  // the OBJ reader names the offending line
   if (extension == "off" && is_number(first)) return MeshFormat::off;  // the keyword OFF may be left out

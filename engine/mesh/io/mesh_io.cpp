@@ -45,6 +45,7 @@ void refuse_without_faces(const Mesh& mesh, std::string_view name) {
 
 Mesh read_mesh(const std::string& bytes, const std::string& name) {
   static constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
+  // A UTF-8 byte order mark in front of the text is skipped.
   std::string_view content = bytes;
   if (content.starts_with(kUtf8Mark)) content.remove_prefix(kUtf8Mark.size());
   Mesh mesh = read_as(tell_format(content, name), content, name);

@@ -17,6 +17,7 @@ namespace {
 
 template <class T>
 void put(AtomicFile& out, T value) {
+  // PLY is written little-endian on every machine.
   auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
   if (std::endian::native != std::endian::little) std::reverse(bytes.begin(), bytes.end());
   out.write({bytes.data(), bytes.size()});
@@ -32,6 +33,7 @@ void put_number(std::string& line, double x) {
 /// Returns the header, with the face list as MeshLab and Blender expect it, `uchar int`; only faces of more
 /// than 255 corners need a wider count.
 std::string ply_header(const Mesh& mesh, bool wide, bool coloured) {
+  // Indices are signed as usual, and unsigned only if there are more than 2^31 - 1 vertices.
   const bool many = mesh.vertices.size() > std::size_t{std::numeric_limits<std::int32_t>::max()};
   std::string text = "ply\nformat binary_little_endian 1.0\n";
   text.append("element vertex ").append(std::to_string(mesh.vertices.size()));
@@ -44,10 +46,12 @@ std::string ply_header(const Mesh& mesh, bool wide, bool coloured) {
 }
 
 void write_ply(const Mesh& mesh, std::span<const FaceColour> colours, AtomicFile& out) {
+  // The header fixes the type of all counts, so the largest face decides.
   bool wide = false;
   for (FaceId f = 0; f < mesh.face_count(); ++f)
     wide |= mesh.face(f).size() > std::numeric_limits<std::uint8_t>::max();
   out.write(ply_header(mesh, wide, !colours.empty()));
+  // Doubles as they are: reading the file gives the same coordinates.
   for (const Eigen::Vector3d& v : mesh.vertices)
     for (const double x : v) put(out, x);
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
@@ -70,6 +74,7 @@ void write_obj(const Mesh& mesh, AtomicFile& out) {
     out.write(line += '\n');
   }
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    // Segments are line elements (l), polygons faces (f). OBJ counts from 1.
     line.assign(1, mesh.dim == 2 ? 'l' : 'f');
     for (const VertexId v : mesh.face(f)) line.append(" ").append(std::to_string(std::uint64_t{v} + 1));
     out.write(line += '\n');
@@ -93,6 +98,7 @@ void write_mesh(const Mesh& mesh, const std::string& path, std::span<const FaceC
     throw InputError(printable_name(path) + ": found " + std::to_string(face_colours.size()) +
                      " colours, expected " + std::to_string(mesh.face_count()) +
                      ", the number of faces; give one for each or none");
+  // The file appears at commit() as a whole.
   AtomicFile out(path);
   extension_of(path) == "ply" ? write_ply(mesh, face_colours, out) : write_obj(mesh, out);
   out.commit();

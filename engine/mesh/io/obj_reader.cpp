@@ -49,10 +49,12 @@ class ObjReader {
   }
 
   Mesh read() {
+    // One statement per line. Continuation lines and comments are handled by the cursor.
     do {
       const std::string_view word = text_.token();
       if (!word.empty()) statement(word);
     } while (text_.next_line());
+    // Checks that need the whole file: indices, the meaning of line elements, limits.
     check_forward_references();
     take_segments();
     refuse_without_faces(mesh_, name_);
@@ -62,11 +64,13 @@ class ObjReader {
 
  private:
   void statement(std::string_view word) {
+    // The most frequent statements first.
     if (word == "v") return vertex();
     if (word == "f") return face();
     if (word == "l") return polyline();
     if (word == "fo") return face();  // the old name of f
     if (holds(kIgnored, word)) return;
+    // Free-form geometry is an error rather than ignored, because the body would have gaps.
     if (holds(kFreeForm, word))
       text_.fail("the free-form statement " + in_quotes(word), "polygons (f)",
                  "export the surface as polygons");
@@ -80,12 +84,14 @@ class ObjReader {
     static constexpr std::array<std::string_view, 3> kWhat = {"coordinate x", "coordinate y", "coordinate z"};
     Eigen::Vector3d& v = mesh_.vertices.emplace_back();
     for (int i = 0; i < 3; ++i) v[i] = text_.number(kWhat[i]);
+    // Valid counts of extra numbers: 0, 1 (weight), 3 (colour), 4 (weight or alpha).
     int more = 0;
     for (std::string_view t = text_.token(); !t.empty(); t = text_.token(), ++more)
       text_.number(t, "weight or colour");
     if (more == 2 || more > 4)
       text_.fail(std::to_string(3 + more) + " numbers", "x y z, x y z w, x y z r g b or x y z r g b a",
                  "correct the line");
+    // Remembered, because only the end of the file decides whether the body is 2D.
     if (v.z() != 0 && line_off_plane_ == 0) line_off_plane_ = text_.line();
   }
 
@@ -114,6 +120,7 @@ class ObjReader {
 
   /// Reads v, v/vt, v//vn or v/vt/vn. Texture and normal must be integers, but are not checked any further.
   VertexId corner(std::string_view token) {
+    // The part before the first slash is the vertex; the rest is validated and ignored.
     const std::size_t slash = token.find('/');
     if (slash != std::string_view::npos) check_attributes(token, token.substr(slash + 1));
     return vertex_id(token, text_.integer(token.substr(0, slash), "a face's vertex index"));
@@ -132,6 +139,7 @@ class ObjReader {
 
   VertexId vertex_id(std::string_view token, std::int64_t index) {
     const auto count = static_cast<std::int64_t>(mesh_.vertices.size());
+    // Positive indices count from 1, negative ones back from the vertex read last; 0 is neither.
     if (index == 0)
       text_.fail("vertex index 0 in " + in_quotes(token),
                  "an index from 1 (or negative: -1 is the vertex read last)",
@@ -140,6 +148,7 @@ class ObjReader {
       text_.fail("vertex index " + std::to_string(index),
                  "at least -" + std::to_string(count) + " (" + std::to_string(count) + " vertices so far)",
                  "correct the line");
+    // Beyond the vertices so far: legal if the vertex follows.
     if (index > count) forward_.push_back({index, text_.line()});
     return static_cast<VertexId>(index < 0 ? count + index
                                            : index - 1);  // indices that are too large are refused at the end

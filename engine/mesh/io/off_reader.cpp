@@ -18,6 +18,7 @@ class OffReader {
       : text_(bytes, name, {.hash_comments = true}), name_(name) {}
 
   Mesh read() {
+    // The keyword may be missing; then the first token is already a count.
     std::string_view first = text_.any_token();
     if (const auto header = parse_off_header(first)) {
       take_header(*header, first);
@@ -26,6 +27,7 @@ class OffReader {
     counts(first);
     for (std::uint64_t i = 0; i < vertices_; ++i) vertex();
     for (std::uint64_t i = 0; i < faces_; ++i) face();
+    // Anything left over means that the counts are wrong.
     const std::string_view extra = text_.any_token();
     if (!extra.empty())
       text_.fail(in_quotes(extra), "the end of the file (all vertices and faces are read)",
@@ -40,6 +42,7 @@ class OffReader {
     if (header.dimensions_differ)
       text_.fail("the header " + in_quotes(shown), "vertices in three dimensions (OFF, COFF, NOFF, STOFF)",
                  "export the mesh in 3D");
+    // A copy of the cursor looks ahead without consuming the token.
     TextCursor ahead = text_;
     if (ahead.token() == "BINARY")
       text_.fail("a binary OFF file", "a text one", "export it as OFF text, or as PLY");
@@ -55,6 +58,7 @@ class OffReader {
     // Check before allocating: a vertex takes six bytes ("0 0 0" and a newline), a face eight ("3 0 1 2" and
     // a newline).
     static constexpr std::uint64_t kVertexBytes = 6, kFaceBytes = 8;
+    // One more than the bytes left, because the last line may lack its newline.
     const std::uint64_t left = text_.bytes_left() + 1;
     if (vertices_ > left / kVertexBytes || faces_ > (left - vertices_ * kVertexBytes) / kFaceBytes)
       text_.fail(
@@ -89,6 +93,7 @@ class OffReader {
     v.y() = text_.number("coordinate y");
     v.z() = text_.number("coordinate z");
     mesh_.vertices.push_back(v);
+    // Extra values are validated as numbers, and otherwise ignored.
     if (header_.has_extras) {
       skip_numbers();
     } else {
@@ -102,6 +107,7 @@ class OffReader {
       text_.fail("a face with " + std::to_string(corners) + " corners", "at least 3", "correct the line");
     for (std::int64_t i = 0; i < corners; ++i) {
       const std::int64_t v = text_.integer("a face's vertex index");
+      // All vertices are known before the faces, so indices are checked at once.
       if (v < 0 || v >= static_cast<std::int64_t>(vertices_))
         text_.fail("vertex index " + std::to_string(v),
                    "0 to " + std::to_string(static_cast<std::int64_t>(vertices_) - 1) + " (" +
@@ -109,6 +115,7 @@ class OffReader {
                    "OFF counts from 0: correct the line");
       mesh_.face_vertices.push_back(static_cast<VertexId>(v));
     }
+    // After each face, because the offset stored below has 32 bits.
     check_index_limits(0, mesh_.face_vertices.size(), name_);
     mesh_.face_offsets.push_back(static_cast<std::uint32_t>(mesh_.face_vertices.size()));
     skip_numbers();  // a colour

@@ -37,11 +37,13 @@ class PlyHeaderReader {
   PlyHeader read() {
     text_.any_token();  // "ply", from which the format was recognised
     end_of_line();
+    // Statements until end_header. The end of the file gives an empty word, which statement() rejects.
     for (;;) {
       const std::string_view word = text_.any_token();
       if (word == "end_header") break;
       statement(word);
     }
+    // Without a format the data cannot be interpreted.
     if (!has_format_)
       text_.fail("no format statement in the header", "'format ascii 1.0' or a binary one",
                  "export the mesh again");
@@ -88,10 +90,12 @@ class PlyHeaderReader {
     const std::string_view word = text_.token();
     if (word.empty()) text_.fail(text_.shown(word), "the element's name", "correct the header");
     e.name = word;
+    // The line is kept for messages about missing properties.
     e.line = text_.line();
     const std::int64_t count = text_.integer("the number of elements");
     if (count < 0) text_.fail(std::to_string(count) + " elements", "0 or more", "correct the header");
     e.count = static_cast<std::uint64_t>(count);
+    // Names identify elements, so they must be unique.
     const auto& all = header_.elements;
     if (std::any_of(all.begin(), all.end() - 1,
                     [&](const PlyElement& other) { return other.name == e.name; }))
@@ -102,6 +106,7 @@ class PlyHeaderReader {
   void property() {
     if (header_.elements.empty())
       text_.fail("a property before any element", "an element statement", "correct the header");
+    // Either "property TYPE NAME" or "property list COUNT_TYPE TYPE NAME".
     PlyProperty p;
     std::string_view word = text_.token();
     if (word == "list") {
@@ -138,6 +143,7 @@ class PlyHeaderReader {
   /// another line end: if the header ends its lines with CR alone, an LF there is data.
   void finish() {
     end_of_line();
+    // The cursor is at the line end behind end_header. Skip exactly that line end.
     std::size_t at = bytes_.size() - text_.bytes_left();
     const std::size_t first_cr = bytes_.find('\r');
     const bool cr_alone = first_cr != std::string_view::npos && bytes_.substr(first_cr, 2) != "\r\n";

@@ -23,7 +23,7 @@ std::ptrdiff_t find_property(const PlyElement& element, std::string_view name) {
   return it == all.end() ? -1 : it - all.begin();
 }
 
-/// Says where in the header the mesh is.
+/// The elements and properties of the header that contain the mesh.
 struct PlyLayout {
   const PlyElement* vertex = nullptr;
   const PlyElement* face = nullptr;
@@ -35,6 +35,7 @@ PlyLayout find_layout(const PlyHeader& header, std::string_view name) {
   static constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
   const TextCursor text({}, name, {});
   PlyLayout layout{find_element(header, "vertex"), find_element(header, "face")};
+  // Messages about missing elements name the last line of the header.
   const std::uint64_t last = header.data_line - 1;
   if (layout.vertex == nullptr)
     text.fail_at(last, "no element vertex in the header", "one with the properties x, y and z",
@@ -48,6 +49,7 @@ PlyLayout find_layout(const PlyHeader& header, std::string_view name) {
   if (layout.face == nullptr)
     text.fail_at(last, "no element face in the header", "one with a list vertex_indices",
                  "export faces: point clouds and triangle strips are not read");
+  // Two names for the list of corners are in use.
   layout.corners = find_property(*layout.face, "vertex_indices");
   if (layout.corners < 0) layout.corners = find_property(*layout.face, "vertex_index");
   if (layout.corners < 0 || !layout.face->properties[layout.corners].count_type ||
@@ -64,6 +66,8 @@ class PlyReader {
       : header_(header), layout_(find_layout(header, name)), source_(source), name_(name) {}
 
   Mesh read() {
+    // Elements in the order of the header. Those that are not needed are read past, since their size may
+    // vary.
     for (const PlyElement& e : header_.elements) elements(e);
     source_.end_of_data();
     refuse_without_faces(mesh_, name_);
@@ -74,6 +78,7 @@ class PlyReader {
  private:
   void elements(const PlyElement& e) {
     if (e.properties.empty()) return;  // such elements take no bytes, however many there are
+    // Checked before memory is reserved: a damaged count must not exhaust it.
     if (!source_.has_room(e))
       source_.fail("fewer bytes than " + std::to_string(e.count) + " times " + in_quotes(e.name) + " need",
                    "as many as the header says",
@@ -95,6 +100,7 @@ class PlyReader {
   void vertex(const PlyElement& e) {
     Eigen::Vector3d& v = mesh_.vertices.emplace_back();
     for (std::size_t k = 0; k < e.properties.size(); ++k) {
+      // x, y and z may come in any order and between other properties.
       const auto which = std::find(layout_.xyz.begin(), layout_.xyz.end(), static_cast<std::ptrdiff_t>(k));
       if (which == layout_.xyz.end())
         skip(e.properties[k]);
@@ -116,6 +122,7 @@ class PlyReader {
     const std::int64_t count = source_.integer(*p.count_type, "the number of corners");
     if (count < 3)
       source_.fail("a face with " + std::to_string(count) + " corners", "at least 3", "correct the file");
+    // Against the header's count, because faces may come before vertices.
     const auto vertices = static_cast<std::int64_t>(layout_.vertex->count);
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t v = source_.integer(p.type, p.name);
@@ -129,6 +136,7 @@ class PlyReader {
   }
 
   void skip(const PlyProperty& p) {
+    // A scalar is skipped like a list of one value.
     std::int64_t count = 1;
     if (p.count_type) count = source_.integer(*p.count_type, p.name);
     if (count < 0) source_.fail("a list of length " + std::to_string(count), "0 or more", "correct the file");

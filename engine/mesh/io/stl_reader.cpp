@@ -36,6 +36,7 @@ class StlText {
 
   Mesh read() {
     std::string_view word = text_.any_token();
+    // A file may contain several solids; they become one mesh.
     do {
       if (!same_word(word, "solid")) unexpected(word, "solid");
       text_.next_line();  // what follows is the solid's name, any words
@@ -78,6 +79,7 @@ class StlText {
   VertexId vertex() {
     static constexpr std::array<std::string_view, 3> kWhat = {"coordinate x", "coordinate y", "coordinate z"};
     Eigen::Vector3d v;
+    // STL repeats coordinates per triangle; equal points become one vertex.
     for (int i = 0; i < 3; ++i) v[i] = text_.number(text_.any_token(), kWhat[i]);
     return merger_.id(v);
   }
@@ -128,6 +130,7 @@ Mesh read_stl_ascii(std::string_view bytes, std::string_view name) {
 
 Mesh read_stl_binary(std::string_view bytes, std::string_view name) {
   if (!has_size_of_binary_stl(bytes)) refuse_size(bytes, name);
+  // The size is consistent with the count, so all reads below are within the file.
   const std::size_t count = claimed_triangles(bytes);
   check_index_limits(0, 3 * std::uint64_t{count}, name);
   Mesh mesh;

@@ -45,12 +45,14 @@ bool TextCursor::skip_continuation() {
 }
 
 void TextCursor::skip_newline() {
+  // CR LF counts as one line end, LF or CR alone as well.
   const bool pair = *at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n';
   at_ += pair ? 2 : 1;
   ++line_;
 }
 
 std::string_view TextCursor::token() {
+  // Skip blanks and continuations before the token.
   while (at_ != end_) {
     if (is_blank(*at_))
       ++at_;
@@ -58,16 +60,19 @@ std::string_view TextCursor::token() {
       break;
   }
   const char* start = at_;
+  // A comment ends the tokens of this line; the cursor stays at the line end.
   if (rules_.hash_comments && at_ != end_ && *at_ == '#') {
     at_ = std::find_if(at_, end_, is_newline);
     return {};
   }
+  // The token ends at a blank, at the line end, or at a continuation directly behind it.
   for (; !at_line_end() && !is_blank(*at_); ++at_)
     if (*at_ == '\\' && rules_.continuation && at_ + 1 != end_ && is_newline(at_[1])) break;
   return {start, static_cast<std::size_t>(at_ - start)};
 }
 
 bool TextCursor::next_line() {
+  // By tokens rather than characters, so that continuations are followed.
   while (!token().empty()) {
   }
   if (at_ == end_) return false;
@@ -86,8 +91,10 @@ std::string_view TextCursor::any_token() {
 double TextCursor::number(std::string_view token, std::string_view what) const {
   const std::string_view digits = without_plus(token);
   double value = 0;
+  // from_chars does not depend on the locale and rounds to nearest.
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range) value = round_out_of_range(digits);
+  // The whole token must be the number.
   if (error == std::errc::invalid_argument || stop != digits.data() + digits.size())
     fail(shown(token), "a number (" + std::string(what) + ")", "correct the line");
   if (!std::isfinite(value))
@@ -122,6 +129,7 @@ std::string TextCursor::shown(std::string_view token) const {
 void refuse_nul(std::string_view text, std::string_view name) {
   const std::size_t nul = text.find('\0');
   if (nul == std::string_view::npos) return;
+  // The line of the NUL byte, counting LF alone.
   const TextCursor start(text, name, {});
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
   start.fail_at(static_cast<std::uint64_t>(line), "a NUL byte (byte " + std::to_string(nul) + " of the file)",

@@ -13,6 +13,7 @@ std::vector<std::size_t> order_by_bodies(std::span<const PosedPair> pairs) {
   std::vector<std::size_t> order(pairs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) {
+    // The index breaks ties: the order does not depend on the sorting algorithm.
     const auto key = [&](std::size_t i) { return std::tuple(pairs[i].a->serial(), pairs[i].b->serial(), i); };
     return key(x) < key(y);
   });
@@ -27,12 +28,14 @@ class Batch::Work {
   /// Calls ask(i, workspace) for i = 0 .. n - 1.
   template <class Ask>
   void for_each(std::size_t n, const Ask& ask) {
+    // Each worker has a workspace of its own: queries share no memory and need no locks.
     workers_.for_each(n, [&](std::size_t i, unsigned worker) { ask(i, workspaces_[worker]); });
   }
 
   /// Does the same for pairs, those of the same two bodies after one another.
   template <class Ask>
   void for_each(std::span<const PosedPair> pairs, const Ask& ask) {
+    // Only the order of work changes: answers are written to the index of their question.
     const std::vector<std::size_t> order = order_by_bodies(pairs);
     for_each(pairs.size(), [&](std::size_t k, Workspace& workspace) { ask(order[k], workspace); });
   }

@@ -13,6 +13,7 @@ Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
 void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const CollideRequest& request, QueryContext& context, Expected<CollideResult>& answer) try {
+  // An earlier answer keeps the memory of its vectors.
   if (answer)
     clear(*answer);
   else
@@ -26,6 +27,7 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
 Expected<CollideResult&> collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                                  const CollideRequest& request, Workspace& workspace) try {
   Workspace::Memory& memory = workspace.memory();
+  // Emptied, not replaced: it keeps its memory from the last query.
   clear(memory.result);
   NullProbe probe;
   collide_into(a, pose_a, b, pose_b, request, memory.context.query, probe, memory.result);

@@ -1,3 +1,11 @@
+/// The clash query: the kind of contact of two solids, and how deep it is. Steps:
+/// 1. Find all intersecting pairs of triangles with the exact query.
+/// 2. Disjoint solids: measure the distance, and compare it with the clearance.
+/// 3. Otherwise cut each surface by the other and count the pieces inside and outside (surface_pieces.hpp):
+///    they decide whether interiors overlap, and the kind.
+/// 4. Overlapping interiors: bound the penetration depth (depth.hpp) and the common volume
+///    (shared_volume.hpp).
+
 #include "engine/query/clash/clash.hpp"
 
 #include <algorithm>
@@ -17,7 +25,7 @@ namespace {
 
 using parting::UnitBodies;
 
-/// Pass bounds on to a probe, which must not be null when they are told.
+/// Adapters that forward bounds to a probe, which may be null as long as no bounds are reported.
 struct GapTeller final : BoundsProbe {
   explicit GapTeller(ClashProbe* p) : probe(p) {}
   void bounds(const Bounds& known) override { probe->distance(known); }
@@ -29,14 +37,15 @@ struct DepthTeller final : BoundsProbe {
   ClashProbe* probe;
 };
 
-/// Returns the kind of bodies whose interiors share no point but whose surfaces meet: by what of the highest
-/// dimension they share.
+/// Returns the kind of contact of bodies whose interiors are disjoint but whose surfaces intersect: by the
+/// highest dimension of what they share.
 ClashKind touching_kind(QueryContext& query, const CollideResult& found) {
   int most = 1;
   for (const SimplexPair& pair : found.pairs) {
     const double *a[3], *b[3];
     query[Side::a].world.corners(pair.a, a);
     query[Side::b].world.corners(pair.b, b);
+    // Corners of the pair's intersection: 1 a point, 2 a segment, 3 or more an area.
     most = std::max(most, std::min<int>(exact::contact_of_triangles(a, b).corner_count, 3));
   }
   return most == 3   ? ClashKind::touching_face
@@ -44,20 +53,22 @@ ClashKind touching_kind(QueryContext& query, const CollideResult& found) {
                      : ClashKind::touching_point;
 }
 
-/// Returns the kind of bodies whose interiors overlap. One holds the other if nothing of the other's surface
-/// lies outside of it, nor any of its own surface in the other (a cavity), nor the two back to back (a cavity
-/// that the other fills).
+/// Returns the kind of contact of bodies whose interiors overlap. One contains the other if nothing of the
+/// other's surface is outside of it, and none of its own surface is inside the other (a cavity) or back to
+/// back with the other's (a cavity that the other fills).
 ClashKind overlapping_kind(const std::array<SurfacePieces, 2>& pieces) {
   const SurfacePieces &a = pieces[0], &b = pieces[1];
   const bool a_in_b = a.outside == 0 && b.inside == 0 && !a.on_opposite;
   const bool b_in_a = b.outside == 0 && a.inside == 0 && !a.on_opposite;
+  // Containment in both directions: the same solid.
   if (a_in_b) return b_in_a ? ClashKind::equal : ClashKind::a_inside_b;
   if (b_in_a) return ClashKind::b_inside_a;
+  // Several pieces outside on one component: the other body goes through it.
   if (b.most_outside > 1) return ClashKind::cuts_through;
   return a.most_outside > 1 ? ClashKind::pierces : ClashKind::protrudes;
 }
 
-/// Measures how far solids without a point in common are apart, and compares that with the clearance.
+/// Measures the distance of disjoint solids, and compares it with the clearance.
 void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                  const ClashRequest& request, ClashContext& context, ClashProbe* probe, ClashResult& result) {
   DistanceRequest ask;
@@ -67,6 +78,7 @@ void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
       distance(a, pose_a, b, pose_b, ask, context.distance, nullptr, probe != nullptr ? &teller : nullptr);
   result.distance = {d.lower, d.upper};
   bool within = d.upper <= request.clearance;
+  // The interval contains the clearance: compare exactly. This request ends when that is decided.
   if (!within && d.lower <= request.clearance) {
     ask.within = request.clearance;
     within = distance(a, pose_a, b, pose_b, ask, context.distance).within.value_or(false);
@@ -74,15 +86,18 @@ void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
   result.kind = within ? ClashKind::within_clearance : ClashKind::apart;
 }
 
-/// Decides the kind of bodies that have a point in common.
+/// Decides the kind of contact of bodies that have a point in common.
 void decide_kind(QueryContext& query, const CollideResult& found, ClashResult& result) {
+  // Exact; gives up, with a reason, on bodies that are no solids and on faces cut into too many cells.
   const auto pieces = parting::surface_pieces(query, found, false, &result.reason);
   if (!pieces) return;
   result.pieces = *pieces;
   const bool enters = (*pieces)[0].inside + (*pieces)[1].inside > 0;
+  // A piece of one surface inside the other solid proves overlap.
   if (enters)
     result.interiors_overlap = Answer::yes;
   else
+    // Without one, interiors overlap only if surfaces coincide with both solids on the same side.
     result.interiors_overlap = (*pieces)[0].on_same ? interiors_overlap(query, found) : Answer::no;
   result.shares_faces = (*pieces)[0].on_same && result.interiors_overlap == Answer::yes;
   if (result.interiors_overlap == Answer::yes) result.kind = overlapping_kind(*pieces);
@@ -91,7 +106,7 @@ void decide_kind(QueryContext& query, const CollideResult& found, ClashResult& r
 }
 
 double to_world_cube(double volume, int exponent) {
-  // Not at once: three times the exponent may be out of range where the product is not.
+  // In three steps: 2^(3 exponent) may be out of range where the product is not.
   return std::ldexp(std::ldexp(std::ldexp(volume, exponent), exponent), exponent);
 }
 
@@ -99,16 +114,18 @@ double to_world_cube(double volume, int exponent) {
 ProvedInterval world_volume(const ProvedInterval& unit, int exponent) {
   constexpr double kLeast = std::numeric_limits<double>::min(), kMost = std::numeric_limits<double>::max();
   ProvedInterval v{to_world_cube(unit.lower, exponent), to_world_cube(unit.upper, exponent)};
+  // Below the normal range the scaling was rounded: widen the interval to 0 and to the least normal double.
   if (v.lower < kLeast) v.lower = 0;
   v.lower = std::min(v.lower, kMost);
   if (unit.upper > 0) v.upper = std::max(v.upper, kLeast);
   return v;
 }
 
-/// Finds how deep bodies are in each other, and the volume that they share.
+/// Bounds the penetration depth, the depth along a direction, and the common volume.
 void measure_overlap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                      const ClashRequest& request, QueryContext& query, const CollideResult& found,
                      ClashProbe* probe, ClashResult& result) {
+  // All of it in one frame, in which no coordinate exceeds 1/2.
   const UnitBodies bodies = parting::unit_bodies(query);
   if (request.depth || request.along) {
     parting::Parting parting(a, pose_a, b, pose_b, bodies);
@@ -122,6 +139,7 @@ void measure_overlap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const
     }
     if (request.along) result.along = finder.along(request.along->stableNormalized());
   }
+  // The faces of a body that intersects itself bound no single solid.
   if (request.volume && !a.overlaps_itself() && !b.overlaps_itself())
     result.volume = world_volume(parting::shared_volume(bodies), bodies.frame.exponent);
 }
@@ -152,19 +170,24 @@ ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   check_query(a, pose_a, b, pose_b);
   check_request(a, request);
   NullProbe unwatched;
+  // Step 1.
   const CollideResult found = collide(a, pose_a, b, pose_b, {}, context.query, unwatched);
   ClashResult result;
   const bool solids = a.closed() && b.closed();
+  // Step 2. If a body is open, it has no inside: without an intersecting pair the bodies count as disjoint.
   if (found.relation == Relation::separate || (found.pairs.empty() && !solids)) {
     measure_gap(a, pose_a, b, pose_b, request, context, probe, result);
     result.interiors_overlap = found.interiors_overlap;
+    // The measures of an overlap are exactly 0.
     if (solids) write_no_overlap(request, result);
     return result;
   }
+  // Step 3.
   decide_kind(context.query, found, result);
   if (result.interiors_overlap == Answer::no)
     write_no_overlap(request, result);
   else if (solids)
+    // Step 4, also where it is unknown whether interiors overlap.
     measure_overlap(a, pose_a, b, pose_b, request, context.query, found, probe, result);
   return result;
 }

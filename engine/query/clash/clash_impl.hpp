@@ -1,6 +1,6 @@
 #pragma once
-/// One clash query, with memory that the next one can use again: for code of ours. Users of the installed
-/// engine have clash.hpp.
+/// One clash query, with memory that later queries reuse. Internal: users of the installed engine include
+/// clash.hpp.
 
 #include "engine/query/clash/clash_probe.hpp"
 #include "engine/query/distance/distance_impl.hpp"
@@ -13,7 +13,7 @@ struct ClashContext {
   DistanceContext distance;
 };
 
-/// Answers as clash() in clash.hpp does. probe: null, or told what is known.
+/// Answers as clash() in clash.hpp does. probe: null, or notified of bounds.
 ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const ClashRequest& request, ClashContext& context, ClashProbe* probe = nullptr);
 

@@ -1,3 +1,10 @@
+/// The expanding polytope algorithm (EPA; van den Bergen 2001) on the Minkowski difference of two convex
+/// sets, with an exact convex hull in place of a floating-point polytope. Steps:
+/// 1. Begin with a tetrahedron of support points.
+/// 2. Take the facet nearest to the origin. The support point beyond it bounds the depth from above.
+/// 3. If that point is beyond the facet's plane, add it to the hull; otherwise the facet is final. Repeat.
+/// 4. The distance of the origin from the hull's boundary is the lower bound, computed with proven errors.
+
 #include "engine/query/clash/convex_depth.hpp"
 
 #include <algorithm>
@@ -15,6 +22,7 @@ namespace {
 const Vector3d& farthest(const ConvexPoints& points, const Vector3d& n) {
   const Vector3d* best = &points[0];
   double most = -kInfinity;
+  // A linear scan; of equally far points the first is returned.
   for (const Vector3d& x : points) {
     const double d = n.dot(x);
     if (d > most) {
@@ -32,6 +40,7 @@ ConvexDifference::ConvexDifference(const ConvexPoints& a, const ConvexPoints& b)
 }
 
 Vector3d ConvexDifference::support(const Vector3d& n) const {
+  // Support point of A - B: that of A along n, minus that of B against n.
   return farthest(a_, n) - farthest(b_, -n);
 }
 
@@ -49,12 +58,15 @@ bool ConvexDifference::begin() {
     }
   };
   double most = 0;
+  // Second point: the farthest from the first among the support points of the six axis directions.
   for (int k = 0; k < 3; ++k)
     for (const double sign : {-1.0, 1.0}) {
       const Vector3d x = support(sign * Vector3d::Unit(k));
       consider(second, most, x, (x - first).norm());
     }
+  // All six are one point: no solid.
   if (!(most > 0)) return false;
+  // Third point: the farthest from the line through both, in four directions across it.
   const Vector3d along = (second - first).normalized();
   const Vector3d across = along.unitOrthogonal(), other = along.cross(across);
   most = 0;
@@ -63,25 +75,30 @@ bool ConvexDifference::begin() {
     consider(third, most, x, along.cross(x - first).norm());
   }
   if (!(most > 0)) return false;
+  // Fourth point: the farthest from the plane of the three, on either side.
   const Vector3d normal = along.cross(third - first).normalized();
   most = 0;
   for (const Vector3d& n : {normal, Vector3d(-normal)}) {
     const Vector3d x = support(n);
     consider(fourth, most, x, std::abs(normal.dot(x - first)));
   }
+  // Decided exactly: false if rounding left the four coplanar.
   return hull_.begin({first, second, third, fourth});
 }
 
 bool ConvexDifference::grow(std::size_t facet) {
   PointHull::Facet& f = hull_.facets()[facet];
   f.is_final = true;  // unless it is replaced
+  // A facet too thin for a normal cannot be improved.
   if (f.normal.isZero()) return false;
+  // Support point beyond the facet: a plane there separates the sets after a translation by `width` along n.
   const Vector3d x = support(f.normal);
   const double width = f.normal.dot(x);
   if (width < upper_) {
     upper_ = width;
     direction_ = f.normal;
   }
+  // No gain beyond rounding: the facet is on the boundary of the Minkowski difference.
   return width - f.offset > kDepthGain && hull_.add(x);
 }
 
@@ -89,11 +106,13 @@ unsigned ConvexDifference::find_depth(unsigned most_steps) {
   if (!solid_) return 0;
   unsigned step = 0;
   for (; step < most_steps && upper_ > 0; ++step) {
+    // The nearest facet that is not final.
     const std::vector<PointHull::Facet>& facets = hull_.facets();
     std::size_t nearest = facets.size();
     for (std::size_t i = 0; i < facets.size(); ++i)
       if (!facets[i].is_final && (nearest == facets.size() || facets[i].offset < facets[nearest].offset))
         nearest = i;
+    // Lower and upper bound agree up to kDepthGain: done.
     if (nearest == facets.size() || facets[nearest].offset >= upper_ - kDepthGain) break;
     grow(nearest);
   }
@@ -101,6 +120,7 @@ unsigned ConvexDifference::find_depth(unsigned most_steps) {
 }
 
 double ConvexDifference::exit_of(const PointHull::Facet& f, const Vector3d& n) {
+  // Ray against plane: without a positive slope the ray stays behind the facet.
   const double slope = f.normal.dot(n);
   return slope > 0 ? f.offset / slope : kInfinity;
 }
@@ -109,43 +129,51 @@ void ConvexDifference::follow(const Vector3d& n) {
   if (!solid_) return;
   for (unsigned step = 0; step < kMostDepthSteps; ++step) {
     const std::vector<PointHull::Facet>& facets = hull_.facets();
+    // The facet through which the ray leaves the hull.
     std::size_t first = 0;
     for (std::size_t i = 1; i < facets.size(); ++i)
       if (exit_of(facets[i], n) < exit_of(facets[first], n)) first = i;
+    // Final, or no point beyond it: the hull cannot grow there.
     if (facets[first].is_final || !grow(first)) return;
   }
 }
 
-/// The hull's points are off by kDifferenceRounding, so that the true differences hold the hull but for a
+/// The hull's points are off by kDifferenceRounding, so that the true difference contains the hull up to a
 /// layer of this thickness.
 double ConvexDifference::depth_lower() const {
   const Vector3d origin = Vector3d::Zero();
+  // If the origin is not strictly inside, the sets need not overlap. Exact.
   if (!solid_ || !hull_.holds_inside(origin)) return 0;
+  // The origin as a triangle without area, for the proven distance to each facet.
   const double* const point[3] = {origin.data(), origin.data(), origin.data()};
   double least = kInfinity;
   for (const PointHull::Facet& f : hull_.facets()) {
     const double* const corners[3] = {hull_.point(f.v[0]).data(), hull_.point(f.v[1]).data(),
                                       hull_.point(f.v[2]).data()};
     const double distance = bound_distance(point, corners, 3).lower;
+    // Doubles cannot separate the origin from the facet.
     if (!(distance > 0)) return 0;
     least = std::min(least, distance);
   }
   return std::max(0.0, least - kDifferenceRounding);
 }
 
-/// If the hull P holds x = s n and a ball of radius r about the origin, all differences hold (1 - e / r) P,
-/// where e is kDifferenceRounding: their supports are at least those of P less e, and these are at least r.
+/// If the hull P contains x = s n and a ball of radius r around the origin, the true difference contains (1 -
+/// e / r) P, where e is kDifferenceRounding: its support function is at least that of P less e, and that of P
+/// is at least r.
 double ConvexDifference::along_lower(const Vector3d& n) const {
   const double radius = depth_lower();
   if (!(radius > 0)) return 0;
+  // Where the ray leaves the hull, rounded.
   double exit = kInfinity;
   for (const PointHull::Facet& f : hull_.facets()) exit = std::min(exit, exit_of(f, n));
   if (!(exit < kInfinity)) return 0;
   const double lost = kDifferenceRounding / radius;
+  // Step back, four times as far each time, until the point is exactly inside the hull.
   for (double share = kDepthGain; share < 1; share *= 4) {
     const double s = exit * (1 - share);
     const Vector3d x = s * n;
-    // x, too, is rounded.
+    // x is rounded as well, which the last term covers.
     if (hull_.holds_inside(x)) return std::max(0.0, s * (1 - 2 * lost) - 2 * kDifferenceRounding);
   }
   return 0;

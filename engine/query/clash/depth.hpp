@@ -1,5 +1,5 @@
 #pragma once
-/// The penetration depth of two solids whose interiors overlap, and the way out along a direction.
+/// The penetration depth of two solids whose interiors overlap, and the depth along a direction.
 
 #include <optional>
 
@@ -12,12 +12,12 @@
 
 namespace lrb::parting {
 
-/// Bounds depths. Lower ends are those of convex sets inside the bodies, upper ends those of translations
-/// that the query proves. Between convex bodies both meet.
+/// Bounds depths. Lower bounds come from overlapping sets inside the bodies, upper bounds from translations
+/// that are proven to separate. For convex bodies both agree up to rounding.
 class DepthFinder {
  public:
-  /// `query`: begun with the bodies. `result`: all pairs of simplices that meet. Bodies must be closed.
-  /// teller: null, or told what is known of the depth.
+  /// `query`: begun with the bodies. `result`: all pairs of intersecting simplices. Bodies must be closed.
+  /// teller: null, or notified of bounds on the depth.
   DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies, Parting& parting,
               BoundsTeller* teller = nullptr);
 
@@ -30,7 +30,7 @@ class DepthFinder {
   ProvedInterval along(const Vector3d& n);
 
  private:
-  /// Convex sets of both bodies about a point of both.
+  /// Convex sets inside each body, around a common point.
   struct Common {
     ConvexPoints a, b;
   };

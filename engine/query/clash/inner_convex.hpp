@@ -1,5 +1,5 @@
 #pragma once
-/// Convex sets that are proved to lie inside a body.
+/// Convex sets that are proven to lie inside a body.
 
 #include <optional>
 #include <vector>
@@ -8,23 +8,23 @@
 
 namespace lrb::parting {
 
-/// Corners of a convex set in the unit's coordinates, exactly these doubles. Proof that the set lies in the
-/// body: every triangle of the body lies beyond a plane that has the set on its other side, by more than all
-/// rounding, so that the surface does not enter it; and one of its points lies inside.
+/// Points whose convex hull is the set, in units, exactly these doubles. Proof that the set is inside the
+/// body: a plane separates every triangle of the body from the set, by more than all rounding, so that the
+/// surface does not enter it; and one of its points is inside.
 using ConvexPoints = std::vector<Vector3d>;
 
-/// Returns nearly all of a body that is convex but for rounding: its points, moved towards `inside` by a
-/// 2^-40th or as little as can be proved. None if it is not convex. `inside`: a point that was found inside
-/// the body, but for kUnitRounding.
+/// Returns nearly all of a body that is convex up to rounding: its points, moved towards `inside` by the
+/// least of kShrinks that can be proven. Returns nullopt if the body is not convex. `inside`: a point that
+/// was located inside the body, up to kUnitRounding.
 std::optional<ConvexPoints> shrunken_body(const UnitBody& body, const Vector3d& inside);
 
-/// Whether planes may be put before whole triangles where planes before the nearest points lead to no proof.
-/// The sets are smaller then, and depend on how the surface is divided.
+/// Whether planes may be put in front of whole triangles if planes in front of the nearest points lead to no
+/// proof. The sets are smaller then, and depend on the triangulation.
 enum class WholeTriangles : std::uint8_t { no, yes };
 
-/// Returns a large convex set about a point inside: planes between it and the nearest points of the surface,
+/// Returns a large convex set around a point inside: planes between it and the nearest points of the surface,
 /// one after the other, bound it (as in Deits and Tedrake, "Computing Large Convex Regions of Obstacle-Free
-/// Space", 2015, without their ellipsoids). None if the surface is too near for proofs, or none was found.
+/// Space", 2015, without their ellipsoids). Returns nullopt if the surface is too near or the proof fails.
 std::optional<ConvexPoints> convex_about(const UnitBody& body, const Vector3d& inside, WholeTriangles whole);
 
 }  // namespace lrb::parting

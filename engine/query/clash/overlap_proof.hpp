@@ -3,11 +3,10 @@
 ///
 /// If the open ball of radius r about x lies in A, and that of radius s about x - v in B, the interiors
 /// overlap after all translations of B that differ from v by less than r + s: B's ball then reaches into A's.
-/// Translations are divided into cubes, and those nearest to none come first: for each, a point x is looked
-/// for whose two balls are large enough for all of the cube; if none is found, it is divided into eight. All
-/// translations shorter than the nearest cube that is left have been dealt with. The less is missing to the
-/// depth, the smaller the cubes about the ways out become; their number grows as the inverse of what is
-/// missing.
+/// Translations are divided into cubes, nearest to 0 first. For each, a point x is sought whose two balls are
+/// large enough for the entire cube; if none is found, the cube is divided into eight. All translations
+/// shorter than the nearest remaining cube are proven. The closer these come to the depth, the smaller are
+/// the cubes near separating translations; their number grows as the inverse of the difference to the depth.
 
 #include <functional>
 #include <vector>
@@ -19,22 +18,21 @@ namespace lrb::parting {
 
 class OverlapProof {
  public:
-  /// Tells whether a point (units; of B where it is before any translation) lies in a body.
+  /// Returns true if a point is inside a body (units; B at its pose, before any translation).
   using IsInside = std::function<bool(Side, const Vector3d&)>;
   /// Keeps references to the surfaces.
   OverlapProof(const SurfaceDistance& a, const SurfaceDistance& b, IsInside is_inside);
 
-  /// Begins with points of both bodies, the best first, and with all translations that are shorter than
-  /// `most`, which must be less than 2 and is best little more than the depth. Returns false if no point is
-  /// in both.
+  /// Begins with common points of both bodies, the best first, and with all translations shorter than `most`,
+  /// which must be less than 2 and is best slightly above the depth. Returns false if no point is in both.
   bool begin(const std::vector<Vector3d>& common, double most);
-  /// Goes on until about so many points more have been looked at, or no more can be proved. Returns how many
-  /// were.
+  /// Goes on until about `most_points` more points have been tried, or no more can be proven. Returns the
+  /// number of points tried.
   unsigned grow(unsigned most_points);
-  /// Returns a length: after all shorter translations of B the interiors overlap. Proved.
+  /// Returns a length: after all shorter translations of B the interiors overlap. Proven.
   double lower() const { return lower_; }
-  /// Returns a translation near the shortest for which nothing is proved yet: there may be a way out. 0:
-  /// there is none.
+  /// Returns a translation near the shortest one that is not proven: it may separate the bodies. 0 if there
+  /// is none.
   Vector3d doubtful() const { return cubes_.empty() ? Vector3d(Vector3d::Zero()) : cubes_.front().middle; }
 
  private:

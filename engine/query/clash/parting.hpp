@@ -1,5 +1,5 @@
 #pragma once
-/// Translations of B that part two bodies, proved by the exact query.
+/// Translations of B that separate two bodies, with proofs by the exact query.
 
 #include <optional>
 
@@ -8,7 +8,7 @@
 
 namespace lrb::parting {
 
-/// A translation after which two bodies are apart.
+/// A translation after which two bodies are separate.
 struct PartingMove {
   Vector3d translation{0, 0, 0};  ///< world
   double length = 0;              ///< at least the translation's, rounded up
@@ -18,18 +18,18 @@ class Parting {
  public:
   Parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, const UnitBodies& bodies);
 
-  /// Returns true if the bodies are apart, as the exact query sees them, once B's pose is moved by `s` times
-  /// `n` (units).
+  /// Returns true if the bodies are separate according to the exact query after B's pose is moved by `s`
+  /// times `n` (units).
   bool is_apart(const Vector3d& n, double s);
-  /// Proves that B moved along n by `s` or little more is apart from A. Returns nothing if it cannot.
+  /// Proves that B moved along n by `s` or slightly more is separate from A. Returns nullopt if it cannot.
   std::optional<PartingMove> prove(const Vector3d& n, double s);
-  /// Proves that B moved along n by exactly `s` n is apart from A, or by little more: returns that s (units).
+  /// Proves that B moved by exactly s n, for `s` or a slightly larger s, is separate from A. Returns that s
+  /// (units), or nullopt if it cannot.
   std::optional<double> prove_along(const Vector3d& n, double s);
-  /// Returns the least of some distances along n, up to `most`, at which the bodies are apart, narrowed down
-  /// to where they just met; `most` if it is none of them. Finds the way out that is nearest in general, not
-  /// always.
+  /// Returns the least of some sampled distances along n, up to `most`, at which the bodies are separate,
+  /// refined by bisection; `most` if there is none. Usually finds the first separation, not always.
   double least_apart(const Vector3d& n, double most, int samples);
-  /// Returns how many queries were asked.
+  /// Returns the number of queries.
   std::uint64_t asked() const { return asked_; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// The convex hull of points that are added one by one, exact.
+/// An incremental convex hull with exact predicates.
 
 #include <array>
 #include <cstdint>
@@ -20,12 +20,11 @@ class PointHull {
     bool is_final = false;           ///< nothing is known to lie beyond it
   };
 
-  /// Begins with a tetrahedron. Returns false if its corners lie in one plane.
+  /// Begins with a tetrahedron. Returns false if its corners are coplanar.
   bool begin(const std::array<Vector3d, 4>& corners);
-  /// Adds a point: each facet that it lies strictly in front of is replaced. A point on a facet's plane
-  /// counts as behind it; no new facet then is without area, because an edge between a facet seen and one not
-  /// seen is on no line with the point: else the point would lie on the plane of the one seen. Returns false
-  /// if no facet sees the point.
+  /// Adds a point: each facet that it is strictly in front of is replaced. A point on a facet's plane counts
+  /// as behind it. No new facet is degenerate: were the point collinear with an edge of the horizon, it would
+  /// be on the plane of the visible facet at that edge. Returns false if no facet sees the point.
   bool add(const Vector3d& point);
   /// Returns true if the point lies strictly inside, exactly.
   bool holds_inside(const Vector3d& point) const;

@@ -1,6 +1,5 @@
 #pragma once
-/// A face that the other surface cuts from border to border, along chains that have nothing in common: as
-/// nearly all do.
+/// A face that the other surface cuts from border to border along disjoint chains, the usual case.
 
 #include <array>
 #include <cstdint>
@@ -14,8 +13,8 @@
 
 namespace lrb::parting {
 
-/// Knows the cells by the order in which the chains' ends follow each other round the border: between the two
-/// ends of a chain there are the ends of whole chains only, as brackets nest. Exact as long as that order is.
+/// Finds the cells from the order of the chains' ends around the border: between the two ends of a chain
+/// there are the ends of entire chains only, nested like brackets. Exact if that order is.
 class SimpleCut {
  public:
   /// The end of a segment that the face shares with one of the other surface: on an edge of the face, or
@@ -31,8 +30,8 @@ class SimpleCut {
   };
 
   void add(const End& from, const End& to) { segments_.push_back({from, to}); }
-  /// Finds the cells. Returns false if the face is not simple: a chain is closed or branches, or ends on the
-  /// border are too near each other to be told apart.
+  /// Finds the cells. Returns false if the face is not simple: a chain is closed or branches, or the order of
+  /// ends on the border is uncertain.
   bool close();
 
   std::uint32_t cell_count() const { return cell_count_; }

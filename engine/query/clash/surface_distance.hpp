@@ -1,5 +1,5 @@
 #pragma once
-/// How far a point is from a body's surface.
+/// The distance of a point from a body's surface.
 
 #include <vector>
 
@@ -9,15 +9,15 @@
 
 namespace lrb::parting {
 
-/// The triangles of a body in a tree of boxes along the axes.
+/// An AABB tree of the triangles of a body.
 class SurfaceDistance {
  public:
   /// Keeps a reference to the body.
   explicit SurfaceDistance(const UnitBody& body);
 
-  /// Returns the clearance of a point whose coordinates are at most 2: the open ball of that radius about it
-  /// has nothing of the surface in it; proved. It is less than the distance by kClearanceMargin and
-  /// roundings, whatever the triangles are into which the surface is divided.
+  /// Returns the clearance of a point whose coordinates are at most 2: the open ball of that radius around it
+  /// contains no point of the surface; proven. It is less than the distance by kClearanceMargin and rounding,
+  /// for any triangulation of the surface.
   double at(const Vector3d& x) const;
 
  private:

@@ -1,3 +1,7 @@
+/// Copies the triangles of both bodies into a common frame: centred on the box of both, scaled by a power of
+/// two so that coordinates are at most 1/2. Scaling is exact, so each coordinate is rounded once, by the
+/// subtraction.
+
 #include "engine/query/clash/unit_bodies.hpp"
 
 #include <cmath>
@@ -17,6 +21,7 @@ Vector3d as_vector(const double* x) {
 UnitBody copy_body(QueryBody& body) {
   UnitBody out;
   const LrbRep& rep = body.rep();
+  // Compact numbers, in the order of first use.
   std::vector<VertexId> number(rep.vertices().size(), kNull);
   const bool mirrored = is_reflection(body.world.pose(), 3);
   for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
@@ -31,6 +36,7 @@ UnitBody copy_body(QueryBody& body) {
       }
       triangle[k] = known.value();
     }
+    // A reflection turns triangles over: restore the outward orientation.
     if (mirrored) std::swap(triangle[1], triangle[2]);
     out.triangles.push_back(triangle);
   }
@@ -62,9 +68,10 @@ UnitBodies unit_bodies(QueryContext& context) {
     out.body[side] = copy_body(context.body[side]);
     for (const Vector3d& x : out.body[side].points) box.extend(x);
   }
-  // Halves, because the sum or the difference may leave the range of doubles.
+  // Halved first, because the sum or the difference may leave the range of doubles.
   out.frame.origin = 0.5 * box.min() + 0.5 * box.max();
   const double reach = (0.5 * box.max() - 0.5 * box.min()).maxCoeff();
+  // 2^(ilogb + 1) exceeds the half extent, so that coordinates stay below 1/2.
   out.frame.exponent = reach > 0 ? std::ilogb(reach) + 2 : 0;
   for (UnitBody& body : out.body)
     for (Vector3d& x : body.points) x = out.frame.to_unit(x);

@@ -1,6 +1,6 @@
 #pragma once
-/// The triangles of two bodies in the world, seen from a point between them and in a unit in which no
-/// coordinate exceeds 1.
+/// The triangles of two bodies in the world, relative to the centre of their common box and in a unit in
+/// which no coordinate exceeds 1/2.
 
 #include <array>
 #include <cstdint>
@@ -35,7 +35,7 @@ struct UnitBodies {
   UnitBody body[2];
 };
 
-/// Returns the bodies of a context that has been begun with them. Both must have faces.
+/// Returns the bodies with which a context was begun. Both must have faces.
 UnitBodies unit_bodies(QueryContext& context);
 
 }  // namespace lrb::parting

@@ -36,6 +36,7 @@ namespace {
 /// Returns the level of a body for a tolerance; null: the body itself. A limit in time leaves none to make
 /// levels.
 const WrapperLevel* level_of(const LrbRep& rep, double tolerance, const CollideRequest& request) {
+  // Existing levels are used; making them takes milliseconds, which a time limit does not allow for.
   return request.max_time > 0 && !rep.has_levels() ? nullptr : rep.levels().within(tolerance);
 }
 
@@ -46,6 +47,7 @@ std::uint32_t faces_of(const LrbRep& rep, const WrapperLevel* level) {
 /// Returns the levels for a tolerance, or the bodies where that is hardly more work.
 CoarseStep step_of(const LrbRep& a, const LrbRep& b, double tolerance, const CollideRequest& request) {
   const CoarseStep step{level_of(a, tolerance, request), level_of(b, tolerance, request)};
+  // The sum for both bodies decides: one level may be worth it beside the other body as it is.
   const double faces = static_cast<double>(faces_of(a, step.a)) + faces_of(b, step.b);
   return faces > kWorthwhile * (static_cast<double>(a.real_face_count()) + b.real_face_count()) ? CoarseStep{}
                                                                                                 : step;
@@ -66,6 +68,7 @@ CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& re
 
 std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
   const CoarseStep first = first_step(a, b, request);
+  // Without limits one level is enough: that of the tolerance.
   if (first.exact() || !is_limited(request)) return {first};
   std::vector<CoarseStep> steps;
   // Use powers of two, so that bodies of similar size share levels from pair to pair.
@@ -73,9 +76,12 @@ std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const Col
   std::frexp(std::max(first.a ? first.a->bound : 0, first.b ? first.b->bound : 0), &exponent);
   for (double x = std::ldexp(1.0, exponent); x > request.tolerance; x /= kLadderStep) {
     const CoarseStep step = step_of(a, b, x, request);
+    // Finer levels have even more faces.
     if (step.exact()) break;
+    // Different tolerances can yield the same levels: each is tried once.
     if (steps.empty() || step.a != steps.back().a || step.b != steps.back().b) steps.push_back(step);
   }
+  // The last step is as fine as the request: its level, or the bodies themselves.
   const CoarseStep last = step_of(a, b, request.tolerance, request);
   if (steps.empty() || last.a != steps.back().a || last.b != steps.back().b) steps.push_back(last);
   return steps;

@@ -1,3 +1,12 @@
+/// Finds a certificate of separation: wrappers, as coarse as possible, whose boundaries are proved disjoint
+/// and of which neither contains a piece of the other.
+///
+/// 1. Start from the outermost wrappers.
+/// 2. Compare all pairs of boundary faces. Where two come within the margin, refine the larger of the regions
+///    behind them.
+/// 3. Where a piece of one boundary lies in the other wrapper, refine there; then repeat step 2.
+/// 4. Coarsen every region that the proof does not need.
+
 #include "engine/query/coarse/separation.hpp"
 
 #include <algorithm>
@@ -32,6 +41,8 @@ class WorldWrapper {
 
   /// Returns the region that a face of the boundary belongs to; kNull for a real face.
   RegionId region_at(FaceId f) const {
+    // A pseudo face on the boundary has an included region on exactly one side; refining that region removes
+    // it.
     const CellId inner = rep().inner_cell(f);
     if (is_region(inner)) return (wrapper_.included(inner) ? inner : rep().outer_cell(f)).as_region();
     return kNull;
@@ -48,8 +59,10 @@ class WorldWrapper {
 
   /// Returns true if two faces of the boundaries are further apart than the margin.
   bool apart(std::size_t i, WorldWrapper& other, std::size_t j) {
+    // Both boxes are grown by 2 margins: disjoint ones prove a gap of more than the margin.
     if (!boxes_[i].intersects(other.boxes_[j])) return true;
     const double *a[3], *b[3];
+    // Polygons are compared as fans: every triangle with every triangle.
     for (std::uint32_t s = 0; s < simplices(faces_[i]); ++s)
       for (std::uint32_t t = 0; t < other.simplices(other.faces_[j]); ++t) {
         body_.world.corners(SimplexId(rep().first_simplex(faces_[i]) + s), a);
@@ -61,10 +74,12 @@ class WorldWrapper {
 
   /// Returns true if a point of the world lies in the wrapper, or in one region of it.
   bool holds(const double* point) {
+    // Parity of the crossings of an exact ray.
     const std::vector<FaceId> boundary = wrapper_.boundary();
     return crossed(point, boundary) % 2 != 0;
   }
   RegionId region_that_holds(const double* point) {
+    // Linear in the number of regions. Needed only where a piece lies inside the other wrapper.
     for (RegionId r = 0; r < rep().region_count(); ++r)
       if (wrapper_.included(r) && crossed(point, rep().collector(r)) % 2 != 0) return r;
     return kNull;
@@ -95,6 +110,7 @@ class WorldWrapper {
     const double* c[3];
     for (const FaceId f : faces)
       for (std::uint32_t i = 0; i < simplices(f); ++i) {
+        // Ties are broken symbolically, so that no hit is degenerate.
         body_.world.corners(SimplexId(rep().first_simplex(f) + i), c);
         const exact::RayHit hit =
             rep().dim() == 3 ? exact::ray_crosses(point, c) : exact::ray_crosses_2d(point, c);
@@ -116,10 +132,12 @@ class SeparationFinder {
       : half_{WorldWrapper(ctx[Side::a], margin), WorldWrapper(ctx[Side::b], margin)} {}
 
   std::optional<Separation> run() {
+    // Refining in one test can make the other fail: repeat until both pass. Ends, because regions are finite.
     do {
       if (!part_boundaries()) return std::nullopt;
     } while (open_what_holds_a_piece());
     if (stuck_) return std::nullopt;
+    // The wrappers are separate. Now coarsen them as far as they stay so.
     for (const int side : {0, 1}) take_back(side);
     Separation s;
     for (const int side : {0, 1}) {
@@ -134,8 +152,10 @@ class SeparationFinder {
   bool part_boundaries() {
     // Every face of A is compared with every face of B once: whichever comes later does it.
     while (done_[0] < half_[0].size() || done_[1] < half_[1].size()) {
+      // Refining appends the new faces to the lists, so that these are compared as well.
       const int side = done_[0] < half_[0].size() ? 0 : 1;
       const std::size_t i = done_[side]++;
+      // Faces that have left the boundary since they were listed are skipped.
       for (std::size_t j = 0; j < done_[1 - side] && half_[side].is_there(i); ++j)
         if (half_[1 - side].is_there(j) && !half_[side].apart(i, half_[1 - side], j) &&
             !refine_one(side, i, j))
@@ -144,11 +164,14 @@ class SeparationFinder {
     return true;
   }
 
-  /// Refines the larger one of the regions behind two faces that meet.
+  /// Refines the larger one of the regions behind two faces that come within the margin. Returns false if
+  /// both faces are real.
   bool refine_one(int side, std::size_t i, std::size_t j) {
     const RegionId r = half_[side].region_at(half_[side].face(i)),
                    q = half_[1 - side].region_at(half_[1 - side].face(j));
+    // Two real faces within the margin: no refinement can separate them.
     if (r == kNull && q == kNull) return false;
+    // Of two regions the larger one hides more empty space.
     const bool first = q == kNull || (r != kNull && size_of(side, r) >= size_of(1 - side, q));
     first ? half_[side].refine(r) : half_[1 - side].refine(q);
     return true;
@@ -158,6 +181,8 @@ class SeparationFinder {
   /// Returns a vertex of a piece of one boundary that lies in the other wrapper; kNull if there is none.
   VertexId piece_inside(int inner) {
     const std::vector<FaceId> boundary = half_[inner].wrapper().boundary();
+    // One vertex per piece is enough: the boundaries do not intersect, so that a piece is inside or outside
+    // as a whole.
     for (const VertexId v : piece_vertices(half_[inner].rep(), boundary))
       if (half_[1 - inner].holds(half_[inner].world(v))) return v;
     return kNull;
@@ -169,8 +194,10 @@ class SeparationFinder {
     for (const int inner : {0, 1}) {
       const VertexId v = piece_inside(inner);
       if (v == kNull) continue;
+      // v lies in a region of the other wrapper: refine that one. In the other solid: refine v's own wrapper.
       if (!open_down_to(1 - inner, half_[1 - inner].region_that_holds(half_[inner].world(v))) &&
           !refine_at(inner, v)) {
+        // Nothing is left to refine: there is no certificate.
         stuck_ = true;
         return false;
       }
@@ -181,6 +208,7 @@ class SeparationFinder {
 
   bool open_down_to(int side, CellId cell) {
     if (cell == kNull) return false;
+    // Collect the regions from the inside outward, then refine them from the outside inward.
     std::vector<RegionId> path;
     for (; is_region(cell) && half_[side].wrapper().included(cell);
          cell = half_[side].rep().parent(cell.as_region()))
@@ -196,6 +224,7 @@ class SeparationFinder {
     for (std::size_t i = 0; i < half_[side].size(); ++i) {
       if (!half_[side].is_there(i)) continue;
       const FaceId f = half_[side].face(i);
+      // Any pseudo face at v will do: refining its region brings the boundary nearer to the body.
       const auto corners = half_[side].rep().face(f);
       if (std::find(corners.begin(), corners.end(), v) == corners.end()) continue;
       const RegionId r = half_[side].region_at(f);
@@ -210,8 +239,10 @@ class SeparationFinder {
   /// not come back in still cannot.
   void take_back(int side) {
     const std::vector<RegionId> refined = half_[side].wrapper().excluded();
+    // The latest refinement first.
     for (auto r = refined.rbegin(); r != refined.rend(); ++r) {
       const std::size_t before = half_[side].size();
+      // The lids that reappear are appended: only these need a test.
       half_[side].coarsen(*r);
       if (!are_clear(side, before) || nested()) half_[side].refine(*r);
     }

@@ -1,3 +1,7 @@
+/// Chooses the kind and length of caches by hill climbing on measured times: the length is changed by a
+/// constant factor, and the direction of change is reversed when the cost per query has risen. Caches that
+/// cost more than queries from scratch shorten the next one, then lead to pauses of increasing length.
+
 #include "engine/query/coherent/cache_policy.hpp"
 
 #include <algorithm>
@@ -37,6 +41,7 @@ constexpr std::uint32_t kPausesBetween = 4;
 
 bool CachePolicy::rests() {
   if (pause_ > 0) --pause_;
+  // A cache needs a few poses to foresee the motion: watch it for the last queries of a pause.
   return pause_ >= kToSeeMotion;
 }
 
@@ -66,32 +71,39 @@ void CachePolicy::rest() {
 }
 
 std::optional<CachePolicy::Plan> CachePolicy::next(bool is_steady, double step, double radius) {
+  // No query from scratch was timed yet: there is nothing to compare with.
   if (scratch_time_ == 0) return {};
   if (scratch_time_ < kWorthWatching) {
+    // Queries from scratch are so fast that watching the motion does not pay.
     build_time_ = 0;
     pause_ = kLongestPause / kPauseFactor;
     return {};
   }
   if (build_time_ > 0) {
     if (cost() >= 1 && !is_fresh_) return {};  // queries from scratch may take longer by now
+    // Rate the last cache before the next one is planned.
     take_stock();
     if (failures_ == kMostFailures) {
+      // Pause. One more failure afterwards is enough for the next pause.
       failures_ = kMostFailures - 1;
       too_long_ = step;
       rest();
       return {};
     }
   } else if (too_long_ > 0 && step >= kShorter * too_long_ && ++pauses_ < kPausesBetween) {
+    // Caches failed for steps like this one: wait for several pauses before the next try.
     pause_ = next_pause_;
     return {};
   }
   const double fixed_cost = aim(Kind::fixed).cost;
+  // The kind that cost less recently. A swept cache needs a steady motion.
   const Kind kind =
       is_steady && (fixed_cost >= 1 || aim(Kind::swept).cost <= fixed_cost) ? Kind::swept : Kind::fixed;
   if (kind == Kind::fixed && fixed_cost >= 1) {  // until the motion is steady, or that cost is forgotten
     aim(kind).cost *= kForgetSlowly;
     return {};
   }
+  // The number of steps after which B would have moved by kLongestMotion of its radius.
   const double most = kLongestMotion * radius / step;
   if (most >= kWorthTrying) return Plan{kind, std::min(aim(kind).steps, most)};
   pause_ = kLongestPause;
@@ -103,6 +115,7 @@ double CachePolicy::patience() const {
 }
 
 double CachePolicy::cost() const {
+  // The query that made the cache was answered as well: it counts as one of 1 + steps_.
   return (build_time_ + step_time_) / ((1 + steps_) * scratch_time_);
 }
 
@@ -110,7 +123,9 @@ double CachePolicy::cost() const {
 /// about as its length: the best length is found by trying. The cost of a fixed cache grows faster than its
 /// width: it is wide enough if B stays in it long enough to pay it off.
 double CachePolicy::growth(Aim& used, double now) const {
+  // Widen until the queries answered from the cache take as long as making it did.
   if (kind_ == Kind::fixed) return build_time_ > step_time_ ? kLonger : 1;
+  // Hill climbing: reverse the direction where the cost has risen.
   if (used.cost > 0 && now > used.cost) used.is_growing = !used.is_growing;
   return used.is_growing ? kLonger : 1 / kLonger;
 }
@@ -121,17 +136,21 @@ void CachePolicy::take_stock() {
   const double now = cost();
   forgave_ = false;
   if (now < 1) {
+    // The cache paid: adjust its length and shorten the next pause.
     failures_ = 0;
     used.steps *= growth(used, now);
     next_pause_ = std::max(next_pause_ / kPauseFactor, kFirstPause);
     too_long_ = 0;
   } else {
+    // It did not pay: the next one serves far fewer steps.
     ++failures_;
     used.steps *= kMuchShorter;
   }
   used.steps = std::clamp(used.steps, kFewestSteps, kMostSteps);
+  // Average the cost, but replace one that is unknown or did not pay.
   used.cost = used.cost > 0 && used.cost < 1 ? (used.cost + now) / 2 : now;
   build_time_ = 0;
+  // Let the other kind look cheaper over time, so that it is tried again.
   other.cost *= kForget;
 }
 

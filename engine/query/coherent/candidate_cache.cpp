@@ -1,3 +1,11 @@
+/// A list of the simplex pairs that may intersect while B moves along a sweep, as Verlet's neighbour lists
+/// (1967) hold the pairs of particles within a margin.
+///
+/// 1. arrange() sorts the pairs that the tree kernel found, packs their simplices for eight-wide floats, and
+///    computes the interval of the sweep in which each pair may intersect.
+/// 2. choose() selects the pairs whose interval contains B's position.
+/// 3. update() tests these pairs, eight at a time in floats, and exactly where floats are not certain.
+
 #include "engine/query/coherent/candidate_cache.hpp"
 
 #include <algorithm>
@@ -27,11 +35,13 @@ std::size_t up_to_eights(std::size_t count) {
 }  // namespace
 
 void aim_at(const Sweep& sweep, double rounding, double unit, TreeKernel& k) {
+  // All that may displace B from the straight sweep: its width, rounding, and the defect of the rotation.
   const double margin =
       sweep.width + rounding + kGapDefects * sweep.middle.defect * (sweep.length + sweep.width + rounding);
   k.margin = static_cast<float>(margin / unit) * kFloatUp;
   k.sweep_turn = static_cast<float>(sweep.turn) * kFloatUp;
   for (int i = 0; i < 3; ++i) {
+    // Stored by columns, as m is. dm is a ratio of lengths: only dt depends on the unit.
     for (int j = 0; j < 3; ++j) k.sweep[j][i] = sweep.dm(i, j);
     k.sweep_t[i] = sweep.dt[i] / unit;
   }
@@ -43,6 +53,7 @@ void CandidateSimplices::begin(const LrbRep& rep, double unit) {
   written_.clear();
   farthest_sq_ = 0;
   if (slots_.size() < rep.simplex_count()) slots_.resize(rep.simplex_count());
+  // A new epoch empties all slots at once. They are cleared only when the counter wraps around.
   if (++epoch_ != 0) return;
   std::fill(slots_.begin(), slots_.end(), Slot{});
   epoch_ = 1;
@@ -60,18 +71,22 @@ std::uint32_t CandidateSimplices::place_of(SimplexId s) {
 void CandidateSimplices::write(SimplexId s) {
   VertexId v[3] = {};
   rep_->simplex(s, v);
+  // A segment is stored as a triangle that repeats its second corner.
   if (rep_->simplex_size() == 2) v[2] = v[1];
   const Vector3d x = rep_->vertices()[v[0]] * per_unit_;
+  // Coordinates relative to a nearby corner lose less when they are rounded to float.
   if (written_.empty()) origin_ = x;
   const Vector3d first = x - origin_;
   double longest_sq = 0;
   CachedSimplex to{};
   for (int axis = 0; axis < 3; ++axis) to.corner[axis] = static_cast<float>(first[axis]);
   for (int end = 0; end < 2; ++end) {
+    // Subtract in double: the edges of small simplices then have small errors in float.
     const Vector3d edge = rep_->vertices()[v[1 + end]] * per_unit_ - x;
     for (int axis = 0; axis < 3; ++axis) to.edge[end][axis] = static_cast<float>(edge[axis]);
     longest_sq = std::max(longest_sq, edge.squaredNorm());
   }
+  // Rounded up: kFloatUp covers the conversion to float, kKernelTiny an underflow.
   to.longest = static_cast<float>(std::sqrt(longest_sq)) * kFloatUp + kKernelTiny;
   farthest_sq_ = std::max(farthest_sq_, first.squaredNorm());
   written_.push_back(to);
@@ -86,16 +101,20 @@ void CandidateCache::arrange(const LrbRep& a, const LrbRep& b, const TreeKernel&
   unit_ = query_unit(a.tree(), b.tree());
   rounding_ = rounding;
   is_swept_ = sweep.length > 0;
+  // Sort once: the answers taken from the cache are ascending without further sorting.
   order.sort(pairs_);
   place_pairs(a, b);
   find_spans(k, sweep);
+  // Keep intervals that overlap [-1, 1]. One that ends before it begins means that the pair never intersects.
   if (is_swept_)
     drop_unless([](float from, float to) {
       return unsigned{from <= 1 + kSpanRounding} & unsigned{to >= -1 - kSpanRounding} &
              unsigned{from <= to + kSpanRounding};
     });
   else
+    // At a fixed pose `from` is the displacement below which the pair cannot intersect.
     drop_unless([most = length_of(sweep.width)](float from, float) { return unsigned{from <= most}; });
+  // Reserve room for all pairs: queries from the cache allocate nothing.
   chosen_.resize(pairs_.size());
   chosen_places_.resize(up_to_eights(pairs_.size()));
   verdicts_.resize(chosen_places_.size() / 8);
@@ -109,6 +128,7 @@ void CandidateCache::place_pairs(const LrbRep& a, const LrbRep& b) {
   places_.resize(up_to_eights(pairs_.size()));
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     places_[i] = {of_[0].place_of(pairs_[i].a), of_[1].place_of(pairs_[i].b)};
+  // The pair kernel reads blocks of eight.
   fill_up(places_, pairs_.size());
 }
 
@@ -122,6 +142,8 @@ void CandidateCache::find_spans(const TreeKernel& k, const Sweep& sweep) {
   kernel.is_swept = is_swept_;
   kernel.sweep_turn = k.sweep_turn;
   kernel.margin = k.margin;
+  // Cached corners of B are relative to of_[1].origin(), so the displacement of that origin is the constant
+  // part.
   const Vector3d way = sweep.dm * of_[1].origin() + sweep.dt / unit_;
   for (int i = 0; i < 3; ++i) {
     kernel.sweep_t[i] = static_cast<float>(way[i]);
@@ -135,6 +157,7 @@ template <class Keep>
 void CandidateCache::drop_unless(Keep&& keep) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    // Copy first, then advance: an unwanted pair is overwritten by the next one.
     pairs_[kept] = pairs_[i];
     places_[kept] = places_[i];
     from_[kept] = from_[i];
@@ -157,6 +180,7 @@ std::size_t CandidateCache::choose(const SweepPoint& where) {
   const float at = position_of(where), spare = span_rounding();
   std::size_t count = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    // A pair whose interval does not contain the position is overwritten by the next one.
     chosen_[count] = static_cast<std::uint32_t>(i);
     chosen_places_[count] = places_[i];
     count += unsigned{from_[i] <= at + spare} & unsigned{to_[i] >= at - spare};
@@ -166,10 +190,11 @@ std::size_t CandidateCache::choose(const SweepPoint& where) {
   return count;
 }
 
-/// If two maps of B are in the sweep, so are those that blend them: if no surfaces meet on that way, none can
-/// have passed through another.
+/// If two maps of B are in the sweep, so is every linear interpolation of them. If no surfaces intersect on
+/// that path, none can have passed through another.
 bool CandidateCache::none_between(const SweepPoint& here, const SweepPoint& there) const {
   const float x = position_of(here), y = position_of(there), spare = span_rounding();
+  // Compare intervals, grown by their rounding: linear in the number of pairs, without any geometry.
   const float first = std::min(x, y) - spare, last = std::max(x, y) + spare;
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     if (from_[i] <= last && to_[i] >= first) return false;
@@ -187,6 +212,7 @@ PairKernel CandidateCache::kernel_at(const TreeKernel& k, const std::vector<Cach
   p.m_size = k.m_size;
   for (int i = 0; i < 3; ++i) {
     std::copy(std::begin(k.m_rows[i]), std::end(k.m_rows[i]), p.r[i]);
+    // Moves the offset to the cached origins. Computed in double and rounded to float once.
     double t = k.t[i] - of_[0].origin()[i];  // origin of the frame of B's corners, seen from that of A's
     for (int j = 0; j < 3; ++j) t += k.m[j][i] * of_[1].origin()[j];
     p.t[i] = static_cast<float>(t);

@@ -1,3 +1,12 @@
+/// Coherent queries with a candidate cache, the idea of Verlet's neighbour lists (1967): keep all pairs that
+/// may intersect within a margin, and test only these until the motion leaves the margin.
+///
+/// Steps of one query (answer()):
+/// 1. Update the motion of B relative to A. If it is not nearly rigid, query from scratch.
+/// 2. If B is within the cached sweep, test the cached pairs that may intersect at this pose.
+/// 3. Else, where one pair is enough, test whether the last pair still crosses.
+/// 4. Else make a new cache if the policy expects it to pay, or query from scratch.
+
 #include "engine/query/coherent/coherent_query.hpp"
 
 #include <algorithm>
@@ -103,6 +112,7 @@ CoherentQuery::Work::Work(const LrbRep& a, const LrbRep& b, const CollideRequest
 
 template <class Probe>
 const CollideResult& CoherentQuery::Work::collide(const Pose& pose_a, const Pose& pose_b, Probe& probe) {
+  // Requests that no cache can answer, and empty bodies, are passed on unchanged.
   if (!plain_) {
     result_ = lrb::collide(a_, pose_a, b_, pose_b, request_, context_, probe);
     ++statistics_.from_scratch;
@@ -114,6 +124,7 @@ const CollideResult& CoherentQuery::Work::collide(const Pose& pose_a, const Pose
     motion_.forget();
     result_.pairs.clear();
   }
+  // The counter of fallbacks runs on from query to query: the difference is this query's own.
   const std::uint64_t fallbacks = exact::exact_fallbacks();
   clear(result_.counters);
   answer(pose_a, pose_b, probe);
@@ -124,30 +135,38 @@ const CollideResult& CoherentQuery::Work::collide(const Pose& pose_a, const Pose
 
 template <class Probe>
 void CoherentQuery::Work::answer(const Pose& pose_a, const Pose& pose_b, Probe& probe) {
+  // No vertex is transformed yet: that happens when one is first needed.
   context_.body[0].world.begin(a_, pose_a);
   context_.body[1].world.begin(b_, pose_b);
   if (policy_.rests()) {
+    // Paused: the motion is not even watched, so that a query costs no more than one without coherence.
     motion_.forget();
     query_from_scratch(probe);
     return;
   }
   if (!motion_.see(pose_a, pose_b)) {
+    // Not nearly rigid, or a reflection: the bounds on the relative motion do not hold.
     query_from_scratch(probe);
     return;
   }
   const auto began = Clock::now();
   note_step(motion_.step());
+  // No point of B is further than where.off from its place in the sweep.
   const SweepPoint where = has_cache_ ? motion_.along(sweep_) : SweepPoint{};
   if (policy_.must_wait()) {
+    // The last queries of a pause: the motion is watched again, but no cache is made.
     query_from_scratch(probe);
     policy_.scratch_took(seconds_since(began));
   } else if (has_cache_ && where.off <= sweep_.width) {
+    // B is within the sweep, for which the cache is complete.
     ++statistics_.from_cache;
     answer_from_cache(where, probe);
     policy_.step_took(seconds_since(began));
   } else if (request_.mode != Mode::all_pairs && still_crosses(probe)) {
+    // B has left the sweep, but the pair of the last answer still answers the query.
     has_cache_ = false;
   } else if (const auto plan = next_plan()) {
+    // A failed attempt counts as time spent on the cache.
     if (!make_cache(*plan, probe)) query_from_scratch(probe);
     policy_.build_took(plan->kind, seconds_since(began));
   } else {
@@ -161,12 +180,15 @@ template <class Probe>
 void CoherentQuery::Work::query_from_scratch(Probe& probe) {
   has_cache_ = false;
   ++statistics_.from_scratch;
+  // The poses are set; the wrappers begin with all regions included.
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
   result_.mode = request_.mode;
+  // Clear the vectors one by one: they keep their memory.
   result_.pairs.clear();
   result_.meets.clear();
   result_.contacts.clear();
   result_.regions.clear();
+  // The steps of collide(): traverse the trees, sort the pairs, decide the relation, describe the contact.
   TreeQuery<Probe>(context_, request_, result_, probe).run();
   in_phase(probe, Phase::sort, [&] {
     context_.pair_order.sort(result_);
@@ -207,7 +229,7 @@ void CoherentQuery::Work::tell_test(const SimplexPair& p, exact::Meet meet, Test
   if (is_told_more(probe)) probe.tested_by(by);
 }
 
-/// Tells which regions are open since earlier queries.
+/// Reports the regions that are still refined from earlier queries.
 template <class Probe>
 void CoherentQuery::Work::tell_kept(Probe& probe) {
   if constexpr (Probe::kEnabled)
@@ -223,7 +245,7 @@ void CoherentQuery::Work::tell_kept(Probe& probe) {
     });
 }
 
-/// Tells that the wrappers will be whole again.
+/// Reports that all regions will be included again.
 template <class Probe>
 void CoherentQuery::Work::tell_reset(Probe& probe) {
   if constexpr (Probe::kEnabled)
@@ -238,15 +260,18 @@ void CoherentQuery::Work::tell_reset(Probe& probe) {
 /// Returns true if the pair found last time still crosses: where one pair is enough, it is as good as any.
 template <class Probe>
 bool CoherentQuery::Work::still_crosses(Probe& probe) {
+  // A pair that only touches is not reused: in first_pair mode another one may cross.
   if (result_.pairs.size() != 1 || result_.meets[0] != exact::Meet::cross) return false;
   ++result_.counters.face_tests;
   const SimplexPair p = result_.pairs[0];
   const std::uint64_t fallbacks = exact::exact_fallbacks();
   const exact::Meet meet = test_simplices(context_, p.a, p.b);
   const TestedBy by = exact::exact_fallbacks() == fallbacks ? TestedBy::filter : TestedBy::expansions;
+  // The wrappers are left as they are: they show this pair already.
   tell_kept(probe);
   if constexpr (Probe::kEnabled) tell_test(p, meet, by, probe);
   if (meet != exact::Meet::cross) {
+    // The next attempt begins with all regions included: report the refined ones as coarsened.
     tell_reset(probe);
     return false;
   }
@@ -256,13 +281,18 @@ bool CoherentQuery::Work::still_crosses(Probe& probe) {
 }
 
 void CoherentQuery::Work::note_step(double step) {
+  // An infinite step means that no earlier pose is known.
   const bool jump = !std::isfinite(step) || (usual_step_ > 0 && step > kJump * usual_step_);
+  // Two jumps in a row are a new usual step.
   if (!jump || (jumped_ && std::isfinite(step))) usual_step_ = std::max(step, kForgetStep * usual_step_);
+  // The cache ended early because of the jump, not because of its length.
   if (jump) policy_.forgive();
   jumped_ = jump;
 }
 
 std::optional<CachePolicy::Plan> CoherentQuery::Work::next_plan() {
+  // The next step cannot be foreseen without a usual step, right after a jump, or from fewer than three
+  // poses.
   if (!(usual_step_ > 0) || jumped_ || !motion_.is_seen()) return {};
   if (use_ == CacheUse::as_it_pays) return policy_.next(motion_.is_kept(), usual_step_, motion_.radius());
   return CachePolicy::Plan{motion_.is_kept() ? CachePolicy::Kind::swept : CachePolicy::Kind::fixed,
@@ -275,20 +305,24 @@ template <class Probe>
 bool CoherentQuery::Work::make_cache(const CachePolicy::Plan& plan, Probe& probe) {
   const bool is_swept = plan.kind == CachePolicy::Kind::swept;
   sweep_ = is_swept ? motion_.ahead(plan.steps) : motion_.about(plan.steps * usual_step_);
+  // The current pose must lie in its own sweep. It does not where lengths overflow.
   const SweepPoint where = motion_.along(sweep_);
   if (!(where.off <= sweep_.width)) return false;
   const double rounding = 4 * motion_.rounding();
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
+  // Traverse on A's axes: A at the identity, B at the middle of the sweep.
   TreeKernel k = start_rigid_kernel(context_, Pose{}, {sweep_.middle.m, sweep_.middle.t}, kAtATime);
   aim_at(sweep_, rounding, query_unit(a_.tree(), b_.tree()), k);
   // A margin that is not a number, as infinite widths and no defect make it, would count as none.
   if (!(k.margin < std::numeric_limits<float>::infinity())) return false;
   bool complete = false;
+  // Find all pairs within reach of the sweep, then drop those that cannot intersect anywhere in it.
   in_phase(probe, Phase::cache, [&] {
     complete = find_candidates(k, probe);
     if (complete) cache_.arrange(a_, b_, k, sweep_, rounding, context_.pair_order);
     return complete ? cache_.pairs().size() : 0;
   });
+  // The traversal counts even if it was given up.
   result_.counters.node_pairs = k.node_pairs;
   result_.counters.box_tests = k.box_tests;
   result_.counters.prefilter_tests = k.prefilter_tests;
@@ -297,6 +331,7 @@ bool CoherentQuery::Work::make_cache(const CachePolicy::Plan& plan, Probe& probe
   has_answer_ = false;
   ++statistics_.caches_made;
   statistics_.swept_caches += is_swept;
+  // Refine the wrappers once for all cached pairs: queries answered from the cache refine nothing.
   for (const SimplexPair& p : cache_.pairs()) {
     show_face(context_, Side::a, a_.face_of_simplex(p.a), result_, probe);
     show_face(context_, Side::b, b_.face_of_simplex(p.b), result_, probe);
@@ -313,10 +348,12 @@ bool CoherentQuery::Work::find_candidates(TreeKernel& k, Probe& probe) {
   cache_.clear();
   while (!is_done(k)) {
     k.out_size = 0;
+    // The kernel returns when its buffer is nearly full; limits are checked in between.
     is_told_more(probe) ? NodeWatch<Probe>(context_, probe).run(k) : run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i) cache_.add({k.out[i].a, k.out[i].b});
     if (cache_.pairs().size() > request_.pair_limit())
-      return false;  // the query itself counts those that meet
+      return false;  // the query itself counts only pairs that intersect
+    // A cache that takes this long is unlikely to pay (kPatience).
     if (use_ == CacheUse::as_it_pays && seconds_since(began) > policy_.patience()) return false;
   }
   return true;
@@ -327,7 +364,9 @@ template <class Probe>
 bool CoherentQuery::Work::test_cached(const TreeKernel& k, Probe& probe) {
   std::uint64_t fallbacks = exact::exact_fallbacks();
   const auto exactly = [&](const SimplexPair& p) { return test_simplices(context_, p.a, p.b); };
+  // Without an observer, certainly disjoint pairs are skipped eight at a time.
   if constexpr (!Probe::kEnabled) return cache_.update(k, exactly);
+  // Report as contacts only pairs that can be the answer, as collect_answer() chooses it.
   bool found = false, crossing = false;
   return cache_.update(k, exactly, [&](const SimplexPair& p, exact::Meet meet, bool is_certain) {
     const bool exact_needed = std::exchange(fallbacks, exact::exact_fallbacks()) != exact::exact_fallbacks();
@@ -347,10 +386,12 @@ bool CoherentQuery::Work::test_cached(const TreeKernel& k, Probe& probe) {
 /// Answers from the cache; B must be where it is complete.
 template <class Probe>
 void CoherentQuery::Work::answer_from_cache(const SweepPoint& where, Probe& probe) {
-  if (has_answer_) tell_kept(probe);  // else the cache has just been made, and its regions told
+  if (has_answer_) tell_kept(probe);  // else the cache is new, and its regions were just reported
+  // Float tests use the pose of this query, not that of the sweep.
   const TreeKernel k = set_up_kernel(a_, context_.body[0].world.pose(), b_, context_.body[1].world.pose());
   const bool has_answer = std::exchange(has_answer_, true);
   const SweepPoint before = std::exchange(where_, where);
+  // Only pairs that may intersect at this point of the sweep are tested.
   const std::size_t tested = cache_.choose(where);
   bool changed = false;
   in_phase(probe, Phase::cached, [&] {
@@ -359,9 +400,10 @@ void CoherentQuery::Work::answer_from_cache(const SweepPoint& where, Probe& prob
   });
   result_.counters.face_tests += tested;
   statistics_.tests_saved += cache_.pairs().size() - tested;
+  // Otherwise result_ holds the same pairs already.
   if (changed || !has_answer) collect_answer();
-  // Solids lie as before where no surface met another in between; boxes, which decide for others, move with
-  // each pose.
+  // The relation of solids is unchanged if no surfaces intersected in between. For open surfaces world boxes
+  // decide, which move with each pose.
   const bool solids = a_.closed() && b_.closed();
   if (!has_answer || tested > 0 || !cache_.none_between(before, where) || !solids)
     decide_relation_watched(context_, result_, probe, [] { return true; });
@@ -374,8 +416,10 @@ void CoherentQuery::Work::collect_answer() {
   result_.mode = request_.mode;
   result_.pairs.clear();
   result_.meets.clear();
+  // Ascending, because the cache is sorted.
   cache_.append_meeting(result_);
   if (request_.mode == Mode::all_pairs || result_.pairs.empty()) return;
+  // One pair is the answer: in first_pair mode one that crosses, if there is one.
   const auto crossing = request_.mode == Mode::any_pair
                             ? result_.meets.begin()
                             : std::find(result_.meets.begin(), result_.meets.end(), exact::Meet::cross);

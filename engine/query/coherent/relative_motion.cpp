@@ -1,3 +1,10 @@
+/// Predicts the motion of B relative to A from its last three poses, by repeating the last step.
+///
+/// 1. see() records a pose on A's axes and bounds its rounding.
+/// 2. ahead() extrapolates a straight sweep, as long as the deviation of the last step from the one before
+///    allows.
+/// 3. along() projects a pose onto a sweep by least squares and bounds the distance of all points from it.
+
 #include "engine/query/coherent/relative_motion.hpp"
 
 #include <algorithm>
@@ -40,6 +47,7 @@ RelativePose::RelativePose(const Matrix3d& m_, const Vector3d& t_)
     : m(m_), t(t_), defect(rotation_defect(m_)) {}
 
 RelativeMotion::RelativeMotion(const LrbRep& a, const LrbRep& b) : a_(&a), b_(&b) {
+  // The root's ball encloses all of B.
   const TreeNode& root = b.tree().nodes()[0];
   middle_ = Vector3d(root.origin[0], root.origin[1], root.origin[2]) * b.tree().unit();
   radius_ = static_cast<double>(root.radius) * b.tree().unit();
@@ -49,8 +57,11 @@ bool RelativeMotion::see(const Pose& pose_a, const Pose& pose_b) {
   const double defect_a = rotation_defect(pose_a.r);
   earlier_ = last_;
   last_ = now_;
+  // B seen from A: x -> R_A^T (R_B x + t_B - t_A).
   now_ = {pose_a.r.transpose() * pose_b.r, pose_a.r.transpose() * (pose_b.t - pose_a.t)};
+  // R_A^T is the inverse only up to A's defect, which shifts points on A's axes by that share of their size.
   rounding_ = wrapper_margin(pose_a, a_->tree(), pose_b, b_->tree()) + 2 * defect_a * a_->tree().extent();
+  // A relative reflection is no rigid motion.
   if (defect_a <= kRigid && now_.defect <= kRigid && now_.m.determinant() > 0) {
     seen_ = std::min(seen_ + 1, kRemembered);
     return true;
@@ -61,6 +72,7 @@ bool RelativeMotion::see(const Pose& pose_a, const Pose& pose_b) {
 
 /// Returns a bound on |dm x + dt| for points x of B, where |dm| <= turn.
 double RelativeMotion::farthest(const Matrix3d& dm, const Vector3d& dt, double turn) const {
+  // The displacement of B's centre, and the effect of the rotation over B's radius.
   return ((dm * middle_ + dt).stableNorm() + turn * radius_) * (1 + kWorldRounding) + rounding_;
 }
 
@@ -70,6 +82,7 @@ double RelativeMotion::motion(const RelativePose& from, const RelativePose& to) 
 }
 
 double RelativeMotion::step() const {
+  // Without an earlier pose nothing bounds the step.
   return seen_ < 2 ? std::numeric_limits<double>::infinity() : motion(last_, now_);
 }
 
@@ -77,13 +90,16 @@ double RelativeMotion::step() const {
 Sweep RelativeMotion::sweep_of(int steps) const {
   const RelativePose way = motion_between(last_, now_);
   Sweep s;
+  // Repeat the last step: `steps` times to the middle, and as often again to the end.
   RelativePose end = now_;
   for (int i = 0; i < steps; ++i) end = after(way, end);
   s.middle = end;
   for (int i = 0; i < steps; ++i) end = after(way, end);
+  // Half the chord from now to the end, lengthened by kBeyondEnd steps at either end.
   const double longer = 1 + kBeyondEnd / steps;
   s.dm = (end.m - now_.m) * (longer / 2);
   s.dt = (end.t - now_.t) * (longer / 2);
+  // The Frobenius norm bounds the spectral norm: a scaled chord is no difference of two rotations.
   s.turn = s.dm.norm() * (1 + kWorldRounding);
   s.length = farthest(s.dm, s.dt, s.turn);
   return s;
@@ -98,6 +114,7 @@ bool RelativeMotion::is_kept() const {
 }
 
 double RelativeMotion::deviation() const {
+  // The distance of the current pose from the one extrapolated from the two poses before.
   return motion(after(motion_between(earlier_, last_), last_), now_);
 }
 
@@ -110,7 +127,9 @@ double RelativeMotion::steady_steps() const {
 Sweep RelativeMotion::ahead(double steps) const {
   const int half = std::max(1, static_cast<int>(std::min(steps / 2, steady_steps())));
   Sweep ahead = sweep_of(half);
+  // Extrapolation errors grow quadratically: n^2 / 2 deviations in n = 2 half steps.
   ahead.width = kLeastWidth * motion(last_, now_) + 2 * half * half * deviation();
+  // B is off the chord already, and will be about as far off at the other end.
   ahead.width = std::max(ahead.width, kSpareWidth * along(ahead).off);
   return ahead;
 }
@@ -123,6 +142,7 @@ Sweep RelativeMotion::about(double width) const {
 }
 
 SweepPoint RelativeMotion::along(const Sweep& s) const {
+  // A fixed pose has no direction: only the distance from it counts.
   if (s.length == 0) return {0, motion(s.middle, now_)};
   const Matrix3d m = now_.m - s.middle.m;
   const Vector3d t = now_.t - s.middle.t;
@@ -132,6 +152,7 @@ SweepPoint RelativeMotion::along(const Sweep& s) const {
   const double nearest = (gone.dot(way) + spread * m.cwiseProduct(s.dm).sum()) /
                          (way.squaredNorm() + spread * s.dm.squaredNorm());
   const double at = nearest > -1 ? std::min(nearest, 1.0) : -1;  // also where overflow made it not a number
+  // Whatever the fit, the residual is a valid bound: a poor fit only costs a new cache.
   const Matrix3d off_m = m - at * s.dm;
   return {at, farthest(off_m, t - at * s.dt, off_m.norm())};
 }

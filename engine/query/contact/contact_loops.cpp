@@ -15,7 +15,7 @@ class Chainer {
 
   std::vector<ContactLoop> run() {
     std::vector<ContactLoop> loops;
-    // Walk open chains first, from their ends; what is left then are closed ones.
+    // Follow open chains first, from their ends. Only closed ones are left then.
     for (const auto& [p, at] : edges_at_)
       for (const std::uint32_t e : at)
         if (at.size() != 2 && !used_[e]) loops.push_back(walk(p, e));
@@ -31,12 +31,15 @@ class Chainer {
     std::uint32_t p = from;
     while (true) {
       used_[edge] = true;
+      // Go to the other end of the edge.
       p = edges_[edge][0] == p ? edges_[edge][1] : edges_[edge][0];
       const auto& at = edges_at_.at(p);
       loop.closed = p == from;
       if (loop.closed) break;
       loop.points.push_back(points_[p]);
+      // An end or a branch point: the chain is open.
       if (at.size() != 2) break;
+      // Two edges meet here: leave by the one that is unused.
       edge = used_[at[0]] ? at[1] : at[0];
     }
     return loop;

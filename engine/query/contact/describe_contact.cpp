@@ -1,3 +1,11 @@
+/// Describes a contact: the intersection of each pair, and the connected regions of these with loops, length,
+/// area, centroid, normal and a depth estimate.
+///
+/// 1. Compute the intersection of each pair exactly, and connect the pieces to a graph (contact_graph.hpp).
+/// 2. Average centroid and normal of each component over its pieces of the highest dimension.
+/// 3. Chain the edges of each component into loops.
+/// 4. Estimate the depth from the vertices that each body encloses of the other, along the normal.
+
 #include "engine/query/contact/describe_contact.hpp"
 
 #include <algorithm>
@@ -20,8 +28,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// Returns the power of two by which to divide points so that no product of two or three coordinates
-/// overflows or vanishes: the areas of bodies of size 1e-120 or 1e120 are no doubles once they are multiplied
-/// by a coordinate.
+/// overflows or underflows, as an area times a coordinate does for bodies of size 1e-120 or 1e120.
 double unit_for(std::span<const Vector3d> points) {
   double most = 0;
   for (const Vector3d& p : points) most = std::max(most, p.cwiseAbs().maxCoeff());
@@ -36,15 +43,18 @@ Vector3d world_normal(QueryBody& body, SimplexId s, bool mirrored) {
   const int dim = body.rep().dim();
   std::array<Vector3d, 3> x = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
   for (int k = 0; k < dim; ++k) x[k] = Vector3d(c[k][0], c[k][1], c[k][2]);
+  // Scaled to about 1: products of coordinates cannot overflow or vanish then.
   const double unit = unit_for({x.data(), static_cast<std::size_t>(dim)});
   const auto at = [&](int k) { return Vector3d(x[k] / unit); };
   // In 2D the solid lies on the left of a segment's direction, so the outside is on its right.
   const Vector3d along = at(1) - at(0);
   const Vector3d n = dim == 2 ? Vector3d(along.y(), -along.x(), 0) : along.cross(at(2) - at(0)).eval();
+  // A reflection reverses the orientation of every triangle.
   return mirrored ? Vector3d(-n.stableNormalized()) : n.stableNormalized();
 }
 
 double polygon_area(const std::vector<Vector3d>& x) {
+  // A fan of triangles: the cross products add up to twice the vector area.
   Vector3d twice = Vector3d::Zero();
   for (std::size_t i = 1; i + 1 < x.size(); ++i) twice += (x[i] - x[0]).cross(x[i + 1] - x[0]);
   return 0.5 * twice.norm();
@@ -59,7 +69,9 @@ struct Weight {
 Weight weigh(const std::vector<Vector3d>& x) {
   Vector3d mean = Vector3d::Zero();
   for (const Vector3d& p : x) mean += p / static_cast<double>(x.size());
+  // A segment is weighted by its length, a point by 1.
   if (x.size() < 3) return {x.size() == 2 ? (x[1] - x[0]).norm() : 1.0, mean};
+  // A polygon: the area-weighted centroid of its fan.
   Vector3d centre = Vector3d::Zero();
   double area = 0;
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {
@@ -73,6 +85,7 @@ Weight weigh(const std::vector<Vector3d>& x) {
 double loop_length(const ContactLoop& loop) {
   double sum = 0;
   const std::size_t n = loop.points.size();
+  // A closed loop has one more segment, back to its first point.
   for (std::size_t i = 0; i + 1 < n + (loop.closed ? 1 : 0); ++i)
     sum += (loop.points[(i + 1) % n] - loop.points[i]).norm();
   return sum;
@@ -95,6 +108,7 @@ class RegionMaker {
     std::vector<ContactRegion> regions(graph_.component_count);
     std::vector<std::uint8_t> rank(graph_.component_count,
                                    0);  // 3: has polygons, 2: segments, 1: points only
+    // Assign pairs to regions. Only pieces of the highest dimension in a region are averaged.
     for (const auto& piece : graph_.pieces)
       if (!piece.points.empty()) {
         const std::uint32_t r = graph_.component[piece.points[0]];
@@ -104,6 +118,7 @@ class RegionMaker {
     for (std::uint32_t r = 0; r < regions.size(); ++r) average(regions[r], rank[r]);
     add_loops(regions);
     for (std::uint32_t r = 0; r < regions.size(); ++r) {
+      // Regions of curves have the area that their loops span; coplanar ones have their own already.
       if (rank[r] == 2) regions[r].area = spanned_area(regions[r]);
       regions[r].depth_estimate = penetration(regions[r]);
     }
@@ -118,6 +133,7 @@ class RegionMaker {
     region.centroid *= unit_;
     region.length *= unit_;
     region.depth_estimate *= unit_;
+    // One factor after the other: the square of the unit can overflow or vanish by itself.
     region.area = region.area * unit_ * unit_;
   }
 
@@ -137,6 +153,7 @@ class RegionMaker {
       const Weight w = weigh(points_of(piece));
       total += w.value;
       centre += w.value * w.centre;
+      // Outward normals are about opposite in a contact: their difference points from A to B.
       normal += w.value * (world_normal(ctx_[Side::a], result_.pairs[i].a, mirrored_[0]) -
                            world_normal(ctx_[Side::b], result_.pairs[i].b, mirrored_[1]));
     }
@@ -149,6 +166,7 @@ class RegionMaker {
 
   void add_loops(std::vector<ContactRegion>& regions) const {
     std::vector<std::vector<std::array<std::uint32_t, 2>>> edges(regions.size());
+    // Both ends of an edge are in the same component.
     for (const auto* list : {&graph_.outlines, &graph_.curves})
       for (const auto& e : *list) edges[graph_.component[e[0]]].push_back(e);
     for (std::uint32_t r = 0; r < regions.size(); ++r) {
@@ -168,13 +186,17 @@ class RegionMaker {
   double penetration(const ContactRegion& region) {
     const bool crosses = std::any_of(region.pairs.begin(), region.pairs.end(),
                                      [&](std::uint32_t i) { return result_.meets[i] == exact::Meet::cross; });
+    // Surfaces that only touch do not penetrate.
     if (!crosses || region.normal.isZero()) return 0;
+    // Extents along the normal: the furthest point of A's part, the nearest of B's. Contact points belong to
+    // both.
     double a_reaches = -std::numeric_limits<double>::infinity(), b_reaches = -a_reaches;
     for (const std::uint32_t i : region.pairs)
       for (const std::uint32_t p : graph_.pieces[i].points) {
         a_reaches = std::max(a_reaches, region.normal.dot(graph_.points[p]));
         b_reaches = std::min(b_reaches, region.normal.dot(graph_.points[p]));
       }
+    // The enclosed parts are polyhedra: beside contact points only their vertices can be extreme.
     for (const VertexId v : a_in_b_.from(region.pairs))
       a_reaches = std::max(a_reaches, region.normal.dot(world(Side::a, v)));
     for (const VertexId v : b_in_a_.from(region.pairs))
@@ -210,6 +232,7 @@ void describe_contact(QueryContext& context, const CollideRequest& request, Coll
   if (request.interiors_overlap && result.relation == Relation::crossing)
     result.interiors_overlap = crossing_interiors_overlap(context, result);
   if (!request.contacts) return;
+  // First the intersection of each pair, then the connected regions that they form.
   for (const SimplexPair& pair : result.pairs) result.contacts.push_back(contact_of(context, pair));
   result.regions = RegionMaker(context, result).run();
 }

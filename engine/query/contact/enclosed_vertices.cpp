@@ -18,8 +18,8 @@ SimplexId EnclosedVertices::simplex(std::uint32_t pair) const {
 }
 
 bool EnclosedVertices::is_inside(VertexId v) {
-  // Only edges of simplices in contact can pass through the other surface, so only their corners need to be
-  // located: every other vertex that is reached from inside is inside.
+  // Only edges of simplices in contact can cross the other surface, so that only their corners need to be
+  // located. All other vertices that are reached from inside are inside.
   return !near_.contains(v) || locate(holder_, body_.world(v)) == Where::inside;
 }
 
@@ -31,10 +31,12 @@ std::vector<VertexId> EnclosedVertices::from(std::span<const std::uint32_t> pair
     if (seen.insert(v).second && is_inside(v)) inside.push_back(v);
   };
   for (const std::uint32_t i : pairs) {
+    // Seeds: the enclosed corners of the simplices in these pairs.
     VertexId v[3];
     body_.rep().simplex(simplex(i), v);
     for (int k = 0; k < body_.rep().simplex_size(); ++k) visit(v[k]);
   }
+  // Breadth-first search over surface edges; each vertex is visited once.
   const SurfaceGraph& graph = body_.surface_graph();
   for (std::size_t next = 0; next < inside.size(); ++next)
     for (const VertexId v : graph.neighbours(inside[next])) visit(v);

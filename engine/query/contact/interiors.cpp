@@ -1,3 +1,10 @@
+/// Decides exactly whether the interiors of two touching bodies overlap; interiors.hpp explains why this
+/// suffices.
+///
+/// 1. Coplanar faces that overlap in an area and face the same way: look for a point inside both, near them.
+/// 2. Patches of faces in no pair: locate one vertex of each in the other body.
+/// 3. Faces in pairs: cut them into cells and locate one rational point of each.
+
 #include "engine/query/contact/interiors.hpp"
 
 #include <algorithm>
@@ -34,14 +41,17 @@ class Decider {
       const LrbRep& rep = ctx_[side].rep();
       if (!rep.closed() || rep.overlaps_itself()) return Answer::unknown;
     }
+    // First the faces that coincide.
     const Answer between = between_coinciding_faces();
     if (between == Answer::yes) return between;
     for (const Side side : {Side::a, Side::b}) {
       group_pairs(side);
+      // Then the parts of the surfaces in no pair: one point each.
       if (free_patch_inside(side)) return Answer::yes;
     }
     for (const Side side : {Side::a, Side::b}) {
       group_pairs(side);
+      // Last the faces in pairs, cell by cell, in rational arithmetic.
       if (const Answer answer = touched_face_inside(side); answer != Answer::no) return answer;
     }
     return between;
@@ -53,6 +63,7 @@ class Decider {
   /// body in the world (far from the origin thin walls become flat) and faces need not face outward any more:
   /// unknown.
   Answer between_coinciding_faces() {
+    // A reflection reverses orientations: if exactly one pose is one, equal orientations mean opposite sides.
     const bool mirrored =
         is_reflection(ctx_[Side::a].world.pose(), dim_) != is_reflection(ctx_[Side::b].world.pose(), dim_);
     Answer answer = Answer::no;
@@ -62,7 +73,9 @@ class Decider {
       ctx_[Side::b].world.corners(pair.b, b);
       const exact::PairContact contact =
           dim_ == 3 ? exact::contact_of_triangles(a, b) : exact::contact_of_segments(a, b);
+      // Only contacts with area count (2D: with length).
       if (!contact.coplanar || contact.corner_count < dim_) continue;
+      // Opposite directions: the solids lie on different sides of the plane.
       if ((dim_ == 3 ? same_direction_3d(a, b) : same_direction_2d(a, b)) == mirrored) continue;
       if (inside_both_near(contact, a)) return Answer::yes;
       answer = Answer::unknown;
@@ -70,8 +83,8 @@ class Decider {
     return answer;
   }
 
-  /// Looks for a point inside both on either side of the middle of a coplanar contact, nearer and nearer:
-  /// there is no telling how far the next faces are. A point on one of them proves nothing.
+  /// Searches for a point inside both bodies on either side of a coplanar contact's centre, at decreasing
+  /// distances, because the distance to the next faces is unknown. A point on a face proves nothing.
   bool inside_both_near(const exact::PairContact& contact, const double* const face[3]) {
     std::vector<exact::RationalPoint> corners;
     Eigen::AlignedBox3d box;
@@ -79,12 +92,14 @@ class Decider {
       corners.emplace_back(contact.corners[k].x.data());
       box.extend(contact.corners[k].x);
     }
+    // The mean of the corners lies in the contact, which is convex, up to their rounding.
     const auto middle = exact::RationalPoint::combination(corners, std::vector<double>(corners.size(), 1));
     const Eigen::Vector3d normal = normal_of(face);
     for (const double side : {-1.0, 1.0}) {
       const Eigen::Vector3d off = middle.rounded() + side * box.sizes().maxCoeff() * normal;
       const exact::RationalPoint ends[] = {middle, exact::RationalPoint(off.data())};
       for (const double share : kInteriorProbes) {
+        // Ever nearer to the plane: the body may be arbitrarily thin there.
         const double weights[] = {1 - share, share};
         const auto p = exact::RationalPoint::combination(ends, weights);
         if (locate(ctx_[Side::a], p) == Where::inside && locate(ctx_[Side::b], p) == Where::inside)
@@ -118,6 +133,7 @@ class Decider {
   bool free_patch_inside(Side side) {
     QueryBody &body = ctx_[side], &holder = ctx_[other(side)];
     const LrbRep& rep = body.rep();
+    // Mark the corners of all faces in pairs.
     std::vector<bool> touched(rep.vertices().size(), false), seen(rep.vertices().size(), false);
     for (const auto& [s, partners] : partners_) {
       VertexId v[3];
@@ -130,12 +146,14 @@ class Decider {
       if (partners_.contains(s)) continue;
       VertexId v[3];
       rep.simplex(s, v);
+      // A vertex of no touched face represents its patch.
       const auto free = std::find_if(v, v + dim_, [&](VertexId x) { return !touched[x]; });
       if (free == v + dim_) {
         // The face itself touches nothing, so neither do its corners.
         if (locate(holder, body.world(v[0])) == Where::inside) return true;
       } else if (!seen[*free]) {
         if (locate(holder, body.world(*free)) == Where::inside) return true;
+        // Depth-first search marks the patch, all of which is on the same side.
         patch.assign(1, *free);
         seen[*free] = true;
         for (; !patch.empty();) {
@@ -156,6 +174,8 @@ class Decider {
     QueryBody &body = ctx_[side], &holder = ctx_[other(side)];
     std::size_t cells = 0;
     for (const auto& [s, partners] : partners_) {
+      // One exact point in each cell. A cell does not cross the other surface: it is inside or outside as a
+      // whole.
       const auto points = sample(body, s, holder, partners);
       if (!points || (cells += points->size()) > kInteriorCells) return Answer::unknown;
       for (const exact::RationalPoint& p : *points)
@@ -169,10 +189,12 @@ class Decider {
     const double* own_corners[3];
     body.world.corners(s, own_corners);
     if (dim_ == 3) {
+      // 3D: cells of the arrangement of cuts. Limits bound its cubic cost.
       FaceCutters cutters(own_corners, holder);
       for (const SimplexId t : partners) cutters.add(t);
       return exact::sample_cells(own_corners, cutters.all(), kInteriorCellsPerFace);
     }
+    // 2D: intervals between the crossings along the segment.
     const double* c[2];
     std::vector<std::array<const double*, 2>> others;
     for (const SimplexId t : partners) {

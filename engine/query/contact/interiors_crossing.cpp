@@ -1,3 +1,6 @@
+/// Proves that the interiors of two crossing bodies overlap: where two faces cross and no other face lies,
+/// there are four wedges, one of which is inside both bodies.
+
 #include <algorithm>
 #include <map>
 
@@ -11,14 +14,14 @@ namespace {
 
 using Corners = std::array<const double*, 3>;
 
-/// Finds a face of A that crosses a face of B where the surfaces consist of nothing but these two faces.
-/// There, parity changes from one side of each to the other, so that one of the four wedges between them is
-/// inside both.
+/// Finds a face of A and a face of B that cross where no other face of either surface lies. Parity changes
+/// across each of them there, so that one of the four wedges between them is inside both bodies.
 class CrossingProof {
  public:
   CrossingProof(QueryContext& ctx, const CollideResult& result)
       : ctx_(ctx), result_(result), dim_(ctx[Side::a].rep().dim()) {
     for (const SimplexPair& p : result.pairs) {
+      // For each simplex all simplices of the other body that it intersects.
       partners_[0][p.a].push_back(p.b);
       partners_[1][p.b].push_back(p.a);
     }
@@ -30,6 +33,7 @@ class CrossingProof {
       if (result_.meets[i] != exact::Meet::cross) continue;
       ++tries;
       const SimplexPair& p = result_.pairs[i];
+      // All simplices of A that could interfere near the crossing intersect p.b, and vice versa.
       if (is_alone(Side::a, p.a, partners_[1].at(p.b)) && is_alone(Side::b, p.b, partners_[0].at(p.a)))
         return true;
     }
@@ -55,13 +59,17 @@ class CrossingProof {
     std::vector<const double*> in_plane;
     bool above = false, below = false;
     for (const double* p : other) {
+      // On which side of the face's plane each corner lies, exactly.
       const int side = exact::orient3d(face[0], face[1], face[2], p);
       above |= side > 0;
       below |= side < 0;
       if (side == 0) in_plane.push_back(p);
     }
+    // It passes through the plane, perhaps through the face.
     if (above && below) return false;
     for (int k = 0; k < 3; ++k) {
+      // Otherwise only its corners in the plane can touch the face. Beyond the line of one edge they miss its
+      // interior.
       const double *p = face[k], *q = face[(k + 1) % 3];
       const int inward = side_in_plane(face.data(), p, q, face[(k + 2) % 3]);
       const bool beyond = std::all_of(in_plane.begin(), in_plane.end(), [&](const double* x) {
@@ -74,6 +82,7 @@ class CrossingProof {
 
   /// Does the same for segments: what is on the line of `face` must lie beyond one of its ends.
   static bool keeps_out_2d(const Corners& face, const Corners& other) {
+    // A coordinate in which the segment has length orders the points on its line.
     const int axis = face[0][0] != face[1][0] ? 0 : 1;
     const double low = std::min(face[0][axis], face[1][axis]), high = std::max(face[0][axis], face[1][axis]);
     bool above = false, below = false, before = true, after = true;

@@ -1,5 +1,5 @@
 #pragma once
-/// Tells a probe of bounds what is news to it.
+/// Reports bounds to a probe when they change.
 
 #include <algorithm>
 #include <limits>
@@ -12,20 +12,20 @@ class BoundsTeller {
  public:
   explicit BoundsTeller(BoundsProbe& probe) : probe_(probe) {}
 
-  /// Tells bounds that hold as well as all that were told before.
+  /// Reports the intersection of these bounds with all that were reported before, if that is new.
   void tell(std::uint64_t work, double lower, double upper) {
     const Bounds now{std::max(work, known_.work), std::max(lower, known_.lower),
                      std::min(upper, known_.upper)};
     if (now.lower == known_.lower && now.upper == known_.upper) return;
     put(now);
   }
-  /// Tells the bounds of the answer itself, even if some that were told before were narrower.
+  /// Reports the bounds of the answer, even if some that were reported before were narrower.
   void settle(std::uint64_t work, double lower, double upper) {
     if (lower == known_.lower && upper == known_.upper) return;
     put({std::max(work, known_.work), lower, upper});
   }
 
-  /// Returns after how much work bounds are worth another look: more and more, so that there are few looks.
+  /// Returns the work count of the next report. Intervals grow geometrically, so that reports are few.
   static std::uint64_t next_look(std::uint64_t work) { return work + 1 + work / 16; }
 
  private:

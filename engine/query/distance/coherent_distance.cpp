@@ -1,12 +1,12 @@
-/// What is kept from the last step:
-/// - the pair of simplices that was nearest. Measured where the bodies are now, it gives an upper end, and
-///   the direction for slabs, before the walk begins. If the surfaces met in it and still do, there is no
-///   walk.
-/// - how the bodies lie. If the surfaces did not meet, and nothing can have come as much nearer since as they
-///   were apart, they do not meet on the way from there to here either: then one holds the other now if it
-///   did before.
-/// - planes that hold pairs of nodes apart: as long as they do, what lies under the nodes is not looked at.
-/// That no other pair is nearer is proved anew.
+/// Distances along a motion. Kept from the previous step:
+/// - The pair of simplices that was closest. Measured at the new poses, it gives an upper bound and the
+///   direction of slabs before the traversal begins. If the surfaces intersected in it and still do, nothing
+///   is traversed.
+/// - The relation of the bodies. If the surfaces were disjoint, and no points can have approached by as much
+///   as the distance was, they do not intersect anywhere on the path between the steps: one body contains the
+///   other now if it did then.
+/// - Planes that separate pairs of nodes: as long as they do, these nodes are not expanded.
+/// That no other pair is closer is proven anew in each step.
 
 #include <cmath>
 #include <limits>
@@ -24,11 +24,13 @@ class CoherentDistance::Work {
   DistanceResult distance(const Pose& pose_a, const Pose& pose_b) {
     const PosePair now{pose_a, pose_b};
     const bool lies_as_before = request_.relation && is_relation_kept(now);
+    // A relation that is kept need not be computed.
     DistanceRequest ask = request_;
     ask.relation = request_.relation && !lies_as_before;
     DistanceResult result = lrb::distance(a_, pose_a, b_, pose_b, ask, context_, &before_);
-    // What is proved apart is apart; only a walk that stopped early has not found that out.
+    // Kept only if this step proves a positive distance, which an early stop may not.
     if (lies_as_before) result.relation = result.lower > 0 ? relation_ : Relation::unresolved;
+    // Where the bounds of the next step begin.
     before_.likely = {result.witness[0].simplex, result.witness[1].simplex};
     apart_ = result.lower;
     relation_ = result.relation;
@@ -38,7 +40,8 @@ class CoherentDistance::Work {
 
  private:
   bool is_relation_kept(const PosePair& now) const {
-    // Boxes, which decide where a body is no solid, move with each pose.
+    // Only for solids: the relation of open bodies is decided by boxes, which move with each pose. NaN or an
+    // unknown distance keeps nothing.
     return a_.closed() && b_.closed() && apart_ > 0 && std::isfinite(apart_) &&
            nearer_by(a_, b_, poses_, now, apart_) < apart_;
   }

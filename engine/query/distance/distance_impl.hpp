@@ -1,6 +1,6 @@
 #pragma once
-/// One distance query, with memory that the next one can use again: for code of ours. Users of the installed
-/// engine have distance.hpp.
+/// One distance query, with memory that later queries reuse. Internal: users of the installed engine include
+/// distance.hpp.
 
 #include <vector>
 
@@ -21,15 +21,15 @@ struct DistanceContext {
   std::uint32_t turn = 0;  ///< the last that was used in `ends`
 };
 
-/// What is known from earlier steps of a motion.
+/// Results of earlier steps of a motion.
 struct KnownFromBefore {
-  /// A simplex of A and one of B that are likely to be the nearest, or to meet; kNull: none.
+  /// A simplex of A and one of B that are likely to be the closest, or to intersect; kNull: none.
   std::array<SimplexId, 2> likely = {kNull, kNull};
   FarPairs far;
 };
 
-/// Answers as distance() in distance.hpp does. before: null, or what earlier steps found, to which this one
-/// adds. probe: null, or told how bounds tighten.
+/// Answers as distance() in distance.hpp does. before: null, or the results of earlier steps, which are
+/// updated. probe: null, or notified when bounds tighten.
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                         const DistanceRequest& request, DistanceContext& context,
                         KnownFromBefore* before = nullptr, BoundsProbe* probe = nullptr);
@@ -37,22 +37,22 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
 /// Throws InputError if a request cannot be answered.
 void check_request(const DistanceRequest& request);
 
-/// Returns true if floats can tell how far the bodies of a kernel are apart: they are rotated, not far from
-/// each other, and their coordinates are not so large that rounding outweighs their sizes.
+/// Returns true if floats are accurate enough for the distance: the poses are rotations, the bodies are not
+/// far from each other, and rounding of their coordinates does not outweigh their sizes.
 bool suits_floats(const TreeKernel& tree);
 
-/// Walks two trees in floats and measures in doubles what is left.
+/// Traverses two trees in float and measures the remaining pairs in double.
 class FloatWalk {
  public:
-  /// `tree`: as suits_floats() wants it. unit: query_unit(). descend: no pair is known that is likely to be
-  /// the nearest. far: null, or what earlier steps of a motion found.
+  /// `tree`: accepted by suits_floats(). unit: query_unit(). descend: no pair is known that is likely to be
+  /// the closest. far: null, or the planes of earlier steps of a motion.
   FloatWalk(DistanceContext& context, NearestPairs& found, const DistanceRequest& request,
             const TreeKernel& tree, double unit, bool descend, FarPairs* far);
 
-  /// Returns true if the walk came to its end, or found that the surfaces meet. teller: null, or told what is
-  /// known.
+  /// Returns true if the traversal was completed, or found that the surfaces intersect. teller: null, or
+  /// notified of bounds.
   bool run(BoundsTeller* teller);
-  /// Measures the pairs that may be the nearest. Returns a bound on the distances of all others.
+  /// Measures the pairs that may be the closest. Returns a lower bound on the distances of all others.
   double measure();
   void count(DistanceCounters& counters) const;
 

@@ -1,7 +1,7 @@
 #pragma once
-/// The inner loop of the distance query: the walk of two OBB trees, pairs of nodes whose boxes are nearest
-/// first, in eight-wide float arithmetic whose every error is bounded, so that a pair of simplices is dropped
-/// only if it is proved to be no nearer than what was found.
+/// The inner loop of the distance query: the best-first traversal of two OBB trees in eight-wide float
+/// arithmetic. Every error is bounded, so that a pair of simplices is dropped only if it is proven not to be
+/// closer than the best pair found.
 ///
 /// Contains only plain structures: this header is compiled once per instruction set (distance_kernel_*.cpp).
 
@@ -11,31 +11,32 @@
 
 namespace lrb {
 
-/// A pair of nodes that waits. `bound`: their boxes' squared distance, rounded down; where boxes overlap,
-/// minus how much.
+/// A pair of nodes to be expanded. `bound`: the squared distance of their boxes, rounded down; if the boxes
+/// overlap, minus the least penetration along an axis.
 struct WaitingNodes {
   float bound;
   std::uint32_t a, b;
 };
 
-/// How far a node reaches along a direction: A's ahead, B's back; set where `turn` is DistanceKernel::turn.
+/// The end of a node's projection on the direction: upper for A, lower for B. Valid if `turn` equals
+/// DistanceKernel::turn.
 struct NodeEnd {
   float end;
   std::uint32_t turn;
 };
 
-/// A pair of simplices that may be the nearest.
+/// A pair of simplices that may be the closest.
 struct NearPair {
   SimplexId a, b;
   float lower;  ///< a bound on its distance, query units
 };
 
-/// A pair of nodes that a plane held apart at an earlier step of a motion, by more than the bodies were
-/// apart.
+/// A pair of nodes that a plane separated at an earlier step of a motion, by more than the distance of the
+/// bodies.
 struct FarNodes {
   std::uint32_t a, b;
   float direction[3];  ///< across the plane, on A's axes; of length 1
-  /// How wide the slab between what lies under them was, less how far B's node's origin was ahead of A's.
+  /// Width of the slab between everything under them, less the offset of the nodes' origins along it.
   float width;
   float turned;  ///< DistanceKernel::least_turned of then
 };
@@ -60,18 +61,18 @@ struct DistanceKernel {
   bool begun;       ///< set by the kernel
   bool apart;       ///< the bodies are known not to meet: do not stop as `doubtful`
 
-  /// About where B is, seen from A's frame, on A's axes and on B's: of length 1, or 0 if it is not known.
+  /// Direction of the slabs, from A to B, on A's axes and on B's: of length 1, or 0 if it is not known.
   float direction[2][3];
   float ahead;  ///< how far B's root's origin is ahead of A's in that direction, less all errors of what is
                 ///< compared along it
-  /// (nodes of A, of B) how far nodes reach in that direction, from their root's origin.
+  /// Ends of the projections of A's and of B's nodes on that direction, relative to their root's origin.
   NodeEnd* ends[2];
   std::uint32_t turn;  ///< NodeEnd::turn of this direction
 
-  /// What earlier steps found far apart, by far_slot(); null: there is nothing, and nothing is kept.
+  /// Cache of separating planes of earlier steps, indexed by far_slot(); null: no cache.
   FarNodes* far;
   std::uint32_t far_slots;  ///< a power of two
-  /// The norms of TreeKernel::m's changes since planes were last forgotten, added up: rounded up, and down.
+  /// Sum of the norms of the changes of TreeKernel::m since the cache was cleared: rounded up, and down.
   float turned, least_turned;
 
   WaitingNodes* waiting;  ///< a heap, the least bound first
@@ -84,17 +85,17 @@ struct DistanceKernel {
   KernelStop stop;
 };
 
-/// Room that both buffers need before a step, and twice that before the first.
+/// Free entries that both buffers need before a step, and twice as many before the first.
 inline constexpr std::uint32_t kRoomForStep = 64;
 
-/// Returns the distance from which on pairs are dropped: rounded so that a pair that is dropped is no nearer.
+/// Returns the pruning distance, rounded so that a dropped pair is not closer.
 inline float dropped_from(const DistanceKernel& k) {
   const float by_spare = k.upper - k.spare, by_share = k.upper * (1 - k.share);
   const float least = by_spare < by_share ? by_spare : by_share;
   return least < k.widest ? least : k.widest;
 }
 
-/// Walks until there is a reason to stop. May be called again.
+/// Runs until there is a reason to stop. May be called again to go on.
 void run_distance_kernel(DistanceKernel& k);
 
 }  // namespace lrb

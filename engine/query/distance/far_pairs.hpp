@@ -1,5 +1,5 @@
 #pragma once
-/// What a motion keeps from step to step: planes that hold pairs of nodes apart.
+/// Planes that separate pairs of nodes, kept from step to step of a motion.
 
 #include <cstddef>
 #include <vector>
@@ -10,8 +10,8 @@ namespace lrb {
 
 class FarPairs {
  public:
-  /// Lets the walk of a step use what is kept, and add to it. k.tree: of the same trees at each step.
-  /// node_pairs: of the two trees.
+  /// Lends the cache to the kernel for one step. k.tree: of the same trees at each step. node_pairs: the
+  /// number of pairs of nodes of both trees.
   void lend(DistanceKernel& k, std::size_t node_pairs);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// How much nearer two bodies can have come to each other from one step of a motion to the next.
+/// How much two bodies can approach each other from one step of a motion to the next.
 
 #include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
@@ -11,9 +11,9 @@ struct PosePair {
   Pose a, b;
 };
 
-/// Returns how much nearer to each other a point of A and one of B may be at `to` than at `from`, where they
-/// were no more than `reach` apart: a bound for all of them, and for all places between, if what B does seen
-/// from A is divided evenly. Infinite where none is known: A or B is no rotated body, or is mirrored.
+/// Returns a bound on the decrease of the distance between any point of A and any point of B from `from` to
+/// `to`, for points at most `reach` apart at `from`. It holds for all poses between, too, if the motion of B
+/// relative to A is interpolated evenly. Infinite if a pose is no rotation or B becomes mirrored.
 double nearer_by(const LrbRep& a, const LrbRep& b, const PosePair& from, const PosePair& to, double reach);
 
 }  // namespace lrb

@@ -1,3 +1,9 @@
+/// Narrows a distance from the pairs that the traversal could not drop, by increasingly expensive means:
+/// 1. Bound each pair in double, with proven rounding errors (pair_bounds.hpp).
+/// 2. If the interval is still too wide or contains 0, ask the exact query whether the surfaces intersect.
+/// 3. If they do not, measure the pairs that matter in integers (exact/pair_distance.hpp).
+/// 4. Complete the answer: decision on `within`, relation of the bodies, closest points.
+
 #include "engine/query/distance/nearest_pairs.hpp"
 
 #include <algorithm>
@@ -33,16 +39,19 @@ Eigen::Vector3d NearestPairs::way() const {
 }
 
 double NearestPairs::dropped_from() const {
+  // Pairs that are nearer by less than the allowed width need not be found.
   const double asked =
       upper() - std::max({request_.tolerance, upper() * request_.relative_tolerance, allowed_});
-  // An upper end that is not known yet gives "not a number" or infinity.
+  // Without an upper bound, `asked` is NaN or infinite: then no pair may be dropped by it.
   const double least = asked >= 0 ? std::min(asked, upper()) : 0;
   const double by_upper = upper() < kInfinity ? least : kInfinity;
+  // The next double, so that a pair at exactly `within` is kept.
   return request_.within ? std::min(by_upper, std::nextafter(*request_.within, kInfinity)) : by_upper;
 }
 
-/// Returns how wide the interval may be.
+/// Returns the allowed width of the interval.
 double NearestPairs::width() const {
+  // The last two terms are the default precision, for requests without tolerances.
   return std::max({request_.tolerance, request_.relative_tolerance * upper(), allowed_,
                    kDistanceWidth * size_, kDistanceWidthUlps * upper()});
 }
@@ -52,14 +61,16 @@ void NearestPairs::corners(SimplexId a, SimplexId b, const double** of_a, const 
   ctx_[Side::b].world.corners(b, of_b);
 }
 
+/// Takes over a pair's upper bound if it is the least so far.
 void NearestPairs::see(const MeasuredPair& pair, const PairBounds& bounds) {
+  // Only a smaller bound replaces the best pair: of equally near ones the first stays.
   if (best_simplex_[0] != kNull && !(bounds.upper < best_.upper)) return;
   best_ = bounds;
   best_simplex_[0] = pair.a;
   best_simplex_[1] = pair.b;
 }
 
-/// Returns the bounds of two simplices that do not meet.
+/// Returns the exact bounds of two disjoint simplices.
 PairBounds NearestPairs::measured_exactly(const double* const* of_a, const double* const* of_b) {
   ++counters_.pairs_exact;
   const exact::PairDistance exact = exact::distance_of_simplices(of_a, of_b, dim_);
@@ -67,30 +78,37 @@ PairBounds NearestPairs::measured_exactly(const double* const* of_a, const doubl
 }
 
 bool NearestPairs::measure(SimplexId a, SimplexId b, double lower) {
+  // The candidate of the previous step was measured before the traversal began.
   if (spares_ && a == best_simplex_[0] && b == best_simplex_[1] && best_.lower > 0) return true;
   const double *of_a[3], *of_b[3];
   corners(a, b, of_a, of_b);
   ++counters_.pairs_in_doubles;
-  // Pairs that share the nearest corner or edge are as far apart along its direction.
+  // Fast path: pairs that share the closest vertex or edge have the same slab as the best pair.
   const double apart = spares_ ? distance_along(best_.direction, best_.upper, of_a, of_b, dim_) : 0;
   if (apart > 0) {
     pairs_.push_back({a, b, std::max(apart, lower)});
     return true;
   }
+  // General case: closest points, and the best slab across them.
   PairBounds bounds = bound_distance(of_a, of_b, dim_);
   if (!std::isfinite(bounds.upper)) {  // too large, or too small, for doubles
+    // Exact distances need disjoint simplices: without a positive bound, exclude contact first.
     if (!(lower > 0) && surfaces_meet()) return false;
     corners(a, b, of_a, of_b);
     bounds = measured_exactly(of_a, of_b);
   }
+  // Both lower bounds hold; rounding must not lift them above the upper one.
   pairs_.push_back({a, b, std::min(std::max(bounds.lower, lower), bounds.upper)});
   see(pairs_.back(), bounds);
+  // Not positive: contact is not excluded.
   return pairs_.back().lower > 0;
 }
 
 bool NearestPairs::surfaces_meet() {
+  // At most one exact query for each distance.
   if (asked_) return meet_;
   asked_ = true;
+  // One intersecting pair is enough.
   CollideRequest any;
   any.mode = Mode::any_pair;
   CollideResult found;
@@ -108,7 +126,7 @@ bool NearestPairs::pair_meets(const std::array<SimplexId, 2>& pair) {
   return true;
 }
 
-/// Takes in a pair that meets, with one of the points that it shares as the witness.
+/// Records an intersecting pair; the witness is one of the points that the two simplices share.
 void NearestPairs::take_contact(SimplexId a, SimplexId b, exact::Meet meet) {
   meet_ = true;
   met_ = meet == exact::Meet::cross ? Relation::crossing : Relation::touching;
@@ -116,6 +134,7 @@ void NearestPairs::take_contact(SimplexId a, SimplexId b, exact::Meet meet) {
   best_simplex_[1] = b;
   const double *of_a[3], *of_b[3];
   corners(best_simplex_[0], best_simplex_[1], of_a, of_b);
+  // A corner of the intersection: its features are exact, its coordinates rounded.
   const exact::PairContact contact =
       dim_ == 3 ? exact::contact_of_triangles(of_a, of_b) : exact::contact_of_segments(of_a, of_b);
   const exact::ContactCorner& corner = contact.corners[0];
@@ -131,15 +150,18 @@ double NearestPairs::least_lower() const {
   return least;
 }
 
-/// Measures exactly where doubles left too much. `rest`: what was not measured is at least this far apart.
+/// Measures exactly where doubles left too wide an interval. `rest`: a lower bound for all unmeasured pairs.
 void NearestPairs::narrow(double rest) {
+  // Exact arithmetic is needed if the interval is too wide, or if contact is not excluded.
   const double least = std::min(least_lower(), rest);
   const bool is_wide = !(upper() - least <= width()) || !(least > 0);
   if (!is_wide || surfaces_meet()) return;
+  // Least lower bound first; ties by index, so that the order is always the same.
   std::sort(pairs_.begin(), pairs_.end(), [](const MeasuredPair& x, const MeasuredPair& y) {
     return x.lower != y.lower ? x.lower < y.lower : x.a != y.a ? x.a < y.a : x.b < y.b;
   });
   for (MeasuredPair& pair : pairs_) {
+    // Pairs from here on are far enough to be within the allowed width of the upper bound.
     if (pair.lower > 0 && pair.lower >= upper() - width()) break;
     const double *of_a[3], *of_b[3];
     corners(pair.a, pair.b, of_a, of_b);
@@ -149,14 +171,16 @@ void NearestPairs::narrow(double rest) {
   }
 }
 
-/// Decides whether the surfaces are as near as asked, exactly. finished: what was not measured is not that
-/// near.
+/// Decides exactly whether the distance is at most `within`. finished: the unmeasured pairs are farther than
+/// that.
 void NearestPairs::decide_within(double rest, bool finished, DistanceResult& result) {
   const double most = *request_.within;
+  // The bounds already decide, or the surfaces intersect.
   if (upper() <= most || (least_lower() <= most && surfaces_meet())) {
     result.within = true;
     return;
   }
+  // Bounds on both sides of `within`: compare the exact distance of the pair with it.
   for (const MeasuredPair& pair : pairs_) {
     if (pair.lower > most) continue;
     const double *of_a[3], *of_b[3];
@@ -166,6 +190,7 @@ void NearestPairs::decide_within(double rest, bool finished, DistanceResult& res
     result.within = true;
     return;
   }
+  // All measured pairs are farther: the answer is no if the unmeasured ones are, too.
   if (finished || rest > most) result.within = false;
 }
 
@@ -179,6 +204,7 @@ Witness witness_of(const LrbRep& rep, SimplexId simplex, const exact::Feature& o
   VertexId v[3];
   rep.simplex(simplex, v);
   w.corner_count = on.dim + 1;
+  // A feature of dimension d is spanned by d + 1 consecutive corners of the simplex.
   for (int k = 0; k < w.corner_count; ++k) {
     const int first = on.dim == 2 ? 0 : on.index;
     w.corners[static_cast<std::size_t>(k)] = v[(first + k) % rep.dim()];
@@ -197,8 +223,10 @@ void NearestPairs::write_relation(DistanceResult& result) {
   if (meet_) {
     result.relation = met_;
   } else if (!(result.lower > 0)) {
+    // The bounds still contain 0: the query stopped early, or the tolerance left room for 0.
     result.relation = Relation::unresolved;
   } else if (request_.relation) {
+    // Disjoint surfaces: one vertex of each component is located in the other body.
     CollideResult none;
     decide_relation(ctx_, none);
     result.relation = none.relation;
@@ -206,6 +234,7 @@ void NearestPairs::write_relation(DistanceResult& result) {
 }
 
 void NearestPairs::finish(double rest, bool finished, DistanceResult& result) {
+  // Only for a complete traversal: after an early stop, `rest` may be what limits the interval.
   if (!meet_ && finished && !request_.within) narrow(rest);
   if (request_.within && !meet_) decide_within(rest, finished, result);
   result.meet = meet_;
@@ -218,6 +247,7 @@ void NearestPairs::finish(double rest, bool finished, DistanceResult& result) {
   }
   write_relation(result);
   for (int side = 0; side < 2; ++side) write_witness(side, result);
+  // The traversal wrote its own counters to the result: keep them.
   counters_.steps = result.counters.steps;
   counters_.box_tests = result.counters.box_tests;
   counters_.pairs_in_floats = result.counters.pairs_in_floats;

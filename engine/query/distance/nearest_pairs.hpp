@@ -1,5 +1,5 @@
 #pragma once
-/// The pairs of simplices that a distance query has looked at, and what follows from them.
+/// The pairs of simplices that a distance query has measured, and the answer that follows from them.
 
 #include <algorithm>
 #include <limits>
@@ -17,7 +17,7 @@ struct MeasuredPair {
   double lower;
 };
 
-/// Returns a point of a body's simplex as a witness. on: where it lies on the simplex.
+/// Returns a point of a body's simplex as a witness. on: the feature of the simplex that contains it.
 Witness witness_of(const LrbRep& rep, SimplexId simplex, const exact::Feature& on,
                    const Eigen::Vector3d& point);
 
@@ -27,37 +27,37 @@ class NearestPairs {
   NearestPairs(QueryContext& ctx, const DistanceRequest& request, std::vector<MeasuredPair>& pairs);
 
   double upper() const { return best_.upper; }
-  /// Returns a bound on the distance, given that what was not measured is at least `rest` apart.
+  /// Returns a lower bound on the distance, given that the distances of unmeasured pairs are at least `rest`.
   double lower(double rest) const { return std::max(0.0, std::min({least_lower(), rest, upper()})); }
   /// Returns how many pairs were measured.
   std::uint64_t measured() const { return counters_.pairs_in_doubles + counters_.pairs_exact; }
-  /// Returns the way between the points that gave upper(), from A to B; 0 if there are none yet.
+  /// Returns the vector between the points that gave upper(), from A to B; 0 if there are none yet.
   Eigen::Vector3d way() const;
   /// Returns the size of the larger body in the world: a bound on its radius.
   double size() const { return size_; }
 
-  /// Lets a slab do where a pair is as far apart as the nearest one, but for rounding. upper() may then be
-  /// too large by its last digits, depending on the order in which pairs are measured, so that more steps
-  /// need not give less, as distance() promises.
+  /// Accepts a slab as measurement of a pair whose distance equals that of the closest one up to rounding.
+  /// upper() may then be too large in its last digits, depending on the order of the pairs, so that more
+  /// steps need not give a narrower interval, as distance() promises.
   void spare_equal_pairs() { spares_ = true; }
-  /// Says that intervals may be this wide, because the walk cannot tell more.
+  /// Allows intervals of this width, because the traversal is not more accurate.
   void allow_width(double width) { allowed_ = width; }
-  /// Returns the distance from which on pairs need not be measured.
+  /// Returns the pruning distance: pairs at least this far need not be measured.
   double dropped_from() const;
-  /// Measures a pair in doubles; `lower` is known already. Returns true if it is proved not to meet.
+  /// Measures a pair in double; `lower` is a known bound. Returns true if the pair is proven disjoint.
   bool measure(SimplexId a, SimplexId b, double lower);
-  /// Returns true if the request is answered: within, yes.
+  /// Returns true if the request is answered: the distance is at most `within`.
   bool is_near_enough() const { return request_.within && upper() <= *request_.within; }
 
-  /// Returns true if the simplices meet, exactly: then the surfaces do.
+  /// Returns true if the simplices intersect, exactly: then the surfaces do.
   bool pair_meets(const std::array<SimplexId, 2>& pair);
-  /// Finds out whether the surfaces meet, exactly, the first time it is asked.
+  /// Returns true if the surfaces intersect, exactly. Computed at the first call.
   bool surfaces_meet();
   bool known_apart() const { return asked_ && !meet_; }
   bool known_to_meet() const { return meet_; }
 
-  /// Completes the answer. `rest`: what was not measured is at least this far apart. finished: the walk came
-  /// to its end.
+  /// Completes the answer. `rest`: a lower bound on the distances of unmeasured pairs. finished: the
+  /// traversal was completed.
   void finish(double rest, bool finished, DistanceResult& result);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// The distance of two simplices in doubles, as an interval that is proved.
+/// The distance of two simplices in double, as a proven interval.
 
 #include <Eigen/Core>
 
@@ -18,13 +18,12 @@ struct PairBounds {
 };
 
 /// Bounds the distance of two triangles (n = 3) in space, or of two segments (n = 2) in the plane z = 0.
-/// Simplices that meet get a lower end of 0, and an upper end that may be too large by no more than what is
-/// inside.
+/// Intersecting simplices get a lower bound of 0, and an upper bound between features, which may exceed 0.
 PairBounds bound_distance(const double* const* a, const double* const* b, int n);
 
-/// Returns the width of the slab between two simplices along a direction of any length: they are no nearer to
-/// each other. Returns 0 if it is less than `least` by more than doubles round: then bound_distance() may say
-/// more.
+/// Returns the width of the slab between two simplices along a direction of any length, a lower bound on
+/// their distance. Returns 0 if it is less than `least` by more than rounding: then bound_distance() may
+/// give more.
 double distance_along(const Eigen::Vector3d& direction, double least, const double* const* a,
                       const double* const* b, int n);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// The walk of two trees for a distance in doubles: for poses that are no rotations, and for bodies that are
-/// far from each other. Slower than the kernel's.
+/// The traversal of two trees for a distance, in double: for poses that are not rotations, and for distant
+/// bodies. Slower than the float kernel.
 
 #include <cstdint>
 #include <vector>
@@ -10,13 +10,13 @@
 
 namespace lrb {
 
-/// Walks the trees of the bodies of `ctx` and measures the pairs of simplices that may be the nearest.
+/// Traverses the trees of the bodies of `ctx` and measures the pairs of simplices that may be the closest.
 class WorldWalk {
  public:
   WorldWalk(QueryContext& ctx, NearestPairs& found);
 
-  /// Returns true if it came to its end; false after `max_steps` steps (0: no limit), or when it is no longer
-  /// of use. teller: null, or told what is known.
+  /// Returns true if it was completed, or the request is answered; false after `max_steps` steps (0: no
+  /// limit). teller: null, or notified of bounds.
   bool run(std::uint64_t max_steps, BoundsTeller* teller);
   /// Returns a bound on the distances of all pairs that have not been measured.
   double rest() const;

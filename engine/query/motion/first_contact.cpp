@@ -1,3 +1,10 @@
+/// The frame of the search for a first contact; contact_search.cpp has the search within one piece of both
+/// motions.
+///
+/// 1. Query the bodies exactly at t = 0. If they intersect, the search ends there.
+/// 2. Search one interval of t after another in which both motions stay in one piece.
+/// 3. Derive the outcome from the contact found, or from the ambiguous intervals and the steps that are left.
+
 #include "engine/query/motion/first_contact.hpp"
 
 #include <algorithm>
@@ -15,13 +22,14 @@ namespace lrb {
 
 namespace {
 
-/// Returns how many steps a search may take: first_contact.hpp. Far more than any search takes that comes to
-/// an end at all but those along clearances that are small beside the way.
+/// Returns the maximum number of steps of a search (first_contact.hpp). Far more than any search needs,
+/// except along clearances that are small relative to the path.
 std::uint64_t most_steps(const LrbRep& a, const Motion& motion_a, const LrbRep& b, const Motion& motion_b) {
   constexpr double kSteps = 8192, kStepsOfSimplex = 512, kMostParts = 0x1p20, kMost = 0x1p40;
   double parts = 0;
   for (const Motion* motion : {&motion_a, &motion_b})
     for (const Motion::Piece& piece : motion->pieces())
+      // Half a piece for each body, so that `parts` is the mean of both plus the number of full turns.
       parts += 0.5 + std::min(piece.turn.stableNorm() / (2 * std::numbers::pi), kMostParts);
   const double simplices = 1.0 * a.real_simplex_count() + b.real_simplex_count();
   return static_cast<std::uint64_t>(std::min((kSteps + kStepsOfSimplex * simplices) * parts, kMost));
@@ -70,7 +78,9 @@ bool FirstContactSearch::is_out_of_steps() const {
 void FirstContactSearch::tell(double t0, double t1) {
   if (probe_ == nullptr) return;
   ContactBounds now{work(), std::min(t0, 1.0), t1, 0, 0};
+  // Report only news.
   if (told_.work > 0 && now.t0 == told_.t0 && now.t1 == told_.t1) return;
+  // Separate memory: the context of the search is not disturbed.
   if (!to_tell_) to_tell_.emplace();
   DistanceRequest rough;
   rough.relative_tolerance = 0.01;
@@ -88,26 +98,30 @@ std::optional<SimplexPair> FirstContactSearch::meets_at(double t) {
   ++result_.counters.exact_queries;
   const Pose pose_a = motion_[0]->at(t), pose_b = motion_[1]->at(t);
   check_query(*rep_[0], pose_a, *rep_[1], pose_b);
+  // The poses remain set afterwards: write_start() and meets_at_start() read them.
   query().body[0].begin(*rep_[0], pose_a, WrapperMode::regularised);
   query().body[1].begin(*rep_[1], pose_b, WrapperMode::regularised);
   CollideRequest any;
+  // One pair is enough, whether it touches or crosses.
   any.mode = Mode::any_pair;
   CollideResult found;
   NullProbe probe;
   TreeQuery<NullProbe>(query(), any, found, probe).run();
+  // Count the work in the steps that first_contact.hpp defines.
   spent_ += 1 + found.counters.face_tests + kStepsOfExact * found.counters.exact_fallbacks +
             found.counters.node_pairs / kNodePairsOfStep;
   if (found.pairs.empty()) return std::nullopt;
   return found.pairs[0];
 }
 
-/// Writes where and how a pair meets with which the bodies begin.
+/// Writes where and how a pair intersects at t = 0.
 void FirstContactSearch::write_start(SimplexPair pair) {
   const double *of_a[3], *of_b[3];
   query()[Side::a].world.corners(pair.a, of_a);
   query()[Side::b].world.corners(pair.b, of_b);
   const exact::PairContact contact =
       rep_[0]->dim() == 3 ? exact::contact_of_triangles(of_a, of_b) : exact::contact_of_segments(of_a, of_b);
+  // Any corner of the intersection serves as the witness point of both bodies.
   const exact::ContactCorner& corner = contact.corners[0];
   result_.outcome = MotionOutcome::contact;
   result_.t0 = result_.t1 = 0;
@@ -124,6 +138,7 @@ bool FirstContactSearch::meets_at_start() {
     return true;
   }
   if (request_.relation) {
+    // No surfaces intersect at t = 0: containment of vertices decides the relation.
     CollideResult none;
     decide_relation(query(), none);
     result_.at_begin = none.relation;
@@ -133,16 +148,20 @@ bool FirstContactSearch::meets_at_start() {
 
 FirstContactResult FirstContactSearch::run() {
   check_request(request_);
+  // Reject world coordinates that are not finite at either end; meets_at() checks those in between.
   for (const double t : {0.0, 1.0}) check_query(*rep_[0], motion_[0]->at(t), *rep_[1], motion_[1]->at(t));
+  // A body without faces never collides.
   if (rep_[0]->tree().empty() || rep_[1]->tree().empty()) return result_;
   const bool at_once = meets_at_start();
   tell(0, at_once ? 0 : std::numeric_limits<double>::infinity());
   if (at_once) return result_;
+  // Merge both lists of pieces: search each interval of t in which neither motion changes its piece.
   const std::vector<Motion::Piece>*const of_a = &motion_[0]->pieces(), *const of_b = &motion_[1]->pieces();
   for (std::size_t i = 0, j = 0; i < of_a->size() && j < of_b->size() && !is_over();) {
     const MovingBody a(*rep_[0], (*of_a)[i]), b(*rep_[1], (*of_b)[j]);
     const double end_a = a.piece().end, end_b = b.piece().end;
     search_piece(a, b, std::min(end_a, end_b));
+    // Go on with the piece that ends later, or with the next of both if they end together.
     i += end_a <= end_b;
     j += end_b <= end_a;
   }
@@ -151,14 +170,17 @@ FirstContactResult FirstContactSearch::run() {
 
 FirstContactResult FirstContactSearch::finish() {
   if (!is_done_) {
+    // If nothing is proved up to t = 1, the steps ran out: the remaining time is ambiguous.
     result_.finished = free_until_ >= 1;
     if (!result_.finished) doubt({free_until_, 1});
     if (!result_.finished) result_.unresolved = Unresolved::steps;
     if (!result_.doubtful.empty()) {
+      // No contact was found, but the ambiguous intervals may hide one.
       result_.outcome = MotionOutcome::undecided;
       result_.t1 = result_.doubtful.back().end;
     }
   }
+  // The gapless proof of separation ends at the first ambiguous interval.
   if (!result_.doubtful.empty()) result_.t0 = result_.doubtful[0].begin;
   result_.grazing = result_.grazing || (result_.finished && !result_.doubtful.empty());
   if (result_.grazing && result_.unresolved == Unresolved::nothing) result_.unresolved = Unresolved::rounding;
@@ -190,6 +212,7 @@ std::vector<FirstContactResult> first_contacts(const LrbRep& a, const Motion& mo
   Workers workers(threads);
   std::vector<FirstContactContext> contexts(workers.count());
   std::vector<FirstContactResult> results(motions_b.size());
+  // Searches are independent, each worker has its own context: results do not depend on the threads.
   workers.for_each(motions_b.size(), [&](std::size_t i, unsigned worker) {
     results[i] = first_contact(a, motion_a, b, motions_b[i], request, contexts[worker]);
   });

@@ -1,5 +1,7 @@
-/// Poses are computed in long double, whose functions round alike everywhere (core/steady_math.hpp), and
-/// rounded to double once. motion_bounds.hpp says how far off that is.
+/// Motions by rotation about a fixed axis at constant speed plus constant translation, piece by piece.
+///
+/// Poses are computed in long double, whose functions round alike on every processor (core/steady_math.hpp),
+/// and rounded to double once. motion_bounds.hpp bounds the error.
 
 #include "engine/query/motion/motion.hpp"
 
@@ -25,19 +27,24 @@ using Vector = Eigen::Matrix<Real, 3, 1>;
 Matrix rotation_by(const Vector& turn) {
   const Real angle = turn.norm();
   if (!(angle > 0)) return Matrix::Identity();
+  // Rodrigues' formula.
   return Eigen::AngleAxis<Real>(angle, turn / angle).toRotationMatrix();
 }
 
 /// Returns the rotation vector of a matrix that is nearly a rotation, of length pi at most.
 Eigen::Vector3d logarithm(const Matrix& m) {
   Eigen::Quaternion<Real> q(m);
+  // The matrix is only nearly a rotation; its quaternion must have length 1.
   q.normalize();
   Vector axis = q.vec();
   const Real sine = axis.norm();
   if (!(sine > 0)) return {0, 0, 0};
+  // q and -q are the same rotation: w >= 0 selects the shorter arc. At half a turn both arcs are equally
+  // long, and the sign of the axis is chosen by convention.
   int first = 0;
   while (axis[first] == 0) ++first;
   if (q.w() < 0 || (q.w() == 0 && axis[first] < 0)) axis = -axis;
+  // atan2 is accurate at all angles; acos(w) is not near 0.
   return (axis * (2 * std::atan2(sine, std::abs(q.w())) / sine)).cast<double>();
 }
 
@@ -55,10 +62,12 @@ Motion::Piece piece_between(const Pose& start, const Pose& end) {
   piece.r = start.r;
   piece.from = start.t;
   piece.to = end.t;
+  // Equal matrices: a translation, for which the matrix need not be a rotation.
   if (start.r == end.r) return piece;
   check_rotation(start.r, "first");
   check_rotation(end.r, "second");
   const Matrix turn = start.r.cast<Real>().transpose() * end.r.cast<Real>();
+  // A negative determinant: no rotation leads from one matrix to the other.
   if (!(turn.determinant() > 0))
     throw InputError("one of the motion's poses is mirrored and the other is not: give two rotations");
   piece.turn = logarithm(turn);
@@ -76,6 +85,7 @@ Motion::Motion(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
   double t = 0;
   for (const Piece& piece : pieces_) {
     if (!is_finite(piece)) throw InputError("a motion has a number that is not finite");
+    // Exact comparison: pieces must neither overlap nor leave gaps.
     if (piece.begin != t || !(piece.end > piece.begin))
       throw InputError(
           "a motion's times do not ascend from 0 to 1: each piece begins where the one before ends");
@@ -103,6 +113,7 @@ Motion Motion::screw(const Pose& start, const Pose& end) {
 Motion Motion::turning(const Pose& start, const Eigen::Vector3d& turn, const Eigen::Vector3d& centre,
                        const Eigen::Vector3d& way) {
   Piece piece;
+  // Move the centre to the origin, rotate there, and move the centre along the path.
   piece.first = {start.r, start.t - centre};
   piece.turn = turn;
   piece.from = centre;
@@ -112,6 +123,7 @@ Motion Motion::turning(const Pose& start, const Eigen::Vector3d& turn, const Eig
 
 Motion Motion::key_frames(std::span<const KeyFrame> frames) {
   if (frames.empty()) throw InputError("a motion has no key frames");
+  // A single frame: a body at rest.
   if (frames.size() == 1 && frames[0].t == 0) return still(frames[0].pose);
   std::vector<Piece> pieces;
   for (std::size_t i = 1; i < frames.size(); ++i) {
@@ -123,12 +135,14 @@ Motion Motion::key_frames(std::span<const KeyFrame> frames) {
 }
 
 PieceState state_of(const Motion::Piece& piece, double t) {
+  // s is 0 at the begin of the piece and 1 at its end.
   const Real s = (static_cast<Real>(t) - static_cast<Real>(piece.begin)) /
                  (static_cast<Real>(piece.end) - static_cast<Real>(piece.begin));
   const Vector from = piece.from.cast<Real>(), to = piece.to.cast<Real>();
   const Vector at = from + s * (to - from);
   PieceState state;
   if (piece.turn.isZero(0)) {
+    // No rotation: skip products with the identity, so that the doubles of the pose stay as they are.
     state.turned = piece.r;
     state.pose.r = piece.first.r.isIdentity(0)
                        ? piece.r
@@ -136,6 +150,7 @@ PieceState state_of(const Motion::Piece& piece, double t) {
     state.pose.t = (at + piece.r.cast<Real>() * piece.first.t.cast<Real>()).cast<double>();
     return state;
   }
+  // r exp(s [turn]), then the map of motion.hpp; each entry is rounded to double once.
   const Matrix turned = piece.r.cast<Real>() * rotation_by(s * piece.turn.cast<Real>());
   state.turned = turned.cast<double>();
   state.pose.r = (turned * piece.first.r.cast<Real>()).cast<double>();
@@ -145,6 +160,7 @@ PieceState state_of(const Motion::Piece& piece, double t) {
 
 Pose Motion::at(double t) const {
   std::size_t i = pieces_.size() - 1;
+  // From the last piece backward: at a shared t the later piece counts.
   while (i > 0 && t < pieces_[i].begin) --i;
   return state_of(pieces_[i], t).pose;
 }

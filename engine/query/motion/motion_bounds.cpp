@@ -13,8 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Calls see(origin, radius), in the body's unit, for balls that together hold the body: two levels of its
-/// tree.
+/// Calls see(origin, radius), in the body's unit, for balls that together enclose the body: those of the
+/// nodes two levels below the root. Tighter than the root's own ball, at constant cost.
 template <class See>
 void for_each_ball(const ObbTree& tree, See&& see) {
   const auto nodes = tree.nodes().data();
@@ -35,15 +35,19 @@ void for_each_ball(const ObbTree& tree, See&& see) {
 
 MovingBody::MovingBody(const LrbRep& rep, const Motion::Piece& piece) : rep_(&rep), piece_(&piece) {
   const double time = piece.end - piece.begin, angle = piece.turn.stableNorm() * kWorldUp;
+  // Velocities per unit of t. Rotation leaves the travel alone.
   travel_ = (piece.to - piece.from) / time;
   rate_ = piece.turn / time;
   stretch_ = stretch({piece.r, {0, 0, 0}});
+  // Rates that serve as bounds are rounded up.
   turn_rate_ = angle / time * kWorldUp;
   spin_ = angle > 0 ? stretch_ * farthest_from_axis() * kWorldUp : 0;
+  // In the terms of motion_bounds.hpp: size = X, turned = N X + P, path = Q.
   const double size = std::sqrt(3.0) * rep.tree().extent();
   const double frobenius = std::sqrt(3.0) * stretch(piece.first);
   const double turned = stretch_ * (frobenius * size + piece.first.t.stableNorm());
   const double path = std::max(piece.from.stableNorm(), piece.to.stableNorm());
+  // 8 u (1 + 2^-10 |turn|), the bound derived there, for places; four times that for velocities.
   const double share = kMotionRounding * (1 + 0x1p-10 * angle);
   rounding_ = share * (turned + path) * kWorldUp + kWorldUnderflow;
   velocity_rounding_ = 4 * share * (angle * turned + 2 * path) / time * kWorldUp + kWorldUnderflow;
@@ -55,8 +59,10 @@ double MovingBody::farthest_from_axis() const {
   double most = 0;
   for_each_ball(rep_->tree(), [&](const Vector3d& origin, double radius) {
     const Vector3d z = piece_->first.r * origin + piece_->first.t;
+    // Rounding of z and of the cross product.
     const double rounding =
         4 * kMotionRounding * (2 * size * rep_->tree().extent() + piece_->first.t.stableNorm());
+    // The speed of the ball's centre, and at most |w| times the radius more at its rim.
     most = std::max(most, rate_.cross(z).stableNorm() + turn_rate_ * (size * radius + rounding));
   });
   return most * kWorldUp;
@@ -71,6 +77,7 @@ MovingBody::Spin MovingBody::spin_of(const Vector3d& x) const {
   if (!(turn_rate_ > 0)) return {Vector3d::Zero(), 0};
   const Vector3d z = piece_->first.r * x + piece_->first.t;
   Spin spin{rate_.cross(z), 0};
+  // Rounding of z and of the cross product, which the bound on the acceleration has to include.
   const double rounding = 4 * kMotionRounding * turn_rate_ * (z.norm() + piece_->first.t.norm());
   spin.acceleration = stretch_ * turn_rate_ * (spin.velocity.norm() + rounding) * kWorldUp;
   return spin;

@@ -1,3 +1,9 @@
+/// Conservative advancement of one pair of simplices, and a proof that a pair has passed through.
+///
+/// - parted_for(): bound the motion of each pair of corners along a direction by a quadratic of t; the least
+///   first root is the time for which the slab separates the simplices.
+/// - has_passed(): a topological argument on the Minkowski difference, see there.
+
 #include "engine/query/motion/pair_motion.hpp"
 
 #include <algorithm>
@@ -18,7 +24,9 @@ constexpr double kRootDown = 1 - 0x1p-40;
 
 /// Returns the largest d up to which c + v d - k d^2 / 2 is more than 0, for c > 0 and k >= 0, rounded down.
 double first_root(double c, double v, double k) {
+  // Linear motion: it never reaches 0, or at -c / v.
   if (!(k > 0)) return v >= 0 ? kInfinity : c / -v * kRootDown;
+  // Of the two forms of the quadratic formula, take the one without cancellation for this sign of v.
   const double root = std::sqrt(v * v + 2 * k * c);
   return (v >= 0 ? (v + root) / k : 2 * c / (root - v)) * kRootDown;
 }
@@ -26,6 +34,7 @@ double first_root(double c, double v, double k) {
 /// A direction across n.
 Vector3d across(const Vector3d& n) {
   int least = 0;
+  // The axis on which n is shortest is never parallel to n.
   n.cwiseAbs().minCoeff(&least);
   return n.cross(Vector3d::Unit(least)).normalized();
 }
@@ -44,9 +53,12 @@ bool holds_origin(const Difference* k, double way) {
   double sign = 0;
   for (int i = 0; i < 3; ++i) {
     const Difference &x = k[i], &y = k[(i + 1) % 3];
+    // Twice the signed area of the triangle of the origin and this edge.
     const double turn = cross(x, y);
     const double most = std::abs(x.u) + std::abs(x.v) + std::abs(y.u) + std::abs(y.v);
+    // Moving both ends by `way` changes this by less than the first term; the second covers rounding.
     if (!(std::abs(turn) > 2 * way * (most + way) + kPairRounding * most * most)) return false;
+    // The origin is inside if it lies on the same side of all three edges.
     if (i > 0 && (turn > 0) != (sign > 0)) return false;
     sign = turn;
   }
@@ -64,6 +76,7 @@ PairMotion::PairMotion(const MovingBody& a, const MovingBody& b, SimplexPair pai
     for (int k = 0; k < n_; ++k) {
       Corner& corner = corner_[side][k];
       corner.in_body = rep.vertices()[v[k]];
+      // The rotational velocity w x z is constant in the rotating frame: compute it once.
       const MovingBody::Spin spin = body_[side]->spin_of(corner.in_body);
       corner.spin = spin.velocity;
       corner.acceleration = spin.acceleration;
@@ -79,8 +92,10 @@ void PairMotion::place(const PieceState& a, const PieceState& b) {
     for (int k = 0; k < n_; ++k) {
       Corner& corner = corner_[side][k];
       corner.x = state.pose.apply(corner.in_body);
+      // Velocity: the common travel, and r E (w x z) by rotation (motion_bounds.hpp).
       corner.v = body_[side]->travel();
       if (turns) corner.v += state.turned * corner.spin;
+      // The largest coordinate difference, to which rounding errors are relative.
       reach_ = std::max(reach_, (corner.x - corner_[0][0].x).cwiseAbs().maxCoeff());
     }
   }
@@ -89,38 +104,45 @@ void PairMotion::place(const PieceState& a, const PieceState& b) {
 /// Returns how far a product of n and a difference of two corners may be off, once for now and once for
 /// later.
 double PairMotion::places_rounding(const Vector3d& n) const {
+  // First the rounding of the product, then the places of both bodies, now and later.
   return 0.25 * kPairRounding * reach_ * n.cwiseAbs().sum() +
          2 * n.norm() * kWorldUp * (body_[0]->rounding() + body_[1]->rounding());
 }
 
 double PairMotion::parted_for(const Vector3d& n) const {
   const double length = n.norm() * kWorldUp;
+  // A degenerate direction proves nothing.
   if (!(length > 0) || !(length < kInfinity)) return 0;
   double ahead[2][3], speed[2][3];
   double low[2] = {kInfinity, kInfinity}, high[2] = {-kInfinity, -kInfinity};
   for (int side = 0; side < 2; ++side)
     for (int k = 0; k < n_; ++k) {
       const Corner& corner = corner_[side][k];
+      // Relative to A's first corner: differences of nearby points are accurate, far from the origin as well.
       ahead[side][k] = n.dot(corner.x - corner_[0][0].x);
       speed[side][k] = n.dot(corner.v);
       low[side] = std::min(low[side], ahead[side][k]);
       high[side] = std::max(high[side], ahead[side][k]);
     }
+  // B is ahead along n or along -n: take the wider of the two gaps.
   const double sign = low[1] - high[0] >= low[0] - high[1] ? 1 : -1;
   const double rounding = places_rounding(n);
   const double speed_rounding = length * (body_[0]->velocity_rounding() + body_[1]->velocity_rounding());
+  // Centripetal acceleration is across the axis: a direction near the axis sees little of it.
   const double share_a = looks_at_axes_ ? body_[0]->share_along(n) : 1;
   const double share_b = looks_at_axes_ ? body_[1]->share_along(n) : 1;
   double least = kInfinity;
   for (int i = 0; i < n_; ++i)
     for (int j = 0; j < n_; ++j) {
+      // c + v d - k d^2 / 2 of pair_motion.hpp, rounded to the safe side.
       const double c = sign * (ahead[1][j] - ahead[0][i]) - rounding;
       if (!(c > 0)) return 0;
       const double v = sign * (speed[1][j] - speed[0][i]) - speed_rounding;
       const double k = share_a * corner_[0][i].acceleration + share_b * corner_[1][j].acceleration;
+      // All pairs of corners must stay separated: the least root counts.
       least = std::min(least, first_root(c, v, length * k * (looks_at_axes_ ? kWorldUp : 1)));
     }
-  return least > 0 ? least : 0;  // not a number: 0
+  return least > 0 ? least : 0;  // NaN: 0
 }
 
 Vector3d PairMotion::middle(int side) const {
@@ -136,15 +158,18 @@ PairBounds PairMotion::bounds() const {
   return bound_distance(x[0], x[1], n_);
 }
 
-/// Velocities are linear in the place, so that a feature's corners give those of its points.
+/// Velocity is an affine function of position, so that it can be interpolated between a feature's corners.
 Vector3d PairMotion::velocity_at(int side, const exact::Feature& on, const Vector3d& point) const {
   const Corner* const corner = corner_[side];
   const int first = on.dim == 2 ? 0 : on.index;
   const Corner &from = corner[first], &to = corner[(first + 1) % n_];
   const Vector3d along = to.x - from.x, way = point - from.x;
+  // A vertex, or an edge without length.
   if (on.dim == 0 || !(along.squaredNorm() > 0)) return from.v;
+  // Linear interpolation along the edge.
   if (on.dim == 1) return from.v + way.dot(along) / along.squaredNorm() * (to.v - from.v);
   const Vector3d other = corner[2].x - from.x;
+  // Barycentric coordinates by Cramer's rule (Ericson 2005, section 3.4).
   const double uu = along.squaredNorm(), vv = other.squaredNorm(), uv = along.dot(other);
   const double area = uu * vv - uv * uv, uw = along.dot(way), vw = other.dot(way);
   if (!(area > 0)) return from.v;
@@ -164,33 +189,39 @@ Vector3d PairMotion::look_along(const Vector3d& n) const {
   return std::abs(way.dot(n)) > kLeastCosine * way.norm() * n.norm() ? way.normalized() : n.normalized();
 }
 
-/// Simplices meet where the origin is in the set of all differences b - a of their points: the convex hull of
-/// the differences of their corners, nine or (2D) four points. Let three of these (2D: two) be ahead along n
+/// Simplices intersect if the origin is in their Minkowski difference, the convex hull of the differences
+/// b - a of their corners, nine or (2D) four points. Let three of these (2D: two) be ahead along n
 /// before, and behind now, and let the triangle (segment) between them, seen along some direction d that is
 /// not across n, hold the origin before and however its corners move meanwhile. Then it holds the origin all
 /// the while, seen along d, and the point of the triangle that hides the origin, or is hidden by it, moves
 /// continuously along that line from ahead to behind: at some time it is the origin.
 bool PairMotion::has_passed(const PairMotion& before, const Vector3d& n, double time) const {
   const Vector3d d = look_along(n);
+  // Seen along d, a difference has the coordinates u and v.
   const Vector3d u = n_ == 3 ? across(d) : Vector3d(-d.y(), d.x(), 0), v = d.cross(u);
   const double sure = places_rounding(n), sure_before = before.places_rounding(n);
   const Vector3d travel = body_[1]->travel() - body_[0]->travel();
   const double aside = std::abs(u.dot(travel)) + std::abs(v.dot(travel)) + 4 * kWorldRounding * travel.norm();
+  // How far any difference may move across d meanwhile: travel, both rotations, and rounding.
   const double moved = (time * aside + body_[0]->turned_by(time) + body_[1]->turned_by(time)) * kWorldUp +
                        2 * (body_[0]->rounding() + body_[1]->rounding()) + kPairRounding * reach_;
   Difference turned[9];
   int count = 0;
   for (int i = 0; i < n_; ++i)
     for (int j = 0; j < n_; ++j) {
+      // Keep corner differences that were surely ahead along n, and are surely behind now.
       const Vector3d was = before.corner_[1][j].x - before.corner_[0][i].x;
       if (!(n.dot(was) > sure_before) || !(n.dot(corner_[1][j].x - corner_[0][i].x) < -sure)) continue;
       turned[count++] = {u.dot(was), v.dot(was)};
     }
   if (n_ == 2) {
+    // 2D: a segment contains the origin throughout if its ends stay on different sides of it.
     const auto ahead = [&](const Difference& k) { return k.u > moved; };
     const auto behind = [&](const Difference& k) { return k.u < -moved; };
     return std::any_of(turned, turned + count, ahead) && std::any_of(turned, turned + count, behind);
   }
+  // 3D: try all triangles of kept differences, at most 84. One that contains the origin throughout is a
+  // proof.
   for (int i = 0; i < count; ++i)
     for (int j = i + 1; j < count; ++j)
       for (int k = j + 1; k < count; ++k) {

@@ -1,3 +1,7 @@
+/// One dual traversal for a whole time interval: B is swept along its first-order motion relative to A, and
+/// all that differs from this, second-order terms, A's rotation and rounding, becomes the margin of the
+/// kernel.
+
 #include "engine/query/motion/swept_pairs.hpp"
 
 #include <algorithm>
@@ -36,12 +40,15 @@ Sweep sweep_of(const MovingBody& a, const PieceState& at_a, const MovingBody& b,
                double half) {
   Sweep sweep;
   const Matrix3d to_a = at_a.pose.r.transpose();
+  // B seen from A at the middle of the interval; both travels become one relative travel.
   sweep.middle = {to_a * at_b.pose.r, to_a * (at_b.pose.t - at_a.pose.t)};
   const Vector3d travel = b.travel() - a.travel();
   sweep.dt = half * (to_a * travel);
+  // A's rotation displaces contacts in any direction: it widens the sweep.
   sweep.width = a.turned_by(half);
   double turning = 0;
   if (half * b.turn_rate() <= kStraight && b.turn_rate() > 0) {
+    // A small angle: sweep along the velocity (Taylor), and widen by the second-order term below.
     const Motion::Piece& piece = b.piece();
     const Matrix3d spin = half / (piece.end - piece.begin) * (to_a * at_b.turned * cross_matrix(piece.turn));
     sweep.dm = spin * piece.first.r;
@@ -50,8 +57,10 @@ Sweep sweep_of(const MovingBody& a, const PieceState& at_a, const MovingBody& b,
     turning = half * b.spin();
     sweep.width += 0.5 * half * half * b.acceleration();
   } else {
+    // A large angle: allow for B's rotation in any direction.
     sweep.width += b.turned_by(half);
   }
+  // From the world to A's axes; A need not be exactly a rotation.
   const double to_a_size = stretch(at_a.pose);
   sweep.width *= to_a_size * kWorldUp;
   sweep.length = (half * travel.norm() + turning) * to_a_size * kWorldUp;
@@ -68,8 +77,10 @@ bool suits_sweeps(const MovingBody& a, const MovingBody& b) {
 bool find_swept_pairs(QueryContext& ctx, const MovingBody& a, const MovingBody& b, TimeSpan span,
                       std::uint64_t most, std::vector<SimplexPair>& pairs) {
   const double middle = span.begin + (span.end - span.begin) / 2;
+  // The larger half, rounded up: both ends of the interval are covered.
   const double half = std::max(span.end - middle, middle - span.begin) * kWorldUp;
   const PieceState at_a = a.at(middle), at_b = b.at(middle);
+  // Set up the kernel at the poses of the middle, then widen it to the sweep.
   ctx.body[0].begin(a.rep(), at_a.pose, WrapperMode::regularised);
   ctx.body[1].begin(b.rep(), at_b.pose, WrapperMode::regularised);
   TreeKernel k = start_rigid_kernel(ctx, at_a.pose, at_b.pose, kBuffer);
@@ -79,9 +90,11 @@ bool find_swept_pairs(QueryContext& ctx, const MovingBody& a, const MovingBody& 
                           2 * rotation_defect(at_a.pose.r) * a.rep().tree().extent() +
                           4 * (a.rounding() + b.rounding()) + kWorldRounding * sweep.length;
   aim_at(sweep, rounding, query_unit(a.rep().tree(), b.rep().tree()), k);
+  // A list that would be too long is useless: bound the traversal as well.
   if (most != kNoLimit) k.most_node_pairs = kPatience * most;
   pairs.clear();
   while (!is_done(k)) {
+    // Empty the kernel's buffer; give up as soon as there are too many pairs or node pairs.
     k.out_size = 0;
     run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i) pairs.push_back({k.out[i].a, k.out[i].b});

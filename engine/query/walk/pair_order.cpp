@@ -1,3 +1,11 @@
+/// Sorts pairs as 64-bit keys: A's simplex, B's simplex, and how they intersect in the lowest bit.
+///
+/// 1. Determine the bits that the indices need; stop if the pairs are ascending already.
+/// 2. Sort few keys by comparison, others by a radix sort from the least significant digit (Knuth, "The Art
+///    of Computer Programming", vol. 3, section 5.2.5), over A's bits alone where few pairs share a simplex
+///    of A.
+/// 3. Remove repetitions and unpack the keys.
+
 #include "engine/query/walk/pair_order.hpp"
 
 #include <algorithm>
@@ -51,6 +59,7 @@ Packing packing_of(std::span<const SimplexPair> pairs) {
   std::uint32_t all_a = 0, all_b = 0;  // all bits that occur
   bool in_order = true;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
+    // One pass finds the widths of both indices and whether there is anything to sort.
     in_order &= i == 0 || pairs[i - 1] < pairs[i];
     all_a |= pairs[i].a;
     all_b |= pairs[i].b;
@@ -68,11 +77,13 @@ std::uint64_t key_of(const SimplexPair& p, unsigned bits_b) {
 void sort_alike(std::vector<std::uint64_t>& keys, unsigned last_bits) {
   const auto end = keys.end();
   for (auto group = keys.begin(); group != end;) {
+    // A group: the keys with the same simplex of A.
     auto next = group + 1;
     while (next != end && *next >> last_bits == *group >> last_bits) ++next;
     if (next - group > kFewAlike) {
       std::sort(group, next);
     } else {
+      // Insertion sort: the groups are short.
       for (auto i = group + 1; i < next; ++i) {
         const std::uint64_t key = *i;
         auto to = i;
@@ -94,13 +105,16 @@ SimplexPair pair_of(std::uint64_t key, unsigned bits_b) {
 
 void PairOrder::sort(CollideResult& result) {
   const Packing packing = packing_of(result.pairs);
+  // Ascending already, without repetitions.
   if (packing.bits == 0) return;
   if (packing.bits > 64) return sort_by_comparing(result);
   keys_.resize(result.pairs.size());
   for (std::size_t i = 0; i < keys_.size(); ++i)
+    // The lowest bit keeps how the pair intersects; it does not affect the order of pairs.
     keys_[i] = key_of(result.pairs[i], packing.bits_b) |
                static_cast<std::uint64_t>(result.meets[i] == exact::Meet::cross);
   sort_keys(packing.bits_b, packing.bits);
+  // Unpack. There may be fewer keys now: repetitions are gone.
   result.pairs.resize(keys_.size());
   result.meets.resize(keys_.size());
   for (std::size_t i = 0; i < keys_.size(); ++i) {
@@ -128,20 +142,25 @@ void PairOrder::sort_keys(unsigned bits_b, unsigned bits) {
   if (keys_.size() <= kWorthDigits) {
     std::sort(keys_.begin(), keys_.end());
   } else {
+    // The bits below A's index.
     const unsigned of_b = kMeetBits + bits_b;
+    // keys >> bits of A: the average size of a group.
     const bool few_alike = keys_.size() <= kFewPairs && keys_.size() >> (bits - of_b) <= kAlikeOnAverage;
     sort_by_digits(few_alike ? of_b : kMeetBits, bits);
     if (few_alike) sort_alike(keys_, of_b);
   }
+  // A pair that occurs twice has equal keys, because it intersects in the same way each time.
   keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
 }
 
 /// Sorts by the bits from `first` to `end`, the last digit first: each pass keeps the order of the passes
 /// before it. How a pair meets needs no order.
 void PairOrder::sort_by_digits(unsigned first, unsigned end) {
+  // A digit has about as many values as there are keys, within limits.
   const unsigned most =
       std::clamp(static_cast<unsigned>(std::bit_width(keys_.size())), kLeastDigitBits, kMostDigitBits);
   const unsigned bits = end - first, passes = std::max(1u, (bits + most - 1) / most);
+  // Spread the bits evenly over the passes.
   const unsigned digit_bits = (bits + passes - 1) / passes;
   const std::size_t values = std::size_t{1} << digit_bits;
   const auto digit = [&](std::uint64_t key, unsigned pass) {
@@ -149,12 +168,15 @@ void PairOrder::sort_by_digits(unsigned first, unsigned end) {
   };
   moved_.resize(keys_.size());
   places_.assign(passes * values, 0);
+  // Histograms of all passes in one read of the keys.
   for (const std::uint64_t key : keys_)
     for (unsigned pass = 0; pass < passes; ++pass) ++places_[pass * values + digit(key, pass)];
   for (unsigned pass = 0; pass < passes; ++pass) {
     std::uint32_t* const place = places_.data() + pass * values;
+    // Exclusive prefix sums: where the first key with each value goes.
     std::uint32_t before = 0;
     for (std::size_t v = 0; v < values; ++v) before += std::exchange(place[v], before);
+    // A stable scatter, so that earlier passes stay in effect.
     for (const std::uint64_t key : keys_) moved_[place[digit(key, pass)]++] = key;
     keys_.swap(moved_);
   }

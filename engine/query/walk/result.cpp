@@ -19,6 +19,7 @@ const char* to_string(Recursion r) {
 }
 
 void clear(Counters& counters) {
+  // Reset all counters, but keep the vector's memory.
   std::vector<std::uint32_t> levels = std::move(counters.face_tests_by_level);
   levels.clear();
   counters = {};
@@ -26,6 +27,7 @@ void clear(Counters& counters) {
 }
 
 void clear(CollideResult& result) {
+  // Reset all members by taking a new result, then move the emptied vectors back: they keep their memory.
   CollideResult old = std::exchange(result, {});
   clear(old.counters);
   old.pairs.clear();

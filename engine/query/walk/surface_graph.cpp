@@ -5,6 +5,7 @@
 namespace lrb {
 
 SurfaceGraph::SurfaceGraph(const LrbRep& rep) {
+  // All edges of real faces, in both directions; shared ones occur once for each face.
   std::vector<std::pair<VertexId, VertexId>> edges;
   for (FaceId f = 0; f < rep.real_face_count(); ++f) {
     const auto corners = rep.face(f);
@@ -14,8 +15,10 @@ SurfaceGraph::SurfaceGraph(const LrbRep& rep) {
       edges.emplace_back(w, v);
     }
   }
+  // Sorted by the first vertex: the neighbours of a vertex are then contiguous.
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  // Compressed rows: count the neighbours of each vertex, then add up the counts.
   offsets_.assign(rep.vertices().size() + 1, 0);
   for (const auto& [v, w] : edges) {
     ++offsets_[v + 1];

@@ -6,6 +6,7 @@ namespace {
 
 void give_buffers(QueryContext& ctx, std::size_t capacity, TreeKernel& k) {
   start_at_roots(k, ctx[Side::a].tree(), ctx[Side::b].tree(), ctx.stack);
+  // Buffers only grow: later queries of the same size allocate nothing.
   if (ctx.candidates.size() < capacity) ctx.candidates.resize(capacity);
   k.out = ctx.candidates.data();
   k.out_capacity = static_cast<std::uint32_t>(capacity);

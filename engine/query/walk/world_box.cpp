@@ -1,3 +1,9 @@
+/// World AABBs by branch and bound over the OBB tree, once in each of six directions.
+///
+/// 1. Bound each child of a node along the direction: its box, plus all rounding errors.
+/// 2. Visit the child with the largest bound first, and prune those whose bound is below the best vertex.
+/// 3. Evaluate vertices with Pose::apply(), as the query does, so that the box is exact.
+
 #include "engine/query/walk/world_box.hpp"
 
 #include <algorithm>
@@ -28,8 +34,10 @@ class Search {
  public:
   Search(const LrbRep& rep, const Pose& pose, int axis, double sign)
       : rep_(rep), pose_(pose), axis_(axis), sign_(sign) {
+    // The coordinate of x, in the tree's units, is d_ . x + t_; `sign` turns a minimum into a maximum.
     d_ = sign * rep.tree().unit() * pose.r.row(axis).transpose();
     t_ = sign * pose.t[axis];
+    // Bound on every term of the coordinate, to which its rounding is relative.
     const double size = pose.r.row(axis).cwiseAbs().sum() * rep.tree().extent() + std::abs(pose.t[axis]);
     slack_ = kWorldRounding * size + kWorldUnderflow;
   }
@@ -67,9 +75,12 @@ class Search {
     std::array<double, kTreeWidth> bound{};
     bounds(node, bound);
     for (std::uint32_t turn = 0; turn < node.count; ++turn) {
+      // Best bound first: the vertex found there prunes most of the others.
       const auto k = static_cast<std::uint32_t>(std::max_element(bound.begin(), bound.begin() + node.count) -
                                                 bound.begin());
+      // No child that is left can reach further; or the caller's limit is reached.
       if (!(bound[k] > best_) || best_ >= enough_) return;
+      // Visited.
       bound[k] = -kInfinity;
       if (node.is_leaf)
         look_at_simplex(rep_.tree().blocks()[node.first].simplex[k]);
@@ -79,6 +90,7 @@ class Search {
   }
 
   void bounds(const TreeNode& n, std::array<double, kTreeWidth>& out) const {
+    // The terms that all children share, and all rounding errors.
     double middle = t_ + slack_ + kKernelRounding * d_.cwiseAbs().sum() * n.radius;
     double g[3];
     for (int i = 0; i < 3; ++i) {
@@ -88,6 +100,7 @@ class Search {
     }
     for (std::uint32_t k = 0; k < n.count; ++k) {
       out[k] = middle;
+      // The corner of the child's box that is furthest along the direction.
       for (int i = 0; i < 3; ++i) out[k] += g[i] * (g[i] > 0 ? n.hi[i][k] : n.lo[i][k]);
     }
   }
@@ -122,11 +135,13 @@ Eigen::AlignedBox3d box_of_corners(const LrbRep& rep, const Pose& pose) {
 
 }  // namespace
 
-/// Of two boxes that are apart along an axis, one lies before the other there as any two of their corners do.
+/// If two boxes are disjoint along an axis, any two of their corners lie there in the same order as the
+/// boxes.
 bool world_boxes_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   if (a.tree().empty() || b.tree().empty()) return true;
   const bool in_range = stays_finite(a, pose_a) && stays_finite(b, pose_b);
   Eigen::AlignedBox3d box_a, box_b;
+  // Near overflow the bounds of the tree are useless: compare the boxes of all corners.
   if (!in_range) {
     box_a = box_of_corners(a, pose_a);
     box_b = box_of_corners(b, pose_b);
@@ -139,9 +154,12 @@ bool world_boxes_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
       if (box_a.max()[axis] < box_b.min()[axis] || box_b.max()[axis] < box_a.min()[axis]) return true;
       continue;
     }
+    // The intervals have a coordinate in common.
     if (of_a[axis] == of_b[axis]) continue;
+    // Which body would be in front: that of any corner.
     const double sign = of_a[axis] < of_b[axis] ? 1 : -1;
     Search top_of_a(a, pose_a, axis, sign), bottom_of_b(b, pose_b, axis, -sign);
+    // Ends at A's first corner beyond B's; B is searched only if there is none.
     if (top_of_a.stays_below(sign * of_b[axis], first_a) &&
         bottom_of_b.stays_below(-sign * top_of_a.coordinate(), first_b))
       return true;
@@ -162,6 +180,7 @@ Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, ExtremeVertic
     }
     for (const bool high : {false, true}) {
       const auto slot = static_cast<std::size_t>(2 * axis + high);
+      // The extreme vertex of the last pose is a good lower bound to begin with.
       Search search(rep, pose, axis, high ? 1 : -1);
       search.run(last != nullptr ? last->vertex[slot] : kNull);
       (high ? box.max() : box.min())[axis] = search.coordinate();
@@ -176,6 +195,7 @@ BodyExtent::BodyExtent(const LrbRep& rep) : rep_(&rep) {
   for (FaceId f = 0; f < rep.real_face_count(); ++f)
     for (const VertexId v : rep.face(f)) is_corner[v] = true;
   const auto count = static_cast<std::size_t>(std::count(is_corner.begin(), is_corner.end(), true));
+  // A large body: leave corners_ empty and search the tree.
   if (count > kFewCorners) return;
   for (VertexId v = 0; v < is_corner.size(); ++v)
     if (is_corner[v]) corners_.push_back(rep.vertices()[v]);
