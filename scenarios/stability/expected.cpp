@@ -7,12 +7,12 @@
 namespace lrb {
 
 template <>
-inline constexpr auto kFields<stability::Expected> =
-    std::tuple{field("pairs", &stability::Expected::pairs), field("relation", &stability::Expected::relation),
-               field("least", &stability::Expected::least, Kept::if_set),
-               field("most", &stability::Expected::most, Kept::if_set),
-               field("refusal", &stability::Expected::refusal, Kept::if_set)};
-static_assert(covers_all_fields<stability::Expected>);
+inline constexpr auto kFields<stability::RightAnswer> = std::tuple{
+    field("pairs", &stability::RightAnswer::pairs), field("relation", &stability::RightAnswer::relation),
+    field("least", &stability::RightAnswer::least, Kept::if_set),
+    field("most", &stability::RightAnswer::most, Kept::if_set),
+    field("refusal", &stability::RightAnswer::refusal, Kept::if_set)};
+static_assert(covers_all_fields<stability::RightAnswer>);
 
 }  // namespace lrb
 
@@ -32,8 +32,8 @@ std::string why_not(const cases::Case& c) {
 
 }  // namespace
 
-Expected expected_answer(const cases::Case& c) {
-  Expected e;
+RightAnswer expected_answer(const cases::Case& c) {
+  RightAnswer e;
   e.refusal = why_not(c);
   if (!e.refusal.empty()) return e;
   BruteForceResult r = brute_force(*c.a, c.pose_a, *c.b, c.pose_b);
@@ -42,12 +42,12 @@ Expected expected_answer(const cases::Case& c) {
   return e;
 }
 
-std::string to_line(const Expected& e) {
+std::string to_line(const RightAnswer& e) {
   return io::record_to_json(e).dump() + "\n";
 }
 
-Expected expected_from(const std::string& line) {
-  return io::record_from_json<Expected>(nlohmann::json::parse(line));
+RightAnswer expected_from(const std::string& line) {
+  return io::record_from_json<RightAnswer>(nlohmann::json::parse(line));
 }
 
 Relation relation_from(const std::string& word) {

@@ -10,7 +10,7 @@
 
 namespace lrb::stability {
 
-struct Expected {
+struct RightAnswer {
   std::vector<SimplexPair> pairs;
   Relation relation = Relation::separate;
   /// Where a number is asked for: hold it. A first contact that there is none of is at 2.
@@ -18,12 +18,12 @@ struct Expected {
   std::string refusal;  ///< if not empty, the question has no answer, and this says why
 };
 
-Expected expected_answer(const cases::Case& c);
+RightAnswer expected_answer(const cases::Case& c);
 
 /// Writes it on one line, for the workers that compare with it.
-std::string to_line(const Expected& e);
+std::string to_line(const RightAnswer& e);
 /// Reads such a line. Throws InputError, or nlohmann's exceptions for what is no JSON.
-Expected expected_from(const std::string& line);
+RightAnswer expected_from(const std::string& line);
 
 /// Returns the relation with this name. Throws InputError.
 Relation relation_from(const std::string& word);

@@ -48,7 +48,7 @@ void conclude(Record& record, bool relation_matters, bool extra_matters = true) 
 
 }  // namespace
 
-void judge(Record& record, const MethodInfo& info, const MethodAnswer& answer, const Expected& expected) {
+void judge(Record& record, const MethodInfo& info, const MethodAnswer& answer, const RightAnswer& expected) {
   if (!expected.refusal.empty()) {
     record.outcome = Outcome::wrong;
     record.message = "answered, although " + expected.refusal;

@@ -16,7 +16,7 @@ StabilityRunner::Posed StabilityRunner::place(const LrbRep& rep, const Pose& pos
   return {body, pose};
 }
 
-void StabilityRunner::ask(const cases::Family& family, const cases::Case& c, const Expected& expected,
+void StabilityRunner::ask(const cases::Family& family, const cases::Case& c, const RightAnswer& expected,
                           Record& record) {
   pairs_.reset();
   const Mode mode = info_.pairs ? Mode::all_pairs : Mode::first_pair;

@@ -21,7 +21,7 @@ class StabilityRunner {
 
   /// Puts a case to the method and fills in outcome, counts, relations, time and message of the record; keeps
   /// what the method answered.
-  void ask(const cases::Family& family, const cases::Case& c, const Expected& expected, Record& record);
+  void ask(const cases::Family& family, const cases::Case& c, const RightAnswer& expected, Record& record);
 
   /// Returns the pairs of the last ask(); nothing if there was no answer, or none that lists pairs.
   const std::optional<std::vector<SimplexPair>>& pairs() const { return pairs_; }

@@ -43,7 +43,7 @@ KnownAnswers::KnownAnswers(const AskedCases& asked) {
   if (!in_) throw InputError(asked.expected + ": has too few lines");
 }
 
-std::optional<stability::Expected> KnownAnswers::next() {
+std::optional<stability::RightAnswer> KnownAnswers::next() {
   std::string line;
   if (!in_.is_open() || !std::getline(in_, line)) return std::nullopt;
   return stability::expected_from(line);

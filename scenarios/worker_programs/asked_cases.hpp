@@ -35,7 +35,7 @@ class KnownAnswers {
   /// Throws InputError if a file is named and ends before that case.
   explicit KnownAnswers(const AskedCases& asked);
   /// Returns the next one; nothing where no file is named, or at its end.
-  std::optional<stability::Expected> next();
+  std::optional<stability::RightAnswer> next();
 
  private:
   std::ifstream in_;

@@ -38,7 +38,7 @@ void say_records(const Options& o, Lines& out) {
   KnownAnswers known(o.asked);
   for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k) {
     const cases::Case c = make(family, o.asked, k);
-    const std::optional<stability::Expected> read = known.next();
+    const std::optional<stability::RightAnswer> read = known.next();
     Record record = record_of(o.asked, k);
     ask_number(method, c, read ? *read : true_number(method.quantity, c), record);
     out.say(dump(to_json(record)));

@@ -44,7 +44,7 @@ void say_records(const WorkerOptions& o, const methods::MethodEntry& entry, Line
   KnownAnswers known(o.asked);
   for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k) {
     const cases::Case c = make(family, o.asked, k);
-    const std::optional<stability::Expected> read = known.next();
+    const std::optional<stability::RightAnswer> read = known.next();
     stability::Record record = record_of(o.asked, k);
     runner.ask(family, c, read ? *read : stability::expected_answer(c), record);
     ordered_json value = stability::to_json(record);

@@ -5,7 +5,7 @@
 /// It writes everything as JSON lines to stdout:
 ///   --list                the methods it has
 ///   --family F --seed S --cases N --begin K --end L
-///                         the right answers (Expected) to cases K .. L - 1; case k is number k % N at
+///                         the right answers (RightAnswer) to cases K .. L - 1; case k is number k % N at
 ///                         setting k / N of the dial
 ///   ... --method M [--expected FILE] [--pairs]
 ///                         a record for each; the right answers are read from the file's lines, the first of

@@ -38,7 +38,7 @@ std::vector<NumberMethod> number_methods() {
 }
 
 void judge_number(Record& record, const NumberMethod& method, const NumberAnswer& answer,
-                  const Expected& expected, double size) {
+                  const RightAnswer& expected, double size) {
   const double least = expected.least.value(), most = expected.most.value();
   const bool is_time = method.quantity == Quantity::first_contact;
   record.relation = words(method.quantity, answer.lower, answer.upper);
@@ -54,7 +54,8 @@ void judge_number(Record& record, const NumberMethod& method, const NumberAnswer
   record.outcome = right ? Outcome::right : Outcome::wrong;
 }
 
-void ask_number(const NumberMethod& method, const cases::Case& c, const Expected& expected, Record& record) {
+void ask_number(const NumberMethod& method, const cases::Case& c, const RightAnswer& expected,
+                Record& record) {
   workers::note_failures(record, [&] {
     if (!expected.refusal.empty()) throw InputError("not asked: " + expected.refusal);
     const Asked question = asked(c);

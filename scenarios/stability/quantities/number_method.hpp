@@ -37,12 +37,13 @@ std::vector<NumberMethod> own_number_methods();
 std::vector<NumberMethod> fcl_number_methods();
 
 /// Puts a case to a method, and fills in outcome, time, message, and both numbers as relations.
-void ask_number(const NumberMethod& method, const cases::Case& c, const Expected& expected, Record& record);
+void ask_number(const NumberMethod& method, const cases::Case& c, const RightAnswer& expected,
+                Record& record);
 
 /// Fills in the outcome of an answer. It is wrong if it says 0 (or never) where that is not so, or something
 /// else where it is; if a proved interval does not hold the number; or if the number is further off than a
 /// millionth of the bodies' size, or a thousandth of the motion.
 void judge_number(Record& record, const NumberMethod& method, const NumberAnswer& answer,
-                  const Expected& expected, double size);
+                  const RightAnswer& expected, double size);
 
 }  // namespace lrb::stability

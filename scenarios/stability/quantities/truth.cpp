@@ -49,13 +49,13 @@ struct RankedPair {
   bool operator<(const RankedPair& o) const { return bound < o.bound; }
 };
 
-void set_number(Expected& e, const Rational& x) {
+void set_number(RightAnswer& e, const Rational& x) {
   const auto d = x.convert_to<double>();
   e.least = std::nextafter(std::nextafter(d, -1.0), -1.0);
   e.most = std::nextafter(std::nextafter(d, kNever), HUGE_VAL);
 }
 
-void set_root(Expected& e, const Rational& square) {
+void set_root(RightAnswer& e, const Rational& square) {
   const double d = std::sqrt(square.convert_to<double>());
   e.least = d * (1 - 4e-16);
   e.most = d * (1 + 4e-16);
@@ -185,8 +185,8 @@ std::optional<Rational> depth_sq(const Asked& q) {
 
 }  // namespace
 
-Expected true_number(Quantity quantity, const cases::Case& c) {
-  Expected e;
+RightAnswer true_number(Quantity quantity, const cases::Case& c) {
+  RightAnswer e;
   e.refusal = why_not_asked(quantity, c);
   if (!e.refusal.empty()) return e;
   const Asked q = asked(c);

@@ -9,6 +9,6 @@ namespace lrb::stability {
 
 using methods::kNever;
 
-Expected true_number(Quantity quantity, const cases::Case& c);
+RightAnswer true_number(Quantity quantity, const cases::Case& c);
 
 }  // namespace lrb::stability

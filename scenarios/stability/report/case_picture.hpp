@@ -18,7 +18,7 @@ using Pairs = std::vector<SimplexPair>;
 enum class Mark : std::uint8_t { none, found, extra, missed };
 render::Rgba colour_of(Mark m);
 
-/// Expected and answered pairs, told apart; each list ascending.
+/// RightAnswer and answered pairs, told apart; each list ascending.
 struct Verdict {
   Pairs found, missed, extra;
   bool listed = false;  ///< the method gave a list; else everything expected counts as found

@@ -22,7 +22,7 @@ cases::Case boxes(const Eigen::Vector3d& shift) {
 }
 
 void check_number(Quantity quantity, const cases::Case& c, double right) {
-  const Expected e = true_number(quantity, c);
+  const RightAnswer e = true_number(quantity, c);
   REQUIRE(e.refusal == "");
   CHECK(*e.least <= right);
   CHECK(*e.most >= right);
@@ -40,7 +40,7 @@ Outcome judged(Quantity quantity, double lower, double upper, double least, doub
   NumberMethod method;
   method.quantity = quantity;
   method.proves = proves;
-  Expected e;
+  RightAnswer e;
   e.least = least;
   e.most = most;
   Record r;
@@ -64,7 +64,7 @@ TEST_CASE("true numbers of two boxes") {
 
 TEST_CASE("B meets A at the time at which an exact query finds it") {
   const cases::Case c = boxes({0.25, 0.5, 0.875});
-  const Expected e = true_number(Quantity::first_contact, c);
+  const RightAnswer e = true_number(Quantity::first_contact, c);
   const Asked q = asked(c);
   const double gap = q.from.z() + 0.875 - 1, way = q.from.z() - q.to.z();  // from above, face on face
   const double by_x = q.from.x() + 0.25 - 1, by_y = q.from.y() + 0.5 - 1;

@@ -255,7 +255,7 @@ TEST_CASE("counting") {
 TEST_CASE("judging") {
   methods::MethodInfo info;
   methods::MethodAnswer answer;
-  Expected expected;
+  RightAnswer expected;
   expected.pairs = {{0, 1}, {2, 3}};
   expected.relation = Relation::crossing;
   answer.contact = true;
@@ -273,7 +273,7 @@ TEST_CASE("judging") {
   judge(r, info, answer, expected);
   CHECK(r.outcome == Outcome::right);
   CHECK(r.extra == 1);
-  judge(r, info, answer, Expected{});
+  judge(r, info, answer, RightAnswer{});
   CHECK(r.outcome == Outcome::wrong);
   info.loose = false;
   judge(r, info, answer, expected);
@@ -285,7 +285,7 @@ TEST_CASE("judging") {
   CHECK(r.outcome == Outcome::right);
   CHECK(r.expected_relation == "contact");
 
-  expected = Expected{};
+  expected = RightAnswer{};
   expected.relation = Relation::b_inside_a;
   answer = methods::MethodAnswer{};
   answer.inside = false;
