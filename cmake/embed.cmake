@@ -1,5 +1,5 @@
 # lrb_embed(TARGET FILE...): compiles text files into TARGET; lrb::io::embedded_file(NAME) returns their text, where NAME is
-# the file's name without its folder (scenarios/io/embedded.hpp). Files may lie outside the source tree.
+# the file's name without its folder (scenarios/io/files.hpp). Files may lie outside the source tree.
 # Run as a script (-P), this file writes one such text as C++ source.
 if(CMAKE_SCRIPT_MODE_FILE)
   file(READ "${EMBED_IN}" text)
@@ -37,7 +37,7 @@ function(lrb_embed target)
                               SKIP_PRECOMPILE_HEADERS ON)
   set(registry "${CMAKE_CURRENT_BINARY_DIR}/embedded/registry.cpp")
   file(CONFIGURE OUTPUT "${registry}" @ONLY CONTENT
-"#include \"scenarios/io/embedded.hpp\"
+"#include \"scenarios/io/files.hpp\"
 
 @declarations@
 namespace lrb::io {

@@ -4,8 +4,10 @@
 add_library(lrb_options INTERFACE)
 target_compile_features(lrb_options INTERFACE cxx_std_20)
 target_include_directories(lrb_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-                                                 $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/engine/interfaces>
-                                                 $<INSTALL_INTERFACE:include/lrbscope>)
+                                                 $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/engine/include>
+                                                 $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/trace/include>
+                                                 $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/render/include>
+                                                 $<INSTALL_INTERFACE:include>)
 
 # The compiler must not contract a * b + c into a fused multiply-add: the engine's answer is defined for coordinates that
 # are rounded after every operation, and its error bounds are derived for that. With contraction, compilers would disagree.

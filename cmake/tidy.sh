@@ -60,7 +60,7 @@ sources_of() {
     case "$file" in
       *.cpp) echo "$file" ;;
       *)
-        if [ -f "${file%.*}.cpp" ]; then echo "${file%.*}.cpp"; else grep -rlF "\"$file\"" --include='*.cpp' engine trace render scenarios tests | head -1; fi
+        if [ -f "${file%.*}.cpp" ]; then echo "${file%.*}.cpp"; else grep -rlF "\"$file\"" --include='*.cpp' engine trace render scenarios bench tools python tests | head -1; fi
         ;;
     esac
   done | sort -u

@@ -3,7 +3,7 @@
 # figure.png, distance.png, first_contact.png and clash.png. (chart.png and xray.png are measurements: docs/measurements.md, docs/profiling.md.)
 set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-program=${1:-$docs/../build/release/scenarios/lrbscope}
+program=${1:-$docs/../build/release/bin/lrbscope}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 run() { "$program" -q "$@" >/dev/null; }

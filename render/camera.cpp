@@ -1,12 +1,11 @@
-#include "render/camera.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "engine/core/error.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/camera.hpp>
 
 namespace lrb::render {
 namespace {

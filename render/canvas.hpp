@@ -2,16 +2,24 @@
 /// Paper to paint on, whatever file it becomes: SVG (svg_canvas.hpp), PDF or pixels (cairo_canvas.hpp).
 /// Whoever paints does not know which. Lengths are in the paper's own units, x to the right, y down.
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "render/image.hpp"
-#include "render/text.hpp"
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/render/overlay.hpp>
 
 namespace lrb::render {
+
+/// Returns bytes as text of RFC 4648, with padding: how pictures stand inside SVG and HTML.
+std::string base64(const std::uint8_t* bytes, std::size_t size);
 
 struct Pen {
   Rgba colour;
@@ -58,5 +66,57 @@ double text_width(const std::string& text, double height, bool bold = false);
 
 /// Returns the corners of a box, for fill().
 Canvas::Loop corners(const Eigen::AlignedBox2d& box);
+
+// Canvases that become PDF or pixels, by cairo. Text is written with the fonts of text.hpp, which a PDF
+// holds.
+
+inline constexpr double kPointsPerInch = 72;
+
+struct PaperPage {
+  double width = 0, height = 0;             ///< points
+  std::optional<Rgba> background = kWhite;  ///< nothing: transparent
+  std::string title;                        ///< in a PDF's properties; empty: none
+  std::string creator;                      ///< the same: the program
+};
+
+/// Returns what `paint` paints, in points, as the bytes of a PDF. They do not tell when they were made, so
+/// that they are the same each time. Throws EnvironmentError.
+std::string paint_pdf(const PaperPage& page, const std::function<void(Canvas&)>& paint);
+
+/// Returns the same in pixels, `dpi` of them to an inch; sizes are rounded up to whole ones.
+Image paint_pixels(const PaperPage& page, double dpi, const std::function<void(Canvas&)>& paint);
+
+/// Escapes text for SVG and HTML, for elements and for quoted attributes.
+std::string escape_markup(std::string_view text);
+
+// A canvas that becomes SVG, in which text stays text. Gives the same bytes on every machine.
+
+class SvgCanvas : public Canvas {
+ public:
+  void fill(const std::vector<Loop>& loops, Rgba colour) override;
+  void stroke(const Loop& points, bool closed, const Pen& pen) override;
+  void disc(const Eigen::Vector2d& at, double radius, Rgba colour) override;
+  void text(const PaperText& text) override;
+  void picture(const Image& image, const Eigen::AlignedBox2d& place) override;
+  void begin_clip(const Eigen::AlignedBox2d& box) override;
+  void end_clip() override;
+
+  /// Returns what has been painted, as elements.
+  const std::string& elements() const { return out_; }
+
+ private:
+  std::string out_;
+  int clips_ = 0;
+};
+
+struct SvgPage {
+  double width = 0, height = 0;  ///< of the view box
+  double units_per_pixel = 1;  ///< units of the view box per pixel of a screen (1/96 inch): the size on paper
+  std::string title;           ///< for people who cannot see the picture; empty: none
+  std::optional<Rgba> background = kWhite;  ///< nothing: transparent
+};
+
+/// Returns a whole file.
+std::string svg_file(const SvgCanvas& canvas, const SvgPage& page);
 
 }  // namespace lrb::render

@@ -1,11 +1,10 @@
-#include "render/draw_list.hpp"
-
 #include <algorithm>
 #include <cstdio>
 #include <map>
 #include <set>
 
-#include "engine/core/error.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/draw_list.hpp>
 
 namespace lrb::render {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "render/camera.hpp"
-#include "render/draw_list.hpp"
+#include <lrbscope/render/camera.hpp>
+#include <lrbscope/render/draw_list.hpp>
 
 namespace lrb::render {
 

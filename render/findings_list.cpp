@@ -2,9 +2,9 @@
 #include <map>
 #include <set>
 
-#include "render/findings.hpp"
 #include "render/findings_parts.hpp"
-#include "render/palette.hpp"
+#include <lrbscope/render/scene.hpp>
+#include <lrbscope/render/style.hpp>
 
 namespace lrb::render::findings {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/mesh/mesh_check.hpp"
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb::render::findings {
 

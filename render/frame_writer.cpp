@@ -1,7 +1,7 @@
-#include "render/frame_writer.hpp"
-
 #include <algorithm>
 #include <utility>
+
+#include <lrbscope/render/frame_writer.hpp>
 
 namespace lrb::render {
 

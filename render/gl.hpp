@@ -2,6 +2,12 @@
 /// The functions of OpenGL 3.3 core that we use, loaded at run time: whoever makes the context
 /// (offscreen.hpp) chooses the library that provides them, and nothing else links one.
 
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <GL/glcorearb.h>
 
 namespace lrb::render {
@@ -67,5 +73,113 @@ struct Gl {
   LRB_GL_FUNCTIONS(LRB_GL)
 #undef LRB_GL
 };
+
+// OpenGL objects that free themselves, and the few things we do with them.
+
+/// The number by which OpenGL knows an object, with the function that deletes it.
+template <class Delete>
+class GlName {
+ public:
+  GlName() = default;
+  GlName(GLuint name, Delete remove) : name_(name), remove_(std::move(remove)) {}
+  GlName(GlName&& o) noexcept : name_(std::exchange(o.name_, 0)), remove_(o.remove_) {}
+  GlName& operator=(GlName&& o) noexcept {
+    if (this != &o) {
+      clear();
+      name_ = std::exchange(o.name_, 0);
+      remove_ = o.remove_;
+    }
+    return *this;
+  }
+  ~GlName() { clear(); }
+  operator GLuint() const { return name_; }  // NOLINT: it stands for the number in every call
+
+ private:
+  void clear() {
+    if (name_ != 0) remove_(name_);
+    name_ = 0;
+  }
+  GLuint name_ = 0;
+  Delete remove_{};
+};
+
+struct DeleteProgram {
+  PFNGLDELETEPROGRAMPROC f = nullptr;
+  void operator()(GLuint name) const { f(name); }
+};
+/// Calls glDelete*(1, &name), for all kinds whose function has this type.
+struct DeleteOne {
+  PFNGLDELETETEXTURESPROC f = nullptr;
+  void operator()(GLuint name) const { f(1, &name); }
+};
+
+using GlProgram = GlName<DeleteProgram>;
+using GlObject = GlName<DeleteOne>;
+
+inline GlObject make_texture(const Gl& gl) {
+  GLuint name = 0;
+  gl.GenTextures(1, &name);
+  return {name, {gl.DeleteTextures}};
+}
+inline GlObject make_framebuffer(const Gl& gl) {
+  GLuint name = 0;
+  gl.GenFramebuffers(1, &name);
+  return {name, {gl.DeleteFramebuffers}};
+}
+inline GlObject make_buffer(const Gl& gl) {
+  GLuint name = 0;
+  gl.GenBuffers(1, &name);
+  return {name, {gl.DeleteBuffers}};
+}
+inline GlObject make_vertex_array(const Gl& gl) {
+  GLuint name = 0;
+  gl.GenVertexArrays(1, &name);
+  return {name, {gl.DeleteVertexArrays}};
+}
+/// Compiles and links a program; throws EnvironmentError with the library's log.
+GlProgram make_program(const Gl& gl, const std::string& name, const std::string& vertex,
+                       const std::string& fragment);
+
+// An OpenGL 3.3 core context without a window. Only offscreen.cpp knows that it is Mesa's OSMesa: a context
+// from EGL (surfaceless) could replace it by filling in the same table of functions. (Mesa 25.1 removed
+// OSMesa.)
+
+class Offscreen {
+ public:
+  /// Makes a context and makes it current on the calling thread. Throws EnvironmentError that says what is
+  /// missing; first refuses settings in the environment that are known to crash Mesa.
+  Offscreen();
+  ~Offscreen();
+  Offscreen(const Offscreen&) = delete;
+  Offscreen& operator=(const Offscreen&) = delete;
+
+  /// Makes the context current on the calling thread.
+  void make_current() const;
+  const Gl& gl() const { return gl_; }
+  /// Throws EnvironmentError if a call failed since the last check; `where` names the place in the message.
+  void check(const char* where) const;
+  int max_size() const { return max_size_; }  ///< largest side of a picture, pixels
+  std::string version() const;                ///< version and renderer as the library names them
+
+ private:
+  struct Context;
+  std::unique_ptr<Context> context_;
+  Gl gl_;
+  int max_size_ = 0;
+};
+
+/// One result of checking the environment.
+struct Finding {
+  enum class Level { ok, warning, error } level = Level::ok;
+  std::string what;    ///< "off-screen OpenGL", "font", ...
+  std::string detail;  ///< a version, a size; or what is wrong and what to do
+};
+
+/// Checks for environment variables that make Mesa crash or behave differently. Needs no context.
+std::vector<Finding> check_gl_environment();
+
+/// Checks everything that drawing needs: environment, context, sizes, fonts. Reports what it finds and does
+/// not throw for it.
+std::vector<Finding> check_rendering();
 
 }  // namespace lrb::render

@@ -1,12 +1,10 @@
-#include "render/montage.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "engine/core/error.hpp"
-#include "render/text.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
 
 namespace lrb::render {
 namespace {

@@ -1,12 +1,10 @@
-#include "render/overlay.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "engine/core/error.hpp"
-#include "render/palette.hpp"
-#include "render/text.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/style.hpp>
 
 namespace lrb::render {
 namespace {

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "engine/core/error.hpp"
-#include "render/screen_mesh.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/rasterize.hpp>
 
 namespace lrb::render {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 /// Paints draw lists on a canvas: flat ones wholly, of those with depth what lies over the faces.
 
-#include "render/camera.hpp"
 #include "render/canvas.hpp"
-#include "render/draw_list.hpp"
-#include "render/rasterize.hpp"
+#include <lrbscope/render/camera.hpp>
+#include <lrbscope/render/draw_list.hpp>
+#include <lrbscope/render/rasterize.hpp>
 
 namespace lrb::render {
 

@@ -1,5 +1,3 @@
-#include "render/png.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,9 +8,9 @@
 #include <png.h>
 #include <zlib.h>
 
-#include "engine/core/atomic_file.hpp"
-#include "engine/core/error.hpp"
-#include "engine/core/file_bytes.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/image.hpp>
 
 namespace lrb::render {
 namespace {

@@ -2,8 +2,6 @@
 // in layers: fills by stencil, opaque faces and lines by depth test, translucent faces in sorted order, and
 // what is on top with its hidden part weakened. At last the supersampled image is averaged in integers.
 
-#include "render/rasterize.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -11,12 +9,12 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
-#include "engine/core/error.hpp"
-#include "render/convert.hpp"
-#include "render/gl_objects.hpp"
-#include "render/offscreen.hpp"
+#include "render/gl.hpp"
 #include "render/shaders.hpp"
-#include "render/text.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/rasterize.hpp>
 
 namespace lrb::render {
 namespace {

@@ -1,11 +1,10 @@
-#include "render/scene.hpp"
-
 #include <algorithm>
 #include <map>
 
-#include "engine/core/error.hpp"
-#include "render/palette.hpp"
 #include "render/scene_parts.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/scene.hpp>
+#include <lrbscope/render/style.hpp>
 
 namespace lrb::render {
 namespace scene {

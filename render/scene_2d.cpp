@@ -2,8 +2,8 @@
 #include <array>
 #include <vector>
 
-#include "render/palette.hpp"
 #include "render/scene_parts.hpp"
+#include <lrbscope/render/style.hpp>
 
 namespace lrb::render::scene {
 namespace {

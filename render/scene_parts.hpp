@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/scene.hpp"
+#include <lrbscope/render/scene.hpp>
 
 namespace lrb::render::scene {
 

@@ -1,8 +1,6 @@
 // Projects a draw list to screen triangles. Clipping, snapping, lighting and the widths of lines and edges
 // are computed here in double, so that the rasterizer only interpolates and pictures are reproducible.
 
-#include "render/screen_mesh.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -11,6 +9,7 @@
 
 #include "render/depth_order.hpp"
 #include "render/edge_room.hpp"
+#include <lrbscope/render/rasterize.hpp>
 
 namespace lrb::render {
 namespace {

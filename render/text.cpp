@@ -1,5 +1,3 @@
-#include "render/text.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +5,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "engine/core/error.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"

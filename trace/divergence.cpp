@@ -2,16 +2,15 @@
 // results. A comparison that has found a difference ignores all that follow, so the checks are written in
 // sequence.
 
-#include "trace/divergence.hpp"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <type_traits>
 
-#include "trace/hex.hpp"
-#include "trace/names.hpp"
-#include "trace/record_fields.hpp"
+#include <lrbscope/trace/divergence.hpp>
+#include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/trace/record_fields.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::trace {
 

@@ -1,13 +1,153 @@
 #include "trace/json_read.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <type_traits>
 #include <vector>
 
-#include "engine/core/error.hpp"
-#include "engine/core/file_bytes.hpp"
-#include "trace/record_fields.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/core/strings.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/record_fields.hpp>
+
+namespace lrb::io {
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
+  constexpr std::size_t kLongestWord = 64;  // no longer word is a typing error, and the table above is
+                                            // quadratic
+  if (word.size() > kLongestWord) return {};
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& k : known) {
+    const std::size_t distance = edit_distance(word, k);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = k;
+    }
+  }
+  return best;
+}
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
+  std::string out;
+  const std::string near = nearest_word(word, known);
+  if (!near.empty()) out += "; did you mean \"" + near + "\"?";
+  for (std::size_t i = 0; i < known.size(); ++i)
+    out += (i == 0 ? (near.empty() ? "; known: " : " known: ") : ", ") + known[i];
+  return out;
+}
+
+void JsonNode::fail(const std::string& message) const {
+  throw InputError(text_->where(pointer_) + ": " +
+                   printable_name((pointer_.empty() ? "" : pointer_ + ": ") + message));
+}
+
+void JsonNode::fail_key(const std::string& key, const std::string& message) const {
+  const std::string member = pointer_ + "/" + pointer_part(key);
+  throw InputError(text_->where(member + "#") + ": " + printable_name(member + ": " + message));
+}
+
+void JsonNode::fail_type(const char* expected) const {
+  fail(std::string("expected ") + expected + ", found " + value_->type_name());
+}
+
+void JsonNode::fail_choice(const std::vector<std::string>& known) const {
+  if (!value_->is_string()) fail_type("a word");
+  const auto& word = value_->get_ref<const std::string&>();
+  fail("\"" + word + "\" is not known here" + suggestion(word, known));
+}
+
+const JsonNode& JsonNode::object(const std::vector<std::string>& keys) const {
+  if (!value_->is_object()) fail_type("an object");
+  for (const auto& [key, value] : value_->items())
+    if (std::find(keys.begin(), keys.end(), key) == keys.end())
+      fail_key(key, "unknown key" + suggestion(key, keys));
+  return *this;
+}
+
+JsonNode JsonNode::at(const std::string& key) const {
+  if (!value_->is_object()) fail_type("an object");
+  if (!value_->contains(key)) fail("the key \"" + key + "\" is missing: add it");
+  return {*text_, (*value_)[key], pointer_ + "/" + pointer_part(key)};
+}
+
+std::optional<JsonNode> JsonNode::get(const std::string& key) const {
+  if (!has(key)) return std::nullopt;
+  return at(key);
+}
+
+std::vector<JsonNode> JsonNode::items(std::size_t least) const {
+  if (!value_->is_array()) fail_type("an array");
+  if (value_->size() < least)
+    fail("expected at least " + std::to_string(least) + " items, found " + std::to_string(value_->size()));
+  std::vector<JsonNode> out;
+  for (std::size_t i = 0; i < value_->size(); ++i)
+    out.push_back(JsonNode(*text_, (*value_)[i], pointer_ + "/" + std::to_string(i)));
+  return out;
+}
+
+double JsonNode::number(double least, double most) const {
+  if (!value_->is_number()) fail_type("a number");
+  const double x = value_->get<double>();
+  if (!std::isfinite(x) || x < least || x > most)
+    fail("expected a number from " + number_text(least, 6) + " to " + number_text(most, 6) + ", found " +
+         value_->dump());
+  return x;
+}
+
+std::uint64_t JsonNode::integer(std::uint64_t least, std::uint64_t most) const {
+  const bool whole = value_->is_number_unsigned();
+  if (!value_->is_number()) fail_type("a whole number");
+  if (!whole || value_->get<std::uint64_t>() < least || value_->get<std::uint64_t>() > most)
+    fail("expected a whole number from " + std::to_string(least) + " to " + std::to_string(most) +
+         ", found " + value_->dump());
+  return value_->get<std::uint64_t>();
+}
+
+bool JsonNode::boolean() const {
+  if (!value_->is_boolean()) fail_type("true or false");
+  return value_->get<bool>();
+}
+
+std::string JsonNode::string() const {
+  if (!value_->is_string()) fail_type("a string");
+  return value_->get<std::string>();
+}
+
+std::vector<double> JsonNode::numbers(std::size_t count) const {
+  constexpr double kAny = std::numeric_limits<double>::max();
+  if (!value_->is_array()) fail_type("an array of numbers");
+  if (value_->size() != count)
+    fail("expected " + std::to_string(count) + " numbers, found " + std::to_string(value_->size()));
+  std::vector<double> out;
+  for (const JsonNode& item : items()) out.push_back(item.number(-kAny, kAny));
+  return out;
+}
+
+Eigen::Vector3d JsonNode::vector() const {
+  const std::vector<double> x = numbers(3);
+  return {x[0], x[1], x[2]};
+}
+
+}  // namespace lrb::io
 
 namespace lrb::trace {
 

@@ -6,14 +6,226 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "trace/hex.hpp"
-#include "trace/names.hpp"
-#include "trace/trace.hpp"
+#include <lrbscope/core/fields.hpp>
+#include <lrbscope/enum_words.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/trace/trace.hpp>
+
+namespace lrb::io {
+
+// JSON that remembers where in its file each value stands, so that a message can name file, line and column.
+
+/// The line and column of a byte in a text, both from 1; columns count characters of UTF-8.
+struct TextPosition {
+  std::size_t line = 1, column = 1;
+};
+TextPosition position_in(const std::string& text, std::size_t offset);
+/// Moves a position from one byte of a text to a later one.
+void advance(TextPosition& position, const std::string& text, std::size_t from, std::size_t to);
+
+/// Finds the offset of each value of a JSON text by its JSON pointer (RFC 6901), and of each member's key by
+/// the pointer followed by '#'. The text must be one that a parser has accepted, and not nested deeply.
+class JsonIndex {
+ public:
+  explicit JsonIndex(const std::string& text);
+  std::size_t offset(const std::string& pointer) const;
+  /// Returns the pointer of the first member whose key occurs twice in its object; empty if there is none.
+  const std::string& duplicate() const { return duplicate_; }
+
+ private:
+  std::unordered_map<std::string, std::size_t> offsets_;
+  std::string duplicate_;
+};
+
+class JsonText {
+ public:
+  /// Parses a text; throws InputError "file:line:column: ..." for bad syntax and for repeated keys, and for
+  /// more than 64 levels.
+  JsonText(std::string text, std::string file);
+
+  const nlohmann::json& root() const { return root_; }
+  const std::string& file() const { return file_; }
+  /// Returns "file:line:column" of the value (or, with '#' behind it, the key) at a JSON pointer.
+  std::string where(const std::string& pointer) const;
+
+ private:
+  std::string text_, file_;
+  mutable TextPosition last_;  ///< the place asked for last: asking in order walks the text once
+  mutable std::size_t last_offset_ = 0;
+  nlohmann::json root_;
+  std::unique_ptr<JsonIndex> index_;
+};
+
+/// Throws InputError if a text has a NUL byte: nlohmann-json takes one for the end of the text, and would not
+/// look at what follows.
+void refuse_nul(const std::string& text, const std::string& file);
+/// Throws the InputError "file:line:column: ..." of a text that nlohmann-json gave up on; the arguments are
+/// those of nlohmann::json_sax::parse_error().
+[[noreturn]] void fail_json(const std::string& text, const std::string& file, std::size_t position,
+                            const std::string& token, const nlohmann::json::exception& error);
+
+/// Parses a text; `seen` is where the parser has come to whenever it calls `handler`.
+void parse_with(const std::string& text, const char*& seen, nlohmann::json_sax<nlohmann::json>& handler);
+
+/// Returns a member's name or an index as a part of a JSON pointer.
+std::string pointer_part(const std::string& key);
+
+// Reads a JsonText by naming what is expected at each place: a wrong type, value or key is an InputError
+// that tells where it stands.
+
+class JsonNode {
+ public:
+  explicit JsonNode(const JsonText& text) : text_(&text), value_(&text.root()) {}
+
+  /// Requires an object with no keys but these; for an unknown one the error names the nearest known word.
+  const JsonNode& object(const std::vector<std::string>& keys) const;
+  bool has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
+  JsonNode at(const std::string& key) const;  ///< requires the member to be there
+  std::optional<JsonNode> get(const std::string& key) const;
+
+  /// Requires an array of at least `least` values.
+  std::vector<JsonNode> items(std::size_t least = 0) const;
+  bool is_array() const { return value_->is_array(); }
+  bool is_object() const { return value_->is_object(); }
+  bool is_string() const { return value_->is_string(); }
+
+  double number(double least, double most) const;
+  std::uint64_t integer(std::uint64_t least, std::uint64_t most) const;
+  bool boolean() const;
+  std::string string() const;
+  std::vector<double> numbers(std::size_t count) const;  ///< requires an array of exactly `count` numbers
+  Eigen::Vector3d vector() const;                        ///< requires an array of three numbers
+  /// Requires one of these words.
+  template <class T>
+  T choice(const std::vector<std::pair<std::string, T>>& words) const {
+    std::vector<std::string> known;
+    for (const auto& [word, value] : words) {
+      if (value_->is_string() && value_->get_ref<const std::string&>() == word) return value;
+      known.push_back(word);
+    }
+    fail_choice(known);
+  }
+
+  /// Requires one of the words of an enum.
+  template <class Enum>
+  Enum choice() const {
+    std::vector<std::pair<std::string, Enum>> words;
+    words.reserve(kWords<Enum>.size());
+    for (const EnumWord<Enum>& entry : kWords<Enum>) words.emplace_back(entry.word, entry.value);
+    return choice(words);
+  }
+
+  /// Throws InputError: "file:line:column: pointer: message".
+  [[noreturn]] void fail(const std::string& message) const;
+  /// Does the same, but names the place of the member's key.
+  [[noreturn]] void fail_key(const std::string& key, const std::string& message) const;
+  const nlohmann::json& json() const { return *value_; }
+  const std::string& pointer() const { return pointer_; }
+
+ private:
+  JsonNode(const JsonText& text, const nlohmann::json& value, std::string pointer)
+      : text_(&text), value_(&value), pointer_(std::move(pointer)) {}
+  [[noreturn]] void fail_type(const char* expected) const;
+  [[noreturn]] void fail_choice(const std::vector<std::string>& known) const;
+
+  const JsonText* text_;
+  const nlohmann::json* value_;
+  std::string pointer_;
+};
+
+// Writes records as JSON objects, and reads them, by their tables of fields
+// (engine/include/lrbscope/core/fields.hpp).
+
+template <class Record>
+nlohmann::ordered_json record_to_json(const Record& record);
+template <class Record>
+Record record_from_json(const nlohmann::json& value);
+
+/// How a value of a field stands in JSON: numbers, strings and lists of them as they are, enumerators by
+/// their words, records as objects. Specialise it for other types.
+template <class Value>
+struct JsonOf {
+  static nlohmann::ordered_json write(const Value& value) {
+    if constexpr (std::is_enum_v<Value>)
+      return name_of(value);
+    else if constexpr (kFieldCount<Value> > 0)
+      return record_to_json(value);
+    else
+      return value;
+  }
+  static Value read(const nlohmann::json& value) {
+    if constexpr (std::is_enum_v<Value>) {
+      const auto word = value.get<std::string>();
+      if (const auto found = from_name<Value>(word)) return *found;
+      throw InputError("'" + word + "': use " + all_names<Value>());
+    } else if constexpr (kFieldCount<Value> > 0) {
+      return record_from_json<Value>(value);
+    } else {
+      return value.get<Value>();
+    }
+  }
+};
+/// Only of fields that are kept if they are set.
+template <class Value>
+struct JsonOf<std::optional<Value>> {
+  static nlohmann::ordered_json write(const std::optional<Value>& value) {
+    return JsonOf<Value>::write(value.value());
+  }
+  static std::optional<Value> read(const nlohmann::json& value) { return JsonOf<Value>::read(value); }
+};
+
+/// Returns the record as an object; its members stand in the order of the table.
+template <class Record>
+nlohmann::ordered_json record_to_json(const Record& record) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::object();
+  for_each_field<Record>([&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(record.*field.member)>;
+    if (is_kept(field, record)) out[field.name.data()] = JsonOf<Value>::write(record.*field.member);
+  });
+  return out;
+}
+
+/// Reads a record. Throws InputError that says what is wrong with the value. Keys that are no fields are not
+/// looked at.
+template <class Record>
+Record record_from_json(const nlohmann::json& value) {
+  Record record;
+  for_each_field<Record>([&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(record.*field.member)>;
+    const char* key = field.name.data();
+    if (field.kept != Kept::always && !value.contains(key)) return;
+    try {
+      record.*field.member = JsonOf<Value>::read(value.at(key));
+    } catch (const nlohmann::json::exception& e) {
+      throw InputError(std::string(key) + ": " + e.what());
+    }
+  });
+  return record;
+}
+
+/// Returns the number of edits (insert, delete, replace, swap neighbours) that turn one word into the other.
+std::size_t edit_distance(const std::string& a, const std::string& b);
+
+/// Returns the word of `known` that `word` was probably meant to be; empty if none is near.
+std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
+
+/// Returns the end of a message: "; did you mean \"x\"?" if there is such a word, then "; known: a, b, c".
+std::string suggestion(const std::string& word, const std::vector<std::string>& known);
+
+}  // namespace lrb::io
 
 namespace lrb::trace {
 

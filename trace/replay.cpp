@@ -1,8 +1,153 @@
-#include "trace/replay.hpp"
-
 #include <algorithm>
+#include <stdexcept>
+
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/trace/replay.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::trace {
+
+namespace {
+
+std::string describe(const BodyInfo& info) {
+  return "\"" + printable_name(info.name) + "\" (" + std::to_string(info.total_faces) + " faces, " +
+         std::to_string(info.regions) + " regions, hash " + to_hex(info.hash) + ")";
+}
+
+}  // namespace
+
+void require_same_body(const BodyInfo& recorded, const LrbRep& rep, const std::string& who) {
+  BodyInfo given = describe_body(rep, recorded.source);
+  given.name = recorded.name;  // the name may differ: the hash tells which body it is
+  if (given == recorded) return;
+  given.name = rep.name();
+  throw InputError("trace: body " + who + " was recorded as " + describe(recorded) + ", but is given as " +
+                   describe(given) + "; replay needs the same LRB-rep: give that one, or record again");
+}
+
+Cursor::Cursor(const Trace& trace, const LrbRep& a, const LrbRep& b)
+    : Cursor(trace, std::vector<const LrbRep*>{&a, &b}) {}
+
+Cursor::Cursor(const Trace& trace, const LrbRep& a) : Cursor(trace, std::vector<const LrbRep*>{&a}) {}
+
+Cursor::Cursor(const Trace& trace, std::vector<const LrbRep*> reps)
+    : trace_(&trace), replay_(reps, trace.header.request.wrapper, trace.header.construction) {
+  check_trace(trace, "trace");
+  if (reps.size() != trace.header.bodies.size())
+    throw InputError("trace: recorded with " + std::to_string(trace.header.bodies.size()) +
+                     " bodies, given " + std::to_string(reps.size()) + "; replay needs the same ones");
+  for (std::size_t i = 0; i < reps.size(); ++i)
+    require_same_body(trace.header.bodies[i], *reps[i], std::string(name_of(static_cast<Side>(i))));
+  // Index the events that change a wrapper: seeking replays only these.
+  for (EventId e = 0; e < trace.events.size(); ++e) {
+    const Event& event = trace.events[e];
+    if (event.kind == EventKind::step || event.changes_wrapper()) changes_.push_back(e);
+  }
+}
+
+void Cursor::apply_to(EventId event) {
+  const Event& e = trace_->events[event];
+  if (!replay_.apply(e, trace_->events)) return;
+  const std::uint32_t size = replay_.boundary_size(e.side);
+  if (e.boundary == kNull || e.boundary == size) return;
+  rewind();
+  throw InputError("trace: event " + std::to_string(event) + " (" + std::string(name_of(e.kind)) +
+                   " region " + std::to_string(e.region()) + " of " + std::string(name_of(e.side)) +
+                   "): the wrapper has " + std::to_string(size) + " faces, recorded were " +
+                   std::to_string(e.boundary) + "; the trace is damaged: record it again");
+}
+
+void Cursor::rewind() {
+  replay_.reset();
+  applied_ = step_ = 0;
+  position_ = kNull;
+}
+
+void Cursor::seek(EventId event) {
+  if (event != kNull && event >= trace_->events.size())
+    throw std::out_of_range("Cursor::seek: event " + std::to_string(event) + " of " +
+                            std::to_string(trace_->events.size()));
+  if (event == kNull) return rewind();
+  // The number of changes up to the target determines the state of the wrappers.
+  const std::size_t step = trace_->step_of(event);
+  const auto count_up_to = [&](EventId e) {
+    return static_cast<std::size_t>(std::upper_bound(changes_.begin(), changes_.end(), e) - changes_.begin());
+  };
+  const std::size_t target = count_up_to(event);
+  if (target != applied_) {
+    // Each step begins afresh, so that nothing before the target's step matters. Going backward means
+    // starting again at the beginning of that step.
+    const std::size_t begin = count_up_to(trace_->steps[step].first_event) - 1;
+    for (std::size_t i = target > applied_ ? std::max(applied_, begin) : begin; i < target; ++i)
+      apply_to(changes_[i]);
+    applied_ = target;
+  }
+  position_ = event;
+  step_ = step;
+}
+
+bool Cursor::next() {
+  const std::size_t to = at_start() ? 0 : position_ + std::size_t{1};
+  if (to >= trace_->events.size()) return false;
+  seek(static_cast<EventId>(to));
+  return true;
+}
+
+bool Cursor::previous() {
+  if (at_start()) return false;
+  seek(position_ == 0 ? kNull : position_ - 1);
+  return true;
+}
+
+bool Cursor::next(EventKind kind) {
+  for (std::size_t e = at_start() ? 0 : position_ + std::size_t{1}; e < trace_->events.size(); ++e) {
+    if (trace_->events[e].kind != kind) continue;
+    seek(static_cast<EventId>(e));
+    return true;
+  }
+  return false;
+}
+
+Pose Cursor::pose(Side side) const {
+  if (at_start()) return {};
+  return side == Side::a ? step()->pose_a : step()->pose_b;
+}
+
+std::optional<TestedPair> Cursor::pair_under_test() const {
+  if (at_start() || body_count() < 2) return std::nullopt;
+  EventId id = position_;
+  const auto is_pair = [&](EventId e) {
+    const EventKind kind = trace_->events[e].kind;
+    return kind == EventKind::face_test || kind == EventKind::contact;
+  };
+  // A refinement has no pair of its own; its cause is the test that hit.
+  if (!is_pair(id)) id = event().cause;
+  if (id == kNull || !is_pair(id)) return std::nullopt;
+  const Event& e = trace_->events[id];
+  return TestedPair{.simplex_a = e.simplex(Side::a),
+                    .simplex_b = e.simplex(Side::b),
+                    .face_a = wrapper(Side::a).rep().face_of_simplex(e.simplex(Side::a)),
+                    .face_b = wrapper(Side::b).rep().face_of_simplex(e.simplex(Side::b)),
+                    .meet = e.meet,
+                    .event = id};
+}
+
+std::vector<RefinedRegion> Cursor::refined() const {
+  std::vector<RefinedRegion> out;
+  if (at_start()) return out;
+  const EventId cause = event().cause;
+  // Walk back over consecutive refinements of the same cause.
+  for (EventId id = position_;; --id) {
+    const Event& e = trace_->events[id];
+    if (e.kind != EventKind::refine || e.cause != cause) break;
+    out.push_back({e.side, e.region(), id});
+    if (id == 0 || cause == kNull) break;
+  }
+  std::reverse(out.begin(), out.end());
+  return out;
+}
 
 namespace {
 

@@ -1,17 +1,14 @@
-#include "trace/summary_json.hpp"
-
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "engine/lrb/validate.hpp"
-#include "engine/tree/tree_quality.hpp"
-#include "trace/counters.hpp"
-#include "trace/json_out.hpp"
-#include "trace/json_parts.hpp"
-#include "trace/node_work.hpp"
-#include "trace/passes.hpp"
-#include "trace/work_shares.hpp"
+#include "trace/trace_json_parts.hpp"
+#include <lrbscope/obb_tree.hpp>
+#include <lrbscope/trace/counters.hpp>
+#include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/trace/trace_json.hpp>
+#include <lrbscope/trace/work.hpp>
+#include <lrbscope/validate.hpp>
 
 namespace lrb::trace {
 

@@ -9,10 +9,9 @@
 
 #include <zlib.h>
 
-#include "engine/core/atomic_file.hpp"
-#include "engine/core/error.hpp"
-#include "engine/core/file_bytes.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 namespace lrb::trace {
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "trace/names.hpp"
-#include "trace/passes.hpp"
-#include "trace/trace_json.hpp"
-#include "trace/trace_metadata.hpp"
+#include "trace/trace_json_parts.hpp"
+#include <lrbscope/trace/counters.hpp>
+#include <lrbscope/trace/trace.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 namespace lrb::trace {
 

@@ -1,11 +1,9 @@
-#include "engine/construct/build.hpp"
-
-#include "engine/construct/chain_builder.hpp"
-#include "engine/construct/patch_builder.hpp"
-#include "engine/core/error.hpp"
-#include "engine/core/parallel.hpp"
-#include "engine/mesh/checked_mesh.hpp"
+#include "engine/construct/builders.hpp"
 #include "engine/mesh/self_intersections.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/parallel.hpp>
 
 namespace lrb {
 namespace {

@@ -7,8 +7,6 @@
 // 4. Bridge the pockets to the convex hull if too many segments are left.
 // 5. Fill each hole with one region, and close with the wrapper of step 1.
 
-#include "engine/construct/chain_builder.hpp"
-
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -16,17 +14,14 @@
 #include <Eigen/Geometry>
 
 #include "engine/construct/aabb_tree.hpp"
+#include "engine/construct/builders.hpp"
 #include "engine/construct/chain_cap.hpp"
 #include "engine/construct/complex_builder.hpp"
-#include "engine/construct/convex_polygon.hpp"
-#include "engine/construct/fitting.hpp"
-#include "engine/construct/hull_loops.hpp"
-#include "engine/construct/hull_regions.hpp"
-#include "engine/construct/pass_counter.hpp"
+#include "engine/construct/convex_hull.hpp"
 #include "engine/core/tolerances.hpp"
-#include "engine/exact/simplex_test.hpp"
+#include "engine/mesh/nesting.hpp"
 #include "engine/mesh/point_inside.hpp"
-#include "engine/mesh/volume_sign.hpp"
+#include <lrbscope/contact.hpp>
 
 namespace lrb::construct {
 namespace {

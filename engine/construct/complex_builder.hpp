@@ -7,7 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/lrb/lrb_rep.hpp"
+#include "engine/construct/builders.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
 
 namespace lrb::construct {
 
@@ -39,6 +42,76 @@ class ComplexBuilder {
   FaceId add_face(std::span<const VertexId> corners, CellId inner, CellId outer);
 
   LrbData d_;
+};
+
+// The regions that a builder makes of whole hulls when no cap shrinks them further, for HullMesh and
+// HullLoops alike. `home`: (components) the void in front of a component, itself for a void; kNull for the
+// outside.
+
+/// Makes what is left of each void one region, which has only a floor.
+template <class Hull>
+void fill_voids(const Hull& hull, std::span<const std::uint32_t> home, std::uint16_t layer,
+                ComplexBuilder& complex) {
+  std::vector<RegionId> core(home.size(), kNull);
+  for (std::uint32_t c = 0; c < core.size(); ++c)
+    if (home[c] == c) core[c] = complex.add_region(layer);
+  for (const typename Hull::Slot s : hull.alive_slots()) {
+    const std::uint32_t in = home[hull[s].component];
+    if (in != kNull) complex.set_outer_cell(hull[s].face, core[in]);
+  }
+}
+
+/// Makes `wrapper` the outermost wrapper: what lies between it and the outer hulls is one region.
+template <class Hull>
+void enclose(const Hull& hull, std::span<const std::uint32_t> home, const Mesh& wrapper, std::uint16_t layer,
+             ComplexBuilder& complex) {
+  const RegionId region = complex.add_region(layer);
+  for (const typename Hull::Slot s : hull.alive_slots())
+    if (home[hull[s].component] == kNull) complex.set_outer_cell(hull[s].face, region);
+  std::vector<VertexId> ids;
+  for (const Eigen::Vector3d& v : wrapper.vertices) ids.push_back(complex.add_vertex(v));
+  std::vector<VertexId> corners;
+  for (FaceId f = 0; f < wrapper.face_count(); ++f) {
+    corners.clear();
+    for (const VertexId v : wrapper.face(f)) corners.push_back(ids[v]);
+    complex.add_pseudo_face(corners, region, kOutside);
+  }
+}
+
+/// Counts the passes of a builder, and tells its probe of them. A region's layer is the number of the pass
+/// that made it; a pass that makes no region does not count, so that no layer is empty.
+class PassCounter {
+ public:
+  explicit PassCounter(const BuildOptions& options) : options_(options) {}
+
+  std::uint16_t layer() const { return static_cast<std::uint16_t>(pass_); }
+
+  /// Tells that a pass begins.
+  void tell_begin(BuildStage stage, std::uint32_t hull_faces, double most_off = 0) const {
+    if (options_.probe) options_.probe->pass({stage, pass_, hull_faces, most_off});
+  }
+  /// Tells that it ends.
+  void tell_end(const PassEnd& end) const {
+    if (options_.probe) options_.probe->end_pass(end);
+  }
+  /// Tells of the regions from number `first` on.
+  void tell_regions(const ComplexBuilder& complex, std::uint32_t first) const {
+    if (!options_.probe) return;
+    for (RegionId r(first); r < complex.region_count(); ++r) options_.probe->region(r);
+  }
+
+  /// Counts the pass, and reports it with the number of faces that the hull has left.
+  void end_pass(const ComplexBuilder& complex, std::uint32_t hull_faces) {
+    if (complex.region_count() == regions_) return;
+    regions_ = complex.region_count();
+    ++pass_;
+    if (options_.progress) options_.progress(pass_, hull_faces);
+  }
+
+ private:
+  const BuildOptions& options_;
+  std::uint32_t pass_ = 0;     ///< the number of the next pass
+  std::uint32_t regions_ = 0;  ///< regions before it
 };
 
 }  // namespace lrb::construct

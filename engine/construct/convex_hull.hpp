@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "engine/mesh/mesh.hpp"
+#include <lrbscope/mesh.hpp>
 
 namespace lrb::construct {
 
@@ -20,5 +20,22 @@ std::vector<std::array<std::uint32_t, 3>> convex_hull(std::span<const Eigen::Vec
 
 /// Returns the same hull as a mesh, with only the vertices that it needs.
 Mesh convex_hull_mesh(std::span<const Eigen::Vector3d> points);
+
+// The counterparts of closing.hpp and convex_hull.hpp, one dimension down.
+
+/// Returns the indices of the points on the boundary of the convex hull, counter-clockwise, including those
+/// in the middle of its sides; no two of them are the same point. Ignores z. Exact. Fewer than three if all
+/// points are on one line. (Monotone chains: Andrew 1979.)
+std::vector<std::uint32_t> convex_outline(std::span<const Eigen::Vector3d> points);
+
+/// Returns the corners, counter-clockwise, of a convex polygon of at most `max_sides` sides (4 if fewer are
+/// asked for: a box) that holds the points with at least half of `distance` times their largest extent to
+/// spare (to rounding; confirm with holds_2d()). Empty if coordinates are too large. Starts from the sides of
+/// the convex hull, moved outward, and leaves them out one by one, always the one that adds least area.
+std::vector<Eigen::Vector3d> enclosing_polygon(std::span<const Eigen::Vector3d> points,
+                                               std::uint32_t max_sides, double distance);
+
+/// Returns true if the point lies strictly inside a convex polygon with counter-clockwise corners. Exact.
+bool holds_2d(std::span<const Eigen::Vector3d> polygon, const Eigen::Vector3d& point);
 
 }  // namespace lrb::construct

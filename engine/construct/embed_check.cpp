@@ -14,8 +14,8 @@
 #include <Eigen/Geometry>
 
 #include "engine/exact/predicates.hpp"
-#include "engine/exact/simplex_test.hpp"
 #include "engine/mesh/point_inside.hpp"
+#include <lrbscope/contact.hpp>
 
 namespace lrb::construct {
 namespace {

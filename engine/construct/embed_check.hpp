@@ -10,8 +10,8 @@
 
 #include "engine/construct/aabb_tree.hpp"
 #include "engine/construct/cap_surface.hpp"
-#include "engine/construct/construct_probe.hpp"
 #include "engine/construct/hull_mesh.hpp"
+#include <lrbscope/build.hpp>
 
 namespace lrb::construct {
 

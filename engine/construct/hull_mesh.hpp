@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "engine/mesh/mesh.hpp"
+#include <lrbscope/mesh.hpp>
 
 namespace lrb::construct {
 

@@ -8,9 +8,9 @@
 
 #include "engine/construct/cap_surface.hpp"
 #include "engine/construct/complex_builder.hpp"
-#include "engine/construct/construct_probe.hpp"
 #include "engine/construct/hull_mesh.hpp"
 #include "engine/construct/region_split.hpp"
+#include <lrbscope/build.hpp>
 
 namespace lrb::construct {
 

@@ -1,24 +1,18 @@
-#include "engine/construct/patch_builder.hpp"
-
 #include <algorithm>
 #include <optional>
 
 #include <Eigen/Geometry>
 
 #include "engine/construct/aabb_tree.hpp"
-#include "engine/construct/body_bounds.hpp"
-#include "engine/construct/bridging.hpp"
-#include "engine/construct/buried_faces.hpp"
+#include "engine/construct/builders.hpp"
 #include "engine/construct/closing.hpp"
 #include "engine/construct/complex_builder.hpp"
-#include "engine/construct/component_nesting.hpp"
-#include "engine/construct/fitting.hpp"
+#include "engine/construct/components.hpp"
+#include "engine/construct/half_spaces.hpp"
 #include "engine/construct/hull_mesh.hpp"
-#include "engine/construct/hull_regions.hpp"
-#include "engine/construct/pass_counter.hpp"
 #include "engine/construct/patch_pass.hpp"
-#include "engine/core/random.hpp"
 #include "engine/core/tolerances.hpp"
+#include <lrbscope/core/random.hpp>
 
 namespace lrb::construct {
 namespace {

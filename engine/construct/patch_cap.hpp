@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "engine/construct/body_bounds.hpp"
 #include "engine/construct/cap_gauge.hpp"
 #include "engine/construct/cap_surface.hpp"
-#include "engine/construct/construct_probe.hpp"
 #include "engine/construct/embed_check.hpp"
+#include "engine/construct/half_spaces.hpp"
+#include <lrbscope/build.hpp>
 
 namespace lrb::construct {
 

@@ -9,17 +9,17 @@
 #include <Eigen/Geometry>
 
 #include "engine/construct/aabb_tree.hpp"
-#include "engine/construct/body_bounds.hpp"
+#include "engine/construct/builders.hpp"
 #include "engine/construct/complex_builder.hpp"
-#include "engine/construct/construct_probe.hpp"
 #include "engine/construct/embed_check.hpp"
-#include "engine/construct/fitting.hpp"
+#include "engine/construct/half_spaces.hpp"
 #include "engine/construct/hull_mesh.hpp"
 #include "engine/construct/hull_update.hpp"
 #include "engine/construct/patch_cap.hpp"
 #include "engine/construct/patch_grow.hpp"
-#include "engine/core/parallel.hpp"
-#include "engine/core/random.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/core/random.hpp>
+#include <lrbscope/parallel.hpp>
 
 namespace lrb::construct {
 

@@ -9,8 +9,8 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/core/disjoint_sets.hpp"
-#include "engine/core/ids.hpp"
+#include <lrbscope/core/disjoint_sets.hpp>
+#include <lrbscope/ids.hpp>
 
 namespace lrb::construct {
 namespace {

@@ -1,5 +1,3 @@
-#include "engine/core/parallel.hpp"
-
 #include <atomic>
 #include <exception>
 #include <mutex>
@@ -10,6 +8,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
+
+#include <lrbscope/parallel.hpp>
 
 namespace lrb {
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/core/parallel.hpp"
+#include <lrbscope/parallel.hpp>
 
 namespace lrb {
 

@@ -1,11 +1,71 @@
-#include "engine/core/pose.hpp"
+#include <string>
 
-#include "engine/core/steady_math.hpp"
+#include <lrbscope/core/random.hpp>
+#include <lrbscope/pose.hpp>
 
 namespace lrb {
 
 Pose Pose::rotation(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& t) {
   return {steady::rotation(axis.normalized(), angle), t};
+}
+
+namespace {
+
+constexpr std::size_t kOf3x4 = 12, kOf4x4 = 16;
+constexpr std::size_t kRow = 4;  // numbers in a row
+
+/// Returns what is wrong with a matrix's numbers, row by row; empty: nothing.
+std::string fault_of(std::span<const double> n) {
+  if (n.size() != kOf3x4 && n.size() != kOf4x4)
+    return "has " + std::to_string(n.size()) + " numbers; give 12 (3 x 4) or 16 (4 x 4), row by row";
+  // An affine map has the last row 0 0 0 1. The comparison also rejects NaN.
+  if (n.size() == kOf4x4 && !(n[12] == 0 && n[13] == 0 && n[14] == 0 && n[15] == 1))
+    return "has a last row other than 0 0 0 1; give a matrix that columns are multiplied by, without perspective";
+  return {};
+}
+
+Pose pose_of_checked(std::span<const double> n) {
+  Pose pose;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const std::size_t row = kRow * static_cast<std::size_t>(i);
+    for (Eigen::Index j = 0; j < 3; ++j) pose.r(i, j) = n[row + static_cast<std::size_t>(j)];
+    pose.t[i] = n[row + 3];
+  }
+  return pose;
+}
+
+}  // namespace
+
+Expected<Pose> pose_of_rows(std::span<const double> numbers) {
+  if (const std::string fault = fault_of(numbers); !fault.empty()) return Refusal{"the pose " + fault};
+  return pose_of_checked(numbers);
+}
+
+Expected<Pose> pose_of(const Eigen::MatrixXd& matrix) {
+  if (matrix.cols() != 4 || (matrix.rows() != 3 && matrix.rows() != 4))
+    return Refusal{"the pose is a matrix of " + std::to_string(matrix.rows()) + " x " +
+                   std::to_string(matrix.cols()) + "; give one of 3 x 4 or 4 x 4"};
+  // Eigen stores columns; the common path reads rows.
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = matrix;
+  return pose_of_rows({rows.data(), static_cast<std::size_t>(rows.size())});
+}
+
+Expected<std::vector<Pose>> poses_of_rows(std::span<const double> numbers, std::size_t count) {
+  std::vector<Pose> poses;
+  if (count == 0 && numbers.empty()) return poses;
+  // All poses have the same shape, so the number of values decides between 3 x 4 and 4 x 4.
+  const std::size_t each = count == 0 ? 0 : numbers.size() / count;
+  if (count == 0 || numbers.size() % count != 0 || (each != kOf3x4 && each != kOf4x4))
+    return Refusal{std::to_string(numbers.size()) + " numbers are not " + std::to_string(count) +
+                   " poses; give 12 (3 x 4) or 16 (4 x 4) for each, row by row"};
+  poses.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::span<const double> n = numbers.subspan(i * each, each);
+    if (const std::string fault = fault_of(n); !fault.empty())
+      return Refusal{"pose " + std::to_string(i) + " " + fault};
+    poses.push_back(pose_of_checked(n));
+  }
+  return poses;
 }
 
 }  // namespace lrb

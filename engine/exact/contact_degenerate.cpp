@@ -4,13 +4,13 @@
 // 2. Clip the hull of lower dimension, a segment or a point, by the other one (Cyrus and Beck 1978).
 // 3. Return the ends of the part that is left, each with the features on which it lies.
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
-#include "engine/exact/contact_parts.hpp"
-#include "engine/exact/degenerate.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/exact/rational_interval.hpp"
+#include "engine/exact/rational.hpp"
+#include "engine/exact/simplex_parts.hpp"
 
 namespace lrb::exact {
 namespace {
@@ -108,6 +108,188 @@ PairContact contact_of_degenerate(const double* const a[3], const double* const 
     const RationalVec x = between(s, e, t);
     append(r, {rounded(x), feature_of(x, a), feature_of(x, b)});
     if (is_point) break;
+  }
+  return r;
+}
+
+// The intersection of two coplanar triangles with area, and of two segments in the plane. The first is a
+// convex polygon, whose corners are corners of A in B, corners of B in A, and crossings of two edges.
+// 1. Project to two coordinates and compute the side of each corner on each edge of the other triangle.
+// 2. Collect the corners of all three kinds. These signs decide everything; coordinates are only output.
+// 3. Order the corners around the polygon.
+
+namespace {
+
+/// Sides of the corners of one triangle on the edges of another: side[i][k] is that of corner k on the
+/// directed edge i, +1 inside.
+struct EdgeSides {
+  int side[3][3];
+};
+
+EdgeSides edge_sides(const double* const edges[3], const double* const corners[3], const Axes& axes) {
+  // The projection may reverse the triangle. `turn` makes +1 the inner side of each edge.
+  const int turn = orient_axes(edges[0], edges[1], edges[2], axes.x, axes.y);
+  EdgeSides r;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      r.side[i][k] = turn * orient_axes(edges[i], edges[(i + 1) % 3], corners[k], axes.x, axes.y);
+    }
+  }
+  return r;
+}
+
+/// Finds where corner k lies in the triangle of the edges; returns false if it is outside.
+bool locate_corner(const EdgeSides& s, int k, Feature& f) {
+  // Strictly outside one edge is outside the triangle. The zeros count the edges on which the corner lies.
+  int zeros = 0, zero_edge = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (s.side[i][k] < 0) return false;
+    if (s.side[i][k] > 0) continue;
+    ++zeros;
+    zero_edge = i;
+  }
+  if (zeros == 0) f = {2, 0};
+  if (zeros == 1) f = {1, static_cast<std::uint8_t>(zero_edge)};
+  // A point on both edges i and i + 1 is the corner between them, i + 1.
+  if (zeros == 2) f = corner(s.side[0][k] != 0 ? 2 : s.side[1][k] != 0 ? 0 : 1);
+  return true;
+}
+
+bool on_edge(const Feature& f, int edge) {
+  return f.dim == 1 ? f.index == edge : f.dim == 0 && (f.index == edge || f.index == (edge + 1) % 3);
+}
+
+/// Returns true if two corners of the polygon are known to be neighbours: corners of a convex polygon that
+/// lie on one edge of either triangle are, because the line of that edge supports the polygon.
+bool are_neighbours(const ContactCorner& p, const ContactCorner& q) {
+  for (int i = 0; i < 3; ++i) {
+    if (on_edge(p.on_a, i) && on_edge(q.on_a, i)) return true;
+    if (on_edge(p.on_b, i) && on_edge(q.on_b, i)) return true;
+  }
+  return false;
+}
+
+/// Sorts the corners into an order around the polygon.
+void order_round(PairContact& r) {
+  // Selection: move a neighbour of the previous corner to place i. There are at most six corners.
+  for (int i = 1; i < r.corner_count; ++i) {
+    const auto from = r.corners.begin() + i;
+    const auto end = r.corners.begin() + r.corner_count;
+    const auto next =
+        std::find_if(from, end, [&](const ContactCorner& q) { return are_neighbours(*(from - 1), q); });
+    if (next != end) std::swap(*from, *next);
+  }
+}
+
+ContactCorner at_corner(const double* p, Feature on_a, Feature on_b) {
+  return {as_vector(p), on_a, on_b};
+}
+
+/// Returns true if edge i of a and edge j of b cross in a point that is no corner of either.
+bool edges_cross(const EdgeSides& b_in_a, const EdgeSides& a_in_b, int i, int j) {
+  return b_in_a.side[i][j] * b_in_a.side[i][(j + 1) % 3] < 0 &&
+         a_in_b.side[j][i] * a_in_b.side[j][(i + 1) % 3] < 0;
+}
+
+Eigen::Vector3d planar(const double* p) {
+  return {p[0], p[1], 0};
+}
+
+Feature end_or_inside(int side_of_0, int side_of_1) {
+  return side_of_0 == 0 ? corner(0) : side_of_1 == 0 ? corner(1) : Feature{1, 0};
+}
+
+/// Finds where a point p, which is on the line of segment s, lies on s; returns false if it is beyond the
+/// ends.
+bool locate_on_segment(const double* p, const double* const s[2], Feature& f) {
+  // The ends first, so that the feature of least dimension is reported.
+  for (int i = 0; i < 2; ++i) {
+    if (p[0] == s[i][0] && p[1] == s[i][1]) {
+      f = corner(i);
+      return true;
+    }
+  }
+  // p is on the line of s, so it is on s exactly if it is in the bounding box of s.
+  for (int k = 0; k < 2; ++k) {
+    const auto [low, high] = std::minmax(s[0][k], s[1][k]);
+    if (p[k] < low || p[k] > high) return false;
+  }
+  f = {1, 0};
+  return true;
+}
+
+/// Intersects two segments (or points) on one line: collects the ends of each that lie on the other.
+PairContact contact_on_one_line(const double* const a[2], const double* const b[2]) {
+  PairContact r;
+  r.coplanar = true;
+  // An end that both segments have in common is found twice and added once.
+  const auto add = [&](const double* p, Feature on_a, Feature on_b) {
+    for (int i = 0; i < r.corner_count; ++i) {
+      const Eigen::Vector3d& x = r.corners[static_cast<std::size_t>(i)].x;
+      if (x[0] == p[0] && x[1] == p[1]) return;
+    }
+    append(r, {planar(p), on_a, on_b});
+  };
+  Feature f;
+  for (int i = 0; i < 2; ++i) {
+    if (locate_on_segment(a[i], b, f)) add(a[i], corner(i), f);
+  }
+  for (int j = 0; j < 2; ++j) {
+    if (locate_on_segment(b[j], a, f)) add(b[j], f, corner(j));
+  }
+  r.meet = r.corner_count > 0 ? Meet::touch : Meet::disjoint;
+  return r;
+}
+
+}  // namespace
+
+PairContact contact_in_plane(const double* const a[3], const double* const b[3]) {
+  PairContact r;
+  r.coplanar = true;
+  // Step 1: 18 signs in a projection that keeps the triangles' area.
+  const Axes axes = axes_for(a[0], a[1], a[2]);
+  const EdgeSides b_in_a = edge_sides(a, b, axes), a_in_b = edge_sides(b, a, axes);
+  Feature f;
+  // Step 2: corners of A in B, corners of B in A, crossings of edges. Only crossings have rounded
+  // coordinates.
+  for (int k = 0; k < 3; ++k) {
+    if (locate_corner(a_in_b, k, f)) append(r, at_corner(a[k], corner(k), f));
+  }
+  for (int k = 0; k < 3; ++k) {  // a corner of both has been added already
+    if (locate_corner(b_in_a, k, f) && f.dim != 0) append(r, at_corner(b[k], f, corner(k)));
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (!edges_cross(b_in_a, a_in_b, i, j)) continue;
+      const Eigen::Vector3d x = cut_by_line(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3], axes.x, axes.y, 3);
+      append(r, {x, edge_between(i, (i + 1) % 3), edge_between(j, (j + 1) % 3)});
+    }
+  }
+  // Step 3. Coplanar triangles never cross: by definition their contact is a touch.
+  order_round(r);
+  r.meet = r.corner_count > 0 ? Meet::touch : Meet::disjoint;
+  return r;
+}
+
+PairContact contact_of_segments(const double* const a[2], const double* const b[2]) {
+  const int b0 = orient2d(a[0], a[1], b[0]), b1 = orient2d(a[0], a[1], b[1]);
+  const int a0 = orient2d(b[0], b[1], a[0]), a1 = orient2d(b[0], b[1], a[1]);
+  // All four ends are on one line.
+  if (a0 == 0 && a1 == 0 && b0 == 0 && b1 == 0) return contact_on_one_line(a, b);
+  PairContact r;
+  // One segment lies strictly on one side of the other's line. A segment that is a point ends here at the
+  // latest.
+  if (a0 * a1 > 0 || b0 * b1 > 0) return r;
+  // The lines cross in one point, which lies on both segments. No zero among the signs: a proper crossing.
+  r.meet = a0 * a1 < 0 && b0 * b1 < 0 ? Meet::cross : Meet::touch;
+  const Feature on_a = end_or_inside(a0, a1), on_b = end_or_inside(b0, b1);
+  // Copy the coordinates of an end if the point is one. Otherwise compute the crossing.
+  if (on_a.dim == 0) {
+    append(r, {planar(a[on_a.index]), on_a, on_b});
+  } else if (on_b.dim == 0) {
+    append(r, {planar(b[on_b.index]), on_a, on_b});
+  } else {
+    append(r, {cut_by_line(a[0], a[1], b[0], b[1], 0, 1, 2), on_a, on_b});
   }
   return r;
 }

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "engine/exact/pair_contact.hpp"
+#include <lrbscope/contact.hpp>
 
 namespace lrb::exact {
 

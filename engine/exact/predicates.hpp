@@ -2,7 +2,50 @@
 /// Signs of determinants of doubles, always exact: a floating-point filter first, then exact arithmetic where
 /// the filter cannot decide. Points are arrays of doubles (3D: x, y, z; 2D: x, y), finite, of any magnitude.
 
+#include <array>
+#include <cmath>
+
 namespace lrb::exact {
+
+// The exact signs behind the predicates, computed when a floating-point filter cannot decide. Private to the
+// engine.
+
+/// Return what orient2d, on the coordinates `x` and `y` of the points, and orient3d return; without a filter.
+int orient2d_exact(const double* a, const double* b, const double* c, int x, int y);
+int orient3d_exact(const double* a, const double* b, const double* c, const double* d);
+
+/// The coordinates of the points a, b, c, d along x, along y and along z.
+using Coordinates4 = std::array<std::array<double, 4>, 3>;
+
+/// The two ways to compute orient3d, separately: with long integers (for all finite doubles), and with
+/// expansions where they apply.
+int orient3d_integer(const Coordinates4& p);
+int orient3d_expansion(const Coordinates4& p);
+bool expansions_apply(const Coordinates4& p);
+
+inline bool same_point(const double* a, const double* b) {
+  return a == b || (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]);
+}
+
+// orient2d on any two coordinates of points, for work in a projection of a plane in space.
+
+/// Returns the sign of the area of a, b, c seen in coordinates x and y (indices into the points).
+///
+/// Error bound: each of the two products has at most four rounding errors (two differences, the product, the
+/// subtraction), so the error is below 4 e (1 + 10 e) times the computed sum of magnitudes, e = 2^-53; 5 e
+/// covers it. The products lose at most 2^-1074 to underflow, which kTiny exceeds. Overflow makes the bound
+/// infinite or not a number, and then both comparisons are false.
+inline int orient_axes(const double* a, const double* b, const double* c, int x, int y) {
+  constexpr double kError = 5 * 0x1p-53;
+  constexpr double kTiny = 0x1p-1000;
+  const double left = (b[x] - a[x]) * (c[y] - a[y]);
+  const double right = (b[y] - a[y]) * (c[x] - a[x]);
+  const double det = left - right;
+  const double error = kError * (std::fabs(left) + std::fabs(right)) + kTiny;
+  if (det > error) return 1;
+  if (det < -error) return -1;
+  return orient2d_exact(a, b, c, x, y);
+}
 
 /// Returns the sign (-1, 0, +1) of the area of triangle a, b, c in the plane: +1 if counter-clockwise.
 int orient2d(const double* a, const double* b, const double* c);

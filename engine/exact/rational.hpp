@@ -8,6 +8,8 @@
 #include <Eigen/Core>
 #include <boost/multiprecision/cpp_int.hpp>
 
+#include "engine/exact/locate.hpp"
+
 namespace lrb::exact {
 
 using Rational = boost::multiprecision::cpp_rational;
@@ -59,6 +61,42 @@ inline Rational volume_determinant(const RationalVec& a, const RationalVec& b, c
                                    const RationalVec& d) {
   return area_determinant(a, b, c, 1, 2) * (d[0] - a[0]) + area_determinant(a, b, c, 2, 0) * (d[1] - a[1]) +
          area_determinant(a, b, c, 0, 1) * (d[2] - a[2]);
+}
+
+// Clips a segment by linear conditions, exactly. Private to engine/exact, because it includes Boost.
+
+/// A part of a segment, as an interval of its parameter, which runs from 0 to 1.
+struct RationalInterval {
+  Rational low = 0, high = 1;
+  bool empty = false;
+
+  /// Keeps the part where f >= 0, for a function f that is linear along the segment, given its values at both
+  /// ends.
+  void keep_positive(const Rational& at_start, const Rational& at_end) {
+    if (at_start < 0 && at_end < 0) empty = true;
+    if (empty || (at_start >= 0 && at_end >= 0)) return;
+    const Rational t = at_start / (at_start - at_end);
+    if (at_start < 0 && t > low) low = t;
+    if (at_end < 0 && t < high) high = t;
+    empty = low > high;
+  }
+  void keep_zero(const Rational& at_start, const Rational& at_end) {
+    keep_positive(at_start, at_end);
+    keep_positive(-at_start, -at_end);
+  }
+};
+
+// The contents of a RationalPoint. Private to engine/exact, because it includes Boost.
+
+struct RationalPoint::Coordinates {
+  RationalVec x;
+  std::array<double, 3> low, high;  ///< doubles that enclose x; equal if x is a double
+
+  explicit Coordinates(RationalVec coordinates);
+};
+
+inline RationalPoint make_point(RationalVec x) {
+  return RationalPoint(std::make_shared<const RationalPoint::Coordinates>(std::move(x)));
 }
 
 }  // namespace lrb::exact

@@ -9,13 +9,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/exact/degenerate.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/exact/plane_side.hpp"
-#include "engine/exact/planes_cross.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/exact/rational_interval.hpp"
-#include "engine/exact/rational_point.hpp"
+#include "engine/exact/rational.hpp"
+#include "engine/exact/simplex_parts.hpp"
 
 namespace lrb::exact {
 /// A named namespace, because CutFace::Parts has members of these types.

@@ -5,17 +5,138 @@
 // 3. Coplanar triangles and triangles without area: hulls_meet().
 // 4. Otherwise compare the ends of the two spans on the line in which the planes cross.
 
-#include "engine/exact/simplex_test.hpp"
-
 #include <algorithm>
+#include <cmath>
 
-#include "engine/exact/degenerate.hpp"
-#include "engine/exact/exact_sign.hpp"
 #include "engine/exact/plane_side.hpp"
-#include "engine/exact/planes_cross.hpp"
 #include "engine/exact/predicates.hpp"
+#include "engine/exact/simplex_parts.hpp"
+#include <lrbscope/contact.hpp>
 
 namespace lrb::exact {
+
+// Intersection tests for convex hulls of up to three points: triangles, segments and points. Cases:
+// - coplanar sets: the separating axis theorem in 2D, where only edge lines can separate;
+// - a triangle and a segment that crosses its plane: signed volumes (Ericson 2005, 5.3.4);
+// - sets on one line: overlap of intervals.
+// All decisions are exact signs of determinants.
+
+namespace {
+
+bool lexicographic_less(const double* a, const double* b) {
+  return std::lexicographical_compare(a, a + 3, b, b + 3);
+}
+
+bool intervals_meet(double a0, double a1, double b0, double b1) {
+  return std::max(std::min(a0, a1), std::min(b0, b1)) <= std::min(std::max(a0, a1), std::max(b0, b1));
+}
+
+/// Returns true if two segments on one line (either may be a point) intersect. They do if their bounding
+/// boxes do.
+bool on_line_meet(const double* a0, const double* a1, const double* b0, const double* b1) {
+  return intervals_meet(a0[0], a1[0], b0[0], b1[0]) && intervals_meet(a0[1], a1[1], b0[1], b1[1]) &&
+         intervals_meet(a0[2], a1[2], b0[2], b1[2]);
+}
+
+/// Returns true if all of hull h lies strictly on side `side` of the line p, q.
+bool strictly_beside(const double* p, const double* q, const Hull& h, int side, const Axes& axes) {
+  for (int i = 0; i <= h.dim; ++i) {
+    if (orient_axes(p, q, h.corner[i], axes.x, axes.y) != side) return false;
+  }
+  return true;
+}
+
+/// Returns true if the line of an edge of `a` has a on one side and b strictly on the other. The line of a
+/// segment may separate with b on either side. Everything lies in one plane, which projects to `axes` one to
+/// one.
+bool edge_separates(const Hull& a, const Hull& b, const Axes& axes) {
+  // A point has no edge. The other set's edges are tested by the caller.
+  if (a.dim == 0) return false;
+  const double* const* p = a.corner;
+  if (a.dim == 1) return strictly_beside(p[0], p[1], b, 1, axes) || strictly_beside(p[0], p[1], b, -1, axes);
+  // The sign of a triangle's outer sides depends on its orientation in the projection.
+  const int outside = -orient_axes(p[0], p[1], p[2], axes.x, axes.y);
+  return strictly_beside(p[0], p[1], b, outside, axes) || strictly_beside(p[1], p[2], b, outside, axes) ||
+         strictly_beside(p[2], p[0], b, outside, axes);
+}
+
+/// Returns true if two coplanar convex sets, which together are not on one line, intersect. They are disjoint
+/// exactly if the line of an edge separates them, because the sides of their Minkowski difference, a polygon
+/// with inner points, are parallel to their edges.
+bool coplanar_meet(const Hull& a, const Hull& b, const Axes& axes) {
+  return !edge_separates(a, b, axes) && !edge_separates(b, a, axes);
+}
+
+bool triangle_meets(const Hull& t, const Hull& h) {
+  const double* const* p = t.corner;
+  // A point counts as a segment whose ends coincide.
+  const PlaneSide plane(p[0], p[1], p[2]);
+  const int start = plane.side(h.corner[0]);
+  const int end = h.dim == 0 ? start : plane.side(h.corner[1]);
+  // Both ends are strictly on one side: no intersection. Both in the plane: a test in 2D.
+  if (start * end > 0) return false;
+  if (start == 0 && end == 0) return coplanar_meet(t, h, axes_for(p[0], p[1], p[2]));
+  // The segment intersects the plane in one point. That point is in the triangle if the segment's line passes
+  // all three edges on the same side. A zero means that it intersects an edge, and is compatible with both
+  // sides.
+  int seen = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int s = orient3d(h.corner[0], h.corner[1], p[i], p[(i + 1) % 3]);
+    if (s * seen < 0) return false;
+    if (s != 0) seen = s;
+  }
+  return true;
+}
+
+bool segments_meet(const Hull& a, const Hull& b) {
+  const double *a0 = a.corner[0], *a1 = a.corner[1], *b0 = b.corner[0], *b1 = b.corner[1];
+  // Find a plane that contains both segments. If no three of the four points span one, all are on one line.
+  Axes axes = axes_for(a0, a1, b0);
+  if (axes.turn == 0) axes = axes_for(a0, a1, b1);
+  if (axes.turn == 0) return on_line_meet(a0, a1, b0, b1);
+  // Skew lines have no point in common.
+  if (orient3d(a0, a1, b0, b1) != 0) return false;
+  return coplanar_meet(a, b, axes);
+}
+
+}  // namespace
+
+Axes axes_for(const double* a, const double* b, const double* c) {
+  // Try the widest projection first, as far as doubles can tell: its sign is the least likely to need exact
+  // arithmetic.
+  const double ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
+  const double vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
+  const double n[3] = {std::fabs(uy * vz - uz * vy), std::fabs(uz * vx - ux * vz),
+                       std::fabs(ux * vy - uy * vx)};
+  int dropped = n[1] > n[0] ? 1 : 0;
+  if (n[2] > n[dropped]) dropped = 2;
+  // The exact sign decides. If all three projections have no area, the points are collinear.
+  for (int tried = 0; tried < 3; ++tried, dropped = (dropped + 1) % 3) {
+    const int x = (dropped + 1) % 3, y = (dropped + 2) % 3;
+    const int turn = orient_axes(a, b, c, x, y);
+    if (turn != 0) return {x, y, turn};
+  }
+  return {0, 1, 0};
+}
+
+Hull hull_of(const double* const t[3]) {
+  if (axes_for(t[0], t[1], t[2]).turn != 0) return {{t[0], t[1], t[2]}, 2};
+  // On one line, the lexicographic extremes are the ends of the segment that the corners span.
+  const auto [least, most] = std::minmax({t[0], t[1], t[2]}, lexicographic_less);
+  return {{least, most, most}, same_point(least, most) ? 0 : 1};
+}
+
+bool hulls_meet(const Hull& a, const Hull& b) {
+  // Order by dimension, so that each case is handled once.
+  if (a.dim < b.dim) return hulls_meet(b, a);
+  if (a.dim == 2 && b.dim < 2) return triangle_meets(a, b);
+  if (a.dim == 2) return coplanar_meet(a, b, axes_for(a.corner[0], a.corner[1], a.corner[2]));
+  if (a.dim == 1 && b.dim == 1) return segments_meet(a, b);
+  // A point can only intersect a segment on the segment's line.
+  if (a.dim == 1 && !collinear3d(a.corner[0], a.corner[1], b.corner[0])) return false;
+  return on_line_meet(a.corner[0], a.corner[a.dim], b.corner[0], b.corner[b.dim]);
+}
+
 namespace {
 
 Meet meet_on_line(const CrossingPlanes& c, bool both_mixed) {
@@ -111,6 +232,126 @@ Meet meet_segments(const double* const a[2], const double* const b[2]) {
     if (a_high < b_low || b_high < a_low) return Meet::disjoint;
   }
   return Meet::touch;
+}
+
+// Embedding test of one pair of faces: they may intersect only in the vertices and edges that they share by
+// index. Cases by the number of shared vertices:
+// - two: the third corners are not coplanar with the edge, or lie on opposite sides of it;
+// - one: the triangles' cones at the shared corner have only the corner in common;
+// - none: the triangles are disjoint.
+// Faces without area never pass.
+
+namespace {
+
+/// The corners that two triangles share, by index: `count` pairs (a[in_a[i]], b[in_b[i]]).
+struct SharedCorners {
+  int count = 0;
+  int in_a[3], in_b[3];
+};
+
+SharedCorners shared_corners(const VertexId ia[3], const VertexId ib[3]) {
+  SharedCorners r;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (ia[i] != ib[j]) continue;
+      if (r.count < 3) {
+        r.in_a[r.count] = i;
+        r.in_b[r.count] = j;
+      }
+      ++r.count;
+      break;
+    }
+  }
+  return r;
+}
+
+bool has_area(const PlaneSide& plane, const double* const t[3]) {
+  return plane.surely_has_area() || !collinear3d(t[0], t[1], t[2]);
+}
+
+/// Tests two triangles that share the edge p, q; their third corners are r and s.
+bool meet_only_in_edge(const double* p, const double* q, const double* r, const double* s) {
+  // Two different planes intersect only in the line of the shared edge.
+  if (orient3d(p, q, r, s) != 0) return true;
+  const Axes axes = axes_for(p, q, r);  // coplanar, or one has no area
+  return axes.turn != 0 && orient_axes(p, q, s, axes.x, axes.y) == -axes.turn;
+}
+
+/// Returns true if the closed cone v, c0, c1 (turning by `turn`, less than half a turn) holds the point p,
+/// which is not v.
+bool cone_holds(const double* v, const double* c0, const double* c1, int turn, const double* p,
+                const Axes& axes) {
+  return orient_axes(v, c0, p, axes.x, axes.y) != -turn && orient_axes(v, p, c1, axes.x, axes.y) != -turn;
+}
+
+/// Returns true if two coplanar triangles with area, which share the corner v, have nothing else in common.
+bool coplanar_cones_apart(const double* v, const double* a1, const double* a2, const double* b1,
+                          const double* b2) {
+  // Near v each triangle equals its cone. Two cones overlap exactly if one contains an edge ray of the other.
+  const Axes axes = axes_for(v, a1, a2);
+  const int b_turn = orient_axes(v, b1, b2, axes.x, axes.y);
+  return !cone_holds(v, a1, a2, axes.turn, b1, axes) && !cone_holds(v, a1, a2, axes.turn, b2, axes) &&
+         !cone_holds(v, b1, b2, b_turn, a1, axes) && !cone_holds(v, b1, b2, b_turn, a2, axes);
+}
+
+/// Tests two triangles that share the corner v; each runs v, 1, 2 in its own order.
+bool meet_only_in_corner(const double* v, const double* a1, const double* a2, const double* b1,
+                         const double* b2) {
+  const double* const a[3] = {v, a1, a2};
+  const double* const b[3] = {v, b1, b2};
+  const PlaneSide plane_a(v, a1, a2), plane_b(v, b1, b2);
+  if (!has_area(plane_a, a) || !has_area(plane_b, b)) return false;
+  // One triangle strictly on one side of the other's plane, but for v: only v is shared.
+  const int s1 = plane_a.side(b1), s2 = plane_a.side(b2);
+  if (s1 * s2 > 0) return true;
+  if (s1 == 0 && s2 == 0) return coplanar_cones_apart(v, a1, a2, b1, b2);
+  // The same with the roles exchanged.
+  const int t1 = plane_b.side(a1), t2 = plane_b.side(a2);
+  if (t1 * t2 > 0) return true;
+  // Each triangle has a ray from v on the line in which the planes cross. Its direction along normal(a) x
+  // normal(b) follows from which of the two other corners is the higher: for a it runs forward if that is the
+  // first corner, for b if it is the second. (t1 = t2 = 0 cannot be: b would lie in a's plane.)
+  return (t1 > t2) == (s1 > s2);
+}
+
+}  // namespace
+
+bool meet_only_in_shared(const double* const a[3], const VertexId ia[3], const double* const b[3],
+                         const VertexId ib[3]) {
+  const SharedCorners shared = shared_corners(ia, ib);
+  if (shared.count > 2) return false;
+  // The corner numbers 0, 1, 2 add up to 3: subtracting two of them gives the third.
+  const int i = shared.in_a[0], j = shared.in_b[0];
+  if (shared.count == 2) {
+    if (j == shared.in_b[1]) return false;  // a names one vertex twice: no area
+    return meet_only_in_edge(a[i], a[shared.in_a[1]], a[3 - i - shared.in_a[1]], b[3 - j - shared.in_b[1]]);
+  }
+  // Rotate both triangles so that the shared corner comes first.
+  if (shared.count == 1)
+    return meet_only_in_corner(a[i], a[(i + 1) % 3], a[(i + 2) % 3], b[(j + 1) % 3], b[(j + 2) % 3]);
+  return has_area(PlaneSide(a[0], a[1], a[2]), a) && has_area(PlaneSide(b[0], b[1], b[2]), b) &&
+         meet_triangles(a, b) == Meet::disjoint;
+}
+
+bool meet_only_in_shared_2d(const double* const a[2], const VertexId ia[2], const double* const b[2],
+                            const VertexId ib[2]) {
+  const auto is_point = [](const double* const s[2]) { return s[0][0] == s[1][0] && s[0][1] == s[1][1]; };
+  // A segment without length never passes.
+  if (is_point(a) || is_point(b)) return false;
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      if (ia[i] != ib[j]) continue;
+      // Both vertices are shared: the same segment twice.
+      if (ia[1 - i] == ib[1 - j]) return false;
+      const double *v = a[i], *p = a[1 - i], *q = b[1 - j];
+      if (orient2d(v, p, q) != 0) return true;
+      // All on one line: the segments must leave v in opposite directions.
+      for (int k = 0; k < 2; ++k) {
+        if (p[k] != v[k]) return (p[k] > v[k]) != (q[k] > v[k]);
+      }
+    }
+  }
+  return meet_segments(a, b) == Meet::disjoint;
 }
 
 }  // namespace lrb::exact

@@ -1,14 +1,12 @@
-#include "engine/lrb/lrb_file.hpp"
-
 #include <cstring>
 #include <optional>
 #include <vector>
 
-#include "engine/core/atomic_file.hpp"
-#include "engine/core/error.hpp"
-#include "engine/core/file_bytes.hpp"
-#include "engine/core/fnv.hpp"
-#include "engine/lrb/wrapper_level.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/core/hash.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb {
 namespace {

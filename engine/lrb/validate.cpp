@@ -6,23 +6,21 @@
 //    parity.
 // Step 1 alone does not exclude overlaps, because the sum of volumes telescopes. Step 3 is the proof of
 // embedding.
-#include "engine/lrb/validate.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-#include "engine/core/parallel.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/exact/simplex_test.hpp"
-#include "engine/lrb/boundary_sum.hpp"
+#include "engine/lrb/complex.hpp"
 #include "engine/lrb/thickness.hpp"
-#include "engine/lrb/wrapper.hpp"
-#include "engine/lrb/wrapper_level.hpp"
 #include "engine/mesh/face_pairs.hpp"
-#include "engine/tree/self_pairs.hpp"
+#include "engine/tree/tree_kernel.hpp"
+#include <lrbscope/contact.hpp>
+#include <lrbscope/parallel.hpp>
+#include <lrbscope/validate.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb {
 namespace {

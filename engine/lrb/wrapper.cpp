@@ -1,6 +1,14 @@
-#include "engine/lrb/wrapper.hpp"
-
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "engine/core/geometry.hpp"
+#include "engine/lrb/complex.hpp"
+#include "engine/lrb/thickness.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/parallel.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb {
 
@@ -80,6 +88,243 @@ std::vector<FaceId> Wrapper::boundary() const {
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   return faces;
+}
+
+// Levels of detail of a body, made from its wrappers:
+// 1. Thickness of each region, propagated outward: the tolerance from which on a region is included.
+// 2. The number of boundary faces at each such tolerance, by differences and a prefix sum.
+// 3. A choice of tolerances whose face counts grow by a bounded factor.
+// 4. A tree over the boundary faces of each chosen wrapper.
+
+namespace {
+
+/// From one level to the next the number of faces grows by this factor at most, where regions are small
+/// enough. Smaller: more levels to make and keep; larger: a tolerance between two levels costs that many
+/// faces more.
+constexpr double kLevelStep = 4.0 / 3;
+/// The same for levels with at most kFewFaces, or kSmallShare of the body's own: these take little memory,
+/// even if there are many.
+constexpr double kFewFaces = 2048, kSmallShare = 1.0 / 16, kSmallStep = 1.1;
+/// A wrapper with a larger share of the body's own faces is no level: the exact query costs hardly more. Also
+/// limits what all levels take together: between two and three times as many faces as a large body has, up
+/// to six times as many as a small one.
+constexpr double kMostFaces = 0.5;
+/// More levels than kLevelStep makes of the largest body: a file with more was not written by lrbscope.
+constexpr std::size_t kMostLevels = 256;
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw InputError("the levels of the LRB-rep " + what + "; build it again from its mesh");
+}
+
+bool can_have_levels(const LrbRep& rep) {
+  return rep.region_count() > 0 && why_no_levels(rep).empty();
+}
+
+/// Returns, for each region, the largest thickness among the region and all that it hides. Passes values
+/// outward until none grows.
+std::vector<double> needed_tolerances(const LrbRep& rep, unsigned threads) {
+  // Worklist: raise every region outside r to at least r's value. Values only grow and are taken from a
+  // finite set, so this ends, with the same result in any order.
+  std::vector<double> needed = region_thickness(rep, threads);
+  std::vector<RegionId> work(rep.region_count());
+  std::iota(work.begin(), work.end(), RegionId{0});
+  while (!work.empty()) {
+    const RegionId r = work.back();
+    work.pop_back();
+    for (const FaceId lid : rep.lids(r)) {
+      // All outer neighbours, not only the parent: each of them hides r through this lid.
+      const CellId over = rep.outer_cell(lid);
+      if (!is_region(over) || needed[over] >= needed[r]) continue;
+      needed[over] = needed[r];
+      work.push_back(over.as_region());
+    }
+  }
+  return needed;
+}
+
+/// Throws InputError if a region could be included without something that it hides.
+void check_needed(const LrbRep& rep, const std::vector<double>& needed) {
+  if (needed.size() != (can_have_levels(rep) ? rep.region_count() : 0)) refuse("are not for its regions");
+  for (RegionId r = 0; r < needed.size(); ++r) {
+    // Written so that NaN is rejected as well.
+    if (!(needed[r] >= 0)) refuse("need a tolerance that is none for region " + std::to_string(r));
+    if (rep.lids(r).empty() && needed[r] != kInfinity)
+      refuse("include region " + std::to_string(r) + ", which has no lid");
+    for (const FaceId lid : rep.lids(r)) {
+      // The order that needed_tolerances() establishes; without it a wrapper would have a cavity around r.
+      const CellId over = rep.outer_cell(lid);
+      if (is_region(over) && needed[over] < needed[r])
+        refuse("include region " + std::to_string(over) + " without region " + std::to_string(r) +
+               ", which it hides");
+    }
+  }
+}
+
+/// Finds the faces that bound the wrapper of a tolerance. A region needs no larger tolerance than the regions
+/// that hide it. So a face is on the boundary from the tolerance that includes the cell behind it up to the
+/// tolerance that includes the cell in front of it.
+class Boundaries {
+ public:
+  Boundaries(const LrbRep& rep, std::span<const double> needed) : rep_(rep), needed_(needed) {}
+
+  /// Returns the faces at each of some descending tolerances.
+  std::vector<std::vector<FaceId>> faces(std::span<const double> tolerances) const {
+    std::vector<std::vector<FaceId>> out(tolerances.size());
+    const auto count_from = [&](double x) {  // how many are x or more
+      return std::partition_point(tolerances.begin(), tolerances.end(), [&](double t) { return t >= x; }) -
+             tolerances.begin();
+    };
+    // At tolerance t a face is on the boundary if need(inner) <= t < need(outer): one run of the sorted
+    // tolerances.
+    for (FaceId f = 0; f < rep_.face_count(); ++f) {
+      const auto end = count_from(need(rep_.inner_cell(f)));
+      for (auto i = count_from(need(rep_.outer_cell(f))); i < end; ++i)
+        out[static_cast<std::size_t>(i)].push_back(f);
+    }
+    return out;
+  }
+
+  /// Returns the number of faces at each of some ascending tolerances.
+  std::vector<std::uint32_t> face_counts(std::span<const double> tolerances) const {
+    const auto place = [&](CellId cell) {
+      return std::lower_bound(tolerances.begin(), tolerances.end(), need(cell)) - tolerances.begin();
+    };
+    // A face appears at the first tolerance that includes its inner cell and disappears at the first that
+    // includes its outer cell. The prefix sum of these changes is the number of faces.
+    std::vector<std::int64_t> change(tolerances.size() + 1, 0);
+    for (FaceId f = 0; f < rep_.face_count(); ++f) {
+      ++change[static_cast<std::size_t>(place(rep_.inner_cell(f)))];
+      --change[static_cast<std::size_t>(place(rep_.outer_cell(f)))];
+    }
+    std::partial_sum(change.begin(), change.end(), change.begin());
+    return {change.begin(), change.end() - 1};
+  }
+
+ private:
+  /// The solid is in every wrapper, the outside in none.
+  double need(CellId cell) const { return is_region(cell) ? needed_[cell] : cell == kSolid ? 0 : kInfinity; }
+
+  const LrbRep& rep_;
+  std::span<const double> needed_;
+};
+
+/// Returns the bounds of the levels that are worth their memory, coarsest first.
+std::vector<double> choose_bounds(const LrbRep& rep, std::span<const double> needed) {
+  // Candidates: every tolerance at which some region joins the wrapper.
+  std::vector<double> bounds;
+  std::copy_if(needed.begin(), needed.end(), std::back_inserter(bounds),
+               [](double x) { return x < kInfinity; });
+  std::sort(bounds.begin(), bounds.end());
+  bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
+  const std::vector<std::uint32_t> faces = Boundaries(rep, needed).face_counts(bounds);
+  // Walk from the coarsest candidate to finer ones, and choose one before the face count grows beyond the
+  // step.
+  std::vector<std::size_t> chosen;
+  const auto choose = [&](std::size_t i) {
+    while (!chosen.empty() && faces[chosen.back()] >= faces[i]) chosen.pop_back();  // finer for no more faces
+    chosen.push_back(i);
+  };
+  const double few = std::max(kFewFaces, kSmallShare * rep.real_face_count());
+  const auto is_beyond = [&](std::size_t i) {
+    const double step = faces[i] <= few ? kSmallStep : kLevelStep;
+    return chosen.empty() || faces[i] > step * faces[chosen.back()];
+  };
+  std::size_t i = bounds.size();
+  // The count may jump by more than a step between neighbouring candidates. Then both sides of the jump are
+  // chosen.
+  for (; i-- > 0 && faces[i] <= kMostFaces * rep.real_face_count();) {
+    if (!is_beyond(i)) continue;
+    if (!chosen.empty()) choose(i + 1);
+    if (is_beyond(i)) choose(i);
+  }
+  // Candidate i + 1 is the finest with few enough faces; i has wrapped around if all have, so that it is 0.
+  if (!chosen.empty()) choose(i + 1);
+  std::vector<double> out;
+  out.reserve(chosen.size());
+  for (const std::size_t at : chosen) out.push_back(bounds[at]);
+  return out;
+}
+
+/// Fills in a level but for its tree. Returns the simplices that the tree holds.
+std::vector<SimplexId> outline(const LrbRep& rep, double bound, std::span<const FaceId> faces,
+                               WrapperLevel& level) {
+  // Everything but the tree follows from the list of boundary faces.
+  level.bound = bound;
+  level.face_count = static_cast<std::uint32_t>(faces.size());
+  level.component_vertices = piece_vertices(rep, faces);
+  std::vector<SimplexId> simplices;
+  for (const FaceId f : faces) {
+    level.pseudo_count += !rep.is_real(f);
+    const std::size_t count = Mesh::simplices_of(rep.face(f).size(), rep.dim());
+    for (std::size_t i = 0; i < count; ++i) simplices.emplace_back(rep.first_simplex(f) + i);
+  }
+  return simplices;
+}
+
+}  // namespace
+
+std::string why_no_levels(const LrbRep& rep) {
+  if (!rep.closed()) return "its surface bounds no solid";
+  if (rep.self_intersecting()) return "its surface intersects itself";
+  return {};
+}
+
+std::string note_no_levels(const LrbRep& rep) {
+  const std::string why = why_no_levels(rep);
+  if (why.empty()) return {};
+  return rep.name() + ": has no approximate answers, because " + why +
+         ": queries with a tolerance or limit are answered exactly";
+}
+
+WrapperLevels::WrapperLevels(const LrbRep& rep, unsigned threads) {
+  if (!can_have_levels(rep)) return;
+  needed_ = needed_tolerances(rep, threads);
+  const std::vector<double> bounds = choose_bounds(rep, needed_);
+  const std::vector<std::vector<FaceId>> faces = Boundaries(rep, needed_).faces(bounds);
+  levels_.resize(bounds.size());
+  // Levels are independent of each other: one task per level, each tree on one thread.
+  Workers workers(threads);
+  workers.for_each(bounds.size(), [&](std::size_t i, unsigned) {
+    const std::vector<SimplexId> simplices = outline(rep, bounds[i], faces[i], levels_[i]);
+    levels_[i].tree = ObbTree(rep.simplices(), simplices);
+  });
+}
+
+WrapperLevels::WrapperLevels(const LrbRep& rep, std::vector<double> needed, std::vector<StoredLevel> stored)
+    : needed_(std::move(needed)) {
+  check_needed(rep, needed_);
+  if (stored.size() > (needed_.empty() ? 0 : kMostLevels)) refuse("are too many");
+  if (needed_.empty()) return;  // a body without levels, whose file has an empty list of them
+  std::vector<double> bounds;
+  // Bounds must be finite and strictly descending; within() relies on the order.
+  for (const StoredLevel& from : stored) {
+    if (!(from.bound >= 0 && from.bound < (bounds.empty() ? kInfinity : bounds.back())))
+      refuse("are not in order");
+    bounds.push_back(from.bound);
+  }
+  // The faces are derived again rather than read, so that a file cannot leave any out. Each stored tree is
+  // checked to contain exactly these simplices.
+  const std::vector<std::vector<FaceId>> faces = Boundaries(rep, needed_).faces(bounds);
+  levels_.resize(bounds.size());
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const std::vector<SimplexId> simplices = outline(rep, bounds[i], faces[i], levels_[i]);
+    levels_[i].tree =
+        ObbTree(rep.simplices(), simplices, std::move(stored[i].nodes), std::move(stored[i].blocks));
+  }
+}
+
+const WrapperLevel* WrapperLevels::within(double tolerance) const {
+  // Bounds descend, so the first one within the tolerance is the coarsest: binary search.
+  const auto level = std::partition_point(levels_.begin(), levels_.end(),
+                                          [&](const WrapperLevel& x) { return x.bound > tolerance; });
+  return level == levels_.end() ? nullptr : &*level;
+}
+
+std::size_t WrapperLevels::memory_bytes() const {
+  std::size_t bytes = needed_.capacity() * sizeof(double) + levels_.capacity() * sizeof(WrapperLevel);
+  for (const WrapperLevel& level : levels_)
+    bytes += level.tree.memory_bytes() + level.component_vertices.capacity() * sizeof(VertexId);
+  return bytes;
 }
 
 }  // namespace lrb

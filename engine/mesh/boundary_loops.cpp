@@ -4,12 +4,11 @@
 // 2. The successor of an open side: rotate around its end through twins until the next open side.
 // 3. Follow successors. Whenever a vertex repeats, the part since its first visit is cut off as a loop.
 // 4. Measure each loop: length, box, exact planarity.
-#include "engine/mesh/boundary_loops.hpp"
-
 #include <algorithm>
 #include <cstdint>
 
 #include "engine/mesh/polygon_shape.hpp"
+#include <lrbscope/mesh_repair.hpp>
 
 namespace lrb {
 namespace {

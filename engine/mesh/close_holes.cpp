@@ -8,8 +8,6 @@
 // 4. Candidates are tried in rounds. A round adds the current candidate of each hole to a copy of the mesh,
 //    finds all intersections at once, and keeps candidates greedily in order. The others go on to their next
 //    candidate.
-#include "engine/mesh/close_holes.hpp"
-
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -20,6 +18,7 @@
 #include "engine/mesh/lid_triangles.hpp"
 #include "engine/mesh/polygon_shape.hpp"
 #include "engine/mesh/self_intersections.hpp"
+#include <lrbscope/mesh_repair.hpp>
 
 namespace lrb {
 namespace {

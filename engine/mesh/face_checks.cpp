@@ -1,5 +1,3 @@
-#include "engine/mesh/face_checks.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -8,6 +6,7 @@
 
 #include "engine/exact/predicates.hpp"
 #include "engine/mesh/polygon_shape.hpp"
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb {
 namespace {

@@ -1,19 +1,165 @@
 #pragma once
 /// The pairs of a mesh's faces that may meet, without looking at all of them.
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <vector>
 
-#include "engine/core/parallel.hpp"
-#include "engine/mesh/box_pairs.hpp"
-#include "engine/mesh/face_checks.hpp"
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
 #include "engine/mesh/hubs.hpp"
-#include "engine/mesh/mesh.hpp"
-#include "engine/mesh/oriented_box.hpp"
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/parallel.hpp>
 
 namespace lrb {
+
+// Finds all pairs of boxes of one set that meet: descends a balanced tree of boxes against itself.
+
+using Box = Eigen::AlignedBox3d;
+
+/// Descends two nodes of a tree and calls at_leaves(a, b) for every two leaves, one below node m and one
+/// below n, except below nodes of which apart(a, b) says that they hold no pair. A node has the items [first,
+/// last); `right` is its right child (0: it is a leaf), and its left child follows it.
+template <class Node, class Apart, class AtLeaves>
+void descend(const std::vector<Node>& nodes, std::uint32_t m, std::uint32_t n, const Apart& apart,
+             const AtLeaves& at_leaves) {
+  const Node &a = nodes[m], &b = nodes[n];
+  if (apart(a, b)) return;
+  const bool a_is_leaf = a.right == 0, b_is_leaf = b.right == 0;
+  if (a_is_leaf && b_is_leaf) {
+    at_leaves(a, b);
+  } else if (b_is_leaf || (!a_is_leaf && a.last - a.first >= b.last - b.first)) {
+    // Descends the node with more items, so that both reach their leaves at about the same depth.
+    descend(nodes, m + 1, n, apart, at_leaves);
+    descend(nodes, a.right, n, apart, at_leaves);
+  } else {
+    descend(nodes, m, n + 1, apart, at_leaves);
+    descend(nodes, m, b.right, apart, at_leaves);
+  }
+}
+
+class BoxTree {
+ public:
+  /// Builds the tree. Leaves out empty boxes, which meet nothing.
+  explicit BoxTree(const std::vector<Box>& boxes) : boxes_(boxes) {
+    for (std::uint32_t i = 0; i < boxes.size(); ++i)
+      if (!boxes[i].isEmpty()) items_.push_back(i);
+    if (!items_.empty()) build(0, static_cast<std::uint32_t>(items_.size()));
+  }
+
+  /// Returns how many other boxes the i-th one meets, counted as far as `most`.
+  std::uint32_t count_meeting(std::uint32_t i, std::uint32_t most) const {
+    std::uint32_t count = 0;
+    std::vector<std::uint32_t> stack;
+    if (!nodes_.empty()) stack.push_back(0);
+    while (!stack.empty() && count < most) {
+      const std::uint32_t n = stack.back();
+      const Node& node = nodes_[n];
+      stack.pop_back();
+      if (!node.box.intersects(boxes_[i])) continue;
+      if (node.right != 0) {
+        stack.push_back(node.right);
+        stack.push_back(n + 1);
+        continue;
+      }
+      for (std::uint32_t k = node.first; k < node.last; ++k)
+        count += items_[k] != i && boxes_[items_[k]].intersects(boxes_[i]);
+    }
+    return count;
+  }
+
+  /// Calls visit(i, j), i < j, once for every two boxes that meet (closed sets), in no order to rely on.
+  template <class Visit>
+  void for_each_pair(Visit&& visit) const {
+    if (!nodes_.empty()) within(0, visit);
+  }
+  /// Does the same, with calls from several threads at once.
+  template <class Visit>
+  void for_each_pair(Visit&& visit, Workers& workers) const {
+    if (!nodes_.empty()) within_shared(0, visit, workers);
+  }
+
+ private:
+  static constexpr std::uint32_t kLeafSize = 4;
+  static constexpr std::uint32_t kWorthSharing = 2048;  ///< boxes
+  struct Node {
+    Box box;
+    std::uint32_t first, last;  ///< items
+    std::uint32_t right;        ///< the right child; the left one follows its parent. 0: leaf
+  };
+
+  std::uint32_t build(std::uint32_t first, std::uint32_t last) {
+    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.push_back({{}, first, last, 0});
+    Box box;
+    for (std::uint32_t i = first; i < last; ++i) box.extend(boxes_[items_[i]]);
+    nodes_[index].box = box;
+    if (last - first <= kLeafSize) return index;
+    int axis = 0;
+    box.sizes().maxCoeff(&axis);
+    const std::uint32_t middle = first + (last - first) / 2;
+    std::nth_element(items_.begin() + first, items_.begin() + middle, items_.begin() + last,
+                     [&](std::uint32_t i, std::uint32_t j) {
+                       // Halve before adding, against overflow.
+                       const double a = boxes_[i].min()[axis] / 2 + boxes_[i].max()[axis] / 2;
+                       const double b = boxes_[j].min()[axis] / 2 + boxes_[j].max()[axis] / 2;
+                       return a != b ? a < b : i < j;
+                     });
+    build(first, middle);
+    nodes_[index].right = build(middle, last);
+    return index;
+  }
+
+  template <class Visit>
+  void within(std::uint32_t n, Visit& visit) const {
+    const Node& node = nodes_[n];
+    if (node.right == 0) {
+      for (std::uint32_t i = node.first; i < node.last; ++i)
+        for (std::uint32_t j = i + 1; j < node.last; ++j) try_pair(items_[i], items_[j], visit);
+      return;
+    }
+    within(n + 1, visit);
+    within(node.right, visit);
+    between(n + 1, node.right, visit);
+  }
+
+  template <class Visit>
+  void within_shared(std::uint32_t n, Visit& visit, Workers& workers) const {
+    const Node& node = nodes_[n];
+    if (node.last - node.first < kWorthSharing) return within(n, visit);
+    workers.both(
+        [&] {
+          workers.both([&] { within_shared(n + 1, visit, workers); },
+                       [&] { within_shared(node.right, visit, workers); });
+        },
+        [&] { between(n + 1, node.right, visit); });
+  }
+
+  template <class Visit>
+  void between(std::uint32_t m, std::uint32_t n, Visit& visit) const {
+    descend(
+        nodes_, m, n, [](const Node& a, const Node& b) { return !a.box.intersects(b.box); },
+        [&](const Node& a, const Node& b) {
+          for (std::uint32_t i = a.first; i < a.last; ++i)
+            if (boxes_[items_[i]].intersects(b.box))
+              for (std::uint32_t j = b.first; j < b.last; ++j) try_pair(items_[i], items_[j], visit);
+        });
+  }
+
+  template <class Visit>
+  void try_pair(std::uint32_t i, std::uint32_t j, Visit& visit) const {
+    if (boxes_[i].intersects(boxes_[j])) visit(std::min(i, j), std::max(i, j));
+  }
+
+  const std::vector<Box>& boxes_;
+  std::vector<std::uint32_t> items_;
+  std::vector<Node> nodes_;
+};
 
 /// Takes about n log n steps for n faces, plus the number of pairs that do meet.
 ///

@@ -1,13 +1,18 @@
 #pragma once
 /// Vertices in which very many faces meet.
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
-#include "engine/core/parallel.hpp"
-#include "engine/mesh/face_checks.hpp"
-#include "engine/mesh/mesh.hpp"
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/parallel.hpp>
 
 namespace lrb {
 
@@ -34,5 +39,91 @@ struct Hubs {
 /// these arcs tell nearly all pairs apart.
 void for_each_pair_at(const Mesh& mesh, const Hubs::Hub& hub,
                       const std::function<void(FaceId, FaceId)>& visit, Workers& workers);
+
+// Boxes that are turned to fit: for needles and flat pieces, whose boxes along the axes are mostly empty.
+
+/// Positions moved and scaled so that all of them lie in the cube [-1, 1]^3.
+///
+/// The scales are powers of two. The first one is exact but for coordinates that are smaller than the largest
+/// one by a factor of 2^1000 and lose less than 2^-1074. The difference from the middle is rounded once,
+/// relative to itself, so that a scaled position is off by less than 2^-52 on each axis.
+class UnitCube {
+ public:
+  explicit UnitCube(const Eigen::AlignedBox3d& box);
+  Eigen::Vector3d operator()(const Eigen::Vector3d& x) const;
+
+ private:
+  /// A power of two as two factors, so that neither overflows nor underflows.
+  struct Scale {
+    double half = 1, rest = 1;
+    static Scale by(int exponent);
+    Eigen::Vector3d operator()(const Eigen::Vector3d& x) const { return (x * half) * rest; }
+  };
+
+  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
+  Scale first_, last_;  ///< before the middle is subtracted, and after
+};
+
+/// A box along three axes of its own, in the unit cube.
+struct OrientedBox {
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< rows, of length 1 and perpendicular to rounding
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();    ///< in coordinates of the cube
+  Eigen::Vector3d half = Eigen::Vector3d::Zero();      ///< half the sizes, with room for rounding
+
+  /// Fits a box to points of the unit cube (at least one), along their principal axes.
+  static OrientedBox about(std::span<const Eigen::Vector3d> points);
+};
+
+/// Returns true if what one box was fitted to has no point in common with what the other was fitted to: some
+/// direction separates the boxes by more than rounding can account for. False proves nothing.
+bool surely_apart(const OrientedBox& a, const OrientedBox& b);
+
+// The triangles of one face with very many corners, in a tree of boxes that are turned to fit.
+
+class TriangleTree {
+ public:
+  using Triangle = std::array<VertexId, 3>;
+
+  /// Builds a tree over at least one triangle; `cube` scales the mesh's vertices. Leaves hold up to
+  /// `leaf_size`.
+  TriangleTree(const Mesh& mesh, const UnitCube& cube, std::vector<Triangle> triangles,
+               std::uint32_t leaf_size);
+
+  /// Returns true if test(s, t) holds for a triangle s of one tree and t of the other. Does not call it for
+  /// triangles that are surely apart.
+  template <class Test>
+  static bool any_pair(const TriangleTree& a, const TriangleTree& b, Test& test) {
+    return any(a, 0, b, 0, test);
+  }
+
+ private:
+  struct Node {
+    OrientedBox box;
+    std::uint32_t first = 0, last = 0;  ///< into triangles_
+    std::uint32_t right = 0;            ///< child; the left one follows its parent. 0: leaf
+  };
+
+  std::uint32_t build(const Mesh& mesh, const UnitCube& cube, std::uint32_t first, std::uint32_t last,
+                      std::uint32_t leaf_size);
+
+  template <class Test>
+  static bool any(const TriangleTree& a, std::uint32_t m, const TriangleTree& b, std::uint32_t n,
+                  Test& test) {
+    const Node &x = a.nodes_[m], &y = b.nodes_[n];
+    if (surely_apart(x.box, y.box)) return false;
+    if (x.right == 0 && y.right == 0) {
+      for (std::uint32_t i = x.first; i < x.last; ++i)
+        for (std::uint32_t j = y.first; j < y.last; ++j)
+          if (test(a.triangles_[i], b.triangles_[j])) return true;
+      return false;
+    }
+    if (y.right == 0 || (x.right != 0 && x.last - x.first >= y.last - y.first))
+      return any(a, m + 1, b, n, test) || any(a, x.right, b, n, test);
+    return any(a, m, b, n + 1, test) || any(a, m, b, y.right, test);
+  }
+
+  std::vector<Triangle> triangles_;
+  std::vector<Node> nodes_;
+};
 
 }  // namespace lrb

@@ -4,15 +4,14 @@
 // 3. Merge the ends of open sides that match one to one in opposite directions, until nothing changes.
 // 4. Then merge all open sides at each position once. If that changed anything, go back to step 3.
 // 5. Replace each merged vertex by the smallest of its set.
-#include "engine/mesh/join_corners.hpp"
-
 #include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
 
-#include "engine/core/disjoint_sets.hpp"
 #include "engine/mesh/vertex_merger.hpp"
+#include <lrbscope/core/disjoint_sets.hpp>
+#include <lrbscope/mesh_repair.hpp>
 
 namespace lrb {
 namespace {

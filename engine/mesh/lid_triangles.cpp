@@ -12,8 +12,7 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/core/infinity.hpp"
-#include "engine/exact/orient_axes.hpp"
+#include "engine/core/geometry.hpp"
 #include "engine/exact/predicates.hpp"
 
 namespace lrb::lids {

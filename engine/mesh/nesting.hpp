@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "engine/mesh/face_checks.hpp"
-#include "engine/mesh/mesh.hpp"
-#include "engine/mesh/surface_topology.hpp"
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb {
 
@@ -15,5 +15,9 @@ namespace lrb {
 /// nested. Exact, except for components all of whose tried vertices lie on another's surface.
 std::vector<std::vector<FaceId>> wrongly_facing_components(const Mesh& mesh, const std::vector<FaceUse>& use,
                                                            const SurfaceTopology& topology);
+
+/// Returns the sign (-1, 0, +1) of the volume behind a closed set of faces, each taken as its fan (2D: of the
+/// area to the left of a closed set of segments): +1 if they face outward. Exact; coordinates must be finite.
+int volume_sign(const Mesh& mesh, std::span<const FaceId> faces);
 
 }  // namespace lrb

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/mesh/mesh.hpp"
+#include <lrbscope/mesh.hpp>
 
 namespace lrb {
 

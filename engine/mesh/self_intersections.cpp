@@ -13,12 +13,11 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/exact/orient_axes.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/exact/simplex_test.hpp"
 #include "engine/mesh/face_pairs.hpp"
+#include "engine/mesh/hubs.hpp"
 #include "engine/mesh/polygon_shape.hpp"
-#include "engine/mesh/triangle_tree.hpp"
+#include <lrbscope/contact.hpp>
 
 namespace lrb {
 namespace {

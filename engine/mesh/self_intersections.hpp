@@ -4,9 +4,9 @@
 #include <functional>
 #include <vector>
 
-#include "engine/core/parallel.hpp"
-#include "engine/mesh/face_checks.hpp"
-#include "engine/mesh/mesh.hpp"
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/parallel.hpp>
 
 namespace lrb {
 

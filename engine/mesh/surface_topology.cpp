@@ -5,12 +5,11 @@
 // 3. Judge each edge: closed manifold edges have two sides in opposite directions.
 // 4. Judge each vertex: manifold vertices have one fan.
 // 5. Genus by Euler's formula, if the surface is closed and manifold.
-#include "engine/mesh/surface_topology.hpp"
-
 #include <algorithm>
 #include <span>
 
-#include "engine/core/disjoint_sets.hpp"
+#include <lrbscope/core/disjoint_sets.hpp>
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "engine/core/ids.hpp"
+#include <lrbscope/ids.hpp>
 
 namespace lrb {
 

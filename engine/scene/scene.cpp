@@ -5,19 +5,18 @@
 // nearest(): branch and bound over pairs in ascending order of the gaps of their AABBs.
 // Candidate pairs are sorted by gap and keys, so no result depends on the number of threads.
 
-#include "engine/scene/scene.hpp"
-
 #include <algorithm>
 #include <limits>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
 
-#include "engine/core/parallel.hpp"
-#include "engine/query/batch/batch.hpp"
-#include "engine/query/broad_phase.hpp"
-#include "engine/query/world_box.hpp"
 #include "engine/scene/near_boxes.hpp"
+#include <lrbscope/broad_phase.hpp>
+#include <lrbscope/parallel.hpp>
+#include <lrbscope/scene.hpp>
+#include <lrbscope/workspace.hpp>
+#include <lrbscope/world_box.hpp>
 
 namespace lrb {
 namespace scene {

@@ -13,7 +13,7 @@
 #include <Eigen/SVD>
 
 #include "engine/core/tolerances.hpp"
-#include "engine/tree/pose_bounds.hpp"
+#include "engine/tree/kernel_setup.hpp"
 
 namespace lrb {
 namespace {

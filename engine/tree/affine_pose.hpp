@@ -31,8 +31,8 @@
 ///
 /// Overflow makes bounds infinite or not a number: then nothing is culled, and nothing is certain.
 
-#include "engine/core/pose.hpp"
 #include "engine/tree/tree_kernel.hpp"
+#include <lrbscope/pose.hpp>
 
 namespace lrb {
 

@@ -1,15 +1,17 @@
 #pragma once
 /// The binary tree over simplices that becomes an OBB tree when it is collapsed to width eight.
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Geometry>
 
-#include "engine/core/ids.hpp"
-#include "engine/core/parallel.hpp"
 #include "engine/tree/fitted_cut.hpp"
-#include "engine/tree/soup.hpp"
+#include <lrbscope/ids.hpp>
+#include <lrbscope/obb_tree.hpp>
+#include <lrbscope/parallel.hpp>
 
 namespace lrb {
 
@@ -34,5 +36,33 @@ struct Splits {
 /// simplices on its left, so that all leaves but the last are full; among those splits a surface area
 /// heuristic chooses. Parents come before children, left before right. The same for any number of threads.
 std::vector<BinaryNode> build_binary_tree(Soup& soup, Workers& workers, Splits splits);
+
+// Which nodes of a binary tree become children of which wide ones.
+
+/// Collapses a binary tree to nodes of up to kTreeWidth children so that the sum of all wide nodes' costs is
+/// least. What a node costs is about how often it is visited: BinaryNode::cost to the power of 1.5.
+///
+/// Source: Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
+/// BVHs", 2017, section 3.1 (dynamic programming, from the leaves upward), where it is the surface itself.
+class Collapse {
+ public:
+  /// `tree` must outlive this.
+  explicit Collapse(std::span<const BinaryNode> tree);
+
+  /// Returns the children of the wide node that an inner node becomes: 2 to kTreeWidth, in the tree's order.
+  std::vector<std::uint32_t> children(std::uint32_t node) const;
+
+ private:
+  /// What is best for a subtree, where it may take the place of 1 to kTreeWidth children of a wide node.
+  struct Best {
+    std::array<double, kTreeWidth> cost{};           ///< [places - 1]: of all wide nodes in it
+    std::array<std::uint8_t, kTreeWidth> to_left{};  ///< [places - 1]: places that its left half takes
+  };
+
+  void share(std::uint32_t node, std::uint32_t places, std::vector<std::uint32_t>& children) const;
+
+  std::span<const BinaryNode> tree_;
+  std::vector<Best> best_;  ///< for each node; 0 for a leaf, which costs the same in every tree
+};
 
 }  // namespace lrb

@@ -3,13 +3,29 @@
 /// on all errors that come with it.
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
-#include "engine/core/pose.hpp"
+#include <Eigen/Core>
+
 #include "engine/tree/tree_kernel.hpp"
+#include <lrbscope/obb_tree.hpp>
+#include <lrbscope/pose.hpp>
 
 namespace lrb {
+
+/// The instruction sets that kernels are compiled for.
+enum class InstructionSet : std::uint8_t {
+  baseline,  ///< what every processor has
+  avx2,
+  avx512,  ///< still eight lanes, but truth values in mask registers
+};
+
+/// Returns the newest that the processor has and that the environment variable LRB_SIMD ("baseline", "avx2")
+/// allows.
+InstructionSet best_instruction_set();
 
 /// Returns the unit in which two trees are compared, as a multiple of the meshes' unit.
 inline double query_unit(const ObbTree& a, const ObbTree& b) {
@@ -53,5 +69,30 @@ void start_at_roots(TreeKernel& k, const ObbTree& a, const ObbTree& b, std::vect
 /// Makes the kernel of two wrappers allow for what rounding does to the bodies in them, too: see
 /// kWrapperSlack.
 void allow_for_wrappers(TreeKernel& k);
+
+// Bounds on what a pose can do to lengths and coordinates, on which culling and proofs in doubles rest.
+
+/// Returns how far r^T r is from the identity, as the largest row sum: a bound on the Euclidean norm, because
+/// the matrix is symmetric. Returns not-a-number where r^T r overflows to that.
+double rotation_defect(const Eigen::Matrix3d& r);
+
+/// Returns a bound on every world coordinate of a tree's simplices, and on every term on the way to it.
+double world_size(const Pose& pose, const ObbTree& tree);
+
+/// Returns the distance that wrappers must keep to prove that what is in them is separate: see
+/// kWrapperMargin.
+double wrapper_margin(const Pose& pose_a, const ObbTree& a, const Pose& pose_b, const ObbTree& b);
+
+/// Returns a bound on how much the pose stretches distances, for any finite matrix; for rotations that is 1,
+/// up to rounding.
+double stretch(const Pose& pose);
+
+/// Returns a bound on |d|, d the difference of two matrices that are nearly rotations. Between rotations
+/// |d|^2 is half the sum of the squares of its entries. A matrix with |r^T r - 1| <= D is within D of a
+/// rotation, and 2.3 (at least 1 + sqrt(3 / 2)) times the sum of both D, `defects`, is what that can add.
+inline double turn_bound(const Eigen::Matrix3d& d, double defects) {
+  constexpr double kToRotations = 2.3;
+  return std::sqrt(d.squaredNorm() / 2) + kToRotations * defects;
+}
 
 }  // namespace lrb

@@ -119,7 +119,7 @@ struct Verdict {
 };
 
 /// Decides whether two triangles overlap on the line in which their planes cross, if each has corners
-/// certainly on both sides of the other's plane. Decides this as engine/exact/planes_cross.hpp does, whose
+/// certainly on both sides of the other's plane. Decides this as engine/exact/plane_side.hpp does, whose
 /// orient3d(tip of a, end of a, tip of b, end of b) is -(edge of a x edge of b) . (tip of b - tip of a). A
 /// sign that is certain here is also that of the world coordinates: a world point in the leaf's frame is an
 /// affine image, which may be mirrored but preserves intersections, and every corner is within `error` of its

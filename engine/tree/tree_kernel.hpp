@@ -5,10 +5,15 @@
 /// Contains only plain structures: this header is compiled once per instruction set (tree_kernel_*.cpp).
 
 #include <cstdint>
+#include <functional>
 
-#include "engine/tree/obb_tree.hpp"
+#include <lrbscope/obb_tree.hpp>
 
 namespace lrb {
+
+/// Calls visit(s, t), s < t, for all pairs of a tree's simplices, in the body's own frame, that float
+/// arithmetic could not prove disjoint: all that meet, and a few that do not. In an unspecified order.
+void for_each_self_pair(const ObbTree& tree, const std::function<void(SimplexId, SimplexId)>& visit);
 
 struct NodePair {
   std::uint32_t a, b;

@@ -1,6 +1,6 @@
-// Compiled once per instruction set by tree_kernel_*.cpp, which define LRB_KERNEL_NAME. Only plain loops over
-// plain arrays here: an inline function of a library, compiled for a newer processor, could be picked by the
-// linker for all.
+// Compiled once per instruction set by tree_kernel_*.cpp, which define LRB_TREE_KERNEL_NAME. Only plain loops
+// over plain arrays here: an inline function of a library, compiled for a newer processor, could be picked by
+// the linker for all.
 //
 // The floating-point operations are the same for every instruction set and are not contracted, so that
 // counters and traces do not depend on the processor.
@@ -24,7 +24,7 @@ struct RigidWalk {
 
 }  // namespace
 
-void LRB_KERNEL_NAME(TreeKernel& k) {
+void LRB_TREE_KERNEL_NAME(TreeKernel& k) {
   // The batched test of node boxes allows for no margin: traverse without it.
   if (k.margin > 0) return run<RigidWalk<true>, false>(k, k.most_node_pairs);
   // The first few pairs of nodes in order of distance, the rest in batches of eight.

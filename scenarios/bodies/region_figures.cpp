@@ -8,10 +8,10 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/core/eigenvectors.hpp"
+#include "engine/core/geometry.hpp"
 #include "engine/lrb/thickness.hpp"
-#include "engine/lrb/validate.hpp"
-#include "scenarios/bodies/hull_figures.hpp"
+#include "scenarios/bodies/body_figures.hpp"
+#include <lrbscope/validate.hpp>
 
 namespace lrb::bodies {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/construct/build.hpp"
-#include "engine/core/enum_words.hpp"
-#include "engine/lrb/lrb_rep.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/enum_words.hpp>
+#include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::bodies {
 

@@ -5,14 +5,13 @@
 #include <filesystem>
 #include <optional>
 
-#include "engine/core/error.hpp"
-#include "engine/core/file_bytes.hpp"
-#include "render/montage.hpp"
-#include "render/overlay.hpp"
-#include "scenarios/run/face_values.hpp"
-#include "scenarios/run/moments.hpp"
+#include "render/pictures/panel.hpp"
+#include "scenarios/frames/face_colours.hpp"
+#include "scenarios/record/moments.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/view_camera.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
 
 namespace lrb::compare {
 namespace {

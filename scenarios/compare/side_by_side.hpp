@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "render/image.hpp"
-#include "scenarios/report/page/page.hpp"
-#include "scenarios/run/frame_job.hpp"
+#include "scenarios/frames/frames.hpp"
+#include "scenarios/report/document.hpp"
+#include <lrbscope/render/image.hpp>
 
 namespace lrb::compare {
 

@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <memory>
 
-#include "engine/core/atomic_file.hpp"
-#include "engine/lrb/wrapper.hpp"
-#include "engine/query/world_box.hpp"
-#include "render/frame_writer.hpp"
-#include "render/palette.hpp"
-#include "render/scene.hpp"
-#include "scenarios/crowd/crowd_json.hpp"
+#include "render/pictures/panel.hpp"
+#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/run/frame_files.hpp"
-#include "scenarios/run/frame_names.hpp"
-#include "scenarios/run/view_camera.hpp"
+#include "scenarios/record/recorded_run.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/render/frame_writer.hpp>
+#include <lrbscope/render/scene.hpp>
+#include <lrbscope/render/style.hpp>
+#include <lrbscope/world_box.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::crowd {
 namespace {

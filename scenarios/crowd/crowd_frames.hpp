@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scenarios/crowd/crowd_run.hpp"
-#include "scenarios/run/frame_job.hpp"
+#include "scenarios/frames/frames.hpp"
 
 namespace lrb::crowd {
 

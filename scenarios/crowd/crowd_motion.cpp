@@ -5,9 +5,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "engine/core/random.hpp"
-#include "engine/core/steady_math.hpp"
-#include "scenarios/spec/scenario_motion.hpp"
+#include "scenarios/spec/scenario.hpp"
+#include <lrbscope/core/random.hpp>
 
 namespace lrb::crowd {
 namespace {

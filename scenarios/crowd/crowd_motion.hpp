@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/lrb/lrb_rep.hpp"
 #include "scenarios/spec/crowd_spec.hpp"
+#include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::crowd {
 

@@ -4,14 +4,14 @@
 #include <chrono>
 #include <memory>
 
-#include "engine/core/error.hpp"
-#include "engine/core/parallel.hpp"
-#include "engine/query/batch/batch.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "engine/query/walk/query_context.hpp"
-#include "engine/scene/scene.hpp"
-#include "scenarios/run/frame_files.hpp"
-#include "scenarios/run/moments.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "engine/collide/query_context.hpp"
+#include "render/pictures/panel.hpp"
+#include "scenarios/record/moments.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/parallel.hpp>
+#include <lrbscope/scene.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::crowd {
 namespace {

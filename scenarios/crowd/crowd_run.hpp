@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/query/broad_phase.hpp"
-#include "engine/query/collide.hpp"
-#include "scenarios/bodies/body.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/crowd/crowd_motion.hpp"
-#include "scenarios/run/recorded_run.hpp"
+#include "scenarios/record/recorded_run.hpp"
 #include "scenarios/spec/crowd_spec.hpp"
+#include <lrbscope/broad_phase.hpp>
+#include <lrbscope/collide.hpp>
 
 namespace lrb::crowd {
 

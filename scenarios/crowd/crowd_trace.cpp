@@ -1,11 +1,12 @@
+#include "scenarios/crowd/crowd_trace.hpp"
+
 #include <algorithm>
 #include <string_view>
 #include <vector>
 
-#include "scenarios/crowd/crowd_json.hpp"
-#include "trace/hex.hpp"
-#include "trace/json_parts.hpp"
-#include "trace/names.hpp"
+#include "trace/trace_json_parts.hpp"
+#include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::crowd {
 namespace {

@@ -4,19 +4,16 @@
 #include <cmath>
 #include <filesystem>
 
-#include "engine/core/error.hpp"
-#include "render/cairo_canvas.hpp"
-#include "render/montage.hpp"
+#include "render/canvas.hpp"
 #include "render/paint_list.hpp"
-#include "render/png.hpp"
-#include "render/svg_canvas.hpp"
+#include "render/pictures/panel.hpp"
 #include "scenarios/figure/figure_layout.hpp"
-#include "scenarios/figure/paint_key.hpp"
-#include "scenarios/figure/panel_camera.hpp"
-#include "scenarios/run/frame_files.hpp"
-#include "scenarios/run/frame_state.hpp"
-#include "scenarios/run/framing.hpp"
-#include "scenarios/run/view_camera.hpp"
+#include "scenarios/figure/figure_panels.hpp"
+#include "scenarios/frames/frame_state.hpp"
+#include "scenarios/frames/framing.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/render/overlay.hpp>
 
 namespace lrb::figure {
 namespace {

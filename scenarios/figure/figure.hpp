@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "scenarios/figure/figure_moments.hpp"
-#include "scenarios/figure/length.hpp"
-#include "scenarios/run/frame_job.hpp"
+#include "scenarios/figure/figure_layout.hpp"
+#include "scenarios/figure/figure_panels.hpp"
+#include "scenarios/frames/frames.hpp"
 
 namespace lrb::figure {
 

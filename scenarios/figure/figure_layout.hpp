@@ -7,7 +7,9 @@
 
 #include <Eigen/Geometry>
 
-#include "render/overlay.hpp"
+#include "render/canvas.hpp"
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/style.hpp>
 
 namespace lrb::figure {
 
@@ -57,5 +59,20 @@ struct FigureLayout {
 FigureLayout lay_out(const std::vector<Block>& blocks, const std::vector<render::LegendItem>& legend,
                      const std::optional<render::ScaleBar>& scale, const std::string& caption,
                      const LayoutOptions& options);
+
+inline constexpr double kPointsPerMm = 72 / 25.4;
+
+/// Reads a length on paper, such as "85mm", "17.4cm", "3.3in" or "240pt", and returns it in points (1/72
+/// inch). Throws InputError that names `option`, also for what is shorter than `least` or longer than `most`
+/// points.
+double parse_length(const std::string& text, const std::string& option, double least, double most);
+
+/// Returns points in words: "85 mm".
+std::string length_words(double points);
+
+/// Paints legend and colour bar where the layout has them; both must be those that it was made for.
+void paint_key(render::Canvas& canvas, const FigureLayout& layout,
+               const std::vector<render::LegendItem>& legend, const std::optional<render::ScaleBar>& scale,
+               const render::Style& style);
 
 }  // namespace lrb::figure

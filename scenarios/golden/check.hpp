@@ -6,12 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/golden/effects.hpp"
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/golden/golden_run.hpp"
-#include "trace/divergence.hpp"
+#include <lrbscope/trace/divergence.hpp>
 
 namespace lrb::golden {
+
+/// Makes a run the golden. Leaves files alone that say the same already; where a picture has changed, removes
+/// its old variants. With `variant` the trace must be the approved one already, and pictures that differ are
+/// put beside the approved ones. Returns what was done, a line for each file; throws InputError.
+std::vector<std::string> approve_golden(const std::string& goldens, const GoldenSpec& spec,
+                                        const GoldenRun& run, const std::string& variant);
 
 struct ImageVerdict {
   std::string file;  ///< the approved picture that comes nearest; for a frame that has none, its own name

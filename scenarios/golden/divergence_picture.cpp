@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/core/error.hpp"
-#include "render/scene.hpp"
-#include "scenarios/run/moments.hpp"
-#include "scenarios/run/view_camera.hpp"
-#include "trace/cursor.hpp"
+#include "render/pictures/panel.hpp"
+#include "scenarios/record/moments.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/scene.hpp>
+#include <lrbscope/trace/replay.hpp>
 
 namespace lrb::golden {
 namespace {

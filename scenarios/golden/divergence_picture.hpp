@@ -4,7 +4,7 @@
 
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/golden/golden_run.hpp"
-#include "trace/divergence.hpp"
+#include <lrbscope/trace/divergence.hpp>
 
 namespace lrb::golden {
 

@@ -14,14 +14,26 @@
 #include <string>
 #include <vector>
 
-#include "engine/mesh/mesh.hpp"
-#include "render/image_diff.hpp"
-#include "render/png.hpp"
-#include "scenarios/golden/level.hpp"
 #include "scenarios/spec/scenario.hpp"
-#include "trace/trace.hpp"
+#include <lrbscope/enum_words.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::golden {
+
+/// What of a run must be as approved.
+enum class Level : std::uint8_t {
+  answers,   ///< of each step: relation, pairs, whether interiors overlap, and what a coarse query proves
+  events,    ///< bodies, request, poses, every event and every counter
+  pictures,  ///< frames, within a tolerance
+};
+constexpr auto words_of(Level) {
+  return std::to_array<EnumWord<Level>>(
+      {{Level::answers, "answers"}, {Level::events, "events"}, {Level::pictures, "pictures"}});
+}
+inline constexpr int kLevels = 3;
 
 /// What golden.json says.
 struct GoldenSpec {
@@ -88,5 +100,20 @@ std::vector<std::string> image_files_from(const std::string& folder, std::size_t
 
 inline const char* const kGoldenSpec = "golden.json";
 inline const char* const kGoldenTrace = "trace.json.gz";
+
+// Keeps the mesh of an approved body beside its golden, so that a later difference can be told: which
+// vertices moved, and by how much.
+
+/// Returns the real faces of a body, with the numbers that its vertices have.
+Mesh kept_mesh(const LrbRep& rep);
+/// Returns a hash of everything but the name.
+std::uint64_t mesh_hash(const Mesh& mesh);
+
+/// Returns the file, in the golden's folder, that keeps body A (0) or B (1): a.ply, or a.obj of a 2D body.
+std::string kept_file(std::size_t body, int dim);
+
+/// Tells in one line how two meshes differ: vertices that moved, the farthest one first; or other numbers of
+/// vertices and faces. Returns nothing if they are the same.
+std::string mesh_difference(const Mesh& expected, const Mesh& found);
 
 }  // namespace lrb::golden

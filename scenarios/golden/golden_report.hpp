@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "scenarios/golden/check.hpp"
-#include "scenarios/report/page/inline_image.hpp"
-#include "scenarios/report/page/page.hpp"
+#include "scenarios/report/assets.hpp"
+#include "scenarios/report/document.hpp"
 
 namespace lrb::golden {
 
@@ -45,5 +45,11 @@ void write_golden_page(const std::vector<GoldenResult>& results, const std::stri
 
 /// Returns the lines that tell people about a scenario's test.
 std::string result_text(const GoldenResult& result);
+
+// Writes a test's results as JUnit XML, which CI servers show.
+
+/// Returns a test suite with a case for each golden. A golden that could not be tested is an error; one that
+/// differs is a failure, with the lines that tell people about it.
+std::string junit_xml(const std::vector<GoldenResult>& results);
 
 }  // namespace lrb::golden

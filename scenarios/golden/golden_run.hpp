@@ -1,12 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "scenarios/frames/frames.hpp"
 #include "scenarios/golden/golden.hpp"
-#include "scenarios/run/frame_job.hpp"
-#include "scenarios/run/recorded_run.hpp"
+#include "scenarios/record/recorded_run.hpp"
 
 namespace lrb::golden {
 
@@ -41,5 +42,24 @@ std::string camera_words(const std::vector<render::Camera>& cameras);
 /// Sets the size of a golden's pictures unless one is asked for: of the scenario's shape, small enough to be
 /// kept and large enough for their text.
 void set_default_size(GoldenSpec& spec, const render::FrameSpec& frames);
+
+// Finds what a run answers otherwise than was approved, step by step, whatever the cause.
+
+struct Effect {
+  /// Answers decide whether a run passes where only these are compared.
+  enum class Kind : std::uint8_t { answer, measure, work };
+  std::uint32_t step = 0;  ///< the number that the scenario gives it
+  std::string what;        ///< e.g. "relation", "pairs", "face tests"
+  std::string expected, found;
+  Kind kind = Kind::answer;
+};
+
+/// Returns all of them: answers, then what is measured of them, then the work that led to them, each in the
+/// order of the steps.
+std::vector<Effect> find_effects(const Golden& golden, const GoldenRun& run);
+
+/// Returns the total length of the contact curves of each step, in the scenario's unit; nothing where the
+/// run did not ask for contacts.
+std::vector<double> contact_lengths(const run::Recording& recording);
 
 }  // namespace lrb::golden

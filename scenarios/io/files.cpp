@@ -2,17 +2,24 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <string>
 #include <system_error>
 
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "engine/core/atomic_file.hpp"
-#include "engine/core/error.hpp"
-#include "engine/core/file_bytes.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
 
 namespace lrb::io {
+
+std::string_view embedded_file(std::string_view name) {
+  for (const EmbeddedFile& file : embedded_files())
+    if (file.name == name) return file.text;
+  throw EnvironmentError("the program was built without its file " + std::string(name) + ": build it again");
+}
+
 namespace fs = std::filesystem;
 namespace {
 

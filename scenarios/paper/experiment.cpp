@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "scenarios/io/json/json_node.hpp"
-#include "scenarios/spec/scenario_body.hpp"
+#include "scenarios/record/recorded_run.hpp"
+#include "scenarios/spec/scenario.hpp"
+#include "scenarios/spec/shipped.hpp"
+#include "trace/json_read.hpp"
+#include <lrbscope/error.hpp>
 
 namespace lrb::paper {
 namespace {
@@ -98,6 +101,36 @@ PaperExperiment parse_experiment(const std::string& text, const std::string& fil
     root.at("objects").fail(
         "expected a second object for the first one to meet, or \"report\": [\"table1\"]");
   return e;
+}
+
+std::vector<PaperObject> make_objects(const PaperExperiment& experiment, std::vector<std::string>& notes) {
+  std::vector<PaperObject> objects;
+  for (const PaperExperiment::Object& o : experiment.objects) {
+    bodies::LoadedBody body = run::make_body(o.body);
+    notes.insert(notes.end(), body.notes.begin(), body.notes.end());
+    if (body.rep.dim() != 3)
+      throw InputError("experiment " + experiment.name + ": object " + o.name +
+                       " is a 2D body: give one in 3D");
+    const double by = objects.empty() ? 1 : diagonal(objects[0].rep) / diagonal(body.rep);
+    objects.push_back({o.name, by == 1 ? std::move(body.rep) : scaled(body.rep, by)});
+  }
+  return objects;
+}
+
+std::vector<std::string> shipped_experiments() {
+  return spec::shipped_names(spec::kExperimentEnding);
+}
+
+std::string shipped_experiment(const std::string& name) {
+  const std::vector<std::string> names = shipped_experiments();
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw InputError("no experiment is called \"" + name + "\"" + io::suggestion(name, names));
+  return spec::open_named(name, spec::kExperimentEnding, "experiment").text;
+}
+
+PaperExperiment open_experiment(const std::string& name_or_path) {
+  const spec::NamedText experiment = spec::open_named(name_or_path, spec::kExperimentEnding, "experiment");
+  return parse_experiment(experiment.text, experiment.file);
 }
 
 }  // namespace lrb::paper

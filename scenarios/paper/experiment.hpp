@@ -5,8 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/bodies/resolutions.hpp"
+#include "scenarios/paper/protocol.hpp"
 #include "scenarios/paper/sweep.hpp"
 #include "scenarios/spec/scenario.hpp"
+#include <lrbscope/core/fields.hpp>
 
 namespace lrb::paper {
 
@@ -50,3 +53,31 @@ std::vector<std::string> shipped_experiments();
 std::vector<PaperObject> make_objects(const PaperExperiment& experiment, std::vector<std::string>& notes);
 
 }  // namespace lrb::paper
+
+namespace lrb {
+
+// The tables of fields of the experiment's records and settings.
+
+template <>
+inline constexpr auto kFields<paper::PaperProtocol> =
+    std::tuple{field("collisions", &paper::PaperProtocol::collisions),
+               field("time_step_of_diagonal", &paper::PaperProtocol::step),
+               field("steps_after_first_contact", &paper::PaperProtocol::steps_after),
+               field("seed", &paper::PaperProtocol::seed)};
+static_assert(covers_all_fields<paper::PaperProtocol>);
+
+/// Without the time that a recursion took, which is never the same again and has a file of its own.
+template <>
+inline constexpr auto kFields<paper::RecursionCount> =
+    std::tuple{field("comparisons", &paper::RecursionCount::comparisons),
+               field("refinements", &paper::RecursionCount::refinements),
+               field("pairs", &paper::RecursionCount::pairs), field("missed", &paper::RecursionCount::missed),
+               field("bound_tests", &paper::RecursionCount::bound_tests)};
+
+/// Without `least_faces`, which experiments leave as it is.
+template <>
+inline constexpr auto kFields<resolutions::ResolutionOptions> =
+    std::tuple{field("resolutions", &resolutions::ResolutionOptions::most),
+               field("subdivisions", &resolutions::ResolutionOptions::subdivisions)};
+
+}  // namespace lrb

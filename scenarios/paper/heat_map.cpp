@@ -1,15 +1,13 @@
-#include "scenarios/paper/heat_map.hpp"
-
 #include <algorithm>
 #include <cmath>
 
-#include "render/montage.hpp"
-#include "render/overlay.hpp"
-#include "render/palette.hpp"
-#include "render/rasterize.hpp"
-#include "render/scene.hpp"
-#include "trace/counters.hpp"
-#include "trace/cursor.hpp"
+#include "scenarios/paper/paper_pictures.hpp"
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/rasterize.hpp>
+#include <lrbscope/render/scene.hpp>
+#include <lrbscope/render/style.hpp>
+#include <lrbscope/trace/counters.hpp>
+#include <lrbscope/trace/replay.hpp>
 
 namespace lrb::paper {
 namespace {

@@ -1,15 +1,14 @@
-#include "scenarios/paper/icicle.hpp"
-
 #include <algorithm>
 #include <numeric>
 
-#include "render/markup.hpp"
-#include "render/overlay.hpp"
-#include "render/palette.hpp"
-#include "render/svg_text.hpp"
-#include "scenarios/run/moments.hpp"
-#include "trace/counters.hpp"
-#include "trace/cursor.hpp"
+#include "render/canvas.hpp"
+#include "scenarios/paper/paper_pictures.hpp"
+#include "scenarios/record/moments.hpp"
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/style.hpp>
+#include <lrbscope/render/svg.hpp>
+#include <lrbscope/trace/counters.hpp>
+#include <lrbscope/trace/replay.hpp>
 
 namespace lrb::paper {
 namespace {

@@ -6,6 +6,7 @@
 #include "scenarios/paper/experiment.hpp"
 #include "scenarios/paper/series_report.hpp"
 #include "scenarios/paper/tables.hpp"
+#include "scenarios/report/document.hpp"
 
 namespace lrb::paper {
 
@@ -22,5 +23,16 @@ struct PaperReport {
 /// PNG, heat_maps.png and refinement_tree.svg, each if the experiment reports it; for a series, what
 /// add_series() writes. Returns lines for people (what could not be drawn). Throws EnvironmentError.
 std::vector<std::string> write_paper_report(const PaperReport& report, const std::string& folder);
+
+// Pictures of the paper's report: written as files, and put into its page.
+
+/// Throws InputError if the steps are not those of the experiment, as far as the numbers of collisions and
+/// its close-ups tell.
+void check_records(const PaperReport& report);
+
+/// Draws heat maps of the easiest and the hardest collision, and the refinement tree of the hardest one's
+/// busiest step, each if the experiment reports it. Adds what could not be drawn to `notes`.
+void draw_close_ups(const PaperReport& report, const std::string& folder, report::Page& page,
+                    std::vector<std::string>& notes);
 
 }  // namespace lrb::paper

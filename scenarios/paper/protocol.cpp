@@ -5,10 +5,10 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/core/fnv.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "engine/query/walk/query_context.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "engine/collide/query_context.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/core/hash.hpp>
 
 namespace lrb::paper {
 namespace {

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/lrb/lrb_rep.hpp"
-#include "engine/query/collide.hpp"
-#include "engine/query/walk/query_context.hpp"
+#include "engine/collide/query_context.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::paper {
 

@@ -1,6 +1,7 @@
 #include "scenarios/paper/series.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -8,11 +9,36 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/core/error.hpp"
-#include "engine/core/file_bytes.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/mesh/mesh_check.hpp"
-#include "scenarios/bodies/generators/generators.hpp"
+#include "scenarios/bodies/generators.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_check.hpp>
+
+namespace lrb::resolutions {
+
+PowerFit fit_power(std::span<const double> x, std::span<const double> y) {
+  const auto n = static_cast<double>(x.size());
+  double mean_x = 0, mean_y = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    mean_x += std::log(x[i]) / n;
+    mean_y += std::log(y[i]) / n;
+  }
+  double xx = 0, xy = 0, yy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double dx = std::log(x[i]) - mean_x, dy = std::log(y[i]) - mean_y;
+    xx += dx * dx;
+    xy += dx * dy;
+    yy += dy * dy;
+  }
+  PowerFit fit;
+  fit.exponent = xy / xx;
+  fit.factor = std::exp(mean_y - fit.exponent * mean_x);
+  if (x.size() > 2) fit.error = std::sqrt(std::max(0.0, yy - fit.exponent * xy) / (n - 2) / xx);
+  return fit;
+}
+
+}  // namespace lrb::resolutions
 
 namespace lrb::paper {
 namespace {

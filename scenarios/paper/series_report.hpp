@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "scenarios/bodies/resolutions/power_fit.hpp"
 #include "scenarios/paper/series.hpp"
-#include "scenarios/report/page/page.hpp"
+#include "scenarios/report/document.hpp"
+#include "scenarios/report/gnuplot.hpp"
 
 namespace lrb::paper {
 
@@ -31,5 +31,15 @@ std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows);
 /// returns what Markdown shows beside them.
 std::string add_series(const SeriesReport& report, const std::string& folder, bool figures,
                        report::Page& page);
+
+// Draws the series' figures for print: a panel for each partner and recursion, sizes and counts on log axes.
+
+/// Draws faces against comparisons: average with minimum and maximum, and the fitted power.
+report::Gnuplot series_comparisons(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits);
+/// Draws faces against the median time of a query, and the fitted power.
+report::Gnuplot series_time(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits);
+
+/// Returns a fitted power in words, such as "n^0.52 ± 0.01".
+std::string power_text(const resolutions::PowerFit& fit);
 
 }  // namespace lrb::paper

@@ -1,19 +1,146 @@
 #include "scenarios/paper/sweep.hpp"
 
+#include <algorithm>
+#include <filesystem>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <tuple>
 
 #include <nlohmann/json.hpp>
 
-#include "engine/core/error.hpp"
-#include "engine/core/file_bytes.hpp"
-#include "engine/core/parallel.hpp"
-#include "engine/query/walk/query_context.hpp"
-#include "scenarios/io/json/record_json.hpp"
-#include "scenarios/paper/fields.hpp"
-#include "trace/names.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "engine/collide/query_context.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/paper/experiment.hpp"
+#include "trace/json_read.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/parallel.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::paper {
+namespace {
+
+/// Returns true if the records of one collision, in the order of its steps, agree with what it took now.
+bool same_counts(std::span<const ContactStep> records, const CloseUp& found, const std::string& object) {
+  std::size_t next = 0;
+  for (const ContactStep& r : records) {
+    if (r.object != object || r.collision != found.collision) continue;
+    if (next >= found.steps.size()) return false;
+    const ContactStep& now = found.steps[next++];
+    if (r.step != now.step || r.counts[kPaper].comparisons != now.counts[kPaper].comparisons) return false;
+  }
+  return next == found.steps.size();
+}
+
+}  // namespace
+
+std::array<std::uint32_t, 2> easiest_and_hardest(std::span<const ContactStep> steps,
+                                                 const std::string& object) {
+  std::map<std::uint32_t, std::uint64_t> comparisons;
+  for (const ContactStep& s : steps)
+    if (s.object == object) comparisons[s.collision] += s.counts[kPaper].comparisons;
+  if (comparisons.empty())
+    throw InputError("no collision with " + object + " was recorded: there is nothing to look at closely");
+  const auto less = [](const auto& p, const auto& q) { return p.second < q.second; };
+  return {std::min_element(comparisons.begin(), comparisons.end(), less)->first,
+          std::max_element(comparisons.begin(), comparisons.end(), less)->first};
+}
+
+CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProtocol& protocol,
+                 std::span<const ContactStep> records) {
+  QueryContext context;
+  CloseUp out;
+  out.collision = collision;
+  out.steps = run_collision(pair.a.rep, pair.x.rep, pair.x.name, collision, protocol, context);
+  if (!same_counts(records, out, pair.x.name))
+    throw InputError("collision " + std::to_string(collision) + " of " + pair.a.name + " with " +
+                     pair.x.name +
+                     " is not what the records say: they were made by another experiment; "
+                     "give the one they were made by, with the same options");
+  trace::RecorderSettings settings;
+  settings.request.recursion = kRecursions[kPaper];
+  trace::Recorder recorder(pair.a.rep, pair.x.rep, settings);
+  for (const ContactStep& s : out.steps) {
+    recorder.begin_step(s.step, s.pose_a, s.pose_x);
+    recorder.end_step(
+        collide(pair.a.rep, s.pose_a, pair.x.rep, s.pose_x, settings.request, context, recorder));
+    out.comparisons += s.counts[kPaper].comparisons;
+  }
+  out.trace = recorder.take();
+  return out;
+}
+
+namespace {
+
+/// Returns what shards of one experiment have in common.
+nlohmann::ordered_json experiment(const ShardFile& s) {
+  nlohmann::ordered_json out = {{"shards", s.shard.count}};
+  out.update(io::record_to_json(s.protocol));
+  out.update(io::record_to_json(s.resolutions));
+  out["lean"] = s.lean;
+  return out;
+}
+
+ShardFile read(const std::string& path) {
+  const auto refuse = [&](const char* why) {
+    throw InputError(printable_name(path) + ": not written by `lrbscope paper --shard`: " +
+                     printable_name(why) + "; give the records.jsonl in the folders that its shards wrote");
+  };
+  const auto j = nlohmann::json::parse(io::read_text(path), nullptr, false);
+  ShardFile s;
+  try {
+    s.shard = {j.at("shard").get<std::uint32_t>(), j.at("shards").get<std::uint32_t>()};
+    s.protocol = io::record_from_json<PaperProtocol>(j);
+    s.resolutions = io::record_from_json<resolutions::ResolutionOptions>(j);
+    s.lean = j.value("lean", false);
+  } catch (const nlohmann::json::exception& e) {
+    refuse(e.what());
+  } catch (const InputError& e) {
+    refuse(e.what());
+  }
+  return s;
+}
+
+}  // namespace
+
+std::string shard_file_of(const std::string& records) {
+  return (std::filesystem::path(records).parent_path() / "shard.json").string();
+}
+
+void write_shard_file(const ShardFile& shard, const std::string& folder) {
+  nlohmann::ordered_json j = {{"shard", shard.shard.index}};
+  j.update(experiment(shard));
+  io::write_text(folder + "/shard.json", j.dump(2) + "\n");
+}
+
+ShardFile read_shard_files(const std::vector<std::string>& records) {
+  std::optional<ShardFile> first;
+  std::vector<std::uint32_t> there;
+  for (const std::string& file : records) {
+    const std::string path = shard_file_of(file);
+    const ShardFile s = read(path);
+    if (!first) first = s;
+    if (experiment(s) != experiment(*first))
+      throw InputError(printable_name(path) + ": a shard of another experiment than " +
+                       printable_name(shard_file_of(records.front())) +
+                       "; give all shards of one, run with the same options");
+    there.push_back(s.shard.index);
+  }
+  std::sort(there.begin(), there.end());
+  for (std::uint32_t i = 0; i < first->shard.count; ++i) {
+    const auto times = std::count(there.begin(), there.end(), i);
+    if (times != 1)
+      throw InputError("--merge: shard " + std::to_string(i) + "/" + std::to_string(first->shard.count) +
+                       (times == 0 ? " is missing" : " is there twice") +
+                       "; give each shard's records.jsonl once");
+  }
+  first->shard = {};
+  return *first;
+}
+
 namespace {
 
 using nlohmann::json;

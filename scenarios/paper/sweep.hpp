@@ -2,13 +2,16 @@
 /// Runs all collisions of the experiment, distributed over threads and, as shards, over processes and
 /// machines. The result of a collision does not depend on who computes it.
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "scenarios/bodies/resolutions.hpp"
 #include "scenarios/paper/protocol.hpp"
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::paper {
 
@@ -40,5 +43,49 @@ std::string to_json_lines(std::span<const ContactStep> steps);
 std::vector<ContactStep> read_json_lines(const std::string& text, const std::string& file);
 /// Puts the steps of several shards in order. Throws InputError if a step is there twice.
 std::vector<ContactStep> merged(std::vector<ContactStep> steps);
+
+// Repeats single collisions of the sweep by the paper's recursion and records every event.
+
+/// Two bodies of the experiment.
+struct PaperPair {
+  const PaperObject &a, &x;
+  const LrbRep& rep(Side side) const { return side == Side::a ? a.rep : x.rep; }
+  const std::string& name(Side side) const { return side == Side::a ? a.name : x.name; }
+};
+
+struct CloseUp {
+  std::uint32_t collision = 0;
+  std::uint64_t comparisons = 0;   ///< number in all its counted time steps, by the paper's recursion
+  std::vector<ContactStep> steps;  ///< with poses
+  trace::Trace trace;              ///< of the paper's recursion: each counted step is a time step
+};
+
+/// Returns the collisions with this object that took the fewest and the most comparisons of the paper's
+/// recursion over their counted time steps; of several, the first. Throws InputError if there is none.
+std::array<std::uint32_t, 2> easiest_and_hardest(std::span<const ContactStep> steps,
+                                                 const std::string& object);
+
+/// Repeats a collision. Throws InputError if its counts are not those of `records`, which must then come from
+/// another experiment.
+CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProtocol& protocol,
+                 std::span<const ContactStep> records);
+
+// Tells what a shard is a part of, so that merging notices shards that are missing or of another experiment.
+
+struct ShardFile {
+  Shard shard;
+  PaperProtocol protocol;
+  resolutions::ResolutionOptions resolutions;  ///< of the series; most = 0: there is none
+  bool lean = false;                           ///< the series' bodies are built lean (BuildOptions)
+};
+
+/// Returns its path: beside the records.jsonl of the shard.
+std::string shard_file_of(const std::string& records);
+
+void write_shard_file(const ShardFile& shard, const std::string& folder);
+
+/// Reads the files beside these records.jsonl and returns the experiment that all are parts of, as shard 0/1.
+/// Throws InputError if one is missing or of another experiment, or if they are not all n shards, once each.
+ShardFile read_shard_files(const std::vector<std::string>& records);
 
 }  // namespace lrb::paper

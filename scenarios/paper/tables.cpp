@@ -6,9 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scenarios/io/json/record_json.hpp"
-#include "scenarios/paper/fields.hpp"
-#include "trace/names.hpp"
+#include "scenarios/paper/experiment.hpp"
+#include "trace/json_read.hpp"
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::paper {
 namespace {

@@ -1,14 +1,34 @@
 #pragma once
 /// The paper's tables 1 and 2: as published, and as measured.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <iomanip>
 #include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "scenarios/paper/sweep.hpp"
+#include <lrbscope/render/overlay.hpp>
 
 namespace lrb::paper {
+
+// Writes numbers as the reports show them.
+
+inline std::string whole(double x) {
+  return (x < 0 ? "-" : "") + render::group_digits(static_cast<std::uint64_t>(std::llround(std::abs(x))));
+}
+
+/// Writes so many digits after the point; those before it in groups of three.
+inline std::string fixed(double x, int digits) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(digits) << std::abs(x);
+  const std::string text = out.str();
+  const std::size_t point = std::min(text.find('.'), text.size());
+  return (x < 0 ? "-" : "") + render::group_digits(std::stoull(text.substr(0, point))) + text.substr(point);
+}
 
 struct Spread {
   double min = 0, average = 0, max = 0;

@@ -2,10 +2,11 @@
 /// Explanations for people, and as JSON: what `lrbscope why` prints.
 
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
-#include "engine/query/explain.hpp"
+#include <lrbscope/explain.hpp>
 
 namespace lrb::run {
 
@@ -16,5 +17,10 @@ nlohmann::ordered_json explanation_json(const PairExplanation& e, const LrbRep& 
 /// Return how a query went, and what proves two bodies apart.
 std::string explanation_text(const WalkExplanation& e);
 nlohmann::ordered_json explanation_json(const WalkExplanation& e);
+
+// Explanations in words: the same in the program and on pages.
+
+/// Returns what decided about two faces, so that "decided by" can stand before it.
+std::string_view words(DecidedBy by);
 
 }  // namespace lrb::run

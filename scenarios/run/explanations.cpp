@@ -6,14 +6,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "render/overlay.hpp"
-#include "scenarios/io/number_text.hpp"
-#include "scenarios/report/page/packed.hpp"
-#include "scenarios/run/explanation_words.hpp"
-#include "scenarios/run/frame_files.hpp"
-#include "scenarios/run/moments.hpp"
-#include "scenarios/run/parting_square.hpp"
-#include "trace/names.hpp"
+#include "render/pictures/explain_picture.hpp"
+#include "render/pictures/panel.hpp"
+#include "scenarios/record/moments.hpp"
+#include "scenarios/report/assets.hpp"
+#include "scenarios/run/explanation_text.hpp"
+#include <lrbscope/core/strings.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::run {
 namespace {

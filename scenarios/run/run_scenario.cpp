@@ -3,16 +3,15 @@
 #include <filesystem>
 #include <vector>
 
-#include "engine/core/atomic_file.hpp"
-#include "engine/core/error.hpp"
-#include "engine/lrb/lrb_file.hpp"
+#include "scenarios/frames/frames.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/io/shell_word.hpp"
-#include "scenarios/run/frame_job.hpp"
-#include "scenarios/run/run_report.hpp"
-#include "trace/hex.hpp"
-#include "trace/summary_json.hpp"
-#include "trace/trace_json.hpp"
+#include "scenarios/run/run_page.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/core/strings.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 namespace lrb::run {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/run/frame_job.hpp"
-#include "scenarios/run/recorded_run.hpp"
+#include "scenarios/frames/frames.hpp"
+#include "scenarios/record/recorded_run.hpp"
 
 namespace lrb::run {
 

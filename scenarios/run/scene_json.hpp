@@ -5,10 +5,16 @@
 #include <cstddef>
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
+#include "scenarios/frames/frames.hpp"
 #include "scenarios/run/explanations.hpp"
-#include "scenarios/run/frame_job.hpp"
 
 namespace lrb::run {
+
+/// Returns what distances and clashes of a run found, for the page's view: for each step that has one, the
+/// way between the nearest points, or the way of B out of A; null if there is none.
+nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame);
 
 /// How much a page holds at most; it opens in a second or two with all of that.
 struct SceneLimits {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "engine/core/error.hpp"
-#include "engine/core/fnv.hpp"
-#include "scenarios/io/json/json_node.hpp"
-#include "scenarios/spec/scenario_body.hpp"
-#include "scenarios/spec/scenario_frames.hpp"
+#include "scenarios/spec/scenario.hpp"
+#include "scenarios/spec/shipped.hpp"
+#include "trace/json_read.hpp"
+#include <lrbscope/core/hash.hpp>
+#include <lrbscope/error.hpp>
 
 namespace lrb::spec {
 namespace {
@@ -106,6 +106,15 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   hash.add_bytes(text.data(), text.size());
   c.hash = hash.value();
   return c;
+}
+
+std::vector<std::string> shipped_crowds() {
+  return shipped_names(kCrowdEnding);
+}
+
+Crowd open_crowd(const std::string& name_or_path) {
+  const NamedText crowd = open_named(name_or_path, kCrowdEnding, "crowd");
+  return parse_crowd(crowd.text, crowd.file);
 }
 
 }  // namespace lrb::spec

@@ -4,17 +4,20 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/construct/build.hpp"
-#include "engine/core/enum_words.hpp"
-#include "engine/core/pose.hpp"
-#include "engine/query/collide.hpp"
-#include "scenarios/bodies/generators/generators.hpp"
-#include "scenarios/run/frame_spec.hpp"
-#include "trace/trace.hpp"
+#include "render/pictures/frame_spec.hpp"
+#include "scenarios/bodies/generators.hpp"
+#include "trace/json_read.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/collide.hpp>
+#include <lrbscope/enum_words.hpp>
+#include <lrbscope/pose.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::spec {
 
@@ -78,7 +81,7 @@ using render::FrameSpec;
 
 /// What else is asked at each step, and how steps follow each other.
 struct StepQuestions {
-  bool coherent = false;  ///< each step goes on from the one before: engine/query/coherent
+  bool coherent = false;  ///< each step goes on from the one before: engine/collide
   bool distance = false;  ///< how far apart the bodies are
   bool clash = false;     ///< what kind of contact they have, and how deep
 };
@@ -111,5 +114,48 @@ struct Scenario {
 /// Reads a scenario. `file` names it in messages, and its folder is where body files are looked up. Throws
 /// InputError: "file:line:column: pointer: what is wrong, what is known".
 Scenario parse_scenario(const std::string& text, const std::string& file);
+
+/// The largest integer that every reader of JSON can hold.
+inline constexpr std::uint64_t kAnySeed = std::numeric_limits<std::int64_t>::max();
+
+/// Reads a body of a scenario or an experiment. Files are looked up in `folder`; `seed` is for what does not
+/// name one.
+BodySpec read_body(const io::JsonNode& node, const std::filesystem::path& folder, std::uint64_t seed);
+
+/// Reads the "query" part of a scenario, with what else is asked of steps where there is a place for it.
+/// Refuses what the engine cannot give together.
+CollideRequest read_query(const io::JsonNode& node, StepQuestions* more = nullptr);
+
+/// Reads a name that a folder can have.
+std::string read_name(const io::JsonNode& node);
+
+inline constexpr double kLeastDpi = 24, kMostDpi = 2400;
+/// The greatest depth of tree nodes whose boxes can be asked for.
+inline constexpr std::uint32_t kMostDepth = 64;
+
+/// Returns what a run's frames are if nothing is said.
+FrameSpec default_frames(Show show);
+
+/// Reads the "frames" part of a scenario; what it leaves out is as in `fallback`.
+FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback);
+
+/// Return what traces keep of how a run is drawn, as a part of a scenario's "frames", and read it: sizes,
+/// style, views and columns, but not which moments. `name` names the trace in messages; empty text gives
+/// `fallback`. Reading throws InputError.
+std::string pictures_text(const FrameSpec& frames);
+FrameSpec read_pictures(const std::string& text, const std::string& name, const FrameSpec& fallback = {});
+
+// Reads poses and motions of a scenario, and computes the poses of those motions that need no query.
+
+/// Reads a pose: 12 numbers (3x4, row by row), or {position, axis, degrees}.
+Pose read_pose(const io::JsonNode& node);
+Motion read_motion(const io::JsonNode& node);
+
+/// Returns the poses of B, one for each step, for every kind of motion but approach (approach.hpp). `start`
+/// is the body's own pose, applied first.
+std::vector<Pose> poses_of(const Motion& motion, const Pose& start);
+
+/// Returns the pose that applies `first`, then `second`.
+Pose then(const Pose& first, const Pose& second);
 
 }  // namespace lrb::spec

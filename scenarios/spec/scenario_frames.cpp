@@ -1,6 +1,6 @@
-#include "scenarios/spec/scenario_frames.hpp"
-
 #include <Eigen/Geometry>
+
+#include "scenarios/spec/scenario.hpp"
 
 namespace lrb::spec {
 namespace {

@@ -1,8 +1,8 @@
-#include "scenarios/spec/scenario_motion.hpp"
-
 #include <numbers>
 
 #include <Eigen/Geometry>
+
+#include "scenarios/spec/scenario.hpp"
 
 namespace lrb::spec {
 namespace {
@@ -69,7 +69,7 @@ Pose turned(const Eigen::Vector3d& axis, double degrees, const Eigen::Vector3d& 
 
 std::vector<Pose> keyframe_poses(const std::vector<Motion::Keyframe>& keys) {
   const auto rotation = [](const Motion::Keyframe& k) {
-    // Everything is in long double, slerp too: see engine/core/steady_math.hpp.
+    // Everything is in long double, slerp too: see engine/include/lrbscope/core/random.hpp.
     return Eigen::Quaternion<long double>(
         Eigen::AngleAxis<long double>(k.degrees * kDegree, k.axis.normalized().cast<long double>()));
   };

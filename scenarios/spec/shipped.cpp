@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "engine/core/error.hpp"
-#include "scenarios/io/embedded.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/io/json/json_node.hpp"
-#include "scenarios/io/json/suggest.hpp"
+#include "trace/json_read.hpp"
+#include <lrbscope/error.hpp>
 
 namespace lrb::spec {
 std::vector<std::string> shipped_names(std::string_view ending) {

@@ -5,9 +5,9 @@
 #include <chrono>
 #include <vector>
 
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bench/first_meeting.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "bench/speed/make_sets.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 
 namespace lrb::bench {
 

@@ -16,11 +16,10 @@
 #include <thread>
 #include <vector>
 
-#include "engine/body/body.hpp"
-#include "engine/query/batch/batch.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/bench/timing.hpp"
+#include <lrbscope/body.hpp>
+#include <lrbscope/workspace.hpp>
 
 using namespace lrb;
 

@@ -18,17 +18,17 @@
 #include <malloc.h>
 #include <unistd.h>
 
-#include "engine/construct/build.hpp"
 #include "engine/construct/closing.hpp"
 #include "engine/construct/convex_hull.hpp"
-#include "engine/core/error.hpp"
-#include "engine/lrb/lrb_file.hpp"
-#include "engine/lrb/validate.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "scenarios/bodies/generators/generators.hpp"
-#include "scenarios/bodies/level_figures.hpp"
-#include "scenarios/bodies/resolutions/power_fit.hpp"
-#include "scenarios/bodies/resolutions/resolutions.hpp"
+#include "scenarios/bodies/body_figures.hpp"
+#include "scenarios/bodies/generators.hpp"
+#include "scenarios/bodies/resolutions.hpp"
+#include "scenarios/paper/series.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/validate.hpp>
 
 namespace {
 

@@ -12,12 +12,12 @@
 #include <ctime>
 #include <string>
 
-#include "engine/construct/build.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/query/clash/clash_impl.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/clash/clash_parts.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/bench/approaches.hpp"
 #include "tests/support/shared_meshes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/mesh.hpp>
 
 using namespace lrb;
 

@@ -19,16 +19,16 @@
 #include <string>
 #include <vector>
 
-#include "engine/construct/build.hpp"
-#include "engine/lrb/lrb_file.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
-#include "scenarios/io/number_text.hpp"
-#include "scenarios/report/charts/gnuplot.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "scenarios/report/gnuplot.hpp"
 #include "tests/bench/approaches.hpp"
 #include "tests/bench/timing.hpp"
 #include "tests/support/coarse_checks.hpp"
 #include "tests/support/shared_meshes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/core/strings.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
 
 using namespace lrb;
 using bench::Approach;

@@ -11,14 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "engine/construct/build.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/query/coherent/coherent_query.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/bench/timing.hpp"
 #include "tests/support/shared_meshes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/coherent.hpp>
+#include <lrbscope/mesh.hpp>
 
 using namespace lrb;
 using bench::median;

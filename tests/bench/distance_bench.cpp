@@ -12,15 +12,15 @@
 #include <cstring>
 #include <string>
 
-#include "engine/construct/build.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/query/distance/distance_impl.hpp"
+#include "engine/distance/distance_context.hpp"
 #include "tests/bench/approaches.hpp"
 #include "tests/bench/timing.hpp"
 #include "tests/support/shared_meshes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/mesh.hpp>
 
 #ifdef LRB_WITH_FCL
-#include "scenarios/methods/peers/fcl_instantiated.hpp"
+#include "bench/rivals/fcl_instantiated.hpp"
 #include "tests/bench/fcl_model.hpp"
 #define extern
 #include <fcl/narrowphase/distance.h>

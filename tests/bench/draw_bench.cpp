@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/run/frame_job.hpp"
-#include "scenarios/run/recorded_run.hpp"
+#include "scenarios/frames/frames.hpp"
+#include "scenarios/record/recorded_run.hpp"
 #include "tests/bench/timing.hpp"
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/folder.hpp"

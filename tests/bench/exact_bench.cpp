@@ -9,8 +9,8 @@
 #include <benchmark/benchmark.h>
 
 #include "engine/exact/predicates.hpp"
-#include "engine/exact/simplex_test.hpp"
 #include "tests/support/random_simplices.hpp"
+#include <lrbscope/contact.hpp>
 
 using namespace lrb;
 using test::SimplexPair;

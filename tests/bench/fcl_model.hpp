@@ -7,8 +7,8 @@
 
 #include <fcl/geometry/bvh/BVH_model.h>
 
-#include "engine/core/pose.hpp"
-#include "engine/lrb/lrb_rep.hpp"
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/pose.hpp>
 
 namespace lrb::bench {
 

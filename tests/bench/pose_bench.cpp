@@ -8,12 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/construct/build.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/shared_meshes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/mesh.hpp>
 
 using namespace lrb;
 

@@ -8,14 +8,14 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "engine/construct/build.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/query/brute_force.hpp"
 #include "tests/bench/approaches.hpp"
 #include "tests/bench/timing.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/collide.hpp>
+#include <lrbscope/mesh.hpp>
 
 #ifdef LRB_WITH_FCL
-#include "scenarios/methods/peers/fcl_instantiated.hpp"
+#include "bench/rivals/fcl_instantiated.hpp"
 #include "tests/bench/fcl_model.hpp"
 #endif
 

@@ -6,10 +6,9 @@
 
 #include <valgrind/callgrind.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/build.hpp>
 
 using namespace lrb;
 

@@ -17,8 +17,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/bench/sweep_methods.hpp"
 #include "tests/bench/timing.hpp"
 #include "tests/support/shared_meshes.hpp"

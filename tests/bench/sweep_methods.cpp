@@ -1,7 +1,7 @@
 #include "tests/bench/sweep_methods.hpp"
 
-#include "engine/query/collide_impl.hpp"
-#include "engine/query/motion/first_contact_impl.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "engine/motion/contact_search.hpp"
 #include "tests/bench/timing.hpp"
 
 namespace lrb::bench {

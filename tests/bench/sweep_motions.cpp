@@ -3,10 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/query/motion/first_contact_impl.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/motion/contact_search.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/mesh.hpp>
 
 namespace lrb::bench {
 namespace {

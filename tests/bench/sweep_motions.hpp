@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/lrb/lrb_rep.hpp"
-#include "engine/query/motion/first_contact.hpp"
+#include <lrbscope/first_contact.hpp>
+#include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::bench {
 

@@ -9,14 +9,14 @@
 
 #include <benchmark/benchmark.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/lrb_shapes.hpp"
-#include "trace/cursor.hpp"
-#include "trace/recorder.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/replay.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 namespace {
 

@@ -2,12 +2,12 @@
 
 #include <cstdio>
 
-#include "engine/core/atomic_file.hpp"
-#include "render/palette.hpp"
-#include "render/png.hpp"
+#include "bench/stability/stability_report.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/stability/report/stability_report.hpp"
-#include "tests/scenarios/stability/report/made_up_grid.hpp"
+#include "tests/stability/made_up_grid.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/render/style.hpp>
 
 using namespace lrb;
 using namespace lrb::stability;

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/bodies/resolutions/power_fit.hpp"
+#include "scenarios/paper/series.hpp"
 #include "tests/cliffs/memory.hpp"
 
 namespace lrb::cliffs {

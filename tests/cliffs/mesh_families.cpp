@@ -2,12 +2,12 @@
 
 #include <memory>
 
-#include "engine/construct/build.hpp"
-#include "engine/lrb/validate.hpp"
-#include "engine/mesh/mesh_check.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/cliffs/cliffs.hpp"
 #include "tests/support/hard_bodies.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/validate.hpp>
 
 namespace lrb::cliffs {
 namespace {

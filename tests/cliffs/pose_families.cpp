@@ -6,10 +6,10 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/query/collide.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/cliffs/cliffs.hpp"
+#include <lrbscope/collide.hpp>
 
 namespace lrb::cliffs {
 namespace {

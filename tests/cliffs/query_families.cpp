@@ -6,12 +6,12 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/mesh/checked_mesh.hpp"
-#include "engine/query/collide.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/cliffs/cliffs.hpp"
 #include "tests/support/hard_bodies.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb::cliffs {
 namespace {

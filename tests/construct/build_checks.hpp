@@ -8,10 +8,10 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/exact/simplex_test.hpp"
-#include "engine/lrb/validate.hpp"
-#include "engine/lrb/wrapper.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/contact.hpp>
+#include <lrbscope/validate.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::test {
 

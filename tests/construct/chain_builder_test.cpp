@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/construct/build_checks.hpp"
+#include <lrbscope/error.hpp>
 
 namespace lrb::test {
 

@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/lrb/validate.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/validate.hpp>
 
 namespace lrb::construct {
 namespace {

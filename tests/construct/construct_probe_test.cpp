@@ -9,9 +9,9 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/core/error.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/error.hpp>
 
 namespace lrb::test {
 

@@ -6,9 +6,8 @@
 
 #include "engine/construct/closing.hpp"
 #include "engine/construct/convex_hull.hpp"
-#include "engine/construct/convex_polygon.hpp"
 #include "engine/exact/predicates.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 
 namespace lrb::construct {
 namespace {

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/build.hpp>
 
 namespace lrb::test {
 

@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
 #include "tests/construct/build_checks.hpp"
 #include "tests/support/hard_bodies.hpp"
+#include <lrbscope/build.hpp>
 
 namespace lrb::test {
 

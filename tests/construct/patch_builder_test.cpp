@@ -3,12 +3,11 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "engine/mesh/mesh_check.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/construct/build_checks.hpp"
 #include "tests/support/noisy_quads.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb::test {
 

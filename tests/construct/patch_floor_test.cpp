@@ -1,5 +1,3 @@
-#include "engine/construct/patch_floor.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/construct/cap_gauge.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 
 namespace lrb::construct {

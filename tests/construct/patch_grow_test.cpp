@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 
 namespace lrb::construct {
 namespace {

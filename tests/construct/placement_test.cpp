@@ -1,10 +1,10 @@
-#include "engine/construct/placement.hpp"
-
 #include <limits>
 #include <random>
 
 #include <Eigen/LU>
 #include <doctest/doctest.h>
+
+#include "engine/construct/half_spaces.hpp"
 
 namespace lrb::construct {
 namespace {

@@ -7,9 +7,9 @@
 #include "engine/construct/closing.hpp"
 #include "engine/construct/convex_hull.hpp"
 #include "engine/lrb/thickness.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
 #include "tests/construct/build_checks.hpp"
 #include "tests/support/shared_meshes.hpp"
+#include <lrbscope/mesh.hpp>
 
 namespace lrb::test {
 namespace {

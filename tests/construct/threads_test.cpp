@@ -8,12 +8,12 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/core/file_bytes.hpp"
-#include "engine/core/parallel.hpp"
-#include "engine/lrb/lrb_file.hpp"
-#include "engine/lrb/validate.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/parallel.hpp>
+#include <lrbscope/validate.hpp>
 
 namespace lrb::test {
 namespace {

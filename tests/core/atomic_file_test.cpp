@@ -1,11 +1,10 @@
-#include "engine/core/atomic_file.hpp"
-
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
-#include "engine/core/error.hpp"
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/folder.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
 
 namespace lrb::test {
 

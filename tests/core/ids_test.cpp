@@ -1,12 +1,12 @@
 /// Ids of two kinds cannot be mixed up, and cost what their numbers cost. Nearly all of it is decided when
 /// this file is compiled.
 
-#include "engine/core/ids.hpp"
-
 #include <sstream>
 #include <unordered_set>
 
 #include <doctest/doctest.h>
+
+#include <lrbscope/ids.hpp>
 
 using namespace lrb;
 

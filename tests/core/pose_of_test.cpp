@@ -1,9 +1,9 @@
 // Poses from what others keep them in, to the bit.
-#include "engine/core/pose_of.hpp"
-
 #include <limits>
 
 #include <doctest/doctest.h>
+
+#include <lrbscope/pose.hpp>
 
 using namespace lrb;
 

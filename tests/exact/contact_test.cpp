@@ -7,9 +7,9 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/exact/pair_contact.hpp"
 #include "tests/support/contact_oracle.hpp"
 #include "tests/support/random_simplices.hpp"
+#include <lrbscope/contact.hpp>
 
 using namespace lrb;
 using exact::ContactCorner;

@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/exact/exact_sign.hpp"
 #include "engine/exact/fixed_point.hpp"
+#include "engine/exact/predicates.hpp"
 #include "tests/support/hull_oracle.hpp"
 #include "tests/support/random_simplices.hpp"
 #include "tests/support/rational_oracle.hpp"

@@ -2,10 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/cases/families.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/query/brute_force.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/cases/families.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/collide.hpp>
 
 using namespace lrb;
 

@@ -4,10 +4,10 @@
 #include <doctest/doctest.h>
 
 #include "engine/exact/predicates.hpp"
-#include "engine/exact/simplex_test.hpp"
 #include "tests/support/meet_roles.hpp"
 #include "tests/support/random_simplices.hpp"
 #include "tests/support/rational_oracle.hpp"
+#include <lrbscope/contact.hpp>
 
 using namespace lrb;
 using lrb::test::Kind;

@@ -5,9 +5,9 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/exact/simplex_test.hpp"
 #include "tests/support/hull_oracle.hpp"
 #include "tests/support/random_simplices.hpp"
+#include <lrbscope/contact.hpp>
 
 using namespace lrb;
 using lrb::test::Kind;

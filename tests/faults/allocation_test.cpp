@@ -9,20 +9,19 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/lrb/lrb_file.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/mesh/mesh_check.hpp"
-#include "engine/query/coherent/coherent_query.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/hand_made.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/faults/failing_new.hpp"
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/lrb_shapes.hpp"
-#include "trace/recorder.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/coherent.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 namespace lrb::test {
 
@@ -195,7 +194,7 @@ TEST_CASE("a warm query takes memory for its answer alone") {
 }
 
 // Not the reading of traces: the destructors of nlohmann-json 3.11 allocate, and end the process if they
-// cannot (lrbscope then says what it says for std::bad_alloc, see scenarios/cli/signals.cpp).
+// cannot (lrbscope then says what it says for std::bad_alloc, see tools/terminal.cpp).
 TEST_CASE("a run that is recorded while memory runs out") {
   Asked q;
   const auto record = [&] {

@@ -1,14 +1,12 @@
 /// A workspace asks for no memory once it has answered such queries before.
-#include "engine/query/batch/workspace.hpp"
-
 #include <vector>
 
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/faults/failing_new.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::test {
 

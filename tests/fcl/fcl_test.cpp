@@ -1,16 +1,14 @@
 // FCL's interface on this engine, beside FCL: what both answer, and where they differ, what brute force says.
-#include "lrb/fcl.hpp"
-
 #include <algorithm>
 #include <limits>
 #include <thread>
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "engine/query/brute_force.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/fcl.hpp>
 
 using namespace lrb;
 using shapes::RandomEngine;

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "engine/core/error.hpp"
+#include <lrbscope/error.hpp>
 
 namespace lrb::fuzz {
 

@@ -1,17 +1,17 @@
 #include <cmath>
 
-#include "engine/body/body.hpp"
-#include "engine/lrb/lrb_file.hpp"
-#include "engine/lrb/validate.hpp"
-#include "engine/lrb/wrapper_level.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/query/brute_force.hpp"
-#include "engine/query/distance/distance.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/fuzz/feed.hpp"
 #include "tests/support/hard_bodies.hpp"
 #include "tests/support/lrb_files.hpp"
 #include "tests/support/noisy_quads.hpp"
+#include <lrbscope/body.hpp>
+#include <lrbscope/collide.hpp>
+#include <lrbscope/distance.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/validate.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::fuzz {
 namespace {

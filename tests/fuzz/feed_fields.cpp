@@ -2,19 +2,18 @@
 #include <limits>
 #include <vector>
 
-#include "engine/construct/build.hpp"
-#include "engine/lrb/lrb_file.hpp"
-#include "engine/lrb/validate.hpp"
-#include "engine/lrb/wrapper.hpp"
-#include "engine/lrb/wrapper_level.hpp"
-#include "engine/query/clash/clash.hpp"
-#include "engine/query/distance/distance.hpp"
-#include "engine/query/explain.hpp"
-#include "engine/query/motion/first_contact.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/fuzz/feed.hpp"
 #include "tests/support/lrb_files.hpp"
 #include "tests/support/lrb_shapes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/clash.hpp>
+#include <lrbscope/distance.hpp>
+#include <lrbscope/explain.hpp>
+#include <lrbscope/first_contact.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/validate.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::fuzz {
 namespace {

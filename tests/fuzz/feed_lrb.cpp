@@ -1,9 +1,9 @@
 #include <cstring>
 
-#include "engine/lrb/lrb_file.hpp"
-#include "engine/lrb/validate.hpp"
-#include "engine/query/collide.hpp"
 #include "tests/fuzz/feed.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/validate.hpp>
 
 namespace lrb::fuzz {
 

@@ -1,6 +1,6 @@
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/mesh/mesh_check.hpp"
 #include "tests/fuzz/feed.hpp"
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb::fuzz {
 

@@ -10,11 +10,11 @@
 #include <numbers>
 #include <vector>
 
-#include "engine/query/clash/clash.hpp"
-#include "engine/query/collide.hpp"
-#include "engine/query/distance/distance.hpp"
-#include "engine/query/motion/first_contact.hpp"
 #include "tests/fuzz/feed.hpp"
+#include <lrbscope/clash.hpp>
+#include <lrbscope/collide.hpp>
+#include <lrbscope/distance.hpp>
+#include <lrbscope/first_contact.hpp>
 
 namespace lrb::fuzz {
 namespace {

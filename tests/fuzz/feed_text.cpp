@@ -1,9 +1,7 @@
-#include "scenarios/crowd/crowd_replay.hpp"
-#include "scenarios/io/json/pose_list.hpp"
-#include "scenarios/io/pose_file.hpp"
+#include "scenarios/crowd/crowd_trace.hpp"
+#include "scenarios/io/poses.hpp"
 #include "scenarios/paper/experiment.hpp"
 #include "scenarios/spec/scenario.hpp"
-#include "scenarios/spec/scenario_motion.hpp"
 #include "tests/fuzz/feed.hpp"
 
 namespace lrb::fuzz {

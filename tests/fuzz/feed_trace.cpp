@@ -1,6 +1,5 @@
 #include "tests/fuzz/feed.hpp"
-#include "trace/summary_json.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/trace/trace_json.hpp>
 
 namespace lrb::fuzz {
 

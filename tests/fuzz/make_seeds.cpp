@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "engine/core/atomic_file.hpp"
 #include "tests/fuzz/seeds.hpp"
+#include <lrbscope/core/file.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 
-#include "scenarios/bodies/shapes/hand_made.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/fuzz/feed.hpp"
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/lrb_files.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "tests/trace/runs.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/trace/trace_json.hpp>
 
 namespace lrb::fuzz {
 namespace {

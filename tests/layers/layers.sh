@@ -1,25 +1,37 @@
 #!/usr/bin/env bash
-# layers.sh [TREE]: reads every #include of ours in engine, trace, render and scenarios against rooms.txt, and fails on each
-# that goes where its room may not see, on a folder that is not on the list, and on a list with a circle.
+# layers.sh [TREE]: reads every #include of ours in the tree's sources against rooms.txt, and fails on each that goes where its
+# room may not see, on a folder or public header that is not on the list, and on a list with a circle.
 # layers.sh --self-test: turns an include of each room round, one after another in a copy, and fails unless each is found.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-tops=(engine trace render scenarios)
+tops=(engine trace render scenarios bench tools python)
 
 check() { # the tree's root
   cd "$1"
-  grep -rHE --include=*.hpp --include=*.cpp --include=*.inl '^#include "(engine|trace|render|scenarios|tests)/' "${tops[@]}" |
-    awk -v rooms="$here/rooms.txt" -v folders="$(find "${tops[@]}" -name '*.[chi]pp' -printf '%h\n' | sort -u | tr '\n' ' ')" '
+  grep -rHE --include=*.hpp --include=*.cpp --include=*.inl '^#include ("(engine|trace|render|scenarios|bench|tools|python|tests)/|<lrbscope/)' "${tops[@]}" |
+    awk -v rooms="$here/rooms.txt" -v folders="$(find "${tops[@]}" '(' -name '*.[chi]pp' -o -name '*.inl' ')' -not -path '*/include/*' -printf '%h\n' | sort -u | tr '\n' ' ')" \
+        -v headers="$(find engine/include -name '*.hpp' | sort | tr '\n' ' ')" '
       function sees(from, to, depth,   n, i, next_rooms) {
         if (depth > 50) return 0
         n = split(seen[from], next_rooms, " ")
         for (i = 1; i <= n; i++) if (next_rooms[i] == to || sees(next_rooms[i], to, depth + 1)) return 1
         return 0
       }
-      function folder(path) { sub(/\/[^\/]*$/, "", path); return path }
+      # A public header counts for the room that implements it, so that the face hides no arrow.
+      function room_of(path) {
+        if (path in owner) return owner[path]
+        sub(/\/include\/lrbscope\/.*$/, "/x", path)
+        sub(/\/[^\/]*$/, "", path)
+        return path
+      }
       BEGIN {
         while ((getline line < rooms) > 0) {
           if (line ~ /^ *(#|$)/) continue
+          if (split(line, part, / has +/) == 2) {
+            count = split(part[2], listed, " ")
+            for (i = 1; i <= count; i++) owner["engine/include/lrbscope/" listed[i] ".hpp"] = part[1]
+            continue
+          }
           split(line, part, /: */)
           known[part[1]] = 1
           seen[part[1]] = part[2]
@@ -31,17 +43,34 @@ check() { # the tree's root
         }
         count = split(folders, there, " ")
         for (i = 1; i <= count; i++) if (!(there[i] in known)) complain(there[i] ": a new folder: put it, and what it may see, on tests/layers/rooms.txt")
+        count = split(headers, there, " ")
+        for (i = 1; i <= count; i++) if (!(there[i] in owner)) complain(there[i] ": a new public header: put it behind the room that implements it, on tests/layers/rooms.txt")
+        for (header in owner) if (index(" " headers, " " header " ") == 0) complain("rooms.txt: there is no " header)
       }
       function complain(text) { print text; bad = 1 }
       {
         file = $0; sub(/:#include.*/, "", file)
-        target = $0; sub(/^[^"]*"/, "", target); sub(/".*/, "", target)
-        from = folder(file); to = folder(target); includes++
+        target = $0; sub(/^[^"<]*["<]/, "", target); sub(/[">].*/, "", target)
+        if (target ~ /^lrbscope\//) {
+          component = "engine"
+          if (target ~ /^lrbscope\/(trace|render)\//) { component = target; sub(/^lrbscope\//, "", component); sub(/\/.*/, "", component) }
+          target = component "/include/" target
+        }
+        from = room_of(file); to = room_of(target); includes++
         key = from SUBSEP to
         if (!(key in verdict)) verdict[key] = from == to || sees(from, to, 0)
         if (!verdict[key]) complain(file ": includes " target ", but " from " may not see " to " (tests/layers/rooms.txt)")
       }
       END { if (!bad) print includes " includes between rooms, all as tests/layers/rooms.txt allows"; exit bad }'
+}
+
+# Prints the room of a file; of a public header of the engine, the one that implements it.
+room_of() {
+  case "$1" in
+    engine/include/*) awk -v file="$1" '/^[^#].* has / { for (i = 3; i <= NF; i++) if (file == "engine/include/lrbscope/" $i ".hpp") print $1 }' "$here/rooms.txt" ;;
+    */include/*) echo "${1%%/include/*}" ;;
+    *) echo "${1%/*}" ;;
+  esac
 }
 
 self_test() {
@@ -51,7 +80,12 @@ self_test() {
   trap 'rm -rf "$copy"' EXIT # not local: the trap outlives this function
   (cd "$root" && find "${tops[@]}" -name '*.[chi]pp' -o -name '*.inl' | tar -cf - -T -) | tar -xf - -C "$copy"
   # An include from one room to another, turned round: the header that was included includes its user's room.
+  local -A done=()
   while read -r file header; do
+    local pair
+    pair="$(room_of "$file") $(room_of "$header")"
+    if [ "${pair% *}" = "${pair#* }" ] || [ -n "${done[$pair]:-}" ]; then continue; fi
+    done[$pair]=1
     cp "$copy/$header" "$copy/kept"
     printf '#include "%s"\n' "$file" >>"$copy/$header"
     if (check "$copy") >"$copy/said"; then
@@ -61,12 +95,15 @@ self_test() {
     grep -qF "$header: includes $file" "$copy/said" || { echo "layers.sh: complained of something else than $header" >&2; return 1; }
     mv "$copy/kept" "$copy/$header"
     turned=$((turned + 1))
-  done < <(cd "$copy" && grep -rHoE --include=*.hpp '^#include "(engine|trace|render|scenarios)/[^"]+' "${tops[@]}" | sed 's/:#include "/ /' |
-             awk '{ a = $1; b = $2; sub(/\/[^\/]*$/, "", a); sub(/\/[^\/]*$/, "", b); if (a != b && !(a in done)) { done[a] = 1; print $1, $2 } }')
+  done < <(cd "$copy" && grep -rHoE --include=*.hpp '^#include ("(engine|trace|render|scenarios|bench)/[^"]+|<lrbscope/[a-z_]+\.hpp)' "${tops[@]}" |
+             sed -E 's/:#include "/ /; s/:#include <(lrbscope)/ engine\/include\/\1/')
   [ "$turned" -gt 10 ] || { echo "layers.sh: only $turned includes to turn round" >&2; return 1; }
   mkdir "$copy/engine/attic" && : >"$copy/engine/attic/x.hpp"
   ! (check "$copy") >"$copy/said" && grep -q '^engine/attic: a new folder' "$copy/said" || { echo "layers.sh: did not notice a new folder" >&2; return 1; }
-  echo "$turned includes turned round, and a new folder: each was noticed"
+  rm -r "$copy/engine/attic"
+  : >"$copy/engine/include/lrbscope/attic.hpp"
+  ! (check "$copy") >"$copy/said" && grep -q 'attic.hpp: a new public header' "$copy/said" || { echo "layers.sh: did not notice a new public header" >&2; return 1; }
+  echo "$turned includes turned round, a new folder, and a new public header: each was noticed"
 }
 
 case "${1:-}" in

@@ -1,25 +1,21 @@
 // What comes back from a .lrb file is what went in, and nothing else is taken for one.
-#include "engine/lrb/lrb_file.hpp"
-
 #include <algorithm>
 #include <cstring>
 #include <limits>
 
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/core/error.hpp"
-#include "engine/lrb/validate.hpp"
-#include "engine/lrb/wrapper_level.hpp"
-#include "engine/query/brute_force.hpp"
-#include "engine/query/collide.hpp"
-#include "scenarios/bodies/shapes/hand_made.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/lrb_files.hpp"
 #include "tests/support/lrb_shapes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/validate.hpp>
+#include <lrbscope/wrapper.hpp>
 
 using namespace lrb;
 using shapes::RandomEngine;

@@ -1,10 +1,8 @@
-#include "engine/lrb/lrb_rep.hpp"
-
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "scenarios/bodies/shapes/hand_made.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
 
 using namespace lrb;
 

@@ -9,12 +9,12 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "tests/support/shared_meshes.hpp"
 #include "tests/support/simplex_distance.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/mesh.hpp>
 
 namespace lrb::test {
 namespace {

@@ -1,17 +1,15 @@
-#include "engine/lrb/validate.hpp"
-
 #include <cmath>
 #include <limits>
 
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
 #include "engine/lrb/thickness.hpp"
-#include "engine/lrb/wrapper_level.hpp"
-#include "scenarios/bodies/shapes/hand_made.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/faulty_meshes.hpp"
 #include "tests/support/lrb_shapes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/validate.hpp>
+#include <lrbscope/wrapper.hpp>
 
 using namespace lrb;
 

@@ -1,10 +1,9 @@
-#include "engine/lrb/wrapper.hpp"
-
 #include <random>
 
 #include <doctest/doctest.h>
 
-#include "scenarios/bodies/shapes/hand_made.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/wrapper.hpp>
 
 using namespace lrb;
 

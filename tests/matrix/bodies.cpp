@@ -3,9 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/query/motion/motion.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/closed_body.hpp"
 #include "tests/support/faulty_meshes.hpp"
@@ -13,6 +11,7 @@
 #include "tests/support/noisy_quads.hpp"
 #include "tests/support/simplex_distance.hpp"
 #include "tests/torture/sweep_oracle.hpp"
+#include <lrbscope/motion.hpp>
 
 namespace lrb::matrix {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/pose.hpp"
-#include "engine/mesh/mesh.hpp"
-#include "engine/query/brute_force.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/pose.hpp>
 
 namespace lrb::matrix {
 

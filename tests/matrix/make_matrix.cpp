@@ -10,11 +10,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/body/body.hpp"
-#include "engine/core/error.hpp"
-#include "engine/lrb/lrb_file.hpp"
 #include "tests/matrix/bodies.hpp"
 #include "tests/mesh/io/encode.hpp"
+#include <lrbscope/body.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
 
 using namespace lrb;
 using namespace lrb::matrix;

@@ -5,23 +5,23 @@
 
 #include <doctest/doctest.h>
 #ifdef LRB_MATRIX_FCL
-#include "lrb/fcl.hpp"
+#include <lrbscope/fcl.hpp>
 #endif
 
-#include "engine/body/body.hpp"
-#include "engine/core/error.hpp"
-#include "engine/lrb/lrb_file.hpp"
-#include "engine/lrb/validate.hpp"
-#include "engine/lrb/wrapper_level.hpp"
-#include "engine/mesh/checked_mesh.hpp"
-#include "engine/query/clash/clash.hpp"
-#include "engine/query/coherent/coherent_query.hpp"
-#include "engine/query/explain.hpp"
-#include "engine/query/motion/first_contact.hpp"
-#include "engine/scene/scene.hpp"
 #include "tests/matrix/bodies.hpp"
 #include "tests/matrix/child.hpp"
 #include "tests/support/folder.hpp"
+#include <lrbscope/body.hpp>
+#include <lrbscope/clash.hpp>
+#include <lrbscope/coherent.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/explain.hpp>
+#include <lrbscope/first_contact.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/scene.hpp>
+#include <lrbscope/validate.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::matrix {
 namespace {

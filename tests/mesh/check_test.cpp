@@ -6,9 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/mesh/checked_mesh.hpp"
-#include "engine/mesh/mesh_check.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb::test {
 

@@ -1,14 +1,13 @@
-#include "engine/mesh/checked_mesh.hpp"
-
 #include <random>
 #include <type_traits>
 
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/core/error.hpp"
 #include "engine/mesh/point_inside.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb::test {
 namespace {

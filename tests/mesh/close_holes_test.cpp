@@ -1,5 +1,3 @@
-#include "engine/mesh/close_holes.hpp"
-
 #include <algorithm>
 #include <numeric>
 #include <random>
@@ -7,11 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/mesh/boundary_loops.hpp"
-#include "engine/mesh/checked_mesh.hpp"
-#include "engine/mesh/mesh_check.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/faulty_meshes.hpp"
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/mesh_repair.hpp>
 
 namespace lrb::test {
 

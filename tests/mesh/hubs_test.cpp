@@ -1,5 +1,7 @@
 // Faces with very many corners and vertices with very many faces: found is what comparing all with all finds.
 
+#include "engine/mesh/hubs.hpp"
+
 #include <algorithm>
 #include <map>
 #include <random>
@@ -8,14 +10,13 @@
 #include <doctest/doctest.h>
 
 #include "engine/exact/predicates.hpp"
-#include "engine/exact/simplex_test.hpp"
 #include "engine/mesh/face_pairs.hpp"
-#include "engine/mesh/mesh_check.hpp"
-#include "engine/mesh/oriented_box.hpp"
 #include "engine/mesh/polygon_shape.hpp"
 #include "engine/mesh/self_intersections.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/hard_bodies.hpp"
+#include <lrbscope/contact.hpp>
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb::test {
 namespace {

@@ -1,13 +1,12 @@
-#include "engine/mesh/join_corners.hpp"
-
 #include <array>
 #include <vector>
 
 #include <doctest/doctest.h>
 
-#include "engine/mesh/mesh_check.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/faulty_meshes.hpp"
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/mesh_repair.hpp>
 
 namespace lrb::test {
 

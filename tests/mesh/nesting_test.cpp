@@ -1,12 +1,13 @@
+#include "engine/mesh/nesting.hpp"
+
 #include <numeric>
 #include <random>
 
 #include <doctest/doctest.h>
 
-#include "engine/mesh/mesh_check.hpp"
 #include "engine/mesh/point_inside.hpp"
-#include "engine/mesh/volume_sign.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb::test {
 

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/exact/predicates.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 
 namespace lrb::test {
 

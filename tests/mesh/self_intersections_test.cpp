@@ -6,9 +6,9 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/mesh/mesh_check.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/rational_oracle.hpp"
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb::test {
 

@@ -1,12 +1,11 @@
 #include <iostream>
 #include <vector>
 
-#include "engine/body/body.hpp"
-#include "engine/core/pose_of.hpp"
-#include "engine/query/batch/batch.hpp"
-#include "engine/query/batch/workspace.hpp"
-#include "engine/query/collide_probe.hpp"
-#include "engine/scene/scene.hpp"
+#include <lrbscope/body.hpp>
+#include <lrbscope/observe.hpp>
+#include <lrbscope/pose.hpp>
+#include <lrbscope/scene.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace {
 

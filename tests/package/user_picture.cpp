@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <iostream>
 
-#include "engine/body/body.hpp"
-#include "engine/query/collide_probe.hpp"
-#include "render/png.hpp"
-#include "render/rasterize.hpp"
-#include "render/scene.hpp"
-#include "trace/recorder.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/body.hpp>
+#include <lrbscope/observe.hpp>
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/render/rasterize.hpp>
+#include <lrbscope/render/scene.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "engine/core/error.hpp"
-#include "render/offscreen.hpp"
+#include "render/gl.hpp"
+#include <lrbscope/error.hpp>
 
 using namespace lrb;
 

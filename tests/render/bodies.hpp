@@ -6,8 +6,8 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/lrb/lrb_rep.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::test {
 

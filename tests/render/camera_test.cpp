@@ -1,11 +1,10 @@
-#include "render/camera.hpp"
-
 #include <limits>
 #include <random>
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/camera.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;

@@ -1,13 +1,12 @@
-#include "render/draw_list.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include <doctest/doctest.h>
 
-#include "render/screen_mesh.hpp"
 #include "tests/render/triangles.hpp"
+#include <lrbscope/render/draw_list.hpp>
+#include <lrbscope/render/rasterize.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;

@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "render/text.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
 
 namespace lrb::test {
 

@@ -5,13 +5,12 @@
 #include <filesystem>
 #include <string>
 
-#include "render/montage.hpp"
-#include "render/overlay.hpp"
-#include "render/palette.hpp"
-#include "render/png.hpp"
-#include "render/rasterize.hpp"
 #include "tests/render/scene_gallery.hpp"
 #include "tests/render/triangles.hpp"
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/rasterize.hpp>
+#include <lrbscope/render/style.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;

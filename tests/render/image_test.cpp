@@ -1,5 +1,3 @@
-#include "render/image.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,10 +6,9 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "render/image_diff.hpp"
-#include "render/palette.hpp"
-#include "render/style.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/render/style.hpp>
 
 using namespace lrb;
 

@@ -3,11 +3,10 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "render/montage.hpp"
-#include "render/overlay.hpp"
-#include "render/palette.hpp"
 #include "tests/render/font_guard.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/style.hpp>
 
 using namespace lrb;
 

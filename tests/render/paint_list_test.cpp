@@ -6,12 +6,11 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "render/cairo_canvas.hpp"
-#include "render/svg_canvas.hpp"
+#include "render/canvas.hpp"
 #include "tests/render/font_guard.hpp"
 #include "tests/support/pdf_text.hpp"
 #include "tests/support/text.hpp"
+#include <lrbscope/error.hpp>
 
 using namespace lrb;
 using Eigen::Vector2d;

@@ -1,5 +1,3 @@
-#include "render/png.hpp"
-
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -7,8 +5,9 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "render/frame_writer.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/frame_writer.hpp>
+#include <lrbscope/render/image.hpp>
 
 using namespace lrb;
 namespace fs = std::filesystem;

@@ -1,5 +1,3 @@
-#include "render/rasterize.hpp"
-
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -8,10 +6,11 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "render/offscreen.hpp"
+#include "render/gl.hpp"
 #include "tests/render/font_guard.hpp"
 #include "tests/render/triangles.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/rasterize.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;

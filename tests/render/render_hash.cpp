@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include "render/rasterize.hpp"
 #include "tests/render/triangles.hpp"
+#include <lrbscope/render/rasterize.hpp>
 
 using namespace lrb;
 

@@ -2,12 +2,12 @@
 
 #include <cmath>
 
-#include "render/montage.hpp"
-#include "render/palette.hpp"
-#include "render/png.hpp"
-#include "render/rasterize.hpp"
-#include "render/scene.hpp"
 #include "tests/render/bodies.hpp"
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/rasterize.hpp>
+#include <lrbscope/render/scene.hpp>
+#include <lrbscope/render/style.hpp>
 
 namespace lrb::test {
 namespace {

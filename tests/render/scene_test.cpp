@@ -1,5 +1,3 @@
-#include "render/scene.hpp"
-
 #include <algorithm>
 #include <map>
 #include <set>
@@ -7,12 +5,13 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "render/camera.hpp"
-#include "render/palette.hpp"
-#include "render/rasterize.hpp"
 #include "render/scene_parts.hpp"
 #include "tests/render/bodies.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/camera.hpp>
+#include <lrbscope/render/rasterize.hpp>
+#include <lrbscope/render/scene.hpp>
+#include <lrbscope/render/style.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;

@@ -1,5 +1,3 @@
-#include "render/svg.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -8,13 +6,13 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "render/rasterize.hpp"
-#include "render/scene.hpp"
-#include "render/svg_montage.hpp"
 #include "tests/render/bodies.hpp"
 #include "tests/render/font_guard.hpp"
 #include "tests/support/text.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/rasterize.hpp>
+#include <lrbscope/render/scene.hpp>
+#include <lrbscope/render/svg.hpp>
 
 using namespace lrb;
 using Eigen::Vector2d;

@@ -1,11 +1,10 @@
-#include "render/text.hpp"
-
 #include <cstdlib>
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
 #include "tests/render/font_guard.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
 
 using namespace lrb;
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/draw_list.hpp"
+#include <lrbscope/render/draw_list.hpp>
 
 namespace lrb::test {
 

@@ -10,16 +10,16 @@
 #include <thread>
 #include <vector>
 
-#include "engine/construct/build.hpp"
-#include "engine/core/error.hpp"
-#include "engine/core/file_bytes.hpp"
-#include "engine/core/fnv.hpp"
-#include "engine/lrb/lrb_file.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/generators/generators.hpp"
-#include "scenarios/cases/families.hpp"
-#include "trace/recorder.hpp"
-#include "trace/trace_json.hpp"
+#include "bench/cases/families.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/generators.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/core/hash.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 using namespace lrb;
 

@@ -1,16 +1,14 @@
 // Scenes against brute force, over random adds, removals and moves, for any number of threads.
-#include "engine/scene/scene.hpp"
-
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include <doctest/doctest.h>
 
-#include "engine/query/brute_force.hpp"
-#include "engine/query/world_box.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/scene.hpp>
+#include <lrbscope/world_box.hpp>
 
 using namespace lrb;
 using shapes::RandomEngine;

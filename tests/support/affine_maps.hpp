@@ -4,8 +4,8 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/core/pose.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/pose.hpp>
 
 namespace lrb::test {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "engine/lrb/lrb_rep.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::test {
 

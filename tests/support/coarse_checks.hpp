@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "engine/exact/pair_contact.hpp"
-#include "engine/query/collide_impl.hpp"
+#include "engine/collide/collide_into.hpp"
 #include "tests/support/simplex_distance.hpp"
+#include <lrbscope/contact.hpp>
 
 namespace lrb::test {
 

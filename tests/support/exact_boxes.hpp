@@ -11,11 +11,11 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <doctest/doctest.h>
 
-#include "engine/lrb/lrb_rep.hpp"
+#include "bench/cases/families.hpp"
 #include "engine/tree/kernel_boxes.inl"
-#include "scenarios/cases/families.hpp"
 #include "tests/support/rational_oracle.hpp"
 #include "tests/support/tree_content.hpp"
+#include <lrbscope/lrb_rep.hpp>
 
 namespace lrb {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "engine/mesh/mesh.hpp"
+#include <lrbscope/mesh.hpp>
 
 namespace lrb::test {
 

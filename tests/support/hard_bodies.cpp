@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 
 namespace lrb::hard {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "engine/mesh/mesh.hpp"
+#include <lrbscope/mesh.hpp>
 
 namespace lrb::hard {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/lrb/lrb_file.hpp"
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/folder.hpp"
+#include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::test {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/lrb/lrb_rep.hpp"
+#include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::toy {
 

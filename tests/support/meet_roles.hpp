@@ -2,8 +2,8 @@
 /// The engine's test of two simplices, asked in several roles: which one is first and the order of corners
 /// must not matter.
 
-#include "engine/exact/simplex_test.hpp"
 #include "tests/support/random_simplices.hpp"
+#include <lrbscope/contact.hpp>
 
 namespace lrb::test {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "engine/mesh/mesh.hpp"
+#include <lrbscope/mesh.hpp>
 
 namespace lrb::test {
 

@@ -8,9 +8,9 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/core/pose.hpp"
-#include "engine/lrb/lrb_rep.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/pose.hpp>
 
 namespace lrb::test {
 

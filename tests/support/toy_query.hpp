@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/core/pose.hpp"
-#include "engine/exact/simplex_test.hpp"
-#include "engine/lrb/wrapper.hpp"
-#include "engine/query/collide.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/contact.hpp>
+#include <lrbscope/pose.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::toy {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "engine/tree/obb_tree.hpp"
+#include <lrbscope/obb_tree.hpp>
 
 namespace lrb::test {
 

@@ -9,13 +9,13 @@
 #include <rapidcheck.h>
 #include <unistd.h>
 
-#include "engine/core/error.hpp"
-#include "engine/lrb/lrb_file.hpp"
-#include "engine/query/collide_impl.hpp"
+#include "engine/collide/collide_into.hpp"
 #include "tests/torture/regions.hpp"
 #include "tests/torture/sweep_oracle.hpp"
-#include "trace/cursor.hpp"
-#include "trace/recorder.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/replay.hpp>
 
 using namespace lrb;
 using namespace lrb::cases;

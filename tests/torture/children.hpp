@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes.hpp"
 
 namespace lrb::torture {
 

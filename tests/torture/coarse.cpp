@@ -2,11 +2,10 @@
 
 #include <cstdio>
 
-#include "engine/construct/build.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/coarse_checks.hpp"
 #include "tests/torture/children.hpp"
+#include <lrbscope/build.hpp>
 
 namespace lrb::torture {
 namespace {

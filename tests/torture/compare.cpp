@@ -4,13 +4,13 @@
 #include <cmath>
 #include <iterator>
 
-#include "engine/core/error.hpp"
-#include "engine/query/brute_force.hpp"
-#include "engine/query/collide_impl.hpp"
+#include "engine/collide/collide_into.hpp"
 #include "tests/support/rational_oracle.hpp"
 #include "tests/torture/cgal_oracle.hpp"
 #include "tests/torture/parity_oracle.hpp"
 #include "tests/torture/sweep_oracle.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
 
 namespace lrb::torture {
 namespace {

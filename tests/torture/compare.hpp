@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "scenarios/cases/families.hpp"
+#include "bench/cases/families.hpp"
 
 namespace lrb::torture {
 

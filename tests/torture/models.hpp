@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "scenarios/cases/families.hpp"
+#include "bench/cases/families.hpp"
 
 namespace lrb::torture {
 

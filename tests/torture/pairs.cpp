@@ -3,13 +3,13 @@
 #include <chrono>
 #include <cstdio>
 
-#include "engine/core/fnv.hpp"
-#include "engine/exact/simplex_test.hpp"
 #include "tests/support/meet_roles.hpp"
 #include "tests/support/random_simplices.hpp"
 #include "tests/support/rational_oracle.hpp"
 #include "tests/torture/cgal_oracle.hpp"
 #include "tests/torture/children.hpp"
+#include <lrbscope/contact.hpp>
+#include <lrbscope/core/hash.hpp>
 
 namespace lrb::torture {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 /// How bodies whose surfaces do not meet lie to each other, by the parity of a segment to a random point far
 /// off, in rationals where long doubles cannot decide; segments that graze an edge are thrown away. Shares
-/// nothing with engine/exact and engine/query but the definition of world coordinates.
+/// nothing with engine/exact and engine/collide but the definition of world coordinates.
 
 #include <algorithm>
 #include <array>
@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "engine/lrb/lrb_rep.hpp"
-#include "engine/query/collide.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/rational_oracle.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::torture {
 

@@ -5,15 +5,14 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
+#include "bench/cases/families.hpp"
+#include "engine/collide/collide_into.hpp"
 #include "engine/exact/locate.hpp"
-#include "engine/lrb/boundary_sum.hpp"
-#include "engine/lrb/wrapper.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/hand_made.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
-#include "scenarios/cases/families.hpp"
+#include "engine/lrb/complex.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/rational_oracle.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/wrapper.hpp>
 
 using namespace lrb;
 using namespace lrb::cases;

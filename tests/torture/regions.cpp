@@ -2,8 +2,8 @@
 
 #include <unordered_map>
 
-#include "engine/construct/build.hpp"
-#include "engine/core/error.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/error.hpp>
 
 namespace lrb::torture {
 namespace {

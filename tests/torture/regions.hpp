@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scenarios/cases/families.hpp"
+#include "bench/cases/families.hpp"
 
 namespace lrb::torture {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/exact/locate.hpp"
-#include "engine/query/brute_force.hpp"
+#include <lrbscope/collide.hpp>
 
 namespace lrb::torture {
 

@@ -3,10 +3,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/query/collide_impl.hpp"
-#include "engine/query/motion/first_contact_impl.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "engine/motion/contact_search.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/torture/children.hpp"
 
 namespace lrb::torture {

@@ -5,18 +5,16 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/hand_made.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/lrb_shapes.hpp"
-#include "trace/counters.hpp"
-#include "trace/cursor.hpp"
-#include "trace/divergence.hpp"
-#include "trace/names.hpp"
-#include "trace/recorder.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/trace/counters.hpp>
+#include <lrbscope/trace/divergence.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/replay.hpp>
+#include <lrbscope/trace/trace.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 using namespace lrb;
 using namespace lrb::trace;

@@ -8,17 +8,15 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/build.hpp"
-#include "engine/core/error.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/trace_schema.hpp"
-#include "trace/construct_recorder.hpp"
-#include "trace/counters.hpp"
-#include "trace/cursor.hpp"
-#include "trace/divergence.hpp"
-#include "trace/passes.hpp"
-#include "trace/summary_json.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/counters.hpp>
+#include <lrbscope/trace/divergence.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/replay.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 using namespace lrb;
 using namespace lrb::trace;

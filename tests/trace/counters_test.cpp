@@ -1,5 +1,3 @@
-#include "trace/counters.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -8,8 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/trace/runs.hpp"
-#include "trace/names.hpp"
-#include "trace/summary_json.hpp"
+#include <lrbscope/trace/counters.hpp>
+#include <lrbscope/trace/trace.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 using namespace lrb;
 using namespace lrb::trace;

@@ -1,13 +1,12 @@
-#include "trace/cursor.hpp"
-
 #include <algorithm>
 #include <random>
 #include <stdexcept>
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
 #include "tests/trace/runs.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/replay.hpp>
 
 using namespace lrb;
 using namespace lrb::trace;

@@ -1,10 +1,9 @@
-#include "trace/divergence.hpp"
-
 #include <utility>
 
 #include <doctest/doctest.h>
 
 #include "tests/trace/runs.hpp"
+#include <lrbscope/trace/divergence.hpp>
 
 using namespace lrb;
 using namespace lrb::trace;

@@ -1,17 +1,16 @@
 // Distances, kinds of contact and searches for a first contact in traces: kept by files, told to viewers as
 // counters.
-#include "trace/measured.hpp"
-
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/core/error.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/trace_schema.hpp"
-#include "trace/divergence.hpp"
-#include "trace/recorder.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/divergence.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/trace.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 using namespace lrb;
 using namespace lrb::trace;

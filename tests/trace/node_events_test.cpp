@@ -8,24 +8,20 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/build.hpp"
-#include "engine/core/error.hpp"
-#include "engine/lrb/wrapper_level.hpp"
-#include "engine/query/coherent/coherent_query.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "engine/query/collide_probe.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/trace_schema.hpp"
-#include "trace/counters.hpp"
-#include "trace/cursor.hpp"
-#include "trace/divergence.hpp"
-#include "trace/node_work.hpp"
-#include "trace/recorder.hpp"
-#include "trace/summary_json.hpp"
-#include "trace/trace_json.hpp"
-#include "trace/work_chart.hpp"
-#include "trace/work_shares.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/coherent.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/observe.hpp>
+#include <lrbscope/trace/counters.hpp>
+#include <lrbscope/trace/divergence.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/replay.hpp>
+#include <lrbscope/trace/trace_json.hpp>
+#include <lrbscope/trace/work.hpp>
+#include <lrbscope/wrapper.hpp>
 
 using namespace lrb;
 using namespace lrb::trace;

@@ -1,7 +1,5 @@
 /// The tables of fields and words against the published schema, and against all that is made from them.
 
-#include "trace/record_fields.hpp"
-
 #include <limits>
 #include <set>
 #include <string>
@@ -12,9 +10,10 @@
 
 #include "tests/support/trace_schema.hpp"
 #include "tests/trace/runs.hpp"
-#include "trace/divergence.hpp"
-#include "trace/names.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/trace/divergence.hpp>
+#include <lrbscope/trace/record_fields.hpp>
+#include <lrbscope/trace/trace.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 using namespace lrb;
 using namespace lrb::trace;

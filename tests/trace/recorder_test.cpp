@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
 #include "tests/trace/runs.hpp"
+#include <lrbscope/error.hpp>
 
 using namespace lrb;
 using namespace lrb::trace;

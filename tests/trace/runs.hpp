@@ -8,7 +8,7 @@
 
 #include "tests/support/lrb_shapes.hpp"
 #include "tests/support/toy_query.hpp"
-#include "trace/recorder.hpp"
+#include <lrbscope/trace/recorder.hpp>
 
 namespace lrb::trace::runs {
 

@@ -5,12 +5,12 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/build.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/trace_schema.hpp"
 #include "tests/trace/runs.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 using namespace lrb;
 using namespace lrb::trace;

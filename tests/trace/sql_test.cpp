@@ -14,13 +14,11 @@
 #include <nlohmann/json.hpp>
 #include <sqlite3.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
-#include "trace/construct_recorder.hpp"
-#include "trace/recorder.hpp"
-#include "trace/summary_json.hpp"
-#include "trace/trace_json.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 using namespace lrb;
 using namespace lrb::trace;

@@ -1,5 +1,3 @@
-#include "trace/trace_json.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -15,9 +13,10 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/core/atomic_file.hpp"
-#include "engine/core/error.hpp"
 #include "tests/trace/runs.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 using namespace lrb;
 using namespace lrb::trace;

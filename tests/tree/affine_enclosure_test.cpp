@@ -5,10 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/query/walk/tree_query.hpp"
+#include "bench/cases/families.hpp"
+#include "engine/collide/tree_query.hpp"
 #include "engine/tree/affine_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
-#include "scenarios/cases/families.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/affine_maps.hpp"
 
 #define LRB_AFFINE_KERNEL_NAME run_affine_kernel_under_test

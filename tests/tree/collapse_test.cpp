@@ -1,6 +1,4 @@
 // How a binary tree becomes one of wide nodes, against all ways in which it can.
-#include "engine/tree/collapse.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,9 +8,9 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/infinity.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/core/geometry.hpp"
+#include "engine/tree/binary_tree.hpp"
+#include "scenarios/bodies/shapes.hpp"
 
 using namespace lrb;
 using shapes::RandomEngine;

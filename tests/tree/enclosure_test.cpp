@@ -5,11 +5,11 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/query/walk/tree_query.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
-#include "scenarios/cases/families.hpp"
+#include "bench/cases/families.hpp"
+#include "engine/collide/tree_query.hpp"
+#include "scenarios/bodies/shapes.hpp"
 
-#define LRB_KERNEL_NAME run_tree_kernel_for_enclosure
+#define LRB_TREE_KERNEL_NAME run_tree_kernel_for_enclosure
 namespace lrb {
 void run_tree_kernel_for_enclosure(TreeKernel& k);
 }

@@ -8,10 +8,10 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/infinity.hpp"
+#include "engine/core/geometry.hpp"
 #include "engine/tree/binary_tree.hpp"
-#include "engine/tree/obb_tree.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/obb_tree.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;

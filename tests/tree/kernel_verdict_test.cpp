@@ -4,11 +4,10 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/query/brute_force.hpp"
-#include "engine/query/coherent/coherent_query.hpp"
-#include "engine/query/collide.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
-#include "scenarios/cases/families.hpp"
+#include "bench/cases/families.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/coherent.hpp>
+#include <lrbscope/collide.hpp>
 
 using namespace lrb;
 using cases::RandomEngine;

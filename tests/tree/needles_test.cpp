@@ -4,12 +4,10 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "engine/query/brute_force.hpp"
-#include "engine/query/collide.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/closed_body.hpp"
 #include "tests/support/hard_bodies.hpp"
+#include <lrbscope/collide.hpp>
 
 namespace lrb::test {
 namespace {

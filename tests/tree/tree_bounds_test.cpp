@@ -6,12 +6,11 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <doctest/doctest.h>
 
-#include "engine/query/walk/tree_query.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/tree_query.hpp"
+#include "scenarios/bodies/shapes.hpp"
 
 // The kernel itself, to look at what is inside it.
-#define LRB_KERNEL_NAME run_tree_kernel_under_test
+#define LRB_TREE_KERNEL_NAME run_tree_kernel_under_test
 namespace lrb {
 void run_tree_kernel_under_test(TreeKernel& k);
 }

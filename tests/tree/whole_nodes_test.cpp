@@ -9,12 +9,11 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "engine/query/collide_impl.hpp"
-#include "engine/query/node_boxes.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/closed_body.hpp"
 #include "tests/support/hard_bodies.hpp"
+#include <lrbscope/explain.hpp>
 
 namespace lrb::test {
 namespace {

@@ -1,8 +1,8 @@
 // Asks whether two bodies from files, one of them moved, meet. Ends with 0 if they cross.
 #include <iostream>
 
-#include "engine/body/body.hpp"
-#include "engine/query/collide.hpp"
+#include <lrbscope/body.hpp>
+#include <lrbscope/collide.hpp>
 
 int main(int, char** argv) {
   const lrb::Body a = lrb::Body::load(argv[1]).value(), b = lrb::Body::load(argv[2]).value();

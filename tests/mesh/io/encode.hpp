@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "engine/mesh/mesh.hpp"
+#include <lrbscope/mesh.hpp>
 
 namespace lrb::test {
 

@@ -2,11 +2,11 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/folder.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/mesh.hpp>
 
 namespace lrb::test {
 

@@ -3,12 +3,12 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/mesh/mesh_check.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/folder.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb::test {
 

@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/mesh/mesh_check.hpp"
 #include "tests/support/shared_meshes.hpp"
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb::test {
 

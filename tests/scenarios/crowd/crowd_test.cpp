@@ -9,17 +9,15 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/core/error.hpp"
-#include "engine/query/brute_force.hpp"
 #include "scenarios/crowd/crowd_frames.hpp"
-#include "scenarios/crowd/crowd_json.hpp"
-#include "scenarios/crowd/crowd_replay.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
-#include "scenarios/io/embedded.hpp"
+#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/io/files.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/json_schema.hpp"
 #include "tests/support/trace_schema.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
 
 using namespace lrb;
 using nlohmann::json;

@@ -2,12 +2,12 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "render/png.hpp"
-#include "scenarios/run/chosen_view.hpp"
-#include "scenarios/run/view_camera.hpp"
-#include "scenarios/spec/scenario_frames.hpp"
+#include "render/pictures/panel.hpp"
+#include "scenarios/frames/chosen_view.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include "tests/support/program.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/image.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;

@@ -4,13 +4,13 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "render/png.hpp"
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/shipped.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/text.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/image.hpp>
 
 using namespace lrb;
 using namespace lrb::figure;

@@ -8,12 +8,12 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "render/png.hpp"
-#include "scenarios/golden/approve.hpp"
+#include "scenarios/golden/check.hpp"
 #include "scenarios/golden/golden_report.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/text.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 namespace fs = std::filesystem;
 using namespace lrb;

@@ -1,8 +1,7 @@
-#include "scenarios/io/pose_file.hpp"
-
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
+#include "scenarios/io/poses.hpp"
+#include <lrbscope/error.hpp>
 
 using namespace lrb;
 

@@ -9,16 +9,16 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/core/error.hpp"
-#include "render/png.hpp"
-#include "scenarios/bodies/generators/fractal.hpp"
-#include "scenarios/io/embedded.hpp"
-#include "scenarios/paper/close_up.hpp"
-#include "scenarios/paper/icicle.hpp"
+#include "scenarios/bodies/generators.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/paper/paper_pictures.hpp"
+#include "scenarios/paper/sweep.hpp"
 #include "tests/support/json_schema.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/text.hpp"
-#include "trace/counters.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/trace/counters.hpp>
 
 using namespace lrb;
 using lrb::test::count;

@@ -3,14 +3,13 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/core/error.hpp"
-#include "engine/mesh/io/mesh_io.hpp"
-#include "engine/query/walk/query_context.hpp"
-#include "scenarios/bodies/generators/fractal.hpp"
-#include "scenarios/bodies/generators/generators.hpp"
+#include "engine/collide/query_context.hpp"
+#include "scenarios/bodies/generators.hpp"
 #include "scenarios/paper/series_report.hpp"
 #include "scenarios/paper/tables.hpp"
 #include "tests/support/program.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/mesh.hpp>
 
 using namespace lrb;
 

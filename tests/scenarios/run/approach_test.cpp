@@ -1,10 +1,10 @@
 // Approaches: the step of first contact, and that nothing is passed through between two steps.
-#include "scenarios/run/approach.hpp"
+#include "scenarios/record/approach.hpp"
 
 #include <doctest/doctest.h>
 
-#include "engine/query/collide.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/collide.hpp>
 
 using namespace lrb;
 

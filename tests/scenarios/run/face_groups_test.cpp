@@ -1,5 +1,3 @@
-#include "scenarios/run/face_groups.hpp"
-
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -7,9 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include "scenarios/run/group_tables.hpp"
+#include "scenarios/frames/face_colours.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "trace/counters.hpp"
+#include "scenarios/run/run_tables.hpp"
+#include <lrbscope/trace/counters.hpp>
 
 using namespace lrb;
 

@@ -1,10 +1,10 @@
-#include "scenarios/run/frame_state.hpp"
+#include "scenarios/frames/frame_state.hpp"
 
 #include <doctest/doctest.h>
 
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
-#include "trace/recorder.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/trace/recorder.hpp>
 
 using namespace lrb;
 

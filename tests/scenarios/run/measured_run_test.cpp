@@ -3,12 +3,12 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "render/palette.hpp"
-#include "scenarios/run/frame_state.hpp"
-#include "scenarios/run/measure_charts.hpp"
-#include "scenarios/run/run_report.hpp"
+#include "scenarios/frames/frame_state.hpp"
+#include "scenarios/run/run_charts.hpp"
+#include "scenarios/run/run_page.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/style.hpp>
 
 using namespace lrb;
 

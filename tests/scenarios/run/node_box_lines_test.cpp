@@ -1,15 +1,14 @@
 // Boxes of tree nodes in pictures: those that the walk came to, and no others.
-#include "scenarios/run/node_box_lines.hpp"
-
 #include <algorithm>
 
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
-#include "trace/node_work.hpp"
-#include "trace/recorder.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "scenarios/frames/face_colours.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/work.hpp>
 
 namespace lrb::run {
 namespace {

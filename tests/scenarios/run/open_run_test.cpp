@@ -1,13 +1,12 @@
-#include "scenarios/run/open_run.hpp"
-
 #include <algorithm>
 
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "engine/lrb/lrb_file.hpp"
+#include "scenarios/record/recorded_run.hpp"
 #include "tests/support/folder.hpp"
-#include "trace/trace_json.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 using namespace lrb;
 

@@ -1,16 +1,15 @@
 // What captions say of bodies that are apart.
-#include "scenarios/run/parting_picture.hpp"
-
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
-#include "engine/construct/build.hpp"
-#include "engine/query/distance/distance.hpp"
-#include "scenarios/bodies/shapes/shapes.hpp"
-#include "scenarios/io/number_text.hpp"
+#include "render/pictures/explain_picture.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/core/strings.hpp>
+#include <lrbscope/distance.hpp>
 
 namespace lrb {
 namespace {

@@ -3,20 +3,20 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "engine/core/error.hpp"
-#include "engine/lrb/validate.hpp"
-#include "engine/query/brute_force.hpp"
-#include "scenarios/bodies/body.hpp"
-#include "scenarios/bodies/generators/generators.hpp"
-#include "scenarios/bodies/hull_volume.hpp"
-#include "scenarios/run/approach.hpp"
-#include "scenarios/run/frame_files.hpp"
-#include "scenarios/run/frame_state.hpp"
-#include "scenarios/run/moments.hpp"
-#include "scenarios/run/recorded_run.hpp"
+#include "render/pictures/panel.hpp"
+#include "scenarios/bodies/body_figures.hpp"
+#include "scenarios/bodies/generators.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/frames/frame_state.hpp"
+#include "scenarios/record/approach.hpp"
+#include "scenarios/record/moments.hpp"
+#include "scenarios/record/recorded_run.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/spec/scenario_frames.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include "scenarios/spec/shipped.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/validate.hpp>
 
 using namespace lrb;
 

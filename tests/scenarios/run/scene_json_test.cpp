@@ -7,10 +7,10 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/run/recorded_run.hpp"
-#include "scenarios/run/thinned_events.hpp"
-#include "scenarios/run/tree_boxes.hpp"
-#include "trace/names.hpp"
+#include "render/pictures/tree_boxes.hpp"
+#include "scenarios/record/moments.hpp"
+#include "scenarios/record/recorded_run.hpp"
+#include <lrbscope/trace/trace.hpp>
 
 using namespace lrb;
 using nlohmann::json;

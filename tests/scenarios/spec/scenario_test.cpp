@@ -6,13 +6,12 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/core/error.hpp"
-#include "scenarios/bodies/generators/generators.hpp"
-#include "scenarios/io/embedded.hpp"
-#include "scenarios/spec/scenario_motion.hpp"
+#include "scenarios/bodies/generators.hpp"
+#include "scenarios/io/files.hpp"
 #include "scenarios/spec/shipped.hpp"
 #include "tests/support/json_schema.hpp"
-#include "trace/record_fields.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/record_fields.hpp>
 
 using namespace lrb;
 using nlohmann::json;

@@ -1,0 +1,320 @@
+#include "bench/levels/level_pictures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include "engine/lrb/thickness.hpp"
+#include <lrbscope/parallel.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/rasterize.hpp>
+#include <lrbscope/render/scene.hpp>
+#include <lrbscope/render/style.hpp>
+
+namespace lrb::levels {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Cuts a triangle at the middle of its longest edge until all are short. Neighbours cut an edge that they
+/// share at the same points, so that no cracks appear.
+void cut_triangle(LidPiece triangle, double longest, std::vector<LidPiece>& out) {
+  std::vector<LidPiece> left = {triangle};
+  while (!left.empty()) {
+    const LidPiece t = left.back();
+    left.pop_back();
+    double length[3];
+    for (int i = 0; i < 3; ++i) length[i] = (t.x[(i + 1) % 3] - t.x[i]).norm();
+    const int k = static_cast<int>(std::max_element(length, length + 3) - length);
+    if (!(length[k] > longest)) {
+      out.push_back(t);
+      continue;
+    }
+    const Vector3d a = t.x[k], b = t.x[(k + 1) % 3], c = t.x[(k + 2) % 3], middle = (a + b) / 2;
+    left.push_back({{a, middle, c}, 0});
+    left.push_back({{middle, b, c}, 0});
+  }
+}
+
+void cut_segment(const Vector3d& a, const Vector3d& b, double longest, std::vector<LidPiece>& out) {
+  const int count = std::max(1, static_cast<int>(std::ceil((b - a).norm() / longest)));
+  for (int i = 0; i < count; ++i)
+    out.push_back({{a + (b - a) * i / count, a + (b - a) * (i + 1) / count, Vector3d::Zero()}, 0});
+}
+
+void cut_lid(const LrbRep& rep, FaceId lid, double longest, std::vector<LidPiece>& out) {
+  const auto corners = rep.face(lid);
+  const auto x = [&](std::size_t i) { return rep.vertices()[corners[i]]; };
+  if (rep.dim() == 2) return cut_segment(x(0), x(1), longest, out);
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+    cut_triangle({{x(0), x(i), x(i + 1)}, 0}, longest, out);
+}
+
+/// Measures points one after another; the face that was nearest to one is tried first for the next.
+class Gauge {
+ public:
+  Gauge(const LrbRep& rep, const std::vector<Vector3d>& vertices)
+      : unit_(rep.tree().unit()), nearest_(rep, vertices) {}
+
+  double off(const Vector3d& x) {
+    const Vector3d p = x / unit_;
+    if (last_.simplex != kNull) last_.distance = nearest_.distance(p, last_.simplex);
+    last_ = nearest_.find(p, last_);
+    return last_.distance * unit_;
+  }
+
+ private:
+  double unit_;
+  NearestFace nearest_;
+  NearFace last_;
+};
+
+}  // namespace
+
+MeasuredLids measure_lids(const LrbRep& rep, std::span<const FaceId> lids, double longest, unsigned threads) {
+  constexpr std::size_t kAtOnce = 16;  // lids
+  const std::vector<Vector3d> vertices = vertices_in_units(rep);
+  std::vector<MeasuredLids> parts((lids.size() + kAtOnce - 1) / kAtOnce);
+  const int corners = rep.dim();
+  Workers(threads).for_each(parts.size(), [&](std::size_t i, unsigned) {
+    MeasuredLids& part = parts[i];
+    Gauge gauge(rep, vertices);
+    for (const FaceId lid : lids.subspan(i * kAtOnce, std::min(kAtOnce, lids.size() - i * kAtOnce))) {
+      const std::size_t first = part.pieces.size();
+      cut_lid(rep, lid, longest, part.pieces);
+      for (std::size_t k = first; k < part.pieces.size(); ++k) {
+        LidPiece& p = part.pieces[k];
+        Vector3d sum = p.x[0] + p.x[1];
+        if (corners == 3) sum += p.x[2];
+        p.off = gauge.off(sum / corners);
+        part.largest = std::max(part.largest, p.off);
+      }
+      for (const VertexId v : rep.face(lid))
+        part.largest = std::max(part.largest, gauge.off(rep.vertices()[v]));
+    }
+  });
+  MeasuredLids out;
+  for (MeasuredLids& part : parts) {
+    out.pieces.insert(out.pieces.end(), part.pieces.begin(), part.pieces.end());
+    out.largest = std::max(out.largest, part.largest);
+  }
+  return out;
+}
+
+namespace {
+
+constexpr int kPanelWidth = 600, kPanelHeight = 480;
+constexpr float kCaptionHeight = 24;
+constexpr double kPieces = 120;  ///< pieces of lids along the largest side: about four pixels each
+
+/// Lighting in which the shape is seen and colours stay those of the scale.
+const render::Lighting kSoft{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
+
+/// Returns the camera that shows the body and the coarsest of the wrappers.
+render::Camera camera_for(const ShownBody& shown, std::span<const ShownLevel> levels) {
+  const LrbRep& rep = *shown.rep;
+  double coarsest = 0;
+  for (const ShownLevel& l : levels) coarsest = std::max(coarsest, l.figures.tolerance);
+  std::vector<Eigen::Vector3d> points;
+  for (const FaceId f : bodies::wrapper_at(rep, coarsest, shown.threads).boundary())
+    for (const VertexId v : rep.face(f)) points.push_back(rep.vertices()[v]);
+  if (rep.dim() == 2) return render::fit_top(points, kPanelWidth, kPanelHeight);
+  render::FitOptions fit;
+  fit.view = shown.view;
+  return render::fit_camera(points, kPanelWidth, kPanelHeight, fit);
+}
+
+render::RasterOptions panel_options() {
+  render::RasterOptions options;
+  options.width = kPanelWidth;
+  options.height = kPanelHeight;
+  return options;
+}
+
+render::MontageOptions montage_options() {
+  constexpr int kColumns = 4;
+  render::MontageOptions options;
+  options.columns = kColumns;
+  options.text_height = kCaptionHeight;
+  return options;
+}
+
+/// Puts a heading above panels, and a legend below them.
+render::Image with_overlay(const render::Image& panels, const render::Overlay& overlay) {
+  constexpr int kRoom = 600;  // more than the overlay needs; what it does not need is cut off
+  const int width = panels.width();
+  const render::OverlayLayout tentative = render::lay_out(overlay, width, panels.height() + kRoom);
+  const int height = 2 * panels.height() + kRoom - tentative.picture.height;
+  const render::OverlayLayout layout = render::lay_out(overlay, width, height);
+  return render::compose_frame(panels, layout.picture, overlay, width, height);
+}
+
+render::Image draw_scene(render::Rasterizer& rasterizer, const LrbRep& rep, const Wrapper& wrapper,
+                         const render::Camera& camera) {
+  render::SceneBody body;
+  body.rep = &rep;
+  body.wrapper = &wrapper;
+  const render::Scene scene = render::build_scene(std::vector<render::SceneBody>{body});
+  return rasterizer.draw(scene.list, camera, panel_options());
+}
+
+void add_solid_2d(const LrbRep& rep, render::DrawList& list) {
+  render::DrawFill solid;
+  solid.colour = render::palette::kPaleFront;
+  for (FaceId f = 0; f < rep.real_face_count(); ++f)
+    solid.segments.push_back({rep.vertices()[rep.face(f)[0]], rep.vertices()[rep.face(f)[1]]});
+  list.fills.push_back(std::move(solid));
+}
+
+void add_pieces(const LrbRep& rep, const MeasuredLids& lids, const render::ScaleBar& scale, double size,
+                render::DrawList& list) {
+  for (const LidPiece& p : lids.pieces) {
+    const render::Rgba colour = render::palette::viridis(render::place_on(scale, p.off / size));
+    if (rep.dim() == 2) {
+      render::DrawLine line;
+      line.points = {p.x[0], p.x[1]};
+      line.colour = colour;
+      line.width = 4;
+      list.lines.push_back(std::move(line));
+      continue;
+    }
+    render::DrawTriangle t;
+    t.x = p.x;
+    t.colour = colour;
+    t.nudge = 1;  // in a region without volume a lid lies on what it hides
+    list.triangles.push_back(t);
+  }
+}
+
+/// Draws the edges of lids, unless they are so many that they would hide the colours.
+void add_edges(const LrbRep& rep, const std::vector<FaceId>& boundary, render::DrawList& list) {
+  constexpr std::size_t kMost = 2500;
+  std::vector<std::pair<VertexId, VertexId>> edges;
+  for (const FaceId f : boundary) {
+    if (rep.is_real(f)) continue;
+    const auto corners = rep.face(f);
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      edges.push_back(std::minmax(corners[i], corners[(i + 1) % corners.size()]));
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  if (edges.size() > kMost) return;
+  for (const auto& [a, b] : edges) {
+    render::DrawLine line;
+    line.points = {rep.vertices()[a], rep.vertices()[b]};
+    line.colour = render::with_alpha(render::kWhite, 120);
+    line.width = 1.1F;
+    line.layer = render::Layer::translucent;
+    line.nudge = 2;
+    list.lines.push_back(std::move(line));
+  }
+}
+
+/// Draws a wrapper: its lids in the scale's colours, its real faces, which are off by nothing, pale.
+render::DrawList distance_list(const LrbRep& rep, const std::vector<FaceId>& boundary,
+                               const MeasuredLids& lids, const render::ScaleBar& scale, double size) {
+  render::DrawList list;
+  if (rep.dim() == 2) add_solid_2d(rep, list);
+  for (const FaceId f : boundary) {
+    if (!rep.is_real(f)) continue;
+    std::vector<Eigen::Vector3d> corners;
+    for (const VertexId v : rep.face(f)) corners.push_back(rep.vertices()[v]);
+    if (rep.dim() == 3) {
+      render::DrawTriangle t;
+      t.colour = render::palette::kPaleFront;
+      list.add_polygon(corners, t);
+    } else {
+      render::DrawLine line;
+      line.points = corners;
+      line.colour = render::palette::kFaint;
+      line.width = 1.5F;
+      list.lines.push_back(std::move(line));
+    }
+  }
+  add_pieces(rep, lids, scale, size, list);
+  if (rep.dim() == 3) add_edges(rep, boundary, list);
+  return list;
+}
+
+/// Returns the scale of a row of tolerances: from half of the smallest one to the largest.
+render::ScaleBar scale_for(std::span<const ShownLevel> levels) {
+  constexpr double kBelow = 2, kLeastRange = 10;
+  double low = 1, high = 0;
+  for (const ShownLevel& l : levels) {
+    low = std::min(low, l.figures.share / kBelow);
+    high = std::max(high, l.figures.share);
+  }
+  return {"distance from the body / largest side of its box", std::min(low, high / kLeastRange), high, true};
+}
+
+}  // namespace
+
+std::string upward_text(double value) {
+  constexpr int kDigits = 3;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", kDigits, value);
+  if (std::strtod(text, nullptr) < value) {
+    const double step = std::pow(10.0, std::floor(std::log10(value)) - (kDigits - 1));
+    std::snprintf(text, sizeof text, "%.*g", kDigits, std::strtod(text, nullptr) + step);
+  }
+  return text;
+}
+
+std::string caption_of(const bodies::LevelFigures& level, double size) {
+  return "tolerance " + render::short_number(level.share) + ": " + render::group_digits(level.faces) +
+         " faces, " + (level.bound > 0 ? "proved " + upward_text(level.bound / size) : "the body itself");
+}
+
+render::Image draw_wrappers(const ShownBody& shown, std::span<const ShownLevel> levels) {
+  const LrbRep& rep = *shown.rep;
+  const render::Camera camera = camera_for(shown, levels);
+  render::Rasterizer rasterizer;
+  std::vector<render::Panel> panels;
+  if (levels.front().figures.bound > 0) {  // none of them is the body itself
+    Wrapper bare(rep);
+    bare.refine_all();
+    panels.push_back({draw_scene(rasterizer, rep, bare, camera),
+                      "the body, " + render::group_digits(rep.real_face_count()) + " faces"});
+  }
+  for (const ShownLevel& l : levels)
+    panels.push_back(
+        {draw_scene(rasterizer, rep, bodies::wrapper_at(rep, l.figures.tolerance, shown.threads), camera),
+         caption_of(l.figures, shown.size)});
+  render::Overlay overlay;
+  overlay.title = rep.name() + ": wrappers at a row of tolerances";
+  overlay.event =
+      "Each encloses the body and is proved to be off by no more than the number below it, a share of the "
+      "box's largest side.";
+  return with_overlay(render::montage(panels, montage_options()), overlay);
+}
+
+render::Image draw_distances(const ShownBody& shown, std::span<ShownLevel> levels) {
+  const LrbRep& rep = *shown.rep;
+  const render::Camera camera = camera_for(shown, levels);
+  render::Overlay overlay;
+  overlay.title = rep.name() + ": how far its wrappers are off";
+  overlay.event = "Colours are measured, point by point; numbers are proved.";
+  overlay.key = {
+      {render::LegendItem::Mark::solid, render::palette::kPaleFront, "real faces, off by nothing"}};
+  overlay.scale = scale_for(levels);
+  render::RasterOptions raster = panel_options();
+  raster.lighting = kSoft;
+  render::Rasterizer rasterizer;
+  std::vector<render::Panel> panels;
+  for (ShownLevel& l : levels) {
+    const std::vector<FaceId> boundary =
+        bodies::wrapper_at(rep, l.figures.tolerance, shown.threads).boundary();
+    std::vector<FaceId> lids;
+    for (const FaceId f : boundary)
+      if (!rep.is_real(f)) lids.push_back(f);
+    const MeasuredLids measured = measure_lids(rep, lids, shown.size / kPieces, shown.threads);
+    l.sampled = measured.largest;
+    const render::DrawList list = distance_list(rep, boundary, measured, *overlay.scale, shown.size);
+    panels.push_back({rasterizer.draw(list, camera, raster), caption_of(l.figures, shown.size)});
+  }
+  return with_overlay(render::montage(panels, montage_options()), overlay);
+}
+
+}  // namespace lrb::levels

@@ -1,0 +1,80 @@
+#pragma once
+/// The cases that a worker is asked, as options of its command line name them.
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "bench/stability/judge.hpp"
+#include "bench/stability/outcome_grid.hpp"
+
+namespace lrb::worker_programs {
+
+// The lines of JSON that a worker writes to stdout.
+
+/// Our lines have a channel of their own, and libraries that print to stdout print to stderr instead.
+class Lines {
+ public:
+  Lines() : out_(fdopen(dup(STDOUT_FILENO), "w")) { dup2(STDERR_FILENO, STDOUT_FILENO); }
+  void say(const std::string& line) {
+    if (out_ == nullptr || std::fputs(line.c_str(), out_) < 0 || std::fflush(out_) != 0)
+      std::_Exit(1);  // nobody listens any more
+  }
+
+ private:
+  std::FILE* out_;
+};
+
+inline std::string dump(const nlohmann::ordered_json& value) {
+  return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+/// Numbers begin to end - 1 of a family's cases: `cases` for each setting of its dial.
+struct AskedCases {
+  bool list = false;  ///< none of them: the worker's methods are to be listed
+  std::string family, method, expected;
+  std::uint64_t seed = 1, cases = 1, begin = 0, end = 0;
+};
+
+void add_options(CLI::App& app, AskedCases& asked);
+
+/// Throws InputError if there is no such family.
+const cases::Family& family_of(const AskedCases& asked);
+cases::Case make(const cases::Family& family, const AskedCases& asked, std::uint64_t number);
+/// Returns the record of a case, before it is answered.
+stability::Record record_of(const AskedCases& asked, std::uint64_t number);
+
+/// Right answers that were written to a file before, from the first case that is asked on.
+class KnownAnswers {
+ public:
+  /// Throws InputError if a file is named and ends before that case.
+  explicit KnownAnswers(const AskedCases& asked);
+  /// Returns the next one; nothing where no file is named, or at its end.
+  std::optional<stability::RightAnswer> next();
+
+ private:
+  std::ifstream in_;
+};
+
+/// Calls work(lines). Returns the exit code: 2, and a line with the error, if it throws.
+template <class Work>
+int run_worker(Work work) {
+  constexpr int kOk = 0, kBadInput = 2;
+  Lines out;
+  try {
+    work(out);
+    return kOk;
+  } catch (const std::exception& e) {
+    out.say(dump({{"error", e.what()}}));
+    return kBadInput;
+  }
+}
+
+}  // namespace lrb::worker_programs

@@ -1,0 +1,105 @@
+/// The worker: a program beside lrbscope that puts cases to methods whose code lrbscope does not contain, and
+/// that may crash or hang.
+///
+/// It writes everything as JSON lines to stdout:
+///   --list                the methods it has
+///   --family F --seed S --cases N --begin K --end L
+///                         the right answers (RightAnswer) to cases K .. L - 1; case k is number k % N at
+///                         setting k / N of the dial
+///   ... --method M [--expected FILE] [--pairs]
+///                         a record for each; the right answers are read from the file's lines, the first of
+///                         which is case 0's, or found here; with --pairs the lists as well
+///   --questions FILE --method M [--setting X] [--pairs] --begin K --end L
+///                         a bench::Record for each of a data set's questions K .. L - 1
+/// Exit codes: 0, or 2 with the line {"error": "..."}.
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "bench/programs/asked_cases.hpp"
+#include "bench/programs/fake_methods.hpp"
+#include "bench/rivals/method.hpp"
+#include "bench/speed/bench_runner.hpp"
+#include "bench/stability/outcome_grid.hpp"
+#include "bench/stability/stability_experiment.hpp"
+#include "bench/workers/worker_json.hpp"
+#include <lrbscope/error.hpp>
+
+namespace lrb::worker_programs {
+
+int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries);
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct WorkerOptions {
+  AskedCases asked;
+  bool pairs = false;
+  std::string questions;
+  std::optional<double> setting;
+};
+
+void list_methods(const std::vector<methods::MethodEntry>& entries, Lines& out) {
+  for (const methods::MethodEntry& e : entries) out.say(dump(workers::to_json(e.info)));
+}
+
+void say_expected(const AskedCases& asked, Lines& out) {
+  const cases::Family& family = family_of(asked);
+  for (std::uint64_t k = asked.begin; k < asked.end; ++k)
+    out.say(stability::to_line(stability::expected_answer(make(family, asked, k))));
+}
+
+void say_records(const WorkerOptions& o, const methods::MethodEntry& entry, Lines& out) {
+  const cases::Family& family = family_of(o.asked);
+  stability::StabilityRunner runner(entry);
+  KnownAnswers known(o.asked);
+  for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k) {
+    const cases::Case c = make(family, o.asked, k);
+    const std::optional<stability::RightAnswer> read = known.next();
+    stability::Record record = record_of(o.asked, k);
+    runner.ask(family, c, read ? *read : stability::expected_answer(c), record);
+    ordered_json value = stability::to_json(record);
+    if (o.pairs && runner.pairs()) value["answered_pairs"] = workers::PairsJson::write(*runner.pairs());
+    out.say(dump(value));
+  }
+}
+
+void work(const WorkerOptions& o, const std::vector<methods::MethodEntry>& entries, Lines& out) {
+  if (o.asked.list) return list_methods(entries, out);
+  if (o.asked.method.empty()) return say_expected(o.asked, out);
+  const methods::MethodEntry& entry = methods::find_method(entries, o.asked.method);
+  if (o.questions.empty()) return say_records(o, entry, out);
+  const bench::DataSet set = bench::read_data_set(o.questions);
+  bench::BenchRunner runner(entry, o.setting, set, o.pairs);
+  for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k) out.say(dump(to_json(runner.ask(k))));
+}
+
+}  // namespace
+
+int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries) {
+  if (std::getenv("LRBSCOPE_FAKE_METHODS") != nullptr)
+    for (methods::MethodEntry& fake : fake_methods(entries)) entries.push_back(std::move(fake));
+  WorkerOptions o;
+  CLI::App app("Puts cases to collision engines, for lrbscope stability; see bench/programs/methods.cpp.");
+  add_options(app, o.asked);
+  app.add_flag("--pairs", o.pairs);
+  app.add_option("--questions", o.questions);
+  app.add_option("--setting", o.setting);
+  CLI11_PARSE(app, argc, argv);
+  return run_worker([&](Lines& out) { work(o, entries, out); });
+}
+
+}  // namespace lrb::worker_programs
+
+// The main() of every worker program: what differs is which methods it is linked with
+// (bench/rivals/methods.cmake).
+
+int main(int argc, char** argv) {
+  return lrb::worker_programs::worker_main(argc, argv, lrb::methods::registered_methods());
+}

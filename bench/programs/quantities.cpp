@@ -1,0 +1,166 @@
+/// Puts a data set's questions to methods that answer with a number, and measures the time.
+
+#include <algorithm>
+#include <optional>
+
+#include "bench/programs/asked_cases.hpp"
+#include "bench/quantities/number_method.hpp"
+#include "bench/rivals/triangles.hpp"
+#include "bench/speed/bench_runner.hpp"
+#include "bench/speed/record.hpp"
+#include "bench/stability/outcome_grid.hpp"
+#include "bench/workers/worker_json.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+
+namespace lrb::worker_programs {
+
+/// Puts a question to a method at a setting of its knob. A refusal is an outcome, too. Throws InputError if
+/// there is no such question.
+bench::Record bench_record(const stability::NumberMethod& method, std::optional<double> setting,
+                           const bench::DataSet& set, std::uint64_t question);
+
+/// Returns what a method says at its finest setting, as {"least": .., "most": ..}, or {"refusal": "why"}.
+nlohmann::ordered_json known_number(const stability::NumberMethod& method, const bench::DataSet& set,
+                                    std::uint64_t question);
+
+namespace {
+
+using bench::DataSet, bench::Question;
+using stability::Asked, stability::NumberAnswer, stability::NumberMethod;
+
+const Question& question_of(const DataSet& set, std::uint64_t k) {
+  if (k >= set.questions.size())
+    throw InputError("question " + std::to_string(k) + ": the data set has only " +
+                     std::to_string(set.questions.size()));
+  return set.questions[k];
+}
+
+Asked asked_of(const DataSet& set, const Question& q) {
+  const auto placed = [&](std::size_t body, const Pose& pose) {
+    return methods::at_pose(load_lrb(set.folder + "/" + set.bodies.at(body).file), pose);
+  };
+  return {placed(q.a, q.pose_a), placed(q.b, q.pose_b), q.from, q.to, set.diagonal};
+}
+
+bool says_contact(methods::Quantity quantity, const NumberAnswer& answer) {
+  if (quantity == methods::Quantity::first_contact) return answer.lower < stability::kNever;
+  return quantity == methods::Quantity::depth ? answer.upper > 0 : answer.upper <= 0;
+}
+
+}  // namespace
+
+bench::Record bench_record(const NumberMethod& method, std::optional<double> setting, const DataSet& set,
+                           std::uint64_t question) {
+  const Question& q = question_of(set, question);
+  bench::Record r;
+  r.set = set.name;
+  r.method = method.info.name;
+  r.setting = setting;
+  r.question = question;
+  r.pose_class = q.pose_class;
+  workers::note_failures(r, [&] {
+    const Asked asked = asked_of(set, q);
+    bench::QueryTimes times;
+    const NumberAnswer answer = bench::ask_again_and_again([&] { return method.ask(asked, setting); }, times);
+    r.all.cold_us = times.cold_us;
+    r.all.hot_us = times.hot_us;
+    r.all.lower = answer.lower;
+    r.all.upper = answer.upper;
+    r.all.contact = says_contact(method.quantity, answer);
+    if (method.proves) r.all.error_bound = answer.upper - answer.lower;
+  });
+  return r;
+}
+
+nlohmann::ordered_json known_number(const NumberMethod& method, const DataSet& set, std::uint64_t question) {
+  const std::vector<double>& settings = method.info.settings;
+  const Question& q = question_of(set, question);
+  try {
+    const NumberAnswer answer = method.ask(
+        asked_of(set, q), settings.empty() ? std::nullopt : std::optional<double>(settings.back()));
+    return {{"least", answer.lower}, {"most", answer.upper}};
+  } catch (const InputError& e) {
+    return {{"refusal", e.what()}};
+  }
+}
+
+// lrbscope-quantities: a worker as worker.hpp has it, for methods that answer with a number. --quantity Q
+// says with which one, or the data set of --questions does; without --method it prints the right answers.
+
+namespace {
+
+using namespace lrb::stability;
+
+struct Options {
+  AskedCases asked;
+  std::string quantity = "distance", questions;
+  std::optional<double> setting;
+};
+
+Quantity quantity_of(const Options& o) {
+  const auto q = from_name<Quantity>(o.quantity);
+  if (!q || *q == Quantity::pairs) throw InputError("there is no quantity '" + o.quantity + "'");
+  return *q;
+}
+
+NumberMethod method_of(Quantity quantity, const std::string& name) {
+  for (NumberMethod& m : number_methods())
+    if (m.quantity == quantity && m.info.name == name) return m;
+  throw InputError("there is no method '" + name + "' for this quantity");
+}
+
+void say_records(const Options& o, Lines& out) {
+  const cases::Family& family = family_of(o.asked);
+  const NumberMethod method = method_of(quantity_of(o), o.asked.method);
+  KnownAnswers known(o.asked);
+  for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k) {
+    const cases::Case c = make(family, o.asked, k);
+    const std::optional<stability::RightAnswer> read = known.next();
+    Record record = record_of(o.asked, k);
+    ask_number(method, c, read ? *read : true_number(method.quantity, c), record);
+    out.say(dump(to_json(record)));
+  }
+}
+
+/// Answers a data set's questions; without a method, with ours at its finest setting.
+void answer_questions(const Options& o, Lines& out) {
+  const bench::DataSet set = bench::read_data_set(o.questions);
+  const bool judges = o.asked.method.empty();
+  const NumberMethod method = method_of(set.quantity, judges ? "ours" : o.asked.method);
+  for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k)
+    out.say(dump(judges ? known_number(method, set, k) : to_json(bench_record(method, o.setting, set, k))));
+}
+
+void work(const Options& o, Lines& out) {
+  if (!o.questions.empty()) return answer_questions(o, out);
+  if (o.asked.list) {
+    for (const NumberMethod& m : number_methods())
+      if (m.quantity == quantity_of(o)) out.say(dump(workers::to_json(m.info)));
+  } else if (!o.asked.method.empty()) {
+    say_records(o, out);
+  } else {
+    const cases::Family& family = family_of(o.asked);
+    for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k)
+      out.say(to_line(true_number(quantity_of(o), make(family, o.asked, k))));
+  }
+}
+
+int run(int argc, char** argv) {
+  Options o;
+  CLI::App app("Puts cases to methods that answer with a number, for lrbscope stability.");
+  add_options(app, o.asked);
+  app.add_option("--quantity", o.quantity);
+  app.add_option("--questions", o.questions);
+  app.add_option("--setting", o.setting);
+  app.add_flag("--pairs");  // asked of all workers; there are none here
+  CLI11_PARSE(app, argc, argv);
+  return run_worker([&](Lines& out) { work(o, out); });
+}
+
+}  // namespace
+}  // namespace lrb::worker_programs
+
+int main(int argc, char** argv) {
+  return lrb::worker_programs::run(argc, argv);
+}

@@ -1,0 +1,146 @@
+// FCL as packaged: distance() of two BVHModels, continuousCollide() by each solver that takes them, and the
+// largest penetration depth of collide()'s contacts.
+#include "bench/quantities/number_method.hpp"
+
+#ifdef LRB_HAS_FCL
+
+#include <fcl/config.h>
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/continuous_collision.h>
+#include <fcl/narrowphase/distance.h>
+
+#include "bench/rivals/triangles.hpp"
+#include <lrbscope/error.hpp>
+
+namespace lrb::stability {
+namespace {
+
+using methods::Stopwatch;
+
+template <class Volume>
+fcl::BVHModel<Volume> model_of(const LrbRep& rep, const Eigen::Vector3d& by = {0, 0, 0}) {
+  const methods::Triangles t = methods::triangles_of(rep);
+  std::vector<fcl::Vector3d> points;
+  for (const Eigen::Vector3d& v : t.vertices) points.push_back(v + by);
+  std::vector<fcl::Triangle> triangles;
+  for (const auto& c : t.triangles) triangles.emplace_back(c[0], c[1], c[2]);
+  fcl::BVHModel<Volume> model;
+  model.beginModel();
+  model.addSubModel(points, triangles);
+  if (model.endModel() != fcl::BVH_OK) throw InputError("FCL could not build its tree");
+  return model;
+}
+
+fcl::Transform3d moved(const Eigen::Vector3d& by) {
+  fcl::Transform3d t = fcl::Transform3d::Identity();
+  t.translation() = by;
+  return t;
+}
+
+/// FCL drops a pair only where it is within both of its errors, the relative of which is at most 1.
+template <class Volume>
+NumberAnswer fcl_distance(const Asked& q, Setting tolerance) {
+  const auto a = model_of<Volume>(q.a), b = model_of<Volume>(q.b);
+  fcl::DistanceRequestd request;
+  request.abs_err = tolerance.value_or(0) * q.size;
+  request.rel_err = request.abs_err > 0 ? 1 : 0;
+  fcl::DistanceResultd result;
+  const Stopwatch watch;
+  const double d = fcl::distance(&a, moved({0, 0, 0}), &b, moved({0, 0, 0}), request, result);
+  const double us = watch.microseconds(), least = std::max(0.0, d);  // -1: they meet
+  return {least, least, us};
+}
+
+/// B is FCL's first body: of a second one that comes nearer its advancement sees nothing. The solver of
+/// polynomials looks at vertices without their poses: B is put where the motion begins.
+template <class Volume>
+NumberAnswer fcl_first_contact(const Asked& q, fcl::CCDSolverType solver, std::size_t iterations) {
+  const bool in_place = solver == fcl::CCDC_POLYNOMIAL_SOLVER;
+  const Eigen::Vector3d none(0, 0, 0), begin = in_place ? q.from : none;
+  const auto a = model_of<Volume>(q.a), b = model_of<Volume>(q.b, begin);
+  fcl::ContinuousCollisionRequestd request;
+  request.ccd_solver_type = solver;
+  request.num_max_iterations = iterations;
+  fcl::ContinuousCollisionResultd result;
+  const Stopwatch watch;
+  fcl::continuousCollide<double>(&b, moved(q.from - begin), moved(q.to - begin), &a, moved(none), moved(none),
+                                 request, result);
+  const double t = result.is_collide ? result.time_of_contact : kNever;
+  return {t, t, watch.microseconds()};
+}
+
+NumberAnswer fcl_depth(const Asked& q, Setting) {
+  const auto a = model_of<fcl::OBBRSSd>(q.a), b = model_of<fcl::OBBRSSd>(q.b);
+  const fcl::CollisionRequestd request(std::size_t{1} << 20, true);
+  fcl::CollisionResultd result;
+  const Stopwatch watch;
+  fcl::collide(&a, moved({0, 0, 0}), &b, moved({0, 0, 0}), request, result);
+  double depth = 0;
+  for (std::size_t i = 0; i < result.numContacts(); ++i)
+    depth = std::max(depth, result.getContact(i).penetration_depth);
+  return {depth, depth, watch.microseconds()};
+}
+
+NumberMethod fcl_method(const char* name, const char* what, const char* remark, Quantity quantity,
+                        std::function<NumberAnswer(const Asked&, Setting)> ask, methods::MethodStyle style) {
+  NumberMethod m;
+  m.info.name = name;
+  m.info.title = std::string("FCL " FCL_VERSION ", ") + what;
+  m.info.remark = remark;
+  m.info.style = std::move(style);
+  m.quantity = quantity;
+  m.ask = std::move(ask);
+  return m;
+}
+
+NumberMethod fcl_sweep(const char* name, const char* what, const char* remark, fcl::CCDSolverType solver,
+                       std::size_t iterations, methods::MethodStyle style) {
+  return fcl_method(
+      name, what, remark, Quantity::first_contact,
+      [=](const Asked& q, Setting steps) {
+        return fcl_first_contact<fcl::OBBRSSd>(q, solver,
+                                               steps ? static_cast<std::size_t>(*steps) : iterations);
+      },
+      std::move(style));
+}
+
+}  // namespace
+
+std::vector<NumberMethod> fcl_number_methods() {
+  const methods::MethodStyle rss = {"FCL, RSS", "#d55e00", "rect", 5},
+                             obbrss = {"FCL, OBBRSS", "#a3132f", "triangle", 9};
+  const std::vector<double> tolerances = {0.1, 0.01, 1e-3, 0};
+  return {
+      with_knob(fcl_method("fcl-rss", "distance, RSS", "distance() of two BVHModel<RSS>.", Quantity::distance,
+                           fcl_distance<fcl::RSSd>, rss),
+                "tolerance", tolerances),
+      with_knob(fcl_method("fcl-obbrss", "distance, OBBRSS", "distance() of two BVHModel<OBBRSS>.",
+                           Quantity::distance, fcl_distance<fcl::OBBRSSd>, obbrss),
+                "tolerance", tolerances),
+      with_knob(
+          fcl_sweep(
+              "fcl-naive", "continuousCollide, naive",
+              "Its default solver: the first of so many equal times at which bodies meet; 1000 unless said.",
+              fcl::CCDC_NAIVE, 1000, {"FCL, naive", "#d55e00", "rect", 5}),
+          "times", {10, 100, 1000}),
+      fcl_sweep("fcl-advancement", "continuousCollide, advancement", "Conservative advancement.",
+                fcl::CCDC_CONSERVATIVE_ADVANCEMENT, 10,
+                {"FCL, conservative advancement", "#a3132f", "triangle", 9}),
+      fcl_sweep("fcl-polynomials", "continuousCollide, polynomials", "Its solver of polynomials.",
+                fcl::CCDC_POLYNOMIAL_SOLVER, 10, {"FCL, polynomials", "#8a5a2b", "star", 3}),
+      fcl_method("fcl-contacts", "collide, contacts", "The largest penetration depth of its contacts.",
+                 Quantity::depth, fcl_depth, {"FCL, contacts", "#d55e00", "rect", 5})};
+}
+
+}  // namespace lrb::stability
+
+#else
+
+namespace lrb::stability {
+std::vector<NumberMethod> fcl_number_methods() {
+  return {};
+}
+}  // namespace lrb::stability
+
+#endif

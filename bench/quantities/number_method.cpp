@@ -1,0 +1,68 @@
+#include "bench/quantities/number_method.hpp"
+
+#include <cmath>
+
+#include "bench/workers/worker_json.hpp"
+#include <lrbscope/core/strings.hpp>
+#include <lrbscope/error.hpp>
+
+namespace lrb::stability {
+namespace {
+
+constexpr double kMostOffOfSize = 1e-6, kMostOffOfMotion = 1e-3;
+constexpr int kDigits = 9;
+
+std::string words(Quantity quantity, double lower, double upper) {
+  if (quantity == Quantity::first_contact && lower >= kNever) return "never";
+  const std::string first = io::number_text(lower, kDigits), last = io::number_text(upper, kDigits);
+  return first == last ? first : first + " to " + last;
+}
+
+/// Returns whether a number is the one that stands for "they meet", or "never".
+bool is_special(Quantity quantity, double least, double most) {
+  return quantity == Quantity::first_contact ? least >= kNever : most <= 0;
+}
+
+}  // namespace
+
+NumberMethod with_knob(NumberMethod m, const char* knob, std::vector<double> settings) {
+  m.info.knob = knob;
+  m.info.settings = std::move(settings);
+  return m;
+}
+
+std::vector<NumberMethod> number_methods() {
+  std::vector<NumberMethod> all = own_number_methods();
+  for (NumberMethod& m : fcl_number_methods()) all.push_back(std::move(m));
+  return all;
+}
+
+void judge_number(Record& record, const NumberMethod& method, const NumberAnswer& answer,
+                  const RightAnswer& expected, double size) {
+  const double least = expected.least.value(), most = expected.most.value();
+  const bool is_time = method.quantity == Quantity::first_contact;
+  record.relation = words(method.quantity, answer.lower, answer.upper);
+  record.expected_relation = words(method.quantity, least, most);
+  const bool special = is_special(method.quantity, least, most);
+  bool right = is_special(method.quantity, answer.lower, answer.upper) == special;
+  if (method.proves) {
+    right = right && answer.lower <= most && answer.upper >= least;
+  } else if (!special) {
+    const double off = std::max(least - answer.upper, answer.lower - most);
+    right = right && off <= (is_time ? kMostOffOfMotion : kMostOffOfSize * size);
+  }
+  record.outcome = right ? Outcome::right : Outcome::wrong;
+}
+
+void ask_number(const NumberMethod& method, const cases::Case& c, const RightAnswer& expected,
+                Record& record) {
+  workers::note_failures(record, [&] {
+    if (!expected.refusal.empty()) throw InputError("not asked: " + expected.refusal);
+    const Asked question = asked(c);
+    const NumberAnswer answer = method.ask(question, std::nullopt);
+    record.microseconds = answer.microseconds;
+    judge_number(record, method, answer, expected, question.size);
+  });
+}
+
+}  // namespace lrb::stability

@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <limits>
+
+#include "bench/quantities/number_method.hpp"
+#include "bench/rivals/triangles.hpp"
+#include <lrbscope/clash.hpp>
+#include <lrbscope/distance.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/first_contact.hpp>
+
+namespace lrb::stability {
+namespace {
+
+using methods::Stopwatch;
+
+Motion motion_of(const Asked& q) {
+  return Motion::linear(Pose::translation(q.from), q.to);
+}
+
+NumberAnswer answer_of(const Asked& q, DistanceRequest request) {
+  request.relation = false;
+  const Stopwatch watch;
+  const DistanceResult r = distance(q.a, Pose{}, q.b, Pose{}, request);
+  const double us = watch.microseconds();
+  // Nothing but a lower bound: records hold finite numbers.
+  return {r.lower, std::min(r.upper, std::numeric_limits<double>::max()), us};
+}
+
+NumberAnswer our_distance(const Asked& q, Setting tolerance) {
+  DistanceRequest request;
+  request.tolerance = tolerance.value_or(0) * q.size;
+  return answer_of(q, request);
+}
+
+NumberAnswer distance_in_steps(const Asked& q, Setting steps) {
+  DistanceRequest request;
+  request.max_steps = static_cast<std::uint64_t>(steps.value_or(100));
+  return answer_of(q, request);
+}
+
+NumberAnswer within(const Asked& q, Setting share) {
+  DistanceRequest request;
+  request.within = share.value_or(0.05) * q.size;
+  return answer_of(q, request);
+}
+
+NumberAnswer our_first_contact(const Asked& q, Setting tolerance) {
+  FirstContactRequest request;
+  request.relation = false;
+  if (tolerance) request.tolerance = *tolerance;
+  const Stopwatch watch;
+  const FirstContactResult r = first_contact(q.a, Motion::still({}), q.b, motion_of(q), request);
+  const double us = watch.microseconds();
+  if (r.outcome == MotionOutcome::undecided) throw InputError("as near as rounding: it says so");
+  if (r.outcome == MotionOutcome::never) return {kNever, kNever, us};
+  return {r.t0, r.t1, us};
+}
+
+NumberAnswer our_depth(const Asked& q, Setting) {
+  ClashRequest request;
+  request.volume = false;
+  const Stopwatch watch;
+  const ClashResult r = clash(q.a, Pose{}, q.b, Pose{}, request);
+  const double us = watch.microseconds();
+  if (!r.depth) throw InputError("a body that bounds no solid: it says so");
+  return {r.depth->lower, r.depth->upper, us};
+}
+
+/// Asks the exact query at n + 1 equal times.
+NumberAnswer sampled(const Asked& q, int n) {
+  const Motion motion = motion_of(q);
+  CollideRequest any;
+  any.mode = Mode::any_pair;
+  const Stopwatch watch;
+  for (int i = 0; i <= n; ++i) {
+    const double t = static_cast<double>(i) / n;
+    if (!collide(q.a, Pose{}, q.b, motion.at(t), any).pairs.empty()) return {t, t, watch.microseconds()};
+  }
+  return {kNever, kNever, watch.microseconds()};
+}
+
+NumberMethod ours(Quantity quantity, const char* title, NumberAnswer (*ask)(const Asked&, Setting)) {
+  NumberMethod m;
+  m.info.name = "ours";
+  m.info.title = title;
+  m.info.remark = "An interval, which is to hold the number.";
+  m.info.role = methods::Role::ours;
+  m.info.style = {"lrbscope", "#0072b2", "circle", 7};
+  m.quantity = quantity;
+  m.proves = true;
+  m.ask = ask;
+  return m;
+}
+
+/// Returns ours, asked for less than the narrowest interval: in `chart` alone.
+NumberMethod less(const char* name, const char* title, const char* remark, methods::MethodStyle style,
+                  NumberAnswer (*ask)(const Asked&, Setting)) {
+  NumberMethod m = ours(Quantity::distance, title, ask);
+  m.info.name = name;
+  m.info.remark = remark;
+  m.info.role = methods::Role::ours_other;
+  m.info.hard_cases = false;
+  m.info.style = std::move(style);
+  return m;
+}
+
+NumberMethod sampled_method(int n) {
+  constexpr int kTooFewForHardCases = 10;
+  NumberMethod m;
+  m.info.name = "sampled-" + std::to_string(n);
+  m.info.title = "exact query, " + std::to_string(n) + " steps";
+  m.info.remark = "Our exact query at equal times; says the first at which bodies meet.";
+  m.info.hard_cases = n > kTooFewForHardCases;
+  m.info.style = {"exact query at 10, 100, 1000 times", "#6b6b6b", "crossRot", 2};
+  m.quantity = Quantity::first_contact;
+  m.ask = [n](const Asked& q, Setting) { return sampled(q, n); };
+  return m;
+}
+
+}  // namespace
+
+std::vector<NumberMethod> own_number_methods() {
+  return {with_knob(ours(Quantity::distance, "lrbscope, distance", our_distance), "tolerance",
+                    {0.1, 0.01, 1e-3, 1e-6, 0}),
+          with_knob(less("ours-budget", "lrbscope, distance in so many steps",
+                         "The interval that so many steps give: pairs of nodes opened.",
+                         {"lrbscope, within a budget", "#56b4e9", "rect", 4}, distance_in_steps),
+                    "steps", {3, 10, 30, 100, 300}),
+          with_knob(less("ours-within", "lrbscope, within a twentieth of the diagonal?",
+                         "A yes or no, proved; the interval is what was known by then.",
+                         {"lrbscope, yes or no: that near?", "#0072b2", "rectRounded", 15}, within),
+                    "within", {0.05}),
+          with_knob(ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact), "tolerance",
+                    {1e-6, 1e-9, 1e-12}),
+          ours(Quantity::depth, "lrbscope, clash", our_depth),
+          sampled_method(10),
+          sampled_method(100),
+          sampled_method(1000)};
+}
+
+}  // namespace lrb::stability

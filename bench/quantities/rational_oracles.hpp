@@ -1,0 +1,218 @@
+#pragma once
+/// The squared distance of two simplices in rational arithmetic, by the textbook: for every pair of features
+/// (corner, edge, triangle) the nearest points of their planes are found from the normal equations, and count
+/// if they lie in both features. Shares no code and no formula with the engine.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+namespace lrb::oracle {
+
+using Rational = boost::multiprecision::cpp_rational;  // what a double is, exactly
+
+using Corners = std::vector<std::array<double, 3>>;  ///< 1 to 3 points
+
+/// Solves a linear system in place; none if it is singular.
+inline std::optional<std::vector<Rational>> solve(std::vector<std::vector<Rational>> m,
+                                                  std::vector<Rational> r) {
+  const std::size_t n = r.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    std::size_t pivot = i;
+    while (pivot < n && m[pivot][i] == 0) ++pivot;
+    if (pivot == n) return std::nullopt;
+    std::swap(m[i], m[pivot]);
+    std::swap(r[i], r[pivot]);
+    for (std::size_t k = 0; k < n; ++k) {
+      if (k == i || m[k][i] == 0) continue;
+      const Rational f = m[k][i] / m[i][i];
+      for (std::size_t j = i; j < n; ++j) m[k][j] -= f * m[i][j];
+      r[k] -= f * r[i];
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) r[i] /= m[i][i];
+  return r;
+}
+
+using RationalPoints = std::vector<std::array<Rational, 3>>;
+
+inline Rational dot(const std::array<Rational, 3>& x, const std::array<Rational, 3>& y) {
+  return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+}
+inline std::array<Rational, 3> minus(const std::array<Rational, 3>& x, const std::array<Rational, 3>& y) {
+  return {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+}
+
+/// Returns the squared distance of the planes of two features if their nearest points lie in the features.
+inline std::optional<Rational> feature_distance_sq(const RationalPoints& f, const RationalPoints& g) {
+  std::vector<std::array<Rational, 3>> ways;  // along f, then against g
+  for (std::size_t k = 1; k < f.size(); ++k) ways.push_back(minus(f[k], f[0]));
+  for (std::size_t k = 1; k < g.size(); ++k) ways.push_back(minus(g[0], g[k]));
+  const std::array<Rational, 3> between = minus(g[0], f[0]);
+  std::vector<std::vector<Rational>> m(ways.size(), std::vector<Rational>(ways.size()));
+  std::vector<Rational> r(ways.size());
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    r[i] = dot(ways[i], between);
+    for (std::size_t j = 0; j < ways.size(); ++j) m[i][j] = dot(ways[i], ways[j]);
+  }
+  const auto share = solve(m, r);
+  if (!share) return std::nullopt;
+  Rational sum[2] = {0, 0};
+  std::array<Rational, 3> left = between;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    if ((*share)[i] < 0) return std::nullopt;
+    sum[i + 1 < f.size() ? 0 : 1] += (*share)[i];
+    for (std::size_t x = 0; x < 3; ++x) left[x] -= (*share)[i] * ways[i][x];
+  }
+  if (sum[0] > 1 || sum[1] > 1) return std::nullopt;
+  return dot(left, left);
+}
+
+inline Rational distance_sq(const Corners& a, const Corners& b) {
+  const auto features = [](const Corners& c) {
+    std::vector<RationalPoints> all;
+    for (unsigned which = 1; which < 1U << c.size(); ++which) {
+      RationalPoints points;
+      for (std::size_t k = 0; k < c.size(); ++k)
+        if (which >> k & 1) points.push_back({Rational(c[k][0]), Rational(c[k][1]), Rational(c[k][2])});
+      all.push_back(points);
+    }
+    return all;
+  };
+  std::optional<Rational> least;
+  for (const RationalPoints& f : features(a))
+    for (const RationalPoints& g : features(b)) {
+      const auto d = feature_distance_sq(f, g);
+      if (d && (!least || *d < *least)) least = d;
+    }
+  return *least;
+}
+
+inline Rational square(double x) {
+  const Rational r(x);
+  return r * r;
+}
+
+// When two sets of triangles first meet as one of them moves straight, in rational arithmetic. Triangles
+// first meet where a corner comes into the plane of the other's face, or two edges come into one plane: each
+// such time is a rational number, and whether they meet then is decided by rational distances. Triangles
+// must not move within the plane of a face that they meet. Shares no code with the engine.
+
+using RationalPoint = std::array<Rational, 3>;
+
+inline RationalPoint rational(const std::array<double, 3>& x) {
+  return {Rational(x[0]), Rational(x[1]), Rational(x[2])};
+}
+inline RationalPoint cross(const RationalPoint& x, const RationalPoint& y) {
+  return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+}
+inline RationalPoint moved(const RationalPoint& x, const RationalPoint& way, const Rational& t) {
+  return {x[0] + t * way[0], x[1] + t * way[1], x[2] + t * way[2]};
+}
+
+/// Returns true if two triangles meet.
+inline bool triangles_meet(const RationalPoints& a, const RationalPoints& b) {
+  const auto features = [](const RationalPoints& c) {
+    std::vector<RationalPoints> all;
+    for (unsigned which = 1; which < 8; ++which) {
+      RationalPoints points;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (which >> k & 1) points.push_back(c[k]);
+      all.push_back(points);
+    }
+    return all;
+  };
+  for (const RationalPoints& f : features(a))
+    for (const RationalPoints& g : features(b)) {
+      const auto d = feature_distance_sq(f, g);
+      if (d && *d == 0) return true;
+    }
+  return false;
+}
+
+/// Returns true if doubles show that two triangles are apart: by more than a billionth of their sizes and
+/// distance, along a normal or a product of two edges. Seen from a corner, so that nothing is lost where the
+/// world's origin is far.
+inline bool clearly_apart(const RationalPoints& a, const RationalPoints& b) {
+  using Point = std::array<double, 3>;
+  std::array<Point, 3> x[2];
+  double size = 0;
+  for (std::size_t side = 0; side < 2; ++side)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < 3; ++i) {
+        x[side][k][i] = Rational((side == 0 ? a : b)[k][i] - a[0][i]).convert_to<double>();
+        size = std::max(size, std::abs(x[side][k][i]));
+      }
+  if (size == 0) return false;
+  for (auto& corners : x)
+    for (Point& p : corners)
+      for (double& c : p) c /= size;
+  const auto edge = [&](std::size_t side, std::size_t k) {
+    const Point &p = x[side][k], &q = x[side][(k + 1) % 3];
+    return Point{q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+  };
+  const auto across = [](const Point& p, const Point& q) {
+    return Point{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+  };
+  const auto parts = [&](const Point& n) {
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (std::size_t side = 0; side < 2; ++side)
+      for (const Point& p : x[side]) {
+        const double d = n[0] * p[0] + n[1] * p[1] + n[2] * p[2];
+        low[side] = std::min(low[side], d);
+        high[side] = std::max(high[side], d);
+      }
+    const double slack = 1e-9 * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
+    return low[0] - high[1] > slack || low[1] - high[0] > slack;
+  };
+  if (parts(across(edge(0, 0), edge(0, 1))) || parts(across(edge(1, 0), edge(1, 1)))) return true;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t j = 0; j < 3; ++j)
+      if (parts(across(edge(0, k), edge(1, j)))) return true;
+  return false;
+}
+
+/// Returns the first t from 0 to 1, no later than `before`, at which triangle b, moved by t times `by`, meets
+/// triangle a; none if there is none.
+inline std::optional<Rational> first_time(const RationalPoints& of_a, const RationalPoints& of_b,
+                                          const RationalPoint& by, const Rational& before = 1) {
+  std::vector<Rational> times = {0};
+  /// Adds when `from` + t `turn` is in the plane across n.
+  const auto add = [&](const RationalPoint& n, const RationalPoint& from, const Rational& sign) {
+    const Rational speed = sign * dot(n, by);
+    if (speed == 0) return;
+    const Rational t = -dot(n, from) / speed;
+    if (t >= 0 && t <= before) times.push_back(t);
+  };
+  const RationalPoint face_a = cross(minus(of_a[1], of_a[0]), minus(of_a[2], of_a[0]));
+  const RationalPoint face_b = cross(minus(of_b[1], of_b[0]), minus(of_b[2], of_b[0]));
+  for (std::size_t k = 0; k < 3; ++k) {
+    add(face_a, minus(of_b[k], of_a[0]), 1);
+    add(face_b, minus(of_a[k], of_b[0]), -1);
+    for (std::size_t j = 0; j < 3; ++j)
+      add(cross(minus(of_a[(k + 1) % 3], of_a[k]), minus(of_b[(j + 1) % 3], of_b[j])),
+          minus(of_b[j], of_a[k]), 1);
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  for (const Rational& t : times) {
+    RationalPoints there;
+    for (const RationalPoint& x : of_b) there.push_back(moved(x, by, t));
+    if (!clearly_apart(of_a, there) && triangles_meet(of_a, there)) return t;
+  }
+  return std::nullopt;
+}
+
+inline std::optional<Rational> first_time(const Corners& a, const Corners& b,
+                                          const std::array<double, 3>& way, const Rational& before = 1) {
+  RationalPoints of_a, of_b;
+  for (const auto& x : a) of_a.push_back(rational(x));
+  for (const auto& x : b) of_b.push_back(rational(x));
+  return first_time(of_a, of_b, rational(way), before);
+}
+
+}  // namespace lrb::oracle

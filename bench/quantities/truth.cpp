@@ -1,0 +1,257 @@
+#include "bench/quantities/truth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "bench/quantities/rational_oracles.hpp"
+#include "bench/rivals/triangles.hpp"
+#include <lrbscope/collide.hpp>
+
+namespace lrb::stability {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Rational brute force takes seconds for more.
+constexpr std::uint32_t kMostFaces = 100, kMostFacesForDepth = 20;
+
+/// Returns the vector with 20 bits to a coordinate, so that a quarter and three quarters of it are exact.
+Vector3d rounded(const Vector3d& x) {
+  Vector3d out;
+  for (int k = 0; k < 3; ++k) {
+    int exponent = 0;
+    const double part = std::frexp(x[k], &exponent);
+    out[k] = std::ldexp(std::round(std::ldexp(part, 20)), exponent - 20);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string why_not_asked(Quantity quantity, const cases::Case& c) {
+  if (c.a->dim() == 2) return "2D bodies";
+  const std::uint32_t most = quantity == Quantity::depth ? kMostFacesForDepth : kMostFaces;
+  for (const auto& [rep, pose] : {std::pair{c.a, c.pose_a}, std::pair{c.b, c.pose_b}}) {
+    if (rep->real_simplex_count() > most)
+      return "a body of more than " + std::to_string(most) + " triangles, too many for rational arithmetic";
+    for (const Vector3d& v : rep->vertices())
+      if (!(pose.apply(v).norm() < 1e150)) return "coordinates of which a square is no double";
+    if (quantity == Quantity::depth && !rep->closed()) return "a body that is not closed";
+  }
+  return "";
+}
+
+Asked asked(const cases::Case& c) {
+  Asked out{methods::at_pose(*c.a, c.pose_a), methods::at_pose(*c.b, c.pose_b)};
+  const Eigen::AlignedBox3d box_a = shapes::box_of(out.a), box_b = shapes::box_of(out.b);
+  out.size = std::max(box_a.diagonal().norm(), box_b.diagonal().norm());
+  // Not quite between the middles: the oracle wants no faces that slide along each other.
+  Vector3d direction = box_b.center() - box_a.center();
+  direction = direction.norm() > 0 ? direction.normalized() : Vector3d(0, 0, 1);
+  direction += Vector3d(0.0312, 0.0487, -0.0256);
+  const Vector3d way = rounded(-4 * out.size * direction);
+  out.from = -0.75 * way;
+  out.to = 0.25 * way;
+  return out;
+}
+
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+using oracle::Rational;
+using oracle::RationalPoint;
+using oracle::RationalPoints;
+
+RationalPoint rational(const Vector3d& x) {
+  return oracle::rational({x.x(), x.y(), x.z()});
+}
+
+/// The triangles of a body.
+struct Triangles {
+  std::vector<std::array<VertexId, 3>> corners;
+  std::vector<AlignedBox3d> boxes;
+  std::vector<RationalPoint> points;  ///< by vertex
+
+  explicit Triangles(const LrbRep& rep) {
+    for (const Vector3d& v : rep.vertices()) points.push_back(rational(v));
+    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
+      VertexId v[3] = {};
+      rep.simplex(s, v);
+      corners.push_back({v[0], v[1], v[2]});
+      boxes.emplace_back();
+      for (const VertexId k : v) boxes.back().extend(rep.vertices()[k]);
+    }
+  }
+  RationalPoints of(std::size_t t) const {
+    RationalPoints out;
+    for (const VertexId v : corners[t]) out.push_back(points[v]);
+    return out;
+  }
+};
+
+struct RankedPair {
+  double bound;  ///< no more than what is looked for
+  std::size_t a, b;
+  bool operator<(const RankedPair& o) const { return bound < o.bound; }
+};
+
+void set_number(RightAnswer& e, const Rational& x) {
+  const auto d = x.convert_to<double>();
+  e.least = std::nextafter(std::nextafter(d, -1.0), -1.0);
+  e.most = std::nextafter(std::nextafter(d, kNever), HUGE_VAL);
+}
+
+void set_root(RightAnswer& e, const Rational& square) {
+  const double d = std::sqrt(square.convert_to<double>());
+  e.least = d * (1 - 4e-16);
+  e.most = d * (1 + 4e-16);
+}
+
+oracle::Corners corners_of(const LrbRep& rep, std::size_t t) {
+  VertexId v[3] = {};
+  rep.simplex(static_cast<SimplexId>(t), v);
+  oracle::Corners out;
+  for (const VertexId k : v) {
+    const Vector3d& x = rep.vertices()[k];
+    out.push_back({x.x(), x.y(), x.z()});
+  }
+  return out;
+}
+
+/// Returns the squared distance, of pairs with the nearest boxes first.
+Rational distance_sq(const Asked& q) {
+  const Triangles a(q.a), b(q.b);
+  std::vector<RankedPair> pairs;
+  for (std::size_t i = 0; i < a.boxes.size(); ++i)
+    for (std::size_t j = 0; j < b.boxes.size(); ++j)
+      pairs.push_back({a.boxes[i].squaredExteriorDistance(b.boxes[j]) * (1 - 1e-12), i, j});
+  std::sort(pairs.begin(), pairs.end());
+  std::optional<Rational> least;
+  for (const RankedPair& p : pairs) {
+    if (least && Rational(p.bound) > *least) break;
+    const Rational d = oracle::distance_sq(corners_of(q.a, p.a), corners_of(q.b, p.b));
+    if (!least || d < *least) least = d;
+  }
+  return *least;
+}
+
+/// Returns a bound on when a box that moves from `from` by `way` may meet another; more than 1: never.
+double box_time(const AlignedBox3d& a, const AlignedBox3d& b, const Vector3d& from, const Vector3d& way) {
+  double begin = 0, end = 1;
+  for (int k = 0; k < 3; ++k) {
+    const double slack = 1e-9 * way.norm();
+    const double low = b.min()[k] + from[k] - a.max()[k] - slack,
+                 high = b.max()[k] + from[k] - a.min()[k] + slack;
+    if (way[k] == 0) {
+      if (low > 0 || high < 0) return kNever;
+      continue;
+    }
+    const double t = -low / way[k], u = -high / way[k];
+    begin = std::max(begin, std::min(t, u));
+    end = std::min(end, std::max(t, u));
+  }
+  return begin > end ? kNever : begin;
+}
+
+std::optional<Rational> first_time(const Asked& q) {
+  const Triangles a(q.a), b(q.b);
+  const RationalPoint from = rational(q.from), to = rational(q.to), way = oracle::minus(to, from);
+  std::vector<RankedPair> pairs;
+  for (std::size_t i = 0; i < a.boxes.size(); ++i)
+    for (std::size_t j = 0; j < b.boxes.size(); ++j)
+      pairs.push_back({box_time(a.boxes[i], b.boxes[j], q.from, q.to - q.from), i, j});
+  std::sort(pairs.begin(), pairs.end());
+  std::optional<Rational> first;
+  for (const RankedPair& p : pairs) {
+    if (p.bound > 1 || (first && Rational(p.bound) > *first)) break;
+    RationalPoints there;
+    for (const RationalPoint& x : b.of(p.b)) there.push_back(oracle::moved(x, from, 1));
+    const auto time = oracle::first_time(a.of(p.a), there, way, first ? *first : Rational(1));
+    if (time && (!first || *time < *first)) first = time;
+  }
+  return first;
+}
+
+/// Normals of a body's triangles, and its edges, each once.
+struct ConvexParts {
+  std::vector<RationalPoint> normals, edges;
+  bool convex = true;
+
+  explicit ConvexParts(const Triangles& t) {
+    std::set<std::pair<VertexId, VertexId>> seen;
+    for (const auto& c : t.corners) {
+      const RationalPoint n = oracle::cross(oracle::minus(t.points[c[1]], t.points[c[0]]),
+                                            oracle::minus(t.points[c[2]], t.points[c[0]]));
+      if (oracle::dot(n, n) == 0) continue;
+      for (const RationalPoint& x : t.points)
+        convex = convex && oracle::dot(n, oracle::minus(x, t.points[c[0]])) <= 0;
+      normals.push_back(n);
+      for (int k = 0; k < 3; ++k)
+        if (seen.insert(std::minmax(c[k], c[(k + 1) % 3])).second)
+          edges.push_back(oracle::minus(t.points[c[(k + 1) % 3]], t.points[c[k]]));
+    }
+    convex = convex && normals.size() > 3;
+  }
+};
+
+/// Returns the squared way out along n: how far A reaches beyond B's beginning.
+Rational way_out_sq(const Triangles& a, const Triangles& b, const RationalPoint& n) {
+  std::optional<Rational> far, near;
+  for (const RationalPoint& x : a.points)
+    if (const Rational d = oracle::dot(n, x); !far || d > *far) far = d;
+  for (const RationalPoint& x : b.points)
+    if (const Rational d = oracle::dot(n, x); !near || d < *near) near = d;
+  const Rational overlap = *far - *near;
+  return overlap <= 0 ? Rational(0) : Rational(overlap * overlap / oracle::dot(n, n));
+}
+
+/// Returns the squared depth of two convex bodies; none if one is not convex.
+std::optional<Rational> depth_sq(const Asked& q) {
+  const Triangles a(q.a), b(q.b);
+  const ConvexParts of_a(a), of_b(b);
+  if (!of_a.convex || !of_b.convex) return std::nullopt;
+  std::optional<Rational> least;
+  const auto try_out = [&](const RationalPoint& n) {
+    if (least && *least == 0) return;
+    const Rational d = way_out_sq(a, b, n);
+    if (!least || d < *least) least = d;
+  };
+  const RationalPoint zero = rational(Vector3d(0, 0, 0));
+  for (const RationalPoint& n : of_a.normals) try_out(n);
+  for (const RationalPoint& n : of_b.normals) try_out(oracle::minus(zero, n));
+  for (const RationalPoint& e : of_a.edges)
+    for (const RationalPoint& f : of_b.edges) {
+      const RationalPoint n = oracle::cross(e, f);
+      if (oracle::dot(n, n) == 0) continue;
+      try_out(n);
+      try_out(oracle::minus(zero, n));
+    }
+  return least;
+}
+
+}  // namespace
+
+RightAnswer true_number(Quantity quantity, const cases::Case& c) {
+  RightAnswer e;
+  e.refusal = why_not_asked(quantity, c);
+  if (!e.refusal.empty()) return e;
+  const Asked q = asked(c);
+  if (quantity == Quantity::distance) {
+    const bool meet = !brute_force(q.a, Pose{}, q.b, Pose{}).pairs.empty();
+    set_root(e, meet ? Rational(0) : distance_sq(q));
+  } else if (quantity == Quantity::first_contact) {
+    if (const auto t = first_time(q))
+      set_number(e, *t);
+    else
+      e.least = e.most = kNever;
+  } else if (const auto depth = depth_sq(q)) {
+    set_root(e, *depth);
+  } else {
+    e.refusal = "a body that is not convex: its depth is not known otherwise";
+  }
+  return e;
+}
+
+}  // namespace lrb::stability

@@ -1,0 +1,155 @@
+// Bullet's GImpact meshes in a collision world: contactPairTest() calls back for each contact point, with the
+// triangles that it belongs to. Compiled for the precision of the library it is linked to.
+#include "bench/rivals/method.hpp"
+
+namespace lrb::methods {
+namespace {
+const MethodStyle kStyle = {"Bullet", "#cc79a7", "rectRot", 13};
+#ifdef BT_USE_DOUBLE_PRECISION
+#define LRB_BULLET_METHODS bullet_double_methods
+constexpr int kRank = 100;
+#else
+#define LRB_BULLET_METHODS bullet_methods
+constexpr int kRank = 50;
+#endif
+}  // namespace
+}  // namespace lrb::methods
+
+#ifdef LRB_HAS_BULLET
+
+#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
+#include <BulletCollision/Gimpact/btGImpactShape.h>
+#include <btBulletCollisionCommon.h>
+
+#include "bench/rivals/triangles.hpp"
+#include <lrbscope/error.hpp>
+
+namespace lrb::methods {
+namespace {
+
+constexpr bool kSingle = sizeof(btScalar) == sizeof(float);
+
+struct BulletBody : MethodBody {
+  std::vector<btScalar> vertices;
+  std::vector<int> corners;
+  std::unique_ptr<btTriangleIndexVertexArray> arrays;
+  std::unique_ptr<btGImpactMeshShape> shape;
+  std::unique_ptr<btCollisionObject> object;
+};
+
+btTransform transform(const Pose& p) {
+  const auto s = [](double x) { return static_cast<btScalar>(x); };
+  return btTransform(btMatrix3x3(s(p.r(0, 0)), s(p.r(0, 1)), s(p.r(0, 2)), s(p.r(1, 0)), s(p.r(1, 1)),
+                                 s(p.r(1, 2)), s(p.r(2, 0)), s(p.r(2, 1)), s(p.r(2, 2))),
+                     btVector3(s(p.t.x()), s(p.t.y()), s(p.t.z())));
+}
+
+/// Gathers the triangles of contact points.
+struct Gatherer : btCollisionWorld::ContactResultCallback {
+  explicit Gatherer(const btCollisionObject* first) : a(first) {}
+  btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper* object0, int, int index0,
+                           const btCollisionObjectWrapper*, int, int index1) override {
+    const bool in_order = object0->getCollisionObject() == a;
+    pairs.push_back({static_cast<SimplexId>(in_order ? index0 : index1),
+                     static_cast<SimplexId>(in_order ? index1 : index0)});
+    return 0;
+  }
+  const btCollisionObject* a;
+  std::vector<SimplexPair> pairs;
+};
+
+class Bullet : public Method {
+ public:
+  Bullet() : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
+    btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
+    // That is not enough: contactPairTest() looks in a second table, and says that there is no contact if it
+    // finds no entry there.
+    dispatcher_.registerClosestPointsCreateFunc(GIMPACT_SHAPE_PROXYTYPE, GIMPACT_SHAPE_PROXYTYPE, &create_);
+  }
+
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
+    const Triangles t = triangles_of(rep);
+    if (kSingle) check_fits_float(t);
+    auto body = std::make_unique<BulletBody>();
+    for (const Eigen::Vector3d& v : t.vertices)
+      for (int k = 0; k < 3; ++k) body->vertices.push_back(static_cast<btScalar>(v[k]));
+    for (const auto& c : t.triangles)
+      for (const VertexId v : c) body->corners.push_back(static_cast<int>(v));
+    body->arrays = std::make_unique<btTriangleIndexVertexArray>(
+        static_cast<int>(t.triangles.size()), body->corners.data(), static_cast<int>(3 * sizeof(int)),
+        static_cast<int>(t.vertices.size()), body->vertices.data(), static_cast<int>(3 * sizeof(btScalar)));
+    body->shape = std::make_unique<btGImpactMeshShape>(body->arrays.get());
+    body->shape->setMargin(0);
+    body->shape->updateBound();
+    body->object = std::make_unique<btCollisionObject>();
+    body->object->setCollisionShape(body->shape.get());
+    return body;
+  }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    check_rigid(pose_a);
+    check_rigid(pose_b);
+    btCollisionObject* object_a = static_cast<const BulletBody&>(a).object.get();
+    btCollisionObject* object_b = static_cast<const BulletBody&>(b).object.get();
+    object_a->setWorldTransform(transform(pose_a));
+    object_b->setWorldTransform(transform(pose_b));
+    MethodAnswer answer;
+    const Stopwatch watch;
+    Gatherer gatherer(object_a);
+    world_.contactPairTest(object_a, object_b, gatherer);
+    answer.microseconds = watch.microseconds();
+    sort_pairs(gatherer.pairs);
+    answer.pairs = std::move(gatherer.pairs);
+    answer.contact = !answer.pairs.empty();
+    if (mode == Mode::first_pair && answer.contact) answer.pairs.resize(1);
+    return answer;
+  }
+
+ private:
+  btGImpactCollisionAlgorithm::CreateFunc create_;
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_;
+  btDbvtBroadphase broadphase_;
+  btCollisionWorld world_;
+};
+
+}  // namespace
+
+std::vector<MethodEntry> LRB_BULLET_METHODS() {
+  MethodInfo info;
+  info.rank = kRank;
+  info.style = kStyle;
+  info.name = kSingle ? "bullet" : "bullet-double";
+  info.title = "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
+               std::to_string(BT_BULLET_VERSION % 100) + ", GImpact, " + (kSingle ? "float" : "double");
+  info.loose = true;
+  info.remark =
+      std::string(
+          "All pairs: contactPairTest() of two btGImpactMeshShapes with margin 0; a pair for the triangles "
+          "of "
+          "each contact point. Contact means penetration to it, so that it lists triangles behind each other "
+          "too: those are counted, but wrong only where the bodies do not meet. ") +
+      (kSingle ? "Single precision, Bullet's default; beyond its range it is not asked. "
+               : "Debian's build in double precision. ") +
+      "Does not look for bodies inside bodies; 3D only.";
+  return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Bullet>(); }}};
+}
+
+}  // namespace lrb::methods
+
+#else
+
+namespace lrb::methods {
+
+std::vector<MethodEntry> LRB_BULLET_METHODS() {
+#ifdef BT_USE_DOUBLE_PRECISION
+  return {absent("bullet-double", "Bullet, GImpact, double", "libbullet-dev", kRank, kStyle)};
+#else
+  return {absent("bullet", "Bullet, GImpact, float", "libbullet-dev", kRank, kStyle)};
+#endif
+}
+
+}  // namespace lrb::methods
+
+#endif

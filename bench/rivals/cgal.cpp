@@ -1,0 +1,218 @@
+// CGAL, with its kernel of exact predicates and inexact constructions, as its manual shows: the collision
+// detection of rigid triangle meshes, and the AABB tree asked with one triangle after another.
+#include "bench/rivals/method.hpp"
+
+namespace lrb::methods {
+namespace {
+const MethodStyle kStyle = {"CGAL, yes or no", "#009e73", "triangle", 8};
+const MethodStyle kPairsStyle = {"CGAL, pairs", "#009e73", "triangle", 9};
+constexpr int kRank = 40;
+}  // namespace
+}  // namespace lrb::methods
+
+#ifdef LRB_HAS_CGAL
+
+#include <algorithm>
+#include <map>
+
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Rigid_triangle_mesh_collision_detection.h>
+#include <CGAL/Surface_mesh.h>
+
+#include "bench/rivals/triangles.hpp"
+#include <lrbscope/error.hpp>
+
+namespace lrb::methods {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Triangle = Kernel::Triangle_3;
+using SurfaceMesh = CGAL::Surface_mesh<Point>;
+using Detection = CGAL::Rigid_triangle_mesh_collision_detection<SurfaceMesh>;
+using TriangleIterator = std::vector<Triangle>::const_iterator;
+using Tree =
+    CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primitive<Kernel, TriangleIterator>>>;
+
+Kernel::Aff_transformation_3 transform(const Pose& p) {
+  return {p.r(0, 0), p.r(0, 1), p.r(0, 2), p.t.x(),   p.r(1, 0), p.r(1, 1),
+          p.r(1, 2), p.t.y(),   p.r(2, 0), p.r(2, 1), p.r(2, 2), p.t.z()};
+}
+
+std::vector<Point> points_of(const Triangles& t) {
+  std::vector<Point> points;
+  for (const Eigen::Vector3d& v : t.vertices) points.emplace_back(v.x(), v.y(), v.z());
+  return points;
+}
+
+/// Runs CGAL, and turns a precondition that does not hold into a refusal.
+template <class Run>
+auto asked(const Run& run) {
+  try {
+    return run();
+  } catch (const CGAL::Failure_exception& e) {
+    throw InputError("CGAL refused: " + e.expression());
+  }
+}
+
+/// All bodies are in one set of meshes, as CGAL intends.
+struct MeshSet {
+  std::map<std::size_t, std::unique_ptr<SurfaceMesh>> meshes;  // trees point into them
+  Detection detection;
+};
+
+struct MeshBody : MethodBody {
+  explicit MeshBody(std::shared_ptr<MeshSet> s, std::unique_ptr<SurfaceMesh> mesh)
+      : set(std::move(s)), id(set->detection.add_mesh(*mesh)) {
+    set->meshes[id] = std::move(mesh);
+  }
+  ~MeshBody() override {
+    set->detection.remove_mesh(id);
+    set->meshes.erase(id);
+  }
+  std::shared_ptr<MeshSet> set;
+  std::size_t id;
+};
+
+class Rigid : public Method {
+ public:
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
+    const Triangles t = triangles_of(rep);
+    std::vector<std::array<std::size_t, 3>> faces;
+    for (const auto& c : t.triangles) faces.push_back({c[0], c[1], c[2]});
+    namespace pmp = CGAL::Polygon_mesh_processing;
+    if (!pmp::is_polygon_soup_a_polygon_mesh(faces))
+      throw InputError("not manifold, or not oriented: CGAL's Surface_mesh cannot hold it");
+    return asked([&] {
+      auto mesh = std::make_unique<SurfaceMesh>();
+      pmp::polygon_soup_to_polygon_mesh(points_of(t), faces, *mesh);
+      return std::make_unique<MeshBody>(set_, std::move(mesh));
+    });
+  }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode) override {
+    const std::size_t id_a = static_cast<const MeshBody&>(a).id;
+    const std::array<std::size_t, 1> id_b = {static_cast<const MeshBody&>(b).id};
+    return asked([&] {
+      const Stopwatch watch;
+      set_->detection.set_transformation(id_a, transform(pose_a));
+      set_->detection.set_transformation(id_b[0], transform(pose_b));
+      const auto found = set_->detection.get_all_intersections_and_inclusions(id_a, id_b);
+      MethodAnswer answer;
+      answer.microseconds = watch.microseconds();
+      answer.contact = !found.empty() && !found.front().second;
+      answer.inside = !found.empty() && found.front().second;
+      return answer;
+    });
+  }
+
+ private:
+  std::shared_ptr<MeshSet> set_ = std::make_shared<MeshSet>();
+};
+
+struct TreeBody : MethodBody {
+  std::vector<Triangle> triangles;
+  Tree tree;
+};
+
+class Pairs : public Method {
+ public:
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
+    const Triangles t = triangles_of(rep);
+    const std::vector<Point> points = points_of(t);
+    auto body = std::make_unique<TreeBody>();
+    for (const auto& c : t.triangles) body->triangles.emplace_back(points[c[0]], points[c[1]], points[c[2]]);
+    asked([&] {
+      body->tree.insert(body->triangles.cbegin(), body->triangles.cend());
+      body->tree.build();
+      return 0;
+    });
+    return body;
+  }
+
+  /// Moves A's triangles into B's frame and asks B's tree about each.
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    const auto& body_a = static_cast<const TreeBody&>(a);
+    const auto& body_b = static_cast<const TreeBody&>(b);
+    return asked([&] {
+      const Stopwatch watch;
+      const auto relative = transform(pose_b).inverse() * transform(pose_a);
+      MethodAnswer answer;
+      std::vector<TriangleIterator> met;
+      for (std::size_t i = 0; i < body_a.triangles.size(); ++i) {
+        const Triangle t = body_a.triangles[i].transform(relative);
+        if (mode == Mode::first_pair) {
+          const auto any = body_b.tree.any_intersected_primitive(t);
+          if (any) met.push_back(*any);
+        } else {
+          body_b.tree.all_intersected_primitives(t, std::back_inserter(met));
+        }
+        for (const TriangleIterator j : met)
+          answer.pairs.push_back(
+              {static_cast<SimplexId>(i), static_cast<SimplexId>(j - body_b.triangles.cbegin())});
+        met.clear();
+        if (mode == Mode::first_pair && !answer.pairs.empty()) break;
+      }
+      answer.microseconds = watch.microseconds();
+      std::sort(answer.pairs.begin(), answer.pairs.end());
+      answer.contact = !answer.pairs.empty();
+      return answer;
+    });
+  }
+};
+
+MethodEntry rigid() {
+  MethodInfo info;
+  info.rank = kRank;
+  info.style = kStyle;
+  info.name = "cgal";
+  info.title = "CGAL " CGAL_VERSION_STR ", Rigid_triangle_mesh_collision_detection";
+  info.remark =
+      "Yes or no, and whether a body lies in the other: get_all_intersections_and_inclusions() of two "
+      "Surface_meshes, exact predicates. Lists no pairs; takes manifold meshes only; 3D only. Judged by "
+      "contact, inside or separate.";
+  info.pairs = false;
+  info.says = Says::inside;
+  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Rigid>(); }};
+}
+
+MethodEntry pairs() {
+  MethodInfo info;
+  info.rank = kRank + 1;
+  info.style = kPairsStyle;
+  info.name = "cgal-pairs";
+  info.title = "CGAL " CGAL_VERSION_STR ", AABB_tree, triangle by triangle";
+  info.remark =
+      "All pairs: all_intersected_primitives() of B's tree for each triangle of A, exact predicates. CGAL "
+      "asks "
+      "for triangles with an area. Does not look for bodies inside bodies; 3D only.";
+  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Pairs>(); }};
+}
+
+}  // namespace
+
+std::vector<MethodEntry> cgal_methods() {
+  return {rigid(), pairs()};
+}
+
+}  // namespace lrb::methods
+
+#else
+
+namespace lrb::methods {
+
+std::vector<MethodEntry> cgal_methods() {
+  return {
+      absent("cgal", "CGAL, Rigid_triangle_mesh_collision_detection", "libcgal-dev", kRank, kStyle),
+      absent("cgal-pairs", "CGAL, AABB_tree, triangle by triangle", "libcgal-dev", kRank + 1, kPairsStyle)};
+}
+
+}  // namespace lrb::methods
+
+#endif

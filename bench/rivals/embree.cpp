@@ -1,0 +1,192 @@
+// Embree's rtcCollide: two trees of boxes around triangles are descended against each other; a callback gets
+// the contents of leaves that meet and tests the triangles, as in Embree's own example. Its boxes are in the
+// world: when a body moves, its tree must be refitted or built again before it can be asked.
+#include "bench/rivals/method.hpp"
+
+namespace lrb::methods {
+namespace {
+const MethodStyle kStyle = {"Embree", "#b58900", "rectRounded", 11};
+constexpr int kRank = 60;
+}  // namespace
+}  // namespace lrb::methods
+
+#ifdef LRB_HAS_EMBREE
+
+#include <embree3/rtcore.h>
+
+#include "bench/rivals/triangles.hpp"
+#include <lrbscope/error.hpp>
+
+namespace lrb::methods {
+namespace {
+
+class Device {
+ public:
+  Device() : device_(rtcNewDevice("threads=1,set_affinity=0")) {
+    if (device_ == nullptr) throw EnvironmentError("Embree could not create a device");
+  }
+  ~Device() { rtcReleaseDevice(device_); }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  operator RTCDevice() const { return device_; }
+
+ private:
+  RTCDevice device_;
+};
+
+struct EmbreeBody : MethodBody {
+  EmbreeBody(std::shared_ptr<Device> d, Triangles t, RTCBuildQuality quality)
+      : device(std::move(d)), shape(std::move(t)), moved(shape.vertices) {
+    scene = rtcNewScene(*device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_DYNAMIC);
+    geometry = rtcNewGeometry(*device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(shape.triangles.size()));
+    rtcSetGeometryUserData(geometry, this);
+    rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+    rtcSetGeometryBuildQuality(geometry, quality);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcCommitScene(scene);
+  }
+  ~EmbreeBody() override {
+    rtcReleaseGeometry(geometry);
+    rtcReleaseScene(scene);
+  }
+
+  void move(const Pose& pose) {
+    for (std::size_t v = 0; v < moved.size(); ++v) moved[v] = pose.apply(shape.vertices[v]);
+    rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+    rtcCommitGeometry(geometry);
+    rtcCommitScene(scene);
+    at = pose;
+  }
+  /// A body that stays where it is need not be moved again.
+  void move_to(const Pose& pose) {
+    if (at.r != pose.r || at.t != pose.t) move(pose);
+  }
+  void corners(unsigned s, Eigen::Vector3d out[3]) const {
+    for (int k = 0; k < 3; ++k) out[k] = moved[shape.triangles[s][static_cast<std::size_t>(k)]];
+  }
+
+  static void bounds(const RTCBoundsFunctionArguments* a) {
+    const auto& body = *static_cast<const EmbreeBody*>(a->geometryUserPtr);
+    Eigen::Vector3d c[3];
+    body.corners(a->primID, c);
+    const Eigen::Vector3d low = c[0].cwiseMin(c[1]).cwiseMin(c[2]);
+    const Eigen::Vector3d high = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
+    RTCBounds& b = *a->bounds_o;
+    b.lower_x = static_cast<float>(low.x());
+    b.lower_y = static_cast<float>(low.y());
+    b.lower_z = static_cast<float>(low.z());
+    b.upper_x = static_cast<float>(high.x());
+    b.upper_y = static_cast<float>(high.y());
+    b.upper_z = static_cast<float>(high.z());
+  }
+
+  std::shared_ptr<Device> device;
+  Triangles shape;
+  std::vector<Eigen::Vector3d> moved;
+  Pose at;
+  RTCScene scene = nullptr;
+  RTCGeometry geometry = nullptr;
+};
+
+/// What the callback needs and finds.
+struct Candidates {
+  const EmbreeBody *a, *b;
+  std::vector<SimplexPair> pairs;
+  std::uint64_t tests = 0;
+
+  static void add(void* user, RTCCollision* found, unsigned count) {
+    auto& self = *static_cast<Candidates*>(user);
+    self.tests += count;
+    Eigen::Vector3d p[3], q[3];
+    for (unsigned i = 0; i < count; ++i) {
+      const SimplexPair pair{SimplexId(found[i].primID0), SimplexId(found[i].primID1)};
+      self.a->corners(pair.a, p);
+      self.b->corners(pair.b, q);
+      if (plain_triangles_meet(p, q)) self.pairs.push_back(pair);
+    }
+  }
+};
+
+class Embree : public Method {
+ public:
+  explicit Embree(RTCBuildQuality quality) : quality_(quality) {}
+
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
+    Triangles t = triangles_of(rep);
+    check_fits_float(t);
+    return std::make_unique<EmbreeBody>(device_, std::move(t), quality_);
+  }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    // Our own copies of the bodies are moved.
+    auto& body_a = const_cast<EmbreeBody&>(static_cast<const EmbreeBody&>(a));
+    auto& body_b = const_cast<EmbreeBody&>(static_cast<const EmbreeBody&>(b));
+    body_a.move_to(pose_a);
+    MethodAnswer answer;
+    Candidates candidates{&body_a, &body_b, {}};
+    const Stopwatch watch;
+    body_b.move(pose_b);
+    rtcCollide(body_a.scene, body_b.scene, Candidates::add, &candidates);
+    answer.microseconds = watch.microseconds();
+    sort_pairs(candidates.pairs);
+    answer.pairs = std::move(candidates.pairs);
+    answer.face_tests = candidates.tests;
+    answer.contact = !answer.pairs.empty();
+    if (mode == Mode::first_pair && answer.contact) answer.pairs.resize(1);
+    return answer;
+  }
+
+ private:
+  std::shared_ptr<Device> device_ = std::make_shared<Device>();
+  RTCBuildQuality quality_;
+};
+
+MethodEntry entry(const char* name, const char* how, const char* remark, int rank,
+                  std::unique_ptr<Method> (*make)()) {
+  MethodInfo info;
+  info.rank = rank;
+  info.style = kStyle;
+  info.name = name;
+  info.title = std::string("Embree " RTC_VERSION_STRING ", rtcCollide, ") + how;
+  info.remark =
+      std::string(
+          "All pairs: rtcCollide() of two scenes of triangles' boxes, the triangles tested in the "
+          "callback in double with an epsilon; it has no way to stop at the first pair. Body B moves "
+          "at every query, ") +
+      remark;
+  info.hard_cases = false;
+  return {info, make};
+}
+
+}  // namespace
+
+std::vector<MethodEntry> embree_methods() {
+  return {
+      entry("embree", "refitted", "and its tree is refitted, which counts.", kRank,
+            []() -> std::unique_ptr<Method> { return std::make_unique<Embree>(RTC_BUILD_QUALITY_REFIT); }),
+      entry("embree-rebuilt", "rebuilt", "and its tree is built again by the fastest builder, which counts.",
+            kRank + 1,
+            []() -> std::unique_ptr<Method> { return std::make_unique<Embree>(RTC_BUILD_QUALITY_LOW); })};
+}
+
+}  // namespace lrb::methods
+
+#else
+
+namespace lrb::methods {
+
+std::vector<MethodEntry> embree_methods() {
+  std::vector<MethodEntry> entries = {
+      absent("embree", "Embree, rtcCollide, refitted", "libembree-dev", kRank, kStyle),
+      absent("embree-rebuilt", "Embree, rtcCollide, rebuilt", "libembree-dev", kRank + 1, kStyle)};
+  for (MethodEntry& e : entries) e.info.hard_cases = false;
+  return entries;
+}
+
+}  // namespace lrb::methods
+
+#endif

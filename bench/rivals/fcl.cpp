@@ -1,0 +1,154 @@
+// FCL's BVHModel with OBBRSS nodes, as its README recommends for the collision of two meshes: collide() with
+// as many contacts as there may be, and without their positions. It is compiled twice: against the packaged
+// library, with the flags of the packages, and (LRB_FCL_HEADERS) with all of FCL's templates instantiated
+// here, with our flags.
+#include "bench/rivals/method.hpp"
+
+namespace lrb::methods {
+namespace {
+const MethodStyle kStyle = {"FCL", "#d55e00", "rect", 5};
+#ifdef LRB_FCL_HEADERS
+constexpr int kRank = 110;
+#else
+constexpr int kRank = 30;
+#endif
+}  // namespace
+}  // namespace lrb::methods
+
+#ifdef LRB_HAS_FCL
+
+#ifdef LRB_FCL_HEADERS
+#include "bench/rivals/fcl_instantiated.hpp"
+#endif
+
+#include <fcl/config.h>
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/narrowphase/collision.h>
+
+#include "bench/rivals/triangles.hpp"
+#include <lrbscope/error.hpp>
+
+namespace lrb::methods {
+namespace {
+
+template <class S>
+struct FclBody : MethodBody {
+  fcl::BVHModel<fcl::OBBRSS<S>> model;
+};
+
+template <class S>
+fcl::Transform3<S> transform(const Pose& pose) {
+  fcl::Transform3<S> t = fcl::Transform3<S>::Identity();
+  t.linear() = pose.r.template cast<S>();
+  t.translation() = pose.t.template cast<S>();
+  return t;
+}
+
+template <class S>
+class Fcl : public Method {
+ public:
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
+    const Triangles t = triangles_of(rep);
+    if constexpr (std::is_same_v<S, float>) check_fits_float(t);
+    std::vector<fcl::Vector3<S>> vertices;
+    std::vector<fcl::Triangle> triangles;
+    for (const Eigen::Vector3d& v : t.vertices) vertices.push_back(v.cast<S>());
+    for (const auto& c : t.triangles) triangles.emplace_back(c[0], c[1], c[2]);
+    auto body = std::make_unique<FclBody<S>>();
+    body->model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
+    body->model.addSubModel(vertices, triangles);
+    if (body->model.endModel() != fcl::BVH_OK) throw InputError("FCL could not build its tree");
+    return body;
+  }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    check_rigid(pose_a);
+    check_rigid(pose_b);
+    const auto& model_a = static_cast<const FclBody<S>&>(a).model;
+    const auto& model_b = static_cast<const FclBody<S>&>(b).model;
+    static constexpr std::size_t kAll = std::size_t{1} << 40;
+    const fcl::CollisionRequest<S> request(mode == Mode::all_pairs ? kAll : 1, false);
+    const Stopwatch watch;
+    fcl::CollisionResult<S> result;
+    fcl::collide(&model_a, transform<S>(pose_a), &model_b, transform<S>(pose_b), request, result);
+    MethodAnswer answer;
+    answer.microseconds = watch.microseconds();
+    for (std::size_t i = 0; i < result.numContacts(); ++i) {
+      const fcl::Contact<S>& c = result.getContact(i);
+      answer.pairs.push_back({static_cast<SimplexId>(c.b1), static_cast<SimplexId>(c.b2)});
+    }
+    sort_pairs(answer.pairs);
+    answer.contact = result.isCollision();
+    return answer;
+  }
+};
+
+MethodInfo fcl_info(const char* name, const char* scalar, const char* remark, int rank) {
+  MethodInfo info;
+  info.rank = rank;
+  info.style = kStyle;
+  info.name = name;
+  info.title = std::string("FCL " FCL_VERSION ", OBBRSS, ") + scalar;
+  info.remark = remark;
+  return info;
+}
+
+}  // namespace
+
+#ifdef LRB_FCL_HEADERS
+
+std::vector<MethodEntry> fcl_headers_methods() {
+  MethodEntry entry = {
+      fcl_info("fcl-headers", "double, compiled with our flags",
+               "As fcl, but for its code, which is instantiated from its headers with our compiler's flags.",
+               kRank),
+      []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<double>>(); }};
+  entry.info.hard_cases = false;
+  entry.info.role = Role::aim;
+  return {entry};
+}
+
+#else
+
+std::vector<MethodEntry> fcl_methods() {
+  return {
+      {fcl_info("fcl", "double",
+                "All pairs: collide() of two BVHModel<OBBRSS>, contacts unlimited, without their positions. "
+                "Does not look for bodies inside bodies; 3D only.",
+                kRank),
+       []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<double>>(); }},
+      {fcl_info("fcl-float", "float",
+                "As fcl, with coordinates rounded to float; beyond its range it is not asked.", kRank + 1),
+       []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<float>>(); }}};
+}
+
+#endif
+
+}  // namespace lrb::methods
+
+#else
+
+namespace lrb::methods {
+
+#ifdef LRB_FCL_HEADERS
+
+std::vector<MethodEntry> fcl_headers_methods() {
+  MethodEntry entry = absent("fcl-headers", "FCL, compiled with our flags", "libfcl-dev", kRank, kStyle);
+  entry.info.hard_cases = false;
+  entry.info.role = Role::aim;
+  return {entry};
+}
+
+#else
+
+std::vector<MethodEntry> fcl_methods() {
+  return {absent("fcl", "FCL, OBBRSS, double", "libfcl-dev", kRank, kStyle),
+          absent("fcl-float", "FCL, OBBRSS, float", "libfcl-dev", kRank + 1, kStyle)};
+}
+
+#endif
+
+}  // namespace lrb::methods
+
+#endif

@@ -1,0 +1,3 @@
+// FCL again, with its templates instantiated here: see fcl_instantiated.hpp.
+#define LRB_FCL_HEADERS
+#include "bench/rivals/fcl.cpp"

@@ -1,0 +1,210 @@
+// FCL with other forms of bodies than meshes: an octree of cells against a mesh, with the size of cells as a
+// knob, and the convex hulls of both by GJK (libccd).
+#include "bench/rivals/method.hpp"
+
+namespace lrb::methods {
+namespace {
+const MethodStyle kOctreeStyle = {"octree (FCL), by cells", "#8a5a2b", "rect", 4};
+const MethodStyle kGjkStyle = {"convex hulls, GJK (FCL)", "#a3132f", "triangle", 10};
+constexpr int kRank = 90;
+}  // namespace
+}  // namespace lrb::methods
+
+#ifdef LRB_HAS_FCL
+#include <fcl/config.h>
+#endif
+
+#if defined(LRB_HAS_FCL) && FCL_HAVE_OCTOMAP
+
+#include <algorithm>
+#include <cmath>
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/octree/octree.h>
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/narrowphase/collision.h>
+
+#include "bench/rivals/triangles.hpp"
+#include "engine/construct/convex_hull.hpp"
+#include <lrbscope/error.hpp>
+
+namespace lrb::methods {
+namespace {
+
+fcl::Transform3d transform(const Pose& pose) {
+  fcl::Transform3d t = fcl::Transform3d::Identity();
+  t.linear() = pose.r;
+  t.translation() = pose.t;
+  return t;
+}
+
+/// Asks FCL for contacts of two geometries, with their positions.
+MethodAnswer ask(const fcl::CollisionGeometryd& a, const Pose& pose_a, const fcl::CollisionGeometryd& b,
+                 const Pose& pose_b, Mode mode) {
+  static constexpr std::size_t kMost = std::size_t{1} << 40;
+  const fcl::CollisionRequestd request(mode == Mode::all_pairs ? kMost : 1, mode == Mode::all_pairs);
+  MethodAnswer answer;
+  const Stopwatch watch;
+  fcl::CollisionResultd result;
+  fcl::collide(&a, transform(pose_a), &b, transform(pose_b), request, result);
+  answer.microseconds = watch.microseconds();
+  answer.contact = result.isCollision();
+  if (mode == Mode::all_pairs)
+    for (std::size_t i = 0; i < result.numContacts(); ++i) answer.points.push_back(result.getContact(i).pos);
+  return answer;
+}
+
+struct OctreeBody : MethodBody {
+  std::unique_ptr<fcl::OcTreed> cells;
+  fcl::BVHModel<fcl::OBBRSSd> mesh;
+};
+
+/// Makes an octree; each triangle is sampled at half the cell's size.
+std::shared_ptr<octomap::OcTree> cells_of(const Triangles& t, double cell) {
+  auto tree = std::make_shared<octomap::OcTree>(cell);
+  for (const auto& c : t.triangles) {
+    const Eigen::Vector3d &p = t.vertices[c[0]], &q = t.vertices[c[1]], &r = t.vertices[c[2]];
+    const double longest = std::max({(q - p).norm(), (r - q).norm(), (p - r).norm()});
+    const int n = std::max(1, static_cast<int>(std::ceil(2 * longest / cell)));
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j) {
+        const Eigen::Vector3d x = p + (q - p) * i / n + (r - p) * j / n;
+        tree->updateNode(
+            octomap::point3d(static_cast<float>(x.x()), static_cast<float>(x.y()), static_cast<float>(x.z())),
+            true, true);
+      }
+  }
+  tree->updateInnerOccupancy();
+  return tree;
+}
+
+class Octree : public Method {
+ public:
+  void set(double cells) override { cells_ = cells; }
+
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
+    const Triangles t = triangles_of(rep);
+    check_fits_float(t);
+    auto body = std::make_unique<OctreeBody>();
+    Eigen::AlignedBox3d box;
+    for (const auto& c : t.triangles)
+      for (const VertexId v : c) box.extend(t.vertices[v]);
+    body->cells = std::make_unique<fcl::OcTreed>(cells_of(t, box.diagonal().norm() / cells_));
+    body->cells->computeLocalAABB();
+    std::vector<fcl::Vector3d> vertices(t.vertices.begin(), t.vertices.end());
+    std::vector<fcl::Triangle> triangles;
+    for (const auto& c : t.triangles) triangles.emplace_back(c[0], c[1], c[2]);
+    body->mesh.beginModel();
+    body->mesh.addSubModel(vertices, triangles);
+    body->mesh.endModel();
+    return body;
+  }
+
+  /// Asks for A's cells against B's mesh.
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    check_rigid(pose_a);
+    check_rigid(pose_b);
+    return ask(*static_cast<const OctreeBody&>(a).cells, pose_a, static_cast<const OctreeBody&>(b).mesh,
+               pose_b, mode);
+  }
+
+ private:
+  double cells_ = 32;
+};
+
+struct HullBody : MethodBody {
+  std::unique_ptr<fcl::Convexd> hull;
+};
+
+class Gjk : public Method {
+ public:
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
+    const Triangles t = triangles_of(rep);
+    std::vector<bool> used(t.vertices.size());
+    for (const auto& c : t.triangles)
+      for (const VertexId v : c) used[v] = true;
+    std::vector<Eigen::Vector3d> points;
+    for (std::size_t v = 0; v < used.size(); ++v)
+      if (used[v]) points.push_back(t.vertices[v]);
+    const Mesh mesh = construct::convex_hull_mesh(points);
+    if (mesh.face_count() == 0) throw InputError("a flat body: it has no convex hull");
+    auto vertices = std::make_shared<std::vector<fcl::Vector3d>>(mesh.vertices.begin(), mesh.vertices.end());
+    auto faces = std::make_shared<std::vector<int>>();
+    for (FaceId f = 0; f < mesh.face_count(); ++f) {
+      faces->push_back(3);
+      for (const VertexId v : mesh.face(f)) faces->push_back(static_cast<int>(v));
+    }
+    auto body = std::make_unique<HullBody>();
+    body->hull = std::make_unique<fcl::Convexd>(vertices, static_cast<int>(mesh.face_count()), faces);
+    body->hull->computeLocalAABB();
+    return body;
+  }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    check_rigid(pose_a);
+    check_rigid(pose_b);
+    return ask(*static_cast<const HullBody&>(a).hull, pose_a, *static_cast<const HullBody&>(b).hull, pose_b,
+               mode);
+  }
+};
+
+MethodEntry octree() {
+  MethodInfo info;
+  info.rank = kRank;
+  info.style = kOctreeStyle;
+  info.name = "fcl-octree";
+  info.title = "FCL " FCL_VERSION ", octree against mesh";
+  info.remark =
+      "Contact, and points of it: A as an octree (OctoMap) of the cells that its surface goes through, B as "
+      "a mesh. "
+      "The knob is the number of cells along A's diagonal.";
+  info.pairs = false;
+  info.hard_cases = false;
+  info.approximate = true;
+  info.knob = "cells";
+  info.settings = {16, 32, 64, 128};
+  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Octree>(); }};
+}
+
+MethodEntry gjk() {
+  MethodInfo info;
+  info.rank = kRank + 1;
+  info.style = kGjkStyle;
+  info.name = "fcl-gjk";
+  info.title = "FCL " FCL_VERSION ", GJK of convex hulls";
+  info.remark =
+      "Contact, and a point of it: the convex hulls of both bodies by GJK and EPA (libccd). Right where "
+      "bodies are "
+      "convex and neither lies in the other.";
+  info.pairs = false;
+  info.hard_cases = false;
+  info.convex = true;
+  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Gjk>(); }};
+}
+
+}  // namespace
+
+std::vector<MethodEntry> fcl_solids_methods() {
+  return {octree(), gjk()};
+}
+
+}  // namespace lrb::methods
+
+#else
+
+namespace lrb::methods {
+
+std::vector<MethodEntry> fcl_solids_methods() {
+  MethodEntry octree = absent("fcl-octree", "FCL, octree against mesh", "libfcl-dev", kRank, kOctreeStyle);
+  octree.info.approximate = true;
+  MethodEntry gjk = absent("fcl-gjk", "FCL, GJK of convex hulls", "libfcl-dev", kRank + 1, kGjkStyle);
+  gjk.info.convex = true;
+  octree.info.hard_cases = gjk.info.hard_cases = false;
+  return {octree, gjk};
+}
+
+}  // namespace lrb::methods
+
+#endif

@@ -1,0 +1,125 @@
+// ODE's triangle meshes: dCollide() of two of them, which makes contact points, each with its two triangles.
+#include "bench/rivals/method.hpp"
+
+namespace lrb::methods {
+namespace {
+const MethodStyle kStyle = {"ODE", "#7f3c8d", "cross", 1};
+constexpr int kRank = 70;
+}  // namespace
+}  // namespace lrb::methods
+
+#ifdef LRB_HAS_ODE
+
+#include <ode/ode.h>
+
+#include "bench/rivals/triangles.hpp"
+#include <lrbscope/error.hpp>
+
+namespace lrb::methods {
+namespace {
+
+constexpr int kMostContacts = 0xffff;  // the largest number that its flags can ask for
+
+struct OdeBody : MethodBody {
+  explicit OdeBody(const Triangles& t) {
+    for (const Eigen::Vector3d& v : t.vertices)
+      for (int k = 0; k < 3; ++k) vertices.push_back(static_cast<float>(v[k]));
+    for (const auto& c : t.triangles)
+      for (const VertexId v : c) corners.push_back(v);
+    data = dGeomTriMeshDataCreate();
+    dGeomTriMeshDataBuildSingle(data, vertices.data(), 3 * sizeof(float), static_cast<int>(t.vertices.size()),
+                                corners.data(), static_cast<int>(corners.size()), 3 * sizeof(dTriIndex));
+    geom = dCreateTriMesh(nullptr, data, nullptr, nullptr, nullptr);
+  }
+  ~OdeBody() override {
+    dGeomDestroy(geom);
+    dGeomTriMeshDataDestroy(data);
+  }
+  void move(const Pose& p) const {
+    dMatrix3 r;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) r[4 * i + j] = static_cast<dReal>(p.r(i, j));
+      r[4 * i + 3] = 0;
+    }
+    dGeomSetRotation(geom, r);
+    dGeomSetPosition(geom, static_cast<dReal>(p.t.x()), static_cast<dReal>(p.t.y()),
+                     static_cast<dReal>(p.t.z()));
+  }
+  std::vector<float> vertices;
+  std::vector<dTriIndex> corners;
+  dTriMeshDataID data = nullptr;
+  dGeomID geom = nullptr;
+};
+
+class Ode : public Method {
+ public:
+  Ode() : contacts_(kMostContacts) { dInitODE2(0); }
+  ~Ode() override { dCloseODE(); }
+
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
+    const Triangles t = triangles_of(rep);
+    check_fits_float(t);
+    return std::make_unique<OdeBody>(t);
+  }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    check_rigid(pose_a);
+    check_rigid(pose_b);
+    const auto &body_a = static_cast<const OdeBody&>(a), &body_b = static_cast<const OdeBody&>(b);
+    body_a.move(pose_a);
+    const int flags = mode == Mode::all_pairs ? kMostContacts : static_cast<int>(CONTACTS_UNIMPORTANT | 1U);
+    MethodAnswer answer;
+    const Stopwatch watch;
+    body_b.move(pose_b);
+    const int n = dCollide(body_a.geom, body_b.geom, flags, contacts_.data(), sizeof(dContactGeom));
+    answer.microseconds = watch.microseconds();
+    for (int i = 0; i < n; ++i) {
+      const dContactGeom& c = contacts_[static_cast<std::size_t>(i)];
+      const bool in_order = c.g1 == body_a.geom;
+      if (c.side1 < 0 || c.side2 < 0) continue;  // it stands for several pairs
+      answer.pairs.push_back({static_cast<SimplexId>(in_order ? c.side1 : c.side2),
+                              static_cast<SimplexId>(in_order ? c.side2 : c.side1)});
+    }
+    sort_pairs(answer.pairs);
+    answer.contact = n > 0;
+    return answer;
+  }
+
+ private:
+  std::vector<dContactGeom> contacts_;
+};
+
+}  // namespace
+
+std::vector<MethodEntry> ode_methods() {
+  MethodInfo info;
+  info.rank = kRank;
+  info.style = kStyle;
+  info.name = "ode";
+  info.title =
+      sizeof(dReal) == sizeof(double) ? "ODE, triangle meshes, double" : "ODE, triangle meshes, float";
+  info.remark =
+      "Pairs of the contact points of dCollide(), at most 65535, where one may stand for several pairs: its "
+      "list "
+      "is not meant to be complete. Trees and vertices in float.";
+  info.loose = true;
+  info.hard_cases = false;
+  return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Ode>(); }}};
+}
+
+}  // namespace lrb::methods
+
+#else
+
+namespace lrb::methods {
+
+std::vector<MethodEntry> ode_methods() {
+  MethodEntry entry = absent("ode", "ODE, triangle meshes", "libode-dev", kRank, kStyle);
+  entry.info.hard_cases = false;
+  return {entry};
+}
+
+}  // namespace lrb::methods
+
+#endif

@@ -1,0 +1,68 @@
+#pragma once
+/// Makes from an LRB-rep what methods build their bodies from.
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <lrbscope/collide.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/pose.hpp>
+
+namespace lrb::methods {
+
+/// Triangles with shared vertices: the corners of real simplex s are vertices[triangles[s]].
+struct Triangles {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::array<VertexId, 3>> triangles;
+};
+
+/// Returns the real triangles of a 3D body. Throws InputError for a 2D one, as methods for 3D bodies do.
+Triangles triangles_of(const LrbRep& rep);
+
+/// Throws InputError if a coordinate is too large for a float, however it is rounded.
+void check_fits_float(const Triangles& t);
+
+/// Throws InputError unless the pose is a rotation and a translation, as most engines expect.
+void check_rigid(const Pose& pose);
+
+/// Returns the real faces in their order, with the vertices that they use.
+Mesh real_mesh(const LrbRep& rep);
+
+/// Returns the body moved: its world coordinates as its own. It has no regions.
+LrbRep at_pose(const LrbRep& rep, const Pose& pose);
+
+/// Puts pairs in order, each once.
+void sort_pairs(std::vector<SimplexPair>& pairs);
+
+class Stopwatch {
+ public:
+  double microseconds() const {
+    return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+// Tests of two simplices in plain double with an epsilon, as textbooks give them. The exact ones are
+// compared with them.
+
+/// Distances from a plane, areas and parameters below this count as 0. The widely copied code of the triangle
+/// test by intervals uses this value, meant for coordinates of about 1. It is absolute on purpose: this is
+/// what the comparison is about.
+inline constexpr double kUsualEpsilon = 1e-6;
+
+/// Returns true if two triangles meet. Compares the intervals in which they cut the line common to their
+/// planes (T. Moeller, "A Fast Triangle-Triangle Intersection Test", Journal of Graphics Tools 2(2), 1997);
+/// coplanar ones by their edges in the plane.
+bool plain_triangles_meet(const Eigen::Vector3d a[3], const Eigen::Vector3d b[3]);
+
+/// Returns true if two segments of the plane z = 0 meet, by the sides that their ends lie on.
+bool plain_segments_meet(const Eigen::Vector3d a[2], const Eigen::Vector3d b[2]);
+
+}  // namespace lrb::methods

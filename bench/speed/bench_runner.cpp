@@ -1,0 +1,159 @@
+#include "bench/speed/bench_runner.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <vector>
+
+#include <malloc.h>
+
+#include "bench/rivals/triangles.hpp"
+#include "bench/workers/worker_json.hpp"
+#include "engine/mesh/face_pairs.hpp"
+#include <lrbscope/contact.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+
+namespace lrb::bench {
+
+void sweep_caches() {
+  constexpr std::size_t kBytes = std::size_t{64} << 20, kLine = 64;
+  static std::vector<unsigned char> junk(kBytes, 1);
+  for (std::size_t i = 0; i < junk.size(); i += kLine) ++junk[i];
+}
+
+namespace {
+
+double heap_bytes() {
+  const struct mallinfo2 m = mallinfo2();
+  return static_cast<double>(m.uordblks + m.hblkhd);
+}
+
+std::size_t difference(const std::vector<SimplexPair>& of, const std::vector<SimplexPair>& without) {
+  std::vector<SimplexPair> out;
+  std::set_difference(of.begin(), of.end(), without.begin(), without.end(), std::back_inserter(out));
+  return out.size();
+}
+
+}  // namespace
+
+BenchRunner::BenchRunner(const methods::MethodEntry& entry, std::optional<double> setting, const DataSet& set,
+                         bool keep)
+    : info_(entry.info), method_(entry.make()), setting_(setting), set_(set), keep_(keep) {
+  if (setting_) method_->set(*setting_);
+}
+
+const BenchRunner::Built& BenchRunner::built(std::size_t body, std::size_t side) {
+  Built& b = built_[{body, side}];
+  if (b.body) return b;
+  const BodyFile& file = set_.bodies.at(body);
+  const LrbRep rep = load_lrb(set_.folder + "/" + file.file);
+  const double before = heap_bytes();
+  const methods::Stopwatch watch;
+  b.body = method_->build(rep);
+  b.seconds = info_.own_rep ? file.build_seconds : watch.microseconds() / 1e6;
+  b.bytes = heap_bytes() - before;
+  return b;
+}
+
+Record BenchRunner::ask(std::uint64_t question) {
+  if (question >= set_.questions.size())
+    throw InputError("question " + std::to_string(question) + ": the data set has only " +
+                     std::to_string(set_.questions.size()));
+  const Question& q = set_.questions[question];
+  Record r;
+  r.set = set_.name;
+  r.method = info_.name;
+  r.setting = setting_;
+  r.question = question;
+  r.pose_class = q.pose_class;
+  workers::note_failures(r, [&] {
+    r.all = ask(q, Mode::all_pairs);
+    r.first = ask(q, Mode::first_pair);
+    const Built &a = built(q.a, 0), &b = built(q.b, 1);
+    r.build_seconds = a.seconds + b.seconds;
+    r.bytes = a.bytes + b.bytes;
+  });
+  return r;
+}
+
+Reply BenchRunner::ask(const Question& q, Mode mode) {
+  const Built &a = built(q.a, 0), &b = built(q.b, 1);
+  QueryTimes times;
+  methods::MethodAnswer answer =
+      ask_again_and_again([&] { return method_->query(*a.body, q.pose_a, *b.body, q.pose_b, mode); }, times);
+  Reply r;
+  r.cold_us = times.cold_us;
+  r.hot_us = times.hot_us;
+  r.contact = answer.contact;
+  r.count = answer.pairs.size();
+  r.face_tests = answer.face_tests;
+  r.error_bound = answer.error_bound;
+  if (info_.pairs && mode == Mode::all_pairs) {
+    r.missed = difference(q.expected, answer.pairs);
+    r.extra = difference(answer.pairs, q.expected);
+  } else if (info_.pairs && !info_.loose) {
+    r.missed = r.contact ? 0 : !q.expected.empty();
+    r.extra = difference(answer.pairs, q.expected);
+  } else {
+    r.missed = !r.contact && !q.expected.empty();
+    r.extra = r.contact && q.expected.empty();
+  }
+  if (keep_) {
+    r.pairs = std::move(answer.pairs);
+    r.points = std::move(answer.points);
+  }
+  return r;
+}
+
+namespace {
+
+struct WorldBody {
+  WorldBody(const LrbRep& r, const Pose& pose) : rep(r) {
+    for (const Eigen::Vector3d& v : r.vertices()) x.push_back(pose.apply(v));
+    for (SimplexId s = 0; s < r.real_simplex_count(); ++s) whole.extend(box(s));
+  }
+  void corners(SimplexId s, const double* out[3]) const {
+    VertexId v[3] = {};
+    rep.simplex(s, v);
+    for (int k = 0; k < 3; ++k) out[k] = x[v[k]].data();
+  }
+  Box box(SimplexId s) const {
+    VertexId v[3] = {};
+    rep.simplex(s, v);
+    Box b;
+    for (const VertexId i : v) b.extend(x[i]);
+    return b;
+  }
+  const LrbRep& rep;
+  std::vector<Eigen::Vector3d> x;
+  Box whole;
+};
+
+}  // namespace
+
+std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                                     const Pose& pose_b) {
+  const WorldBody wa(a, pose_a), wb(b, pose_b);
+  const std::uint32_t first_of_b = a.real_simplex_count();
+  std::vector<Box> boxes(first_of_b + b.real_simplex_count());
+  const auto add = [&](const WorldBody& body, const Box& other, std::uint32_t first) {
+    for (SimplexId s = 0; s < body.rep.real_simplex_count(); ++s)
+      if (const Box box = body.box(s); box.intersects(other)) boxes[first + s] = box;
+  };
+  add(wa, wb.whole, 0);
+  add(wb, wa.whole, first_of_b);
+  std::vector<SimplexPair> pairs;
+  BoxTree(boxes).for_each_pair([&](std::uint32_t i, std::uint32_t j) {
+    if (i >= first_of_b || j < first_of_b) return;
+    const double *ca[3], *cb[3];
+    const SimplexPair pair{SimplexId(i), SimplexId(j - first_of_b)};
+    wa.corners(pair.a, ca);
+    wb.corners(pair.b, cb);
+    if (exact::meet_triangles(ca, cb) != exact::Meet::disjoint) pairs.push_back(pair);
+  });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace lrb::bench

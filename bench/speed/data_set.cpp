@@ -1,0 +1,179 @@
+#include "bench/speed/data_set.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/speed/record.hpp"
+#include "bench/workers/worker_json.hpp"
+#include "bench/workers/workers.hpp"
+#include "scenarios/io/files.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+
+namespace lrb::bench {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+Pose pose_from(const json& value) {
+  Pose p;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) p.r(i, j) = value.at(static_cast<std::size_t>(4 * i + j)).get<double>();
+    p.t[i] = value.at(static_cast<std::size_t>(4 * i + 3)).get<double>();
+  }
+  return p;
+}
+
+PoseClass pose_class_from(const std::string& word) {
+  if (const auto c = from_name<PoseClass>(word)) return *c;
+  throw InputError("'" + word + "' is not a class of poses");
+}
+
+Quantity quantity_from(const std::string& word) {
+  if (const auto q = from_name<Quantity>(word)) return *q;
+  throw InputError("'" + word + "' is nothing that methods are asked for");
+}
+
+ordered_json vector_json(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Eigen::Vector3d vector_from(const json& value) {
+  return {value.at(0).get<double>(), value.at(1).get<double>(), value.at(2).get<double>()};
+}
+
+ordered_json question_json(const Question& q, Quantity quantity) {
+  ordered_json out = {{"class", name_of(q.pose_class)},
+                      {"a", q.a},
+                      {"b", q.b},
+                      {"pose_a", pose_json(q.pose_a)},
+                      {"pose_b", pose_json(q.pose_b)}};
+  if (quantity == Quantity::pairs) out["expected"] = workers::PairsJson::write(q.expected);
+  if (quantity == Quantity::first_contact) {
+    out["from"] = vector_json(q.from);
+    out["to"] = vector_json(q.to);
+  }
+  if (q.number) out["number"] = {q.number->least, q.number->most};
+  return out;
+}
+
+Question question_from(const json& value, Quantity quantity) {
+  Question q;
+  q.pose_class = pose_class_from(value.at("class").get<std::string>());
+  value.at("a").get_to(q.a);
+  value.at("b").get_to(q.b);
+  q.pose_a = pose_from(value.at("pose_a"));
+  q.pose_b = pose_from(value.at("pose_b"));
+  if (quantity == Quantity::pairs) q.expected = workers::PairsJson::read(value.at("expected"));
+  if (quantity == Quantity::first_contact) {
+    q.from = vector_from(value.at("from"));
+    q.to = vector_from(value.at("to"));
+  }
+  if (value.contains("number"))
+    q.number = {value.at("number").at(0).get<double>(), value.at("number").at(1).get<double>()};
+  return q;
+}
+
+}  // namespace
+
+nlohmann::ordered_json pose_json(const Pose& p) {
+  ordered_json out = ordered_json::array();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) out.push_back(p.r(i, j));
+    out.push_back(p.t[i]);
+  }
+  return out;
+}
+
+std::span<const PoseClass> classes_of(Quantity quantity) {
+  static constexpr PoseClass kPairs[] = {PoseClass::apart, PoseClass::shallow, PoseClass::deep,
+                                         PoseClass::identical, PoseClass::small};
+  static constexpr PoseClass kGaps[] = {PoseClass::gap_1000th, PoseClass::gap_100th, PoseClass::gap_10th,
+                                        PoseClass::gap_whole};
+  static constexpr PoseClass kMotions[] = {PoseClass::into, PoseClass::graze, PoseClass::past};
+  static constexpr PoseClass kDepths[] = {PoseClass::shallow, PoseClass::deep};
+  switch (quantity) {
+    case Quantity::distance:
+      return kGaps;
+    case Quantity::first_contact:
+      return kMotions;
+    case Quantity::depth:
+      return kDepths;
+    case Quantity::pairs:
+      break;
+  }
+  return kPairs;
+}
+
+const char* title(PoseClass c) {
+  static constexpr const char* kTitles[] = {
+      "0.5 % apart", "shallow, 1 %", "deep, 10 %",  "identical pose", "one body small", "0.1 % apart",
+      "1 % apart",   "10 % apart",   "100 % apart", "straight in",    "grazing, 1 %",   "past, 1 % away"};
+  return kTitles[static_cast<std::size_t>(c)];
+}
+
+bool is_complete(const DataSet& set) {
+  return set.quantity == Quantity::pairs ||
+         std::all_of(set.questions.begin(), set.questions.end(), [](const Question& q) { return q.number; });
+}
+
+std::string write_data_set(const DataSet& set, const std::string& folder) {
+  ordered_json bodies = ordered_json::array(), questions = ordered_json::array();
+  for (const BodyFile& b : set.bodies)
+    bodies.push_back({{"file", b.file}, {"faces", b.faces}, {"build_s", b.build_seconds}});
+  for (const Question& q : set.questions) questions.push_back(question_json(q, set.quantity));
+  ordered_json value = {{"name", set.name}, {"what", set.what}};
+  if (set.quantity != Quantity::pairs) value["quantity"] = name_of(set.quantity);
+  value["diagonal"] = set.diagonal;
+  value["bodies"] = bodies;
+  value["questions"] = questions;
+  const std::string path = folder + "/" + set.name + ".set.json";
+  io::write_text(path, value.dump() + "\n");
+  return path;
+}
+
+DataSet read_data_set(const std::string& path) {
+  try {
+    const json value = json::parse(io::read_text(path));
+    DataSet set;
+    set.folder = std::filesystem::path(path).parent_path().string();
+    value.at("name").get_to(set.name);
+    value.at("what").get_to(set.what);
+    value.at("diagonal").get_to(set.diagonal);
+    for (const json& b : value.at("bodies"))
+      set.bodies.push_back({b.at("file").get<std::string>(), b.at("faces").get<std::uint32_t>(),
+                            b.at("build_s").get<double>()});
+    if (value.contains("quantity")) set.quantity = quantity_from(value.at("quantity").get<std::string>());
+    for (const json& q : value.at("questions")) set.questions.push_back(question_from(q, set.quantity));
+    return set;
+  } catch (const json::exception& e) {
+    throw InputError(printable_name(path) + ": not a data set of lrbscope bench or chart (" + e.what() +
+                     "); remove it to have it made again");
+  }
+}
+
+void find_numbers(DataSet& set) {
+  constexpr std::chrono::seconds kLimit(120);  // for one question; some depths take seconds
+  workers::Job::Task task;
+  task.command = {workers::number_worker(), "--questions", write_data_set(set, set.folder)};
+  task.end = set.questions.size();
+  task.limit = kLimit;
+  task.on_line = [&](std::uint64_t k, const std::string& line) {
+    const auto value = nlohmann::json::parse(line);
+    if (value.contains("refusal"))
+      throw InputError(set.what + ", question " + std::to_string(k) + ": its " +
+                       std::string(name_of(set.quantity)) + " is not known (" +
+                       value.at("refusal").get<std::string>() +
+                       "); leave these bodies out, or use another --seed");
+    set.questions[k].number = {value.at("least").get<double>(), value.at("most").get<double>()};
+  };
+  task.on_mishap = [&](std::uint64_t k, const workers::Mishap& mishap) {
+    throw EnvironmentError(set.what + ", question " + std::to_string(k) + ": " + mishap.message);
+  };
+  workers::run_to_end(workers::Job(std::move(task)));
+}
+
+}  // namespace lrb::bench

@@ -1,0 +1,245 @@
+#include "bench/speed/make_sets.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include <Eigen/Geometry>
+
+#include "bench/speed/bench_runner.hpp"
+#include "bench/speed/data_set.hpp"
+#include "bench/speed/make_sets.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/generators.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+
+namespace lrb::bench {
+
+Approaches::Approaches(const LrbRep& a, const LrbRep& b, double diagonal, std::uint64_t seed)
+    : a_(a), b_(b), diagonal_(diagonal), random_(seed) {
+  request_.mode = Mode::first_pair;
+}
+
+bool Approaches::meets(const Pose& pose_b) {
+  NullProbe probe;
+  return !collide(a_, Pose{}, b_, pose_b, request_, context_, probe).pairs.empty();
+}
+
+Approach Approaches::next(double depth) {
+  while (true) {
+    Approach out;
+    out.pose.r = shapes::random_rotation(random_);
+    out.direction = shapes::random_direction(random_);
+    const Eigen::Vector3d middle = shapes::box_of(a_).center() - out.pose.r * shapes::box_of(b_).center();
+    const auto meets_at = [&](double s) {
+      out.pose.t = middle + s * out.direction;
+      return meets(out.pose);
+    };
+    const auto at = first_meeting(2 * diagonal_, 0, 0.004 * diagonal_, meets_at);
+    if (!at) continue;
+    out.pose.t = middle + (*at - depth * diagonal_) * out.direction;
+    return out;
+  }
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Returns how far B goes beyond first contact, in diagonals of the larger body; negative: apart.
+double depth_of(PoseClass c) {
+  switch (c) {
+    case PoseClass::apart:
+      return -0.005;
+    case PoseClass::deep:
+    case PoseClass::into:
+      return 0.1;
+    case PoseClass::gap_1000th:
+      return -0.001;
+    case PoseClass::gap_100th:
+    case PoseClass::past:
+      return -0.01;
+    case PoseClass::gap_10th:
+      return -0.1;
+    case PoseClass::gap_whole:
+      return -1;
+    default:
+      return 0.01;
+  }
+}
+
+constexpr double kSmall = 0.1;  // size of B over that of A
+
+std::uint32_t whole_root(double x) {
+  return static_cast<std::uint32_t>(std::max(2.0, std::round(std::sqrt(x))));
+}
+
+class Maker {
+ public:
+  Maker(const BodyPair& pair, const SetOptions& options, const std::string& folder)
+      : o_(options), folder_(folder) {
+    set_.name = pair.name;
+    set_.what = pair.what;
+    set_.folder = folder;
+    set_.quantity = options.quantity;
+    const Mesh a = pair.a(), b = pair.b();
+    add("a", a);
+    add("b", b);
+    const double size_a = shapes::box_of(reps_[0]).diagonal().norm();
+    const double size_b = shapes::box_of(reps_[1]).diagonal().norm();
+    set_.diagonal = std::max(size_a, size_b);
+    if (options.quantity != Quantity::pairs) return;
+    Mesh small = b;
+    for (Eigen::Vector3d& v : small.vertices) v *= kSmall * size_a / size_b;
+    add("small", small);
+  }
+
+  DataSet make() {
+    for (const PoseClass c : classes_of(o_.quantity)) {
+      if (o_.quantity != Quantity::pairs)
+        add_numbers(c);
+      else if (c == PoseClass::identical)
+        add_identical();
+      else
+        add_approaches(c, c == PoseClass::small ? 2 : 1);
+    }
+    return std::move(set_);
+  }
+
+ private:
+  void add(const char* role, const Mesh& mesh) {
+    const auto begin = std::chrono::steady_clock::now();
+    std::vector<std::string> notes;
+    reps_.push_back(bodies::build_from_mesh(check(mesh), {}, notes));
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const std::string file = set_.name + "-" + role + ".lrb";
+    save_lrb(reps_.back(), folder_ + "/" + file);
+    set_.bodies.push_back({file, reps_.back().real_simplex_count(), seconds});
+  }
+
+  void ask(PoseClass c, std::size_t a, std::size_t b, const Pose& pose_a, const Pose& pose_b) {
+    Question q;
+    q.pose_class = c;
+    q.a = a;
+    q.b = b;
+    q.pose_a = pose_a;
+    q.pose_b = pose_b;
+    q.expected = exact_pairs(reps_[a], pose_a, reps_[b], pose_b);
+    set_.questions.push_back(std::move(q));
+  }
+
+  /// B at one pose, or on a straight motion that is two diagonals long and begins anywhere, so that no method
+  /// that asks at equal times is lucky.
+  void add_numbers(PoseClass c) {
+    Approaches approaches(reps_[0], reps_[1], set_.diagonal, o_.seed);
+    shapes::RandomEngine random(o_.seed);
+    for (int i = 0; i < o_.poses; ++i) {
+      const Approach approach = approaches.next(depth_of(c));
+      Question q;
+      q.pose_class = c;
+      q.b = 1;
+      q.pose_b = approach.pose;
+      if (o_.quantity == Quantity::first_contact) {
+        const bool is_into = c == PoseClass::into;
+        const Eigen::Vector3d back =
+            set_.diagonal * (is_into ? approach.direction : approach.direction.unitOrthogonal());
+        q.from = (is_into ? shapes::uniform(random, 1.2, 1.8) : shapes::uniform(random, 0.8, 1.2)) * back;
+        q.to = q.from - 2 * back;
+      }
+      set_.questions.push_back(std::move(q));
+    }
+  }
+
+  void add_approaches(PoseClass c, std::size_t b) {
+    Approaches approaches(reps_[0], reps_[b], set_.diagonal, o_.seed);
+    // If one body is small the depth is 1 % of its own size, because that is all there is to go into.
+    const double depth = depth_of(c) * (c == PoseClass::small ? kSmall : 1);
+    for (int i = 0; i < o_.poses; ++i) ask(c, 0, b, Pose{}, approaches.next(depth).pose);
+  }
+
+  void add_identical() {
+    shapes::RandomEngine random(o_.seed);
+    for (int i = 0; i < std::max(1, o_.poses / 4); ++i) {
+      Pose p;
+      p.r = shapes::random_rotation(random);
+      p.t = set_.diagonal * shapes::random_direction(random);
+      ask(PoseClass::identical, 0, 0, p, p);
+    }
+  }
+
+  SetOptions o_;
+  std::string folder_;
+  DataSet set_;
+  std::vector<LrbRep> reps_;
+};
+
+std::function<Mesh()> maker(const char* name, generators::GeneratorValues values, std::uint64_t seed) {
+  return [=] { return generators::generate(name, values, seed); };
+}
+
+}  // namespace
+
+std::vector<BodyPair> generated_pairs(std::uint32_t faces) {
+  const double n = faces;
+  const double frequency = whole_root(n / 20);
+  const double sides = std::max(3.0, std::round(std::sqrt(n / 140)));
+  const double segments = std::max(12.0, std::round(n / (2 * sides)));
+  const generators::GeneratorValues rock = {{"frequency", frequency}};
+  const double points = std::max(4.0, std::round(std::sqrt(n / 400)));
+  // A gear of 16 teeth has faces for about 64 points on each ring and side.
+  const generators::GeneratorValues gear = {{"points", points},
+                                            {"rings", std::max(1.0, std::round(n / (64 * points)))}};
+  const std::string size = std::to_string(faces);
+  const std::string about = " of about " + size + " faces";
+  return {
+      {"rocks-" + size, "two rocks" + about, maker("rock", rock, 1), maker("rock", rock, 2)},
+      {"knot-gear-" + size, "a knot and a gear" + about,
+       maker("knot", {{"segments", segments}, {"sides", sides}}, 1), maker("gear", gear, 1)},
+      {"balls-" + size, "two balls" + about, maker("ball", {{"frequency", frequency}}, 1),
+       maker("ball", {{"frequency", frequency}}, 1)},
+  };
+}
+
+std::vector<BodyPair> pairs_of_models(const std::string& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  if (error || files.size() < 2)
+    throw InputError(printable_name(folder) + ": expected a folder with two meshes or more");
+  std::sort(files.begin(), files.end());
+  std::vector<BodyPair> pairs;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const fs::path a = files[i], b = files[(i + 1) % files.size()];
+    const auto reader = [](const fs::path& p) { return [p] { return read_mesh(p.string()); }; };
+    pairs.push_back({a.stem().string() + "-" + b.stem().string(),
+                     a.stem().string() + " and " + b.stem().string(), reader(a), reader(b)});
+  }
+  return pairs;
+}
+
+DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder) {
+  const std::string mark =
+      " (" + std::to_string(options.poses) + " poses a class, seed " + std::to_string(options.seed) + ")";
+  BodyPair marked = pair;
+  marked.what += mark;
+  if (options.quantity != Quantity::pairs) marked.name += "-" + std::string(name_of(options.quantity));
+  const std::string path = folder + "/" + marked.name + ".set.json";
+  if (fs::exists(path)) {
+    DataSet set = read_data_set(path);
+    if (set.what == marked.what && is_complete(set)) return set;
+  }
+  DataSet set = Maker(marked, options, folder).make();
+  if (!is_complete(set)) find_numbers(set);
+  write_data_set(set, folder);
+  return set;
+}
+
+}  // namespace lrb::bench

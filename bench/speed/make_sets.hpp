@@ -1,0 +1,81 @@
+#pragma once
+/// Makes data sets: bodies, poses of each class, and the exact answers.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/speed/data_set.hpp"
+#include "engine/collide/query_context.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/mesh.hpp>
+
+namespace lrb::bench {
+
+// Finds poses at which two bodies are some way apart, or in each other.
+
+struct Approach {
+  Pose pose;                           ///< of B; A's moves nothing
+  Eigen::Vector3d direction{0, 0, 1};  ///< from A to B: the one that B came along
+};
+
+/// Turns B at random, and moves it along random directions until it first meets A, and on.
+class Approaches {
+ public:
+  /// Keeps references to the bodies. `diagonal`: of the larger one.
+  Approaches(const LrbRep& a, const LrbRep& b, double diagonal, std::uint64_t seed);
+
+  /// Returns the next one, `depth` diagonals beyond first contact; negative: apart.
+  Approach next(double depth);
+
+ private:
+  bool meets(const Pose& pose_b);
+
+  const LrbRep &a_, &b_;
+  double diagonal_;
+  shapes::RandomEngine random_;
+  QueryContext context_;
+  CollideRequest request_;
+};
+
+/// Returns how far out along a way two bodies first meet, coming in from `far`: tries one place every `step`
+/// as long as it is beyond `near`, then halves. None: they meet nowhere there. meets(s): at s.
+template <class Meets>
+std::optional<double> first_meeting(double far, double near, double step, const Meets& meets) {
+  constexpr int kHalvings = 40;
+  double at = far;
+  while (at > near && !meets(at)) at -= step;
+  if (at <= near) return std::nullopt;
+  for (int i = 0; i < kHalvings; ++i) {
+    step /= 2;
+    if (meets(at + step)) at += step;
+  }
+  return at;
+}
+
+struct BodyPair {
+  std::string name, what;
+  std::function<Mesh()> a, b;
+};
+
+/// Makes pairs of generated bodies of about `faces` real faces each: two rocks, a knot and a gear, two balls.
+std::vector<BodyPair> generated_pairs(std::uint32_t faces);
+/// Returns each mesh or LRB-rep of a folder, by name, paired with the next one. Throws InputError if there
+/// are fewer than two.
+std::vector<BodyPair> pairs_of_models(const std::string& folder);
+
+struct SetOptions {
+  int poses = 12;  ///< number for each class; identical bodies at identical poses: a quarter of it
+  std::uint64_t seed = 1;
+  Quantity quantity = Quantity::pairs;  ///< what is asked for
+};
+
+/// Writes the data set and its bodies into a folder and returns the set, or reads what is there if it was
+/// made from the same bodies and options. Throws InputError if a body cannot be an LRB-rep, and as
+/// find_numbers() does.
+DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder);
+
+}  // namespace lrb::bench

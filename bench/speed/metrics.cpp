@@ -1,0 +1,340 @@
+#include "bench/speed/metrics.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <tuple>
+
+#include "bench/speed/metrics.hpp"
+#include "bench/speed/region_error.hpp"
+#include <lrbscope/lrb_rep.hpp>
+
+namespace lrb::bench {
+namespace {
+
+constexpr MetricInfo kInfos[kMetrics] = {
+    {"contact", "share of poses where contact is said and there is none, or the reverse", 1},
+    {"precision", "1 - precision: share of the pairs listed that do not meet", 1},
+    {"recall", "1 - recall: share of the pairs that meet and are not listed", 1},
+    {"hausdorff", "Hausdorff distance of the contact regions, over the larger body's diagonal", 1},
+    {"off",
+     "largest distance of a point of the answer from the one body and from the other, added up, over the "
+     "diagonal",
+     1},
+    {"length", "error of the contact curves' length, over the larger of both", 1},
+    {"area", "error of the contact's area, over the larger of both", 1},
+    {"centroid", "distance of the contacts' centroids, over the diagonal", 1},
+    {"normal", "angle between the normals of the largest contact, over 180 degrees", 1},
+    {"depth", "error of the largest estimated depth, over the diagonal", 1},
+    {"distance", "error of the distance, over the larger body's diagonal", 1},
+    {"time",
+     "error of the time of first contact, in parts of the motion; 1: never, where that is wrong, or not "
+     "never, where that is right",
+     1},
+    {"penetration", "error of the penetration depth, over the larger body's diagonal", 1},
+};
+
+constexpr Metric kOfNumbers[] = {Metric::distance, Metric::time, Metric::penetration};
+constexpr Metric kAll[kMetrics] = {Metric::contact,    Metric::precision, Metric::recall,   Metric::hausdorff,
+                                   Metric::off,        Metric::length,    Metric::area,     Metric::centroid,
+                                   Metric::normal,     Metric::depth,     Metric::distance, Metric::time,
+                                   Metric::penetration};
+
+std::optional<double>& at(Errors& e, Metric m) {
+  return e[static_cast<std::size_t>(m)];
+}
+
+bool lists_pairs(const methods::MethodInfo& m) {
+  return m.pairs;
+}
+bool gives_points(const methods::MethodInfo& m) {
+  return m.approximate || m.convex;
+}
+
+bool is_of_number(Metric m) {
+  return std::find(std::begin(kOfNumbers), std::end(kOfNumbers), m) != std::end(kOfNumbers);
+}
+
+/// Returns true if a method that is asked for pairs answers what a metric is about at all.
+bool applies(const methods::MethodInfo& info, Metric m) {
+  if (is_of_number(m)) return false;
+  if (m == Metric::contact) return true;
+  if (m == Metric::hausdorff || m == Metric::off || m == Metric::centroid)
+    return lists_pairs(info) || gives_points(info);
+  return lists_pairs(info);
+}
+
+Errors worst_of(const methods::MethodInfo& info) {
+  Errors e;
+  for (const Metric m : kAll)
+    if (applies(info, m)) at(e, m) = metric_info(m).worst;
+  return e;
+}
+
+std::size_t without(const std::vector<SimplexPair>& of, const std::vector<SimplexPair>& others) {
+  std::vector<SimplexPair> out;
+  std::set_difference(of.begin(), of.end(), others.begin(), others.end(), std::back_inserter(out));
+  return out.size();
+}
+
+double share(std::size_t part, std::size_t whole) {
+  return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+/// Returns the unit of errors of a number.
+double unit_of(const DataSet& set) {
+  return set.quantity == Quantity::first_contact ? 1 : set.diagonal;
+}
+
+/// Judges a number. An interval stands for its upper end: there is a pair of points so far apart, the bodies
+/// are in contact then, and a translation as long parts them.
+Errors errors_of_number(const DataSet& set, const Question& q, const Record& r) {
+  const Metric metric = chart_metric(set.quantity);
+  Errors e;
+  at(e, metric) = metric_info(metric).worst;
+  if (r.outcome != Outcome::answered || !r.all.upper || !q.number) return e;
+  const double x = *r.all.upper;
+  const bool is_time = set.quantity == Quantity::first_contact;
+  if (is_time && (x >= methods::kNever) != (q.number->least >= methods::kNever)) return e;
+  const double off = std::max({0.0, q.number->least - x, x - q.number->most}) / unit_of(set);
+  at(e, metric) = std::min(metric_info(metric).worst, off);
+  return e;
+}
+
+/// Judges which pairs all methods found for one question.
+class Judge {
+ public:
+  Judge(const DataSet& set, const Question& q, const LrbRep& a, const LrbRep& b)
+      : diagonal_(set.diagonal),
+        q_(q),
+        maker_(a, q.pose_a, b, q.pose_b),
+        bodies_(a, q.pose_a, b, q.pose_b),
+        exact_(maker_.of_pairs(q.expected)) {}
+
+  Errors errors(const methods::MethodInfo& info, const Record& r) {
+    if (r.outcome != Outcome::answered) return worst_of(info);
+    Errors e;
+    at(e, Metric::contact) = r.all.contact == q_.expected.empty() ? metric_info(Metric::contact).worst : 0;
+    if (lists_pairs(info)) {
+      at(e, Metric::precision) = share(without(r.all.pairs, q_.expected), r.all.pairs.size());
+      at(e, Metric::recall) = share(without(q_.expected, r.all.pairs), q_.expected.size());
+      if (r.all.pairs == q_.expected)
+        set_region(e, info, {}, 0);
+      else
+        set_region(e, info, maker_.of_pairs(r.all.pairs));
+    } else if (gives_points(info)) {
+      set_region(e, info, of_points(r.all.points));
+    }
+    return e;
+  }
+
+ private:
+  void set_region(Errors& e, const methods::MethodInfo& info, const Region& found) {
+    set_region(e, info, region_error(exact_, found, diagonal_),
+               std::min(1.0, bodies_.off(found.points) / diagonal_));
+  }
+
+  static void set_region(Errors& e, const methods::MethodInfo& info, const RegionError& r, double off) {
+    const std::pair<Metric, double> values[] = {{Metric::hausdorff, r.hausdorff}, {Metric::off, off},
+                                                {Metric::length, r.length},       {Metric::area, r.area},
+                                                {Metric::centroid, r.centroid},   {Metric::normal, r.normal},
+                                                {Metric::depth, r.depth}};
+    for (const auto& [m, value] : values)
+      if (applies(info, m)) at(e, m) = value;
+  }
+
+  double diagonal_;
+  const Question& q_;
+  RegionMaker maker_;
+  BodyDistance bodies_;
+  Region exact_;
+};
+
+/// What is gathered for a point.
+struct Gathered {
+  Point point;
+  std::vector<double> us;
+  Errors sums;
+  std::optional<double> proved_sum = 0;  ///< nothing as soon as an answer comes without a proof
+  double worst = -1;
+};
+
+void add(Gathered& g, const Record& r, const Errors& e, double unit) {
+  Point& p = g.point;
+  ++p.questions;
+  p.refused += r.outcome == Outcome::refused;
+  p.crashed += r.outcome == Outcome::crashed;
+  p.timed_out += r.outcome == Outcome::timed_out;
+  for (const Metric m : kAll)
+    if (const auto& value = e[static_cast<std::size_t>(m)])
+      at(g.sums, m) = at(g.sums, m).value_or(0) + *value;
+  Point one;
+  one.errors = e;
+  if (one.error() > g.worst) {
+    g.worst = one.error();
+    p.worst_question = r.question;
+  }
+  if (r.outcome != Outcome::answered || !r.all.error_bound || !g.proved_sum)
+    g.proved_sum.reset();
+  else
+    *g.proved_sum += std::min(1.0, *r.all.error_bound / unit);
+  if (r.outcome != Outcome::answered) return;
+  g.us.push_back(r.all.hot_us);
+  p.build_seconds = std::max(p.build_seconds, r.build_seconds);
+  p.bytes = std::max(p.bytes, r.bytes);
+  p.face_tests += static_cast<double>(r.all.face_tests);
+}
+
+Point finished(Gathered g) {
+  Point& p = g.point;
+  const auto n = static_cast<double>(p.questions);
+  for (const Metric m : kAll)
+    if (const auto& sum = at(g.sums, m)) at(p.errors, m) = *sum / n;
+  if (g.proved_sum) p.proved_off = *g.proved_sum / n;
+  p.median = median(g.us);
+  p.p95 = quantile(g.us, 0.95);
+  p.p99 = quantile(g.us, 0.99);
+  if (!g.us.empty()) p.face_tests /= static_cast<double>(g.us.size());
+  return p;
+}
+
+/// Marks the points that no other point beats: none is at least as fast and as right, and better in one of
+/// the two. A point without an answer has no time; one that says only yes or no, or knows the poses before,
+/// answers another question.
+void mark_frontiers(std::vector<Point>& points, const std::vector<methods::MethodInfo>& methods) {
+  const auto told_more = [&](const Point& p) {
+    return std::any_of(methods.begin(), methods.end(),
+                       [&](const methods::MethodInfo& m) { return m.name == p.method && m.told_more; });
+  };
+  for (Point& p : points) {
+    const auto takes_part = [&](const Point& x) {
+      return x.median > 0 && !x.says_only_yes_or_no() && !told_more(x);
+    };
+    p.frontier = takes_part(p);
+    for (const Point& other : points) {
+      if (other.set != p.set || other.pose_class != p.pose_class || !takes_part(other)) continue;
+      const bool no_worse = other.median <= p.median && other.error() <= p.error();
+      if (no_worse && (other.median < p.median || other.error() < p.error())) p.frontier = false;
+    }
+  }
+}
+
+}  // namespace
+
+const MetricInfo& metric_info(Metric m) {
+  return kInfos[static_cast<std::size_t>(m)];
+}
+
+Metric chart_metric(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::distance:
+      return Metric::distance;
+    case Quantity::first_contact:
+      return Metric::time;
+    case Quantity::depth:
+      return Metric::penetration;
+    case Quantity::pairs:
+      break;
+  }
+  return Metric::hausdorff;
+}
+
+double Point::error() const {
+  for (const Metric m :
+       {Metric::hausdorff, Metric::distance, Metric::time, Metric::penetration, Metric::contact})
+    if (const auto& e = errors[static_cast<std::size_t>(m)]) return *e;
+  return metric_info(Metric::contact).worst;
+}
+
+bool Point::says_only_yes_or_no() const {
+  const auto has = [&](Metric m) { return errors[static_cast<std::size_t>(m)].has_value(); };
+  return !has(Metric::hausdorff) && std::none_of(std::begin(kOfNumbers), std::end(kOfNumbers), has);
+}
+
+namespace {
+
+using RecordsByQuestion = std::map<std::pair<std::string, std::uint64_t>, std::vector<const Record*>>;
+using JudgeFunction = std::function<Errors(const methods::MethodInfo&, const Record&)>;
+
+/// Returns what judges the answers to a question.
+JudgeFunction judge_of(const DataSet& set, const Question& q, const std::vector<LrbRep>& bodies) {
+  if (set.quantity != Quantity::pairs)
+    return [&set, &q](const methods::MethodInfo&, const Record& r) { return errors_of_number(set, q, r); };
+  const auto judge = std::make_shared<Judge>(set, q, bodies.at(q.a), bodies.at(q.b));
+  return [judge](const methods::MethodInfo& info, const Record& r) { return judge->errors(info, r); };
+}
+
+/// Adds a data set's points.
+void add_points(const DataSet& set, const std::vector<methods::MethodInfo>& methods,
+                const RecordsByQuestion& by_question, const std::function<void()>& tell,
+                std::vector<Point>& points) {
+  std::vector<LrbRep> bodies;
+  if (set.quantity == Quantity::pairs)
+    for (const BodyFile& b : set.bodies) bodies.push_back(load_lrb(set.folder + "/" + b.file));
+  std::map<std::tuple<PoseClass, std::string, std::optional<double>>, Gathered> gathered;
+  for (std::uint64_t k = 0; k < set.questions.size(); ++k) {
+    const Question& q = set.questions[k];
+    const auto records = by_question.find({set.name, k});
+    if (records == by_question.end()) continue;
+    const JudgeFunction judge = judge_of(set, q, bodies);
+    for (const Record* r : records->second) {
+      const auto info = std::find_if(methods.begin(), methods.end(),
+                                     [&](const methods::MethodInfo& m) { return m.name == r->method; });
+      if (info == methods.end()) continue;
+      Gathered& g = gathered[{q.pose_class, r->method, r->setting}];
+      g.point.set = set.name;
+      g.point.method = r->method;
+      g.point.setting = r->setting;
+      g.point.pose_class = q.pose_class;
+      add(g, *r, judge(*info, *r), unit_of(set));
+      tell();
+    }
+  }
+  for (auto& [key, g] : gathered) points.push_back(finished(std::move(g)));
+}
+
+}  // namespace
+
+std::vector<Point> measure_points(const std::vector<DataSet>& sets,
+                                  const std::vector<methods::MethodInfo>& methods,
+                                  const std::vector<Record>& records, const MetricProgress& progress) {
+  RecordsByQuestion by_question;
+  for (const Record& r : records) by_question[{r.set, r.question}].push_back(&r);
+  std::vector<Point> points;
+  std::size_t done = 0;
+  for (const DataSet& set : sets)
+    add_points(
+        set, methods, by_question,
+        [&] {
+          if (progress) progress(++done, records.size());
+        },
+        points);
+  mark_frontiers(points, methods);
+  return points;
+}
+
+std::string to_lines(const std::vector<Point>& points) {
+  std::string out;
+  for (const Point& p : points) {
+    nlohmann::ordered_json value = {{"set", p.set}, {"class", name_of(p.pose_class)}, {"method", p.method}};
+    if (p.setting) value["setting"] = *p.setting;
+    value["questions"] = p.questions;
+    value["refused"] = p.refused;
+    value["crashed"] = p.crashed;
+    value["timed_out"] = p.timed_out;
+    for (const Metric m : kAll)
+      if (const auto& e = p.errors[static_cast<std::size_t>(m)]) value["errors"][metric_info(m).name] = *e;
+    if (p.proved_off) value["proved_off"] = *p.proved_off;
+    value["us"] = {{"median", p.median}, {"p95", p.p95}, {"p99", p.p99}};
+    value["build_s"] = p.build_seconds;
+    value["bytes"] = p.bytes;
+    value["face_tests"] = p.face_tests;
+    value["frontier"] = p.frontier;
+    value["worst_question"] = p.worst_question;
+    out += value.dump() + "\n";
+  }
+  return out;
+}
+
+}  // namespace lrb::bench

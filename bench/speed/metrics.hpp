@@ -1,0 +1,99 @@
+#pragma once
+/// Computes from records one point for each method, at each setting, on each data set (two bodies at one
+/// class of poses).
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/rivals/method.hpp"
+#include "bench/speed/record.hpp"
+
+namespace lrb::bench {
+
+/// A way to be wrong, from 0 (not at all) to its worst value, which a question without an answer scores.
+enum class Metric : std::uint8_t {
+  contact,    ///< says contact where there is none, or the reverse
+  precision,  ///< share of the pairs found that do not meet (1 - precision)
+  recall,     ///< share of the pairs that meet and were not found (1 - recall)
+  hausdorff,  ///< distance of the contact regions
+  off,        ///< distance of the answer's points from both bodies
+  length,
+  area,
+  centroid,
+  normal,
+  depth,
+  distance,     ///< of a number that was asked for
+  time,         ///< likewise: of first contact
+  penetration,  ///< likewise: the depth
+};
+inline constexpr std::size_t kMetrics = 13;
+
+struct MetricInfo {
+  const char* name;
+  const char* what;  ///< with its unit
+  double worst;
+};
+const MetricInfo& metric_info(Metric m);
+/// Returns how wrong an answer is where this is asked for: the error that the chart shows.
+Metric chart_metric(Quantity quantity);
+
+/// The errors of the answer to one question; nothing where a method does not answer that.
+using Errors = std::array<std::optional<double>, kMetrics>;
+
+struct Point {
+  std::string set, method;
+  std::optional<double> setting;
+  PoseClass pose_class = PoseClass::apart;
+  std::size_t questions = 0, refused = 0, crashed = 0, timed_out = 0;
+  Errors errors;  ///< means over the questions
+  /// What is proved, mean: Metric::off is no more; or where a number was asked for, its interval is as wide,
+  /// in the unit of its error. Nothing: not proved.
+  std::optional<double> proved_off;
+  double median = 0, p95 = 0, p99 = 0;  ///< microseconds, hot, all pairs, over the questions that were
+                                        ///< answered
+  double build_seconds = 0, bytes = 0;  ///< of both bodies
+  double face_tests = 0;                ///< mean; 0: not counted
+  std::uint64_t worst_question = 0;     ///< the one with the largest error
+  bool frontier = false;                ///< no other point of its data set is both faster and less wrong
+
+  std::size_t failed() const { return refused + crashed + timed_out; }
+  /// Returns the error that the chart shows: that of the number or the contact region if the method gives
+  /// one, else that of its yes or no.
+  double error() const;
+  bool says_only_yes_or_no() const;
+};
+
+using MetricProgress = std::function<void(std::size_t done, std::size_t total)>;
+
+/// Returns the points of all methods on all data sets, with their Pareto frontiers over time and error.
+std::vector<Point> measure_points(const std::vector<DataSet>& sets,
+                                  const std::vector<methods::MethodInfo>& methods,
+                                  const std::vector<Record>& records, const MetricProgress& progress = {});
+
+/// Returns them as JSON, one on each line.
+std::string to_lines(const std::vector<Point>& points);
+
+/// Returns the value below which a share of the others lies (nearest rank); 0 if there are none.
+inline double quantile(std::vector<double> x, double share) {
+  if (x.empty()) return 0;
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(x.size())));
+  const std::size_t i = std::min(x.size() - 1, rank == 0 ? 0 : rank - 1);
+  std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(i), x.end());
+  return x[i];
+}
+inline double median(const std::vector<double>& x) {
+  return quantile(x, 0.5);
+}
+/// Returns the geometric mean of positive values; 0 if there are none.
+inline double geometric_mean(const std::vector<double>& x) {
+  if (x.empty()) return 0;
+  double sum = 0;
+  for (const double v : x) sum += std::log(v);
+  return std::exp(sum / static_cast<double>(x.size()));
+}
+
+}  // namespace lrb::bench

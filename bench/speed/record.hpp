@@ -1,0 +1,63 @@
+#pragma once
+/// Raw records: what a method answered to a question, and how long it took. A file has one JSON object on
+/// each line; everything else is computed from these.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/speed/data_set.hpp"
+#include <lrbscope/collide.hpp>
+
+namespace lrb::bench {
+
+enum class Outcome : std::uint8_t { answered, refused, crashed, timed_out };
+constexpr auto words_of(Outcome) {
+  return std::to_array<EnumWord<Outcome>>({{Outcome::answered, "answered"},
+                                           {Outcome::refused, "refused"},
+                                           {Outcome::crashed, "crashed"},
+                                           {Outcome::timed_out, "timed_out"}});
+}
+
+/// The answer in one mode.
+struct Reply {
+  bool contact = false;
+  std::uint64_t count = 0;              ///< number of pairs
+  std::uint64_t missed = 0, extra = 0;  ///< compared with the exact list
+  double cold_us = 0;                   ///< time of the first query, after caches were swept
+  double hot_us = 0;                    ///< the best time of a few repeats
+  std::uint64_t face_tests = 0;
+  std::optional<double> error_bound;   ///< as in methods::MethodAnswer; of a number: how wide its interval is
+  std::optional<double> lower, upper;  ///< the number, if one was asked for; equal: no interval
+  std::vector<SimplexPair> pairs;      ///< if they are kept
+  std::vector<Eigen::Vector3d> points;  ///< if they are kept, and the method gives them
+  friend bool operator==(const Reply&, const Reply&) = default;
+};
+
+struct Record {
+  std::string set, method;
+  std::optional<double> setting;
+  std::uint64_t question = 0;
+  PoseClass pose_class = PoseClass::apart;
+  Outcome outcome = Outcome::answered;
+  std::string message;  ///< says what went wrong if there is no answer
+  Reply all, first;
+  double build_seconds = 0;  ///< for both bodies
+  double bytes = 0;          ///< growth of the heap by both bodies
+};
+
+nlohmann::ordered_json to_json(const Record& r);
+/// Reads a record. Throws InputError that says what is wrong with the value.
+Record record_from(const nlohmann::json& value);
+/// Reads a file of records; none if there is no file. Skips lines that are not whole, which a run that was
+/// interrupted leaves.
+std::vector<Record> read_records(const std::string& path);
+
+/// Returns the method with its setting: "fcl", "spheres 4".
+std::string name_of(const Record& r);
+std::string name_of(const std::string& method, std::optional<double> setting);
+
+}  // namespace lrb::bench

@@ -1,0 +1,168 @@
+#pragma once
+/// The stability experiment: what every method answered to every case of every family, and the grid of
+/// families x methods that is counted from it.
+///
+/// Raw records come first (JSON Lines, one for each case and method); grid, page and pictures are made from
+/// nothing else.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/cases/families.hpp"
+#include "bench/rivals/method.hpp"
+#include "bench/workers/workers.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/enum_words.hpp>
+
+namespace lrb::stability {
+
+using cases::kDialSettings;
+using methods::Quantity;
+
+/// What became of one case that was put to one method.
+enum class Outcome : std::uint8_t {
+  right,      ///< all that the method answers is right
+  wrong,      ///< pairs missed or too many, or a wrong relation
+  refused,    ///< it said that it cannot answer
+  crashed,    ///< its process died
+  timed_out,  ///< it did not answer in time
+};
+constexpr auto words_of(Outcome) {
+  return std::to_array<EnumWord<Outcome>>({{Outcome::right, "right"},
+                                           {Outcome::wrong, "wrong"},
+                                           {Outcome::refused, "refused"},
+                                           {Outcome::crashed, "crashed"},
+                                           {Outcome::timed_out, "timed_out"}});
+}
+
+struct FamilyRow {
+  std::string name, what;
+  std::string benign, degenerate;        ///< what the ends of the dial mean: "gap 1e-1", "gap 1 ulp"
+  std::vector<std::string> values = {};  ///< (kDialSettings) what each setting means, "1e-6"; or empty
+};
+
+struct Record {
+  std::string family, method;
+  int dial = 0;  ///< 0 .. kDialSettings - 1
+  std::uint64_t case_index = 0, seed = 0;
+  Outcome outcome = Outcome::right;
+  std::uint64_t expected = 0;  ///< number of pairs that meet, by exact brute force
+  std::uint64_t missed = 0, extra = 0;
+  std::string relation, expected_relation;  ///< empty: the method gives none
+  double microseconds = 0;                  ///< time of the query alone
+  std::string message;                      ///< of a refusal or a crash
+};
+
+/// One family put to one method.
+struct Cell {
+  std::array<std::uint64_t, kDialSettings> cases{}, wrong{}, refused{}, crashed{}, timed_out{};
+  std::optional<Record> worst;  ///< one of those that failed, with the lowest dial setting
+
+  static std::uint64_t sum(const std::array<std::uint64_t, kDialSettings>& counts);
+  /// Returns the number of failures; refusals are none.
+  std::uint64_t failures() const { return sum(wrong) + sum(crashed) + sum(timed_out); }
+  /// Returns the number of cases that were not refused.
+  std::uint64_t answered() const { return sum(cases) - sum(refused); }
+};
+
+struct Grid {
+  std::vector<workers::MethodColumn> methods;
+  std::vector<FamilyRow> families;
+  std::vector<Cell> cells;              ///< (|families| x |methods|), row by row
+  Quantity quantity = Quantity::pairs;  ///< what was asked for
+  std::string command;                  ///< the command that made it
+  double seconds = 0;
+
+  const Cell& at(std::size_t family, std::size_t method) const {
+    return cells[family * methods.size() + method];
+  }
+};
+
+/// Counts records; skips those of other methods and families.
+Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRow> families,
+                const std::vector<Record>& records);
+
+/// Returns the grid without the methods that are absent from this build.
+Grid present_part(const Grid& grid);
+/// Names these in a sentence; empty: none is absent.
+std::string absent_words(const Grid& grid);
+
+/// Returns the families of all_families(), in their order.
+std::vector<FamilyRow> family_rows();
+
+// Writes and reads records as JSON Lines: what the experiment leaves behind, and what everything else is
+// counted from.
+
+nlohmann::ordered_json to_json(const Record& r);
+/// Reads a record. Throws InputError that says what is wrong with the value.
+Record record_from(const nlohmann::json& value);
+
+/// Returns the records, one on each line.
+std::string to_lines(const std::vector<Record>& records);
+/// Reads them. Throws InputError that names file and line.
+std::vector<Record> read_records(const std::string& path);
+
+/// A cell in few numbers, the same for page and print.
+struct CellSummary {
+  std::uint64_t cases = 0, wrong = 0, refused = 0, crashed = 0, timed_out = 0;
+  int first_failing = -1;  ///< the lowest dial setting with a failure; -1: none
+
+  /// Returns the number of failures. A refusal is none, because it gives no wrong answer; it has a mark of
+  /// its own.
+  std::uint64_t failures() const { return wrong + crashed + timed_out; }
+  std::uint64_t answered() const { return cases - refused; }
+  double failure_share() const {
+    return answered() == 0 ? 0 : static_cast<double>(failures()) / static_cast<double>(answered());
+  }
+  /// Returns how bad it is, from 0 (no failure) to 4; see kLevelNames.
+  int level() const {
+    const double share = failure_share();
+    return share <= 0 ? 0 : share < 0.01 ? 1 : share < 0.1 ? 2 : share < 0.5 ? 3 : 4;
+  }
+  bool only_refused() const { return failures() == 0 && refused > 0; }
+};
+
+inline constexpr std::array<const char*, 5> kLevelNames = {"none fails", "under 1 %", "under 10 %",
+                                                           "under half", "half or more"};
+
+inline CellSummary summarise(const Cell& cell) {
+  CellSummary s;
+  for (int d = 0; d < kDialSettings; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    s.cases += cell.cases[i];
+    s.wrong += cell.wrong[i];
+    s.refused += cell.refused[i];
+    s.crashed += cell.crashed[i];
+    s.timed_out += cell.timed_out[i];
+    if (s.first_failing < 0 && cell.wrong[i] + cell.crashed[i] + cell.timed_out[i] > 0) s.first_failing = d;
+  }
+  return s;
+}
+
+/// Returns all families put to one method, as one cell.
+inline Cell sum_of_column(const Grid& grid, std::size_t method) {
+  Cell sum;
+  for (std::size_t f = 0; f < grid.families.size(); ++f) {
+    const Cell& c = grid.at(f, method);
+    for (std::size_t i = 0; i < kDialSettings; ++i) {
+      sum.cases[i] += c.cases[i];
+      sum.wrong[i] += c.wrong[i];
+      sum.refused[i] += c.refused[i];
+      sum.crashed[i] += c.crashed[i];
+      sum.timed_out[i] += c.timed_out[i];
+    }
+  }
+  return sum;
+}
+
+/// Returns the grid as text: a row for each family; in each cell failures/answered and the dial setting from
+/// which on it fails; and what the columns mean.
+std::string table(const Grid& grid);
+
+}  // namespace lrb::stability

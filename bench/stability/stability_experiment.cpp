@@ -1,0 +1,309 @@
+#include "bench/stability/stability_experiment.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <deque>
+#include <list>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+#include <poll.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "bench/rivals/triangles.hpp"
+#include "bench/stability/judge.hpp"
+#include "bench/stability/outcome_grid.hpp"
+#include "bench/workers/worker_json.hpp"
+#include "bench/workers/workers.hpp"
+#include <lrbscope/error.hpp>
+
+namespace lrb::stability {
+namespace {
+
+constexpr double kBruteForceTimeout = 120;  // seconds: brute force is slow, but never hangs
+constexpr const char* kGivenFile = "/proc/self/fd/3";
+
+workers::Job::Clock::duration seconds(double s) {
+  return std::chrono::duration_cast<workers::Job::Clock::duration>(std::chrono::duration<double>(s));
+}
+
+/// A file without a name: it disappears when nobody has it open, whatever happens.
+class NamelessFile {
+ public:
+  NamelessFile() : file_(memfd_create("lrbscope-expected", MFD_CLOEXEC)) {
+    if (file_ < 0)
+      throw EnvironmentError(std::string("cannot create a file in memory (memfd_create): ") +
+                             std::strerror(errno));
+  }
+  ~NamelessFile() { close(file_); }
+  NamelessFile(const NamelessFile&) = delete;
+  NamelessFile& operator=(const NamelessFile&) = delete;
+  int descriptor() const { return file_; }
+  void append(const std::string& text) {
+    for (std::size_t at = 0; at < text.size();) {
+      const ssize_t n = write(file_, text.data() + at, text.size() - at);
+      if (n <= 0) throw EnvironmentError("a file in memory cannot be written: free some memory");
+      at += static_cast<std::size_t>(n);
+    }
+  }
+
+ private:
+  int file_;
+};
+
+Record blank_record(const std::string& family, const std::string& method, std::uint64_t k,
+                    std::uint64_t cases, std::uint64_t seed) {
+  Record r;
+  r.family = family;
+  r.method = method;
+  r.dial = static_cast<int>(k / cases);
+  r.case_index = k % cases;
+  r.seed = seed;
+  return r;
+}
+
+Record record_of_mishap(Record r, const workers::Mishap& mishap) {
+  r.outcome = mishap.timed_out ? Outcome::timed_out : Outcome::crashed;
+  r.message = mishap.message;
+  return r;
+}
+
+std::vector<std::string> command_of(const std::string& program, Quantity quantity, const std::string& family,
+                                    std::uint64_t cases, std::uint64_t seed) {
+  std::vector<std::string> command = {program,  "--family",          family, "--cases", std::to_string(cases),
+                                      "--seed", std::to_string(seed)};
+  if (quantity != Quantity::pairs)
+    command.insert(command.end(), {"--quantity", std::string(name_of(quantity))});
+  return command;
+}
+
+/// What is known about one family while its jobs run.
+struct FamilyWork {
+  std::string name;
+  NamelessFile expected;                      ///< a line for each case
+  std::vector<std::uint64_t> expected_pairs;  ///< number of pairs, by case
+  bool expected_done = false;
+  std::vector<std::vector<Record>> records;  ///< method by method
+  std::size_t methods_begun = 0, methods_done = 0;
+};
+
+class Experiment {
+ public:
+  Experiment(const ExperimentOptions& options, const ProgressFunction& progress)
+      : o_(options), progress_(progress) {
+    std::erase_if(o_.methods, [](const workers::WorkerMethod& m) { return !m.column.present; });
+    begin_ = o_.dial ? static_cast<std::uint64_t>(*o_.dial) * o_.cases : 0;
+    end_ = o_.dial ? begin_ + o_.cases : cases::kDialSettings * o_.cases;
+    total_ = o_.families.size() * (o_.methods.size() + 1) * (end_ - begin_);
+  }
+
+  std::vector<Record> run() {
+    if (o_.methods.empty() || o_.families.empty()) return {};
+    while (true) {
+      while (running_.size() < o_.jobs && start_one()) {
+      }
+      if (running_.empty()) break;
+      wait_for_news();
+      std::erase_if(running_, [](const Running& r) {
+        if (r.job->done()) r.on_done();
+        return r.job->done();
+      });
+    }
+    return std::move(records_);
+  }
+
+ private:
+  struct Running {
+    std::unique_ptr<workers::Job> job;
+    std::function<void()> on_done;
+  };
+
+  /// Starts the next method of a family whose right answers are known, or finds the right answers to the next
+  /// family.
+  bool start_one() {
+    for (const auto& family : open_)
+      if (family->expected_done && family->methods_begun < o_.methods.size()) {
+        start_method(*family, family->methods_begun++);
+        return true;
+      }
+    if (next_family_ == o_.families.size()) return false;
+    open_.push_back(std::make_unique<FamilyWork>());
+    open_.back()->name = o_.families[next_family_++];
+    open_.back()->records.resize(o_.methods.size());
+    start_expected(*open_.back());
+    return true;
+  }
+
+  void start_expected(FamilyWork& family) {
+    for (std::uint64_t k = 0; k < begin_; ++k) family.expected.append("\n");  // line k is case k's
+    workers::Job::Task task;
+    task.command = command_of(o_.methods.front().program, o_.quantity, family.name, o_.cases, o_.seed);
+    task.begin = begin_;
+    task.end = end_;
+    task.limit = seconds(kBruteForceTimeout);
+    task.on_line = [this, &family](std::uint64_t, const std::string& line) {
+      family.expected.append(line + "\n");
+      family.expected_pairs.push_back(expected_from(line).pairs.size());
+      tell(family.name + ", exact brute force");
+    };
+    task.on_mishap = [this, &family](std::uint64_t k, const workers::Mishap& mishap) {
+      throw EnvironmentError("exact brute force, family " + family.name + ", dial " +
+                             std::to_string(k / o_.cases) + ", case " + std::to_string(k % o_.cases) + ": " +
+                             mishap.message + "; please report it");
+    };
+    running_.push_back(
+        {std::make_unique<workers::Job>(std::move(task)), [&family] { family.expected_done = true; }});
+  }
+
+  void start_method(FamilyWork& family, std::size_t m) {
+    const workers::WorkerMethod& method = o_.methods[m];
+    workers::Job::Task task;
+    task.command = command_of(method.program, o_.quantity, family.name, o_.cases, o_.seed);
+    task.command.insert(task.command.end(), {"--method", method.column.name, "--expected", kGivenFile});
+    task.begin = begin_;
+    task.end = end_;
+    task.given = family.expected.descriptor();
+    task.limit = seconds(o_.timeout);
+    task.on_line = [this, &family, m](std::uint64_t, const std::string& line) {
+      keep(family, m, record_from(nlohmann::json::parse(line)));
+    };
+    task.on_mishap = [this, &family, m](std::uint64_t k, const workers::Mishap& mishap) {
+      Record r = blank_record(family.name, o_.methods[m].column.name, k, o_.cases, o_.seed);
+      r.expected = family.expected_pairs[k - begin_];
+      keep(family, m, record_of_mishap(r, mishap));
+    };
+    running_.push_back({std::make_unique<workers::Job>(std::move(task)), [this, &family] {
+                          ++family.methods_done;
+                          hand_over_finished();
+                        }});
+  }
+
+  void keep(FamilyWork& family, std::size_t m, Record record) {
+    family.records[m].push_back(std::move(record));
+    tell(family.name + ", " + o_.methods[m].column.name);
+  }
+
+  /// Hands over families in their order.
+  void hand_over_finished() {
+    while (!open_.empty() && open_.front()->methods_done == o_.methods.size()) {
+      for (std::vector<Record>& r : open_.front()->records)
+        std::move(r.begin(), r.end(), std::back_inserter(records_));
+      open_.pop_front();
+    }
+  }
+
+  void wait_for_news() {
+    std::vector<pollfd> waiting;
+    auto deadline = workers::Job::Clock::time_point::max();
+    for (const Running& r : running_) {
+      waiting.push_back({r.job->output(), POLLIN, 0});
+      deadline = std::min(deadline, r.job->deadline());
+    }
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(deadline - workers::Job::Clock::now()).count();
+    poll(waiting.data(), waiting.size(), static_cast<int>(std::max<std::int64_t>(0, left)));
+    std::size_t i = 0;
+    for (const Running& r : running_) {
+      if (waiting[i++].revents != 0)
+        r.job->receive();
+      else if (workers::Job::Clock::now() > r.job->deadline())
+        r.job->expire();
+    }
+  }
+
+  void tell(const std::string& what) {
+    ++done_;
+    if (progress_) progress_(done_, total_, what);
+  }
+
+  ExperimentOptions o_;
+  const ProgressFunction& progress_;
+  std::uint64_t begin_ = 0, end_ = 0, done_ = 0, total_ = 0;
+  std::size_t next_family_ = 0;
+  std::deque<std::unique_ptr<FamilyWork>> open_;
+  std::vector<Record> records_;
+  std::list<Running> running_;  // declared after what its jobs refer to
+};
+
+}  // namespace
+
+std::vector<Record> run_experiment(const ExperimentOptions& options, const ProgressFunction& progress) {
+  return Experiment(options, progress).run();
+}
+
+Replay replay(const workers::WorkerMethod& method, const std::string& family, int dial,
+              std::uint64_t case_index, std::uint64_t seed, double timeout, Quantity quantity) {
+  const std::uint64_t cases = case_index + 1, k = static_cast<std::uint64_t>(dial) * cases + case_index;
+  Replay result;
+  const auto run = [&](workers::Job::Task task) {
+    task.begin = k;
+    task.end = k + 1;
+    workers::run_to_end(workers::Job(std::move(task)));
+  };
+  workers::Job::Task expected;
+  expected.command = command_of(method.program, quantity, family, cases, seed);
+  expected.limit = seconds(kBruteForceTimeout);
+  NamelessFile right;
+  expected.on_line = [&](std::uint64_t, const std::string& line) {
+    result.expected = expected_from(line).pairs;
+    right.append(std::string(k, '\n') + line + "\n");
+  };
+  expected.on_mishap = [&](std::uint64_t, const workers::Mishap& m) {
+    throw EnvironmentError("exact brute force: " + m.message + "; please report it");
+  };
+  run(std::move(expected));
+  workers::Job::Task asked;
+  asked.command = command_of(method.program, quantity, family, cases, seed);
+  asked.command.insert(asked.command.end(),
+                       {"--method", method.column.name, "--expected", kGivenFile, "--pairs"});
+  asked.given = right.descriptor();
+  asked.limit = seconds(timeout);
+  asked.on_line = [&](std::uint64_t, const std::string& line) {
+    const auto value = nlohmann::json::parse(line);
+    result.record = record_from(value);
+    if (value.contains("answered_pairs"))
+      result.answered = workers::PairsJson::read(value.at("answered_pairs"));
+  };
+  asked.on_mishap = [&](std::uint64_t, const workers::Mishap& m) {
+    Record r = blank_record(family, method.column.name, k, cases, seed);
+    r.expected = result.expected.size();
+    result.record = record_of_mishap(r, m);
+  };
+  run(std::move(asked));
+  return result;
+}
+
+StabilityRunner::Posed StabilityRunner::place(const LrbRep& rep, const Pose& pose, int side) {
+  if (!info_.moves_exactly) return {method_->build(methods::at_pose(rep, pose)), Pose{}};
+  static constexpr std::size_t kMostKept = 200;
+  if (kept_.size() > kMostKept) kept_.clear();
+  BodyPointer& body = kept_[{rep.hash(), side}];
+  if (!body) body = method_->build(rep);
+  return {body, pose};
+}
+
+void StabilityRunner::ask(const cases::Family& family, const cases::Case& c, const RightAnswer& expected,
+                          Record& record) {
+  pairs_.reset();
+  const Mode mode = info_.pairs ? Mode::all_pairs : Mode::first_pair;
+  record.expected = expected.pairs.size();
+  workers::note_failures(record, [&] {
+    if (c.a->dim() == 2 && !info_.plane)
+      throw InputError("a 2D body: not asked, because it answers for 3D bodies only");
+    if (!expected.refusal.empty() && !info_.moves_exactly) throw InputError(expected.refusal + ": not asked");
+    const Posed a = place(*c.a, c.pose_a, 0), b = place(*c.b, c.pose_b, 1);
+    methods::MethodAnswer answer = method_->query(*a.body, a.pose, *b.body, b.pose, mode);
+    record.microseconds = answer.microseconds;
+    if (family.both_ways) {
+      const bool several = c.a->component_vertices().size() > 1 && c.b->component_vertices().size() > 1;
+      judge_swapped(record, info_, answer, method_->query(*b.body, b.pose, *a.body, a.pose, mode), several);
+    } else {
+      judge(record, info_, answer, expected);
+    }
+    if (info_.pairs) pairs_ = std::move(answer.pairs);
+  });
+}
+
+}  // namespace lrb::stability

@@ -1,0 +1,358 @@
+#include "bench/stability/stability_print.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "bench/stability/outcome_grid.hpp"
+#include <lrbscope/core/strings.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/style.hpp>
+
+namespace lrb::stability {
+namespace {
+
+// ---- the grid. Units are those of one cell, x to the right, y up, with the first row's top at 0
+
+constexpr double kCellWidth = 17, kCellHeight = 10.5;  // millimetres
+constexpr double kLeft = 2.9, kBottom = 1.8;
+constexpr double kFont = 6.5, kSmall = 0.8, kLine = 0.24;  // points; share of it
+
+constexpr render::Rgba kWrong = render::palette::kVermillion;
+constexpr render::Rgba kCrashed{20, 22, 26};
+constexpr render::Rgba kTimedOut{160, 69, 138};
+constexpr render::Rgba kRefused{154, 160, 166};
+constexpr render::Rgba kOnlyRefused{228, 230, 232};
+/// Colours as on the page: pale blue where nothing fails, then ever more orange.
+constexpr std::array<render::Rgba, 5> kLevels = {render::Rgba{226, 238, 246}, render::Rgba{253, 241, 220},
+                                                 render::Rgba{251, 220, 174}, render::Rgba{245, 180, 107},
+                                                 render::Rgba{232, 138, 60}};
+
+std::string colour(render::Rgba c) {
+  return std::to_string((static_cast<unsigned>(c.r) << 16) + (static_cast<unsigned>(c.g) << 8) + c.b);
+}
+
+/// Collects rectangles and texts, and the commands that draw them in this order.
+class Sheet {
+ public:
+  void rect(double x0, double y0, double x1, double y1, render::Rgba c) {
+    rects_.push_back(io::number_text((x0 + x1) / 2) + " " + io::number_text((y0 + y1) / 2) + " " +
+                     io::number_text(x0) + " " + io::number_text(x1) + " " + io::number_text(y0) + " " +
+                     io::number_text(y1) + " " + colour(c));
+  }
+  enum Style { normal, bold, small, small_right, small_centre, kStyles };
+  void text(double x, double y, Style style, const std::string& s, render::Rgba c = render::palette::kInk) {
+    if (!s.empty())
+      texts_[style].push_back(io::number_text(x) + " " + io::number_text(y) + " " +
+                              report::gnuplot_data_text(s) + " " + colour(c));
+  }
+  void write(report::Gnuplot& chart) const {
+    static constexpr std::array<const char*, kStyles> kNames = {"normal", "bold", "small", "small_right",
+                                                                "small_centre"};
+    static constexpr std::array<const char*, kStyles> kAligns = {"left", "right", "left", "right", "center"};
+    chart.add_data("rects", rects_);
+    std::string plot = "plot $rects using 1:2:3:4:5:6:7 with boxxyerror lc rgb variable";
+    for (std::size_t i = 0; i < kStyles; ++i) {
+      if (texts_[i].empty()) continue;
+      chart.add_data(kNames[i], texts_[i]);
+      const std::string font = i == bold
+                                   ? "DejaVu Sans Bold," + io::number_text(kFont)
+                                   : "DejaVu Sans," + io::number_text(i == normal ? kFont : kFont * kSmall);
+      plot += ", $" + std::string(kNames[i]) + " using 1:2:3:4 with labels " + kAligns[i] + " font '" + font +
+              "' tc rgb variable";
+    }
+    chart.script += plot + "\n";
+  }
+
+ private:
+  std::vector<std::string> rects_;
+  std::array<std::vector<std::string>, kStyles> texts_;
+};
+
+/// Breaks text at spaces, and at underscores where a word is longer than a line.
+std::vector<std::string> wrap(const std::string& text, std::size_t width) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string word; in >> word;) {
+    for (std::size_t cut; word.size() > width && (cut = word.rfind('_', width - 1)) != std::string::npos;) {
+      lines.push_back(word.substr(0, cut + 1));
+      word.erase(0, cut + 1);
+    }
+    if (!lines.empty() && lines.back().back() != '_' && lines.back().size() + word.size() < width)
+      lines.back() += " " + word;
+    else
+      lines.push_back(word);
+  }
+  return lines;
+}
+
+std::vector<std::string> title_lines(const workers::MethodColumn& method) {
+  constexpr std::size_t kCharacters = 16;
+  return wrap(method.title, kCharacters);
+}
+
+void add_bars(Sheet& sheet, const Cell& cell, double x, double y) {
+  constexpr double kFrom = 0.07, kTo = 0.93, kLow = 0.1, kHigh = 0.5, kLeast = 0.05;
+  sheet.rect(x + kFrom - 0.02, y + kLow - 0.03, x + kTo + 0.02, y + kHigh + 0.03, render::kWhite);
+  const double step = (kTo - kFrom) / kDialSettings;
+  for (std::size_t i = 0; i < kDialSettings; ++i) {
+    if (cell.cases[i] == 0) continue;
+    const double left = x + kFrom + step * (static_cast<double>(i) + 0.1), right = left + 0.8 * step;
+    sheet.rect(left, y + kLow - 0.012, right, y + kLow, render::palette::kRule);
+    double at = y + kLow;
+    const auto part = [&](std::uint64_t n, render::Rgba c) {
+      if (n == 0) return;
+      const double share = static_cast<double>(n) / static_cast<double>(cell.cases[i]);
+      const double top = std::min(y + kHigh, at + std::max(kLeast, (kHigh - kLow) * share));
+      sheet.rect(left, at, right, top, c);
+      at = top;
+    };
+    part(cell.wrong[i], kWrong);
+    part(cell.crashed[i], kCrashed);
+    part(cell.timed_out[i], kTimedOut);
+    part(cell.refused[i], kRefused);
+  }
+}
+
+void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
+  constexpr double kGap = 0.02;
+  const CellSummary s = summarise(cell);
+  sheet.rect(x + kGap, y + kGap, x + 1 - kGap, y + 1 - kGap,
+             s.only_refused() ? kOnlyRefused : kLevels[static_cast<std::size_t>(s.level())]);
+  const std::string failures = std::to_string(s.failures()) + "/" + std::to_string(s.answered());
+  sheet.text(x + 0.06, y + 0.8, Sheet::small, failures);
+  std::string marks;
+  const auto mark = [&](std::uint64_t n, const char* sign) {
+    if (n > 0) marks += (marks.empty() ? "" : " ") + (sign + std::to_string(n));
+  };
+  mark(s.crashed, "\u2715");
+  mark(s.timed_out, "\u25f7");
+  mark(s.refused, "\u2298");
+  // What does not fit beside the failures gets a line of its own.
+  constexpr std::size_t kBeside = 14;  // bytes; a mark's sign has three
+  sheet.text(x + 0.95, y + (failures.size() + marks.size() > kBeside ? 0.61 : 0.8), Sheet::small_right,
+             marks);
+  add_bars(sheet, cell, x, y);
+}
+
+void add_row_head(Sheet& sheet, const FamilyRow& family, double y) {
+  sheet.text(-0.08, y + 0.76, Sheet::bold, family.name);
+  if (family.benign.empty() && family.degenerate.empty()) return;
+  sheet.text(-0.08, y + 0.46, Sheet::small_right, family.benign + " \u2192", render::palette::kFaint);
+  sheet.text(-0.08, y + 0.2, Sheet::small_right, family.degenerate, render::palette::kFaint);
+}
+
+void add_column_head(Sheet& sheet, const workers::MethodColumn& method, double x) {
+  const std::vector<std::string> lines = title_lines(method);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    sheet.text(x + 0.5, 0.2 + kLine * static_cast<double>(lines.size() - 1 - i), Sheet::small_centre,
+               lines[i]);
+}
+
+void add_legend(Sheet& sheet, double y, double columns, const std::string& absent) {
+  double x = -kLeft + 0.1;
+  const auto item = [&](render::Rgba c, const std::string& text) {
+    constexpr double kCharacter = 0.066;
+    const auto characters =
+        std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; });  // of UTF-8
+    const double needed = 0.35 + kCharacter * static_cast<double>(characters) + 0.2;
+    if (x + needed > columns) {
+      x = -kLeft + 0.1;
+      y -= 0.42;
+    }
+    sheet.rect(x, y - 0.12, x + 0.22, y + 0.12, c);
+    sheet.text(x + 0.29, y, Sheet::small, text);
+    x += needed;
+  };
+  for (std::size_t i = 0; i < kLevels.size(); ++i) item(kLevels[i], kLevelNames[i]);
+  item(kOnlyRefused, "refusals alone");
+  item(kWrong, "wrong answer");
+  item(kCrashed, "\u2715 crashed");
+  item(kTimedOut, "\u25f7 timed out");
+  item(kRefused, "\u2298 refused");
+  sheet.text(-kLeft + 0.1, y - 0.42, Sheet::small,
+             "Failures/cases not refused; bars: share of cases along the dial, benign to degenerate.",
+             render::palette::kFaint);
+  sheet.text(-kLeft + 0.1, y - 0.72, Sheet::small, absent, render::palette::kFaint);
+}
+
+// ---- the profiles
+
+constexpr int kProfileColumns = 4;
+
+/// Returns the style of line i; lines differ in colour, dash and mark.
+std::string line_style(std::size_t i) {
+  static constexpr std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                          "#1d1f22", "#56b4e9", "#e69f00", "#7a5195"};
+  static constexpr std::array<int, 8> kPoints = {7, 5, 9, 11, 13, 6, 4, 8};
+  return "lc rgb '" + std::string(kColours[i % kColours.size()]) + "' pt " +
+         std::to_string(kPoints[i % kPoints.size()]) + " ps 0.35 dt " +
+         std::to_string(1 + i / kColours.size()) + " lw 1.1";
+}
+
+std::string margins(double left, double right, double bottom, double top) {
+  return "set lmargin at screen " + io::number_text(left) + "\nset rmargin at screen " +
+         io::number_text(right) + "\nset bmargin at screen " + io::number_text(bottom) +
+         "\nset tmargin at screen " + io::number_text(top) + "\n";
+}
+
+/// Returns a tick's label: gnuplot takes these for formats.
+std::string tick_text(std::string text) {
+  for (std::size_t at = text.find('%'); at != std::string::npos; at = text.find('%', at + 2))
+    text.insert(at, 1, '%');
+  return report::gnuplot_text(text);
+}
+
+/// Returns the commands that name a family, say under its axis what every third setting means, and below that
+/// the ends, each on a line of its own: together they are wider than a panel.
+std::string panel_heading(const FamilyRow& family, bool first) {
+  constexpr int kEvery = 3;
+  std::string out =
+      "set title " + report::gnuplot_text(family.name) + " font 'DejaVu Sans Bold,6.5' offset 0,-0.6\n";
+  std::string marks;
+  for (std::size_t i = 0; i < kDialSettings; i += kEvery)
+    marks += (i > 0 ? ", " : "") + tick_text(family.values.empty() ? "" : family.values[i]) + " " +
+             std::to_string(i);
+  out += "set xtics (" + marks + ") nomirror scale 0.4 offset 0,0.5 font 'DejaVu Sans,5' tc rgb '#62676e'\n";
+  const auto end = [&](int number, const std::string& text, const char* where) {
+    out += "set label " + std::to_string(number) + " " + report::gnuplot_text(text) + " at graph " + where +
+           " font 'DejaVu Sans,5' tc rgb '#62676e'\n";
+  };
+  end(1, family.benign.empty() ? " " : family.benign + " \u2192", "0,-0.23 left");
+  end(2, family.degenerate.empty() ? " " : family.degenerate, "1,-0.34 right");
+  return out + (first ? "set ylabel 'failures, %' offset 1.5,0\n" : "unset ylabel\n");
+}
+
+std::vector<std::string> profile_rows(const Cell& cell, double shift) {
+  std::vector<std::string> rows;
+  for (std::size_t i = 0; i < kDialSettings; ++i) {
+    if (cell.cases[i] == 0) continue;
+    const double failed = static_cast<double>(cell.wrong[i] + cell.crashed[i] + cell.timed_out[i]);
+    rows.push_back(io::number_text(static_cast<double>(i) + shift) + " " +
+                   io::number_text(100 * failed / static_cast<double>(cell.cases[i])));
+  }
+  return rows;
+}
+
+constexpr int kKeyColumns = 2;
+constexpr double kPanelHeight = 40, kKeyLine = 3.6;  // millimetres
+
+/// Returns the commands that draw a family's panel, and adds its data to the chart.
+std::string family_panel(const Grid& grid, std::size_t family, const std::vector<std::size_t>& present,
+                         report::Gnuplot& chart) {
+  const int row = static_cast<int>(family) / kProfileColumns,
+            column = static_cast<int>(family) % kProfileColumns;
+  // The space that axis, title and labels need at the panel's sides.
+  constexpr double kLeftSide = 0.045, kPanelWidth = (1 - kLeftSide) / kProfileColumns;
+  std::string plots =
+      margins(kLeftSide + (column + 0.1) * kPanelWidth, kLeftSide + (column + 0.97) * kPanelWidth,
+              1 - (row + 0.74) * kPanelHeight / chart.height, 1 - (row + 0.15) * kPanelHeight / chart.height);
+  plots += panel_heading(grid.families[family], column == 0);
+  for (std::size_t line = 0; line < present.size(); ++line) {
+    const std::string name = "f" + std::to_string(family) + "m" + std::to_string(present[line]);
+    // Points stand side by side where lines would hide each other.
+    constexpr double kApart = 0.07;
+    const double shift = kApart * (static_cast<double>(line) - static_cast<double>(present.size() - 1) / 2);
+    chart.add_data(name, profile_rows(grid.at(family, present[line]), shift));
+    plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
+  }
+  return plots + "\n";
+}
+
+/// Returns the commands that draw the key, lines and titles in a panel of their own, in units of its columns
+/// and lines; adds its data to the chart.
+std::string profile_key(const Grid& grid, const std::vector<std::size_t>& present, int key_rows,
+                        report::Gnuplot& chart) {
+  std::string plots =
+      margins(0.03, 1, 0, kKeyLine * key_rows / chart.height) +
+      "unset border\nunset tics\nunset title\nunset label\nunset xlabel\nunset ylabel\nset xrange [0:" +
+      std::to_string(kKeyColumns) + "]\nset yrange [0:" + std::to_string(key_rows) + "]\n";
+  std::vector<std::string> titles;
+  for (std::size_t line = 0; line < present.size(); ++line) {
+    const double x = static_cast<double>(static_cast<int>(line) / key_rows);
+    const double y = key_rows - 0.5 - static_cast<int>(line) % key_rows;
+    const std::string name = "key" + std::to_string(line);
+    chart.add_data(name, {io::number_text(x) + " " + io::number_text(y),
+                          io::number_text(x + 0.12) + " " + io::number_text(y)});
+    titles.push_back(io::number_text(x + 0.15) + " " + io::number_text(y) + " " +
+                     report::gnuplot_data_text(grid.methods[present[line]].title));
+    plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
+  }
+  chart.add_data("titles", titles);
+  return plots + (present.empty() ? "plot" : ",") + " $titles using 1:2:3 with labels left";
+}
+
+}  // namespace
+
+report::Gnuplot grid_chart(const Grid& whole) {
+  const Grid grid = present_part(whole);
+  const double columns = static_cast<double>(grid.methods.size());
+  const double rows = static_cast<double>(grid.families.size()) + 1.1;  // a little room above the sums
+  std::size_t most_lines = 1;
+  for (const workers::MethodColumn& m : grid.methods)
+    most_lines = std::max(most_lines, title_lines(m).size());
+  const double top = 0.2 + kLine * static_cast<double>(most_lines);
+  report::Gnuplot chart;
+  chart.width = kCellWidth * (kLeft + columns + 0.1);
+  chart.height = kCellHeight * (top + rows + kBottom);
+  chart.font = kFont;
+  Sheet sheet;
+  for (std::size_t m = 0; m < grid.methods.size(); ++m) {
+    const double x = static_cast<double>(m);
+    add_column_head(sheet, grid.methods[m], x);
+    for (std::size_t f = 0; f < grid.families.size(); ++f) {
+      const double y = -1 - static_cast<double>(f);
+      add_cell(sheet, grid.at(f, m), x, y);
+    }
+    add_cell(sheet, sum_of_column(grid, m), x, -rows);
+  }
+  for (std::size_t f = 0; f < grid.families.size(); ++f)
+    add_row_head(sheet, grid.families[f], -1 - static_cast<double>(f));
+  sheet.text(-0.08, -rows + 0.5, Sheet::bold, "all families");
+  add_legend(sheet, -rows - 0.35, columns, absent_words(whole));
+
+  chart.script =
+      "unset border\nunset tics\nunset key\nset style fill solid 1 noborder\n"
+      "set lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen 1\nset bmargin at screen 0\n";
+  chart.script += "set xrange [" + io::number_text(-kLeft) + ":" + io::number_text(columns + 0.1) +
+                  "]\nset yrange [" + io::number_text(-rows - kBottom) + ":" + io::number_text(top) + "]\n";
+  sheet.write(chart);
+  return chart;
+}
+
+report::Gnuplot profile_chart(const Grid& grid) {
+  const auto families = static_cast<int>(grid.families.size());
+  const int rows = (families + kProfileColumns - 1) / kProfileColumns;
+  std::vector<std::size_t> present;
+  for (std::size_t m = 0; m < grid.methods.size(); ++m)
+    if (grid.methods[m].present) present.push_back(m);
+  const int key_rows = std::max(1, (static_cast<int>(present.size()) + kKeyColumns - 1) / kKeyColumns);
+  report::Gnuplot chart;
+  chart.width = 180;
+  chart.height = kPanelHeight * rows + kKeyLine * key_rows + 3;
+  chart.font = 6;
+  std::string plots;
+  for (std::size_t f = 0; f < grid.families.size(); ++f) plots += family_panel(grid, f, present, chart);
+  plots += profile_key(grid, present, key_rows, chart);
+  chart.script +=
+      "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset yrange [-3:103]\nset ytics "
+      "0,50,100 nomirror scale 0.4 offset 0.6,0 tc rgb '#1c1e22'\n"
+      "set grid ytics lw 0.4 lc rgb '#d8dadc' dt 1\n";
+  chart.script +=
+      "set xrange [-0.6:" + io::number_text(kDialSettings - 0.4) + "]\n" + plots + "\nunset multiplot\n";
+  return chart;
+}
+
+std::vector<PrintFile> print_stability(const Grid& grid, const std::string& folder) {
+  const report::Gnuplot whole = grid_chart(grid), profiles = profile_chart(grid);
+  std::vector<PrintFile> files;
+  for (const char* ending : {".svg", ".png"}) {
+    report::draw(whole, folder + "/stability" + ending);
+    files.push_back({std::string("stability") + ending, "the grid, for print"});
+    report::draw(profiles, folder + "/stability-profiles" + ending);
+    files.push_back(
+        {std::string("stability-profiles") + ending, "share of failures along each family's dial"});
+  }
+  return files;
+}
+
+}  // namespace lrb::stability

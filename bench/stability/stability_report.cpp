@@ -1,0 +1,291 @@
+#include "bench/stability/stability_report.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "bench/stability/outcome_grid.hpp"
+#include "bench/stability/stability_print.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/report/assets.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
+
+namespace lrb::stability {
+namespace {
+
+constexpr const char* kPage = "index.html";
+
+std::string count_of(std::uint64_t n, const char* one, const char* many) {
+  return render::group_digits(n) + " " + (n == 1 ? one : many);
+}
+
+/// Returns a setting of the dial, with what it means if that is known: "7 of 0 to 10 (4e-13)".
+std::string setting_words(const FamilyRow& family, int dial) {
+  std::string out = std::to_string(dial) + " of 0 to " + std::to_string(kDialSettings - 1);
+  if (!family.values.empty()) out += " (" + family.values[static_cast<std::size_t>(dial)] + ")";
+  return out;
+}
+
+std::string sentence(const CellSummary& s, const FamilyRow& family) {
+  std::string out =
+      render::group_digits(s.failures()) + " of " + count_of(s.answered(), "case fails", "cases fail");
+  const auto add = [&](std::uint64_t n, const std::string& what) {
+    if (n > 0) out += ", " + render::group_digits(n) + " " + what;
+  };
+  add(s.wrong, "with a wrong answer");
+  add(s.crashed, "by a crash");
+  add(s.timed_out, "by a time-out");
+  add(s.refused, "refused");
+  if (s.first_failing >= 0) out += "; first at setting " + setting_words(family, s.first_failing);
+  return out;
+}
+
+report::PageGridCell page_cell(const Cell& cell, const FamilyRow& family, const std::string& where) {
+  const CellSummary s = summarise(cell);
+  report::PageGridCell out;
+  out.level = s.only_refused() ? report::PageGridCell::kOnlyRefused : s.level();
+  out.count = s.answered() > 0 ? render::group_digits(s.failures()) : "\u2013";
+  out.of = s.answered() > 0 ? "of " + render::group_digits(s.answered()) : "all refused";
+  const auto mark = [](std::uint64_t n) { return n > 0 ? render::group_digits(n) : std::string(); };
+  out.marks = {"", mark(s.crashed), mark(s.timed_out), mark(s.refused)};
+  out.label = where + ": " + sentence(s, family);
+  for (std::size_t i = 0; i < kDialSettings; ++i) {
+    if (cell.cases[i] == 0) {
+      out.bars.push_back({-1, 0, 0, 0});
+      continue;
+    }
+    const auto share = [&](std::uint64_t n) {
+      return static_cast<double>(n) / static_cast<double>(cell.cases[i]);
+    };
+    out.bars.push_back(
+        {share(cell.wrong[i]), share(cell.crashed[i]), share(cell.timed_out[i]), share(cell.refused[i])});
+  }
+  return out;
+}
+
+/// Replaces everything but letters, digits and dashes.
+std::string plain(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  return out;
+}
+
+/// Returns a name without underscores, for people.
+std::string plain_words(std::string_view name) {
+  std::string out(name);
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
+std::string words(Outcome o) {
+  return plain_words(name_of(o));
+}
+
+report::PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m,
+                                   const ReportOptions& options) {
+  const Record& r = *grid.at(f, m).worst;
+  const FamilyRow& family = grid.families[f];
+  report::PageGridDetail d;
+  d.id = "case-" + plain(family.name) + "-" + plain(grid.methods[m].name);
+  d.title = family.name + " \u00d7 " + grid.methods[m].title;
+  d.text = answer_text(r);
+  const std::size_t cell = f * grid.methods.size() + m;
+  if (cell < options.pictures.size()) d.file = options.pictures[cell];
+  const CellSummary s = summarise(grid.at(f, m));
+  const bool answered = r.outcome == Outcome::right || r.outcome == Outcome::wrong;
+  d.facts = {{"Outcome", words(r.outcome)}};
+  if (grid.quantity == Quantity::pairs) {
+    d.facts.emplace_back("Pairs that meet", render::group_digits(r.expected));
+    if (answered) {
+      d.facts.emplace_back("Missed", render::group_digits(r.missed));
+      d.facts.emplace_back("In excess", render::group_digits(r.extra));
+    }
+    d.facts.emplace_back("Relation", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
+    if (answered) d.facts.emplace_back("Answered", r.relation.empty() ? "no relation" : r.relation);
+  } else {
+    d.facts.emplace_back("Right", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
+    if (answered) d.facts.emplace_back("Answered", r.relation);
+  }
+  d.facts.emplace_back("Dial", setting_words(family, r.dial));
+  d.facts.emplace_back("Case, seed", render::group_digits(r.case_index) + ", " + std::to_string(r.seed));
+  if (answered) d.facts.emplace_back("Query", render::short_number(r.microseconds) + " \u00b5s");
+  d.note = "Of this family, with this method: " + sentence(s, family) + ".";
+  if (options.command) d.command = options.command(r);
+  return d;
+}
+
+/// Reads the pictures of all details, as far as a page may hold them.
+std::string inline_pictures(std::vector<report::PageGridDetail>& details, const std::string& folder) {
+  std::vector<report::PngBytes> pngs;
+  for (const report::PageGridDetail& d : details) {
+    if (d.file.empty()) continue;
+    const std::string bytes = io::read_text(folder + "/" + d.file);
+    pngs.emplace_back(bytes.begin(), bytes.end());
+  }
+  report::InlinedImages images = report::inline_pngs(pngs);
+  std::size_t next = 0;
+  for (report::PageGridDetail& d : details)
+    if (!d.file.empty()) d.data_uri = std::move(images.uris[next++]);
+  return images.note;
+}
+
+report::PageGrid page_grid(const Grid& grid, const std::string& folder, const ReportOptions& options) {
+  report::PageGrid out;
+  out.title = "Families of cases \u00d7 methods";
+  out.corner = "family, and its dial from benign to degenerate";
+  out.level_names.assign(kLevelNames.begin(), kLevelNames.end());
+  out.part_names = {"wrong answer", "crashed", "timed out", "refused"};
+  for (const workers::MethodColumn& m : grid.methods) out.columns.push_back({m.title, m.remark, "", "", {}});
+  for (std::size_t f = 0; f < grid.families.size(); ++f) {
+    const FamilyRow& family = grid.families[f];
+    out.rows.push_back({family.name, family.what, family.benign, family.degenerate, family.values});
+    for (std::size_t m = 0; m < grid.methods.size(); ++m) {
+      const std::string where = family.name + " \u00d7 " + grid.methods[m].title;
+      out.cells.push_back(page_cell(grid.at(f, m), family, where));
+      if (!grid.at(f, m).worst) continue;
+      out.cells.back().detail = static_cast<int>(out.details.size());
+      out.details.push_back(page_detail(grid, f, m, options));
+    }
+  }
+  out.rows.push_back({"all families", "", "", "", {}});
+  out.total_rows = 1;
+  for (std::size_t m = 0; m < grid.methods.size(); ++m) {
+    const std::string where = "all families \u00d7 " + grid.methods[m].title;
+    out.cells.push_back(page_cell(sum_of_column(grid, m), {}, where));
+  }
+  out.note =
+      "In each cell: failures of the cases that were not refused, and below them one bar per setting of the "
+      "dial, benign on the left, "
+      "degenerate on the right; its height is the share of that setting's cases. A cell that leads to its "
+      "worst "
+      "case can be clicked; arrow keys then go from case to case.";
+  const std::string note = inline_pictures(out.details, folder);
+  if (!note.empty()) out.note += " " + note;
+  return out;
+}
+
+/// Returns the texts of a page about numbers.
+std::vector<report::PageText> texts_of_numbers(Quantity quantity) {
+  const char* asked =
+      quantity == Quantity::distance ? "Two bodies at two poses: how far are their surfaces apart?"
+      : quantity == Quantity::depth
+          ? "Two convex bodies at two poses: how long is the shortest translation after which their interiors "
+            "share no point?"
+          : "B comes straight to its pose, from the side of A on which it is, and goes on: at which time, from 0 "
+            "to 1, do the surfaces first meet?";
+  return {
+      {"What was asked", std::string(asked) +
+                             " Every method gets the same bodies, in the world's doubles. The families are "
+                             "those of the page on pairs, with the same dials."},
+      {"How answers are judged",
+       "By rational arithmetic on the very doubles: brute force over all pairs of triangles, or over all planes "
+       "that may part convex bodies. An answer is wrong if it says that bodies meet (never meet) and they do "
+       "not (do), or the other way round; if an interval that claims a proof does not hold the number; or if "
+       "another is further off than a millionth of the bodies' size, or a thousandth of the motion. Bodies of "
+       "too many faces for rational arithmetic, in the plane, or, for depths, not convex are not asked about: "
+       "they count as refused."},
+      {"What is not claimed",
+       "The cases are made to be hard, and most methods never promised exact answers. Families are samples: no "
+       "failure among them is no proof."},
+  };
+}
+
+std::vector<report::PageText> texts() {
+  return {
+      {"What was asked",
+       "Two bodies at two poses: which pairs of faces meet, and how do the bodies lie to each other? Every "
+       "method "
+       "gets the same bodies and poses, in doubles. Each family is one way in which collision engines are "
+       "known to "
+       "fail, with a dial that goes from where everybody is right to where it is hardest; random numbers are "
+       "the "
+       "same at all settings, so that only the dial differs."},
+      {"How answers are judged",
+       "Against every pair of faces tested with exact arithmetic on the very doubles that the poses give: a "
+       "touch "
+       "counts as meeting, a gap of one unit in the last place does not. A method is held to what it claims "
+       "to "
+       "answer: pairs missed or in excess, or a wrong relation, make a case wrong. Each runs in a process of "
+       "its "
+       "own: crashes and time-outs count as failures. Refusals are shown and counted, but are no failures: "
+       "they "
+       "mislead nobody."},
+      {"What is not claimed",
+       "The cases are made to be hard: shares say where a method breaks, not how often it would in a game or "
+       "a "
+       "robot. Most methods never promised exact answers, and some take a touch for a miss on purpose. "
+       "Nothing here "
+       "compares speed. Families are samples: no failure among them is no proof."},
+  };
+}
+
+void check(const Grid& grid) {
+  if (grid.cells.size() != grid.families.size() * grid.methods.size())
+    throw InputError("stability: " + std::to_string(grid.cells.size()) + " cells for " +
+                     std::to_string(grid.families.size()) + " families and " +
+                     std::to_string(grid.methods.size()) + " methods");
+}
+
+}  // namespace
+
+std::string answer_text(const Record& r) {
+  std::string out = words(r.outcome);
+  if (r.missed + r.extra > 0)
+    out += ": " + render::group_digits(r.missed) + " missed, " + render::group_digits(r.extra) + " in excess";
+  else if (r.outcome == Outcome::wrong && r.relation != r.expected_relation)
+    out += ": " + r.relation + " instead of " + r.expected_relation;
+  if (!r.message.empty()) out += ": " + r.message;
+  return out;
+}
+
+report::Page stability_page(const Grid& whole, const std::string& folder, const ReportOptions& given) {
+  check(whole);
+  const Grid grid = present_part(whole);
+  ReportOptions options = given;
+  options.pictures.clear();
+  for (std::size_t i = 0; i < given.pictures.size(); ++i)
+    if (whole.methods[i % whole.methods.size()].present) options.pictures.push_back(given.pictures[i]);
+  std::uint64_t answers = 0;
+  for (const Cell& c : grid.cells) answers += summarise(c).cases;
+  const std::size_t absent = whole.methods.size() - grid.methods.size();
+  report::Page page;
+  page.title = grid.quantity == Quantity::pairs
+                   ? "Where collision methods fail"
+                   : "Where methods fail: " + plain_words(name_of(grid.quantity));
+  page.texts = grid.quantity == Quantity::pairs ? texts() : texts_of_numbers(grid.quantity);
+  page.numbers = {
+      {"Families", render::group_digits(grid.families.size()),
+       std::to_string(kDialSettings) + " settings of the dial each"},
+      {"Methods", render::group_digits(grid.methods.size()),
+       absent == 0 ? "all that are known" : render::group_digits(absent) + " more not installed here"},
+      {"Answers judged", render::group_digits(answers), "one per case and method"},
+      {"Time taken", render::short_number(grid.seconds) + " s", ""}};
+  page.grid = page_grid(grid, folder, options);
+  page.grid.missing = absent_words(whole);
+  page.command = grid.command;
+  page.links = options.links;
+  page.footer = report::footer();
+  return page;
+}
+
+ReportFiles write_stability_report(const Grid& grid, const std::string& folder,
+                                   const ReportOptions& options) {
+  check(grid);
+  make_folder(folder);
+  ReportFiles out;
+  ReportOptions with_files = options;
+  try {
+    for (const PrintFile& f : print_stability(grid, folder)) {
+      out.written.push_back(f.name);
+      with_files.links.push_back({f.name, f.name, f.what});
+    }
+  } catch (const EnvironmentError& e) {
+    out.missing = e.what();
+  }
+  io::write_text(folder + "/" + kPage, report::page_html(stability_page(grid, folder, with_files)));
+  out.written.insert(out.written.begin(), kPage);
+  return out;
+}
+
+}  // namespace lrb::stability

@@ -1,0 +1,317 @@
+#include "bench/stability/worst_case.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+
+#include "bench/stability/case_picture.hpp"
+#include "bench/stability/stability_report.hpp"
+#include "scenarios/io/files.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/style.hpp>
+
+namespace lrb::stability {
+namespace {
+
+constexpr int kWidth = 1280, kHeight = 720, kGap = 4;
+/// Marks that take up a smaller share of the scene than this get a close-up.
+constexpr double kSmallShare = 0.25;
+/// So do marks all over the bodies, if each is smaller than this share.
+constexpr double kTiny = 0.04;
+/// The extent of a close-up, in sizes of what it is about.
+constexpr double kContext = 2.4;
+/// Bodies are cut where close-ups cannot see them any more, in extents of these.
+constexpr double kReach = 6;
+
+// ---- where to look
+
+/// Takes halves first: sums of the largest doubles overflow.
+Eigen::Vector3d middle_of(const Eigen::AlignedBox3d& box) {
+  return box.min() / 2 + box.max() / 2;
+}
+
+/// Returns a box around where two simplices meet, or around the smaller one if they do not.
+Eigen::AlignedBox3d place_of(const CasePicture& s, const SimplexPair& p) {
+  const Eigen::AlignedBox3d a = s.bodies[0].box(p.a), b = s.bodies[1].box(p.b);
+  const Eigen::AlignedBox3d& smaller = diagonal(a) < diagonal(b) ? a : b;
+  const Eigen::AlignedBox3d common = a.intersection(b);
+  const Eigen::Vector3d middle = middle_of(common.isEmpty() ? smaller : common);
+  const double half = diagonal(smaller) / 4;
+  Eigen::AlignedBox3d out(middle - Eigen::Vector3d::Constant(half), middle + Eigen::Vector3d::Constant(half));
+  return common.isEmpty() ? out.merged(smaller) : out.merged(common);
+}
+
+struct CloseUp {
+  Eigen::AlignedBox3d box;
+  std::string caption;
+};
+
+std::optional<CloseUp> close_up(const CasePicture& s, const Verdict& verdict) {
+  const double whole = diagonal(s.box);
+  const Pairs& pairs = verdict.worst();
+  if (pairs.empty()) {
+    const Eigen::AlignedBox3d &a = s.bodies[0].box(), &b = s.bodies[1].box();
+    const Eigen::AlignedBox3d& smaller = diagonal(a) < diagonal(b) ? a : b;
+    if (diagonal(smaller) < kTiny * whole) return CloseUp{smaller, "close-up of the smaller body"};
+    return std::nullopt;
+  }
+  const char* kind = !verdict.missed.empty() ? "missed" : !verdict.extra.empty() ? "in excess" : "expected";
+  Eigen::AlignedBox3d all;
+  const Eigen::AlignedBox3d* smallest = nullptr;
+  std::vector<Eigen::AlignedBox3d> places;
+  for (const SimplexPair& p : pairs) all.extend(places.emplace_back(place_of(s, p)));
+  for (const Eigen::AlignedBox3d& b : places)
+    if (smallest == nullptr || diagonal(b) < diagonal(*smallest)) smallest = &b;
+  if (diagonal(all) < kSmallShare * whole) return CloseUp{all, std::string("close-up of what is ") + kind};
+  if (diagonal(*smallest) < kTiny * whole)
+    return CloseUp{*smallest, std::string("close-up of one pair ") + kind};
+  return std::nullopt;
+}
+
+/// Returns the direction from which the marks are seen best, by the sum of their areas in the picture, with
+/// some preference for the usual one.
+render::ViewDirection best_view(const CasePicture& s, const PictureFrame& frame) {
+  const render::ViewDirection usual;
+  std::vector<Eigen::Vector3d> areas;
+  for (std::size_t i = 0; i < 2; ++i)
+    for (SimplexId f = 0; f < s.marks[i].size(); ++f) {
+      if (s.marks[i][f] == Mark::none) continue;
+      const Piece p = frame.cut(s.bodies[i].simplex(f), 1);
+      for (std::size_t k = 2; k < p.corners.size(); ++k)
+        areas.push_back((p.corners[k - 1] - p.corners[0]).cross(p.corners[k] - p.corners[0]));
+    }
+  const auto seen = [&](const render::ViewDirection& v) {
+    double sum = 0;
+    for (const Eigen::Vector3d& n : areas) sum += std::abs(n.dot(v.from.normalized()));
+    return sum;
+  };
+  render::ViewDirection best = usual;
+  double most = 1.3 * seen(usual);
+  for (int turn = 0; turn < 8; ++turn)
+    for (const double elevation : {0.25, 0.75}) {
+      const render::ViewDirection v = render::view_from_angles(turn * std::numbers::pi / 4 + 0.35, elevation);
+      if (seen(v) > most) {
+        most = seen(v);
+        best = v;
+      }
+    }
+  return best;
+}
+
+// ---- pictures
+
+struct View {
+  PictureFrame frame;
+  double reach;
+  render::ViewDirection direction;
+};
+
+render::Camera camera_of(const View& v, std::span<const Eigen::Vector3d> points,
+                         const render::PixelRect& place, bool flat) {
+  render::FitOptions options;
+  options.view = v.direction;
+  return flat ? render::fit_top(points, place.width, place.height)
+              : render::fit_camera(points, place.width, place.height, options);
+}
+
+render::Image draw_view(const CasePicture& s, const View& v, const render::Camera& camera,
+                        const render::PixelRect& place, render::Rasterizer& rasterizer) {
+  render::RasterOptions options;
+  options.width = place.width;
+  options.height = place.height;
+  render::DrawList list = draw_list(s, v.frame, v.reach);
+  const render::Projection projection(camera, place.width, place.height, render::bounds(list));
+  add_dots(list, s, v.frame, v.reach, 7 * projection.unit_per_pixel(camera.target));
+  return rasterizer.draw(list, camera, options);
+}
+
+std::vector<Eigen::Vector3d> corners_of(const PictureFrame& frame, const Eigen::AlignedBox3d& box) {
+  std::vector<Eigen::Vector3d> out;
+  for (int i = 0; i < 8; ++i)
+    out.push_back(frame(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i))));
+  return out;
+}
+
+std::vector<Eigen::Vector3d> all_points(const CasePicture& s, const PictureFrame& frame) {
+  std::vector<Eigen::Vector3d> out;
+  for (const PosedBody& body : s.bodies)
+    for (SimplexId f = 0; f < body.size(); ++f)
+      for (const Eigen::Vector3d& p : body.simplex(f).corners) out.push_back(frame(p));
+  return out;
+}
+
+void write_caption(render::Image& image, const std::string& text) {
+  render::TextStyle style;
+  style.height = 17;
+  style.colour = render::palette::kInk;
+  const render::TextSize size = render::default_font().measure(text, style);
+  const render::PixelRect back{0, 0, std::min(image.width(), size.width + 20), size.height + 12};
+  for (int y = 0; y < back.height; ++y)
+    for (int x = 0; x < back.width; ++x) image.blend(x, y, render::with_alpha(render::kWhite, 225));
+  render::default_font().draw(image, text, 10, 6, style);
+}
+
+/// Shows where the close-up lies in the whole: a frame in ink, never too small to see.
+void frame_place(render::Image& image, const render::Camera& camera,
+                 const std::vector<Eigen::Vector3d>& corners, const Eigen::AlignedBox3d& scene) {
+  const render::Projection projection(camera, image.width(), image.height(), scene);
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector3d& c : corners)
+    if (const auto p = projection.to_pixel(c)) box.extend(*p);
+  if (box.isEmpty()) return;
+  constexpr double kLeast = 11;  // half a side, pixels
+  const Eigen::Vector2d middle = box.center();
+  const Eigen::Vector2d half = (box.sizes() / 2).cwiseMax(kLeast);
+  const render::PixelRect r{static_cast<int>(middle.x() - half.x()), static_cast<int>(middle.y() - half.y()),
+                            static_cast<int>(2 * half.x()), static_cast<int>(2 * half.y())};
+  image.stroke({r.x - 1, r.y - 1, r.width + 2, r.height + 2}, render::kWhite, 4);
+  image.stroke(r, render::palette::kInk, 2);
+}
+
+render::Image both_views(const CasePicture& s, const Verdict& verdict, int width, int height,
+                         render::Rasterizer& rasterizer) {
+  const std::optional<CloseUp> close = close_up(s, verdict);
+  const PictureFrame whole_frame(s.box);
+  std::optional<PictureFrame> near_frame;
+  if (close) near_frame.emplace(close->box);
+  const render::ViewDirection direction = best_view(s, close ? *near_frame : whole_frame);
+
+  const int left = close ? (width - kGap) / 2 : width;
+  const View whole{whole_frame, 2, direction};
+  const std::vector<Eigen::Vector3d> points = all_points(s, whole_frame);
+  const render::Camera camera = camera_of(whole, points, {0, 0, left, height}, s.flat());
+  render::Image image = draw_view(s, whole, camera, {0, 0, left, height}, rasterizer);
+  if (!close) return image;
+
+  const std::vector<Eigen::Vector3d> place = corners_of(whole_frame, close->box);
+  Eigen::AlignedBox3d scene;
+  for (const Eigen::Vector3d& p : points) scene.extend(p);
+  frame_place(image, camera, place, scene);
+  write_caption(image, "whole");
+
+  const render::PixelRect right{left + kGap, 0, width - left - kGap, height};
+  const View near{*near_frame, kReach, direction};
+  std::vector<Eigen::Vector3d> shown = corners_of(*near_frame, close->box);
+  for (Eigen::Vector3d& p : shown) p *= kContext / std::numbers::sqrt3;
+  render::Image detail = draw_view(s, near, camera_of(near, shown, right, s.flat()), right, rasterizer);
+  write_caption(detail,
+                close->caption + ", " +
+                    render::short_number(diagonal(s.box) / std::max(diagonal(close->box) * kContext,
+                                                                    std::numeric_limits<double>::min())) +
+                    " times as large");
+  render::Image out(width, height, render::palette::kRule);
+  out.paste(image, 0, 0);
+  out.paste(detail, right.x, 0);
+  return out;
+}
+
+render::Overlay overlay_of(const CasePicture& s, const Verdict& verdict, const WorstCaseText& text) {
+  render::Overlay o;
+  o.title = text.title;
+  o.event = text.answer;
+  const Mark worst = !verdict.missed.empty()  ? Mark::missed
+                     : !verdict.extra.empty() ? Mark::extra
+                                              : Mark::found;
+  o.event_colour = verdict.listed && worst != Mark::found ? colour_of(worst) : render::kTransparent;
+  o.counters = text.counters;
+  const auto count = [](const Pairs& p) { return render::group_digits(p.size()); };
+  if (verdict.listed) {
+    o.counters.push_back({"found", count(verdict.found)});
+    o.counters.push_back({"missed", count(verdict.missed)});
+    o.counters.push_back({"extra", count(verdict.extra)});
+  } else {
+    o.counters.push_back({"pairs that meet", count(verdict.found)});
+  }
+  o.key = {
+      {render::LegendItem::Mark::translucent, render::with_alpha(render::palette::body(Side::a), 110), "A"},
+      {render::LegendItem::Mark::translucent, render::with_alpha(render::palette::body(Side::b), 110), "B"}};
+  const auto add = [&](Mark m, const char* name) {
+    if (s.shows(m)) o.key.push_back({render::LegendItem::Mark::solid, colour_of(m), name});
+  };
+  add(Mark::found, verdict.listed ? "found: expected and answered" : "expected");
+  add(Mark::missed, "missed: expected, not answered");
+  add(Mark::extra, "extra: answered, not expected");
+  return o;
+}
+
+}  // namespace
+
+render::Image worst_case_picture(const cases::Case& c, std::span<const SimplexPair> expected,
+                                 const std::optional<Pairs>& answered, const WorstCaseText& text,
+                                 render::Rasterizer& rasterizer) {
+  const Verdict verdict = compare(expected, answered);
+  const CasePicture subject(c, verdict);
+  const render::Overlay overlay = overlay_of(subject, verdict, text);
+  const render::PixelRect place = render::lay_out(overlay, kWidth, kHeight).picture;
+  return render::compose_frame(both_views(subject, verdict, place.width, place.height, rasterizer), place,
+                               overlay, kWidth, kHeight);
+}
+
+void draw_worst_case(const cases::Case& c, std::span<const SimplexPair> expected,
+                     const std::optional<Pairs>& answered, const WorstCaseText& text, const std::string& path,
+                     render::Rasterizer& rasterizer) {
+  render::PngOptions png;
+  png.text = {{"Title", text.title}, {"Description", text.answer}};
+  render::write_png(worst_case_picture(c, expected, answered, text, rasterizer), path, png);
+}
+
+namespace {
+
+constexpr const char* kFolder = "worst";
+
+void remove_old_pictures(const std::string& folder) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.path().extension() == ".png") std::filesystem::remove(entry.path(), error);
+}
+
+WorstCaseText text_of(const Record& r, const std::string& method) {
+  WorstCaseText text;
+  text.title = r.family + " \u00d7 " + method;
+  text.answer = answer_text(r);
+  text.counters = {{"dial", std::to_string(r.dial) + " of 0 to " + std::to_string(cases::kDialSettings - 1)},
+                   {"case", std::to_string(r.case_index)}};
+  if (!r.expected_relation.empty()) text.counters.push_back({"relation", r.expected_relation});
+  if (!r.relation.empty()) text.counters.push_back({"answered", r.relation});
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> draw_worst_cases(
+    const Grid& grid, const std::string& folder, const std::function<AnsweredPairs(const Record&)>& ask,
+    const std::function<void(std::size_t done, std::size_t total)>& progress) {
+  std::vector<std::string> pictures(grid.cells.size());
+  std::size_t total = 0, done = 0;
+  for (const Cell& c : grid.cells) total += c.worst ? 1 : 0;
+  remove_old_pictures(folder + "/" + kFolder);
+  if (total == 0) return pictures;
+  make_folder(folder + "/" + kFolder);
+  render::Rasterizer rasterizer;
+  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+    if (!grid.cells[i].worst) continue;
+    if (progress) progress(done++, total);
+    const Record& r = *grid.cells[i].worst;
+    const cases::Family* family = cases::find_family(r.family);
+    if (family == nullptr) continue;
+    const workers::MethodColumn& method = grid.methods[i % grid.methods.size()];
+    const std::string file = std::string(kFolder) + "/" + r.family + "-" + method.name + ".png";
+    const AnsweredPairs pairs = ask(r);
+    try {
+      draw_worst_case(cases::make_case(*family, r.seed, r.dial, r.case_index), pairs.expected, pairs.answered,
+                      text_of(r, method.title), folder + "/" + file, rasterizer);
+      pictures[i] = file;
+    } catch (const InputError&) {
+      // Coordinates that are not finite have no place in a picture; the record says what was asked.
+    }
+  }
+  return pictures;
+}
+
+}  // namespace lrb::stability

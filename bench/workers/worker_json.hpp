@@ -1,0 +1,63 @@
+#pragma once
+/// Writes and reads what a worker says about its methods, one line for each.
+
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/rivals/method.hpp"
+#include "trace/json_read.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
+
+namespace lrb::workers {
+
+nlohmann::ordered_json to_json(const methods::MethodInfo& info);
+/// Reads a line. Throws InputError that says what is wrong with it.
+methods::MethodInfo method_info_from(const nlohmann::json& value);
+
+// What becomes of a question that a method refuses, or that ends in an exception.
+
+/// Calls ask(). Notes an InputError in the record as a refusal, and any other exception as a crash, with what
+/// it says. Record: has a `message`, and an `outcome` that may be refused or crashed.
+template <class Record, class Ask>
+void note_failures(Record& record, Ask ask) {
+  using Outcome = decltype(record.outcome);
+  try {
+    ask();
+  } catch (const InputError& e) {
+    record.outcome = Outcome::refused;
+    record.message = e.what();
+  } catch (const std::exception& e) {
+    record.outcome = Outcome::crashed;
+    record.message = std::string("threw an exception: ") + e.what();
+  }
+}
+
+}  // namespace lrb::workers
+
+// Pairs of simplices in JSON: one array of numbers, A's and B's of the first pair, of the second, and so on.
+
+template <>
+struct lrb::io::JsonOf<std::vector<lrb::SimplexPair>> {
+  static nlohmann::ordered_json write(const std::vector<SimplexPair>& pairs) {
+    nlohmann::ordered_json out = nlohmann::ordered_json::array();
+    for (const SimplexPair& p : pairs) {
+      out.push_back(p.a.value());
+      out.push_back(p.b.value());
+    }
+    return out;
+  }
+  static std::vector<SimplexPair> read(const nlohmann::json& flat) {
+    std::vector<SimplexPair> out;
+    for (std::size_t i = 0; i + 1 < flat.size(); i += 2)
+      out.push_back({SimplexId(flat[i].get<std::uint32_t>()), SimplexId(flat[i + 1].get<std::uint32_t>())});
+    return out;
+  }
+};
+
+namespace lrb::workers {
+using PairsJson = io::JsonOf<std::vector<SimplexPair>>;
+}  // namespace lrb::workers

@@ -1,0 +1,186 @@
+#include "bench/workers/workers.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+#include <poll.h>
+#include <unistd.h>
+
+#include "bench/workers/child.hpp"
+#include "bench/workers/worker_json.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+
+namespace lrb::workers {
+namespace {
+
+constexpr int kPatience = 3;  // number of cases in a row on which a method may hang
+constexpr int kBadInput = 2;  // an exit code that does not count as a crash
+
+std::string how_it_ended(int status) {
+  if (status >= 0) return "ended with exit code " + std::to_string(status);
+  const char* name = strsignal(-status);
+  return "died of signal " + std::to_string(-status) +
+         (name != nullptr ? std::string(" (") + name + ")" : "");
+}
+
+/// Returns a worker's complaint about what we asked, or nothing.
+std::string complaint(const std::string& line) {
+  if (line.compare(0, std::strlen("{\"error\""), "{\"error\"") != 0) return "";
+  const auto value = nlohmann::json::parse(line, nullptr, false);
+  return value.is_object() ? value.value("error", "") : "";
+}
+
+}  // namespace
+
+void Job::start() {
+  std::vector<std::string> command = task_.command;
+  command.insert(command.end(), {"--begin", std::to_string(next_), "--end", std::to_string(task_.end)});
+  child_.reset();
+  if (next_ == task_.end) return;
+  child_.emplace(command, task_.given);
+  deadline_ = Clock::now() + task_.limit;
+}
+
+void Job::receive() {
+  std::vector<std::string> lines;
+  const bool more = child_->read(lines);
+  for (const std::string& line : lines) {
+    const std::string error = complaint(line);
+    if (!error.empty()) throw EnvironmentError(task_.command.front() + ": " + error);
+    if (next_ == task_.end) break;
+    task_.on_line(next_++, line);
+    hung_ = 0;
+  }
+  if (!lines.empty()) deadline_ = Clock::now() + task_.limit;
+  if (more) return;
+  const int status = child_->wait();
+  if (status == kBadInput || status == kNoSuchProgram)
+    throw EnvironmentError(task_.command.front() + ": " + how_it_ended(status) + "; build it again");
+  if (next_ == task_.end)
+    child_.reset();  // whatever became of it after its last line does not matter
+  else
+    go_on({false, how_it_ended(status)});
+}
+
+void Job::expire() {
+  child_->kill();
+  const double seconds = std::chrono::duration<double>(task_.limit).count();
+  char text[64];
+  std::snprintf(text, sizeof text, "no answer in %g s", seconds);
+  go_on({true, text});
+}
+
+void Job::go_on(const Mishap& mishap) {
+  task_.on_mishap(next_++, mishap);
+  hung_ = mishap.timed_out ? hung_ + 1 : 0;
+  if (hung_ == kPatience)
+    while (next_ < task_.end)
+      task_.on_mishap(next_++, {true, "not asked: " + mishap.message + " for " + std::to_string(kPatience) +
+                                          " cases in a row"});
+  start();
+}
+
+void run_to_end(Job job) {
+  while (!job.done()) {
+    pollfd waiting{job.output(), POLLIN, 0};
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(job.deadline() - Job::Clock::now());
+    if (poll(&waiting, 1, static_cast<int>(std::max<std::int64_t>(0, left.count()))) > 0)
+      job.receive();
+    else if (Job::Clock::now() > job.deadline())
+      job.expire();
+  }
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kProgram = "lrbscope-methods";  // and programs whose names begin with it
+constexpr std::chrono::seconds kListLimit(20);
+
+fs::path folder_of_workers() {
+  if (const char* given = std::getenv("LRBSCOPE_METHODS")) return given;
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  return error ? fs::path(".") : self.parent_path();
+}
+
+/// Returns the workers' programs in the order of their names.
+std::vector<fs::path> programs_in(const fs::path& folder) {
+  std::vector<fs::path> programs;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_ours = name.starts_with(kProgram) &&
+                         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos;
+    if (is_ours && entry.is_regular_file(error) && access(entry.path().c_str(), X_OK) == 0)
+      programs.push_back(entry.path());
+  }
+  std::sort(programs.begin(), programs.end());
+  return programs;
+}
+
+[[noreturn]] void throw_not_found(const std::string& program) {
+  throw EnvironmentError(printable_name(program) +
+                         ": not found; it is built beside lrbscope and not installed: build it (cmake "
+                         "--build --preset release --target lrbscope-workers) and run lrbscope from its "
+                         "build folder, or name that in LRBSCOPE_METHODS");
+}
+
+}  // namespace
+
+std::vector<WorkerMethod> methods_of(const std::string& program, const std::vector<std::string>& options) {
+  std::vector<std::string> command = {program, "--list"};
+  command.insert(command.end(), options.begin(), options.end());
+  const std::vector<std::string> lines = lines_of(command, kListLimit);
+  std::vector<WorkerMethod> methods;
+  for (const std::string& line : lines) {
+    const auto value = nlohmann::json::parse(line, nullptr, false);
+    if (!value.is_object()) break;
+    WorkerMethod m;
+    m.info = method_info_from(value);
+    m.column = {m.info.name, m.info.title, m.info.remark, m.info.present};
+    m.program = program;
+    methods.push_back(m);
+  }
+  if (lines.empty())
+    throw EnvironmentError(printable_name(program) + ": did not say which methods it has; build it again");
+  return methods;
+}
+
+std::vector<WorkerMethod> find_methods() {
+  std::vector<WorkerMethod> methods = find_all_methods();
+  std::erase_if(methods, [](const WorkerMethod& m) { return !m.info.hard_cases; });
+  return methods;
+}
+
+std::vector<WorkerMethod> find_all_methods() {
+  const fs::path folder = folder_of_workers();
+  std::vector<WorkerMethod> methods;
+  for (const fs::path& program : programs_in(folder))
+    for (WorkerMethod& m : methods_of(program.string())) methods.push_back(std::move(m));
+  if (methods.empty()) throw_not_found((folder / kProgram).string());
+  return methods;
+}
+
+std::vector<WorkerMethod> find_number_methods(methods::Quantity quantity) {
+  return methods_of(number_worker(), {"--quantity", std::string(name_of(quantity))});
+}
+
+std::string number_worker() {
+  std::string program = program_beside("lrbscope-quantities");
+  if (program.empty()) throw_not_found("lrbscope-quantities");
+  return program;
+}
+
+std::string program_beside(const std::string& name) {
+  const std::string path = (folder_of_workers() / name).string();
+  return access(path.c_str(), X_OK) == 0 ? path : "";
+}
+
+}  // namespace lrb::workers

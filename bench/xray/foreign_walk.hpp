@@ -1,0 +1,62 @@
+#pragma once
+/// What another engine does when it is asked for the collisions of two bodies: recorded inside that engine,
+/// by a program of its own (worker_programs/xray_*.cpp).
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/record/recorded_run.hpp"
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/pose.hpp>
+#include <lrbscope/trace/work.hpp>
+
+namespace lrb::xray {
+
+/// A test of two bounding volumes, or of two triangles.
+struct ForeignEvent {
+  bool is_leaf_test;
+  std::uint32_t a, b;  ///< nodes of the engine's trees, or simplices
+  bool meet;           ///< they overlap, or the triangles meet, as the engine has it
+};
+
+struct ForeignStep {
+  std::vector<ForeignEvent> events;             ///< in the engine's order
+  std::uint64_t box_tests = 0, leaf_tests = 0;  ///< as the engine counts them itself
+};
+
+struct ForeignWalk {
+  std::string title;  ///< "FCL 0.7.0, BVHModel<OBBRSS>"
+  std::array<trace::TreeShape, 2> trees;
+  std::vector<ForeignStep> steps;
+};
+
+/// The poses of A and B at one time, body to world.
+struct PosePair {
+  Pose a, b;
+};
+
+/// Lets an engine ("fcl", "cgal") run on the real triangles of two 3D bodies. Throws InputError for bodies
+/// and poses that it does not take, and EnvironmentError if its program is not there or fails.
+ForeignWalk walk_of(const std::string& engine, const LrbRep& a, const LrbRep& b,
+                    std::span<const PosePair> poses);
+
+// Another engine's walk as a recorded run, so that all that draws and counts ours does the same for it.
+
+/// Returns a recording of the walk at the steps of `ours`, with its bodies. The results are those of `ours`,
+/// so that pictures show where the bodies really meet; what the other engine answered stands in the trace. A
+/// pair of bounding volumes is a node pair with one test, `met` is the number of pairs that the engine goes
+/// on to.
+run::Recording recording_of(const ForeignWalk& walk, const run::Recording& ours,
+                            const spec::Scenario& scenario);
+
+/// Pairs that an engine reported and that do not meet, and pairs that meet and it did not report.
+struct WrongPairs {
+  std::vector<SimplexPair> too_many, missing;  ///< ascending
+};
+/// Compares the pairs of a step with the exact ones, which must be ascending.
+WrongPairs wrong_pairs(const ForeignStep& step, const std::vector<SimplexPair>& exact);
+
+}  // namespace lrb::xray

@@ -1,0 +1,418 @@
+/// Bounds the penetration depth of two solids: the length of the shortest translation that separates them
+/// (Cameron and Culley 1986). Steps:
+/// 1. Lower bound: convex sets inside both bodies, and the depth of their Minkowski difference
+///    (convex_depth.hpp).
+/// 2. Upper bound: the depth of the convex hulls. For two convex bodies that is all: both bounds agree up to
+///    rounding.
+/// 3. Otherwise search for shorter translations: along face normals, then by small rotations of the best
+///    direction.
+/// 4. Raise the lower bound by pairs of balls inside the bodies (overlap_proof.hpp), and search where that
+///    fails.
+/// 5. Prove the best translation with the distance query.
+/// Only lower bounds of steps 1 and 4 and the translation of step 5 are proven; the search is a heuristic.
+
+#include "engine/clash/depth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Geometry>
+
+#include "engine/clash/clash_tolerances.hpp"
+#include "engine/clash/overlap_proof.hpp"
+#include "engine/collide/relation.hpp"
+#include "engine/core/geometry.hpp"
+#include <lrbscope/contact.hpp>
+
+namespace lrb::parting {
+namespace {
+
+Vector3d normal_of(const UnitBody& body, std::uint32_t triangle) {
+  const auto& t = body.triangles[triangle];
+  const Vector3d &a = body.points[t[0]], &b = body.points[t[1]], &c = body.points[t[2]];
+  // Half the cross product: its length is the triangle's area.
+  return 0.5 * (b - a).cross(c - a);
+}
+
+/// Directions with the areas of the faces that they are normal to; nearly equal directions are merged.
+class Directions {
+ public:
+  void add(const Vector3d& normal) {
+    const double area = normal.stableNorm();
+    // A face without area has no direction.
+    if (!(area > 0)) return;
+    const Vector3d n = normal / area;
+    // Directions in one cell of a grid are merged: the first one stands for all, with the sum of the areas.
+    std::array<int, 3> cell;
+    for (int k = 0; k < 3; ++k)
+      cell[static_cast<std::size_t>(k)] = static_cast<int>(std::lround(n[k] * kDirectionGrid));
+    const auto [known, is_new] = of_cell_.try_emplace(cell, list_.size());
+    if (is_new) list_.push_back({n, 0});
+    list_[known->second].second += area;
+  }
+  /// Returns those of the largest areas.
+  std::vector<Vector3d> largest(std::size_t count) {
+    // Stable: of equal areas the first found stays first.
+    std::stable_sort(list_.begin(), list_.end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
+    std::vector<Vector3d> out;
+    for (const auto& [n, area] : list_)
+      if (out.size() < count) out.push_back(n);
+    return out;
+  }
+
+ private:
+  std::map<std::array<int, 3>, std::size_t> of_cell_;
+  std::vector<std::pair<Vector3d, double>> list_;
+};
+
+ConvexPoints moved(ConvexPoints points, const Vector3d& by) {
+  for (Vector3d& x : points) x += by;
+  return points;
+}
+
+double farthest(const UnitBody& body, const Vector3d& n) {
+  double most = -kInfinity;
+  for (const Vector3d& x : body.points) most = std::max(most, n.dot(x));
+  return most;
+}
+
+}  // namespace
+
+DepthFinder::DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies,
+                         Parting& parting, BoundsTeller* teller)
+    : query_(query), result_(result), bodies_(bodies), parting_(parting), teller_(teller) {
+  // Sets of convex bodies are the bodies themselves, slightly shrunk: worth trying once for all queries
+  // below.
+  for (const Side side : {Side::a, Side::b}) whole_[static_cast<int>(side)] = shrunken(side);
+}
+
+/// Returns a point of a body near x, in units, that was exactly located inside it. shift: an assumed
+/// translation of B.
+std::optional<Vector3d> DepthFinder::inside_point(Side side, const Vector3d& x, const Vector3d& shift) {
+  // A shifted B contains x if B contains x - shift.
+  const Vector3d world = bodies_.frame.to_world(side == Side::a ? x : Vector3d(x - shift));
+  // Located as it is after rounding to world coordinates; converted back, the point is the one that was
+  // tested.
+  if (!world.allFinite() || locate(query_[side], world.data()) != Where::inside) return std::nullopt;
+  return bodies_.frame.to_unit(world);
+}
+
+std::optional<ConvexPoints> DepthFinder::shrunken(Side side) {
+  const UnitBody& body = bodies_.body[static_cast<int>(side)];
+  // Area centroid of the surface: it does not depend on the triangulation.
+  Vector3d centre = Vector3d::Zero();
+  double area = 0;
+  for (std::uint32_t i = 0; i < body.triangles.size(); ++i) {
+    const auto& t = body.triangles[i];
+    const double share = normal_of(body, i).stableNorm();
+    centre += share / 3 * (body.points[t[0]] + body.points[t[1]] + body.points[t[2]]);
+    area += share;
+  }
+  if (!(area > 0)) return std::nullopt;
+  // A convex body contains it.
+  const std::optional<Vector3d> inside = inside_point(side, centre / area, Vector3d::Zero());
+  return inside ? shrunken_body(body, *inside) : std::nullopt;
+}
+
+/// Returns the lesser clearance of a point from both surfaces; 0 if it is not inside both bodies.
+double DepthFinder::common_clearance(const Vector3d& x, const Vector3d& shift) {
+  double least = kInfinity;
+  for (const Side side : {Side::a, Side::b}) {
+    const std::optional<Vector3d> inside = inside_point(side, x, shift);
+    if (!inside) return 0;
+    least = std::min(least, surface(side).at(*inside));
+  }
+  return least;
+}
+
+/// Returns the bounding box of the bodies' intersection, approximately, or a box that contains it. Corners of
+/// the intersection are points where faces of both intersect, and vertices of one body in the other.
+Eigen::AlignedBox3d DepthFinder::common_box(const Vector3d& shift) {
+  Eigen::AlignedBox3d boxes[2], out;
+  for (int side = 0; side < 2; ++side)
+    for (const Vector3d& x : bodies_.body[side].points)
+      boxes[side].extend(side == 0 ? x : Vector3d(x + shift));
+  // The contacts are known for the bodies where they are, only.
+  if (!shift.isZero(0)) return boxes[0].intersection(boxes[1]);
+  // Corners of the first kind.
+  for (const SimplexPair& pair : result_.pairs) {
+    const double *a[3], *b[3];
+    query_[Side::a].world.corners(pair.a, a);
+    query_[Side::b].world.corners(pair.b, b);
+    const exact::PairContact contact = exact::contact_of_triangles(a, b);
+    for (int c = 0; c < contact.corner_count; ++c)
+      out.extend(bodies_.frame.to_unit(contact.corners[static_cast<std::size_t>(c)].x));
+  }
+  // Corners of the second kind. Points are located only where they would enlarge the box.
+  for (const Side side : {Side::a, Side::b})
+    for (const Vector3d& x : bodies_.body[static_cast<int>(side)].points)
+      if (boxes[1 - static_cast<int>(side)].contains(x) && !out.contains(x) &&
+          inside_point(other(side), x, Vector3d::Zero()))
+        out.extend(x);
+  return out;
+}
+
+/// Returns the centres of a grid of cells in a box, as starts of the search for a deep point.
+std::vector<Vector3d> DepthFinder::starts(const Eigen::AlignedBox3d& box, int grid) {
+  std::vector<Vector3d> out;
+  if (box.isEmpty()) return out;
+  for (int i = 0; i < grid * grid * grid; ++i) {
+    const Vector3d share((i % grid + 0.5) / grid, (i / grid % grid + 0.5) / grid,
+                         (i / (grid * grid) + 0.5) / grid);
+    out.push_back(box.min() + share.cwiseProduct(box.sizes()));
+  }
+  return out;
+}
+
+/// Looks for the common point with the largest clearance: a grid, then a compass search from its best point.
+std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
+  Vector3d best = Vector3d::Zero();
+  double most = 0;
+  const Eigen::AlignedBox3d box = common_box(shift);
+  // A finer grid only while no common point is found.
+  for (int grid = kStartGrid; grid <= kFinestStartGrid && !(most > 0); grid *= 2)
+    for (const Vector3d& x : starts(box, grid)) {
+      const double clearance = common_clearance(x, shift);
+      // Every common point may help the proof of overlap later.
+      if (clearance > 0 && shift.isZero(0)) common_.push_back(x);
+      // Gains within rounding are ignored: the choice among equally deep points must not depend on it.
+      if (clearance > most * (1 + kClearlyMore)) {
+        most = clearance;
+        best = x;
+      }
+    }
+  if (!(most > 0)) return std::nullopt;
+  unsigned tries = 0;
+  // Compass search: step along each axis, and halve the step when no step gains.
+  for (double step = most; step > kStartStep * most && tries < kMostSteps;) {
+    bool moved = false;
+    for (int k = 0; k < 3; ++k)
+      for (const double sign : {-1.0, 1.0}) {
+        const Vector3d x = best + sign * step * Vector3d::Unit(k);
+        const double clearance = common_clearance(x, shift);
+        ++tries;
+        if (!(clearance > most * (1 + kClearlyMore))) continue;
+        most = clearance;
+        best = x;
+        moved = true;
+      }
+    if (!moved) step /= 2;
+  }
+  return best;
+}
+
+const SurfaceDistance& DepthFinder::surface(Side side) {
+  const int i = static_cast<int>(side);
+  if (!surface_[i]) surface_[i].emplace(bodies_.body[i]);
+  return *surface_[i];
+}
+
+std::optional<DepthFinder::Common> DepthFinder::common_sets(const Vector3d& shift, WholeTriangles whole) {
+  // Both bodies convex: the same sets for every shift.
+  if (whole_[0] && whole_[1]) return Common{*whole_[0], moved(*whole_[1], shift)};
+  const std::optional<Vector3d> x = deepest_common(shift);
+  // The deepest point is tried first by OverlapProof.
+  if (shift.isZero(0) && x) common_.insert(common_.begin(), *x);
+  if (!x) return std::nullopt;
+  std::optional<ConvexPoints> sets[2];
+  for (const Side side : {Side::a, Side::b}) {
+    const int i = static_cast<int>(side);
+    // A body that is not convex: the convex region around the common point. B's is found where B is, then
+    // moved.
+    sets[i] = whole_[i] ? whole_[i] : convex_about(bodies_.body[i], *inside_point(side, *x, shift), whole);
+    if (!sets[i]) return std::nullopt;
+  }
+  return Common{std::move(*sets[0]), moved(std::move(*sets[1]), shift)};
+}
+
+/// Reports the bounds when `least` is the length of the shortest translation found so far, in units.
+void DepthFinder::tell(double least) {
+  if (teller_ == nullptr) return;
+  const double upper = least < kInfinity ? bodies_.frame.length_to_world(least) : kInfinity;
+  teller_->tell(parting_.asked() + grown_, told_lower_, upper);
+}
+
+/// Grows the Minkowski difference and reports its bounds: those of sets inside the bodies are lower bounds,
+/// those of the convex hulls upper bounds.
+void DepthFinder::find_depth(ConvexDifference& difference, unsigned most_steps, bool is_inner) {
+  if (teller_ == nullptr) {
+    difference.find_depth(most_steps);
+    return;
+  }
+  // In chunks that grow, with a report after each.
+  for (unsigned done = 0; done < most_steps;) {
+    const auto look = static_cast<unsigned>(BoundsTeller::next_look(done));
+    const unsigned steps = std::min(look, most_steps) - done;
+    const unsigned grown = difference.find_depth(steps);
+    done += grown;
+    grown_ += grown;
+    if (is_inner) told_lower_ = bodies_.frame.length_to_world(difference.depth_lower());
+    tell(is_inner ? kInfinity : difference.depth_upper());
+    // Finished before the chunk was used up.
+    if (grown < steps) return;
+  }
+}
+
+double DepthFinder::hull_width(const Vector3d& n) const {
+  // Support function of the Minkowski difference: after this translation a plane separates the convex hulls.
+  return farthest(bodies_.body[0], n) + farthest(bodies_.body[1], -n);
+}
+
+/// Returns the normals of the faces that meet the other body, and of the largest ones; B leaves a face of A
+/// along its normal, and takes its own faces the other way.
+std::vector<Vector3d> DepthFinder::directions() {
+  // Faces in contact, and all faces, each by area. B leaves along normals of A and against its own.
+  Directions in_contact, all;
+  for (const SimplexPair& pair : result_.pairs) {
+    in_contact.add(normal_of(bodies_.body[0], pair.a));
+    in_contact.add(-normal_of(bodies_.body[1], pair.b));
+  }
+  for (int side = 0; side < 2; ++side)
+    for (std::uint32_t i = 0; i < bodies_.body[side].triangles.size(); ++i)
+      all.add((side == 0 ? 1 : -1) * normal_of(bodies_.body[side], i));
+  std::vector<Vector3d> out = in_contact.largest(kDirectionsInContact);
+  for (const Vector3d& n : all.largest(kDirectionsOfFaces)) out.push_back(n);
+  return out;
+}
+
+/// Looks for a shorter translation along n.
+void DepthFinder::improve(const Vector3d& n, double& best, Vector3d& best_n) {
+  // At `width` the convex hulls are separated; bodies that are not convex may be so before.
+  const double width = hull_width(n);
+  if (!(width > 0)) return;
+  // Only translations that are clearly shorter than the best one count.
+  const double most = std::min(width, best * (1 - kDirectionGain));
+  const double s = parting_.least_apart(n, most, kDirectionSamples);
+  // No sample separates, unless the width itself is the improvement.
+  if (s >= most && (most < width || !(width < best))) return;
+  best = s;
+  best_n = n;
+  tell(best);
+}
+
+/// Rotates the direction by decreasing angles, as long as that shortens the translation.
+void DepthFinder::refine(double& best, Vector3d& best_n) {
+  unsigned tries = 0;
+  for (double step = kFirstTurn; step > kLeastTurn && tries < kMostSteps;) {
+    // Two axes across the direction; small rotations towards each, both ways.
+    const Vector3d across = best_n.unitOrthogonal(), other = best_n.cross(across);
+    bool shorter = false;
+    for (const Vector3d& way : {across, other, Vector3d(-across), Vector3d(-other)}) {
+      const Vector3d n = (best_n + step * way).normalized();
+      // Require a gain in proportion to the angle: a single query rejects a rotation without it.
+      const double s = best * (1 - kTurnGain * step);
+      ++tries;
+      if (!parting_.is_apart(n, s)) continue;
+      // No samples: bisect below the length that was just found to separate.
+      best = parting_.least_apart(n, s, 1);
+      best_n = n;
+      tell(best);
+      shorter = true;
+      break;
+    }
+    // No rotation helped: halve the angle.
+    if (!shorter) step /= 2;
+  }
+}
+
+/// Proves a lower bound on the depth, in units, for bodies that are not both convex, unless the `known` one
+/// is nearly as long as the translation. Looks for shorter translations where the proof fails.
+double DepthFinder::raise_lower(double known, double& best, Vector3d& best_n) {
+  OverlapProof proof(surface(Side::a), surface(Side::b), [this](Side side, const Vector3d& x) {
+    return inside_point(side, x, Vector3d::Zero()).has_value();
+  });
+  // Nothing to gain, or no common point to begin with. No depth exceeds 1 unit, the size of both bodies.
+  if (known >= kNarrowDepth * best || !proof.begin(common_, std::min(best, kUnitReach * 0.5))) return known;
+  constexpr unsigned kPart = kMostRoomPoints / kRoomLooks;
+  for (unsigned part = 0; part < kRoomLooks && proof.lower() < kNarrowDepth * best; ++part) {
+    // In turns: prove for a while, then search in the direction where the proof got stuck.
+    const unsigned looked = proof.grow(kPart);
+    grown_ += looked;
+    told_lower_ = std::max(told_lower_, bodies_.frame.length_to_world(proof.lower()));
+    // Where the proof fails, a shorter translation may exist.
+    const double before = best;
+    if (proof.doubtful().norm() > 0) improve(proof.doubtful().normalized(), best, best_n);
+    if (best < before) refine(best, best_n);
+    tell(best);
+    // The proof cannot go on.
+    if (looked < kPart) break;
+  }
+  return std::max(known, proof.lower());
+}
+
+DepthFinder::Depth DepthFinder::depth() {
+  Depth out;
+  out.length.upper = kInfinity;
+  const bool convex = whole_[0] && whole_[1];
+  double lower = 0;
+  // Step 1: proven lower bound from convex sets around a common point.
+  if (const std::optional<Common> sets = common_sets(Vector3d::Zero(), WholeTriangles::no)) {
+    ConvexDifference difference(sets->a, sets->b);
+    find_depth(difference, kMostDepthSteps, true);
+    lower = difference.depth_lower();
+  }
+  // Step 2: upper bound from the convex hulls, which contain the bodies.
+  const ConvexPoints &a = bodies_.body[0].points, &b = bodies_.body[1].points;
+  ConvexDifference hulls(a, b);
+  find_depth(hulls, convex ? kMostDepthSteps : kRoughDepthSteps, false);
+  double best = hulls.depth_upper();
+  Vector3d best_n = hulls.direction();
+  // Steps 3 and 4, for bodies that are not convex: hulls are separated later than the bodies.
+  if (!convex) {
+    for (const Vector3d& n : directions()) improve(n, best, best_n);
+    if (best < kInfinity) refine(best, best_n);
+    lower = raise_lower(lower, best, best_n);
+  }
+  out.length.lower = bodies_.frame.length_to_world(lower);
+  if (!(best < kInfinity)) return out;
+  // Step 5: prove the best translation, or else that of the convex hulls, which depends on no sampling.
+  std::optional<PartingMove> move = parting_.prove(best_n, best);
+  if (!move) move = parting_.prove(hulls.direction(), hulls.depth_upper());
+  if (!move) return out;
+  out.translation = move->translation;
+  out.length.upper = move->length;
+  // The answer's bounds, even if the unproven ones reported before were narrower.
+  if (teller_ != nullptr) teller_->settle(parting_.asked() + grown_, out.length.lower, out.length.upper);
+  return out;
+}
+
+/// Proves overlap along n in steps: convex sets around a common point overlap for all translations up to the
+/// next step, where another common point is sought.
+double DepthFinder::along_lower(const Vector3d& n) {
+  double from = 0, lower = 0;
+  for (unsigned step = 0; step < kMostWaySteps; ++step) {
+    // Convex sets of the bodies with B at the current translation.
+    const std::optional<Common> sets = common_sets(from * n, WholeTriangles::yes);
+    if (!sets) break;
+    ConvexDifference difference(sets->a, sets->b);
+    // The hull must contain the origin first; then it grows only where the ray along n leaves it.
+    difference.find_depth(kRoughDepthSteps);
+    difference.follow(n);
+    const double gain = difference.along_lower(n);
+    // Rounded down.
+    const double next = (from + gain) * (1 - 0x1p-50);
+    if (!(next > lower + kPartingMargin)) break;
+    lower = next;
+    // Convex bodies: one step is enough.
+    if (whole_[0] && whole_[1]) break;
+    // A little less than was proven, so that a common point still exists there.
+    from += kWayShare * gain;
+  }
+  return lower;
+}
+
+ProvedInterval DepthFinder::along(const Vector3d& n) {
+  const double lower = along_lower(n), width = hull_width(n);
+  // Candidates, the shortest first: the lower bound itself, the first separating sample, the width of the
+  // hulls.
+  std::optional<double> upper = parting_.prove_along(n, lower);
+  if (!upper) upper = parting_.prove_along(n, parting_.least_apart(n, width, kWaySamples));
+  if (!upper) upper = parting_.prove_along(n, width);
+  const UnitFrame& frame = bodies_.frame;
+  return {frame.length_to_world(lower), upper ? frame.length_to_world(*upper) : kInfinity};
+}
+
+}  // namespace lrb::parting

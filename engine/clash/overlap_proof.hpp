@@ -1,0 +1,71 @@
+#pragma once
+/// Proves that two bodies overlap after all translations that are short enough.
+///
+/// If the open ball of radius r about x lies in A, and that of radius s about x - v in B, the interiors
+/// overlap after all translations of B that differ from v by less than r + s: B's ball then reaches into A's.
+/// Translations are divided into cubes, nearest to 0 first. For each, a point x is sought whose two balls are
+/// large enough for the entire cube; if none is found, the cube is divided into eight. All translations
+/// shorter than the nearest remaining cube are proven. The closer these come to the depth, the smaller are
+/// the cubes near separating translations; their number grows as the inverse of the difference to the depth.
+
+#include <functional>
+#include <vector>
+
+#include "engine/clash/clash_tolerances.hpp"
+#include "engine/clash/unit_bodies.hpp"
+
+namespace lrb::parting {
+
+class OverlapProof {
+ public:
+  /// Returns true if a point is inside a body (units; B at its pose, before any translation).
+  using IsInside = std::function<bool(Side, const Vector3d&)>;
+  /// Keeps references to the surfaces.
+  OverlapProof(const SurfaceDistance& a, const SurfaceDistance& b, IsInside is_inside);
+
+  /// Begins with common points of both bodies, the best first, and with all translations shorter than `most`,
+  /// which must be less than 2 and is best slightly above the depth. Returns false if no point is in both.
+  bool begin(const std::vector<Vector3d>& common, double most);
+  /// Goes on until about `most_points` more points have been tried, or no more can be proven. Returns the
+  /// number of points tried.
+  unsigned grow(unsigned most_points);
+  /// Returns a length: after all shorter translations of B the interiors overlap. Proven.
+  double lower() const { return lower_; }
+  /// Returns a translation near the shortest one that is not proven: it may separate the bodies. 0 if there
+  /// is none.
+  Vector3d doubtful() const { return cubes_.empty() ? Vector3d(Vector3d::Zero()) : cubes_.front().middle; }
+
+ private:
+  /// A point of both bodies, for a translation.
+  struct Common {
+    Vector3d x{0, 0, 0}, of_b{0, 0, 0}, shift{0, 0, 0};  ///< x, x - v and v
+    double clear_a = 0, clear_b = 0;                     ///< of x from A's surface, of x - v from B's
+    double room() const { return clear_a + clear_b; }
+  };
+  struct Cube {
+    double least;  ///< the length of the shortest translation in it, rounded down
+    Vector3d middle;
+    double half;
+    Common near;  ///< of a translation nearby
+  };
+  void push(const Vector3d& middle, double half, const Common& near);
+  bool look(const Vector3d& x, const Vector3d& v, const Common& near, Common& out);
+  bool is_in(Side side, const Vector3d& x, double radius, const Vector3d& known, double known_radius);
+  std::vector<Common> seeds(const Cube& cube) const;
+  bool find_room(const Cube& cube, double needed, const Common& seed, Common& best);
+  bool prove(const Cube& cube, Common& best);
+  void climb(double needed, bool thorough, Common& best);
+  static bool has_more(const Common& x, const Common& y) { return x.room() > y.room() * (1 + kClearlyMore); }
+  bool is_small(const Cube& cube) const { return cube.half < kSmallCube * (most_ - cube.least); }
+
+  const SurfaceDistance &a_, &b_;
+  IsInside is_inside_;
+  /// Those to begin with, then those for the middles of the cubes that were proved.
+  std::vector<Common> found_;
+  std::size_t first_ = 0;    ///< the number of those to begin with
+  std::vector<Cube> cubes_;  ///< a heap, the least first
+  double most_ = 0, lower_ = 0;
+  unsigned points_ = 0;
+};
+
+}  // namespace lrb::parting

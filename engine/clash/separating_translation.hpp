@@ -1,0 +1,52 @@
+#pragma once
+/// Translations of B that separate two bodies, with proofs by the exact query.
+
+#include <optional>
+
+#include "engine/clash/unit_bodies.hpp"
+#include "engine/distance/distance_context.hpp"
+
+namespace lrb::parting {
+
+/// A translation after which two bodies are separate.
+struct PartingMove {
+  Vector3d translation{0, 0, 0};  ///< world
+  double length = 0;              ///< at least the translation's, rounded up
+};
+
+class Parting {
+ public:
+  Parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, const UnitBodies& bodies);
+
+  /// Returns true if the bodies are separate according to the exact query after B's pose is moved by `s`
+  /// times `n` (units).
+  bool is_apart(const Vector3d& n, double s);
+  /// Proves that B moved along n by `s` or slightly more is separate from A. Returns nullopt if it cannot.
+  std::optional<PartingMove> prove(const Vector3d& n, double s);
+  /// Proves that B moved by exactly s n, for `s` or a slightly larger s, is separate from A. Returns that s
+  /// (units), or nullopt if it cannot.
+  std::optional<double> prove_along(const Vector3d& n, double s);
+  /// Returns the least of some sampled distances along n, up to `most`, at which the bodies are separate,
+  /// refined by bisection; `most` if there is none. Usually finds the first separation, not always.
+  double least_apart(const Vector3d& n, double most, int samples);
+  /// Returns the number of queries.
+  std::uint64_t asked() const { return asked_; }
+
+ private:
+  struct Moved {
+    Pose pose;
+    Vector3d by;  ///< what it is moved by, rounded once
+  };
+  Moved moved(const Vector3d& n, double s) const;
+  bool is_proved(const Moved& m, double more);
+
+  const LrbRep &a_, &b_;
+  const Pose &pose_a_, &pose_b_;
+  const UnitFrame& frame_;
+  double reach_ = 0;         ///< the largest world coordinate of B
+  std::uint64_t asked_ = 0;  ///< queries
+  QueryContext query_;
+  DistanceContext distance_;
+};
+
+}  // namespace lrb::parting

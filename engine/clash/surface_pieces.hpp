@@ -1,0 +1,80 @@
+#pragma once
+/// The pieces of two surfaces: inside, outside or on the other solid.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/collide/query_context.hpp"
+#include <lrbscope/clash.hpp>
+#include <lrbscope/ids.hpp>
+
+namespace lrb::parting {
+
+// A face that the other surface cuts from border to border along disjoint chains, the usual case.
+
+/// Finds the cells from the order of the chains' ends around the border: between the two ends of a chain
+/// there are the ends of entire chains only, nested like brackets. Exact if that order is.
+class SimpleCut {
+ public:
+  /// The end of a segment that the face shares with one of the other surface: on an edge of the face, or
+  /// inside, where an edge of the other surface passes through it.
+  struct End {
+    std::pair<std::uint32_t, std::uint32_t> name;  ///< unique among those on one edge, or inside
+    int edge = -1;                                 ///< of the face; -1: inside
+    double share = 0;                              ///< of the edge's way, about
+    double rounding = 0;                           ///< what the share may be off
+
+    static End inside(VertexId from, VertexId to) { return {{from.value(), to.value()}}; }
+    static End on_border(int edge, const Eigen::Vector3d& x, const double* const corners[3], SimplexId by);
+  };
+
+  void add(const End& from, const End& to) { segments_.push_back({from, to}); }
+  /// Finds the cells. Returns false if the face is not simple: a chain is closed or branches, or the order of
+  /// ends on the border is uncertain.
+  bool close();
+
+  std::uint32_t cell_count() const { return cell_count_; }
+  /// Return the number of parts of an edge, and the cell at one, counted from the edge's corner.
+  std::size_t part_count(int edge) const { return cells_[static_cast<std::size_t>(edge)].size(); }
+  std::uint32_t cell_beside(int edge, std::size_t part) const {
+    return cells_[static_cast<std::size_t>(edge)][part];
+  }
+  /// Returns an edge, and a share of it, at which a cell borders on it; share 0: the edge's corner.
+  std::pair<int, double> place_on_border(std::uint32_t cell) const;
+
+ private:
+  using Key = std::pair<int, std::pair<std::uint32_t, std::uint32_t>>;
+  struct BorderEnd {
+    double share, rounding;
+    std::uint32_t point, chain;
+  };
+
+  bool follow_chains(std::map<Key, std::uint32_t>& number, std::vector<std::uint32_t>& chain);
+  bool sort_border(const std::map<Key, std::uint32_t>& number, const std::vector<std::uint32_t>& chain);
+  bool walk_round();
+
+  std::vector<std::array<End, 2>> segments_;
+  std::array<std::vector<BorderEnd>, 3> border_;     ///< for each edge of the face: what ends on it, in order
+  std::array<std::vector<std::uint32_t>, 3> cells_;  ///< for each edge: the cell beside each of its parts
+  std::uint32_t cell_count_ = 1;
+};
+
+/// Counts the pieces, exactly. `result`: all pairs of intersecting simplices. Returns nullopt, and sets
+/// `reason` unless it is null, if a body is not closed or intersects itself, if a face that intersects the
+/// other body has no area, or if exact::CutFace gives up.
+///
+/// A face that intersects the other surface is cut into cells by it, each of which is inside, outside or on
+/// the other solid. Cells and uncut faces belong to one piece if they share a part of an edge that is not on
+/// the other surface: edges are cut where they intersect it, and a point of each part decides.
+/// only_rational: cut all faces in rational arithmetic, not only those that are not simple; same answer.
+std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context, const CollideResult& result,
+                                                           bool only_rational = false,
+                                                           ClashReason* reason = nullptr);
+
+}  // namespace lrb::parting

@@ -1,0 +1,90 @@
+#include "engine/collide/coarse_query.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <lrbscope/error.hpp>
+
+namespace lrb {
+namespace {
+
+/// Factor from one tolerance of the ladder to the next. Smaller: more queries before the exact one; larger:
+/// coarser answers where a limit is reached.
+constexpr double kLadderStep = 4;
+/// Levels with more than this share of the bodies' own faces are left out: the exact query costs hardly more.
+constexpr double kWorthwhile = 0.6;
+
+}  // namespace
+
+void check_coarse_request(const CollideRequest& request) {
+  if (!(request.tolerance >= 0) || !std::isfinite(request.tolerance))
+    throw InputError("the tolerance of a query must be a finite length, 0 or more");
+  if (!(request.max_time >= 0)) throw InputError("the time limit of a query must be 0 or more seconds");
+  if (request.recursion != Recursion::complete)
+    throw InputError("a tolerance or limit needs the complete recursion; leave \"paper\" out");
+  if (request.contacts || request.interiors_overlap)
+    throw InputError(
+        "contacts and interiors_overlap are exact: they cannot be combined with a tolerance or limit; leave "
+        "out one or the other");
+  if (request.wrapper != WrapperMode::regularised)
+    throw InputError("a tolerance or limit needs regularised wrappers; leave \"unregularised\" out");
+}
+
+namespace {
+
+/// Returns the level of a body for a tolerance; null: the body itself. A limit in time leaves none to make
+/// levels.
+const WrapperLevel* level_of(const LrbRep& rep, double tolerance, const CollideRequest& request) {
+  // Existing levels are used; making them takes milliseconds, which a time limit does not allow for.
+  return request.max_time > 0 && !rep.has_levels() ? nullptr : rep.levels().within(tolerance);
+}
+
+std::uint32_t faces_of(const LrbRep& rep, const WrapperLevel* level) {
+  return level == nullptr ? rep.real_face_count() : level->face_count;
+}
+
+/// Returns the levels for a tolerance, or the bodies where that is hardly more work.
+CoarseStep step_of(const LrbRep& a, const LrbRep& b, double tolerance, const CollideRequest& request) {
+  const CoarseStep step{level_of(a, tolerance, request), level_of(b, tolerance, request)};
+  // The sum for both bodies decides: one level may be worth it beside the other body as it is.
+  const double faces = static_cast<double>(faces_of(a, step.a)) + faces_of(b, step.b);
+  return faces > kWorthwhile * (static_cast<double>(a.real_face_count()) + b.real_face_count()) ? CoarseStep{}
+                                                                                                : step;
+}
+
+}  // namespace
+
+bool is_limited(const CollideRequest& request) {
+  return request.max_tests > 0 || request.max_time > 0;
+}
+
+CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
+  // A surface that bounds nothing hides nothing: both bodies have to be queried as they are.
+  for (const LrbRep* rep : {&a, &b})
+    if (!rep->closed() || rep->self_intersecting()) return {};
+  return step_of(a, b, is_limited(request) ? std::numeric_limits<double>::max() : request.tolerance, request);
+}
+
+std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
+  const CoarseStep first = first_step(a, b, request);
+  // Without limits one level is enough: that of the tolerance.
+  if (first.exact() || !is_limited(request)) return {first};
+  std::vector<CoarseStep> steps;
+  // Use powers of two, so that bodies of similar size share levels from pair to pair.
+  int exponent = 0;
+  std::frexp(std::max(first.a ? first.a->bound : 0, first.b ? first.b->bound : 0), &exponent);
+  for (double x = std::ldexp(1.0, exponent); x > request.tolerance; x /= kLadderStep) {
+    const CoarseStep step = step_of(a, b, x, request);
+    // Finer levels have even more faces.
+    if (step.exact()) break;
+    // Different tolerances can yield the same levels: each is tried once.
+    if (steps.empty() || step.a != steps.back().a || step.b != steps.back().b) steps.push_back(step);
+  }
+  // The last step is as fine as the request: its level, or the bodies themselves.
+  const CoarseStep last = step_of(a, b, request.tolerance, request);
+  if (steps.empty() || last.a != steps.back().a || last.b != steps.back().b) steps.push_back(last);
+  return steps;
+}
+
+}  // namespace lrb

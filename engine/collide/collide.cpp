@@ -1,0 +1,87 @@
+#include <cmath>
+#include <limits>
+
+#include "engine/collide/collide_into.hpp"
+#include "engine/tree/kernel_setup.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/observe.hpp>
+
+namespace lrb {
+
+namespace {
+
+/// Throws InputError if a vertex of the body has a world coordinate that is not finite. Few poses come near
+/// overflow: only then are the vertices checked.
+void check_world(const LrbRep& rep, const Pose& pose, char name) {
+  if (world_size(pose, rep.tree()) <= 0.5 * std::numeric_limits<double>::max()) return;
+  // Near overflow: look for a vertex to name in the message.
+  const auto vertices = rep.vertices();
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const Eigen::Vector3d x = pose.apply(vertices[v]);
+    for (int axis = 0; axis < 3; ++axis)
+      if (!std::isfinite(x[axis]))
+        throw InputError("body " + std::string(1, name) + ", vertex " + std::to_string(v) + ": its " +
+                         "xyz"[axis] + " in the world is beyond 1.8e308; scale the bodies and the pose down");
+  }
+}
+
+/// inf - inf and NaN - NaN are NaN, which a sum propagates: one comparison checks twelve numbers.
+bool is_finite(const Pose& p) {
+  return (p.r - p.r).sum() + (p.t - p.t).sum() == 0;
+}
+
+bool is_flat(const Pose& p) {
+  return p.r(0, 2) == 0 && p.r(1, 2) == 0 && p.r(2, 0) == 0 && p.r(2, 1) == 0 && p.t.z() == 0;
+}
+
+}  // namespace
+
+void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  if (a.dim() != b.dim())
+    throw InputError("a " + std::to_string(a.dim()) + "D body cannot meet a " + std::to_string(b.dim()) +
+                     "D body; give two of the same dimension");
+  for (const Pose* p : {&pose_a, &pose_b}) {
+    if (!is_finite(*p))
+      throw InputError("a pose has a number that is not finite; give twelve finite numbers");
+    if (a.dim() == 2 && !is_flat(*p))
+      throw InputError(
+          "the pose of a 2D body leaves the plane z = 0; rotate about z and translate in x and y only");
+  }
+  check_world(a, pose_a, 'A');
+  check_world(b, pose_b, 'B');
+}
+
+template CollideResult collide<NullProbe>(const LrbRep&, const Pose&, const LrbRep&, const Pose&,
+                                          const CollideRequest&, QueryContext&, NullProbe&);
+
+CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                      const CollideRequest& request) {
+  QueryContext context;
+  NullProbe probe;
+  return collide(a, pose_a, b, pose_b, request, context, probe);
+}
+
+void CollideProbe::face_test(SimplexId, SimplexId, exact::Meet, std::uint32_t, std::uint32_t) {}
+void CollideProbe::refine(Side, RegionId, std::uint32_t) {}
+void CollideProbe::coarsen(Side, RegionId, std::uint32_t) {}
+void CollideProbe::contact(SimplexId, SimplexId, exact::Meet) {}
+EventLevel CollideProbe::level() const {
+  return EventLevel::faces;
+}
+std::uint32_t CollideProbe::node_pair(const NodeVisit&) {
+  return kNull;
+}
+void CollideProbe::plane_test(SimplexId, SimplexId, Side) {}
+void CollideProbe::tested_by(TestedBy) {}
+void CollideProbe::point(Side, VertexId, Where) {}
+void CollideProbe::begin(Phase, std::uint32_t, std::uint32_t) {}
+void CollideProbe::end(Phase, std::uint64_t) {}
+
+CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                      const CollideRequest& request, CollideProbe& probe) {
+  QueryContext context;
+  Teller teller(probe);
+  return collide(a, pose_a, b, pose_b, request, context, teller);
+}
+
+}  // namespace lrb

@@ -1,0 +1,112 @@
+#pragma once
+/// Defines collide() for any probe, at no cost beyond the probe's own: for code of ours, which is compiled
+/// with the engine's private headers. Users of the installed engine have collide_probe.hpp.
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+
+#include "engine/collide/coarse_query.hpp"
+#include "engine/collide/contact_regions.hpp"
+#include "engine/collide/paper_query.hpp"
+#include "engine/collide/relation.hpp"
+#include "engine/collide/separation.hpp"
+#include "engine/collide/tree_query.hpp"
+#include "engine/exact/predicates.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/observe.hpp>
+
+namespace lrb {
+
+/// Throws InputError if the query is not possible for these bodies and poses.
+void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
+
+/// Asks for body `a` at pose_a against body `b` at pose_b, as collide() in collide.hpp does. `context`:
+/// memory that a query needs and the next one can use again, one per thread. `probe`: see NullProbe.
+/// `result`: new, or emptied by clear().
+template <class Probe>
+void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const CollideRequest& request, QueryContext& context, Probe& probe, CollideResult& result) {
+  check_query(a, pose_a, b, pose_b);
+  if (request.is_coarse()) check_coarse_request(request);
+  result.recursion = request.recursion;
+  result.mode = request.mode;
+  context.body[0].begin(a, pose_a, request.wrapper);
+  context.body[1].begin(b, pose_b, request.wrapper);
+  const std::uint64_t fallbacks = exact::exact_fallbacks();
+  {
+    const exact::FloatingPredicates floating(request.predicates == Predicates::floating);
+    if (request.is_coarse()) {
+      CoarseQuery<Probe>(context, request, result, probe).run();
+    } else {
+      if (request.recursion == Recursion::complete)
+        TreeQuery<Probe>(context, request, result, probe).run();
+      else
+        PaperQuery<Probe>(context, request, result, probe).run();
+      in_phase(probe, Phase::sort, [&] {
+        context.pair_order.sort(result);
+        return result.pairs.size();
+      });
+      decide_relation_watched(context, result, probe, [] { return true; });
+    }
+  }
+  if (request.separation && result.relation == Relation::separate)
+    in_phase(probe, Phase::separation, [&] {
+      result.separation = find_separation(context);
+      return result.separation ? result.separation->face_count[0] + result.separation->face_count[1] : 0;
+    });
+  if (request.contacts || request.interiors_overlap)
+    in_phase(probe, Phase::contacts, [&] {
+      describe_contact(context, request, result);
+      return result.regions.size();
+    });
+  for (int side = 0; side < 2; ++side) {
+    result.opened[side] = context.body[side].wrapper->excluded();
+    result.counters.regions_opened += result.opened[side].size();
+  }
+  result.counters.exact_fallbacks = exact::exact_fallbacks() - fallbacks;
+}
+
+/// Does the same into a new result.
+template <class Probe>
+CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                      const CollideRequest& request, QueryContext& context, Probe& probe) {
+  CollideResult result;
+  collide_into(a, pose_a, b, pose_b, request, context, probe, result);
+  return result;
+}
+
+// Passes what a query tells on to a CollideProbe.
+
+/// A CollideProbe as the query's templates take it.
+class Teller {
+ public:
+  static constexpr bool kEnabled = true;
+
+  explicit Teller(CollideProbe& probe) : probe_(probe) {}
+  void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a, std::uint32_t depth_b) {
+    probe_.face_test(a, b, meet, depth_a, depth_b);
+  }
+  void refine(Side side, RegionId region, std::uint32_t faces_added) {
+    probe_.refine(side, region, faces_added);
+  }
+  void coarsen(Side side, RegionId region, std::uint32_t faces_removed) {
+    probe_.coarsen(side, region, faces_removed);
+  }
+  void contact(SimplexId a, SimplexId b, exact::Meet meet) { probe_.contact(a, b, meet); }
+  EventLevel level() const { return probe_.level(); }
+  std::uint32_t node_pair(const NodeVisit& visit) { return probe_.node_pair(visit); }
+  void plane_test(SimplexId a, SimplexId b, Side whose) { probe_.plane_test(a, b, whose); }
+  void tested_by(TestedBy how) { probe_.tested_by(how); }
+  void point(Side whose, VertexId v, Where where) { probe_.point(whose, v, where); }
+  void begin(Phase phase, std::uint32_t walked_a, std::uint32_t walked_b) {
+    probe_.begin(phase, walked_a, walked_b);
+  }
+  void end(Phase phase, std::uint64_t count) { probe_.end(phase, count); }
+
+ private:
+  CollideProbe& probe_;
+};
+
+}  // namespace lrb

@@ -1,0 +1,414 @@
+/// Builds the intersection of two surfaces as a graph.
+///
+/// 1. Number the corners of all pairs' intersections; corners with the same features are one point.
+/// 2. Collect the curves (segments) and the outlines of coplanar areas.
+/// 3. Label connected components by union-find.
+
+#include "engine/collide/contact_regions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <span>
+#include <unordered_map>
+
+#include <Eigen/Geometry>
+
+#include "engine/collide/interiors.hpp"
+#include "engine/core/tolerances.hpp"
+
+namespace lrb {
+namespace {
+
+/// A feature of a surface, named by its vertices (see Places) so that all simplices around it agree: a vertex
+/// (v, v), an edge (v < w), or the interior of a simplex (kNull, s).
+using SurfaceFeature = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Merges vertices with equal coordinates, as along seams of textures: returns the first one requested.
+class Places {
+ public:
+  explicit Places(const LrbRep& rep) : rep_(rep) {}
+
+  VertexId at(VertexId v) {
+    const auto [known, is_new] = first_.try_emplace(v, v);
+    if (is_new) {
+      const Eigen::Vector3d x = rep_.vertices()[v] + Eigen::Vector3d::Zero();  // -0 becomes 0
+      known->second = by_place_.try_emplace({x[0], x[1], x[2]}, v).first->second;
+    }
+    return known->second;
+  }
+  const LrbRep& rep() const { return rep_; }
+
+ private:
+  const LrbRep& rep_;
+  std::unordered_map<VertexId, VertexId> first_;
+  std::map<std::array<double, 3>, VertexId> by_place_;
+};
+
+SurfaceFeature surface_feature(Places& places, SimplexId s, exact::Feature f) {
+  VertexId v[3];
+  places.rep().simplex(s, v);
+  const int n = places.rep().simplex_size();
+  for (int k = 0; k < n; ++k) v[k] = places.at(v[k]);
+  if (f.dim == 0) return {v[f.index], v[f.index]};
+  // In 2D the simplex is the segment itself: its dimension 1 is the interior.
+  if (f.dim == 1 && n == 3) return std::minmax({v[f.index], v[(f.index + 1) % 3]});
+  return {kNull, s};
+}
+
+using Edge = std::array<std::uint32_t, 2>;
+
+Edge ordered(std::uint32_t p, std::uint32_t q) {
+  return {std::min(p, q), std::max(p, q)};
+}
+
+void number_corners(const QueryContext& context, const CollideResult& result, ContactGraph& graph) {
+  std::map<std::pair<SurfaceFeature, SurfaceFeature>, std::uint32_t> number;
+  Places of_a(context.body[0].rep()), of_b(context.body[1].rep());
+  for (std::uint32_t i = 0; i < result.pairs.size(); ++i) {
+    const PairContactRecord& contact = result.contacts[i];
+    ContactGraph::Piece piece{i, {}};
+    for (int c = 0; c < contact.corner_count; ++c) {
+      const exact::ContactCorner& corner = contact.corners[static_cast<std::size_t>(c)];
+      // Named by features of both surfaces: the pairs on both sides of an edge agree without comparing
+      // coordinates.
+      const auto key = std::pair{surface_feature(of_a, result.pairs[i].a, corner.on_a),
+                                 surface_feature(of_b, result.pairs[i].b, corner.on_b)};
+      const auto [it, is_new] = number.try_emplace(key, static_cast<std::uint32_t>(graph.points.size()));
+      if (is_new) graph.points.push_back(corner.x);
+      piece.points.push_back(it->second);
+    }
+    graph.pieces.push_back(std::move(piece));
+  }
+}
+
+void find_curves_and_outlines(ContactGraph& graph) {
+  std::map<Edge, std::uint32_t> polygon_sides;
+  // Count the polygons at each side.
+  for (const auto& piece : graph.pieces)
+    for (std::size_t c = 0; piece.points.size() >= 3 && c < piece.points.size(); ++c)
+      ++polygon_sides[ordered(piece.points[c], piece.points[(c + 1) % piece.points.size()])];
+  for (const auto& [edge, count] : polygon_sides)
+    // A side between two polygons is inside the contact area.
+    if (count % 2 != 0) graph.outlines.push_back(edge);
+  // Segments: those on the side of a polygon belong to its outline, and those of no length are points.
+  for (const auto& piece : graph.pieces) {
+    if (piece.points.size() != 2) continue;
+    const Edge e = ordered(piece.points[0], piece.points[1]);
+    if (e[0] != e[1] && !polygon_sides.contains(e)) graph.curves.push_back(e);
+  }
+  // A segment along an edge comes from each pair at that edge: keep one.
+  std::sort(graph.curves.begin(), graph.curves.end());
+  graph.curves.erase(std::unique(graph.curves.begin(), graph.curves.end()), graph.curves.end());
+}
+
+void label_components(ContactGraph& graph) {
+  std::vector<std::uint32_t> leader(graph.points.size());
+  // Union-find with path halving. The smallest index is the leader, so that labels are in order of points.
+  std::iota(leader.begin(), leader.end(), 0u);
+  const auto find = [&](std::uint32_t p) {
+    while (leader[p] != p) p = leader[p] = leader[leader[p]];
+    return p;
+  };
+  for (const auto& piece : graph.pieces)
+    for (const std::uint32_t p : piece.points) {
+      const std::uint32_t x = find(piece.points[0]), y = find(p);
+      leader[std::max(x, y)] = std::min(x, y);
+    }
+  graph.component.assign(graph.points.size(), kNull);
+  for (std::uint32_t p = 0; p < graph.points.size(); ++p) {
+    const std::uint32_t root = find(p);  // root <= p, so it has its label already, unless it is p
+    graph.component[p] = root == p ? graph.component_count++ : graph.component[root];
+  }
+}
+
+}  // namespace
+
+ContactGraph contact_graph(const QueryContext& context, const CollideResult& result) {
+  ContactGraph graph;
+  number_corners(context, result, graph);
+  find_curves_and_outlines(graph);
+  label_components(graph);
+  return graph;
+}
+
+namespace {
+
+class Chainer {
+ public:
+  Chainer(std::span<const std::array<std::uint32_t, 2>> edges, const std::vector<Eigen::Vector3d>& points)
+      : edges_(edges), points_(points), used_(edges.size(), false) {
+    for (std::uint32_t e = 0; e < edges.size(); ++e)
+      for (const std::uint32_t p : edges[e]) edges_at_[p].push_back(e);
+  }
+
+  std::vector<ContactLoop> run() {
+    std::vector<ContactLoop> loops;
+    // Follow open chains first, from their ends. Only closed ones are left then.
+    for (const auto& [p, at] : edges_at_)
+      for (const std::uint32_t e : at)
+        if (at.size() != 2 && !used_[e]) loops.push_back(walk(p, e));
+    for (std::uint32_t e = 0; e < edges_.size(); ++e)
+      if (!used_[e]) loops.push_back(walk(edges_[e][0], e));
+    return loops;
+  }
+
+ private:
+  ContactLoop walk(std::uint32_t from, std::uint32_t edge) {
+    ContactLoop loop;
+    loop.points.push_back(points_[from]);
+    std::uint32_t p = from;
+    while (true) {
+      used_[edge] = true;
+      // Go to the other end of the edge.
+      p = edges_[edge][0] == p ? edges_[edge][1] : edges_[edge][0];
+      const auto& at = edges_at_.at(p);
+      loop.closed = p == from;
+      if (loop.closed) break;
+      loop.points.push_back(points_[p]);
+      // An end or a branch point: the chain is open.
+      if (at.size() != 2) break;
+      // Two edges meet here: leave by the one that is unused.
+      edge = used_[at[0]] ? at[1] : at[0];
+    }
+    return loop;
+  }
+
+  std::span<const std::array<std::uint32_t, 2>> edges_;
+  const std::vector<Eigen::Vector3d>& points_;
+  std::vector<bool> used_;
+  std::map<std::uint32_t, std::vector<std::uint32_t>> edges_at_;
+};
+
+}  // namespace
+
+std::vector<ContactLoop> chain_edges(std::span<const std::array<std::uint32_t, 2>> edges,
+                                     const std::vector<Eigen::Vector3d>& points) {
+  return Chainer(edges, points).run();
+}
+
+// Describes a contact: the intersection of each pair, and the connected regions of these with loops, length,
+// area, centroid, normal and a depth estimate.
+//
+// 1. Compute the intersection of each pair exactly, and connect the pieces to a graph (contact_graph.hpp).
+// 2. Average centroid and normal of each component over its pieces of the highest dimension.
+// 3. Chain the edges of each component into loops.
+// 4. Estimate the depth from the vertices that each body encloses of the other, along the normal.
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// Returns the power of two by which to divide points so that no product of two or three coordinates
+/// overflows or underflows, as an area times a coordinate does for bodies of size 1e-120 or 1e120.
+double unit_for(std::span<const Vector3d> points) {
+  double most = 0;
+  for (const Vector3d& p : points) most = std::max(most, p.cwiseAbs().maxCoeff());
+  return most > 0 ? std::ldexp(1.0, std::clamp(std::ilogb(most), -1022, 1023)) : 1;
+}
+
+/// Returns the unit normal of a real simplex in the world, out of the solid, also of one that is mirrored;
+/// zero for a degenerate one.
+Vector3d world_normal(QueryBody& body, SimplexId s, bool mirrored) {
+  const double* c[3];
+  body.world.corners(s, c);
+  const int dim = body.rep().dim();
+  std::array<Vector3d, 3> x = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+  for (int k = 0; k < dim; ++k) x[k] = Vector3d(c[k][0], c[k][1], c[k][2]);
+  // Scaled to about 1: products of coordinates cannot overflow or vanish then.
+  const double unit = unit_for({x.data(), static_cast<std::size_t>(dim)});
+  const auto at = [&](int k) { return Vector3d(x[k] / unit); };
+  // In 2D the solid lies on the left of a segment's direction, so the outside is on its right.
+  const Vector3d along = at(1) - at(0);
+  const Vector3d n = dim == 2 ? Vector3d(along.y(), -along.x(), 0) : along.cross(at(2) - at(0)).eval();
+  // A reflection reverses the orientation of every triangle.
+  return mirrored ? Vector3d(-n.stableNormalized()) : n.stableNormalized();
+}
+
+double polygon_area(const std::vector<Vector3d>& x) {
+  // A fan of triangles: the cross products add up to twice the vector area.
+  Vector3d twice = Vector3d::Zero();
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) twice += (x[i] - x[0]).cross(x[i + 1] - x[0]);
+  return 0.5 * twice.norm();
+}
+
+/// The weight of a piece in averages over its region: its length, area or count.
+struct Weight {
+  double value;
+  Vector3d centre;
+};
+
+Weight weigh(const std::vector<Vector3d>& x) {
+  Vector3d mean = Vector3d::Zero();
+  for (const Vector3d& p : x) mean += p / static_cast<double>(x.size());
+  // A segment is weighted by its length, a point by 1.
+  if (x.size() < 3) return {x.size() == 2 ? (x[1] - x[0]).norm() : 1.0, mean};
+  // A polygon: the area-weighted centroid of its fan.
+  Vector3d centre = Vector3d::Zero();
+  double area = 0;
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    const double a = polygon_area({x[0], x[i], x[i + 1]});
+    area += a;
+    centre += a * (x[0] + x[i] + x[i + 1]) / 3;
+  }
+  return {area, area > 0 ? Vector3d(centre / area) : mean};
+}
+
+double loop_length(const ContactLoop& loop) {
+  double sum = 0;
+  const std::size_t n = loop.points.size();
+  // A closed loop has one more segment, back to its first point.
+  for (std::size_t i = 0; i + 1 < n + (loop.closed ? 1 : 0); ++i)
+    sum += (loop.points[(i + 1) % n] - loop.points[i]).norm();
+  return sum;
+}
+
+/// Builds the regions from the graph. Computes in `unit_`; results are scaled back at the end.
+class RegionMaker {
+ public:
+  RegionMaker(QueryContext& ctx, const CollideResult& result)
+      : ctx_(ctx),
+        result_(result),
+        graph_(contact_graph(ctx, result)),
+        a_in_b_(ctx, Side::a, result),
+        b_in_a_(ctx, Side::b, result),
+        unit_(unit_for(graph_.points)) {
+    for (Vector3d& p : graph_.points) p /= unit_;
+  }
+
+  std::vector<ContactRegion> run() {
+    std::vector<ContactRegion> regions(graph_.component_count);
+    std::vector<std::uint8_t> rank(graph_.component_count,
+                                   0);  // 3: has polygons, 2: segments, 1: points only
+    // Assign pairs to regions. Only pieces of the highest dimension in a region are averaged.
+    for (const auto& piece : graph_.pieces)
+      if (!piece.points.empty()) {
+        const std::uint32_t r = graph_.component[piece.points[0]];
+        regions[r].pairs.push_back(piece.pair);
+        rank[r] = std::max(rank[r], static_cast<std::uint8_t>(std::min<std::size_t>(piece.points.size(), 3)));
+      }
+    for (std::uint32_t r = 0; r < regions.size(); ++r) average(regions[r], rank[r]);
+    add_loops(regions);
+    for (std::uint32_t r = 0; r < regions.size(); ++r) {
+      // Regions of curves have the area that their loops span; coplanar ones have their own already.
+      if (rank[r] == 2) regions[r].area = spanned_area(regions[r]);
+      regions[r].depth_estimate = penetration(regions[r]);
+    }
+    for (ContactRegion& region : regions) leave_unit(region);
+    return regions;
+  }
+
+ private:
+  void leave_unit(ContactRegion& region) const {
+    for (ContactLoop& loop : region.loops)
+      for (Vector3d& p : loop.points) p *= unit_;
+    region.centroid *= unit_;
+    region.length *= unit_;
+    region.depth_estimate *= unit_;
+    // One factor after the other: the square of the unit can overflow or vanish by itself.
+    region.area = region.area * unit_ * unit_;
+  }
+
+  std::vector<Vector3d> points_of(const ContactGraph::Piece& piece) const {
+    std::vector<Vector3d> x;
+    for (const std::uint32_t p : piece.points) x.push_back(graph_.points[p]);
+    return x;
+  }
+
+  /// Sets centroid, normal and coplanar area, over the pieces of the highest dimension in the region.
+  void average(ContactRegion& region, std::uint8_t rank) {
+    double total = 0;
+    Vector3d centre = Vector3d::Zero(), normal = Vector3d::Zero();
+    for (const std::uint32_t i : region.pairs) {
+      const auto& piece = graph_.pieces[i];
+      if (std::min<std::size_t>(piece.points.size(), 3) != rank) continue;
+      const Weight w = weigh(points_of(piece));
+      total += w.value;
+      centre += w.value * w.centre;
+      // Outward normals are about opposite in a contact: their difference points from A to B.
+      normal += w.value * (world_normal(ctx_[Side::a], result_.pairs[i].a, mirrored_[0]) -
+                           world_normal(ctx_[Side::b], result_.pairs[i].b, mirrored_[1]));
+    }
+    region.centroid =
+        total > 0 ? Vector3d(centre / total) : graph_.points[graph_.pieces[region.pairs[0]].points[0]];
+    // Normals that cancel (surfaces that meet facing the same way) leave no meaningful direction.
+    if (normal.norm() > kContactNormalLeast * total) region.normal = normal.stableNormalized();
+    if (rank == 3) region.area = total;
+  }
+
+  void add_loops(std::vector<ContactRegion>& regions) const {
+    std::vector<std::vector<std::array<std::uint32_t, 2>>> edges(regions.size());
+    // Both ends of an edge are in the same component.
+    for (const auto* list : {&graph_.outlines, &graph_.curves})
+      for (const auto& e : *list) edges[graph_.component[e[0]]].push_back(e);
+    for (std::uint32_t r = 0; r < regions.size(); ++r) {
+      regions[r].loops = chain_edges(edges[r], graph_.points);
+      for (const ContactLoop& loop : regions[r].loops) regions[r].length += loop_length(loop);
+    }
+  }
+
+  /// Returns the area that the closed loops span: the length of their vector area, each loop on its own.
+  static double spanned_area(const ContactRegion& region) {
+    double sum = 0;
+    for (const ContactLoop& loop : region.loops)
+      if (loop.closed) sum += polygon_area(loop.points);
+    return sum;
+  }
+
+  double penetration(const ContactRegion& region) {
+    const bool crosses = std::any_of(region.pairs.begin(), region.pairs.end(),
+                                     [&](std::uint32_t i) { return result_.meets[i] == exact::Meet::cross; });
+    // Surfaces that only touch do not penetrate.
+    if (!crosses || region.normal.isZero()) return 0;
+    // Extents along the normal: the furthest point of A's part, the nearest of B's. Contact points belong to
+    // both.
+    double a_reaches = -std::numeric_limits<double>::infinity(), b_reaches = -a_reaches;
+    for (const std::uint32_t i : region.pairs)
+      for (const std::uint32_t p : graph_.pieces[i].points) {
+        a_reaches = std::max(a_reaches, region.normal.dot(graph_.points[p]));
+        b_reaches = std::min(b_reaches, region.normal.dot(graph_.points[p]));
+      }
+    // The enclosed parts are polyhedra: beside contact points only their vertices can be extreme.
+    for (const VertexId v : a_in_b_.from(region.pairs))
+      a_reaches = std::max(a_reaches, region.normal.dot(world(Side::a, v)));
+    for (const VertexId v : b_in_a_.from(region.pairs))
+      b_reaches = std::min(b_reaches, region.normal.dot(world(Side::b, v)));
+    return std::max(0.0, a_reaches - b_reaches);
+  }
+
+  Vector3d world(Side side, VertexId v) { return Eigen::Map<const Vector3d>(ctx_[side].world(v)) / unit_; }
+
+  QueryContext& ctx_;
+  const CollideResult& result_;
+  ContactGraph graph_;
+  EnclosedVertices a_in_b_, b_in_a_;
+  double unit_;
+  const bool mirrored_[2] = {is_reflection(ctx_[Side::a].world.pose(), ctx_[Side::a].rep().dim()),
+                             is_reflection(ctx_[Side::b].world.pose(), ctx_[Side::b].rep().dim())};
+};
+
+exact::PairContact contact_of(QueryContext& ctx, SimplexPair pair) {
+  const double *ca[3], *cb[3];
+  ctx[Side::a].world.corners(pair.a, ca);
+  ctx[Side::b].world.corners(pair.b, cb);
+  return ctx[Side::a].rep().dim() == 3 ? exact::contact_of_triangles(ca, cb)
+                                       : exact::contact_of_segments(ca, cb);
+}
+
+}  // namespace
+
+void describe_contact(QueryContext& context, const CollideRequest& request, CollideResult& result) {
+  if (result.pairs.empty() || request.mode != Mode::all_pairs) return;
+  if (request.interiors_overlap && result.relation == Relation::touching)
+    result.interiors_overlap = interiors_overlap(context, result);
+  if (request.interiors_overlap && result.relation == Relation::crossing)
+    result.interiors_overlap = crossing_interiors_overlap(context, result);
+  if (!request.contacts) return;
+  // First the intersection of each pair, then the connected regions that they form.
+  for (const SimplexPair& pair : result.pairs) result.contacts.push_back(contact_of(context, pair));
+  result.regions = RegionMaker(context, result).run();
+}
+
+}  // namespace lrb

@@ -1,0 +1,60 @@
+#pragma once
+/// What both explanations of answers are made of (explain.cpp, explain_walk.cpp). Private to engine/collide.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/collide/query_context.hpp"
+#include "engine/collide/tree_query.hpp"
+
+namespace lrb::explain {
+
+/// Begins a query of two bodies. Throws as collide() does.
+void begin(QueryContext& ctx, const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
+
+/// Steps through the walk of two trees.
+class Stepper {
+ public:
+  explicit Stepper(QueryContext& ctx) : ctx_(ctx), k_(start_kernel(ctx, kCapacity)) {}
+
+  /// What came of one pair of nodes: pairs of children, or of simplices.
+  struct Outcome {
+    std::vector<NodePair> children;
+    std::vector<Candidate> candidates;
+    std::uint64_t face_pairs;  ///< whose boxes meet
+    bool parts_whole;          ///< the nodes' own boxes are apart: nothing in them was compared
+  };
+
+  Outcome step(const NodePair& pair);
+
+  bool is_leaf(Side side, std::uint32_t node) const { return tree(side).nodes()[node].is_leaf != 0; }
+  const ObbTree& tree(Side side) const { return ctx_[side].tree(); }
+
+ private:
+  static constexpr std::size_t kCapacity = 128;
+
+  QueryContext& ctx_;
+  TreeKernel k_;
+  std::array<NodePair, 1> parted_nodes_;
+};
+
+using Corners = std::array<const double*, 3>;
+
+inline Eigen::Vector3d point(const double* x) {
+  return {x[0], x[1], x[2]};
+}
+
+/// Two points, one of each of two simplices.
+struct NearPoints {
+  Eigen::Vector3d a, b;
+  double distance_sq = std::numeric_limits<double>::infinity();
+
+  void see(const Eigen::Vector3d& of_a, const Eigen::Vector3d& of_b);
+};
+NearPoints nearest_points(int dim, const Corners& a, const Corners& b);
+
+}  // namespace lrb::explain

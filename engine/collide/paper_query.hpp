@@ -1,0 +1,144 @@
+#pragma once
+/// The paper's query (section 4, "The 2-Body Collision Algorithm"), to the letter: the outermost faces of
+/// both wrappers are tested all against all; faces that meet are refined, and their new faces tested
+/// recursively.
+///
+/// It is not complete: a contact under lids that nothing touches is never reached (a ball in a bowl; a body
+/// that came in through the solid side). It is here to reproduce the paper's figures and to be seen failing.
+///
+/// The text leaves open what "the new faces are recursively tested" means for a region that was refined
+/// before ("a region or even an individual face can only be refined once"). There are two readings, and both
+/// are kept:
+/// - Recursion::paper: what may happen only once is the recursion into a *pair* of regions (or of a real face
+///   and a region); the floor of a refined region is tested again when another region of the other body hits
+///   its lids.
+/// - Recursion::paper_strict: a region gives its floor once, when it is first refined; those faces are tested
+///   against the new faces (or the real face) of what hit, and never again.
+
+#include <span>
+
+#include "engine/collide/query_context.hpp"
+
+namespace lrb {
+
+template <class Probe>
+class PaperQuery {
+ public:
+  PaperQuery(QueryContext& ctx, const CollideRequest& request, CollideResult& result, Probe& probe)
+      : ctx_(ctx), request_(request), result_(result), probe_(probe) {
+    for (auto& set : ctx_.visited) set.clear();
+  }
+
+  void run() { test_all(ctx_[Side::a].rep().outermost_faces(), ctx_[Side::b].rep().outermost_faces()); }
+
+ private:
+  using Faces = std::span<const FaceId>;
+  enum Visited { kRegionRegion = 0, kFaceRegion = 1, kRegionFace = 2 };
+
+  void test_all(Faces as, Faces bs) {
+    for (const FaceId fa : as)
+      for (const FaceId fb : bs) {
+        if (done_) return;
+        if (faces_meet(fa, fb)) resolve(fa, fb);
+      }
+  }
+
+  /// Handles the three cases of section 4 for a pair of faces that intersect.
+  void resolve(FaceId fa, FaceId fb) {
+    const LrbRep &a = ctx_[Side::a].rep(), &b = ctx_[Side::b].rep();
+    if (!a.is_real(fa) && !b.is_real(fb)) {
+      // Case 1: "If faces are pseudo-faces then refine, bringing in new detail. The new faces added to each
+      // respective wrapper are then recursively tested."
+      const RegionId ra = a.inner_cell(fa).as_region(), rb = b.inner_cell(fb).as_region();
+      const bool new_a = refine(Side::a, fa), new_b = refine(Side::b, fb);
+      if (strict() ? new_a && new_b : first_visit(kRegionRegion, ra, rb)) test_all(a.floor(ra), b.floor(rb));
+    } else if (a.is_real(fa) != b.is_real(fb)) {
+      // Case 2: "If one is a real face and the other is a pseudo face, only the pseudo face is refined and
+      // the new faces are recursively tested against the real one."
+      if (a.is_real(fa)) {
+        const RegionId rb = b.inner_cell(fb).as_region();
+        const bool is_new = refine(Side::b, fb);
+        if (strict() ? is_new : first_visit(kFaceRegion, fa, rb)) test_all(Faces(&fa, 1), b.floor(rb));
+      } else {
+        const RegionId ra = a.inner_cell(fa).as_region();
+        const bool is_new = refine(Side::a, fa);
+        if (strict() ? is_new : first_visit(kRegionFace, ra, fb)) test_all(a.floor(ra), Faces(&fb, 1));
+      }
+    } else {
+      // Case 3: "If both faces are real, the faces are stored in a list of pair-faces that will be returned
+      // to the contact analysis module. If the application requires to know only whether the objects are in
+      // collision, then the algorithm exits declaring a collision."
+      record(fa, fb);
+      done_ = request_.mode != Mode::all_pairs;
+    }
+  }
+
+  bool strict() const { return request_.recursion == Recursion::paper_strict; }
+
+  bool first_visit(Visited kind, std::uint32_t a, std::uint32_t b) {
+    return ctx_.visited[kind].insert(std::uint64_t{a} << 32 | b).second;
+  }
+
+  /// Refines the region behind a face. Returns true if that had not happened before.
+  bool refine(Side side, FaceId f) {
+    QueryBody& body = ctx_[side];
+    const RegionId r = body.rep().inner_cell(f).as_region();
+    const bool is_new = body.wrapper->included(r);
+    if (!body.wrapper->refine_face(f)) return false;
+    ++result_.counters.refinements;
+    if constexpr (Probe::kEnabled)
+      probe_.refine(side, r, is_new ? static_cast<std::uint32_t>(body.rep().floor(r).size()) : 0);
+    return is_new;
+  }
+
+  /// Compares two faces as polygons, that is, all simplices of their fans. Counts as one face test, one
+  /// event.
+  bool faces_meet(FaceId fa, FaceId fb) {
+    exact::Meet best = exact::Meet::disjoint;
+    SimplexPair which{ctx_[Side::a].rep().first_simplex(fa), ctx_[Side::b].rep().first_simplex(fb)};
+    for_each_simplex_pair(fa, fb, [&](SimplexId a, SimplexId b) {
+      const exact::Meet meet = test_simplices(ctx_, a, b);
+      if (meet > best) {
+        best = meet;
+        which = {a, b};
+      }
+      return best == exact::Meet::cross;
+    });
+    const std::uint32_t depth_a = ctx_[Side::a].depth_of(fa), depth_b = ctx_[Side::b].depth_of(fb);
+    const bool real = ctx_[Side::a].rep().is_real(fa) && ctx_[Side::b].rep().is_real(fb);
+    count_face_test(real, std::max(depth_a, depth_b), result_.counters);
+    if constexpr (Probe::kEnabled) probe_.face_test(which.a, which.b, best, depth_a, depth_b);
+    return best != exact::Meet::disjoint;
+  }
+
+  void record(FaceId fa, FaceId fb) {
+    for_each_simplex_pair(fa, fb, [&](SimplexId a, SimplexId b) {
+      const exact::Meet meet = test_simplices(ctx_, a, b);
+      if (meet != exact::Meet::disjoint) record_pair(result_, probe_, a, b, meet);
+      if (result_.pairs.size() > request_.pair_limit()) refuse_pairs(request_.pair_limit());
+      return request_.mode != Mode::all_pairs && !result_.pairs.empty();
+    });
+  }
+
+  /// Calls visit(a, b) for all pairs of simplices of two faces until it returns true.
+  template <class Visit>
+  void for_each_simplex_pair(FaceId fa, FaceId fb, Visit visit) {
+    const auto range = [](const LrbRep& rep, FaceId f) {
+      const SimplexId first = rep.first_simplex(f);
+      return std::pair{first, SimplexId(first + Mesh::simplices_of(rep.face(f).size(), rep.dim()))};
+    };
+    const auto [a_begin, a_end] = range(ctx_[Side::a].rep(), fa);
+    const auto [b_begin, b_end] = range(ctx_[Side::b].rep(), fb);
+    for (SimplexId a = a_begin; a < a_end; ++a)
+      for (SimplexId b = b_begin; b < b_end; ++b)
+        if (visit(a, b)) return;
+  }
+
+  QueryContext& ctx_;
+  const CollideRequest& request_;
+  CollideResult& result_;
+  Probe& probe_;
+  bool done_ = false;
+};
+
+}  // namespace lrb

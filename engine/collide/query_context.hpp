@@ -1,0 +1,182 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "engine/collide/pair_order.hpp"
+#include "engine/tree/tree_kernel.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/pose.hpp>
+#include <lrbscope/wrapper.hpp>
+
+namespace lrb {
+
+/// Tells which real vertices are joined by an edge of a real face. Derived from an LRB-rep when a query first
+/// needs it.
+class SurfaceGraph {
+ public:
+  explicit SurfaceGraph(const LrbRep& rep);
+  std::span<const VertexId> neighbours(VertexId v) const {
+    return {neighbours_.data() + offsets_[v], offsets_[v + 1] - offsets_[v]};
+  }
+
+ private:
+  std::vector<std::uint32_t> offsets_;  ///< (|V| + 1)
+  std::vector<VertexId> neighbours_;
+};
+
+/// World coordinates of one body's vertices during one query: each vertex is moved at most once, when it is
+/// first needed.
+class WorldVertices {
+ public:
+  void begin(const LrbRep& rep, const Pose& pose) {
+    rep_ = &rep;
+    pose_ = pose;
+    if (slots_.size() < rep.vertices().size()) slots_.resize(rep.vertices().size());
+    if (++epoch_ == 0) {
+      for (Slot& s : slots_) s.epoch = 0;
+      epoch_ = 1;
+    }
+  }
+
+  const LrbRep& rep() const { return *rep_; }
+  const Pose& pose() const { return pose_; }
+
+  /// Returns the world coordinates (x, y, z) of a vertex. The pointer is valid until the next begin().
+  const double* operator()(VertexId v) {
+    Slot& s = slots_[v];
+    if (s.epoch != epoch_) {
+      s.x = pose_.apply(rep_->vertices()[v]);
+      s.epoch = epoch_;
+    }
+    return s.x.data();
+  }
+
+  /// Writes pointers to the world coordinates of a simplex's corners (3, or 2 in 2D) to out.
+  void corners(SimplexId s, const double* out[3]) {
+    VertexId v[3];
+    rep_->simplex(s, v);
+    for (int k = 0; k < rep_->simplex_size(); ++k) out[k] = (*this)(v[k]);
+  }
+
+ private:
+  struct Slot {
+    Eigen::Vector3d x;
+    std::uint32_t epoch = 0;
+  };
+  const LrbRep* rep_ = nullptr;
+  Pose pose_;
+  std::uint32_t epoch_ = 0;
+  std::vector<Slot> slots_;
+};
+
+/// One body during a query.
+struct QueryBody {
+  WorldVertices world;
+  std::unique_ptr<Wrapper> wrapper;
+  std::uint64_t wrapper_serial = 0;  ///< serial of the LRB-rep that the wrapper was made for
+
+  const LrbRep& rep() const { return world.rep(); }
+  /// Return what is queried: the body, or a level of it.
+  const ObbTree& tree() const { return *tree_; }
+  std::span<const VertexId> component_vertices() const { return component_vertices_; }
+
+  void begin(const LrbRep& rep, const Pose& pose, WrapperMode mode) {
+    world.begin(rep, pose);
+    begin_at_pose(mode);
+  }
+  /// Begins at a pose that `world` knows already.
+  void begin_at_pose(WrapperMode mode) {
+    query_body();
+    if (!wrapper || wrapper_serial != rep().serial() || &wrapper->rep() != &rep() ||
+        wrapper->mode() != mode) {
+      wrapper = std::make_unique<Wrapper>(rep(), mode);
+      wrapper_serial = rep().serial();
+    }
+    wrapper->reset();
+  }
+
+  void query_body() {
+    level_ = nullptr;
+    tree_ = &rep().tree();
+    component_vertices_ = rep().component_vertices();
+  }
+  void query_level(const WrapperLevel& level) {
+    level_ = &level;
+    tree_ = &level.tree;
+    component_vertices_ = level.component_vertices;
+  }
+
+  /// Returns what is queried: 0 for the body, i + 1 for level i.
+  std::uint32_t walked() const {
+    return level_ == nullptr ? 0 : static_cast<std::uint32_t>(level_ - rep().levels().all().data()) + 1;
+  }
+
+  /// Returns the body's surface graph; made when first asked for, kept as long as the body stays the same.
+  const SurfaceGraph& surface_graph() {
+    if (!graph_ || graph_serial_ != rep().serial()) {
+      graph_ = std::make_unique<SurfaceGraph>(rep());
+      graph_serial_ = rep().serial();
+    }
+    return *graph_;
+  }
+
+  /// Returns the number of regions between a face and the outside along parents.
+  std::uint32_t depth_of(FaceId f) const {
+    const CellId outer = rep().outer_cell(f);
+    return is_region(outer) ? rep().depth(outer.as_region()) : 0;
+  }
+
+ private:
+  const ObbTree* tree_ = nullptr;
+  const WrapperLevel* level_ = nullptr;  ///< null: the body itself
+  std::span<const VertexId> component_vertices_;
+  std::unique_ptr<SurfaceGraph> graph_;
+  std::uint64_t graph_serial_ = 0;
+};
+
+class QueryContext {
+ public:
+  QueryBody body[2];
+  std::vector<NodePair> stack;  ///< of the kernel that runs: its stack, and after it those that were tested
+  std::vector<Candidate> candidates;
+  // In queries that are watched; NodeWatch knows what these are.
+  std::unordered_map<std::uint64_t, std::uint32_t> parents;
+  std::vector<PartedPair> parted;
+  std::vector<NodePair> parted_nodes;
+  AffineTerms affine;  ///< of the kernel that runs, if it has any
+  PairOrder pair_order;
+  std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region, face x region, region x face
+
+  QueryBody& operator[](Side s) { return body[static_cast<int>(s)]; }
+};
+
+/// Tests exactly how two simplices meet in the world frame.
+inline exact::Meet test_simplices(QueryContext& ctx, SimplexId a, SimplexId b) {
+  const double *ca[3], *cb[3];
+  ctx.body[0].world.corners(a, ca);
+  ctx.body[1].world.corners(b, cb);
+  return ctx.body[0].rep().dim() == 3 ? exact::meet_triangles(ca, cb) : exact::meet_segments(ca, cb);
+}
+
+inline void count_face_test(bool real, std::uint32_t level, Counters& c) {
+  ++c.face_tests;
+  c.real_tests += real;
+  if (c.face_tests_by_level.size() <= level) c.face_tests_by_level.resize(level + 1);
+  ++c.face_tests_by_level[level];
+}
+
+/// Appends a pair to the answer.
+template <class Probe>
+void record_pair(CollideResult& result, Probe& probe, SimplexId a, SimplexId b, exact::Meet meet) {
+  result.pairs.push_back({a, b});
+  result.meets.push_back(meet);
+  if constexpr (Probe::kEnabled) probe.contact(a, b, meet);
+}
+
+}  // namespace lrb

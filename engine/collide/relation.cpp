@@ -1,0 +1,270 @@
+/// Point location by the parity of ray crossings, and the relation of two bodies from it.
+///
+/// 1. locate(): reject points outside the root's box; shoot an axis-parallel ray in the direction that leaves
+///    the box soonest; traverse the OBB tree along it; count crossings with exact predicates.
+/// 2. decide_without_points(): pairs that intersect decide the relation; so do disjoint boxes of open
+///    surfaces.
+/// 3. decide_by_enclosure(): else the components that lie inside the other body decide.
+
+#include "engine/collide/relation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include <Eigen/Geometry>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/exact/locate.hpp"
+#include "engine/tree/kernel_setup.hpp"
+#include <lrbscope/world_box.hpp>
+
+namespace lrb {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// The direction of a ray: along an axis of the world, or against it. The parity of crossings is the same in
+/// each.
+struct Direction {
+  int axis = 0;
+  bool backward = false;
+
+  /// Maps a point to the frame in which the ray points along +x. Exact: coordinates are only permuted and
+  /// negated.
+  void see(const double* x, int dim, double* out) const {
+    for (int k = 0; k < dim; ++k) {
+      const double value = x[(axis + k) % dim];
+      out[k] = k == 0 && backward ? -value : value;
+    }
+  }
+};
+
+/// Walks the tree along the ray from a point (doubles, or exact::RationalPoint) and counts the simplices that
+/// it crosses. `near` is the point rounded to doubles, for the boxes.
+template <class Point>
+class RayWalk {
+ public:
+  RayWalk(QueryBody& body, const Point& point, const Vector3d& near)
+      : body_(body), tree_(body.tree()), dim_(body.rep().dim()), point_(point), p_(near) {
+    // margin_: rounding of world coordinates and of the point. turn_: largest row sum of the pose's matrix.
+    const Pose& pose = body.world.pose();
+    margin_ = kWorldRounding * (world_size(pose, tree_) + near.cwiseAbs().maxCoeff() + kWorldUnderflow);
+    turn_ = pose.r.cwiseAbs().rowwise().sum().maxCoeff();
+  }
+
+  Where run() {
+    const TreeNode& root = tree_.nodes()[0];
+    const Frame f = frame_of(root);
+    const Bounds whole = bounds_of(
+        root, f, [](int) { return 0; }, [](int) { return kQuantizedMost; });
+    // Points outside the root's box need no ray: first the world AABB, then the tighter OBB.
+    if (is_beside(whole) || (dim_ == 3 && is_beside_oriented(root, f))) return Where::outside;
+    if constexpr (kMayTurn) choose_direction(whole);
+    visit(0);
+    // An odd number of crossings: inside.
+    return on_surface_ ? Where::on_surface : crossings_ % 2 ? Where::inside : Where::outside;
+  }
+
+ private:
+  /// Rays of rational points run in direction +x.
+  static constexpr bool kMayTurn = std::is_same_v<Point, const double*>;
+
+  /// The axes and origin of a node in the world.
+  struct Frame {
+    Matrix3d axes;
+    Vector3d origin;
+    double grow;  ///< by how much boxes grow to cover all errors
+  };
+
+  /// A box along the world's axes.
+  struct Bounds {
+    Vector3d centre, half;
+  };
+
+  Frame frame_of(const TreeNode& n) const {
+    const Pose& pose = body_.world.pose();
+    const double unit = tree_.unit();
+    Frame f;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) f.axes(j, i) = n.frame[i][j];
+    // Columns are the node's axes in the world, scaled to the mesh's unit.
+    f.axes = pose.r * f.axes * unit;
+    f.origin = pose.r * (Vector3d(n.origin[0], n.origin[1], n.origin[2]) * unit) + pose.t;
+    f.grow = margin_ + kKernelRounding * turn_ * (static_cast<double>(n.radius) * unit);
+    return f;
+  }
+
+  /// Returns the world AABB of a box with quantized ends `lo` and `hi`. Conservative, as the kernel's boxes
+  /// are.
+  template <class Lo, class Hi>
+  static Bounds bounds_of(const TreeNode& n, const Frame& f, const Lo& lo, const Hi& hi) {
+    Vector3d centre, half;
+    for (int i = 0; i < 3; ++i) {
+      const double base = n.base[i], scale = n.scale[i];
+      centre[i] = base + scale * 0.5 * (lo(i) + hi(i));
+      half[i] = scale * 0.5 * (hi(i) - lo(i));
+    }
+    // World AABB of an OBB: |axes| half (Arvo, "Transforming Axis-Aligned Bounding Boxes", 1990).
+    return {f.origin + f.axes * centre, f.axes.cwiseAbs() * half + Vector3d::Constant(f.grow)};
+  }
+
+  /// Returns true if the point is certainly not in a box.
+  bool is_beside(const Bounds& b) const {
+    bool beside = false;
+    for (int k = 0; k < dim_; ++k) beside |= std::abs(b.centre[k] - p_[k]) > b.half[k];
+    return beside;
+  }
+
+  /// Returns true if the point certainly lies beyond a side of a node's whole box. A plane along a side
+  /// proves that, however its direction came about: the box may reach across it by what its half axes and
+  /// `grow` allow.
+  bool is_beside_oriented(const TreeNode& n, const Frame& f) const {
+    Vector3d centre = f.origin, half[3];
+    for (int i = 0; i < 3; ++i) {
+      const double scale = n.scale[i], middle = n.base[i] + scale * 0.5 * kQuantizedMost;
+      centre += f.axes.col(i) * middle;
+      half[i] = f.axes.col(i) * (scale * 0.5 * kQuantizedMost);
+    }
+    const Vector3d way = p_ - centre;
+    const auto is_beyond = [&](const Vector3d& d) {
+      constexpr double kFarFromUnderflow = 0x1p-960;
+      const double errors = f.grow * d.cwiseAbs().sum();
+      // So near to underflow products have no relative error bound.
+      if (!(errors > kFarFromUnderflow)) return false;
+      // Separating axis: the centre is further away along d than the box reaches.
+      return std::abs(d.dot(way)) >
+             std::abs(d.dot(half[0])) + std::abs(d.dot(half[1])) + std::abs(d.dot(half[2])) + errors;
+    };
+    const Matrix3d axes = f.axes / tree_.unit();  // about as long as 1
+    for (int i = 0; i < 3; ++i)
+      // Normals of the sides; for sheared boxes these differ from the axes.
+      if (is_beyond(axes.col(i).cross(axes.col((i + 1) % 3)))) return true;
+    return false;
+  }
+
+  /// Chooses the direction in which the ray leaves the body's box soonest.
+  void choose_direction(const Bounds& whole) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < dim_; ++axis)
+      for (const bool backward : {false, true}) {
+        const double beyond = p_[axis] - whole.centre[axis];
+        // Distance to the side of the box where a ray in this direction leaves it.
+        const double left = whole.half[axis] + (backward ? beyond : -beyond);
+        if (!(left < least)) continue;
+        least = left;
+        direction_ = {axis, backward};
+      }
+    direction_.see(point_, dim_, seen_);
+  }
+
+  /// Returns true if the ray certainly misses a box.
+  bool misses(const Bounds& b) const {
+    bool missed = false;
+    for (int k = 0; k < dim_; ++k) {
+      const double off = b.centre[k] - p_[k];  // > 0: the box lies ahead on this axis
+      // Across the ray, the point must lie within the box's interval; along it, the box must not lie behind.
+      missed |= (k != direction_.axis ? std::abs(off) : direction_.backward ? off : -off) > b.half[k];
+    }
+    return missed;
+  }
+
+  void visit(std::uint32_t index) {
+    const TreeNode& n = tree_.nodes()[index];
+    if (n.is_leaf) {
+      const LeafBlock& block = tree_.blocks()[n.first];
+      for (int k = 0; k < n.count && !on_surface_; ++k) cross(block.simplex[k]);
+      return;
+    }
+    const Frame f = frame_of(n);
+    for (std::uint32_t k = 0; k < n.count && !on_surface_; ++k)
+      // A box that the ray surely misses contains no crossing.
+      if (!misses(bounds_of(
+              n, f, [&](int i) { return n.lo[i][k]; }, [&](int i) { return n.hi[i][k]; })))
+        visit(n.first + k);
+  }
+
+  void cross(SimplexId s) {
+    const double* corners[3];
+    body_.world.corners(s, corners);
+    exact::RayHit hit;
+    // The exact predicate knows only the direction +x: map the corners to the ray's frame.
+    if constexpr (kMayTurn) {
+      double seen[3][3];
+      for (int k = 0; k < dim_; ++k) {
+        direction_.see(corners[k], dim_, seen[k]);
+        corners[k] = seen[k];
+      }
+      hit = dim_ == 3 ? exact::ray_crosses(seen_, corners) : exact::ray_crosses_2d(seen_, corners);
+    } else {
+      hit = dim_ == 3 ? exact::ray_crosses(point_, corners) : exact::ray_crosses_2d(point_, corners);
+    }
+    on_surface_ |= hit == exact::RayHit::on_face;
+    crossings_ += hit == exact::RayHit::crosses;
+  }
+
+  QueryBody& body_;
+  const ObbTree& tree_;
+  const int dim_;
+  const Point& point_;
+  Vector3d p_;
+  Direction direction_;
+  double seen_[3];  ///< the point, seen as direction_ says
+  double margin_, turn_;
+  int crossings_ = 0;
+  bool on_surface_ = false;
+};
+
+}  // namespace
+
+Where locate(QueryBody& body, const double* point) {
+  if (body.tree().empty()) return Where::outside;
+  return RayWalk<const double*>(body, point, {point[0], point[1], body.rep().dim() == 3 ? point[2] : 0})
+      .run();
+}
+
+Where locate(QueryBody& body, const exact::RationalPoint& point) {
+  return body.tree().empty() ? Where::outside : RayWalk(body, point, point.rounded()).run();
+}
+
+bool decide_without_points(QueryContext& ctx, CollideResult& result) {
+  const bool solids = ctx[Side::a].rep().closed() && ctx[Side::b].rep().closed();
+  if (result.pairs.empty() && solids) return false;
+  // A surface that is not closed has no inside: only disjoint world boxes decide.
+  if (result.pairs.empty()) {
+    const QueryBody &a = ctx[Side::a], &b = ctx[Side::b];
+    const bool apart = world_boxes_are_apart(a.rep(), a.world.pose(), b.rep(), b.world.pose());
+    result.relation = apart ? Relation::separate : Relation::undefined;
+    result.interiors_overlap = apart ? Answer::no : Answer::unknown;
+    return true;
+  }
+  const bool crosses =
+      std::find(result.meets.begin(), result.meets.end(), exact::Meet::cross) != result.meets.end();
+  result.relation = crosses ? Relation::crossing : Relation::touching;
+  // Closed bodies that cross overlap, unless rounding has made one flat: crossing_interiors_overlap() checks.
+  result.interiors_overlap = crosses && solids ? Answer::yes : Answer::unknown;
+  return true;
+}
+
+void decide_by_enclosure(const Enclosed& a_in_b, const Enclosed& b_in_a, CollideResult& result) {
+  // Wholly enclosed bodies first. Surfaces do not intersect, so that one vertex stands for its component.
+  if (a_in_b.all())
+    result.relation = Relation::a_inside_b;
+  else if (b_in_a.all())
+    result.relation = Relation::b_inside_a;
+  else if (a_in_b.some())
+    result.relation = Relation::a_inside_b;
+  else if (b_in_a.some())
+    result.relation = Relation::b_inside_a;
+  else
+    result.relation = Relation::separate;
+  result.interiors_overlap = result.relation == Relation::separate ? Answer::no : Answer::yes;
+}
+
+void decide_relation(QueryContext& ctx, CollideResult& result) {
+  decide_relation(ctx, result, [] { return true; });
+}
+
+}  // namespace lrb

@@ -1,0 +1,297 @@
+#pragma once
+/// The complete query: a dual traversal of the two OBB trees.
+///
+/// Why it never misses. If real simplices s of A and t of B meet at a point of the world, then in every pair
+/// of tree nodes above them each node's bounds hold one of the two, so the bounds, grown by all errors,
+/// overlap. By induction the traversal, which drops a pair only when its bounds are proved apart, reaches the
+/// pair of leaves that hold s and t. There the pair (s, t) is dropped only when boxes or a plane are proved
+/// to separate the two; what is left is decided within proved bounds on float errors, or exactly. The proof
+/// uses neither the nesting of regions nor embedding: a poor LRB-rep can cost time, never a contact.
+///
+/// What "proved apart" has to cover is in set_up_kernel() for rotations (of whole nodes in kernel_whole.inl),
+/// in affine_pose.hpp for all other maps.
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "engine/collide/query_context.hpp"
+#include "engine/exact/predicates.hpp"
+#include "engine/tree/kernel_setup.hpp"
+#include <lrbscope/observe.hpp>
+
+namespace lrb {
+
+// Runs the tree kernel one pair of nodes at a time and tells a probe what came of each. The kernel, the
+// order of pairs and the outcome are those of a query that nobody watches.
+
+/// Returns what the kernel does with a pair of nodes whose own boxes are not apart.
+inline NodeStep step_of(const TreeKernel& k, const NodePair& pair) {
+  const TreeNode &a = k.nodes_a[pair.a], &b = k.nodes_b[pair.b];
+  const auto size = [&](const TreeNode& n, int side) {
+    return n.radius * (k.affine != nullptr ? k.affine->span[side] : side == 0 ? k.ratio_a : k.ratio_b);
+  };
+  if (a.is_leaf && b.is_leaf) return NodeStep::leaves;
+  const bool hold_a = a.is_leaf || size(b, 1) > kMuchLarger * size(a, 0);
+  const bool hold_b = b.is_leaf || size(a, 0) > kMuchLarger * size(b, 1);
+  if (!a.is_leaf && hold_b) return NodeStep::descend_a;
+  return !b.is_leaf && hold_a ? NodeStep::descend_b : NodeStep::descend_both;
+}
+
+template <class Probe>
+class NodeWatch {
+ public:
+  NodeWatch(QueryContext& ctx, Probe& probe)
+      : probe_(probe),
+        parents_(ctx.parents),
+        parted_(ctx.parted),
+        parted_nodes_(ctx.parted_nodes),
+        all_(probe.level() == EventLevel::all) {
+    parted_.resize(kMostPairs);
+    parted_nodes_.resize(ctx.stack.size());
+  }
+
+  /// Does what run_tree_kernel() does. May be called again, of another watch too, to go on.
+  void run(TreeKernel& k) {
+    const std::uint64_t most = k.most_node_pairs;
+    if (k.node_pairs == 0) parents_.clear();
+    k.parted = all_ ? parted_.data() : nullptr;
+    k.parted_nodes = parted_nodes_.data();
+    while (!is_done(k) && k.out_capacity - k.out_size >= kMostPairs && k.node_pairs < most) {
+      k.most_node_pairs = k.node_pairs + 1;
+      step(k);
+    }
+    k.most_node_pairs = most;
+  }
+
+ private:
+  static constexpr std::uint32_t kMostPairs = kTreeWidth * kTreeWidth;
+
+  void step(TreeKernel& k) {
+    const std::uint32_t out_before = k.out_size;
+    const std::uint64_t boxes_before = k.box_tests, pairs_before = k.prefilter_tests;
+    k.parted_size = k.parted_nodes_size = 0;
+    run_tree_kernel(k);
+    for (std::uint32_t i = 0; i < k.parted_nodes_size; ++i) tell_parted(k.parted_nodes[i]);
+    if (k.parted_nodes_size != 0) return;
+    const NodePair& pair = k.opened;
+    NodeVisit visit{.a = pair.a, .b = pair.b, .parent = take_parent(pair), .step = step_of(k, pair)};
+    visit.box_tests = static_cast<std::uint8_t>(k.box_tests - boxes_before);
+    visit.met = static_cast<std::uint8_t>(k.stack_size - k.opened_at);
+    if (visit.step == NodeStep::leaves) {
+      const std::uint32_t left = k.out_size - out_before;
+      visit.met = static_cast<std::uint8_t>(k.prefilter_tests - pairs_before);
+      visit.parted = static_cast<std::uint8_t>(visit.met - left);
+      visit.certain = static_cast<std::uint8_t>(
+          std::count_if(k.out + out_before, k.out + k.out_size, [](const Candidate& c) {
+            return c.certainty == Certainty::cross || c.certainty == Certainty::disjoint;
+          }));
+    }
+    const std::uint32_t told = probe_.node_pair(visit);
+    for (std::uint32_t i = k.opened_at; i < k.stack_size; ++i) parents_.emplace(key_of(k.stack[i]), told);
+    for (std::uint32_t i = 0; i < k.parted_size; ++i)
+      probe_.plane_test(k.parted[i].a, k.parted[i].b, k.parted[i].whose);
+  }
+
+  void tell_parted(const NodePair& pair) {
+    probe_.node_pair(
+        {.a = pair.a, .b = pair.b, .parent = take_parent(pair), .step = NodeStep::whole, .box_tests = 1});
+  }
+
+  static std::uint64_t key_of(const NodePair& pair) { return std::uint64_t{pair.a} << 32 | pair.b; }
+
+  /// Returns what the probe returned for the pair above, and forgets it: each pair is visited once.
+  std::uint32_t take_parent(const NodePair& pair) {
+    const auto found = parents_.extract(key_of(pair));
+    return found.empty() ? kNull : found.mapped();
+  }
+
+  Probe& probe_;
+  std::unordered_map<std::uint64_t, std::uint32_t>& parents_;  ///< of pairs that wait: see take_parent()
+  std::vector<PartedPair>& parted_;
+  std::vector<NodePair>& parted_nodes_;
+  bool all_;
+};
+
+/// Sets up a kernel for two bodies' own trees.
+inline TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  return set_up_kernel(a.tree(), pose_a, b.tree(), pose_b);
+}
+
+template <class Probe>
+[[gnu::noinline]] void open_regions_from(QueryContext& ctx, Side side, CellId innermost,
+                                         CollideResult& result, Probe& probe) {
+  Wrapper& wrapper = *ctx[side].wrapper;
+  const std::size_t before = wrapper.excluded().size();
+  result.counters.refinements += wrapper.refine_path(innermost);
+  if constexpr (Probe::kEnabled)
+    for (const RegionId r : std::span(wrapper.excluded()).subspan(before))
+      probe.refine(side, r, static_cast<std::uint32_t>(wrapper.rep().floor(r).size()));
+}
+
+/// Returns a kernel at the roots of what is queried of both bodies, at their poses. It uses the context's
+/// buffers, with room for `capacity` candidates.
+TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity);
+/// Returns the same for other poses, set up by set_up_kernel() whatever the poses are.
+TreeKernel start_rigid_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_b,
+                              std::size_t capacity);
+
+/// Refines the wrapper of a body until a face shows: opens the regions that hide it, from the outside inward.
+/// Mostly there are none left. Returns the number of regions between the face and the outside.
+template <class Probe>
+inline std::uint32_t show_face(QueryContext& ctx, Side side, FaceId f, CollideResult& result, Probe& probe) {
+  const LrbRep& rep = ctx[side].rep();
+  const CellId outer = rep.outer_cell(f);
+  if (!is_region(outer)) return 0;
+  if (ctx[side].wrapper->included(outer)) open_regions_from(ctx, side, outer, result, probe);
+  return rep.depth(outer.as_region());
+}
+
+/// The rules of the exact query; coarse_query.hpp has others.
+struct ExactRules {
+  static constexpr bool kLimited = false;   ///< may stop before the answer is complete
+  static constexpr bool kWrappers = false;  ///< what is walked stands for bodies that lie within it
+  static constexpr bool kTrial = false;     ///< may give up once a pair crosses
+};
+
+template <class Probe, class Rules = ExactRules>
+class TreeQuery {
+ public:
+  TreeQuery(QueryContext& ctx, const CollideRequest& request, CollideResult& result, Probe& probe,
+            Rules rules = {})
+      : ctx_(ctx),
+        mode_(request.mode),
+        pair_limit_(request.pair_limit()),
+        result_(result),
+        probe_(probe),
+        rules_(rules) {}
+
+  const Rules& rules() const { return rules_; }
+
+  void run() {
+    const ObbTree &a = ctx_[Side::a].tree(), &b = ctx_[Side::b].tree();
+    if (a.empty() || b.empty()) return;
+    if (!is_told_more(probe_)) {
+      walk();
+      return;
+    }
+    probe_.begin(Phase::walk, ctx_[Side::a].walked(), ctx_[Side::b].walked());
+    probe_.end(Phase::walk, walk());
+  }
+
+ private:
+  /// Returns the number of pairs of nodes.
+  std::uint64_t walk() {
+    // A small buffer where one pair may be enough, so that little is searched beyond it.
+    const bool one_may_do = Rules::kTrial || mode_ != Mode::all_pairs;
+    TreeKernel k = start_kernel(ctx_, one_may_do ? 64 : 1024);
+    k.nearest_first = one_may_do;
+    if constexpr (Rules::kWrappers) allow_for_wrappers(k);
+    bool done = false;
+    while (!is_done(k) && !done) {
+      k.out_size = 0;
+      if constexpr (Rules::kLimited) k.most_node_pairs = rules_.most_node_pairs(k.node_pairs);
+      is_told_more(probe_) ? NodeWatch<Probe>(ctx_, probe_).run(k) : run_tree_kernel(k);
+      if constexpr (Rules::kLimited) done = rules_.time_is_up(result_.pairs.size());
+      if constexpr (Rules::kTrial) rules_.came_to(k.node_pairs, k.stack_size + k.tested_size);
+      for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
+      const bool too_many = result_.pairs.size() > pair_limit_;
+      if constexpr (Rules::kTrial)
+        if (rules_.gives_up(too_many)) break;
+      if (too_many) refuse_pairs(pair_limit_);
+    }
+    result_.counters.node_pairs += k.node_pairs;
+    result_.counters.box_tests += k.box_tests;
+    result_.counters.prefilter_tests += k.prefilter_tests;
+    return k.node_pairs;
+  }
+
+  /// Tests a candidate. Returns true if the answer is complete. One pair is enough in any_pair mode, and in
+  /// first_pair mode if it crosses; a pair that only touches is kept while a crossing one is looked for, so
+  /// that the relation is exact in that mode too.
+  bool test(const Candidate& c) {
+    if constexpr (Rules::kLimited)
+      if (rules_.no_test_left(result_.counters.face_tests, c.certainty != Certainty::none,
+                              result_.pairs.size()))
+        return true;
+    const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
+    const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
+    const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
+    const std::uint64_t fallbacks = is_told_more(probe_) ? exact::exact_fallbacks() : 0;
+    exact::Meet meet = meet_of(c);
+    if constexpr (Rules::kWrappers)
+      if (meet == exact::Meet::disjoint && c.certainty != Certainty::disjoint)
+        meet = rules_.meet_of_near(ctx_, c.a, c.b);
+    const bool real = ctx_[Side::a].rep().is_real(fa) && ctx_[Side::b].rep().is_real(fb);
+    count_face_test(real, std::max(depth_a, depth_b), result_.counters);
+    if constexpr (Probe::kEnabled) {
+      probe_.face_test(c.a, c.b, meet, depth_a, depth_b);
+      if (is_told_more(probe_)) probe_.tested_by(tested_by(c, fallbacks));
+    }
+    if (meet == exact::Meet::disjoint) return false;
+    if (mode_ == Mode::first_pair && !result_.pairs.empty()) {
+      if (meet != exact::Meet::cross) return false;
+      result_.pairs.clear();
+      result_.meets.clear();
+    }
+    record_pair(result_, probe_, c.a, c.b, meet);
+    if constexpr (Rules::kWrappers)
+      if (mode_ != Mode::all_pairs) return true;
+    if constexpr (Rules::kTrial)
+      if (mode_ == Mode::all_pairs && meet == exact::Meet::cross && rules_.crossed()) return true;
+    return mode_ == Mode::any_pair || (mode_ == Mode::first_pair && meet == exact::Meet::cross);
+  }
+
+  /// Returns how a candidate meets. Most are certain: then no corner needs to be moved to the world.
+  exact::Meet meet_of(const Candidate& c) {
+    if (c.certainty == Certainty::cross) return exact::Meet::cross;
+    if (c.certainty == Certainty::disjoint) return exact::Meet::disjoint;
+    if (c.certainty == Certainty::touch_if_shared && exactly_ && shares_corners(c)) return exact::Meet::touch;
+    return test_simplices(ctx_, c.a, c.b);
+  }
+
+  /// Returns what decided a candidate. fallbacks: exact::exact_fallbacks() before that.
+  TestedBy tested_by(const Candidate& c, std::uint64_t fallbacks) {
+    if (c.certainty == Certainty::cross || c.certainty == Certainty::disjoint) return TestedBy::floats;
+    if (exact::exact_fallbacks() != fallbacks) return TestedBy::expansions;
+    const bool shares = c.certainty == Certainty::touch_if_shared && exactly_ && shares_corners(c);
+    return shares ? TestedBy::shared_corners : TestedBy::filter;
+  }
+
+  /// Returns true if the candidate's corners are corners of the other simplex too. Compares each with all
+  /// three without branches, because which one it is cannot be predicted.
+  bool shares_corners(const Candidate& c) {
+    const double *own[3], *others[3];
+    ctx_[Side::a].world.corners(c.a, c.side == Side::a ? own : others);
+    ctx_[Side::b].world.corners(c.b, c.side == Side::a ? others : own);
+    unsigned shared = 1;
+    for (unsigned left = c.corners; left != 0; left &= left - 1) {
+      const double* const corner = own[std::countr_zero(left)];
+      shared &=
+          has_bits_of(corner, others[0]) | has_bits_of(corner, others[1]) | has_bits_of(corner, others[2]);
+    }
+    return shared != 0;
+  }
+
+  /// Returns 1 if two points are equal bit by bit, else 0. Points that only differ in the sign of a zero are
+  /// left to the exact test.
+  static unsigned has_bits_of(const double* x, const double* y) {
+    std::uint64_t difference = 0;
+    for (int i = 0; i < 3; ++i)
+      difference |= std::bit_cast<std::uint64_t>(x[i]) ^ std::bit_cast<std::uint64_t>(y[i]);
+    return difference == 0;
+  }
+
+  QueryContext& ctx_;
+  Mode mode_;
+  std::uint64_t pair_limit_;
+  CollideResult& result_;
+  Probe& probe_;
+  Rules rules_;
+  const bool exactly_ = ctx_[Side::a].rep().dim() == 3 && !exact::only_floating();
+};
+
+}  // namespace lrb

@@ -1,0 +1,177 @@
+// Convex bounds of a body as half-spaces: a discrete oriented polytope with 26 fixed directions (k-DOP;
+// Klosowski et al. 1998), or the inside of a convex mesh.
+
+#include "engine/construct/half_spaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "engine/core/tolerances.hpp"
+
+namespace lrb::construct {
+
+BodyBounds::BodyBounds(std::span<const Eigen::Vector3d> points, double swell) {
+  // The 26 directions of the 3 x 3 x 3 stencil: 6 axes, 12 edge diagonals, 8 corner diagonals.
+  for (int i = 0; i < 27; ++i) {
+    if (i == 13) continue;  // the middle of the 27 is no direction
+    const Eigen::Vector3d n = Eigen::Vector3d(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1).normalized();
+    // The extent of the points along n. Its other end is the bound of -n, which is in the list too.
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Eigen::Vector3d& p : points) {
+      low = std::min(low, n.dot(p));
+      high = std::max(high, n.dot(p));
+    }
+    half_spaces_.push_back({n, low - swell * (high - low)});
+  }
+}
+
+BodyBounds::BodyBounds(const Mesh& convex, double distance) {
+  for (FaceId f = 0; f < convex.face_count(); ++f) {
+    const auto c = convex.face(f);
+    const Eigen::Vector3d &p = convex.vertices[c[0]], &q = convex.vertices[c[1]], &r = convex.vertices[c[2]];
+    // The inward normal: the body is on the positive side of each plane.
+    const Eigen::Vector3d n = -(q - p).cross(r - p).normalized();
+    half_spaces_.push_back({n, n.dot(p) + distance});
+  }
+}
+
+// Euclidean projection of a point onto a polyhedron given by half-spaces: a small convex quadratic programme,
+// solved incrementally after Seidel (1991), who solves linear programmes in this way. If the optimum of the
+// first i half-spaces violates the next one, the new optimum lies on the boundary plane of that one, by
+// convexity.
+// 1. 3D: take the half-spaces one by one and keep the point while it satisfies them.
+// 2. 2D: on a violated one's plane, do the same with the half-planes that the earlier half-spaces cut out.
+// 3. 1D: on a violated half-plane's line, intersect intervals and clamp.
+
+namespace {
+
+using Vector2 = Eigen::Vector2d;
+using Vector3 = Eigen::Vector3d;
+
+/// A plane with coordinates: origin (its point nearest to the target) and two axes of length 1.
+struct Frame {
+  Vector3 origin, x, y;
+};
+
+Frame frame_on(const HalfSpace& h, const Vector3& target) {
+  Frame f;
+  // With the origin at the target's foot, distances to the target differ from those to the origin by a
+  // constant in quadrature: the nearest point on the plane is the one nearest to the origin.
+  f.origin = target + h.n * (h.d - h.n.dot(target));
+  // The coordinate axis closest to the plane: its sine to n is at least sqrt(2/3), so the cross product is
+  // stable.
+  int least = 0;
+  h.n.cwiseAbs().minCoeff(&least);
+  f.x = h.n.cross(Vector3::Unit(least)).normalized();
+  // Both factors have length 1 and are orthogonal, so y needs no normalisation.
+  f.y = h.n.cross(f.x);
+  return f;
+}
+
+/// The half-plane a.p >= b (a need not have length 1) in which a half-space cuts the frame's plane.
+struct HalfPlane {
+  Vector2 a;
+  double b;
+  bool parallel;  ///< parallel to the plane: holds all of it or nothing
+};
+
+HalfPlane cut(const HalfSpace& h, const Frame& f) {
+  // Substitute origin + x p.x + y p.y into n.x >= d. The length of `a` is the sine between the two planes.
+  const Vector2 a(h.n.dot(f.x), h.n.dot(f.y));
+  return {a, h.d - h.n.dot(f.origin), a.squaredNorm() < kParallelSineSq};
+}
+
+/// Returns the point nearest to the origin on the boundary line `edge` of a half-plane, within the
+/// half-spaces `before`.
+std::optional<Vector2> nearest_on_line(const HalfPlane& edge, std::span<const HalfSpace> before,
+                                       const Frame& frame, double slack) {
+  // Parametrise the line by arc length from its point nearest to the origin: the optimum is the smallest |t|.
+  const double length_sq = edge.a.squaredNorm();
+  const Vector2 start = edge.a * (edge.b / length_sq);
+  const Vector2 along = Vector2(-edge.a.y(), edge.a.x()) / std::sqrt(length_sq);
+  double low = -std::numeric_limits<double>::infinity(), high = -low;
+  // Each earlier half-space leaves a ray of the line. The rays intersect in [low, high].
+  for (const HalfSpace& h : before) {
+    const HalfPlane c = cut(h, frame);
+    const double slope = c.a.dot(along), needed = c.b - c.a.dot(start);
+    if (slope * slope < kParallelSineSq) {
+      // Parallel to the line: the whole line satisfies it, or none of it.
+      if (needed > slack) return std::nullopt;
+    } else if (slope > 0) {
+      low = std::max(low, needed / slope);
+    } else {
+      high = std::min(high, needed / slope);
+    }
+  }
+  // Intervals that miss each other by less than `slack` count as one point: rounding could have caused the
+  // gap.
+  if (low > high + slack) return std::nullopt;
+  // Clamp t = 0, the optimum without the other half-spaces, to the interval.
+  const double t = low > 0 ? low : high < 0 ? high : 0;
+  return Vector2(start + along * t);
+}
+
+std::optional<Vector3> nearest_on_plane(const HalfSpace& last, std::span<const HalfSpace> before,
+                                        const Vector3& target, double slack) {
+  // The 2D problem: start from the target's foot and add the earlier half-spaces one by one.
+  const Frame frame = frame_on(last, target);
+  Vector2 p = Vector2::Zero();
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const HalfPlane c = cut(before[i], frame);
+    // The point satisfies this half-plane: it remains the optimum.
+    if (c.a.dot(p) >= c.b - slack) continue;
+    // The planes are parallel and the half-space does not contain this one: infeasible.
+    if (c.parallel) return std::nullopt;
+    // Violated: the optimum moves to the boundary line.
+    const auto q = nearest_on_line(c, before.first(i), frame, slack);
+    if (!q) return std::nullopt;
+    p = *q;
+  }
+  // Back to 3D coordinates.
+  return Vector3(frame.origin + frame.x * p.x() + frame.y * p.y());
+}
+
+}  // namespace
+
+std::optional<Vector3> nearest_point(const Vector3& target, std::span<const HalfSpace> half_spaces,
+                                     double slack) {
+  Vector3 p = target;
+  for (std::size_t i = 0; i < half_spaces.size(); ++i) {
+    const HalfSpace& h = half_spaces[i];
+    // In random order, half-space i is violated with probability at most 3 / i: expected linear time.
+    if (h.n.dot(p) >= h.d - slack) continue;
+    // Violated: the optimum lies on this plane, subject to the half-spaces before it.
+    const auto q = nearest_on_plane(h, half_spaces.first(i), target, slack);
+    if (!q) return std::nullopt;
+    p = *q;
+  }
+  return p;
+}
+
+std::optional<Vector3> nearest_point_worst_first(const Vector3& target, std::span<HalfSpace> half_spaces,
+                                                 double slack) {
+  Vector3 p = target;
+  // The first `used` half-spaces have been added; p is their optimum. Each round adds one, so this
+  // terminates.
+  for (std::size_t used = 0;; ++used) {
+    std::size_t worst = half_spaces.size();
+    double most = slack;
+    // Pricing step, as in an active-set method: the most violated constraint enters.
+    for (std::size_t i = used; i < half_spaces.size(); ++i) {
+      const double behind = half_spaces[i].d - half_spaces[i].n.dot(p);
+      if (behind > most) most = behind, worst = i;
+    }
+    // Nothing is violated: an optimum of a subset that satisfies all is the optimum of all.
+    if (worst == half_spaces.size()) return p;
+    // Keep the added ones in front, where the solver expects them.
+    std::swap(half_spaces[used], half_spaces[worst]);
+    const auto q = nearest_on_plane(half_spaces[used], half_spaces.first(used), target, slack);
+    if (!q) return std::nullopt;
+    p = *q;
+  }
+}
+
+}  // namespace lrb::construct

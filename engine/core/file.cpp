@@ -1,0 +1,267 @@
+// Atomic replacement of a file, by the rename idiom of POSIX.
+// 1. Create a temporary file beside the target, on the same file system, and register it.
+// 2. Write to it through a buffer.
+// 3. commit(): close it and rename it over the target, which is atomic for readers.
+// Without commit(), the destructor removes it. There is no fsync: a crash of the machine may lose the data.
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <set>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+
+namespace lrb {
+namespace {
+
+std::string escaped(std::string_view text, bool keep_high) {
+  static constexpr char kHex[] = "0123456789abcdef";
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    // Printable ASCII as it is. Bytes from 0x80 may be UTF-8, and are kept on request. Others as \xhh.
+    if ((byte >= 0x20 && byte < 0x7f) || (keep_high && byte >= 0x80)) {
+      out += c;
+    } else {
+      out += {'\\', 'x', kHex[byte >> 4], kHex[byte & 15]};
+    }
+  }
+  return out;
+}
+
+[[noreturn]] void cannot_read(const std::string& path, const std::string& why) {
+  throw InputError(printable_name(path) + ": " + why);
+}
+
+/// Returns true if a FIFO has a name. A pipe without one, as <(...) and | make it, is filled by the process
+/// at its other end. Opening a named one blocks until somebody writes to it.
+bool has_name(const char* fifo) {
+  constexpr long kPipeFileSystem = 0x50495045;  // PIPEFS_MAGIC
+  struct statfs where {};
+  return statfs(fifo, &where) != 0 || static_cast<long>(where.f_type) != kPipeFileSystem;
+}
+
+[[noreturn]] void too_large(const std::string& path, std::uint64_t most) {
+  cannot_read(path, "found more than " + std::to_string(most) +
+                        " bytes, which is the most for a file of this kind; is it the right one?");
+}
+
+}  // namespace
+
+std::string_view what_is_no_file(const std::string& path) {
+  using Kind = std::filesystem::file_type;
+  std::error_code ignored;
+  switch (std::filesystem::status(path, ignored).type()) {
+    case Kind::directory:
+      return "a directory";
+    case Kind::character:  // /dev/zero has no end
+    case Kind::block:
+      return "a device";
+    case Kind::fifo:
+      return has_name(path.c_str()) ? "a named pipe" : "";
+    case Kind::socket:
+      return "a socket";
+    default:
+      return "";
+  }
+}
+
+std::string read_file(const std::string& path, std::uint64_t most) {
+  const std::string_view kind = what_is_no_file(path);
+  if (!kind.empty())
+    cannot_read(path,
+                "found " + std::string(kind) + ", expected a file" +
+                    (kind == "a directory" ? "; name a file in it" : "; copy what is in it into a file"));
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) {
+    const int reason = errno;
+    if (reason == ENOENT) cannot_read(path, "no such file; check the path");
+    cannot_read(path, std::string("cannot be opened (") + std::strerror(reason) + "); check its permissions");
+  }
+  std::error_code ignored;
+  std::string bytes;
+  // Reject large files before reading. Pipes have no size, so the limit is checked again after each chunk.
+  const auto size = std::filesystem::file_size(path, ignored);
+  if (!ignored && size > most) too_large(path, most);
+  if (!ignored) bytes.reserve(size + 1);  // pipes have no size and grow as they come
+  static constexpr std::size_t kChunk = std::size_t{1} << 18;
+  for (;;) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + kChunk);
+    const std::size_t got = std::fread(bytes.data() + before, 1, kChunk, file.get());
+    bytes.resize(before + got);
+    if (bytes.size() > most) too_large(path, most);
+    // A short read is the end of the file or an error.
+    if (got == kChunk) continue;
+    if (std::ferror(file.get())) cannot_read(path, "reading failed; check the disk or copy the file again");
+    return bytes;
+  }
+}
+
+std::string in_quotes(std::string_view text, std::size_t limit) {
+  const bool cut = text.size() > limit;
+  return std::string(1, '\'').append(escaped(text.substr(0, limit), false)).append(cut ? "...'" : "'");
+}
+
+std::string printable_name(std::string_view name) {
+  return escaped(name, true);
+}
+
+namespace {
+
+constexpr std::size_t kBuffer = std::size_t{1} << 16;
+
+bool is_machines_fault(int reason) {
+  return reason == ENOSPC || reason == EDQUOT || reason == EIO || reason == EROFS || reason == EFBIG ||
+         reason == EMFILE || reason == ENFILE;
+}
+
+/// Resolves symbolic links, so that the file is replaced and not the link.
+std::string behind_links(const std::string& path) {
+  std::error_code error;
+  const auto real = std::filesystem::weakly_canonical(path, error);
+  return error ? path : real.string();
+}
+
+/// Returns a name beside the target, on the same file system, that no other process or thread uses.
+std::string temporary_name(const std::string& target) {
+  static std::atomic<unsigned> counter{0};
+  return target + ".tmp-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
+}
+
+/// The temporary files that exist. Never destroyed, because threads may outlive main().
+struct Unfinished {
+  std::mutex mutex;
+  std::set<std::string> files;
+};
+
+Unfinished& unfinished() {
+  static auto* const all = new Unfinished;
+  return *all;
+}
+
+int create_temporary(const std::string& name) {
+  static constexpr mode_t kAll = 0666;  // less the umask
+  Unfinished& all = unfinished();
+  // Register before creating: abandon_atomic_files() must not miss a file. Once it has the lock, none is
+  // created.
+  const std::lock_guard lock(all.mutex);
+  const auto entry = all.files.insert(name).first;
+  const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kAll);
+  // erase() may change errno, which the caller reports.
+  const int reason = errno;
+  if (file < 0) all.files.erase(entry);
+  errno = reason;
+  return file;
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(behind_links(path)) {
+  struct stat status {};
+  const bool exists = stat(target_.c_str(), &status) == 0;
+  if (exists && S_ISDIR(status.st_mode)) fail("write", EISDIR);
+  // Pipes and devices cannot be replaced: write to them directly.
+  if (exists && !S_ISREG(status.st_mode)) {
+    file_ = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+  } else {
+    temporary_ = temporary_name(target_);
+    file_ = create_temporary(temporary_);
+  }
+  if (file_ < 0) {
+    const int reason = errno;
+    temporary_.clear();
+    fail("create", reason);
+  }
+  if (exists && !temporary_.empty())
+    static_cast<void>(fchmod(file_, status.st_mode & 07777));  // keep the mode if we are allowed to
+}
+
+AtomicFile::~AtomicFile() {
+  if (file_ >= 0) close(file_);
+  if (temporary_.empty()) return;
+  // Not committed: the target stays as it was.
+  const std::lock_guard lock(unfinished().mutex);
+  unlink(temporary_.c_str());
+  unfinished().files.erase(temporary_);
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  buffer_.append(bytes);
+  if (buffer_.size() >= kBuffer) flush();
+}
+
+void AtomicFile::flush() {
+  const char* at = buffer_.data();
+  for (std::size_t left = buffer_.size(); left > 0;) {
+    const ssize_t written = ::write(file_, at, left);
+    // A signal interrupted the call, or it wrote only a part: go on with the rest.
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("write", errno);
+    at += written;
+    left -= static_cast<std::size_t>(written);
+  }
+  buffer_.clear();
+}
+
+void AtomicFile::commit() {
+  flush();
+  // close() must not be repeated after an error, so forget the descriptor first. It reports delayed write
+  // errors.
+  const int file = file_;
+  file_ = -1;
+  if (close(file) != 0) fail("write", errno);
+  if (temporary_.empty()) return;
+  {
+    // Rename under the lock, so that abandon_atomic_files() sees the file either unfinished or in place.
+    const std::lock_guard lock(unfinished().mutex);
+    if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail("replace", errno);
+    unfinished().files.erase(temporary_);
+  }
+  temporary_.clear();
+}
+
+void AtomicFile::fail(const char* doing, int reason) const {
+  const std::string message = printable_name(path_) + ": cannot " + doing + " the file (" +
+                              std::strerror(reason) + "); check the path, its permissions and the space left";
+  if (is_machines_fault(reason)) throw EnvironmentError(message);
+  throw InputError(message);
+}
+
+void abandon_atomic_files() {
+  Unfinished& all = unfinished();
+  // Never unlocked: no thread can create or commit a file from here on.
+  all.mutex.lock();
+  for (const std::string& file : all.files) unlink(file.c_str());
+}
+
+void write_file(const std::string& path, std::string_view bytes) {
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
+void make_folder(const std::string& path) {
+  if (path.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error || !std::filesystem::is_directory(path, error))
+    throw EnvironmentError(path + ": cannot be made a folder (" +
+                           (error ? error.message() : "a file is in the way") + ")");
+}
+
+void make_folder_of(const std::string& file) {
+  make_folder(std::filesystem::path(file).parent_path().string());
+}
+
+}  // namespace lrb

@@ -1,0 +1,201 @@
+/// Runs the float kernel and measures in double what it leaves:
+/// 1. Convert the bounds of the request to floats, rounded so that the kernel drops no pair that matters.
+/// 2. Run the kernel. When it stops, grow its buffers, ask the exact query about contact, or report; then
+///    resume.
+/// 3. Measure the pairs that are left, nearest first.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/distance/distance_context.hpp"
+#include "engine/distance/distance_kernel.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr float kNothing = std::numeric_limits<float>::infinity();
+
+/// Returns the approximate direction from A to B, in A's frame.
+Eigen::Vector3d direction_of(const DistanceContext& context, const NearestPairs& found,
+                             const TreeKernel& tree) {
+  // If a pair has been measured, the direction between its closest points: the transpose takes it to A's
+  // axes.
+  const Eigen::Vector3d way = context.query.body[0].world.pose().r.transpose() * found.way();
+  if (way.squaredNorm() > 0) return way.normalized();
+  // Otherwise the direction between the origins of the roots.
+  Eigen::Vector3d middles;
+  for (int i = 0; i < 3; ++i) {
+    const double *a = tree.nodes_a[0].origin, *b = tree.nodes_b[0].origin;
+    const double at_b = tree.m[0][i] * b[0] + tree.m[1][i] * b[1] + tree.m[2][i] * b[2];
+    middles[i] = at_b * tree.ratio_b + tree.t[i] - a[i] * tree.ratio_a;
+  }
+  return middles.squaredNorm() > 0 ? Eigen::Vector3d(middles.normalized()) : middles;
+}
+
+}  // namespace
+
+bool suits_floats(const TreeKernel& tree) {
+  constexpr float kTooRough = 0x1p-10F;
+  // The kernel takes rotations only; from a slack of kTooRough on, rounding outweighs the shapes.
+  if (tree.affine != nullptr || !(tree.slack < kTooRough)) return false;
+  for (int axis = 0; axis < 3; ++axis)
+    // Too far apart to tell near sides from far ones. NaN fails, too.
+    if (!(std::abs(tree.t[axis]) < kFarForFloats)) return false;
+  return true;
+}
+
+FloatWalk::FloatWalk(DistanceContext& context, NearestPairs& found, const DistanceRequest& request,
+                     const TreeKernel& tree, double unit, bool descend, FarPairs* far)
+    : context_(context), found_(found), unit_(unit), k_{} {
+  k_.tree = tree;
+  k_.tree.most_node_pairs = request.max_steps > 0 ? request.max_steps : kNoLimit;
+  // Rounded to the safe side: upper bounds up, tolerances and the distance at which to stop down.
+  k_.upper = rounded_up(found.upper() / unit);
+  k_.spare = rounded_down(request.tolerance / unit);
+  k_.share = std::min(1.0F, rounded_down(request.relative_tolerance));
+  k_.widest = request.within ? rounded_up(*request.within / unit) : kNothing;
+  k_.enough = request.within ? rounded_down(*request.within / unit) : -1;
+  k_.best_a = k_.best_b = kNull;
+  // The first slab direction.
+  const Eigen::Vector3d direction = direction_of(context, found, tree);
+  for (int i = 0; i < 3; ++i) k_.direction[0][i] = static_cast<float>(direction[i]);
+  k_.descend = descend;
+  begin_ends();
+  // Coherent queries: planes that earlier steps cached.
+  if (far != nullptr)
+    far->lend(k_, context.query.body[0].tree().nodes().size() * context.query.body[1].tree().nodes().size());
+  if (context.waiting.size() < 4 * kRoomForStep) context.waiting.resize(16 * kRoomForStep);
+  if (context.near.size() < 4 * kRoomForStep) context.near.resize(16 * kRoomForStep);
+  // Start with the pair of roots, whose bound is unknown.
+  context.waiting[0] = {-kNothing, 0, 0};
+  k_.waiting_size = 1;
+}
+
+/// Makes room for the projections of all nodes. Entries of other directions need not be cleared, because each
+/// direction has its own number.
+void FloatWalk::begin_ends() {
+  constexpr std::uint32_t kLastTurn = 0xf0000000;
+  // Before the numbers run out, start again with a cleared cache; 2^28 numbers remain for the current query.
+  const bool begins_again = context_.turn > kLastTurn;
+  if (begins_again) context_.turn = 0;
+  for (int side = 0; side < 2; ++side) {
+    std::vector<NodeEnd>& ends = context_.ends[side];
+    if (begins_again) std::fill(ends.begin(), ends.end(), NodeEnd{0, 0});
+    const std::size_t nodes = context_.query.body[side].tree().nodes().size();
+    if (ends.size() < nodes) ends.resize(nodes);
+    k_.ends[side] = ends.data();
+  }
+  k_.turn = context_.turn;
+}
+
+void FloatWalk::give_room() {
+  // Doubling keeps the number of copies small; a kernel step needs kRoomForStep free entries.
+  if (context_.waiting.size() - k_.waiting_size < kRoomForStep)
+    context_.waiting.resize(2 * context_.waiting.size());
+  if (context_.near.size() - k_.near_size < kRoomForStep) context_.near.resize(2 * context_.near.size());
+  // Growth may have moved the buffers.
+  k_.waiting = context_.waiting.data();
+  k_.near = context_.near.data();
+  k_.waiting_capacity = static_cast<std::uint32_t>(context_.waiting.size());
+  k_.near_capacity = static_cast<std::uint32_t>(context_.near.size());
+}
+
+/// Descends to a first pair, as the kernel does at its start, and stops there. Returns true if nothing is
+/// left to do.
+bool FloatWalk::descend_alone() {
+  give_room();
+  k_.waiting_size = 0;  // nothing is left to walk
+  run_distance_kernel(k_);
+  // Put the pair of roots back for the traversal.
+  k_.waiting[0] = {-kNothing, 0, 0};
+  k_.waiting_size = 1;
+  context_.turn = k_.turn;
+  if (k_.stop == KernelStop::doubtful) {
+    // Contact is possible: the exact query decides, and the kernel need not ask again.
+    if (found_.surfaces_meet()) return true;
+    k_.apart = true;
+  }
+  return k_.stop == KernelStop::enough;
+}
+
+void FloatWalk::tell(BoundsTeller& teller) const {
+  // The least bound of the pairs that were dropped, wait, or are to be measured.
+  double lower = dropped();
+  for (std::uint32_t i = 0; i < k_.near_size; ++i)
+    lower = std::min(lower, static_cast<double>(k_.near[i].lower) * unit_);
+  teller.tell(k_.tree.node_pairs, lower, std::min(found_.upper(), static_cast<double>(k_.upper) * unit_));
+}
+
+bool FloatWalk::run(BoundsTeller* teller) {
+  // Without contact the kernel need not stop at ambiguous pairs.
+  k_.apart = found_.known_apart();
+  const std::uint64_t most = k_.tree.most_node_pairs;
+  // The early stops below, which only serve reports, must not cut the first descent short.
+  if (teller != nullptr && k_.descend && descend_alone()) return found_.known_to_meet();
+  for (;;) {
+    give_room();
+    // With a probe, stop after a while to report.
+    if (teller != nullptr)
+      k_.tree.most_node_pairs = std::min(most, BoundsTeller::next_look(k_.tree.node_pairs));
+    run_distance_kernel(k_);
+    context_.turn = k_.turn;
+    if (k_.stop == KernelStop::doubtful) {
+      // Contact is possible: ask once, and go on if there is none.
+      if (found_.surfaces_meet()) return true;
+      k_.apart = true;
+    } else if (k_.stop == KernelStop::limit && k_.tree.node_pairs < most) {
+      // Stopped only to report: the real limit is not reached.
+      tell(*teller);
+    } else if (k_.stop != KernelStop::room) {
+      return k_.stop == KernelStop::done;
+    }
+  }
+}
+
+double FloatWalk::waiting_lower() const {
+  // When the kernel is done, every waiting pair is beyond the pruning distance, which dropped() includes.
+  if (k_.waiting_size == 0 || k_.stop == KernelStop::done) return std::numeric_limits<double>::infinity();
+  const float bound = k_.waiting[0].bound;
+  // Bounds are squared distances; those of overlapping boxes are not positive.
+  return bound > 0 ? std::sqrt(static_cast<double>(bound)) * (1 - kDistanceRounding) * unit_ : 0;
+}
+
+/// Returns a bound on the distances of all pairs that are not among the near ones; world.
+double FloatWalk::dropped() const {
+  return std::min(waiting_lower(), static_cast<double>(dropped_from(k_)) * unit_);
+}
+
+double FloatWalk::measure() {
+  NearPair* const end = context_.near.data() + k_.near_size;
+  const float limit = dropped_from(k_);
+  // The upper bound may have fallen since these pairs were collected: leave out the ones that are too far
+  // now.
+  NearPair* const last = std::partition(context_.near.data(), end,
+                                        [limit](const NearPair& pair) { return pair.lower <= limit; });
+  k_.near_size = static_cast<std::uint32_t>(last - context_.near.data());
+  // Nearest first; ties by index, so that the order does not depend on the traversal.
+  std::sort(context_.near.data(), last, [](const NearPair& x, const NearPair& y) {
+    return x.lower != y.lower ? x.lower < y.lower : x.a != y.a ? x.a < y.a : x.b < y.b;
+  });
+  // The pair that gave the kernel's upper bound is measured first: it tightens the pruning distance.
+  if (k_.best_a != kNull) found_.measure(k_.best_a, k_.best_b, 0);
+  double rest = dropped();
+  for (const NearPair* pair = context_.near.data(); pair != last; ++pair) {
+    const double lower = static_cast<double>(pair->lower) * unit_;
+    // The pairs are sorted: all from here on are at least this far.
+    if (lower >= found_.dropped_from()) return std::min(rest, lower);
+    if (found_.is_near_enough()) return std::min(rest, lower);
+    found_.measure(pair->a, pair->b, lower);
+  }
+  return rest;
+}
+
+void FloatWalk::count(DistanceCounters& counters) const {
+  counters.steps += k_.tree.node_pairs;
+  counters.box_tests += k_.tree.box_tests;
+  counters.pairs_in_floats += k_.triangle_pairs;
+}
+
+}  // namespace lrb

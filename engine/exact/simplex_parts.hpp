@@ -1,0 +1,69 @@
+#pragma once
+/// The point in which a plane or a line cuts a segment, rounded to double. Private to engine/exact.
+
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include <lrbscope/contact.hpp>
+
+namespace lrb::exact {
+
+/// Returns the point in which the segment p, q meets the plane of triangle t. p must not lie in the plane,
+/// nor q on p's side of it. Each coordinate is within 1e-13 |q - p| + one rounding of the exact point's.
+Eigen::Vector3d cut_by_plane(const double* p, const double* q, const double* const t[3]);
+
+/// Returns the point in which the segment p, q meets the line through a and b, all seen in coordinates x and
+/// y. Fills the first `dim` coordinates of the result and sets the others to 0. p must not lie on the line,
+/// nor q strictly on p's side of it. Same accuracy.
+Eigen::Vector3d cut_by_line(const double* p, const double* q, const double* a, const double* b, int x, int y,
+                            int dim);
+
+// The building blocks of pair contacts. Private to engine/exact.
+
+inline Feature corner(int i) {
+  return {0, static_cast<std::uint8_t>(i)};
+}
+/// Returns the edge of a triangle between its corners i and j.
+inline Feature edge_between(int i, int j) {
+  return {1, static_cast<std::uint8_t>((i + 1) % 3 == j ? i : j)};
+}
+
+inline Eigen::Vector3d as_vector(const double* p) {
+  return {p[0], p[1], p[2]};
+}
+
+inline void append(PairContact& r, const ContactCorner& c) {
+  r.corners[r.corner_count++] = c;
+}
+
+/// Intersects two triangles with area that lie in one plane: a polygon, a segment, a point or nothing.
+PairContact contact_in_plane(const double* const a[3], const double* const b[3]);
+
+/// Intersects two triangles of which at least one has no area: a segment, a point or nothing.
+PairContact contact_of_degenerate(const double* const a[3], const double* const b[3]);
+
+// Triangles that lie in one plane, and triangles whose corners lie on one line. Private to engine/exact.
+
+/// What a triangle's corners span, exactly: the triangle, a segment or a point.
+struct Hull {
+  const double* corner[3];  ///< the first dim + 1; a segment's are the lexicographic extremes of the three
+  int dim;
+};
+
+Hull hull_of(const double* const t[3]);
+
+/// A pair of coordinates to project to, such that three points that are not on one line stay off one line.
+struct Axes {
+  int x, y;
+  int turn;  ///< orientation of the projected points, -1 or +1
+};
+
+/// Returns axes for three points; turn = 0 if they are on one line.
+Axes axes_for(const double* a, const double* b, const double* c);
+
+/// Returns true if two hulls share a point. They may have any dimensions, but two triangles must lie in one
+/// plane.
+bool hulls_meet(const Hull& a, const Hull& b);
+
+}  // namespace lrb::exact

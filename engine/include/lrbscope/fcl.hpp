@@ -1,0 +1,291 @@
+#pragma once
+/// FCL's interface on this engine: for programs written for FCL 0.7 that want exact answers without being
+/// rewritten. Needs FCL's headers and library (Debian: libfcl-dev), which go on answering for all that is no
+/// mesh.
+///
+/// Include this header and write lrb::fcl:: where fcl:: stood; collide() and distance() of two meshes
+/// (BVHModel of any bounding volume) are then this engine's, and every other name of FCL is FCL's own:
+///
+/// - Contacts name the pairs of triangles that meet, each once, ascending; one if num_max_contacts is 1,
+///   whichever is found first. With enable_contact, each has a point in the middle of what the two triangles
+///   have in common, and normal and estimated depth of the contact region that it belongs to (ContactRegion).
+/// - Distances are those of the surfaces, to 1e-12 of the meshes' size, whatever rel_err and abs_err allow; 0
+///   where they meet. Nearest points are in the world.
+/// - As with FCL, a mesh in another one whose surface it does not touch does not collide with it.
+/// - Costs, and geometry that is not occupied, are left to FCL.
+///
+/// What a mesh cannot be asked about (coordinates that are not finite) throws lrb::InputError.
+///
+/// A mesh becomes a body, without regions, the first time that it is asked about, and is kept. Each call
+/// compares it with what was kept, number by number, because programs change their meshes: about 1 ns a
+/// vertex. Where that is too much, ask lrb::collide() about body_of() the mesh.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
+
+#include <lrbscope/body.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/pose.hpp>
+#include <lrbscope/workspace.hpp>
+
+namespace lrb::fcl {
+
+using namespace ::fcl;
+
+/// The arrays of a mesh of FCL's.
+template <class S>
+struct MeshArrays {
+  std::span<const ::fcl::Vector3<S>> vertices;
+  std::span<const ::fcl::Triangle> triangles;
+
+  bool empty() const { return triangles.empty(); }
+};
+
+template <class BV>
+MeshArrays<typename BV::S> arrays_of(const ::fcl::BVHModel<BV>& model) {
+  if (model.getModelType() != ::fcl::BVH_MODEL_TRIANGLES) return {};
+  return {{model.vertices, static_cast<std::size_t>(model.num_vertices)},
+          {model.tri_indices, static_cast<std::size_t>(model.num_tris)}};
+}
+
+/// Returns the arrays of a geometry that is a mesh; of any other, empty ones.
+template <class S>
+MeshArrays<S> arrays_of(const ::fcl::CollisionGeometry<S>& geometry) {
+  const auto as = [&]<class BV>(const BV*) {
+    return arrays_of(static_cast<const ::fcl::BVHModel<BV>&>(geometry));
+  };
+  switch (geometry.getNodeType()) {
+    case ::fcl::BV_AABB:
+      return as(static_cast<::fcl::AABB<S>*>(nullptr));
+    case ::fcl::BV_OBB:
+      return as(static_cast<::fcl::OBB<S>*>(nullptr));
+    case ::fcl::BV_RSS:
+      return as(static_cast<::fcl::RSS<S>*>(nullptr));
+    case ::fcl::BV_kIOS:
+      return as(static_cast<::fcl::kIOS<S>*>(nullptr));
+    case ::fcl::BV_OBBRSS:
+      return as(static_cast<::fcl::OBBRSS<S>*>(nullptr));
+    case ::fcl::BV_KDOP16:
+      return as(static_cast<::fcl::KDOP<S, 16>*>(nullptr));
+    case ::fcl::BV_KDOP18:
+      return as(static_cast<::fcl::KDOP<S, 18>*>(nullptr));
+    case ::fcl::BV_KDOP24:
+      return as(static_cast<::fcl::KDOP<S, 24>*>(nullptr));
+    default:
+      return {};
+  }
+}
+
+template <class S>
+Pose pose_of(const ::fcl::Transform3<S>& transform) {
+  return {transform.linear().template cast<double>(), transform.translation().template cast<double>()};
+}
+
+/// Makes a body of a mesh's arrays, with its faces as they are; `options`: of what is to be built beside
+/// them.
+template <class S>
+Expected<Body> body_of(const MeshArrays<S>& arrays, const BodyOptions& options) {
+  Mesh mesh;
+  mesh.vertices.reserve(arrays.vertices.size());
+  for (const ::fcl::Vector3<S>& v : arrays.vertices) mesh.vertices.push_back(v.template cast<double>());
+  mesh.face_vertices.reserve(3 * arrays.triangles.size());
+  for (const ::fcl::Triangle& t : arrays.triangles)
+    mesh.add_face(std::initializer_list<VertexId>{VertexId(t[0]), VertexId(t[1]), VertexId(t[2])});
+  return Body::from(std::move(mesh), options);
+}
+
+/// Returns the options of a body for answers like FCL's: faces alone, as they are.
+inline BodyOptions faces_alone() {
+  BodyOptions options;
+  options.regions = false;
+  options.turn = false;
+  options.name = "BVHModel";
+  return options;
+}
+
+/// Makes a body of a mesh of FCL's: faces have the numbers of its triangles. By default without regions, and
+/// nothing is turned.
+template <class BV>
+Expected<Body> body_of(const ::fcl::BVHModel<BV>& model, const BodyOptions& options = faces_alone()) {
+  return body_of(arrays_of(model), options);
+}
+
+/// The bodies that were made of meshes, by the meshes' addresses; for all threads. Keeps the last 256 that
+/// were asked about.
+class KnownBodies {
+ public:
+  /// Returns the body of a mesh as it is now. Throws InputError if it cannot be one.
+  template <class S>
+  Body of(const void* address, const MeshArrays<S>& arrays) {
+    if (std::shared_ptr<const Body> known = find(address); known && is_same(*known, arrays)) return *known;
+    const auto made = std::make_shared<const Body>(body_of(arrays, faces_alone()).value());
+    keep(address, made);
+    return *made;
+  }
+
+  /// Forgets all of them, to free their memory.
+  void clear() {
+    const std::lock_guard lock(mutex_);
+    entries_.clear();
+  }
+  std::size_t size() const {
+    const std::lock_guard lock(mutex_);
+    return entries_.size();
+  }
+
+ private:
+  static constexpr std::size_t kMost = 256;
+
+  struct Entry {
+    std::shared_ptr<const Body> body;
+    std::uint64_t asked = 0;  ///< when it was asked about last
+  };
+
+  template <class S>
+  static bool is_same(const Body& body, const MeshArrays<S>& arrays) {
+    const LrbData& data = body.rep().data();
+    if (data.vertices.size() != arrays.vertices.size() || data.face_count() != arrays.triangles.size())
+      return false;
+    for (std::size_t i = 0; i < arrays.vertices.size(); ++i)
+      if (data.vertices[i] != arrays.vertices[i].template cast<double>()) return false;
+    for (std::size_t i = 0; i < arrays.triangles.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (data.face_vertices[3 * i + k].value() != arrays.triangles[i][static_cast<int>(k)]) return false;
+    return true;
+  }
+
+  std::shared_ptr<const Body> find(const void* address) {
+    const std::lock_guard lock(mutex_);
+    const auto found = entries_.find(address);
+    if (found == entries_.end()) return nullptr;
+    found->second.asked = ++clock_;
+    return found->second.body;
+  }
+
+  void keep(const void* address, std::shared_ptr<const Body> body) {
+    const std::lock_guard lock(mutex_);
+    entries_[address] = {std::move(body), ++clock_};
+    if (entries_.size() <= kMost) return;
+    entries_.erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& x, const auto& y) {
+      return x.second.asked < y.second.asked;
+    }));
+  }
+
+  mutable std::mutex mutex_;
+  std::uint64_t clock_ = 0;
+  std::unordered_map<const void*, Entry> entries_;
+};
+
+inline KnownBodies& known_bodies() {
+  static KnownBodies bodies;
+  return bodies;
+}
+
+/// Memory of the calling thread's queries.
+inline Workspace& workspace() {
+  thread_local Workspace memory;
+  return memory;
+}
+
+/// Returns the middle of what two triangles have in common.
+inline Eigen::Vector3d middle_of(const PairContactRecord& contact) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < contact.corner_count; ++i) sum += contact.corners[i].x / contact.corner_count;
+  return sum;
+}
+
+/// Adds the pairs of an answer to FCL's result, as many as the request wants.
+template <class S>
+void add_contacts(const CollideResult& found, const ::fcl::CollisionGeometry<S>* o1,
+                  const ::fcl::CollisionGeometry<S>* o2, const ::fcl::CollisionRequest<S>& request,
+                  ::fcl::CollisionResult<S>& result) {
+  std::vector<const ContactRegion*> region_of(found.pairs.size());
+  for (const ContactRegion& region : found.regions)
+    for (const std::uint32_t pair : region.pairs) region_of[pair] = &region;
+  for (std::size_t i = 0; i < found.pairs.size() && result.numContacts() < request.num_max_contacts; ++i) {
+    const auto b1 = static_cast<int>(found.pairs[i].a.value()),
+               b2 = static_cast<int>(found.pairs[i].b.value());
+    if (!request.enable_contact) {
+      result.addContact(::fcl::Contact<S>(o1, o2, b1, b2));
+      continue;
+    }
+    const ContactRegion* const region = region_of[i];
+    const Eigen::Vector3d normal = region ? region->normal : Eigen::Vector3d(0, 0, 0);
+    result.addContact(::fcl::Contact<S>(o1, o2, b1, b2, middle_of(found.contacts[i]).template cast<S>(),
+                                        normal.template cast<S>(),
+                                        static_cast<S>(region ? region->depth_estimate : 0)));
+  }
+}
+
+/// Finds the contacts of two geometries; those that are no meshes, costs, and what is not occupied are FCL's.
+/// Returns the number of contacts in the result, to which those of calls before belong.
+template <class S>
+std::size_t collide(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transform3<S>& tf1,
+                    const ::fcl::CollisionGeometry<S>* o2, const ::fcl::Transform3<S>& tf2,
+                    const ::fcl::CollisionRequest<S>& request, ::fcl::CollisionResult<S>& result) {
+  const MeshArrays<S> a = arrays_of(*o1), b = arrays_of(*o2);
+  if (a.empty() || b.empty() || request.enable_cost || !o1->isOccupied() || !o2->isOccupied())
+    return ::fcl::collide(o1, tf1, o2, tf2, request, result);
+  if (result.numContacts() >= request.num_max_contacts) return result.numContacts();
+  CollideRequest query;
+  query.contacts = request.enable_contact;
+  if (!request.enable_contact && request.num_max_contacts - result.numContacts() == 1)
+    query.mode = Mode::any_pair;
+  const Body body_a = known_bodies().of(o1, a), body_b = known_bodies().of(o2, b);
+  const Expected<CollideResult&> found =
+      lrb::collide(body_a, fcl::pose_of<S>(tf1), body_b, fcl::pose_of<S>(tf2), query, workspace());
+  add_contacts(found.value(), o1, o2, request, result);
+  return result.numContacts();
+}
+
+template <class S>
+std::size_t collide(const ::fcl::CollisionObject<S>* o1, const ::fcl::CollisionObject<S>* o2,
+                    const ::fcl::CollisionRequest<S>& request, ::fcl::CollisionResult<S>& result) {
+  return fcl::collide(o1->collisionGeometry().get(), o1->getTransform(), o2->collisionGeometry().get(),
+                      o2->getTransform(), request, result);
+}
+
+/// Finds the distance of two geometries; of those that are no meshes it is FCL's. Returns the least distance
+/// in the result, to which those of calls before belong.
+template <class S>
+S distance(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transform3<S>& tf1,
+           const ::fcl::CollisionGeometry<S>* o2, const ::fcl::Transform3<S>& tf2,
+           const ::fcl::DistanceRequest<S>& request, ::fcl::DistanceResult<S>& result) {
+  const MeshArrays<S> a = arrays_of(*o1), b = arrays_of(*o2);
+  if (a.empty() || b.empty()) return ::fcl::distance(o1, tf1, o2, tf2, request, result);
+  lrb::DistanceRequest query;
+  query.relation = false;
+  const Body body_a = known_bodies().of(o1, a), body_b = known_bodies().of(o2, b);
+  const Expected<lrb::DistanceResult> answer =
+      lrb::distance(body_a, fcl::pose_of<S>(tf1), body_b, fcl::pose_of<S>(tf2), query, workspace());
+  const lrb::DistanceResult& found = answer.value();
+  const auto least = static_cast<S>(found.upper);
+  const auto b1 = static_cast<int>(found.witness[0].simplex.value()),
+             b2 = static_cast<int>(found.witness[1].simplex.value());
+  if (request.enable_nearest_points)
+    result.update(least, o1, o2, b1, b2, found.witness[0].point.template cast<S>(),
+                  found.witness[1].point.template cast<S>());
+  else
+    result.update(least, o1, o2, b1, b2);
+  return result.min_distance;
+}
+
+template <class S>
+S distance(const ::fcl::CollisionObject<S>* o1, const ::fcl::CollisionObject<S>* o2,
+           const ::fcl::DistanceRequest<S>& request, ::fcl::DistanceResult<S>& result) {
+  return fcl::distance(o1->collisionGeometry().get(), o1->getTransform(), o2->collisionGeometry().get(),
+                       o2->getTransform(), request, result);
+}
+
+}  // namespace lrb::fcl

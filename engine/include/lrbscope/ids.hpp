@@ -1,0 +1,114 @@
+#pragma once
+/// Index types of the engine: 32-bit indices into flat arrays, a type for each array, so that the compiler
+/// refuses a simplex where a face is meant.
+///
+/// An id converts to its number implicitly, so that it can index an array. A number converts to an id only
+/// explicitly, `FaceId(i)`, or if it is a constant, `FaceId f = 0`. Ids of different kinds neither convert
+/// nor compare, except that a region is also a cell. An id costs what its number costs.
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+
+#include <lrbscope/enum_words.hpp>
+
+namespace lrb {
+
+template <class Kind>
+class Id;
+
+using VertexId = Id<struct VertexKind>;  ///< into LrbRep::vertices() / Mesh::vertices
+/// A polygon (3D) or a segment (2D); real faces come first, in file order.
+using FaceId = Id<struct FaceKind>;
+/// A triangle of a face's fan (3D) or the segment itself (2D); real ones first.
+using SimplexId = Id<struct SimplexKind>;
+using RegionId = Id<struct RegionKind>;  ///< a region of an LRB-rep, 0 .. region_count() - 1
+/// A cell of the complex: a region, or one of the two cells that every body has, kSolid and kOutside.
+using CellId = Id<struct CellKind>;
+
+/// Ids of the first kind convert to ids of the second kind.
+template <class Kind, class Other>
+concept IsAlso = std::same_as<Kind, RegionKind> && std::same_as<Other, CellKind>;
+template <class Kind, class Other>
+concept IsNot = !std::same_as<Kind, Other> && !IsAlso<Kind, Other>;
+/// Ids of these kinds must not be compared.
+template <class Kind, class Other>
+concept Unrelated = IsNot<Kind, Other> && IsNot<Other, Kind>;
+
+template <class Kind>
+class Id {
+ public:
+  Id() = default;  ///< leaves the number uninitialized, as for an integer; `Id{}` is 0
+  /// Converts a constant, which must not be negative.
+  template <std::same_as<int> Constant>
+  consteval Id(Constant constant)
+      : value_(constant >= 0 ? static_cast<std::uint32_t>(constant) : throw "an id is not less than 0") {}
+  explicit constexpr Id(int number) : value_(static_cast<std::uint32_t>(number)) {}
+  template <std::integral Number>
+  explicit constexpr Id(Number number) : value_(static_cast<std::uint32_t>(number)) {}
+  template <IsAlso<Kind> Other>
+  constexpr Id(Id<Other> other) : value_(other.value()) {}
+  template <IsNot<Kind> Other>
+  Id(Id<Other>) = delete;
+
+  constexpr std::uint32_t value() const { return value_; }
+  constexpr operator std::uint32_t() const { return value_; }
+
+  /// Returns the region that this cell is; is_region() must hold.
+  constexpr RegionId as_region() const requires std::same_as<Kind, CellKind> { return RegionId(value_); }
+
+  constexpr Id& operator++() {
+    ++value_;
+    return *this;
+  }
+  constexpr Id operator++(int) { return Id(value_++); }
+
+ private:
+  std::uint32_t value_;
+};
+
+template <class A, Unrelated<A> B>
+bool operator==(Id<A>, Id<B>) = delete;
+template <class A, Unrelated<A> B>
+bool operator<=>(Id<A>, Id<B>) = delete;
+
+/// Stands for "no id", of any kind, and for an index of anything else that does not exist.
+struct NoId {
+  static constexpr std::uint32_t kValue = std::numeric_limits<std::uint32_t>::max();
+  constexpr operator std::uint32_t() const { return kValue; }
+  template <class Kind>
+  constexpr operator Id<Kind>() const {
+    return Id<Kind>(kValue);
+  }
+};
+inline constexpr NoId kNull;
+
+inline constexpr CellId kOutside(NoId::kValue - 1);  ///< all of space that no wrapper ever includes
+inline constexpr CellId kSolid(NoId::kValue - 2);    ///< the body itself, always included
+inline constexpr std::uint32_t kMaxId = NoId::kValue - 3;
+
+constexpr bool is_region(CellId cell) {
+  return cell <= kMaxId;
+}
+
+/// Which of the two bodies of a query.
+enum class Side : std::uint8_t { a = 0, b = 1 };
+constexpr auto words_of(Side) {
+  return std::to_array<EnumWord<Side>>({{Side::a, "A"}, {Side::b, "B"}});
+}
+
+constexpr Side other(Side s) {
+  return s == Side::a ? Side::b : Side::a;
+}
+
+}  // namespace lrb
+
+// Doxygen 1.9 finds no scope for it.
+/// @cond
+template <class Kind>
+struct std::hash<lrb::Id<Kind>> {
+  std::size_t operator()(lrb::Id<Kind> id) const noexcept { return std::hash<std::uint32_t>()(id); }
+};
+/// @endcond

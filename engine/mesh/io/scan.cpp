@@ -1,0 +1,139 @@
+#include "engine/mesh/io/scan.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <system_error>
+
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+
+namespace lrb {
+namespace {
+
+constexpr bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+constexpr bool is_newline(char c) {
+  return c == '\n' || c == '\r';
+}
+
+/// Removes a plus sign, which files use and std::from_chars does not accept.
+std::string_view without_plus(std::string_view token) {
+  if (token.size() > 1 && token[0] == '+' && token[1] != '-' && token[1] != '+') token.remove_prefix(1);
+  return token;
+}
+
+/// Returns the double for digits that std::from_chars calls "out of range", as it does at both ends of the
+/// range. Numbers too small for a double round to zero or to a subnormal as any other number rounds; numbers
+/// too large have no double.
+double round_out_of_range(std::string_view digits) {
+  const std::string copy(digits);
+  char* stop = nullptr;
+  const double value = std::strtod(copy.c_str(), &stop);
+  return stop == copy.c_str() + copy.size() ? value : HUGE_VAL;
+}
+
+}  // namespace
+
+bool TextCursor::skip_continuation() {
+  if (!rules_.continuation || *at_ != '\\' || at_ + 1 == end_ || !is_newline(at_[1])) return false;
+  ++at_;
+  skip_newline();
+  return true;
+}
+
+void TextCursor::skip_newline() {
+  // CR LF counts as one line end, LF or CR alone as well.
+  const bool pair = *at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n';
+  at_ += pair ? 2 : 1;
+  ++line_;
+}
+
+std::string_view TextCursor::token() {
+  // Skip blanks and continuations before the token.
+  while (at_ != end_) {
+    if (is_blank(*at_))
+      ++at_;
+    else if (!skip_continuation())
+      break;
+  }
+  const char* start = at_;
+  // A comment ends the tokens of this line; the cursor stays at the line end.
+  if (rules_.hash_comments && at_ != end_ && *at_ == '#') {
+    at_ = std::find_if(at_, end_, is_newline);
+    return {};
+  }
+  // The token ends at a blank, at the line end, or at a continuation directly behind it.
+  for (; !at_line_end() && !is_blank(*at_); ++at_)
+    if (*at_ == '\\' && rules_.continuation && at_ + 1 != end_ && is_newline(at_[1])) break;
+  return {start, static_cast<std::size_t>(at_ - start)};
+}
+
+bool TextCursor::next_line() {
+  // By tokens rather than characters, so that continuations are followed.
+  while (!token().empty()) {
+  }
+  if (at_ == end_) return false;
+  skip_newline();
+  return true;
+}
+
+std::string_view TextCursor::any_token() {
+  do {
+    const std::string_view found = token();
+    if (!found.empty()) return found;
+  } while (next_line());
+  return {};
+}
+
+double TextCursor::number(std::string_view token, std::string_view what) const {
+  const std::string_view digits = without_plus(token);
+  double value = 0;
+  // from_chars does not depend on the locale and rounds to nearest.
+  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::result_out_of_range) value = round_out_of_range(digits);
+  // The whole token must be the number.
+  if (error == std::errc::invalid_argument || stop != digits.data() + digits.size())
+    fail(shown(token), "a number (" + std::string(what) + ")", "correct the line");
+  if (!std::isfinite(value))
+    fail(shown(token), "a finite number (" + std::string(what) + ")",
+         "correct the line or export the mesh again");
+  return value;
+}
+
+std::int64_t TextCursor::integer(std::string_view token, std::string_view what) const {
+  const std::string_view digits = without_plus(token);
+  std::int64_t value = 0;
+  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::invalid_argument || stop != digits.data() + digits.size())
+    fail(shown(token), "an integer (" + std::string(what) + ")", "correct the line");
+  if (error == std::errc::result_out_of_range)
+    fail(shown(token), "an integer of at most 64 bits (" + std::string(what) + ")", "correct the line");
+  return value;
+}
+
+void TextCursor::fail_at(std::uint64_t line, std::string_view found, std::string_view expected,
+                         std::string_view advice) const {
+  std::string message = printable_name(name_) + ":" + std::to_string(line) + ": found ";
+  message.append(found).append(", expected ").append(expected).append("; ").append(advice);
+  throw InputError(message);
+}
+
+std::string TextCursor::shown(std::string_view token) const {
+  if (!token.empty()) return in_quotes(token);
+  return at_ == end_ ? "the end of the file" : "the end of the line";
+}
+
+void refuse_nul(std::string_view text, std::string_view name) {
+  const std::size_t nul = text.find('\0');
+  if (nul == std::string_view::npos) return;
+  // The line of the NUL byte, counting LF alone.
+  const TextCursor start(text, name, {});
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
+  start.fail_at(static_cast<std::uint64_t>(line), "a NUL byte (byte " + std::to_string(nul) + " of the file)",
+                "text", "the file is damaged or binary: export or copy it again");
+}
+
+}  // namespace lrb

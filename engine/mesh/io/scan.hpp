@@ -1,0 +1,79 @@
+#pragma once
+/// Reads numbers from a binary file's bytes.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+namespace lrb {
+
+/// Returns the number stored at `from`, which need not be aligned.
+template <class T>
+T load(const char* from, std::endian order) {
+  std::array<char, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), from, sizeof(T));
+  if (order != std::endian::native) std::reverse(bytes.begin(), bytes.end());
+  return std::bit_cast<T>(bytes);
+}
+
+// Reads a mesh's text token by token, line by line, with messages that name the line.
+
+/// What a format allows between tokens.
+struct TextRules {
+  bool hash_comments = false;  ///< `#` at the start of a token hides the rest of its line
+  bool continuation =
+      false;  ///< a backslash at the end of a line (not of a comment) joins it with the next one
+};
+
+/// A position in a text. Lines end with LF, CR LF or CR.
+class TextCursor {
+ public:
+  TextCursor(std::string_view text, std::string_view name, TextRules rules, std::uint64_t first_line = 1)
+      : at_(text.data()), end_(at_ + text.size()), line_(first_line), name_(name), rules_(rules) {}
+
+  std::uint64_t line() const { return line_; }
+  std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - at_); }
+
+  /// Returns the next token of this line; empty at its end.
+  std::string_view token();
+  /// Goes to the next line. Returns false if the text ends first.
+  bool next_line();
+  /// Returns the next token on this line or a later one; empty at the end of the text.
+  std::string_view any_token();
+
+  /// Returns a token of this line as a finite double, rounded to nearest. `what`: "coordinate x" or the like.
+  double number(std::string_view what) { return number(token(), what); }
+  double number(std::string_view token, std::string_view what) const;
+  std::int64_t integer(std::string_view what) { return integer(token(), what); }
+  std::int64_t integer(std::string_view token, std::string_view what) const;
+
+  /// Throws InputError "name:line: found <found>, expected <expected>; <advice>".
+  [[noreturn]] void fail(std::string_view found, std::string_view expected, std::string_view advice) const {
+    fail_at(line_, found, expected, advice);
+  }
+  [[noreturn]] void fail_at(std::uint64_t line, std::string_view found, std::string_view expected,
+                            std::string_view advice) const;
+  /// Returns how a message names a token; an empty one is the end of the line or of the file.
+  std::string shown(std::string_view token) const;
+
+ private:
+  bool at_line_end() const { return at_ == end_ || *at_ == '\n' || *at_ == '\r'; }
+  bool skip_continuation();
+  void skip_newline();
+
+  const char* at_;
+  const char* end_;
+  std::uint64_t line_;
+  std::string_view name_;
+  TextRules rules_;
+};
+
+/// Throws InputError if the text holds a NUL byte: it is binary, or damaged.
+void refuse_nul(std::string_view text, std::string_view name);
+
+}  // namespace lrb

@@ -1,0 +1,412 @@
+/// The search in one piece of both motions, by conservative advancement (Mirtich 1996; Tang, Kim and Manocha,
+/// "C2A", 2009).
+///
+/// 1. Find all pairs of simplices that may intersect in a time interval, by one traversal with B swept. If
+///    there are too many, halve the interval.
+/// 2. Advance each pair while a slab is proved to separate it. The least time reached is proved free.
+/// 3. Where pairs stop, query the bodies exactly a little later. If they intersect, that is the contact.
+/// 4. Else advance by shorter steps, sample more densely, or prove by continuity that a pair has passed.
+/// 5. Else lengthen the interval until the bodies are sure to stay separate again. What lies before is
+///    reported as ambiguous (`doubtful`).
+///
+/// Time is called free only if find_swept_pairs(), PairMotion::parted_for() or a distance proved it, contact
+/// only if the exact query or PairMotion::has_passed() did. All else decides only the amount of work.
+
+#include "engine/motion/contact_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/collide/tree_query.hpp"
+#include "engine/core/tolerances.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The search is no coarser for a wider tolerance: where bodies come into each other, long spans hold many
+/// pairs.
+constexpr double kWidestStep = 1e-6;
+/// From so many pairs on, shorter spans are looked at, unless they are hardly longer than the tolerance.
+constexpr std::uint64_t kFewPairs = 128;
+constexpr double kHardlyLonger = 64;
+/// In spans shorter than this share of a piece, each that has too many pairs doubles how many may be: where
+/// long faces pass each other, halves have no fewer, however short they are.
+constexpr double kShortShare = 0x1p-10;
+/// A pair stops when it comes no further than this many tolerances in a step, and a pair that is stuck when
+/// it comes no further than that many.
+constexpr double kLeastStep = 0x1p-3, kLeastStuckStep = 0x1p-20;
+constexpr int kMostStepsOfPair = 256;
+/// Factor between the lengths of the intervals in which the end of an ambiguity is searched; and the share of
+/// that length for which the bodies must then be proved separate.
+constexpr double kLonger = 4, kGoesOn = 0.25;
+/// Accuracy to which the end of an ambiguous interval is found, relative to its length.
+constexpr double kNarrow = 0x1p-10;
+constexpr std::uint64_t kMostStuckPairs = 1 << 20;
+constexpr int kProbes = 8;
+/// After so many distances in a piece of the motions, pairs are looked at if there are not too many.
+constexpr std::uint64_t kMostDistances = 512;
+
+/// Returns t + step, rounded down.
+double later(double t, double step) {
+  // The sum is rounded to nearest: one double towards t is a lower bound.
+  return step > 0 ? std::max(t, std::nextafter(t + step, t)) : t;
+}
+
+}  // namespace
+
+void FirstContactSearch::search_piece(const MovingBody& a, const MovingBody& b, double end) {
+  a_ = &a;
+  b_ = &b;
+  // For scaled or sheared bodies the swept kernel culls nothing: these advance by distances.
+  is_swept_ = suits_sweeps(a, b);
+  is_swept_ ? search_swept(end) : search_by_distance(end);
+}
+
+/// Returns false if there are more pairs than that, or than steps that are left; these are spent then.
+bool FirstContactSearch::find_pairs(TimeSpan span, std::uint64_t most) {
+  ++result_.counters.spans;
+  // A pair costs one step: never collect more pairs than there are steps left.
+  const std::uint64_t left = most_ - std::min(most_, spent_);
+  const bool found_all = find_swept_pairs(query(), *a_, *b_, span, std::min(most, left), context_.pairs);
+  // If the steps that are left were the limit, the search ends here.
+  spent_ = !found_all && left < most ? most_ : spent_ + 1 + context_.pairs.size();
+  result_.counters.pairs += context_.pairs.size();
+  if (request_.history) result_.history.push_back({span, context_.pairs.size(), free_until_});
+  return found_all;
+}
+
+double FirstContactSearch::step_tolerance() const {
+  return std::min(tolerance_, kWidestStep);
+}
+
+void FirstContactSearch::search_swept(double end) {
+  const double whole = end - free_until_;
+  double width = whole;
+  std::uint64_t few = kFewPairs;
+  while (free_until_ < end && !is_over()) {
+    const double t = free_until_;
+    // At least up to the next double, at most to the end of the piece.
+    const TimeSpan span{t, end - t > width ? std::max(t + width, std::nextafter(t, 2)) : end};
+    // An interval hardly longer than the tolerance is not halved again, however many pairs it has.
+    const bool is_short =
+        span.end - t <= kHardlyLonger * step_tolerance() || span.end <= std::nextafter(t, 2);
+    if (!find_pairs(span, is_short ? kNoLimit : few)) {
+      // Too many pairs: halve the interval. If that does not help, allow more pairs.
+      width = (span.end - t) / 2;
+      if (width < kShortShare * whole) few *= 2;
+      continue;
+    }
+    // No pair can intersect before the least time that the pairs reach.
+    free_until_ = advance_all(span, kLeastStep * step_tolerance());
+    // Success: try an interval twice as long next.
+    width = 2 * (span.end - t);
+    tell(free_until_);
+    if (free_until_ >= span.end) continue;
+    // A pair has stopped: a contact, or bodies too close for steps of this length.
+    free_until_ = look_closer(free_until_, end);
+    // The bodies are still close: go on with short intervals.
+    width = kHardlyLonger * step_tolerance();
+    if (!is_done_) tell(free_until_);
+  }
+}
+
+/// Returns for how long after t the bodies are proved apart, by their distance.
+double FirstContactSearch::parted_by_distance(double t) {
+  // A rough distance is enough: any lower bound gives a valid step.
+  DistanceRequest rough;
+  rough.relative_tolerance = 0.25;
+  rough.relation = false;
+  ++result_.counters.steps;
+  const DistanceResult at =
+      distance(*rep_[0], a_->at(t).pose, *rep_[1], b_->at(t).pose, rough, context_.distance);
+  const DistanceCounters& work = at.counters;
+  spent_ += 1 + work.pairs_in_doubles / 8 + kStepsOfExact * work.pairs_exact + work.steps / kNodePairsOfStep;
+  // The distance is that of poses in doubles; the exact motions may differ from them now and later.
+  const double gap = at.lower - 2 * (a_->rounding() + b_->rounding()) * kWorldUp;
+  // No two points approach faster than by relative travel and both rotations.
+  const double speed = ((b_->travel() - a_->travel()).norm() + a_->spin() + b_->spin()) * kWorldUp;
+  // Conservative advancement (Mirtich 1996).
+  return gap > 0 ? gap / speed * (1 - kWorldRounding) : 0;
+}
+
+/// Returns true if each simplex of one body can be compared with each of the other.
+bool FirstContactSearch::suits_all_pairs() const {
+  const std::uint64_t pairs = std::uint64_t{rep_[0]->real_simplex_count()} * rep_[1]->real_simplex_count();
+  return pairs <= kMostStuckPairs && pairs <= (most_ - std::min(most_, spent_)) / 4;
+}
+
+/// A distance does not say which way a gap lies: bodies that slide along each other go on by no more than
+/// their gap at a time. If that takes long, all pairs of small bodies are looked at, which need not.
+void FirstContactSearch::search_by_distance(double end) {
+  for (std::uint64_t steps = 0; free_until_ < end && !is_over(); ++steps) {
+    // Many small steps: follow single pairs, whose slabs have a direction, instead.
+    if (steps == kMostDistances && suits_all_pairs()) {
+      is_swept_ = true;
+      return search_swept(end);
+    }
+    const double parted = parted_by_distance(free_until_);
+    free_until_ = std::min(end, later(free_until_, parted));
+    tell(free_until_);
+    // The gap is closed within a fraction of the tolerance: contact, or nearly.
+    if (parted < kLeastStep * step_tolerance() && free_until_ < end)
+      free_until_ = look_closer(free_until_, end);
+  }
+}
+
+/// Moves a pair on from the states at the span's begin for as long as it is parted, and steps are at least
+/// this long.
+double FirstContactSearch::advance(SimplexPair pair, const PieceState& at_a, const PieceState& at_b,
+                                   TimeSpan span, double least) {
+  PairMotion moving(*a_, *b_, pair);
+  moving.place(at_a, at_b);
+  if (is_long()) moving.look_at_axes();
+  double t = span.begin;
+  // The direction that separated the pair before often separates this one, too.
+  Vector3d n = hint_;
+  for (int i = 0;; ++i) {
+    ++result_.counters.steps;
+    ++spent_;
+    double parted = moving.parted_for(n);
+    if (later(t, parted) < span.end) {
+      // It does not for long enough: try the line between the closest points.
+      const Vector3d across = moving.bounds().direction;
+      const double parted_across = moving.parted_for(across);
+      if (parted_across > parted) {
+        parted = parted_across;
+        n = across;
+      }
+    }
+    t = std::min(span.end, later(t, parted));
+    if (t >= span.end) hint_ = n;
+    // Steps towards a contact shrink quickly: stop once they are negligible.
+    if (t >= span.end || parted < least || i >= kMostStepsOfPair) return t;
+    if (is_spent()) return t;
+    moving.place(a_->at(t), b_->at(t));
+  }
+}
+
+/// Returns until when all pairs that were found in a span are proved not to meet.
+double FirstContactSearch::advance_all(TimeSpan span, double least) {
+  const PieceState at_a = a_->at(span.begin), at_b = b_->at(span.begin);
+  double until = span.end;
+  for (const SimplexPair& pair : context_.pairs) {
+    // Out of steps: nothing is proved about the remaining pairs.
+    if (is_spent()) return span.begin;
+    // Later pairs need not advance beyond the least time so far.
+    until = advance(pair, at_a, at_b, {span.begin, until}, least);
+  }
+  return until;
+}
+
+/// Handles a time t up to which the bodies are separate and beyond which no pair advances: finds a contact
+/// right after t, or returns the time up to which there is none, apart from ambiguous intervals.
+double FirstContactSearch::look_closer(double t, double end) {
+  const double soon = std::min(end, std::max(t + step_tolerance() / 2, std::nextafter(t, 2)));
+  // A contact half a tolerance later: the interval is narrow enough.
+  if (const auto pair = meets_at(soon)) {
+    contact_in({t, soon}, *pair);
+    return t;
+  }
+  // No contact then: shorter steps may lead past it.
+  const double until = advance_stuck({t, soon});
+  if (until >= soon || meets_right_after({until, soon}) || has_passed({t, soon})) return until;
+  // All proofs have failed here: determine how long the ambiguity lasts.
+  return look_further(until, end);
+}
+
+/// Asks the exact query at a few times right after the span's begin. Returns true, and notes the contact, if
+/// it finds one: bodies that pass each other in less than the tolerance do.
+bool FirstContactSearch::meets_right_after(TimeSpan span) {
+  // Sample much more densely than the tolerance, and denser towards the begin.
+  for (const double share : {0x1p-24, 0x1p-16, 0x1p-8}) {
+    const double t = std::max(span.begin + share * step_tolerance(), std::nextafter(span.begin, 2));
+    if (t >= span.end) return false;
+    if (const auto pair = meets_at(t)) {
+      contact_in({span.begin, t}, *pair);
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Returns until when bodies are proved not to meet, in steps as short as need be. Keeps the pairs that do
+/// not come to the span's end.
+double FirstContactSearch::advance_stuck(TimeSpan span) {
+  const double least = kLeastStuckStep * step_tolerance();
+  context_.stuck.clear();
+  double until = span.end;
+  if (!is_swept_) {
+    // By distances: up to kMostStepsOfPair steps of no less than `least`.
+    double t = span.begin, parted = span.end - t;
+    for (int i = 0; i < kMostStepsOfPair && t < until && parted >= least; ++i) {
+      parted = parted_by_distance(t);
+      t = std::min(until, later(t, parted));
+    }
+    return t;
+  }
+  // Fails only if steps run out: then nothing is proved.
+  if (!find_pairs(span, kNoLimit)) return span.begin;
+  const PieceState at_a = a_->at(span.begin), at_b = b_->at(span.begin);
+  for (const SimplexPair& pair : context_.pairs) {
+    if (is_spent()) return span.begin;
+    // Each pair is followed over the full interval, because has_passed() needs all that are stuck.
+    const double gone = advance(pair, at_a, at_b, span, least);
+    if (gone < span.end) context_.stuck.push_back(pair);
+    until = std::min(until, gone);
+  }
+  return until;
+}
+
+/// Returns true, and notes the contact, if one of the pairs that are stuck is proved to have met in the span.
+bool FirstContactSearch::has_passed(TimeSpan span) {
+  const double time = (span.end - span.begin) * kWorldUp;
+  for (const SimplexPair& pair : context_.stuck) {
+    PairMotion before(*a_, *b_, pair), now(*a_, *b_, pair);
+    before.place(a_->at(span.begin), b_->at(span.begin));
+    now.place(a_->at(span.end), b_->at(span.end));
+    Vector3d n = before.bounds().direction;
+    // Orient the separating direction from A to B.
+    if (n.dot(before.ahead()) < 0) n = -n;
+    if (!now.has_passed(before, n, time)) continue;
+    result_.passed = true;
+    contact_in(span, pair);
+    return true;
+  }
+  return false;
+}
+
+/// Looks for the end of the time after t in which the bodies are as near each other as rounding.
+double FirstContactSearch::look_further(double t, double end) {
+  // Lengthen the interval by kLonger each time, until the bodies are in contact at its end, have passed
+  // through each other, or are sure to stay separate for a while.
+  for (double width = tolerance_; !is_over(); width *= kLonger) {
+    const TimeSpan span{t, end - t > width ? std::max(t + width, std::nextafter(t, 2)) : end};
+    if (auto pair = meets_at(span.end)) {
+      contact_at_last(span, *pair);
+      return t;
+    }
+    if (is_swept_) {
+      const bool found_all = find_pairs(span, kMostStuckPairs);
+      if (is_spent()) return t;
+      // Any of the pairs may have passed through: test them all.
+      context_.stuck = context_.pairs;
+      if (has_passed(span)) return t;
+      // An incomplete list cannot prove that the bodies stay separate.
+      if (!found_all && span.end < end) continue;
+    }
+    if (span.end < end && !goes_on_from(span)) continue;
+    // The ambiguity ends within this interval: narrow its end, then sample it for a contact.
+    const TimeSpan shortest = shortened(span, width / kLonger);
+    if (!found_between(shortest)) doubt(shortest);
+    return shortest.end;
+  }
+  return t;
+}
+
+/// Returns the shortest span, by halves, after which bodies are sure to go on, given one after which they
+/// are, or nothing remains, and a length of spans after which they are not.
+TimeSpan FirstContactSearch::shortened(TimeSpan span, double too_short) {
+  // Bisection: `doubtful` is too short, span.end is long enough.
+  double doubtful = std::min(span.begin + too_short, span.end);
+  while (span.end - doubtful > std::max(tolerance_, kNarrow * (span.end - span.begin)) && !is_over()) {
+    const double middle = doubtful + (span.end - doubtful) / 2;
+    if (!(middle > doubtful && middle < span.end)) break;
+    // goes_on_from() looks at the pairs that were found last.
+    if (is_swept_ && !find_pairs({span.begin, middle}, kMostStuckPairs)) break;
+    (goes_on_from({span.begin, middle}) ? span.end : doubtful) = middle;
+  }
+  return span;
+}
+
+/// Returns true if the pairs that may meet in a span are sure not to right after it.
+bool FirstContactSearch::goes_on_from(TimeSpan span) {
+  const double wanted = kGoesOn * (span.end - span.begin);
+  // Without pairs the distance must prove it.
+  if (!is_swept_) return parted_by_distance(span.end) >= wanted;
+  const PieceState at_a = a_->at(span.end), at_b = b_->at(span.end);
+  return std::all_of(context_.pairs.begin(), context_.pairs.end(), [&](const SimplexPair& pair) {
+    PairMotion moving(*a_, *b_, pair);
+    moving.place(at_a, at_b);
+    if (is_long()) moving.look_at_axes();
+    // Try the last separating direction first; closest points take longer to compute.
+    return moving.parted_for(hint_) >= wanted || moving.parted_for(moving.bounds().direction) >= wanted;
+  });
+}
+
+/// Asks the exact query at a few times within a doubtful span. Returns true, and notes the contact, if it
+/// finds one.
+bool FirstContactSearch::found_between(TimeSpan span) {
+  double before = span.begin;
+  for (int i = 1; i < kProbes; ++i) {
+    const double t = span.begin + (span.end - span.begin) * i / kProbes;
+    // In an interval of few doubles the samples coincide.
+    if (!(t > before) || !(t < span.end)) continue;
+    if (auto pair = meets_at(t)) {
+      contact_at_last({span.begin, t}, *pair);
+      return true;
+    }
+    before = t;
+  }
+  return false;
+}
+
+/// Notes a contact at the end of a span; first looks for an earlier one, by halves.
+void FirstContactSearch::contact_at_last(TimeSpan span, SimplexPair pair) {
+  double none = span.begin;
+  tell(span.begin, span.end);
+  // Bisection on the exact query. Contact need not be monotone in t, so that the begin of the span stays t0.
+  while (span.end - none > tolerance_ / 2 && !is_spent()) {
+    const double middle = none + (span.end - none) / 2;
+    if (!(middle > none && middle < span.end)) break;
+    if (const auto earlier = meets_at(middle)) {
+      span.end = middle;
+      pair = *earlier;
+      tell(span.begin, span.end);
+    } else {
+      none = middle;
+    }
+  }
+  contact_in(span, pair);
+}
+
+void FirstContactSearch::contact_in(TimeSpan span, SimplexPair pair) {
+  is_done_ = true;
+  result_.outcome = MotionOutcome::contact;
+  result_.t0 = span.begin;
+  result_.t1 = span.end;
+  // Wider than requested: the time before the contact is ambiguous.
+  result_.grazing = span.end - span.begin > request_.tolerance;
+  result_.pair = pair;
+  write_features(span.begin, pair);
+  tell(span.begin, span.end);
+}
+
+void FirstContactSearch::doubt(TimeSpan span) {
+  std::vector<TimeSpan>& list = result_.doubtful;
+  // Merge adjacent intervals.
+  if (!list.empty() && list.back().end >= span.begin)
+    list.back().end = span.end;
+  else
+    list.push_back(span);
+}
+
+void FirstContactSearch::write_features(double t, SimplexPair pair) {
+  PairMotion moving(*a_, *b_, pair);
+  moving.place(a_->at(t), b_->at(t));
+  const PairBounds at = moving.bounds();
+  // Coordinates overflowed: no closest features.
+  if (!std::isfinite(at.upper)) return;
+  result_.witness = {witness_of(*rep_[0], pair.a, at.on[0], at.point[0]),
+                     witness_of(*rep_[1], pair.b, at.on[1], at.point[1])};
+  const double length = at.direction.stableNorm();
+  // The closest points coincide up to rounding: there is no normal.
+  if (!(length > 0)) return;
+  result_.normal = at.direction / length;
+  if (result_.normal.dot(moving.ahead()) < 0) result_.normal = -result_.normal;
+  result_.speed = moving.approach_speed(at, result_.normal);
+}
+
+}  // namespace lrb

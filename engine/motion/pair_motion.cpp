@@ -1,0 +1,330 @@
+/// Conservative advancement of one pair of simplices, and a proof that a pair has passed through.
+///
+/// - parted_for(): bound the motion of each pair of corners along a direction by a quadratic of t; the least
+///   first root is the time for which the slab separates the simplices.
+/// - has_passed(): a topological argument on the Minkowski difference, see there.
+
+#include "engine/motion/pair_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "engine/collide/candidate_cache.hpp"
+#include "engine/collide/tree_query.hpp"
+#include "engine/core/geometry.hpp"
+#include "engine/core/tolerances.hpp"
+#include "engine/tree/kernel_setup.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Roots are taken back by this share, which covers their rounding: 8 u, u = 2^-53.
+constexpr double kRootDown = 1 - 0x1p-40;
+
+/// Returns the largest d up to which c + v d - k d^2 / 2 is more than 0, for c > 0 and k >= 0, rounded down.
+double first_root(double c, double v, double k) {
+  // Linear motion: it never reaches 0, or at -c / v.
+  if (!(k > 0)) return v >= 0 ? kInfinity : c / -v * kRootDown;
+  // Of the two forms of the quadratic formula, take the one without cancellation for this sign of v.
+  const double root = std::sqrt(v * v + 2 * k * c);
+  return (v >= 0 ? (v + root) / k : 2 * c / (root - v)) * kRootDown;
+}
+
+/// A direction across n.
+Vector3d across(const Vector3d& n) {
+  int least = 0;
+  // The axis on which n is shortest is never parallel to n.
+  n.cwiseAbs().minCoeff(&least);
+  return n.cross(Vector3d::Unit(least)).normalized();
+}
+
+/// Two coordinates of the difference of two corners, and how far B's is ahead.
+struct Difference {
+  double u, v;
+};
+
+double cross(const Difference& x, const Difference& y) {
+  return x.u * y.v - x.v * y.u;
+}
+
+/// Returns true if a triangle in the plane holds the origin, and does so however its corners move by `way`.
+bool holds_origin(const Difference* k, double way) {
+  double sign = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Difference &x = k[i], &y = k[(i + 1) % 3];
+    // Twice the signed area of the triangle of the origin and this edge.
+    const double turn = cross(x, y);
+    const double most = std::abs(x.u) + std::abs(x.v) + std::abs(y.u) + std::abs(y.v);
+    // Moving both ends by `way` changes this by less than the first term; the second covers rounding.
+    if (!(std::abs(turn) > 2 * way * (most + way) + kPairRounding * most * most)) return false;
+    // The origin is inside if it lies on the same side of all three edges.
+    if (i > 0 && (turn > 0) != (sign > 0)) return false;
+    sign = turn;
+  }
+  return true;
+}
+
+}  // namespace
+
+PairMotion::PairMotion(const MovingBody& a, const MovingBody& b, SimplexPair pair)
+    : body_{&a, &b}, n_(a.rep().dim()) {
+  for (int side = 0; side < 2; ++side) {
+    const LrbRep& rep = body_[side]->rep();
+    VertexId v[3];
+    rep.simplex(side == 0 ? pair.a : pair.b, v);
+    for (int k = 0; k < n_; ++k) {
+      Corner& corner = corner_[side][k];
+      corner.in_body = rep.vertices()[v[k]];
+      // The rotational velocity w x z is constant in the rotating frame: compute it once.
+      const MovingBody::Spin spin = body_[side]->spin_of(corner.in_body);
+      corner.spin = spin.velocity;
+      corner.acceleration = spin.acceleration;
+    }
+  }
+}
+
+void PairMotion::place(const PieceState& a, const PieceState& b) {
+  reach_ = 0;
+  for (int side = 0; side < 2; ++side) {
+    const PieceState& state = side == 0 ? a : b;
+    const bool turns = body_[side]->turn_rate() > 0;
+    for (int k = 0; k < n_; ++k) {
+      Corner& corner = corner_[side][k];
+      corner.x = state.pose.apply(corner.in_body);
+      // Velocity: the common travel, and r E (w x z) by rotation (motion_bounds.hpp).
+      corner.v = body_[side]->travel();
+      if (turns) corner.v += state.turned * corner.spin;
+      // The largest coordinate difference, to which rounding errors are relative.
+      reach_ = std::max(reach_, (corner.x - corner_[0][0].x).cwiseAbs().maxCoeff());
+    }
+  }
+}
+
+/// Returns how far a product of n and a difference of two corners may be off, once for now and once for
+/// later.
+double PairMotion::places_rounding(const Vector3d& n) const {
+  // First the rounding of the product, then the places of both bodies, now and later.
+  return 0.25 * kPairRounding * reach_ * n.cwiseAbs().sum() +
+         2 * n.norm() * kWorldUp * (body_[0]->rounding() + body_[1]->rounding());
+}
+
+double PairMotion::parted_for(const Vector3d& n) const {
+  const double length = n.norm() * kWorldUp;
+  // A degenerate direction proves nothing.
+  if (!(length > 0) || !(length < kInfinity)) return 0;
+  double ahead[2][3], speed[2][3];
+  double low[2] = {kInfinity, kInfinity}, high[2] = {-kInfinity, -kInfinity};
+  for (int side = 0; side < 2; ++side)
+    for (int k = 0; k < n_; ++k) {
+      const Corner& corner = corner_[side][k];
+      // Relative to A's first corner: differences of nearby points are accurate, far from the origin as well.
+      ahead[side][k] = n.dot(corner.x - corner_[0][0].x);
+      speed[side][k] = n.dot(corner.v);
+      low[side] = std::min(low[side], ahead[side][k]);
+      high[side] = std::max(high[side], ahead[side][k]);
+    }
+  // B is ahead along n or along -n: take the wider of the two gaps.
+  const double sign = low[1] - high[0] >= low[0] - high[1] ? 1 : -1;
+  const double rounding = places_rounding(n);
+  const double speed_rounding = length * (body_[0]->velocity_rounding() + body_[1]->velocity_rounding());
+  // Centripetal acceleration is across the axis: a direction near the axis sees little of it.
+  const double share_a = looks_at_axes_ ? body_[0]->share_along(n) : 1;
+  const double share_b = looks_at_axes_ ? body_[1]->share_along(n) : 1;
+  double least = kInfinity;
+  for (int i = 0; i < n_; ++i)
+    for (int j = 0; j < n_; ++j) {
+      // c + v d - k d^2 / 2 of pair_motion.hpp, rounded to the safe side.
+      const double c = sign * (ahead[1][j] - ahead[0][i]) - rounding;
+      if (!(c > 0)) return 0;
+      const double v = sign * (speed[1][j] - speed[0][i]) - speed_rounding;
+      const double k = share_a * corner_[0][i].acceleration + share_b * corner_[1][j].acceleration;
+      // All pairs of corners must stay separated: the least root counts.
+      least = std::min(least, first_root(c, v, length * k * (looks_at_axes_ ? kWorldUp : 1)));
+    }
+  return least > 0 ? least : 0;  // NaN: 0
+}
+
+Vector3d PairMotion::middle(int side) const {
+  Vector3d sum(0, 0, 0);
+  for (int k = 0; k < n_; ++k) sum += corner_[side][k].x;
+  return sum / n_;
+}
+
+PairBounds PairMotion::bounds() const {
+  const double* x[2][3];
+  for (int side = 0; side < 2; ++side)
+    for (int k = 0; k < n_; ++k) x[side][k] = corner_[side][k].x.data();
+  return bound_distance(x[0], x[1], n_);
+}
+
+/// Velocity is an affine function of position, so that it can be interpolated between a feature's corners.
+Vector3d PairMotion::velocity_at(int side, const exact::Feature& on, const Vector3d& point) const {
+  const Corner* const corner = corner_[side];
+  const int first = on.dim == 2 ? 0 : on.index;
+  const Corner &from = corner[first], &to = corner[(first + 1) % n_];
+  const Vector3d along = to.x - from.x, way = point - from.x;
+  // A vertex, or an edge without length.
+  if (on.dim == 0 || !(along.squaredNorm() > 0)) return from.v;
+  // Linear interpolation along the edge.
+  if (on.dim == 1) return from.v + way.dot(along) / along.squaredNorm() * (to.v - from.v);
+  const Vector3d other = corner[2].x - from.x;
+  // Barycentric coordinates by Cramer's rule (Ericson 2005, section 3.4).
+  const double uu = along.squaredNorm(), vv = other.squaredNorm(), uv = along.dot(other);
+  const double area = uu * vv - uv * uv, uw = along.dot(way), vw = other.dot(way);
+  if (!(area > 0)) return from.v;
+  return from.v + (vv * uw - uv * vw) / area * (to.v - from.v) +
+         (uu * vw - uv * uw) / area * (corner[2].v - from.v);
+}
+
+double PairMotion::approach_speed(const PairBounds& at, const Vector3d& n) const {
+  return -n.dot(velocity_at(1, at.on[1], at.point[1]) - velocity_at(0, at.on[0], at.point[0]));
+}
+
+/// Returns the direction along which differences are looked at in has_passed(), of length 1: that of the
+/// motion, across which there is least of it, unless it goes along the slab.
+Vector3d PairMotion::look_along(const Vector3d& n) const {
+  constexpr double kLeastCosine = 1e-3;
+  const Vector3d way = body_[1]->travel() - body_[0]->travel();
+  return std::abs(way.dot(n)) > kLeastCosine * way.norm() * n.norm() ? way.normalized() : n.normalized();
+}
+
+/// Simplices intersect if the origin is in their Minkowski difference, the convex hull of the differences
+/// b - a of their corners, nine or (2D) four points. Let three of these (2D: two) be ahead along n
+/// before, and behind now, and let the triangle (segment) between them, seen along some direction d that is
+/// not across n, hold the origin before and however its corners move meanwhile. Then it holds the origin all
+/// the while, seen along d, and the point of the triangle that hides the origin, or is hidden by it, moves
+/// continuously along that line from ahead to behind: at some time it is the origin.
+bool PairMotion::has_passed(const PairMotion& before, const Vector3d& n, double time) const {
+  const Vector3d d = look_along(n);
+  // Seen along d, a difference has the coordinates u and v.
+  const Vector3d u = n_ == 3 ? across(d) : Vector3d(-d.y(), d.x(), 0), v = d.cross(u);
+  const double sure = places_rounding(n), sure_before = before.places_rounding(n);
+  const Vector3d travel = body_[1]->travel() - body_[0]->travel();
+  const double aside = std::abs(u.dot(travel)) + std::abs(v.dot(travel)) + 4 * kWorldRounding * travel.norm();
+  // How far any difference may move across d meanwhile: travel, both rotations, and rounding.
+  const double moved = (time * aside + body_[0]->turned_by(time) + body_[1]->turned_by(time)) * kWorldUp +
+                       2 * (body_[0]->rounding() + body_[1]->rounding()) + kPairRounding * reach_;
+  Difference turned[9];
+  int count = 0;
+  for (int i = 0; i < n_; ++i)
+    for (int j = 0; j < n_; ++j) {
+      // Keep corner differences that were surely ahead along n, and are surely behind now.
+      const Vector3d was = before.corner_[1][j].x - before.corner_[0][i].x;
+      if (!(n.dot(was) > sure_before) || !(n.dot(corner_[1][j].x - corner_[0][i].x) < -sure)) continue;
+      turned[count++] = {u.dot(was), v.dot(was)};
+    }
+  if (n_ == 2) {
+    // 2D: a segment contains the origin throughout if its ends stay on different sides of it.
+    const auto ahead = [&](const Difference& k) { return k.u > moved; };
+    const auto behind = [&](const Difference& k) { return k.u < -moved; };
+    return std::any_of(turned, turned + count, ahead) && std::any_of(turned, turned + count, behind);
+  }
+  // 3D: try all triangles of kept differences, at most 84. One that contains the origin throughout is a
+  // proof.
+  for (int i = 0; i < count; ++i)
+    for (int j = i + 1; j < count; ++j)
+      for (int k = j + 1; k < count; ++k) {
+        const Difference three[3] = {turned[i], turned[j], turned[k]};
+        if (holds_origin(three, moved)) return true;
+      }
+  return false;
+}
+
+// One dual traversal for a whole time interval: B is swept along its first-order motion relative to A, and
+// all that differs from this, second-order terms, A's rotation and rounding, becomes the margin of the
+// kernel.
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Largest angle, in radians, by which B may turn from the middle of a span for its turning to be followed
+/// straight.
+constexpr double kStraight = 1;
+/// Bodies that are further from rotations than this are not swept by the kernel for rotations.
+constexpr double kNearlyRigid = 0x1p-6;
+constexpr std::size_t kBuffer = 192;
+constexpr std::uint64_t kPatience = 64;  // pairs of nodes for each pair of simplices that is asked for
+
+Matrix3d cross_matrix(const Vector3d& w) {
+  Matrix3d m;
+  m << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
+  return m;
+}
+
+/// Returns the sweep of B over `half` a span to either side of its middle, on A's axes. What A and B are
+/// displaced by at a contact, seen from the middle, is the difference of their displacements in the world,
+/// turned to A's axes.
+Sweep sweep_of(const MovingBody& a, const PieceState& at_a, const MovingBody& b, const PieceState& at_b,
+               double half) {
+  Sweep sweep;
+  const Matrix3d to_a = at_a.pose.r.transpose();
+  // B seen from A at the middle of the interval; both travels become one relative travel.
+  sweep.middle = {to_a * at_b.pose.r, to_a * (at_b.pose.t - at_a.pose.t)};
+  const Vector3d travel = b.travel() - a.travel();
+  sweep.dt = half * (to_a * travel);
+  // A's rotation displaces contacts in any direction: it widens the sweep.
+  sweep.width = a.turned_by(half);
+  double turning = 0;
+  if (half * b.turn_rate() <= kStraight && b.turn_rate() > 0) {
+    // A small angle: sweep along the velocity (Taylor), and widen by the second-order term below.
+    const Motion::Piece& piece = b.piece();
+    const Matrix3d spin = half / (piece.end - piece.begin) * (to_a * at_b.turned * cross_matrix(piece.turn));
+    sweep.dm = spin * piece.first.r;
+    sweep.dt += spin * piece.first.t;
+    sweep.turn = sweep.dm.norm() * kWorldUp;
+    turning = half * b.spin();
+    sweep.width += 0.5 * half * half * b.acceleration();
+  } else {
+    // A large angle: allow for B's rotation in any direction.
+    sweep.width += b.turned_by(half);
+  }
+  // From the world to A's axes; A need not be exactly a rotation.
+  const double to_a_size = stretch(at_a.pose);
+  sweep.width *= to_a_size * kWorldUp;
+  sweep.length = (half * travel.norm() + turning) * to_a_size * kWorldUp;
+  return sweep;
+}
+
+}  // namespace
+
+bool suits_sweeps(const MovingBody& a, const MovingBody& b) {
+  const Matrix3d at_a = a.at(a.piece().begin).pose.r, at_b = b.at(b.piece().begin).pose.r;
+  return rotation_defect(at_a) <= kNearlyRigid && rotation_defect(at_a.transpose() * at_b) <= kNearlyRigid;
+}
+
+bool find_swept_pairs(QueryContext& ctx, const MovingBody& a, const MovingBody& b, TimeSpan span,
+                      std::uint64_t most, std::vector<SimplexPair>& pairs) {
+  const double middle = span.begin + (span.end - span.begin) / 2;
+  // The larger half, rounded up: both ends of the interval are covered.
+  const double half = std::max(span.end - middle, middle - span.begin) * kWorldUp;
+  const PieceState at_a = a.at(middle), at_b = b.at(middle);
+  // Set up the kernel at the poses of the middle, then widen it to the sweep.
+  ctx.body[0].begin(a.rep(), at_a.pose, WrapperMode::regularised);
+  ctx.body[1].begin(b.rep(), at_b.pose, WrapperMode::regularised);
+  TreeKernel k = start_rigid_kernel(ctx, at_a.pose, at_b.pose, kBuffer);
+  const Sweep sweep = sweep_of(a, at_a, b, at_b, half);
+  // The bodies in doubles are off their exact places at the middle and at t.
+  const double rounding = wrapper_margin(at_a.pose, a.rep().tree(), at_b.pose, b.rep().tree()) +
+                          2 * rotation_defect(at_a.pose.r) * a.rep().tree().extent() +
+                          4 * (a.rounding() + b.rounding()) + kWorldRounding * sweep.length;
+  aim_at(sweep, rounding, query_unit(a.rep().tree(), b.rep().tree()), k);
+  // A list that would be too long is useless: bound the traversal as well.
+  if (most != kNoLimit) k.most_node_pairs = kPatience * most;
+  pairs.clear();
+  while (!is_done(k)) {
+    // Empty the kernel's buffer; give up as soon as there are too many pairs or node pairs.
+    k.out_size = 0;
+    run_tree_kernel(k);
+    for (std::uint32_t i = 0; i < k.out_size; ++i) pairs.push_back({k.out[i].a, k.out[i].b});
+    if (!is_done(k) && (pairs.size() > most || k.node_pairs >= k.most_node_pairs)) return false;
+  }
+  return pairs.size() <= most;
+}
+
+}  // namespace lrb

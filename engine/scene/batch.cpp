@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "engine/collide/collide_into.hpp"
+#include "engine/distance/distance_context.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/parallel.hpp>
+#include <lrbscope/workspace.hpp>
+
+namespace lrb {
+
+struct Workspace::Memory {
+  DistanceContext context;  ///< its QueryContext serves collide(), too
+  CollideResult result;
+};
+
+/// Answers into `answer`, whose memory is used again.
+void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const CollideRequest& request, QueryContext& context, Expected<CollideResult>& answer);
+
+std::vector<std::size_t> order_by_bodies(std::span<const PosedPair> pairs) {
+  std::vector<std::size_t> order(pairs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) {
+    // The index breaks ties: the order does not depend on the sorting algorithm.
+    const auto key = [&](std::size_t i) { return std::tuple(pairs[i].a->serial(), pairs[i].b->serial(), i); };
+    return key(x) < key(y);
+  });
+  return order;
+}
+
+class Batch::Work {
+ public:
+  explicit Work(unsigned threads) : workers_(threads), workspaces_(workers_.count()) {}
+  unsigned threads() const { return workers_.count(); }
+
+  /// Calls ask(i, workspace) for i = 0 .. n - 1.
+  template <class Ask>
+  void for_each(std::size_t n, const Ask& ask) {
+    // Each worker has a workspace of its own: queries share no memory and need no locks.
+    workers_.for_each(n, [&](std::size_t i, unsigned worker) { ask(i, workspaces_[worker]); });
+  }
+
+  /// Does the same for pairs, those of the same two bodies after one another.
+  template <class Ask>
+  void for_each(std::span<const PosedPair> pairs, const Ask& ask) {
+    // Only the order of work changes: answers are written to the index of their question.
+    const std::vector<std::size_t> order = order_by_bodies(pairs);
+    for_each(pairs.size(), [&](std::size_t k, Workspace& workspace) { ask(order[k], workspace); });
+  }
+
+ private:
+  Workers workers_;
+  std::vector<Workspace> workspaces_;  ///< (threads)
+};
+
+Batch::Batch(unsigned threads) : work_(std::make_unique<Work>(threads)) {}
+Batch::~Batch() = default;
+Batch::Batch(Batch&&) noexcept = default;
+Batch& Batch::operator=(Batch&&) noexcept = default;
+
+unsigned Batch::threads() const {
+  return work_->threads();
+}
+
+void Batch::collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
+                    const CollideRequest& request, CollideAnswers& answers) {
+  answers.resize(poses_b.size());
+  work_->for_each(poses_b.size(), [&](std::size_t i, Workspace& w) {
+    collide_into(a, pose_a, b, poses_b[i], request, w.memory().context.query, answers[i]);
+  });
+}
+
+void Batch::collide(std::span<const PosedPair> pairs, const CollideRequest& request,
+                    CollideAnswers& answers) {
+  answers.resize(pairs.size());
+  work_->for_each(pairs, [&](std::size_t i, Workspace& w) {
+    const PosedPair& p = pairs[i];
+    collide_into(*p.a, p.pose_a, *p.b, p.pose_b, request, w.memory().context.query, answers[i]);
+  });
+}
+
+void Batch::distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
+                     const DistanceRequest& request, DistanceAnswers& answers) {
+  answers.resize(poses_b.size());
+  work_->for_each(poses_b.size(), [&](std::size_t i, Workspace& w) {
+    answers[i] = lrb::distance(a, pose_a, b, poses_b[i], request, w);
+  });
+}
+
+void Batch::distance(std::span<const PosedPair> pairs, const DistanceRequest& request,
+                     DistanceAnswers& answers) {
+  answers.resize(pairs.size());
+  work_->for_each(pairs, [&](std::size_t i, Workspace& w) {
+    const PosedPair& p = pairs[i];
+    answers[i] = lrb::distance(*p.a, p.pose_a, *p.b, p.pose_b, request, w);
+  });
+}
+
+CollideAnswers collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
+                       const CollideRequest& request, unsigned threads) {
+  CollideAnswers answers;
+  Batch(threads).collide(a, pose_a, b, poses_b, request, answers);
+  return answers;
+}
+
+CollideAnswers collide(std::span<const PosedPair> pairs, const CollideRequest& request, unsigned threads) {
+  CollideAnswers answers;
+  Batch(threads).collide(pairs, request, answers);
+  return answers;
+}
+
+DistanceAnswers distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
+                         const DistanceRequest& request, unsigned threads) {
+  DistanceAnswers answers;
+  Batch(threads).distance(a, pose_a, b, poses_b, request, answers);
+  return answers;
+}
+
+DistanceAnswers distance(std::span<const PosedPair> pairs, const DistanceRequest& request, unsigned threads) {
+  DistanceAnswers answers;
+  Batch(threads).distance(pairs, request, answers);
+  return answers;
+}
+
+Workspace::Workspace() : memory_(std::make_unique<Memory>()) {}
+Workspace::~Workspace() = default;
+Workspace::Workspace(Workspace&&) noexcept = default;
+Workspace& Workspace::operator=(Workspace&&) noexcept = default;
+
+void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const CollideRequest& request, QueryContext& context, Expected<CollideResult>& answer) try {
+  // An earlier answer keeps the memory of its vectors.
+  if (answer)
+    clear(*answer);
+  else
+    answer = CollideResult{};
+  NullProbe probe;
+  collide_into(a, pose_a, b, pose_b, request, context, probe, *answer);
+} catch (const InputError& e) {
+  answer = Refusal{e.what()};
+}
+
+Expected<CollideResult&> collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                                 const CollideRequest& request, Workspace& workspace) try {
+  Workspace::Memory& memory = workspace.memory();
+  // Emptied, not replaced: it keeps its memory from the last query.
+  clear(memory.result);
+  NullProbe probe;
+  collide_into(a, pose_a, b, pose_b, request, memory.context.query, probe, memory.result);
+  return memory.result;
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+Expected<DistanceResult> distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                                  const DistanceRequest& request, Workspace& workspace) try {
+  return distance(a, pose_a, b, pose_b, request, workspace.memory().context);
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+}  // namespace lrb

@@ -1,0 +1,289 @@
+// Bodies from matrices, arrays, meshes, LRB-reps and files. Every path checks its input, makes an LRB-rep,
+// and collects notes on what was changed and what cannot be queried. Errors in arrays name the element.
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include <lrbscope/body.hpp>
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_repair.hpp>
+#include <lrbscope/validate.hpp>
+#include <lrbscope/wrapper.hpp>
+
+namespace lrb {
+
+// From a checked mesh to an LRB-rep.
+// 1. Reject meshes that cannot be queried at all.
+// 2. Orient components outwards, if requested and needed.
+// 3. Build the regions and prove the cells closed (validate_cells()).
+// 4. If the mesh cannot have regions or the proof fails, keep the real faces only and note the reason.
+
+namespace {
+
+/// Returns a mesh's findings on one line, after its name.
+std::string joined(const Mesh& mesh, const std::vector<std::string>& lines) {
+  const std::string name = mesh.name + ": ";
+  std::string out;
+  for (const std::string& line : lines)
+    out += (out.empty() ? "" : " | ") + (line.starts_with(name) ? line.substr(name.size()) : line);
+  return out;
+}
+
+void refuse_unless_queryable(const CheckedMesh& mesh) {
+  if (!mesh.report().queryable())
+    throw InputError(mesh.mesh().name +
+                     ": cannot be queried: " + joined(mesh.mesh(), mesh.report().lines(mesh.mesh())));
+}
+
+std::string note_without_regions(const CheckedMesh& mesh, bool turn) {
+  const std::string why =
+      turn ? obstacles_to_build(mesh) : joined(mesh.mesh(), mesh.report().obstacles(mesh.mesh()));
+  return mesh.mesh().name + ": queried without regions, because it cannot have any: " + why;
+}
+
+bool can_be_built(const CheckedMesh& mesh, bool turn) {
+  return turn ? mesh.report().when_turned().buildable() : mesh.report().buildable();
+}
+
+}  // namespace
+
+bool is_lrb_file(const std::string& path) {
+  std::error_code ignored;
+  // Only regular files: bytes read from a pipe are gone, and opening a named pipe would block.
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  constexpr std::size_t kEnough = 64;  // bytes: more than any magic
+  std::ifstream in(path, std::ios::binary);
+  std::string start(kEnough, '\0');
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return looks_like_lrb(std::string_view(start).substr(0, static_cast<std::size_t>(in.gcount())));
+}
+
+std::string join_corners_of_mesh(Mesh& mesh) {
+  const JoinedCorners joined = join_corners(mesh);
+  if (!joined.any()) return "";
+  return mesh.name + ": joined corners in exactly the same place: " + std::to_string(joined.before) +
+         " vertices became " + std::to_string(joined.after) + ", " + std::to_string(joined.open_before) +
+         (mesh.dim == 2 ? " loose ends " : " open edges ") + "became " + std::to_string(joined.open_after);
+}
+
+std::string obstacles_to_build(const CheckedMesh& mesh) {
+  return joined(mesh.mesh(), mesh.report().when_turned().obstacles(mesh.mesh()));
+}
+
+std::string note_unproven(const LrbRep& rep) {
+  // Without regions there are no cells to prove.
+  if (rep.region_count() == 0) return {};
+  const ValidateReport report = validate_cells(rep);
+  if (report.valid) return {};
+  return rep.name() +
+         ": queried without regions, because the proof of its LRB-rep failed: " + report.violations.front();
+}
+
+LrbRep proven(LrbRep rep, std::vector<std::string>& notes) {
+  std::string fault = note_unproven(rep);
+  if (fault.empty()) return rep;
+  notes.push_back(std::move(fault));
+  return LrbRep::without_regions(rep);
+}
+
+std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes) {
+  const std::uint32_t turned = mesh.turn_outward();
+  if (turned > 0)
+    notes.push_back(mesh.mesh().name + ": turned " + std::to_string(turned) +
+                    (turned == 1 ? " component that was inside out" : " components that were inside out"));
+  return turned;
+}
+
+MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
+  using Clock = std::chrono::steady_clock;
+  refuse_unless_queryable(mesh);
+  std::vector<std::string> notes;
+  // Steps 2 and 3. The time includes the proof.
+  if (can_be_built(mesh, turn)) {
+    const std::uint32_t turned = turn ? turn_outward(mesh, notes) : 0;
+    const auto begin = Clock::now();
+    LrbRep rep = proven(build_lrb(mesh, options), notes);
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    return {std::move(rep), std::move(notes), seconds, turned};
+  }
+  // Step 4. Without regions, the body still records whether it intersects itself.
+  notes.push_back(note_without_regions(mesh, turn));
+  Workers workers(options.threads);
+  const bool self_intersecting = !mesh.self_intersecting_faces(workers).empty();
+  return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, self_intersecting),
+          std::move(notes)};
+}
+
+MadeBody make_body_of_faces(CheckedMesh mesh, bool turn) {
+  refuse_unless_queryable(mesh);
+  std::vector<std::string> notes;
+  std::uint32_t turned = 0;
+  if (!can_be_built(mesh, turn))
+    notes.push_back(note_without_regions(mesh, turn));
+  else if (turn)
+    turned = turn_outward(mesh, notes);
+  constexpr bool kNotAsked = false;  // whether it intersects itself matters to regions only
+  return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, kNotAsked), std::move(notes), 0,
+          turned};
+}
+
+namespace {
+
+/// Arrays of a body, row by row.
+template <class Number>
+struct Rows {
+  std::span<const Number> numbers;
+  std::size_t each;  ///< numbers in a row
+};
+
+/// Returns the error in the shapes of the two arrays, or an empty text if they are vertices and faces.
+template <class Number>
+std::string shape_fault(const Rows<double>& vertices, const Rows<Number>& faces) {
+  // Two corners per face: segments, that is, a body in 2D.
+  const bool is_flat = faces.each == 2;
+  if (faces.each < 2)
+    return "faces have " + std::to_string(faces.each) + " corners; give 3 or more, or 2 in the plane";
+  if (vertices.each != 3 && !(is_flat && vertices.each == 2))
+    return "vertices have " + std::to_string(vertices.each) + " coordinates; give " +
+           (is_flat ? "2 or 3" : "3");
+  // Incomplete rows.
+  if (vertices.numbers.size() % vertices.each != 0)
+    return std::to_string(vertices.numbers.size()) + " coordinates do not make vertices of " +
+           std::to_string(vertices.each);
+  if (faces.numbers.size() % faces.each != 0)
+    return std::to_string(faces.numbers.size()) + " corners do not make faces of " +
+           std::to_string(faces.each);
+  // Indices are 32 bits wide.
+  if (vertices.numbers.size() / vertices.each > kMaxId || faces.numbers.size() > kMaxId)
+    return "it has more vertices or corners than 32 bits count; give " + std::to_string(kMaxId) + " at most";
+  return {};
+}
+
+template <class Number>
+Expected<Mesh> mesh_of(const Rows<double>& vertices, const Rows<Number>& faces, const std::string& name) {
+  const std::string who = printable_name(name);
+  if (const std::string fault = shape_fault(vertices, faces); !fault.empty())
+    return Refusal{who + ": " + fault};
+  Mesh mesh;
+  mesh.name = who;
+  mesh.dim = faces.each == 2 ? 2 : 3;
+  // Pass 1: vertices. Missing z coordinates are 0. Whether numbers are finite is checked with the mesh.
+  const std::size_t count = vertices.numbers.size() / vertices.each;
+  mesh.vertices.reserve(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const double* const x = vertices.numbers.data() + v * vertices.each;
+    mesh.vertices.emplace_back(x[0], x[1], vertices.each == 3 ? x[2] : 0);
+    if (mesh.dim == 2 && mesh.vertices.back().z() != 0)
+      return Refusal{who + ": vertex " + std::to_string(v) + " of a body in the plane has a z; give 0"};
+  }
+  // Pass 2: faces. std::cmp_* compare integers of any signedness and width correctly.
+  mesh.face_vertices.reserve(faces.numbers.size());
+  mesh.face_offsets.reserve(faces.numbers.size() / faces.each + 1);
+  for (std::size_t i = 0; i < faces.numbers.size(); ++i) {
+    const Number corner = faces.numbers[i];
+    if (std::cmp_less(corner, 0) || std::cmp_greater_equal(corner, count))
+      return Refusal{who + ": face " + std::to_string(i / faces.each) + " names vertex " +
+                     std::to_string(corner) + ", which does not exist; give 0 to " + std::to_string(count) +
+                     " - 1"};
+    mesh.face_vertices.push_back(VertexId(corner));
+    if ((i + 1) % faces.each == 0) mesh.face_offsets.push_back(static_cast<std::uint32_t>(i + 1));
+  }
+  return mesh;
+}
+
+template <class Number>
+Expected<Body> body_of(const Rows<double>& vertices, const Rows<Number>& faces, const BodyOptions& options) {
+  Expected<Mesh> mesh = mesh_of(vertices, faces, options.name);
+  if (!mesh) return mesh.error();
+  return Body::from(std::move(*mesh), options);
+}
+
+/// Returns the note on a body that bounds no solid: which answers it does not support.
+std::string note_no_solid(const LrbRep& rep) {
+  return rep.name() +
+         ": bounds no solid: pairs, contacts and distances are exact; nothing is inside it, and where its surface "
+         "meets no other although their boxes do, the relation is `undefined`";
+}
+
+/// Adds a note on each kind of answer that a body does not support.
+void add_notes_on(const LrbRep& rep, std::vector<std::string>& notes) {
+  if (!rep.closed())
+    notes.push_back(note_no_solid(rep));
+  else if (std::string note = note_no_levels(rep); !note.empty())
+    notes.push_back(std::move(note));
+}
+
+}  // namespace
+
+Body Body::made(Mesh mesh, const BodyOptions& options, std::vector<std::string> notes) {
+  // Check, then build, with or without regions. Both throw InputError if the mesh cannot be queried at all.
+  CheckedMesh checked = check(std::move(mesh));
+  MadeBody made = options.regions ? make_body(std::move(checked), options.build, options.turn)
+                                  : make_body_of_faces(std::move(checked), options.turn);
+  notes.insert(notes.end(), made.notes.begin(), made.notes.end());
+  add_notes_on(made.rep, notes);
+  auto rep = std::make_shared<const LrbRep>(std::move(made.rep));
+  return Body(std::make_shared<const Held>(Held{std::move(rep), std::move(notes), made.turned}));
+}
+
+Expected<Body> Body::from_rows(std::span<const double> coordinates, std::size_t each,
+                               std::span<const std::int64_t> corners, std::size_t each_face,
+                               const BodyOptions& options) {
+  return body_of(Rows<double>{coordinates, each}, Rows<std::int64_t>{corners, each_face}, options);
+}
+
+Expected<Body> Body::from(std::span<const double> coordinates, std::span<const std::uint32_t> corners,
+                          const BodyOptions& options) {
+  return body_of(Rows<double>{coordinates, 3}, Rows<std::uint32_t>{corners, 3}, options);
+}
+
+Expected<Body> Body::from(std::span<const double> coordinates, std::span<const std::int32_t> corners,
+                          const BodyOptions& options) {
+  return body_of(Rows<double>{coordinates, 3}, Rows<std::int32_t>{corners, 3}, options);
+}
+
+Expected<Body> Body::from(std::span<const double> coordinates, std::span<const std::int64_t> corners,
+                          const BodyOptions& options) {
+  return body_of(Rows<double>{coordinates, 3}, Rows<std::int64_t>{corners, 3}, options);
+}
+
+Expected<Body> Body::from(Mesh mesh, const BodyOptions& options) try {
+  if (mesh.name.empty()) mesh.name = printable_name(options.name);
+  return made(std::move(mesh), options);
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+Body Body::from(LrbRep rep) {
+  return from(std::make_shared<const LrbRep>(std::move(rep)));
+}
+
+Body Body::from(std::shared_ptr<const LrbRep> rep) {
+  // An LRB-rep from elsewhere is not trusted: if the proof of its cells fails, only its real faces are kept.
+  std::vector<std::string> notes;
+  if (std::string fault = note_unproven(*rep); !fault.empty()) {
+    notes.push_back(std::move(fault));
+    rep = std::make_shared<const LrbRep>(LrbRep::without_regions(*rep));
+  }
+  add_notes_on(*rep, notes);
+  return Body(std::make_shared<const Held>(Held{std::move(rep), std::move(notes), 0}));
+}
+
+Expected<Body> Body::load(const std::string& path, const BodyOptions& options) try {
+  // By content, not by extension.
+  if (is_lrb_file(path)) return from(load_lrb(path));
+  Mesh mesh = read_mesh(path);
+  std::vector<std::string> notes;
+  if (options.join)
+    if (std::string note = join_corners_of_mesh(mesh); !note.empty()) notes.push_back(std::move(note));
+  return made(std::move(mesh), options, std::move(notes));
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+}  // namespace lrb

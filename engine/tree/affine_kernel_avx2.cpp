@@ -1,2 +1,0 @@
-#define LRB_AFFINE_KERNEL_NAME run_affine_kernel_avx2
-#include "engine/tree/affine_kernel.inl"

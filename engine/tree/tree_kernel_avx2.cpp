@@ -1,2 +1,0 @@
-#define LRB_KERNEL_NAME run_tree_kernel_avx2
-#include "engine/tree/tree_kernel.inl"

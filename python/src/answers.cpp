@@ -1,0 +1,353 @@
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include <pybind11/pybind11.h>
+#include <unistd.h>
+
+#include "python/src/bindings.hpp"
+#include <lrbscope/parallel.hpp>
+#include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/trace/record_fields.hpp>
+
+namespace lrb::python {
+namespace {
+
+/// A contact region, and what keeps its memory.
+struct Region {
+  std::shared_ptr<const CollideResult> result;
+  const ContactRegion* region;
+};
+
+py::dict counters_of(const Counters& c) {
+  py::dict d;
+  for_each_field<Counters>([&](const auto& field) { d[field.name.data()] = c.*field.member; });
+  return d;
+}
+
+py::array_t<std::uint32_t> pairs_of(const py::object& self) {
+  const auto& pairs = self.cast<const Answer&>().result->pairs;
+  static_assert(sizeof(SimplexPair) == 2 * sizeof(std::uint32_t));
+  return view({static_cast<py::ssize_t>(pairs.size()), 2},
+              reinterpret_cast<const std::uint32_t*>(pairs.data()), self);
+}
+
+py::array_t<std::uint32_t> face_pairs_of(const Answer& answer) {
+  const auto& pairs = answer.result->pairs;
+  py::array_t<std::uint32_t> out({static_cast<py::ssize_t>(pairs.size()), py::ssize_t{2}});
+  std::uint32_t* to = out.mutable_data();
+  for (const SimplexPair& p : pairs) {
+    *to++ = answer.a->face_of_simplex(p.a);
+    *to++ = answer.b->face_of_simplex(p.b);
+  }
+  return out;
+}
+
+py::array_t<bool> crosses_of(const Answer& answer) {
+  const auto& meets = answer.result->meets;
+  py::array_t<bool> out(static_cast<py::ssize_t>(meets.size()));
+  for (std::size_t i = 0; i < meets.size(); ++i) out.mutable_data()[i] = meets[i] == exact::Meet::cross;
+  return out;
+}
+
+/// Returns the corners of all pairs' intersections, and the number of the pair that each is of.
+py::tuple points_of(const Answer& answer) {
+  std::vector<Eigen::Vector3d> points;
+  std::vector<std::uint32_t> of_pair;
+  for (std::uint32_t i = 0; i < answer.result->contacts.size(); ++i) {
+    const PairContactRecord& contact = answer.result->contacts[i];
+    for (int c = 0; c < contact.corner_count; ++c) {
+      points.push_back(contact.corners[c].x);
+      of_pair.push_back(i);
+    }
+  }
+  return py::make_tuple(array_of(points), array_of_ids(std::span<const std::uint32_t>(of_pair)));
+}
+
+py::object overlap_of(const Answer& answer) {
+  if (answer.result->interiors_overlap == lrb::Answer::unknown) return py::none();
+  return py::bool_(answer.result->interiors_overlap == lrb::Answer::yes);
+}
+
+py::object separation_of(const Answer& answer) {
+  if (!answer.result->separation) return py::none();
+  const Separation& s = *answer.result->separation;
+  py::dict d;
+  d["regions_a"] = array_of_ids(std::span<const RegionId>(s.refined[0]));
+  d["regions_b"] = array_of_ids(std::span<const RegionId>(s.refined[1]));
+  d["faces_a"] = s.face_count[0];
+  d["faces_b"] = s.face_count[1];
+  return d;
+}
+
+std::string shown(const Answer& answer) {
+  const CollideResult& r = *answer.result;
+  return std::string("<lrbscope.Result ") + to_string(r.relation) + ", " + std::to_string(r.pairs.size()) +
+         (r.pairs.size() == 1 ? " pair>" : " pairs>");
+}
+
+void bind_result(py::module_& m) {
+  py::class_<Answer> c(
+      m, "Result", "The answer to one query. Made by collide(). Arrays are read-only and share its memory.");
+  c.def_property_readonly(
+      "relation", [](const Answer& a) { return py::str(to_string(a.result->relation)); },
+      "str: 'separate', 'crossing', 'touching', 'a_inside_b', 'b_inside_a', 'undefined' (the surfaces do\n"
+      "not meet, the bodies' boxes do, and a body is not closed), 'unresolved' (within limits only).");
+  c.def_property_readonly(
+      "pairs", &pairs_of,
+      "(p, 2) uint32: the triangles of A and of B that meet, ascending. One pair at most unless "
+      "mode is 'all'.");
+  c.def_property_readonly("face_pairs", &face_pairs_of,
+                          "(p, 2) uint32: the faces that these are of; differs for polygons only.");
+  c.def_property_readonly("crosses", &crosses_of,
+                          "(p,) bool: the pair passes through each other; False: it touches.");
+  c.def_property_readonly(
+      "fingerprint", [](const Answer& a) { return trace::to_hex(fingerprint(a.result->pairs)); },
+      "str: 16 hexadecimal digits, a hash of `pairs`.");
+  c.def_property_readonly(
+      "interiors_overlap", &overlap_of,
+      "bool or None: whether the bodies share a volume; None where that is not known or was not asked for.");
+  c.def_property_readonly("regions", &regions_of, "list of ContactRegion, if contacts were asked for.");
+  c.def_property_readonly(
+      "points", &points_of,
+      "((c, 3) float64, (c,) uint32): corners of the intersections of pairs, world frame, and the "
+      "pair of each, if\n"
+      "contacts were asked for.");
+  c.def_property_readonly(
+      "counters", [](const Answer& a) { return counters_of(a.result->counters); },
+      "dict: the work of the query, in numbers of operations.");
+  c.def_property_readonly(
+      "error_bound", [](const Answer& a) { return a.result->error_bound; },
+      "float: 0 if the answer is exact; else how far the wrappers that meet are off both bodies "
+      "together, world's unit.");
+  c.def_property_readonly(
+      "finished", [](const Answer& a) { return a.result->finished; },
+      "bool: False if a limit was reached before the tolerance.");
+  c.def_property_readonly(
+      "separation", &separation_of,
+      "dict or None: the regions that prove the bodies apart when refined, if they were asked for.");
+  c.def_property_readonly(
+      "opened",
+      [](const Answer& a) {
+        return py::make_tuple(array_of_ids(std::span<const RegionId>(a.result->opened[0])),
+                              array_of_ids(std::span<const RegionId>(a.result->opened[1])));
+      },
+      "((i,) uint32, (j,) uint32): regions of A and of B that were refined, in order.");
+  c.def(
+      "__bool__", [](const Answer& a) { return in_contact(*a.result); },
+      "True if the bodies are known to have a point in common: surfaces meet, or one body is in the other.");
+  c.def("__repr__", &shown);
+}
+
+/// Returns names as an array of numpy's strings.
+template <class Name>
+py::array names(std::size_t n, const Name& name) {
+  py::list all;
+  for (std::size_t i = 0; i < n; ++i) all.append(py::str(name(i)));
+  return py::module_::import("numpy").attr("array")(all, py::arg("dtype") = "U16");
+}
+
+/// Returns all pairs of all poses as rows pose, triangle of A, triangle of B.
+py::array_t<std::uint32_t> all_pairs(const Answers& answers) {
+  std::size_t n = 0;
+  for (const CollideResult& r : *answers.all) n += r.pairs.size();
+  py::array_t<std::uint32_t> out({static_cast<py::ssize_t>(n), py::ssize_t{3}});
+  std::uint32_t* to = out.mutable_data();
+  for (std::size_t i = 0; i < answers.all->size(); ++i)
+    for (const SimplexPair& p : (*answers.all)[i].pairs) {
+      *to++ = static_cast<std::uint32_t>(i);
+      *to++ = p.a;
+      *to++ = p.b;
+    }
+  return out;
+}
+
+py::object item(const Answers& answers, const py::object& which) {
+  if (!py::isinstance<py::slice>(which)) {
+    const auto i = py::reinterpret_steal<py::object>(PyNumber_Index(which.ptr()));
+    if (!i) throw py::error_already_set();
+    return py::cast(answers.at(checked_index(i.cast<py::ssize_t>(), answers.all->size())));
+  }
+  std::size_t begin, end, step, n;
+  if (!which.cast<py::slice>().compute(answers.all->size(), &begin, &end, &step, &n))
+    throw py::error_already_set();
+  py::list out;
+  for (; n > 0; --n, begin += step) out.append(answers.at(begin));
+  return out;
+}
+
+void bind_results(py::module_& m) {
+  py::class_<Answers> c(m, "Results",
+                        "Answers for k poses: a sequence of Result, in the order of the poses.");
+  c.def("__len__", [](const Answers& a) { return a.all->size(); });
+  c.def("__getitem__", &item);
+  c.def_property_readonly(
+      "relations",
+      [](const Answers& a) {
+        return names(a.all->size(), [&](std::size_t i) { return to_string((*a.all)[i].relation); });
+      },
+      "(k,) str: Result.relation of each.");
+  c.def_property_readonly(
+      "fingerprints",
+      [](const Answers& a) {
+        return names(a.all->size(),
+                     [&](std::size_t i) { return trace::to_hex(fingerprint((*a.all)[i].pairs)); });
+      },
+      "(k,) str: Result.fingerprint of each.");
+  c.def_property_readonly(
+      "counts",
+      [](const Answers& a) {
+        py::array_t<std::int64_t> out(static_cast<py::ssize_t>(a.all->size()));
+        for (std::size_t i = 0; i < a.all->size(); ++i)
+          out.mutable_data()[i] = static_cast<std::int64_t>((*a.all)[i].pairs.size());
+        return out;
+      },
+      "(k,) int64: the number of pairs of each.");
+  c.def_property_readonly(
+      "hits",
+      [](const Answers& a) {
+        py::array_t<bool> out(static_cast<py::ssize_t>(a.all->size()));
+        for (std::size_t i = 0; i < a.all->size(); ++i) out.mutable_data()[i] = in_contact((*a.all)[i]);
+        return out;
+      },
+      "(k,) bool: bool() of each.");
+  c.def_property_readonly("all_pairs", &all_pairs,
+                          "(n, 3) uint32: the pairs of all poses: pose, triangle of A, triangle of B.");
+  c.def("__repr__",
+        [](const Answers& a) { return "<lrbscope.Results of " + std::to_string(a.all->size()) + " poses>"; });
+}
+
+py::list curves_of(const Region& r) {
+  py::list out;
+  for (const ContactLoop& loop : r.region->loops)
+    out.append(py::make_tuple(array_of(loop.points), loop.closed));
+  return out;
+}
+
+void bind_region(py::module_& m) {
+  py::class_<Region> c(
+      m, "ContactRegion",
+      "A connected part of the intersection of two surfaces; world frame, the meshes' unit.");
+  c.def_property_readonly(
+      "pairs", [](const Region& r) { return array_of_ids(std::span<const std::uint32_t>(r.region->pairs)); },
+      "(i,) uint32: numbers of the pairs in Result.pairs, ascending.");
+  c.def_property_readonly(
+      "curves", &curves_of,
+      "list of ((q, 3) float64, bool): the points of each curve, and whether it is closed.");
+  c.def_property_readonly(
+      "length", [](const Region& r) { return r.region->length; }, "float: of all curves.");
+  c.def_property_readonly(
+      "area", [](const Region& r) { return r.region->area; },
+      "float: of coplanar contact, or that closed curves span; unit squared.");
+  c.def_property_readonly(
+      "centroid", [](const Region& r) { return array_of(r.region->centroid); }, "(3,) float64");
+  c.def_property_readonly(
+      "normal", [](const Region& r) { return array_of(r.region->normal); },
+      "(3,) float64: unit, from A to B, averaged; zero where it has no meaning.");
+  c.def_property_readonly(
+      "depth_estimate", [](const Region& r) { return r.region->depth_estimate; },
+      "float: an estimate of how far B must move along `normal` to leave the region.");
+  c.def("__repr__", [](const Region& r) {
+    return "<lrbscope.ContactRegion of " + std::to_string(r.region->pairs.size()) + " pairs>";
+  });
+}
+
+}  // namespace
+
+bool in_contact(const CollideResult& r) {
+  return !r.pairs.empty() || r.relation == Relation::a_inside_b || r.relation == Relation::b_inside_a;
+}
+
+std::size_t checked_index(py::ssize_t i, std::size_t n) {
+  const auto size = static_cast<py::ssize_t>(n);
+  if (i < 0) i += size;
+  if (i < 0 || i >= size) throw py::index_error("index out of range");
+  return static_cast<std::size_t>(i);
+}
+
+py::list regions_of(const Answer& answer) {
+  py::list out;
+  for (const ContactRegion& r : answer.result->regions) out.append(Region{answer.result, &r});
+  return out;
+}
+
+void bind_answers(py::module_& m) {
+  bind_region(m);
+  bind_result(m);
+  bind_results(m);
+}
+
+namespace py = pybind11;
+namespace {
+
+const pid_t loaded_by = getpid();
+
+/// Work on a thread of its own, so that the one that Python's signals come to can wait for either.
+class Batch {
+ public:
+  Batch(std::size_t n, unsigned threads, const std::function<void(std::size_t, unsigned)>& work)
+      : thread_([this, n, threads, &work] { run(n, threads, work); }) {}
+  ~Batch() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+
+  /// Waits, but no longer than a moment. Returns true if all is done.
+  bool wait() {
+    constexpr std::chrono::milliseconds kMoment{50};
+    std::unique_lock lock(mutex_);
+    return ready_.wait_for(lock, kMoment, [this] { return done_; });
+  }
+  void finish() {
+    thread_.join();
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  void run(std::size_t n, unsigned threads, const std::function<void(std::size_t, unsigned)>& work) {
+    try {
+      Workers workers(threads);
+      workers.for_each(n, [&](std::size_t i, unsigned worker) {
+        if (!stop_.load(std::memory_order_relaxed)) work(i, worker);
+      });
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
+    const std::lock_guard lock(mutex_);
+    done_ = true;
+    ready_.notify_all();
+  }
+
+  std::atomic<bool> stop_ = false;
+  bool done_ = false;
+  std::exception_ptr failure_;
+  std::mutex mutex_;
+  std::condition_variable ready_;
+  std::thread thread_;  ///< last: it uses all others
+};
+
+}  // namespace
+
+unsigned threads_of(std::size_t asked) {
+  if (getpid() != loaded_by) return 1;
+  if (asked > 0) return static_cast<unsigned>(asked);
+  const unsigned all = std::thread::hardware_concurrency();
+  return all > 0 ? all : 1;
+}
+
+void check_signals() {
+  const py::gil_scoped_acquire lock;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+void run_batch(std::size_t n, unsigned threads, const std::function<void(std::size_t, unsigned)>& work) {
+  const py::gil_scoped_release unlocked;
+  Batch batch(n, threads, work);
+  while (!batch.wait()) check_signals();
+  batch.finish();
+}
+
+}  // namespace lrb::python

@@ -1,0 +1,101 @@
+#pragma once
+/// What callers from Python give, as what the engine takes. Everything here throws InputError in one line
+/// that names the argument, or TypeError where an argument is of another kind altogether. The lock of Python
+/// must be held.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <lrbscope/enum_words.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/pose.hpp>
+
+namespace lrb::python {
+
+namespace py = pybind11;
+
+/// Returns what an error says of an object's type or, of an array, of its shape and type.
+std::string described(py::handle given);
+
+/// Returns a text for people, with \xff for a byte that is not UTF-8, as names of files may have.
+py::str printable(std::string_view text);
+py::list printable(const std::vector<std::string>& texts);
+
+/// Return an argument as a number or a flag; `fallback` for None. `what` is the argument's name.
+bool flag(py::handle given, const char* what, bool fallback = false);
+double number(py::handle given, const char* what, double fallback = 0);
+double size(py::handle given, const char* what, double fallback = 0);  ///< finite, from 0 on
+std::uint64_t count(py::handle given, const char* what, std::uint64_t fallback = 0);
+std::string text(py::handle given, const char* what, const std::string& fallback = {});
+/// Returns a path, given as str, bytes or os.PathLike.
+std::string path(py::handle given, const char* what);
+/// Returns a path as Python has it, so that it can be opened.
+py::str path_of(std::string_view path);
+/// Returns three numbers as a vector.
+Eigen::Vector3d vector(py::handle given, const char* what);
+
+/// Returns the enumerator that a word stands for; `fallback` for None.
+template <class Enum>
+Enum word(py::handle given, const char* what, Enum fallback) {
+  if (given.is_none()) return fallback;
+  const std::string name = text(given, what);
+  if (const auto value = from_name<Enum>(name)) return *value;
+  throw InputError(std::string(what) + ": \"" + name + "\" is not one of " + all_names<Enum>());
+}
+
+/// Poses of a body: one, or many in a row.
+struct Poses {
+  bool one = true;
+  Pose first;              ///< if there is one
+  std::vector<Pose> many;  ///< if not: a single query asks for no memory
+
+  std::vector<Pose> to_vector() const { return one ? std::vector<Pose>{first} : many; }
+};
+/// Reads (4, 4) or (3, 4) as one pose, (k, 4, 4) or (k, 3, 4) as many; None is the identity.
+Poses poses(py::handle given, const char* what);
+/// Reads one pose; throws for many.
+Pose pose(py::handle given, const char* what);
+
+/// Returns the mesh of arrays: vertices (n, 3) and faces (m, k) with k >= 3 or a sequence of sequences; of a
+/// body in the plane vertices (n, 2) and segments (m, 2).
+Mesh mesh_of_arrays(py::handle vertices, py::handle faces, const std::string& name);
+
+/// Returns an array that nobody can write to and that shows memory of `owner`, which it keeps alive. T: as
+/// numpy has it.
+template <class T>
+py::array_t<T> view(std::vector<py::ssize_t> shape, const T* data, py::handle owner) {
+  py::array_t<T> out(std::move(shape), data, owner);
+  py::detail::array_proxy(out.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return out;
+}
+/// Shows ids as (n / columns, columns) numbers, or as (n) if there is one column.
+template <class Id>
+py::array_t<std::uint32_t> view_of_ids(std::span<const Id> ids, py::ssize_t columns, py::handle owner) {
+  static_assert(sizeof(Id) == sizeof(std::uint32_t));
+  const auto n = static_cast<py::ssize_t>(ids.size());
+  std::vector<py::ssize_t> shape{columns > 1 ? n / columns : n};
+  if (columns > 1) shape.push_back(columns);
+  return view(std::move(shape), reinterpret_cast<const std::uint32_t*>(ids.data()), owner);
+}
+
+/// Copies points into an (n, 3) array.
+py::array_t<double> array_of(std::span<const Eigen::Vector3d> points);
+/// Copies a vector into a (3) array.
+py::array_t<double> array_of(const Eigen::Vector3d& v);
+/// Copies ids into an array.
+template <class Id>
+py::array_t<std::uint32_t> array_of_ids(std::span<const Id> ids) {
+  py::array_t<std::uint32_t> out(static_cast<py::ssize_t>(ids.size()));
+  for (std::size_t i = 0; i < ids.size(); ++i) out.mutable_data()[i] = ids[i];
+  return out;
+}
+
+}  // namespace lrb::python

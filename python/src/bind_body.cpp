@@ -1,0 +1,367 @@
+#include <algorithm>
+#include <filesystem>
+
+#include "python/src/bindings.hpp"
+#include "python/src/objects.hpp"
+#include "scenarios/bodies/body_figures.hpp"
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/wrapper.hpp>
+
+namespace lrb::python {
+namespace {
+
+/// Returns the number of vertices up to the last that a real face has.
+std::size_t used_vertices(const LrbRep& rep) {
+  std::size_t n = 0;
+  for (FaceId f = 0; f < rep.real_face_count(); ++f)
+    for (const VertexId v : rep.face(f)) n = std::max<std::size_t>(n, v + 1u);
+  return n;
+}
+
+BuildOptions build_options(py::handle lean, py::handle seed, py::handle threads) {
+  BuildOptions options;
+  options.lean = flag(lean, "lean");
+  options.seed = count(seed, "seed", options.seed);
+  options.threads = threads_of(count(threads, "threads"));
+  options.progress = [](std::uint32_t, std::uint32_t) { check_signals(); };
+  return options;
+}
+
+BodyPtr body_of_arrays(py::handle vertices, py::handle faces, py::handle regions, py::handle lean,
+                       py::handle seed, py::handle threads, py::handle name) {
+  Mesh mesh = mesh_of_arrays(vertices, faces, text(name, "name", "body"));
+  const BuildOptions options = build_options(lean, seed, threads);
+  const bool with_regions = flag(regions, "regions", true);
+  const std::size_t n = mesh.vertices.size();
+  const py::gil_scoped_release unlocked;
+  return std::make_shared<Body>(
+      with_regions ? bodies::body_of_mesh(std::move(mesh), options) : bodies::faces_of_mesh(std::move(mesh)),
+      n);
+}
+
+BodyPtr load(py::handle file, py::handle regions, py::handle lean, py::handle seed, py::handle threads) {
+  const std::string name = path(file, "path");
+  const BuildOptions options = build_options(lean, seed, threads);
+  const bool with_regions = flag(regions, "regions", true);
+  const py::gil_scoped_release unlocked;
+  return std::make_shared<Body>(with_regions ? bodies::load_body(name, options) : bodies::load_faces(name));
+}
+
+Mesh real_mesh(const Body& body) {
+  const LrbRep& rep = body.rep();
+  Mesh mesh;
+  mesh.dim = rep.dim();
+  mesh.name = rep.name();
+  const auto all = rep.vertices();
+  mesh.vertices.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(body.vertex_count()));
+  for (FaceId f = 0; f < rep.real_face_count(); ++f) mesh.add_face(rep.face(f));
+  return mesh;
+}
+
+void save(const Body& body, py::handle file) {
+  const std::string name = path(file, "path");
+  const py::gil_scoped_release unlocked;
+  if (std::filesystem::path(name).extension() == ".lrb")
+    save_lrb(body.rep(), name);
+  else
+    write_mesh(real_mesh(body), name);
+}
+
+/// Returns faces [begin, end) of a body: ids where all have as many corners, else a list of arrays.
+py::object faces_of(const py::object& self, FaceId begin, FaceId end) {
+  const LrbRep& rep = self.cast<const Body&>().rep();
+  const LrbData& d = rep.data();
+  const std::size_t width = begin == end ? 3 : rep.face(begin).size();
+  bool equal = true;
+  for (FaceId f = begin; f < end && equal; ++f) equal = rep.face(f).size() == width;
+  const std::span<const VertexId> all(d.face_vertices.data() + d.face_offsets[begin],
+                                      d.face_offsets[end] - d.face_offsets[begin]);
+  if (equal) return view_of_ids(all, static_cast<py::ssize_t>(width), self);
+  py::list out;
+  for (FaceId f = begin; f < end; ++f) out.append(view_of_ids(rep.face(f), 1, self));
+  return out;
+}
+
+/// Returns the corners of simplices [0, n).
+py::object triangles_of(const py::object& self) {
+  const LrbRep& rep = self.cast<const Body&>().rep();
+  if (rep.real_simplex_count() == rep.real_face_count())
+    return faces_of(self, FaceId{0}, FaceId(rep.real_face_count()));
+  const py::ssize_t n = rep.real_simplex_count(), size = rep.simplex_size();
+  py::array_t<std::uint32_t> out({n, size});
+  std::uint32_t* to = out.mutable_data();
+  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
+    VertexId corners[3];
+    rep.simplex(s, corners);
+    to = std::copy(corners, corners + size, to);
+  }
+  return out;
+}
+
+py::array_t<std::uint32_t> face_of_triangle(const Body& body) {
+  const LrbRep& rep = body.rep();
+  py::array_t<std::uint32_t> out(static_cast<py::ssize_t>(rep.real_simplex_count()));
+  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) out.mutable_data()[s] = rep.face_of_simplex(s);
+  return out;
+}
+
+py::object parsed_json(const std::string& text) {
+  return py::module_::import("json").attr("loads")(text);
+}
+
+py::object figures(const Body& body) {
+  nlohmann::ordered_json j;
+  {
+    const py::gil_scoped_release unlocked;
+    j = bodies::body_figures(body.rep());
+    j["build_seconds"] = body.build_seconds();
+  }
+  return parsed_json(j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+py::object levels(const Body& body, py::handle threads) {
+  const unsigned n = threads_of(count(threads, "threads"));
+  std::string text;
+  {
+    const py::gil_scoped_release unlocked;
+    nlohmann::ordered_json j = nlohmann::ordered_json::array();
+    for (const WrapperLevel& level : body.rep().levels(n).all())
+      j.push_back(
+          {{"bound", level.bound}, {"faces", level.face_count}, {"pseudo_faces", level.pseudo_count}});
+    text = j.dump();
+  }
+  return parsed_json(text);
+}
+
+py::array_t<double> box(const Body& body, py::handle given) {
+  const Eigen::AlignedBox3d found = body.extent().in_world(pose(given, "pose"));
+  py::array_t<double> out({2, 3});
+  for (int i = 0; i < 3; ++i) {
+    out.mutable_data()[i] = found.min()[i];
+    out.mutable_data()[3 + i] = found.max()[i];
+  }
+  return out;
+}
+
+/// Returns the bytes of plain numbers.
+template <class T>
+py::bytes bytes_of(const std::vector<T>& numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T)};
+}
+template <class T>
+std::vector<T> numbers_of(const py::handle& bytes) {
+  const auto text = bytes.cast<std::string_view>();
+  if (text.size() % sizeof(T) != 0) throw InputError("a pickled body is damaged");
+  std::vector<T> out(text.size() / sizeof(T));
+  std::copy(text.begin(), text.end(), reinterpret_cast<char*>(out.data()));
+  return out;
+}
+
+constexpr int kPickleVersion = 1;
+constexpr std::size_t kPickled = 15;  ///< members of the tuple
+
+py::tuple pickled(const Body& body) {
+  const LrbData& d = body.rep().data();
+  py::list notes;  // bytes, as names of files that are in them may not be UTF-8
+  for (const std::string& note : body.notes()) notes.append(py::bytes(note));
+  return py::make_tuple(kPickleVersion, d.dim, bytes_of(d.vertices), bytes_of(d.face_offsets),
+                        bytes_of(d.face_vertices), d.real_face_count, bytes_of(d.inner_cell),
+                        bytes_of(d.outer_cell), bytes_of(d.region_layer), d.closed, d.self_intersecting,
+                        py::bytes(d.name), notes, body.build_seconds(), body.vertex_count());
+}
+
+BodyPtr unpickled(const py::tuple& t) {
+  if (t.size() != kPickled || t[0].cast<int>() != kPickleVersion)
+    throw InputError("a pickled body is of another version of lrbscope: pickle it again");
+  LrbData d;
+  d.dim = t[1].cast<int>();
+  d.vertices = numbers_of<Eigen::Vector3d>(t[2]);
+  d.face_offsets = numbers_of<std::uint32_t>(t[3]);
+  d.face_vertices = numbers_of<VertexId>(t[4]);
+  d.real_face_count = t[5].cast<std::uint32_t>();
+  d.inner_cell = numbers_of<CellId>(t[6]);
+  d.outer_cell = numbers_of<CellId>(t[7]);
+  d.region_layer = numbers_of<std::uint16_t>(t[8]);
+  d.closed = t[9].cast<bool>();
+  d.self_intersecting = t[10].cast<bool>();
+  d.name = t[11].cast<std::string>();
+  bodies::LoadedBody loaded{LrbRep(std::move(d)), t[12].cast<std::vector<std::string>>(),
+                            t[13].cast<double>()};
+  const auto n = t[14].cast<std::size_t>();
+  if (n > loaded.rep.vertices().size()) throw InputError("a pickled body is damaged");
+  return std::make_shared<Body>(std::move(loaded), n);
+}
+
+py::str shown(const Body& body) {
+  const LrbRep& rep = body.rep();
+  return printable("<lrbscope.Body '" + rep.name() + "': " + std::to_string(rep.real_face_count()) +
+                   (rep.dim() == 2 ? " segments, " : " faces, ") + std::to_string(rep.region_count()) +
+                   " regions, " + (rep.closed() ? "solid>" : "not closed>"));
+}
+
+/// Returns a body as its own copy, for it does not change.
+py::object itself(const py::object& self) {
+  body(self, "self");
+  return self;
+}
+
+using BodyClass = py::class_<Body, BodyPtr>;
+
+void bind_making(BodyClass& c) {
+  c.def(py::init(&body_of_arrays), py::arg("vertices"), py::arg("faces"), py::kw_only(),
+        py::arg("regions") = true, py::arg("lean") = false, py::arg("seed") = 1, py::arg("threads") = 0,
+        py::arg("name") = "body",
+        R"(Body(vertices, faces, *, regions=True, lean=False, seed=1, threads=0, name='body')
+
+Makes a body of arrays.
+
+vertices: (n, 3) float, any unit; (n, 2) for a body in the plane.
+faces: (m, 3) int, corners counter-clockwise seen from outside; (m, k) or a list of lists for convex
+    polygons; (m, 2) segments in the plane. What is inside out is turned, and `notes` says so.
+regions: build an LRB-rep, with wrappers. Without, answers are the same and making is faster.
+lean: a smaller LRB-rep whose wrappers fit less well.
+seed, threads: of the build, whose result depends on the seed only; threads 0: all cores.
+
+Raises InputError, which names the element, for what cannot be queried at all. A surface that cannot have
+regions (open, not manifold) is a body without them.)");
+  c.def_static("load", &load, py::arg("path"), py::kw_only(), py::arg("regions") = true,
+               py::arg("lean") = false, py::arg("seed") = 1, py::arg("threads") = 0,
+               R"(load(path, *, regions=True, lean=False, seed=1, threads=0)
+
+Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the options.)");
+  c.def("save", &save, py::arg("path"),
+        "save(path)\n\nWrites the body: .lrb with its regions, .ply or .obj its faces alone.");
+  c.def(py::pickle(&pickled, &unpickled));
+  c.def("__copy__", &itself);
+  c.def("__deepcopy__", [](const py::object& self, const py::handle&) { return itself(self); });
+  c.def("__repr__", &shown);
+}
+
+void bind_geometry(BodyClass& c) {
+  c.def_property_readonly(
+      "vertices",
+      [](const py::object& self) {
+        const Body& b = self.cast<const Body&>();
+        const double* data = reinterpret_cast<const double*>(b.rep().vertices().data());
+        return view({static_cast<py::ssize_t>(b.vertex_count()), 3}, data, self);
+      },
+      "(n, 3) float64: the mesh's vertices, its unit. Read-only, shares the body's memory.");
+  c.def_property_readonly(
+      "all_vertices",
+      [](const py::object& self) {
+        const auto all = self.cast<const Body&>().rep().vertices();
+        return view({static_cast<py::ssize_t>(all.size()), 3}, reinterpret_cast<const double*>(all.data()),
+                    self);
+      },
+      "(v, 3) float64: `vertices`, then those that only pseudo faces have.");
+  c.def_property_readonly(
+      "faces",
+      [](const py::object& self) {
+        return faces_of(self, FaceId{0}, FaceId(self.cast<const Body&>().rep().real_face_count()));
+      },
+      "(m, 3) uint32: the corners of each face; a list of arrays if faces differ in their number of "
+      "corners.");
+  c.def_property_readonly(
+      "triangles", &triangles_of,
+      "(t, 3) uint32: the corners of each triangle, which pairs name. A polygon is its fan from the "
+      "first corner.");
+  c.def_property_readonly("face_of_triangle", &face_of_triangle,
+                          "(t,) uint32: the face that each triangle is of.");
+  c.def("box", &box, py::arg("pose") = py::none(),
+        "box(pose=None)\n\nReturns the box of the body at a pose, (2, 3) float64: least and greatest "
+        "coordinates, exact.");
+}
+
+void bind_numbers(BodyClass& c) {
+  c.def_property_readonly(
+      "name", [](const Body& b) { return printable(b.rep().name()); }, "str: for messages.");
+  c.def_property_readonly(
+      "dim", [](const Body& b) { return b.rep().dim(); }, "int: 3, or 2 in the plane.");
+  c.def_property_readonly(
+      "is_solid", [](const Body& b) { return b.rep().closed(); },
+      "bool: the faces bound a solid, so that 'inside' has a meaning.");
+  c.def_property_readonly(
+      "real_face_count", [](const Body& b) { return b.rep().real_face_count(); }, "int: faces of the mesh.");
+  c.def_property_readonly(
+      "face_count", [](const Body& b) { return b.rep().face_count(); },
+      "int: faces of the LRB-rep, pseudo faces included.");
+  c.def_property_readonly(
+      "region_count", [](const Body& b) { return b.rep().region_count(); },
+      "int: regions of the LRB-rep; 0 without.");
+  c.def_property_readonly(
+      "layer_count", [](const Body& b) { return b.rep().layer_count(); },
+      "int: passes of the build that made regions.");
+  c.def_property_readonly(
+      "hash", [](const Body& b) { return trace::to_hex(b.rep().hash()); },
+      "str: 16 hexadecimal digits, the same for the same LRB-rep.");
+  c.def_property_readonly(
+      "notes", [](const Body& b) { return printable(b.notes()); },
+      "list of str: what was done to the mesh or could not be, for people.");
+  c.def_property_readonly("build_seconds", &Body::build_seconds,
+                          "float: that the build took; 0 if there was none.");
+  c.def_property_readonly(
+      "memory_bytes", [](const Body& b) { return b.rep().memory_bytes(); }, "int");
+  c.def("figures", &figures,
+        "figures()\n\nReturns the LRB-rep in numbers, a dict with the keys of `lrbscope build "
+        "--json`: faces, regions, layers,\n"
+        "volumes (unit cubed) of solid, outermost wrapper and hull, bytes, build_seconds.");
+  c.def("levels", &levels, py::kw_only(), py::arg("threads") = 0,
+        "levels(*, threads=0)\n\nReturns the wrappers that queries to a tolerance walk, coarsest "
+        "first: a list of dicts with\n"
+        "`bound` (no point of the wrapper is further from the body; the mesh's unit), `faces`, "
+        "`pseudo_faces`.\n"
+        "The first call makes them.");
+}
+
+}  // namespace
+
+Body::Body(bodies::LoadedBody loaded, std::size_t vertex_count)
+    : rep_(std::make_shared<const LrbRep>(std::move(loaded.rep))),
+      notes_(std::move(loaded.notes)),
+      build_seconds_(loaded.build_seconds),
+      vertex_count_(vertex_count) {}
+
+Body::Body(bodies::LoadedBody loaded) : Body(std::move(loaded), 0) {
+  vertex_count_ = used_vertices(*rep_);
+}
+
+const BodyExtent& Body::extent() const {
+  std::call_once(once_, [this] { extent_.emplace(*rep_); });
+  return *extent_;
+}
+
+const Body& body(py::handle given, const char* what) {
+  // What isinstance() and cast() look up is the same in each call, and they take as long as a query.
+  static PyTypeObject* const type = reinterpret_cast<PyTypeObject*>(py::type::of<Body>().ptr());
+  if (Py_TYPE(given.ptr()) == type) {
+    auto* object = reinterpret_cast<py::detail::instance*>(given.ptr());
+    if (const auto* found = object->get_value_and_holder().value_ptr<Body>()) return *found;
+  }
+  if (!py::isinstance<Body>(given))
+    throw py::type_error(std::string(what) + ": expected a Body, got " + described(given));
+  return given.cast<const Body&>();
+}
+
+BodyPtr shared_body(py::handle given, const char* what) {
+  body(given, what);
+  return given.cast<BodyPtr>();
+}
+
+void bind_body(py::module_& m) {
+  BodyClass c(
+      m, "Body",
+      R"(A body: a surface with its LRB-rep, ready to be queried. Does not change once made; threads share it.
+
+>>> import numpy as np
+>>> v = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+>>> f = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+>>> Body(v, f).is_solid
+True)");
+  bind_making(c);
+  bind_geometry(c);
+  bind_numbers(c);
+}
+
+}  // namespace lrb::python

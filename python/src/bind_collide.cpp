@@ -1,0 +1,297 @@
+#include <mutex>
+
+#include "engine/collide/collide_into.hpp"
+#include "python/src/bindings.hpp"
+#include <lrbscope/coherent.hpp>
+#include <lrbscope/parallel.hpp>
+
+namespace lrb::python {
+namespace {
+
+/// A coherent query as Python has it, with its bodies.
+struct HeldQuery {
+  HeldQuery(BodyPtr of_a, BodyPtr of_b, const CollideRequest& request, CoherentQuery::CacheUse use)
+      : a(std::move(of_a)), b(std::move(of_b)), query(a->rep(), b->rep(), request, use) {}
+
+  BodyPtr a, b;
+  CoherentQuery query;
+  std::mutex mutex;  ///< it is asked by one thread at a time
+};
+using HeldQueryPtr = std::shared_ptr<HeldQuery>;
+
+HeldQueryPtr make(py::handle a, py::handle b, py::handle mode, py::handle contacts,
+                  py::handle interiors_overlap, py::handle max_pairs, py::handle always) {
+  const py::none no;
+  const CollideRequest request =
+      request_of({mode, contacts, interiors_overlap, no, no, no, no, max_pairs, no});
+  const auto use =
+      flag(always, "always") ? CoherentQuery::CacheUse::always : CoherentQuery::CacheUse::as_it_pays;
+  return std::make_shared<HeldQuery>(shared_body(a, "a"), shared_body(b, "b"), request, use);
+}
+
+Answer collide_next(HeldQuery& self, py::handle pose_b, py::handle pose_a) {
+  const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
+  auto result = std::make_shared<CollideResult>();
+  {
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard lock(self.mutex);
+    *result = self.query.collide(at_a, at_b);
+  }
+  return {std::move(result), self.a->shared(), self.b->shared()};
+}
+
+py::dict statistics(HeldQuery& self) {
+  CoherentQuery::Statistics s;
+  {
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard lock(self.mutex);
+    s = self.query.statistics();
+  }
+  py::dict d;
+  d["from_cache"] = s.from_cache;
+  d["caches_made"] = s.caches_made;
+  d["swept_caches"] = s.swept_caches;
+  d["from_scratch"] = s.from_scratch;
+  d["tests_saved"] = s.tests_saved;
+  return d;
+}
+
+constexpr const char* kCoherentText =
+    R"(CoherentQuery(a, b, *, mode='all', contacts=False, interiors_overlap=False, max_pairs=0, always=False)
+
+Asks about two bodies again and again as they move by little from one call to the next: keeps the pairs that may meet near
+the last poses, and tests only these. Answers are those of collide(); with mode 'first' or 'any' it may be another pair.
+
+For the options see collide(). always: keep pairs even where queries from scratch are found to be faster (for tests).
+
+>>> q = CoherentQuery(cube, cube)
+>>> [q.collide(shifted(x, 0.25, 0.125)).relation for x in (0.5, 0.51, 1.5)]
+['crossing', 'crossing', 'separate'])";
+
+}  // namespace
+
+void bind_coherent(py::module_& m) {
+  const py::none no;
+  py::class_<HeldQuery, HeldQueryPtr> c(m, "CoherentQuery", kCoherentText);
+  c.def(py::init(&make), py::arg("a"), py::arg("b"), py::kw_only(), py::arg("mode") = no,
+        py::arg("contacts") = no, py::arg("interiors_overlap") = no, py::arg("max_pairs") = no,
+        py::arg("always") = no, kCoherentText);
+  c.def(
+      "collide", &collide_next, py::arg("pose_b") = no, py::arg("pose_a") = no,
+      "collide(pose_b=None, pose_a=None)\n\nReturns the Result for these poses, (4, 4); None: the identity.");
+  c.def_property_readonly(
+      "statistics", &statistics,
+      "dict of int: queries answered from_cache, caches_made for a query (swept_caches of them for "
+      "a motion),\nqueries from_scratch, tests_saved.");
+  c.def_property_readonly(
+      "a", [](const HeldQuery& q) { return q.a; }, "Body");
+  c.def_property_readonly(
+      "b", [](const HeldQuery& q) { return q.b; }, "Body");
+}
+
+}  // namespace lrb::python
+
+namespace lrb {
+/// The engine's own, so that queries from Python run the code that those from C++ do.
+extern template CollideResult collide<NullProbe>(const LrbRep&, const Pose&, const LrbRep&, const Pose&,
+                                                 const CollideRequest&, QueryContext&, NullProbe&);
+}  // namespace lrb
+
+namespace lrb::python {
+namespace {
+
+CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const CollideRequest& request, QueryContext& context) {
+  NullProbe probe;
+  return lrb::collide(a, pose_a, b, pose_b, request, context, probe);
+}
+
+/// Returns the memory of queries one after another on this thread.
+QueryContext& own_context() {
+  thread_local QueryContext context;
+  return context;
+}
+
+py::object collide_one(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
+                       const CollideRequest& request) {
+  auto result = std::make_shared<CollideResult>();
+  {
+    const py::gil_scoped_release unlocked;
+    *result = ask(a.rep(), pose_a, b.rep(), pose_b, request, own_context());
+  }
+  return py::cast(Answer{std::move(result), a.shared(), b.shared()});
+}
+
+py::object collide_many(const Body& a, const Pose& pose_a, const Body& b, const std::vector<Pose>& poses_b,
+                        const CollideRequest& request, unsigned threads) {
+  auto results = std::make_shared<std::vector<CollideResult>>(poses_b.size());
+  std::vector<QueryContext> contexts(threads);
+  run_batch(poses_b.size(), threads, [&](std::size_t i, unsigned worker) {
+    (*results)[i] = ask(a.rep(), pose_a, b.rep(), poses_b[i], request, contexts[worker]);
+  });
+  return py::cast(Answers{std::move(results), a.shared(), b.shared(), {}});
+}
+
+py::object collide(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle mode,
+                   py::handle contacts, py::handle interiors_overlap, py::handle tolerance,
+                   py::handle max_tests, py::handle max_time, py::handle separation, py::handle max_pairs,
+                   py::handle recursion, py::handle threads) {
+  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
+  const Poses at = poses(poses_b, "poses_b");
+  const Pose at_a = pose(pose_a, "pose_a");
+  const CollideRequest request = request_of(
+      {mode, contacts, interiors_overlap, tolerance, max_tests, max_time, separation, max_pairs, recursion});
+  if (at.one) return collide_one(body_a, at_a, body_b, at.first, request);
+  return collide_many(body_a, at_a, body_b, at.many, request, threads_of(count(threads, "threads")));
+}
+
+/// A row of bodies with their poses.
+struct Row {
+  std::vector<std::shared_ptr<const LrbRep>> reps;
+  std::vector<Pose> poses;
+};
+
+Row row_of(const py::sequence& bodies, py::handle given, const char* what, const char* what_poses) {
+  Row out;
+  for (const py::handle one : bodies) out.reps.push_back(body(one, what).shared());
+  out.poses = poses(given, what_poses).to_vector();
+  if (out.poses.size() != out.reps.size())
+    throw InputError(std::string(what_poses) + ": expected as many as " + what + ", " +
+                     std::to_string(out.reps.size()) + ", got " + std::to_string(out.poses.size()));
+  return out;
+}
+
+py::list collide_pairs(const py::sequence& bodies_a, py::handle poses_a, const py::sequence& bodies_b,
+                       py::handle poses_b, py::handle mode, py::handle contacts, py::handle max_pairs,
+                       py::handle threads) {
+  const Row a = row_of(bodies_a, poses_a, "bodies_a", "poses_a");
+  const Row b = row_of(bodies_b, poses_b, "bodies_b", "poses_b");
+  if (a.reps.size() != b.reps.size())
+    throw InputError("bodies_b: expected as many as bodies_a, " + std::to_string(a.reps.size()) + ", got " +
+                     std::to_string(b.reps.size()));
+  const py::none no;
+  const CollideRequest request = request_of({mode, contacts, no, no, no, no, no, max_pairs, no});
+  const unsigned n = threads_of(count(threads, "threads"));
+  std::vector<PosedPair> pairs;
+  for (std::size_t i = 0; i < a.reps.size(); ++i)
+    pairs.push_back({a.reps[i].get(), a.poses[i], b.reps[i].get(), b.poses[i]});
+  const auto results = std::make_shared<std::vector<CollideResult>>(answers_of(pairs, request, n));
+  py::list out;
+  for (std::size_t i = 0; i < results->size(); ++i)
+    out.append(Answer{{results, &(*results)[i]}, a.reps[i], b.reps[i]});
+  return out;
+}
+
+py::object contacts(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle max_pairs,
+                    py::handle threads) {
+  const py::none no;
+  const py::object found =
+      collide(a, b, poses_b, pose_a, no, py::bool_(true), no, no, no, no, no, max_pairs, no, threads);
+  if (py::isinstance<Answer>(found)) return regions_of(found.cast<const Answer&>());
+  const auto& many = found.cast<const Answers&>();
+  py::list out;
+  for (std::size_t i = 0; i < many.all->size(); ++i) out.append(regions_of(many.at(i)));
+  return out;
+}
+
+/// Asks as a program in C++ would, and returns nothing: what calls from Python are compared with
+/// (tests/python/bench.py).
+void collide_alone(py::handle a, py::handle b, py::handle given, unsigned threads) {
+  const LrbRep &rep_a = body(a, "a").rep(), &rep_b = body(b, "b").rep();
+  const std::vector<Pose> poses_b = poses(given, "poses_b").to_vector();
+  const py::gil_scoped_release unlocked;
+  std::vector<CollideResult> results(poses_b.size());
+  std::vector<QueryContext> contexts(threads);
+  Workers workers(threads);
+  workers.for_each(poses_b.size(), [&](std::size_t i, unsigned worker) {
+    results[i] = ask(rep_a, {}, rep_b, poses_b[i], {}, contexts[worker]);
+  });
+}
+
+constexpr const char* kCollideText =
+    R"(collide(a, b, poses_b=None, pose_a=None, *, mode='all', contacts=False, interiors_overlap=False,
+        tolerance=0, max_tests=0, max_time=0, separation=False, max_pairs=0, recursion='complete', threads=0)
+
+Finds whether two bodies meet, which of their triangles do, and how the bodies lie to each other; exactly.
+
+poses_b: where B stands: a (4, 4) float matrix from body to world, applied to columns (x, y, z, 1); any affine
+map.
+    (k, 4, 4): k poses, answered on all cores without Python's lock; Ctrl-C ends the batch.
+pose_a: (4, 4), of A, in all of them. None is the identity for both.
+mode: 'all' pairs; 'first': one that crosses, if any; 'any': the first pair that is found, the fastest.
+contacts: fill Result.regions: curves, area, normal and depth of each contact region.
+tolerance (the meshes' unit), max_tests, max_time (s), separation: ask for no more than a scene needs.
+max_pairs: refuse answers of more pairs; 0: of more than 33,554,432, with contacts 2,097,152.
+threads: of a batch; 0: all cores. Answers are the same for any number.
+
+Returns a Result, or for (k, 4, 4) a Results.
+
+>>> collide(cube, cube, shifted(0.5, 0, 0)).relation
+'touching'
+>>> r = collide(cube, cube, [shifted(0.5, 0.25, 0.125), shifted(2, 0, 0)])
+>>> r.relations.tolist(), r.counts.tolist()
+(['crossing', 'separate'], [12, 0]))";
+
+constexpr const char* kCollidePairsText =
+    R"(collide_pairs(bodies_a, poses_a, bodies_b, poses_b, *, mode='all', contacts=False, max_pairs=0,
+              threads=0)
+
+Asks for k pairs of bodies, on all cores: bodies_a[i] at poses_a[i] against bodies_b[i] at poses_b[i].
+
+bodies_a, bodies_b: sequences of k bodies; poses_a, poses_b: (k, 4, 4) float.
+
+Returns a list of k Results, in order.)";
+
+constexpr const char* kContactsText =
+    R"(contacts(a, b, poses_b=None, pose_a=None, *, max_pairs=0, threads=0)
+
+Returns the contact regions of two bodies at a pose, a list of ContactRegion; for (k, 4, 4) poses a list of
+such lists.
+
+>>> [len(r.curves) for r in contacts(cube, cube, shifted(0.5, 0.25, 0.125))]
+[1])";
+
+}  // namespace
+
+std::vector<CollideResult> answers_of(std::span<const PosedPair> pairs, const CollideRequest& request,
+                                      unsigned threads) {
+  std::vector<CollideResult> results(pairs.size());
+  std::vector<QueryContext> contexts(threads);
+  const std::vector<std::size_t> order = order_by_bodies(pairs);
+  run_batch(pairs.size(), threads, [&](std::size_t k, unsigned worker) {
+    const PosedPair& p = pairs[order[k]];
+    results[order[k]] = ask(*p.a, p.pose_a, *p.b, p.pose_b, request, contexts[worker]);
+  });
+  return results;
+}
+
+CollideRequest request_of(const RequestArguments& given) {
+  CollideRequest r;
+  r.mode = word(given.mode, "mode", r.mode);
+  r.contacts = flag(given.contacts, "contacts");
+  r.interiors_overlap = flag(given.interiors_overlap, "interiors_overlap");
+  r.tolerance = size(given.tolerance, "tolerance");
+  r.max_tests = count(given.max_tests, "max_tests");
+  r.max_time = size(given.max_time, "max_time");
+  r.separation = flag(given.separation, "separation");
+  r.max_pairs = count(given.max_pairs, "max_pairs");
+  r.recursion = word(given.recursion, "recursion", r.recursion);
+  return r;
+}
+
+void bind_collide(py::module_& m) {
+  const py::none no;
+  m.def("collide", &collide, py::arg("a"), py::arg("b"), py::arg("poses_b") = no, py::arg("pose_a") = no,
+        py::kw_only(), py::arg("mode") = no, py::arg("contacts") = no, py::arg("interiors_overlap") = no,
+        py::arg("tolerance") = no, py::arg("max_tests") = no, py::arg("max_time") = no,
+        py::arg("separation") = no, py::arg("max_pairs") = no, py::arg("recursion") = no,
+        py::arg("threads") = no, kCollideText);
+  m.def("collide_pairs", &collide_pairs, py::arg("bodies_a"), py::arg("poses_a"), py::arg("bodies_b"),
+        py::arg("poses_b"), py::kw_only(), py::arg("mode") = no, py::arg("contacts") = no,
+        py::arg("max_pairs") = no, py::arg("threads") = no, kCollidePairsText);
+  m.def("_collide_alone", &collide_alone);
+  m.def("contacts", &contacts, py::arg("a"), py::arg("b"), py::arg("poses_b") = no, py::arg("pose_a") = no,
+        py::kw_only(), py::arg("max_pairs") = no, py::arg("threads") = no, kContactsText);
+}
+
+}  // namespace lrb::python

@@ -1,0 +1,169 @@
+#include "python/src/bindings.hpp"
+#include "scenarios/run/explanation_text.hpp"
+#include <lrbscope/explain.hpp>
+
+namespace lrb::python {
+namespace {
+
+/// Explanations with the bodies that they are about.
+struct OfPair {
+  PairExplanation told;
+  std::shared_ptr<const LrbRep> a, b;
+
+  std::string text() const { return run::explanation_text(told, *a, *b); }
+  std::string json() const { return run::explanation_json(told, *a, *b).dump(); }
+};
+struct OfWalk {
+  WalkExplanation told;
+  std::shared_ptr<const LrbRep> a, b;
+
+  std::string text() const { return run::explanation_text(told); }
+  std::string json() const { return run::explanation_json(told).dump(); }
+};
+
+py::object parsed(const std::string& json) {
+  return py::module_::import("json").attr("loads")(json);
+}
+
+SimplexPair pair_of(py::handle given) {
+  const auto refuse = [&] {
+    throw InputError("pair: expected a triangle of A and one of B, as Result.pairs has them, got " +
+                     std::string(py::str(given)));
+  };
+  if (!py::isinstance<py::sequence>(given) || py::isinstance<py::str>(given)) refuse();
+  const auto pair = py::reinterpret_borrow<py::sequence>(given);
+  if (pair.size() != 2) refuse();
+  SimplexId ids[2];
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::uint64_t n = count(py::object(pair[i]), "pair");
+    if (n > kMaxId) refuse();
+    ids[i] = SimplexId(n);
+  }
+  return {ids[0], ids[1]};
+}
+
+OfPair explain_pair(py::handle a, py::handle b, py::handle given, py::handle pose_b, py::handle pose_a) {
+  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
+  const SimplexPair pair = pair_of(given);
+  const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
+  const py::gil_scoped_release unlocked;
+  return {lrb::explain_pair(body_a.rep(), at_a, body_b.rep(), at_b, pair), body_a.shared(), body_b.shared()};
+}
+
+OfWalk explain_walk(py::handle a, py::handle b, py::handle pose_b, py::handle pose_a) {
+  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
+  const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
+  const py::gil_scoped_release unlocked;
+  return {lrb::explain_walk(body_a.rep(), at_a, body_b.rep(), at_b), body_a.shared(), body_b.shared()};
+}
+
+/// Returns the points of a contact, or the nearest points of faces that do not meet.
+py::array_t<double> points_of(const OfPair& e) {
+  if (e.told.meet == exact::Meet::disjoint) return array_of(e.told.nearest);
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < e.told.contact.corner_count; ++i) points.push_back(e.told.contact.corners[i].x);
+  return array_of(points);
+}
+
+py::tuple hidden_by(const OfPair& e) {
+  const auto ids = [](const std::vector<RegionId>& regions) {
+    return array_of_ids(std::span<const RegionId>(regions));
+  };
+  return py::make_tuple(ids(e.told.hidden_by[0]), ids(e.told.hidden_by[1]));
+}
+
+void bind_pair(py::module_& m) {
+  py::class_<OfPair> c(
+      m, "PairExplanation",
+      "Why two triangles are in an answer, or are not. Made by explain_pair(). str() says it in words.");
+  c.def_property_readonly(
+      "meet", [](const OfPair& e) { return py::str(std::string(name_of(e.told.meet))); },
+      "str: 'disjoint', 'touch' or 'cross'.");
+  c.def_property_readonly(
+      "decided_by", [](const OfPair& e) { return py::str(std::string(name_of(e.told.decided_by))); },
+      "str: 'node_boxes', 'node_edges', 'face_boxes', 'planes', 'floats' or 'exact'.");
+  c.def_property_readonly(
+      "hidden_by", &hidden_by,
+      "((i,) uint32, (j,) uint32): the regions that hide the face of A and of B in the outermost "
+      "wrapper, from the outside inward.");
+  c.def_property_readonly(
+      "points", &points_of,
+      "(c, 3) float64: corners of what the triangles have in common, or (2, 3) their nearest "
+      "points; world frame.");
+  c.def_property_readonly(
+      "distance",
+      [](const OfPair& e) { return e.told.meet == exact::Meet::disjoint ? e.told.distance : 0.0; },
+      "float: of the triangles, in double arithmetic; the world's unit.");
+  c.def(
+      "dict", [](const OfPair& e) { return parsed(e.json()); },
+      "dict()\n\nReturns all of it: a dict with the keys of `lrbscope why --pair --json`.");
+  c.def("__str__", [](const OfPair& e) { return printable(e.text()); });
+}
+
+void bind_walk(py::module_& m) {
+  py::class_<OfWalk> c(
+      m, "WalkExplanation",
+      "How a query went, and what proves two bodies apart. Made by explain_walk(). str() says it in "
+      "words.");
+  c.def_property_readonly(
+      "result",
+      [](const OfWalk& e) {
+        return Answer{std::make_shared<const CollideResult>(e.told.result), e.a, e.b};
+      },
+      "Result: the answer.");
+  c.def_property_readonly(
+      "plane",
+      [](const OfWalk& e) -> py::object {
+        if (!e.told.plane) return py::none();
+        return py::make_tuple(array_of(e.told.plane->normal), e.told.plane->of_a, e.told.plane->of_b);
+      },
+      "((3,) float64, float, float) or None: normal n and numbers f < g with n x <= f for all of A, n x >= g for all of "
+      "B.");
+  c.def_property_readonly(
+      "near_pairs",
+      [](const OfWalk& e) {
+        py::array_t<std::uint32_t> out({static_cast<py::ssize_t>(e.told.near.size()), py::ssize_t{2}});
+        std::uint32_t* to = out.mutable_data();
+        for (const SimplexPair& p : e.told.near) {
+          *to++ = p.a;
+          *to++ = p.b;
+        }
+        return out;
+      },
+      "(p, 2) uint32: triangles that came to a comparison of their own and do not meet, nearest first; five at most.");
+  c.def(
+      "dict", [](const OfWalk& e) { return parsed(e.json()); },
+      "dict()\n\nReturns all of it: a dict with the keys of `lrbscope why --json`.");
+  c.def("__str__", [](const OfWalk& e) { return printable(e.text()); });
+}
+
+}  // namespace
+
+void bind_explain(py::module_& m) {
+  const py::none no;
+  bind_pair(m);
+  bind_walk(m);
+  m.def("explain_pair", &explain_pair, py::arg("a"), py::arg("b"), py::arg("pair"), py::arg("pose_b") = no,
+        py::arg("pose_a") = no, R"(explain_pair(a, b, pair, pose_b=None, pose_a=None)
+
+Tells why two triangles are in an answer, or are not: pair by pair of boxes from the roots of both trees down, then what
+decides between the triangles.
+
+pair: a triangle of A and one of B, as Result.pairs numbers them; poses: (4, 4). Returns a PairExplanation.
+
+>>> e = explain_pair(cube, cube, (0, 0), shifted(5, 0, 0))
+>>> e.meet, e.decided_by, e.distance
+('disjoint', 'node_boxes', 5.0))");
+  m.def("explain_walk", &explain_walk, py::arg("a"), py::arg("b"), py::arg("pose_b") = no,
+        py::arg("pose_a") = no, R"(explain_walk(a, b, pose_b=None, pose_a=None)
+
+Tells how the complete query walks both trees and, of bodies that do not meet, what proves them apart.
+
+Poses: (4, 4). Returns a WalkExplanation.
+
+>>> normal, of_a, of_b = explain_walk(cube, cube, shifted(5, 0, 0)).plane
+>>> normal.tolist(), round(of_b - of_a, 9)
+([1.0, 0.0, 0.0], 4.0))");
+}
+
+}  // namespace lrb::python

@@ -1,0 +1,116 @@
+#include <mutex>
+
+#include "python/src/objects.hpp"
+#include "scenarios/frames/chosen_view.hpp"
+#include "scenarios/record/moments.hpp"
+#include <lrbscope/render/image.hpp>
+
+namespace lrb::python {
+namespace {
+
+using View = render::FrameSpec::View;
+
+int side(const py::handle& given) {
+  const std::uint64_t n = count(given, "size");
+  if (n < 16 || n > 8192)
+    throw InputError("size: expected two numbers from 16 to 8192, got " + std::to_string(n));
+  return static_cast<int>(n);
+}
+
+/// What to draw, as the run's own spec has it; whether the direction was given.
+struct Wanted {
+  render::FrameSpec frames;
+  bool from_given = false;
+};
+
+Wanted wanted(const PictureArguments& given) {
+  Wanted out;
+  render::FrameSpec& f = out.frames;
+  f.width = 960;
+  f.height = 720;
+  if (!given.size.is_none()) {
+    if (!py::isinstance<py::sequence>(given.size) || py::len(given.size) != 2)
+      throw InputError("size: expected (width, height)");
+    const auto size = py::reinterpret_borrow<py::sequence>(given.size);
+    f.width = side(size[0]);
+    f.height = side(size[1]);
+  }
+  View view;
+  out.from_given = !given.view_from.is_none();
+  if (out.from_given) view.from = vector(given.view_from, "view_from");
+  if (!given.up.is_none()) view.up = vector(given.up, "up");
+  for (const Eigen::Vector3d* v : {&view.from, &view.up})
+    if (!v->allFinite() || !(v->squaredNorm() > 0))
+      throw InputError(std::string(v == &view.from ? "view_from" : "up") +
+                       ": expected a direction that is not zero");
+  if (!given.look_at.is_none()) view.look_at = vector(given.look_at, "look_at");
+  view.zoom = number(given.zoom, "zoom", 1);
+  if (!(view.zoom > 0 && view.zoom < 1e6)) throw InputError("zoom: expected a number above 0");
+  view.orthographic = flag(given.orthographic, "orthographic");
+  view.wrapper = flag(given.wrappers, "wrappers");
+  if (flag(given.close_up, "close_up")) view.camera = render::FrameSpec::Camera::contact;
+  f.views = {view};
+  f.colour_by = word(given.colour_by, "colour_by", f.colour_by);
+  f.transparent = flag(given.transparent, "transparent");
+  f.at = render::FrameSpec::At::events;
+  return out;
+}
+
+/// Returns one frame. OSMesa has one current context: pictures are drawn one at a time.
+run::PaintedFrame paint(const Recorded& recorded, std::size_t step, Wanted wanted) {
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  const run::RecordedRun shown = recorded.shown();
+  if (recorded.trace.events.empty()) throw InputError("there is nothing to draw: the trace holds no events");
+  wanted.frames.events = {run::last_event(recorded.trace, step)};
+  View& view = wanted.frames.views[0];
+  if (!wanted.from_given && recorded.bodies.size() == 2 && !recorded.results->empty())
+    view.from = run::least_hidden(shown, view.up, view.from);
+  run::check_frames(shown, wanted.frames);
+  return run::paint_frames(shown, wanted.frames, run::kSilent).at(0);
+}
+
+py::array_t<std::uint8_t> pixels_of(const render::Image& image, bool alpha) {
+  const py::ssize_t channels = alpha ? 4 : 3;
+  py::array_t<std::uint8_t> out(
+      {static_cast<py::ssize_t>(image.height()), static_cast<py::ssize_t>(image.width()), channels});
+  std::uint8_t* to = out.mutable_data();
+  for (const render::Rgba& p : image.pixels()) {
+    *to++ = p.r;
+    *to++ = p.g;
+    *to++ = p.b;
+    if (alpha) *to++ = p.a;
+  }
+  return out;
+}
+
+}  // namespace
+
+py::object draw(const Recorded& recorded, std::size_t step, const PictureArguments& given) {
+  Wanted what = wanted(given);
+  const bool alpha = what.frames.transparent;
+  run::PaintedFrame frame;
+  {
+    const py::gil_scoped_release unlocked;
+    frame = paint(recorded, step, std::move(what));
+  }
+  return py::module_::import("lrbscope._picture")
+      .attr("Picture")(pixels_of(frame.image, alpha), frame.caption);
+}
+
+py::bytes png_of(const py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>& pixels) {
+  if (pixels.ndim() != 3 || (pixels.shape(2) != 3 && pixels.shape(2) != 4))
+    throw InputError("a picture is of shape (height, width, 3) or (height, width, 4), got " +
+                     described(pixels));
+  const auto channels = pixels.shape(2);
+  render::Image image(static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)));
+  const std::uint8_t* from = pixels.data();
+  for (render::Rgba& p : image.pixels()) {
+    p = {from[0], from[1], from[2], channels == 4 ? from[3] : std::uint8_t{255}};
+    from += channels;
+  }
+  const std::vector<std::uint8_t> png = render::encode_png(image);
+  return {reinterpret_cast<const char*>(png.data()), png.size()};
+}
+
+}  // namespace lrb::python

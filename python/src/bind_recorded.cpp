@@ -1,0 +1,398 @@
+#include "python/src/bindings.hpp"
+#include "python/src/objects.hpp"
+#include "scenarios/run/run_page.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/spec/shipped.hpp"
+#include <lrbscope/observe.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/trace.hpp>
+#include <lrbscope/trace/trace_json.hpp>
+
+namespace lrb::python {
+namespace {
+
+using RecordedPtr = std::shared_ptr<Recorded>;
+
+std::string title_of(const std::vector<std::shared_ptr<const LrbRep>>& bodies) {
+  std::string out;
+  for (const auto& rep : bodies) out += (out.empty() ? "" : " and ") + rep->name();
+  return out;
+}
+
+/// Records a query for each pose of B.
+void record(Recorded& to, const Pose& pose_a, const std::vector<Pose>& poses_b,
+            const trace::RecorderSettings& settings) {
+  const LrbRep &a = *to.bodies[0], &b = *to.bodies[1];
+  trace::Recorder recorder(a, b, settings);
+  for (std::uint32_t step = 0; step < poses_b.size(); ++step) {
+    check_signals();
+    recorder.begin_step(step, pose_a, poses_b[step]);
+    to.results->push_back(lrb::collide(a, pose_a, b, poses_b[step], settings.request, recorder));
+    recorder.end_step(to.results->back());
+  }
+  to.trace = recorder.take();
+  if (settings.level != EventLevel::faces)
+    for (const auto& rep : to.bodies) to.trees.emplace_back(rep->tree());
+}
+
+RecordedPtr trace_of(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle events,
+                     py::handle max_events, py::handle mode, py::handle contacts, py::handle tolerance,
+                     py::handle max_tests, py::handle separation, py::handle recursion) {
+  auto out = std::make_shared<Recorded>();
+  out->bodies = {body(a, "a").shared(), body(b, "b").shared()};
+  out->title = title_of(out->bodies);
+  const Poses at = poses(poses_b, "poses_b");
+  const Pose at_a = pose(pose_a, "pose_a");
+  trace::RecorderSettings settings;
+  const py::none no;
+  settings.request = request_of({mode, no, no, tolerance, max_tests, no, separation, no, recursion});
+  // Pictures show contacts; those who asked for less than all pairs have none.
+  settings.request.contacts =
+      flag(contacts, "contacts", settings.request.mode == Mode::all_pairs && !settings.request.is_coarse());
+  settings.level = word(events, "events", settings.level);
+  settings.event_cap = static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(count(max_events, "max_events", settings.event_cap), kMaxId));
+  settings.sources = {out->bodies[0]->name(), out->bodies[1]->name()};
+  settings.scenario = out->title;
+  const py::gil_scoped_release unlocked;
+  record(*out, at_a, at.to_vector(), settings);
+  return out;
+}
+
+/// Shows events as numpy's records.
+py::array events_of(const py::object& self) {
+  const std::vector<trace::Event>& events = self.cast<const Recorded&>().trace.events;
+  using trace::Event;
+  const py::dtype type(
+      py::list(py::make_tuple("a", "b", "cause", "boundary", "depth_a", "depth_b", "kind", "side", "meet",
+                              "detail")),
+      py::list(py::make_tuple("<u4", "<u4", "<u4", "<u4", "<u2", "<u2", "u1", "u1", "u1", "u1")),
+      py::list(py::make_tuple(offsetof(Event, a), offsetof(Event, b), offsetof(Event, cause),
+                              offsetof(Event, boundary), offsetof(Event, depth_a), offsetof(Event, depth_b),
+                              offsetof(Event, kind), offsetof(Event, side), offsetof(Event, meet),
+                              offsetof(Event, detail))),
+      static_cast<py::ssize_t>(sizeof(Event)));
+  py::array out(type, {static_cast<py::ssize_t>(events.size())}, {}, events.data(), self);
+  py::detail::array_proxy(out.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return out;
+}
+
+py::object steps_of(const Recorded& r) {
+  py::list rows;
+  for (const trace::Step& s : r.trace.steps)
+    rows.append(py::make_tuple(s.index, to_string(s.result.relation), s.result.pair_count, s.first_event,
+                               s.events_seen, s.result.counters.face_tests, s.result.counters.refinements));
+  const py::list type(py::make_tuple(py::make_tuple("index", "u4"), py::make_tuple("relation", "U16"),
+                                     py::make_tuple("pairs", "u8"), py::make_tuple("first_event", "u4"),
+                                     py::make_tuple("events", "u8"), py::make_tuple("face_tests", "u8"),
+                                     py::make_tuple("refinements", "u8")));
+  return py::module_::import("numpy").attr("array")(rows, py::arg("dtype") = type);
+}
+
+template <class Enum>
+py::list words() {
+  py::list out;
+  for (const auto& entry : kWords<Enum>) out.append(py::str(std::string(entry.word)));
+  return out;
+}
+
+std::string json_of(const Recorded& r) {
+  const py::gil_scoped_release unlocked;
+  return trace::trace_to_json(r.trace);
+}
+
+py::object summary_of(const Recorded& r) {
+  std::vector<trace::SummaryBody> bodies;
+  for (std::size_t i = 0; i < r.bodies.size(); ++i)
+    bodies.push_back({r.bodies[i].get(), i < r.trees.size() ? &r.trees[i] : nullptr});
+  return py::module_::import("json").attr("loads")(trace::summary_json(r.trace, bodies));
+}
+
+void save(const Recorded& r, py::handle file) {
+  const std::string name = path(file, "path");
+  const py::gil_scoped_release unlocked;
+  trace::save_trace(r.trace, name);
+}
+
+std::string html_of(const Recorded& r) {
+  const py::gil_scoped_release unlocked;
+  report::Page page = run::run_page(r.shown(), {}, "", {r.title, r.purpose, "", "the trace", {}});
+  page.links.clear();  // of files that lie beside a run's page
+  return report::page_html(page);
+}
+
+/// Returns the page in a frame of its own, so that its style is not that of the notebook.
+std::string notebook_html(const Recorded& r) {
+  std::string page = html_of(r), out;
+  out.reserve(page.size() + page.size() / 8);
+  for (const char c : page)
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  return "<iframe style=\"width:100%;height:720px;border:0\" srcdoc=\"" + out + "\"></iframe>";
+}
+
+py::object picture(const Recorded& r, py::handle step, const PictureArguments& given) {
+  const std::size_t n = r.trace.steps.size();
+  const auto i = step.is_none() ? -1 : static_cast<py::ssize_t>(number(step, "step"));
+  if (n == 0) throw InputError("there is no step to draw: the run has none");
+  return draw(r, checked_index(i, n), given);
+}
+
+py::object render_bodies(py::handle a, py::handle b, py::handle pose_b, py::handle pose_a,
+                         const PictureArguments& given) {
+  Recorded r;
+  r.bodies.push_back(body(a, "a").shared());
+  const Pose at_a = pose(pose_a, "pose_a");
+  if (!b.is_none()) r.bodies.push_back(body(b, "b").shared());
+  r.title = title_of(r.bodies);
+  trace::RecorderSettings settings;
+  settings.request.contacts = true;
+  if (r.bodies.size() == 2) {
+    const Pose at_b = pose(pose_b, "pose_b");
+    const py::gil_scoped_release unlocked;
+    record(r, at_a, {at_b}, settings);
+  } else {
+    trace::Recorder recorder(*r.bodies[0], settings);
+    recorder.begin_step(0, at_a);
+    r.trace = recorder.take();
+  }
+  return draw(r, 0, given);
+}
+
+void bind_trace(py::module_& m) {
+  py::class_<Recorded, RecordedPtr> c(
+      m, "Trace",
+      "A recorded run: every event of its queries. Made by trace() and Scenario.record(). In a "
+      "notebook: a page on\n"
+      "which the bodies can be turned after any event.");
+  c.def_property_readonly(
+      "events", &events_of,
+      "(e,) records of a, b, cause, boundary (uint32), depth_a, depth_b (uint16), kind, side, meet, "
+      "detail (uint8);\n"
+      "`kind` counts in `kinds`, and what a and b are depends on it (docs/scenarios.md). Shares the "
+      "trace's memory.");
+  c.attr("kinds") = words<EventKind>();
+  c.def_property_readonly(
+      "steps", &steps_of,
+      "(s,) records of index, relation, pairs, first_event, events, face_tests, refinements.");
+  c.def_property_readonly(
+      "results",
+      [](const Recorded& r) {
+        return Answers{r.results, r.bodies[0], r.bodies.back(), {}};
+      },
+      "Results: the answers of the steps.");
+  c.def_property_readonly(
+      "notes", [](const Recorded& r) { return printable(r.notes); }, "list of str: for people.");
+  c.def("json", &json_of,
+        "json()\n\nReturns the trace as text that ui.perfetto.dev opens (trace/schema/trace.schema.json).");
+  c.def("summary", &summary_of,
+        "summary()\n\nReturns the run in numbers, a dict with the keys of summary.json.");
+  c.def("save", &save, py::arg("path"), "save(path)\n\nWrites json(), compressed if the path ends in .gz.");
+  c.def(
+      "html", [](const Recorded& r) { return printable(html_of(r)); },
+      "html()\n\nReturns the run's page: one file that opens in any browser.");
+  c.def("_repr_html_", [](const Recorded& r) { return printable(notebook_html(r)); });
+  c.def("__len__", [](const Recorded& r) { return r.trace.events.size(); });
+  c.def("__repr__", [](const Recorded& r) {
+    return printable("<lrbscope.Trace of " + r.title + ": " + std::to_string(r.trace.steps.size()) +
+                     " steps, " + std::to_string(r.trace.events.size()) + " events>");
+  });
+  with_picture_arguments([&](auto&&... names) {
+    c.def(
+        "picture",
+        [](const Recorded& r, py::handle step, py::handle size, py::handle view_from, py::handle up,
+           py::handle look_at, py::handle zoom, py::handle orthographic, py::handle wrappers,
+           py::handle close_up, py::handle colour_by, py::handle transparent) {
+          return picture(
+              r, step,
+              {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent});
+        },
+        py::arg("step") = -1, py::kw_only(), names...,
+        "picture(step=-1, *, ...)\n\nDraws the end of a step, counted from the end if negative. "
+        "Options and result as of render().");
+  });
+}
+
+}  // namespace
+
+run::RecordedRun Recorded::shown() const {
+  run::RecordedRun out;
+  out.title = title;
+  out.purpose = purpose;
+  for (const auto& rep : bodies) out.reps.push_back(rep.get());
+  out.trace = &trace;
+  out.results = results.get();
+  out.trees = &trees;
+  return out;
+}
+
+std::shared_ptr<Recorded> recorded_of(run::Recording recording, const spec::Scenario& scenario) {
+  auto out = std::make_shared<Recorded>();
+  for (bodies::LoadedBody& body : recording.bodies)
+    out->bodies.push_back(std::make_shared<const LrbRep>(std::move(body.rep)));
+  out->trace = std::move(recording.trace);
+  *out->results = std::move(recording.results);
+  out->trees = std::move(recording.trees);
+  out->notes = std::move(recording.notes);
+  out->title = scenario.name;
+  out->purpose = scenario.purpose;
+  return out;
+}
+
+void bind_recorded(py::module_& m) {
+  bind_trace(m);
+  const py::none no;
+  m.def("trace", &trace_of, py::arg("a"), py::arg("b"), py::arg("poses_b") = no, py::arg("pose_a") = no,
+        py::kw_only(), py::arg("events") = no, py::arg("max_events") = no, py::arg("mode") = no,
+        py::arg("contacts") = no, py::arg("tolerance") = no, py::arg("max_tests") = no,
+        py::arg("separation") = no, py::arg("recursion") = no,
+        R"(trace(a, b, poses_b=None, pose_a=None, *, events='faces', max_events=1000000, mode='all',
+      contacts=None, tolerance=0, max_tests=0, separation=False, recursion='complete')
+
+Records the query of two bodies at each pose, a step each: every comparison and every refinement.
+
+poses_b, pose_a: as of collide(). events: 'faces'; 'nodes' adds pairs of tree nodes, phases, points; 'all'
+adds pairs of triangles that planes part. max_events: how many are kept; more are counted. The rest: as of
+collide().
+
+Returns a Trace.
+
+>>> t = trace(cube, cube, shifted(0.5, 0.25, 0.125))
+>>> t.steps['relation'].tolist()
+['crossing']
+>>> int(sum(t.events['kind'] == Trace.kinds.index('contact'))) == len(t.results[0].pairs)
+True)");
+  with_picture_arguments([&](auto&&... names) {
+    m.def(
+        "render",
+        [](py::handle a, py::handle b, py::handle pose_b, py::handle pose_a, py::handle size,
+           py::handle view_from, py::handle up, py::handle look_at, py::handle zoom, py::handle orthographic,
+           py::handle wrappers, py::handle close_up, py::handle colour_by, py::handle transparent) {
+          return render_bodies(
+              a, b, pose_b, pose_a,
+              {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent});
+        },
+        py::arg("a"), py::arg("b") = no, py::arg("pose_b") = no, py::arg("pose_a") = no, py::kw_only(),
+        names...,
+        R"(render(a, b=None, pose_b=None, pose_a=None, *, size=(960, 720), view_from=None, up=(0, 0, 1),
+       look_at=None, zoom=1, orthographic=False, wrappers=False, close_up=False, colour_by='kind',
+       transparent=False)
+
+Draws a body, or two and where they meet.
+
+size: pixels, width and height. view_from: the direction from the bodies to the viewer; None: from where least
+of the contact is hidden. up: the direction upwards in the picture. look_at: the point in its middle; zoom:
+above 1 closer. wrappers: show the wrappers that the query worked on. close_up: show the contact alone.
+colour_by: 'kind', 'layer', 'region', 'face_tests', 'refinements', 'hits', 'misses'. transparent: no
+background.
+
+Returns a Picture, (height, width, 3) uint8; transparent: (height, width, 4).
+
+>>> render(cube, cube, shifted(0.5, 0.25, 0.125), size=(320, 240)).shape
+(240, 320, 3))");
+  });
+}
+
+namespace {
+
+/// What a run wrote.
+struct Outcome {
+  std::string folder;
+  run::RunOutcome run;
+};
+
+/// Returns what tells `progress`, a callable or None, how far a job is. Lets Ctrl-C end it in any case.
+run::ProgressReport report_to(const py::object& progress) {
+  const bool told = !progress.is_none();
+  if (told && !PyCallable_Check(progress.ptr()))
+    throw py::type_error("progress: expected a callable, got " + described(progress));
+  // A plain pointer, because copies are made and destroyed without the lock; the caller's argument keeps it
+  // alive.
+  PyObject* const callee = progress.ptr();
+  return [told, callee](const std::string& what, std::uint64_t done, std::uint64_t total) {
+    check_signals();
+    if (!told) return;
+    const py::gil_scoped_acquire lock;
+    const py::handle call(callee);
+    call(what, done, total);
+  };
+}
+
+std::shared_ptr<Recorded> record_scenario(const spec::Scenario& scenario, const py::object& progress) {
+  const run::ProgressReport report = report_to(progress);
+  const py::gil_scoped_release unlocked;
+  return recorded_of(run::record(scenario, report), scenario);
+}
+
+Outcome run_into(const spec::Scenario& scenario, py::handle out, const py::object& progress) {
+  Outcome outcome{path(out, "out"), {}};
+  const run::ProgressReport report = report_to(progress);
+  const py::gil_scoped_release unlocked;
+  outcome.run = run::run_scenario(scenario, outcome.folder, "lrbscope run " + scenario.name, report);
+  return outcome;
+}
+
+py::list shipped() {
+  py::list out;
+  for (const std::string& name : spec::shipped_names(spec::kScenarioEnding)) out.append(name);
+  return out;
+}
+
+void bind_outcome(py::module_& m) {
+  py::class_<Outcome> c(m, "Outcome", "What Scenario.run() wrote.");
+  c.def_property_readonly(
+      "folder", [](const Outcome& o) { return path_of(o.folder); }, "str");
+  c.def_property_readonly(
+      "page", [](const Outcome& o) { return path_of(o.folder + "/index.html"); },
+      "str: the run's page, for a browser.");
+  c.def_property_readonly(
+      "frames", [](const Outcome& o) { return o.run.frames; }, "int: the number of pictures in frames/.");
+  c.def_property_readonly(
+      "mismatches", [](const Outcome& o) { return printable(o.run.mismatches); },
+      "list of str: expectations that were not met.");
+  c.def_property_readonly(
+      "notes", [](const Outcome& o) { return printable(o.run.notes); }, "list of str: for people.");
+  c.def_property_readonly(
+      "summary", [](const Outcome& o) { return py::module_::import("json").attr("loads")(o.run.summary); },
+      "dict: the run in numbers, summary.json.");
+  c.def("__repr__", [](const Outcome& o) { return printable("<lrbscope.Outcome in '" + o.folder + "'>"); });
+}
+
+}  // namespace
+
+void bind_scenario(py::module_& m) {
+  bind_outcome(m);
+  py::class_<spec::Scenario> c(
+      m, "Scenario",
+      R"(Two bodies (or one), how they move, what is asked and drawn: a shipped scenario, or one from a file.
+
+>>> s = Scenario('collision')
+>>> s.name, len(s.purpose) > 0
+('collision', True))");
+  c.def(
+      py::init([](py::handle given) {
+        return spec::open_scenario(py::isinstance<py::str>(given) ? text(given, "scenario")
+                                                                  : path(given, "scenario"));
+      }),
+      py::arg("path_or_name"),
+      "Scenario(path_or_name)\n\nOpens a shipped scenario by its name (scenarios()), or a file by its path.");
+  c.def_property_readonly(
+      "name", [](const spec::Scenario& s) { return s.name; }, "str");
+  c.def_property_readonly(
+      "purpose", [](const spec::Scenario& s) { return s.purpose; }, "str: what the pictures should show.");
+  c.def("record", &record_scenario, py::kw_only(), py::arg("progress") = py::none(),
+        "record(*, progress=None)\n\nRuns the scenario and draws nothing. progress(what, done, "
+        "total): is called now and then. Returns a Trace.");
+  c.def("run", &run_into, py::arg("out"), py::kw_only(), py::arg("progress") = py::none(),
+        "run(out, *, progress=None)\n\nRuns the scenario and writes page, frames, trace, numbers and "
+        "bodies into the folder `out`. Returns an Outcome.");
+  c.def("__repr__", [](const spec::Scenario& s) { return "<lrbscope.Scenario '" + s.name + "'>"; });
+  m.def("scenarios", &shipped, "scenarios()\n\nReturns the names of the scenarios that lrbscope ships.");
+  m.def("_encode_png", &png_of, py::arg("pixels"));
+}
+
+}  // namespace lrb::python

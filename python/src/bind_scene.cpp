@@ -1,0 +1,412 @@
+#include <mutex>
+#include <optional>
+#include <unordered_map>
+
+#include "python/src/bindings.hpp"
+#include "python/src/objects.hpp"
+#include <lrbscope/broad_phase.hpp>
+#include <lrbscope/scene.hpp>
+
+namespace lrb::python {
+namespace {
+
+using Boxes = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+std::vector<Eigen::AlignedBox3d> boxes_of(const Boxes& given) {
+  if (given.ndim() != 3 || given.shape(1) != 2 || given.shape(2) != 3)
+    throw InputError("boxes: expected numbers of shape (n, 2, 3), got " + described(given));
+  std::vector<Eigen::AlignedBox3d> out;
+  for (py::ssize_t i = 0; i < given.shape(0); ++i) {
+    const double* x = given.data(i, 0, 0);
+    out.emplace_back(Eigen::Vector3d(x[0], x[1], x[2]), Eigen::Vector3d(x[3], x[4], x[5]));
+  }
+  return out;
+}
+
+py::array_t<std::uint32_t> pairs_of(SweepAndPrune& sweep, const Boxes& given) {
+  const std::vector<BodyPair>& pairs = sweep.update(boxes_of(given));
+  static_assert(sizeof(BodyPair) == 2 * sizeof(std::uint32_t));
+  return py::array_t<std::uint32_t>({static_cast<py::ssize_t>(pairs.size()), py::ssize_t{2}},
+                                    reinterpret_cast<const std::uint32_t*>(pairs.data()));
+}
+
+}  // namespace
+
+void bind_boxes(py::module_& m) {
+  py::class_<SweepAndPrune>(
+      m, "SweepAndPrune",
+      R"(The broad phase: finds which of many boxes meet, by sort and sweep; quick if they have moved little.
+
+>>> boxes = [cube.box(), cube.box(shifted(0.5, 0, 0)), cube.box(shifted(9, 0, 0))]
+>>> SweepAndPrune().update(boxes).tolist()
+[[0, 1]])")
+      .def(py::init<>())
+      .def("update", &pairs_of, py::arg("boxes"),
+           "update(boxes)\n\nReturns the pairs of boxes with a point in common, (p, 2) uint32 "
+           "ascending. boxes: (n, 2, 3) float, least\n"
+           "and greatest coordinates.");
+}
+
+namespace {
+
+/// A scene as Python has it. Its broad phase runs on one thread, which a fork does not take away; queries run
+/// on all those of run_batch().
+struct HeldScene {
+  explicit HeldScene(std::size_t asked_threads) : threads(asked_threads), scene(1) {}
+
+  std::size_t threads;
+  lrb::Scene scene;
+  std::unordered_map<BodyKey, BodyPtr> bodies;
+  std::mutex mutex;  ///< scenes are asked by one thread at a time
+};
+using ScenePtr = std::shared_ptr<HeldScene>;
+
+/// Who is asked about beside the bodies of a scene: nobody, another scene, or a body from outside.
+struct Others {
+  ScenePtr scene;
+  BodyPtr body;
+  Pose pose;
+};
+
+Others others_of(const HeldScene& self, py::handle given, py::handle pose_of_body) {
+  Others out;
+  if (py::isinstance<HeldScene>(given)) {
+    const auto& scene = given.cast<const HeldScene&>();
+    out.scene = given.cast<ScenePtr>();
+    if (&scene == &self) throw InputError("other: is the scene itself; leave it out");
+  } else if (!given.is_none()) {
+    if (!py::isinstance<Body>(given))
+      throw py::type_error("other: expected a Scene or a Body, got " + described(given));
+    out.body = shared_body(given, "other");
+  }
+  if (!out.body && !pose_of_body.is_none())
+    throw InputError("pose: is that of a body from outside; there is none");
+  out.pose = pose(pose_of_body, "pose");
+  return out;
+}
+
+/// Holds the scenes that are asked. Waits for them without the lock of Python, which who has them may need.
+class Locked {
+ public:
+  explicit Locked(HeldScene& self, const Others& others = {}) : own_(self.mutex, std::defer_lock) {
+    const py::gil_scoped_release unlocked;
+    if (!others.scene) {
+      own_.lock();
+      return;
+    }
+    other_ = std::unique_lock(others.scene->mutex, std::defer_lock);
+    std::lock(own_, other_);
+  }
+
+ private:
+  std::unique_lock<std::mutex> own_, other_;
+};
+
+/// Calls ask() with what names the others in the functions of lrb::Scene.
+template <class Ask>
+auto with_others(const Others& others, const Ask& ask) {
+  const py::gil_scoped_release unlocked;
+  if (others.scene) return ask(others.scene->scene);
+  if (others.body) return ask(lrb::Body::from(others.body->shared()), others.pose);
+  return ask();
+}
+
+BodyKey key_of(const HeldScene& self, py::handle given) {
+  const auto key = BodyKey{count(given, "key")};
+  if (given.is_none() || !self.scene.has(key))
+    throw InputError("key: there is no body " + std::string(py::str(given)) + " in the scene");
+  return key;
+}
+
+std::int64_t number_of(BodyKey key) {
+  return static_cast<std::int64_t>(key);
+}
+
+std::int64_t add(HeldScene& self, py::handle given, py::handle at) {
+  const BodyPtr body = shared_body(given, "body");
+  const Pose where = pose(at, "pose");
+  const Locked lock(self);
+  const BodyKey key = self.scene.add(lrb::Body::from(body->shared()), where);
+  self.bodies[key] = body;
+  return number_of(key);
+}
+
+void remove(HeldScene& self, py::handle given) {
+  const Locked lock(self);
+  const BodyKey key = key_of(self, given);
+  self.scene.remove(key);
+  self.bodies.erase(key);
+}
+
+void move(HeldScene& self, const py::object& keys, py::handle given) {
+  const Poses at = poses(given, "pose");
+  const Locked lock(self);
+  if (at.one) {
+    self.scene.move(key_of(self, keys), at.first);
+    return;
+  }
+  const auto all = py::reinterpret_steal<py::object>(PySequence_Fast(keys.ptr(), "keys: expected integers"));
+  if (!all) throw py::error_already_set();
+  const auto n = static_cast<std::size_t>(PySequence_Fast_GET_SIZE(all.ptr()));
+  if (n != at.many.size())
+    throw InputError("pose: expected as many as keys, " + std::to_string(n) + ", got " +
+                     std::to_string(at.many.size()));
+  std::vector<BodyKey> found;  // all of them, before any body moves
+  for (std::size_t i = 0; i < n; ++i)
+    found.push_back(key_of(self, PySequence_Fast_GET_ITEM(all.ptr(), static_cast<py::ssize_t>(i))));
+  for (std::size_t i = 0; i < n; ++i) self.scene.move(found[i], at.many[i]);
+}
+
+py::array_t<std::int64_t> keys(HeldScene& self) {
+  const Locked lock(self);
+  const std::vector<BodyKey> all = self.scene.keys();
+  py::array_t<std::int64_t> out(static_cast<py::ssize_t>(all.size()));
+  std::transform(all.begin(), all.end(), out.mutable_data(), number_of);
+  return out;
+}
+
+bool contains(HeldScene& self, py::handle given) {
+  if (!PyLong_Check(given.ptr())) return false;
+  const Locked lock(self);
+  const std::uint64_t key = PyLong_AsUnsignedLongLong(given.ptr());
+  if (PyErr_Occurred() != nullptr) {
+    PyErr_Clear();
+    return false;
+  }
+  return self.scene.has(BodyKey{key});
+}
+
+BodyPtr body_at(HeldScene& self, py::handle given) {
+  const Locked lock(self);
+  return self.bodies.at(key_of(self, given));
+}
+
+py::array_t<double> pose_at(HeldScene& self, py::handle given) {
+  const Locked lock(self);
+  const Pose& p = self.scene.pose(key_of(self, given));
+  py::array_t<double> out({4, 4});
+  double* m = out.mutable_data();
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c) *m++ = r == 3 ? (c == 3 ? 1.0 : 0.0) : c == 3 ? p.t[r] : p.r(r, c);
+  return out;
+}
+
+/// The pairs whose boxes are near each other; of a body from outside the key is -1.
+struct NearPairs {
+  std::vector<std::int64_t> keys;  ///< two to a pair
+  std::vector<double> gaps;
+
+  void add(const ScenePair& p, const Others& others) {
+    keys.push_back(others.body ? -1 : number_of(p.a));
+    keys.push_back(number_of(p.b));
+    gaps.push_back(p.gap);
+  }
+};
+
+NearPairs near_of(HeldScene& self, const Others& others, double within) {
+  return with_others(others, [&](auto&&... whose) {
+    NearPairs out;
+    for (const ScenePair& p : self.scene.near(whose..., within)) out.add(p, others);
+    return out;
+  });
+}
+
+py::array_t<std::int64_t> array_of_keys(const std::vector<std::int64_t>& keys) {
+  return py::array_t<std::int64_t>({static_cast<py::ssize_t>(keys.size() / 2), py::ssize_t{2}}, keys.data());
+}
+
+py::tuple near(HeldScene& self, py::handle within, py::handle other, py::handle at) {
+  const Others others = others_of(self, other, at);
+  const double limit = within.is_none() ? 0 : number(within, "within");
+  if (!(limit >= 0))
+    throw InputError("within: expected a number from 0 on, got " + std::string(py::str(within)));
+  const Locked lock(self, others);
+  const NearPairs found = near_of(self, others, limit);
+  const auto n = static_cast<py::ssize_t>(found.gaps.size());
+  return py::make_tuple(array_of_keys(found.keys), py::array_t<double>(n, found.gaps.data()));
+}
+
+py::object nearest_boxes(HeldScene& self, py::handle other, py::handle at) {
+  const Others others = others_of(self, other, at);
+  const Locked lock(self, others);
+  const auto found = with_others(others, [&](auto&&... whose) { return self.scene.nearest_boxes(whose...); });
+  if (!found) return py::none();
+  return py::make_tuple(others.body ? -1 : number_of(found->a), number_of(found->b), found->gap);
+}
+
+/// Answers of a scene, with the keys of the bodies that each is about.
+struct Meetings : Answers {
+  std::vector<std::int64_t> keys;
+};
+
+/// Pairs of a scene that are to be asked, with what keeps their bodies.
+struct Questions {
+  std::vector<PosedPair> pairs;
+  std::vector<std::array<std::shared_ptr<const LrbRep>, 2>> reps;
+};
+
+Questions questions_of(const HeldScene& self, const Others& others, std::span<const std::int64_t> keys) {
+  Questions out;
+  const auto add = [&](const HeldScene* scene, std::int64_t number, const LrbRep*& rep, Pose& at) {
+    const BodyPtr body = number < 0 ? others.body : scene->bodies.at(BodyKey(number));
+    rep = &body->rep();
+    at = number < 0 ? others.pose : scene->scene.pose(BodyKey(number));
+    return body->shared();
+  };
+  const HeldScene* const second = others.scene ? others.scene.get() : &self;
+  for (std::size_t i = 0; i < keys.size(); i += 2) {
+    PosedPair p;
+    const auto a = add(&self, keys[i], p.a, p.pose_a), b = add(second, keys[i + 1], p.b, p.pose_b);
+    out.pairs.push_back(p);
+    out.reps.push_back({a, b});
+  }
+  return out;
+}
+
+CollideRequest request_of_scene(py::handle mode, py::handle contacts, py::handle interiors_overlap,
+                                py::handle max_pairs) {
+  const py::none no;
+  return request_of({mode, contacts, interiors_overlap, no, no, no, no, max_pairs, no});
+}
+
+Meetings collide(HeldScene& self, py::handle other, py::handle at, py::handle mode, py::handle contacts,
+                 py::handle interiors_overlap, py::handle max_pairs) {
+  const Others others = others_of(self, other, at);
+  const CollideRequest request = request_of_scene(mode, contacts, interiors_overlap, max_pairs);
+  const Locked lock(self, others);
+  const NearPairs near = near_of(self, others, 0);
+  const Questions questions = questions_of(self, others, near.keys);
+  std::vector<CollideResult> answers = answers_of(questions.pairs, request, threads_of(self.threads));
+  Meetings out;
+  auto told = std::make_shared<std::vector<CollideResult>>();
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (!in_contact(answers[i])) continue;
+    told->push_back(std::move(answers[i]));
+    out.each.push_back(questions.reps[i]);
+    out.keys.insert(out.keys.end(), {near.keys[2 * i], near.keys[2 * i + 1]});
+  }
+  out.all = std::move(told);
+  return out;
+}
+
+bool any_meet(HeldScene& self, py::handle other, py::handle at) {
+  constexpr std::size_t kAtATime = 1024;  // what they find spares queries about the others
+  const Others others = others_of(self, other, at);
+  CollideRequest request;
+  request.mode = Mode::any_pair;
+  const Locked lock(self, others);
+  const NearPairs near = near_of(self, others, 0);
+  const std::span<const std::int64_t> keys = near.keys;
+  for (std::size_t begin = 0; begin < keys.size(); begin += 2 * kAtATime) {
+    const auto some = keys.subspan(begin, std::min(2 * kAtATime, keys.size() - begin));
+    const Questions questions = questions_of(self, others, some);
+    for (const CollideResult& r : answers_of(questions.pairs, request, threads_of(self.threads)))
+      if (in_contact(r)) return true;
+  }
+  return false;
+}
+
+py::object nearest(HeldScene& self, py::handle other, py::handle at, py::handle solids,
+                   py::handle relative_tolerance, py::handle tolerance) {
+  const Others others = others_of(self, other, at);
+  const Apart apart = flag(solids, "solids") ? Apart::solids : Apart::surfaces;
+  DistanceRequest request;
+  request.tolerance = size(tolerance, "tolerance");
+  request.relative_tolerance = size(relative_tolerance, "relative_tolerance");
+  const Locked lock(self, others);
+  auto found =
+      with_others(others, [&](auto&&... whose) { return self.scene.nearest(whose..., request, apart); });
+  if (!found) return py::none();
+  return py::make_tuple(others.body ? -1 : number_of(found->a), number_of(found->b),
+                        distance_object(std::move(found->result).value()));
+}
+
+std::size_t size_of(HeldScene& self) {
+  const Locked lock(self);
+  return self.scene.size();
+}
+
+constexpr const char* kSceneText = R"(Scene(*, threads=0)
+
+Many bodies that come, go and move: which of them meet, and which are nearest. A broad phase that keeps its order from
+call to call finds the pairs whose boxes meet; these are asked exactly, on `threads` threads (0: all cores).
+
+add() gives a body a key, an int, that no other body of the scene ever has. Functions that take `other` ask about all
+pairs of the scene's bodies (None), or about each of them against those of another Scene, or against a Body from outside
+that stands at `pose`: this one is A of the pair and its key -1.
+
+>>> s = Scene()
+>>> left, right = s.add(cube), s.add(cube, shifted(3, 0, 0))
+>>> s.collide().keys.tolist()
+[]
+>>> s.move(right, shifted(0.5, 0.25, 0.125))
+>>> s.collide().keys.tolist(), s.collide()[0].relation
+([[0, 1]], 'crossing'))";
+
+using SceneClass = py::class_<HeldScene, ScenePtr>;
+
+void bind_bodies(SceneClass& c) {
+  const py::none no;
+  c.def(py::init([](py::handle threads) { return std::make_shared<HeldScene>(count(threads, "threads")); }),
+        py::kw_only(), py::arg("threads") = no, kSceneText);
+  c.def(
+      "add", &add, py::arg("body"), py::arg("pose") = no,
+      "add(body, pose=None)\n\nAdds a Body, as often as you like, where it stands, (4, 4); None: the identity. "
+      "Returns its key.");
+  c.def("remove", &remove, py::arg("key"), "remove(key)\n\nTakes a body out.");
+  c.def("move", &move, py::arg("key"), py::arg("pose"),
+        "move(key, pose)\n\nMoves a body: key int, pose (4, 4); or many: key (k,) int, pose (k, 4, 4).");
+  c.def("body", &body_at, py::arg("key"), "body(key)\n\nReturns the Body of a key.");
+  c.def("pose", &pose_at, py::arg("key"), "pose(key)\n\nReturns where a body stands, (4, 4) float64.");
+  c.def_property_readonly("keys", &keys, "(n,) int64: of all bodies, ascending.");
+  c.def("__len__", &size_of);
+  c.def("__contains__", &contains, py::arg("key"));
+  c.def("__repr__",
+        [](HeldScene& self) { return "<lrbscope.Scene of " + std::to_string(size_of(self)) + " bodies>"; });
+}
+
+void bind_questions(SceneClass& c) {
+  const py::none no;
+  c.def(
+      "near", &near, py::arg("within") = no, py::arg("other") = no, py::arg("pose") = no,
+      "near(within=0, other=None, pose=None)\n\nReturns the pairs of bodies whose boxes are no further apart than "
+      "`within` (the world's unit), nearest first:\ntheir keys, (p, 2) int64, and the gaps of the boxes, (p,) "
+      "float64. At 0 these are the pairs that collide() asks about.");
+  c.def(
+      "nearest_boxes", &nearest_boxes, py::arg("other") = no, py::arg("pose") = no,
+      "nearest_boxes(other=None, pose=None)\n\nReturns the keys of the pair whose boxes are nearest, and their "
+      "gap: (int, int, float); None if there is no pair.");
+  c.def(
+      "collide", &collide, py::arg("other") = no, py::arg("pose") = no, py::kw_only(), py::arg("mode") = no,
+      py::arg("contacts") = no, py::arg("interiors_overlap") = no, py::arg("max_pairs") = no,
+      "collide(other=None, pose=None, *, mode='all', contacts=False, interiors_overlap=False, max_pairs=0)\n\n"
+      "Finds all pairs of bodies that meet, or of which one holds the other, in ascending order of their keys. For "
+      "the options\nsee collide(). Returns Meetings.");
+  c.def("any_meet", &any_meet, py::arg("other") = no, py::arg("pose") = no,
+        "any_meet(other=None, pose=None)\n\nReturns True if collide() would find a pair; asks no longer than "
+        "needed.");
+  c.def(
+      "nearest", &nearest, py::arg("other") = no, py::arg("pose") = no, py::kw_only(), py::arg("solids") = no,
+      py::arg("relative_tolerance") = no, py::arg("tolerance") = no,
+      "nearest(other=None, pose=None, *, solids=False, relative_tolerance=0, tolerance=0)\n\n"
+      "Finds the pair of bodies whose surfaces are nearest, or whose solids are: 0 apart also where one holds the "
+      "other.\nReturns their keys and a Distance, (int, int, Distance); None if there is no pair.");
+}
+
+}  // namespace
+
+void bind_scene(py::module_& m) {
+  py::class_<Meetings, Answers>(
+      m, "Meetings", "The pairs of a scene's bodies that meet: a sequence of Result, in the order of `keys`.")
+      .def_property_readonly(
+          "keys", [](const Meetings& s) { return array_of_keys(s.keys); },
+          "(k, 2) int64: the keys of A and B of each, ascending; -1 of a body from outside.")
+      .def("__repr__", [](const Meetings& s) {
+        return "<lrbscope.Meetings of " + std::to_string(s.all->size()) + " pairs of bodies>";
+      });
+  SceneClass c(m, "Scene", kSceneText);
+  bind_bodies(c);
+  bind_questions(c);
+}
+
+}  // namespace lrb::python

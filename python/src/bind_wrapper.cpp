@@ -1,0 +1,143 @@
+#include "python/src/bindings.hpp"
+#include "python/src/objects.hpp"
+#include "scenarios/bodies/body_figures.hpp"
+
+namespace lrb::python {
+namespace {
+
+/// A wrapper, and the body that it is of.
+struct BodyWrapper {
+  BodyPtr body;
+  Wrapper wrapper;
+};
+
+BodyWrapper made(py::handle given, py::handle mode) {
+  BodyPtr body = shared_body(given, "body");
+  const WrapperMode how = word(mode, "mode", WrapperMode::regularised);
+  const LrbRep& rep = body->rep();
+  return {std::move(body), Wrapper(rep, how)};
+}
+
+BodyWrapper at(py::handle given, py::handle tolerance, py::handle threads) {
+  BodyPtr body = shared_body(given, "body");
+  const double within = size(tolerance, "tolerance");
+  const unsigned n = threads_of(count(threads, "threads"));
+  const py::gil_scoped_release unlocked;
+  const LrbRep& rep = body->rep();
+  return {std::move(body), bodies::wrapper_at(rep, within, n)};
+}
+
+RegionId region(const BodyWrapper& w, py::handle given) {
+  const std::uint64_t i = count(given, "region");
+  const std::uint32_t n = w.body->rep().region_count();
+  if (i >= n)
+    throw InputError("region: there is no region " + std::to_string(i) + " among " + std::to_string(n));
+  return RegionId(i);
+}
+FaceId face(const BodyWrapper& w, py::handle given) {
+  const std::uint64_t i = count(given, "face");
+  const std::uint32_t n = w.body->rep().face_count();
+  if (i >= n) throw InputError("face: there is no face " + std::to_string(i) + " among " + std::to_string(n));
+  return FaceId(i);
+}
+
+py::array_t<std::uint32_t> faces_of(const BodyWrapper& w) {
+  const std::vector<FaceId> all = w.wrapper.boundary();
+  return array_of_ids(std::span<const FaceId>(all));
+}
+
+py::array_t<std::uint32_t> triangles_of(const BodyWrapper& w) {
+  const LrbRep& rep = w.body->rep();
+  std::vector<VertexId> corners;
+  for (const FaceId f : w.wrapper.boundary()) {
+    const auto n = static_cast<std::uint32_t>(Mesh::simplices_of(rep.face(f).size(), rep.dim()));
+    for (std::uint32_t i = 0; i < n; ++i) {
+      VertexId v[3];
+      rep.simplex(SimplexId(rep.first_simplex(f) + i), v);
+      corners.insert(corners.end(), v, v + rep.simplex_size());
+    }
+  }
+  return array_of_ids(std::span<const VertexId>(corners))
+      .reshape({py::ssize_t{-1}, py::ssize_t{rep.simplex_size()}});
+}
+
+py::array_t<bool> real_of(const BodyWrapper& w) {
+  const std::vector<FaceId> all = w.wrapper.boundary();
+  py::array_t<bool> out(static_cast<py::ssize_t>(all.size()));
+  for (std::size_t i = 0; i < all.size(); ++i) out.mutable_data()[i] = w.body->rep().is_real(all[i]);
+  return out;
+}
+
+/// Returns the region that the wrapper has behind a face of its boundary, on whichever side; else None.
+py::object region_behind(const BodyWrapper& w, py::handle given) {
+  const FaceId f = face(w, given);
+  const LrbRep& rep = w.body->rep();
+  if (w.wrapper.on_boundary(f))
+    for (const CellId cell : {rep.inner_cell(f), rep.outer_cell(f)})
+      if (is_region(cell) && w.wrapper.included(cell)) return py::int_(cell.value());
+  return py::none();
+}
+
+}  // namespace
+
+void bind_wrapper(py::module_& m) {
+  py::class_<BodyWrapper> c(
+      m, "Wrapper",
+      R"(Which regions of a body's LRB-rep count as part of it. Its boundary encloses the body.
+
+>>> w = Wrapper(cube)
+>>> w.refine_all()
+>>> len(w) == cube.real_face_count
+True)");
+  c.def(py::init(&made), py::arg("body"), py::arg("mode") = py::none(),
+        "Wrapper(body, mode='regularised')\n\nMakes the outermost wrapper. mode: or 'unregularised', "
+        "in which refining a face\n"
+        "discards that face alone.");
+  c.def_static("at", &at, py::arg("body"), py::arg("tolerance"), py::kw_only(), py::arg("threads") = 0,
+               "at(body, tolerance, *, threads=0)\n\nMakes the coarsest wrapper that is off the body by no "
+               "more than a tolerance (the\n"
+               "mesh's unit).");
+  c.def(
+      "refine", [](BodyWrapper& w, py::handle r) { return w.wrapper.refine(region(w, r)); },
+      py::arg("region"), "refine(region)\n\nExcludes a region. Returns False if it was excluded already.");
+  c.def(
+      "refine_face", [](BodyWrapper& w, py::handle f) { return w.wrapper.refine_face(face(w, f)); },
+      py::arg("face"),
+      "refine_face(face)\n\nRefines the region behind a face. Returns False if it is real or not on "
+      "the boundary.");
+  c.def(
+      "coarsen", [](BodyWrapper& w, py::handle r) { return w.wrapper.coarsen(region(w, r)); },
+      py::arg("region"),
+      "coarsen(region)\n\nTakes a region back in. Returns False if it is included already.");
+  c.def(
+      "refine_all", [](BodyWrapper& w) { w.wrapper.refine_all(); },
+      "refine_all()\n\nLeaves the real faces alone.");
+  c.def(
+      "reset", [](BodyWrapper& w) { w.wrapper.reset(); }, "reset()\n\nGoes back to the outermost wrapper.");
+  c.def(
+      "includes", [](const BodyWrapper& w, py::handle r) { return w.wrapper.included(region(w, r)); },
+      py::arg("region"), "includes(region)\n\nReturns whether a region counts as part of the body.");
+  c.def("region_behind", &region_behind, py::arg("face"),
+        "region_behind(face)\n\nReturns the region that is behind a face of the boundary; None of a "
+        "real face, or one that is not on it.");
+  c.def_property_readonly(
+      "body", [](const BodyWrapper& w) { return w.body; }, "Body");
+  c.def_property_readonly(
+      "faces", &faces_of,
+      "(f,) uint32: the faces of the boundary, ascending; real ones are less than body.real_face_count.");
+  c.def_property_readonly("is_real", &real_of,
+                          "(f,) bool: for each of these, whether it is one of the mesh.");
+  c.def_property_readonly("triangles", &triangles_of,
+                          "(t, 3) uint32: the boundary's triangles, into body.all_vertices.");
+  c.def_property_readonly(
+      "excluded",
+      [](const BodyWrapper& w) { return array_of_ids(std::span<const RegionId>(w.wrapper.excluded())); },
+      "(r,) uint32: the excluded regions, in the order in which they were refined.");
+  c.def("__len__", [](const BodyWrapper& w) { return w.wrapper.boundary_size(); });
+  c.def("__repr__", [](const BodyWrapper& w) {
+    return printable("<lrbscope.Wrapper of '" + w.body->rep().name() +
+                     "': " + std::to_string(w.wrapper.boundary_size()) + " faces>");
+  });
+}
+
+}  // namespace lrb::python

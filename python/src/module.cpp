@@ -1,0 +1,73 @@
+#include "python/src/bindings.hpp"
+#include "python/src/objects.hpp"
+#include <lrbscope/trace/trace.hpp>
+
+namespace lrb::python {
+namespace {
+
+/// Throws TypeError in place of memory. pybind11 asks for memory when an object without a value is first
+/// used, as one is that was made by __new__ alone; objects that __init__ or __setstate__ makes have memory of
+/// their own.
+void* refuse_memory(std::size_t) {
+  throw py::type_error(
+      "expected an object that its class has initialized, found one that only __new__ made; call the class");
+}
+
+/// Makes every use of an object without a value a TypeError, for all classes of the module.
+void refuse_objects_without_value(const py::module_& m) {
+  for (const auto& [name, member] : m.attr("__dict__").cast<py::dict>())
+    if (PyType_Check(member.ptr()) != 0)
+      if (auto* const info = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(member.ptr())))
+        info->operator_new = refuse_memory;
+}
+
+PyObject* input_error = nullptr;  // live as long as the module
+PyObject* environment_error = nullptr;
+
+/// Raises our exceptions as those of the module. Their texts may hold names of files that are not UTF-8.
+void raise(std::exception_ptr thrown) {
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const InputError& e) {
+    PyErr_SetObject(input_error, printable(e.what()).ptr());
+  } catch (const EnvironmentError& e) {
+    PyErr_SetObject(environment_error, printable(e.what()).ptr());
+  }
+}
+
+void bind_exceptions(py::module_& m) {
+  py::exception<InputError> input(m, "InputError", PyExc_ValueError);
+  input.doc() = "Raised for input that cannot be used: one line that names the argument, file or element.";
+  py::exception<EnvironmentError> environment(m, "EnvironmentError", PyExc_OSError);
+  environment.doc() = "Raised when the machine cannot do what is asked: a full disk, a missing font.";
+  input_error = input.release().ptr();
+  environment_error = environment.release().ptr();
+  py::register_exception_translator(&raise);
+}
+
+}  // namespace
+}  // namespace lrb::python
+
+PYBIND11_MODULE(_core, m) {
+  namespace py = pybind11;
+  using namespace lrb::python;
+  py::options options;
+  options.disable_function_signatures();  // docstrings begin with them, with the defaults that users see
+  m.doc() = "The engine of lrbscope. Use the package lrbscope.";
+  m.attr("__version__") = lrb::trace::lrbscope_version();
+  bind_exceptions(m);
+  bind_body(m);
+  bind_answers(m);
+  bind_collide(m);
+  bind_distance(m);
+  bind_first_contact(m);
+  bind_clash(m);
+  bind_scene(m);
+  bind_coherent(m);
+  bind_explain(m);
+  bind_wrapper(m);
+  bind_boxes(m);
+  bind_recorded(m);
+  bind_scenario(m);
+  refuse_objects_without_value(m);
+}

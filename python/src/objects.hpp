@@ -1,0 +1,90 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "python/src/arguments.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/frames/frames.hpp"
+#include "scenarios/record/recorded_run.hpp"
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/world_box.hpp>
+
+namespace lrb::python {
+
+/// A body as Python has it: an LRB-rep, which does not change, and what is known of where it came from.
+class Body {
+ public:
+  /// vertex_count: of the mesh; the vertices after these belong to pseudo faces.
+  Body(bodies::LoadedBody loaded, std::size_t vertex_count);
+  explicit Body(bodies::LoadedBody loaded);
+
+  const LrbRep& rep() const { return *rep_; }
+  const std::shared_ptr<const LrbRep>& shared() const { return rep_; }
+  const std::vector<std::string>& notes() const { return notes_; }
+  double build_seconds() const { return build_seconds_; }
+  std::size_t vertex_count() const { return vertex_count_; }
+  /// Returns what finds the body's box; made when it is first asked for.
+  const BodyExtent& extent() const;
+
+ private:
+  std::shared_ptr<const LrbRep> rep_;
+  std::vector<std::string> notes_;
+  double build_seconds_;
+  std::size_t vertex_count_;
+  mutable std::once_flag once_;
+  mutable std::optional<BodyExtent> extent_;
+};
+
+using BodyPtr = std::shared_ptr<Body>;
+
+/// Returns the body that an argument is; throws TypeError for anything else.
+const Body& body(py::handle given, const char* what);
+BodyPtr shared_body(py::handle given, const char* what);
+
+void bind_body(py::module_& m);
+
+/// A recorded run as Python has it: what the pictures and pages of scenarios/run are made of, with bodies
+/// that it shares.
+class Recorded {
+ public:
+  std::vector<std::shared_ptr<const LrbRep>> bodies;  ///< A and B, or A alone
+  trace::Trace trace;
+  std::shared_ptr<std::vector<CollideResult>> results = std::make_shared<std::vector<CollideResult>>();
+  std::vector<trace::TreeShape> trees;
+  std::vector<std::string> notes;
+  std::string title, purpose;
+
+  /// Returns what frames are drawn from; this object must outlive it.
+  run::RecordedRun shown() const;
+};
+
+/// Takes a recording over.
+std::shared_ptr<Recorded> recorded_of(run::Recording recording, const spec::Scenario& scenario);
+
+void bind_recorded(py::module_& m);
+
+/// How a picture is to look, as Python gives it. None: as render() says.
+struct PictureArguments {
+  py::handle size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent;
+};
+
+/// Calls bind(names...) with the names of PictureArguments, in their order.
+template <class Bind>
+void with_picture_arguments(const Bind& bind) {
+  const py::none no;
+  bind(py::arg("size") = no, py::arg("view_from") = no, py::arg("up") = no, py::arg("look_at") = no,
+       py::arg("zoom") = no, py::arg("orthographic") = no, py::arg("wrappers") = no, py::arg("close_up") = no,
+       py::arg("colour_by") = no, py::arg("transparent") = no);
+}
+
+/// Draws the end of a step of a run as a lrbscope.Picture. The lock must be held, and is not while it draws.
+py::object draw(const Recorded& recorded, std::size_t step, const PictureArguments& given);
+
+/// Encodes an (h, w, 3) or (h, w, 4) array as PNG.
+py::bytes png_of(const py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>& pixels);
+
+}  // namespace lrb::python

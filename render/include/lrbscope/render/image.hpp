@@ -1,0 +1,167 @@
+#pragma once
+/// Pictures as plain values.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <lrbscope/render/style.hpp>
+
+namespace lrb::render {
+
+// Turns double into float, here and nowhere else. Everything before is Eigen in double, exact enough to
+// decide by; everything after is glm, as the graphics library and the shaders take it. Each number is
+// rounded once, to nearest.
+
+using ByteColour = glm::u8vec4;  ///< red, green, blue, alpha; straight
+
+inline float to_float(double x) {
+  return static_cast<float>(x);
+}
+inline glm::vec2 to_float(const Eigen::Vector2d& v) {
+  return {to_float(v.x()), to_float(v.y())};
+}
+inline glm::vec3 to_float(const Eigen::Vector3d& v) {
+  return {to_float(v.x()), to_float(v.y()), to_float(v.z())};
+}
+
+inline ByteColour to_bytes(Rgba c) {
+  return {c.r, c.g, c.b, c.a};
+}
+inline Rgba to_rgba(const ByteColour& c) {
+  return {c.r, c.g, c.b, c.a};
+}
+/// Returns the colour with channels in [0, 1].
+inline glm::vec4 to_unit(Rgba c) {
+  return glm::vec4(to_bytes(c)) / 255.0F;
+}
+
+/// A rectangle of pixels: x to the right, y down, from the top left corner of an image.
+struct PixelRect {
+  int x = 0, y = 0, width = 0, height = 0;
+  int right() const { return x + width; }
+  int bottom() const { return y + height; }
+  bool contains(const PixelRect& r) const {
+    return r.x >= x && r.y >= y && r.right() <= right() && r.bottom() <= bottom();
+  }
+  bool overlaps(const PixelRect& r) const {
+    return x < r.right() && r.x < right() && y < r.bottom() && r.y < bottom();
+  }
+  friend bool operator==(const PixelRect&, const PixelRect&) = default;
+};
+
+class Image {
+ public:
+  Image() = default;
+  /// Throws InputError unless both sizes lie in 1 .. kMaxSide.
+  Image(int width, int height, Rgba fill = kWhite);
+
+  static constexpr int kMaxSide = 32768;
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  bool empty() const { return pixels_.empty(); }
+  PixelRect rect() const { return {0, 0, width_, height_}; }
+
+  Rgba& at(int x, int y) { return pixels_[index(x, y)]; }
+  const Rgba& at(int x, int y) const { return pixels_[index(x, y)]; }
+  /// The pixels row by row from the top, each row from the left.
+  std::vector<Rgba>& pixels() { return pixels_; }
+  const std::vector<Rgba>& pixels() const { return pixels_; }
+  bool opaque() const;  ///< every alpha is 255
+
+  /// Paints one pixel; outside the image does nothing.
+  void blend(int x, int y, Rgba colour, int coverage = 255);
+  void fill(const PixelRect& r, Rgba colour);
+  /// Draws a frame of `thickness` pixels just inside the rectangle.
+  void stroke(const PixelRect& r, Rgba colour, int thickness = 1);
+  /// Blends another image by its alpha, with its top left corner at (x, y).
+  void paste(const Image& image, int x, int y);
+
+  friend bool operator==(const Image&, const Image&) = default;
+
+ private:
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width_ + x; }
+
+  int width_ = 0, height_ = 0;
+  std::vector<Rgba> pixels_;
+};
+
+/// Returns the FNV-1a hash (64 bits) of size and pixels.
+std::uint64_t hash(const Image& image);
+
+// Measures how far two images differ, and draws it.
+
+/// The differences that count as noise between processors (measured; see docs/golden.md). Pixels are sorted
+/// into small and large differences.
+struct ImageTolerance {
+  int large = 8;                ///< a channel difference above this is large
+  double large_share = 0.0005;  ///< at most this share of pixels may have one
+  int small = 2;                ///< a difference of 1 .. small is noise of rounding
+  double small_share = 0.15;    ///< at most this share of pixels may have one
+
+  friend bool operator==(const ImageTolerance&, const ImageTolerance&) = default;
+};
+
+struct ImageDifference {
+  bool same_size = false;
+  std::uint64_t pixels = 0;  ///< number of pixels of either image; 0 unless same_size
+  std::uint64_t equal = 0;
+  std::uint64_t small = 0;   ///< number of pixels whose largest channel difference is in 1 .. tolerance.small
+  std::uint64_t medium = 0;  ///< number between small and large; counted with the small ones
+  std::uint64_t large = 0;   ///< number of pixels above tolerance.large
+  int largest = 0;           ///< largest channel difference
+  bool within(const ImageTolerance& tolerance = {}) const;
+  /// Returns one line: which tolerance was exceeded and by how much, or that none was.
+  std::string text(const ImageTolerance& tolerance = {}) const;
+};
+
+ImageDifference compare(const Image& expected, const Image& actual, const ImageTolerance& tolerance = {});
+
+/// Returns |expected - actual| times `gain` per channel, on black. It is as wide and high as either image;
+/// white where only one has pixels.
+Image difference_image(const Image& expected, const Image& actual, int gain = 16);
+
+// Writes and reads images as PNG, with text inside that says how to make them again.
+
+/// Keyword (1 to 79 Latin-1 characters) and value of a tEXt chunk; values beyond Latin-1 go into an iTXt
+/// chunk.
+using PngText = std::pair<std::string, std::string>;
+
+struct PngOptions {
+  std::vector<PngText> text;
+  double dpi = 0;  ///< written as pHYs; 0: left out
+};
+
+/// Encodes an image: opaque ones as RGB, others as RGBA.
+std::vector<std::uint8_t> encode_png(const Image& image, const PngOptions& options = {});
+
+struct DecodedPng {
+  Image image;
+  std::vector<PngText> text;
+  double dpi = 0;  ///< 0: none given
+};
+/// The largest number of pixels of a picture that is read, unless the caller expects fewer: 0.5 GB of them.
+inline constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 27;
+
+/// Decodes a PNG. Throws InputError with `name` in it if the bytes are not a PNG, are damaged, hold more than
+/// `most_pixels` pixels, or hold more or less data than their pixels take. Takes memory only for the pixels,
+/// and only if so many can be in so few bytes.
+DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name = "PNG",
+                      std::uint64_t most_pixels = kMostPixels);
+
+/// Writes a picture whole or not at all (AtomicFile), so that a half-written one is never seen under its
+/// name. Throws InputError if the path is at fault, EnvironmentError if the machine is.
+void write_png(const Image& image, const std::string& path, const PngOptions& options = {});
+/// Reads a picture. Throws InputError if the file cannot be read.
+DecodedPng read_png(const std::string& path, std::uint64_t most_pixels = kMostPixels);
+
+}  // namespace lrb::render

@@ -1,0 +1,184 @@
+#include "render/pictures/marks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "render/pictures/panel.hpp"
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/style.hpp>
+
+namespace lrb::run {
+
+void add_box(render::DrawList& list, const Eigen::Vector3d& centre,
+             const std::array<Eigen::Vector3d, 3>& half, const BoxLook& look) {
+  const auto corner = [&](int x, int y, int z) -> Eigen::Vector3d {
+    return centre + (x * 2 - 1) * half[0] + (y * 2 - 1) * half[1] + (z * 2 - 1) * half[2];
+  };
+  render::DrawLine line;
+  line.colour = look.colour;
+  line.width = look.width;
+  line.dash = look.dash;
+  line.layer = look.through ? render::Layer::on_top : render::Layer::translucent;
+  for (int z = 0; z < 2; ++z) {
+    line.points = {corner(0, 0, z), corner(1, 0, z), corner(1, 1, z), corner(0, 1, z)};
+    line.closed = true;
+    list.lines.push_back(line);
+  }
+  line.closed = false;
+  for (int x = 0; x < 2; ++x)
+    for (int y = 0; y < 2; ++y) {
+      line.points = {corner(x, y, 0), corner(x, y, 1)};
+      list.lines.push_back(line);
+    }
+}
+
+using Eigen::Vector3d;
+
+std::vector<Vector3d> corners_of(const LrbRep& rep, const Pose& pose, SimplexId s) {
+  VertexId v[3];
+  rep.simplex(s, v);
+  std::vector<Vector3d> out;
+  out.reserve(3);
+  for (int k = 0; k < rep.simplex_size(); ++k) out.push_back(pose.apply(rep.vertices()[v[k]]));
+  return out;
+}
+
+/// Draws a segment, or the outline of a polygon, over everything that hides it.
+void outline(render::DrawList& list, const std::vector<Vector3d>& corners, render::Rgba colour, float width,
+             render::Rgba halo) {
+  render::DrawLine line;
+  line.points = corners;
+  line.closed = corners.size() > 2;
+  line.colour = colour;
+  line.width = width;
+  line.halo = halo;
+  line.halo_width = kHalo;
+  line.layer = render::Layer::on_top;
+  list.lines.push_back(line);
+}
+
+void add_mark(render::DrawList& list, const Vector3d& x, render::Rgba colour, float radius,
+              render::Rgba halo) {
+  render::DrawPoint point;
+  point.x = x;
+  point.colour = colour;
+  point.radius = radius;
+  point.halo = halo;
+  point.halo_width = kHalo;
+  point.layer = render::Layer::on_top;
+  list.points.push_back(point);
+}
+
+void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const LrbRep& a,
+                     const Pose& pose_a, const LrbRep& b, const Pose& pose_b, render::Rgba halo) {
+  constexpr float kLineWidth = 2.5F;
+  for (const WrongPair& wrong : pairs) {
+    outline(list, corners_of(a, pose_a, wrong.pair.a), render::palette::kWrong, kLineWidth, halo);
+    outline(list, corners_of(b, pose_b, wrong.pair.b), render::palette::kWrong, kLineWidth, halo);
+  }
+}
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr float kWayWidth = 4, kTextOff = 20, kTextHeight = 19;
+
+void write_beside(render::DrawList& list, const Vector3d& x, float below, const std::string& text,
+                  render::Rgba colour) {
+  render::DrawLabel label;
+  label.x = x;
+  label.text = text;
+  label.colour = colour;
+  label.height = kTextHeight;
+  label.dy = below;
+  list.labels.push_back(label);
+}
+
+/// Draws the barbs of an arrow's head in the plane of the arrow and `across`.
+void add_barbs(render::DrawList& list, const MarkedWay& way, const Vector3d& across, render::Rgba colour) {
+  constexpr double kHeadLength = 0.24, kHeadWidth = 0.11;
+  const Vector3d along = way.to - way.from;
+  const Vector3d back = way.to - kHeadLength * along, aside = kHeadWidth * along.norm() * across;
+  for (const Vector3d& end : {Vector3d(back + aside), Vector3d(back - aside)})
+    outline(list, {end, way.to}, colour, kWayWidth);
+}
+
+}  // namespace
+
+std::string interval_words(double lower, double upper) {
+  const std::string low = render::short_number(lower), high = render::short_number(upper);
+  return low == high ? high : low + " to " + high;
+}
+
+std::string kind_words(ClashKind kind) {
+  switch (kind) {
+    case ClashKind::a_inside_b:
+      return "A inside B";
+    case ClashKind::b_inside_a:
+      return "B inside A";
+    case ClashKind::touching_point:
+      return "touching in points";
+    case ClashKind::touching_edge:
+      return "touching along lines";
+    case ClashKind::touching_face:
+      return "touching in faces";
+    case ClashKind::protrudes:
+      return "one protrudes into the other";
+    case ClashKind::pierces:
+      return "A pierces B";
+    case ClashKind::cuts_through:
+      return "A cuts through B";
+    default: {
+      std::string out = to_string(kind);
+      std::replace(out.begin(), out.end(), '_', ' ');
+      return out;
+    }
+  }
+}
+
+std::string kind_words(ClashKind kind, ClashReason reason) {
+  return kind_words(kind) + (reason == ClashReason::none ? "" : ": ") + std::string(name_of(reason));
+}
+
+std::optional<MarkedWay> gap_of(const ProvedInterval& distance, const Vector3d& point_a,
+                                const Vector3d& point_b) {
+  if (!(distance.lower > 0) || !std::isfinite(distance.upper)) return std::nullopt;
+  return MarkedWay{point_a, point_b, interval_words(distance.lower, distance.upper)};
+}
+
+std::optional<MarkedWay> way_out_of(const std::optional<ProvedInterval>& depth, const Vector3d& translation,
+                                    const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                                    std::span<const ContactRegion> contacts) {
+  if (!depth || !std::isfinite(depth->upper) || translation.isZero(0)) return std::nullopt;
+  Eigen::AlignedBox3d shared = box_of(a, pose_a).intersection(box_of(b, pose_b));
+  if (const std::vector<Vector3d> points = render::contact_points(contacts); !points.empty()) {
+    shared.setEmpty();
+    for (const Vector3d& x : points) shared.extend(x);
+  }
+  const Vector3d middle = shared.center();
+  return MarkedWay{middle - translation / 2, middle + translation / 2,
+                   interval_words(depth->lower, depth->upper)};
+}
+
+void add_gap(render::Scene& scene, const MarkedWay& gap, const render::Style& style) {
+  const render::Rgba colour = style.of(kGapColour);
+  outline(scene.list, {gap.from, gap.to}, colour, kWayWidth);
+  for (const Vector3d& x : {gap.from, gap.to}) add_mark(scene.list, x, colour, 4, style.paper);
+  write_beside(scene.list, (gap.from + gap.to) / 2, -kTextOff, gap.text, colour);
+  scene.key.push_back({render::LegendItem::Mark::line, colour, "nearest points"});
+}
+
+void add_way_out(render::Scene& scene, const MarkedWay& way, int dim) {
+  outline(scene.list, {way.from, way.to}, kWayOutColour, kWayWidth);
+  const Vector3d along = (way.to - way.from).normalized();
+  const Vector3d across = dim == 2 ? Vector3d::UnitZ().cross(along) : along.unitOrthogonal();
+  add_barbs(scene.list, way, across, kWayOutColour);
+  if (dim == 3) add_barbs(scene.list, way, along.cross(across), kWayOutColour);
+  write_beside(scene.list, way.from, kTextOff, way.text, kWayOutColour);
+  scene.key.push_back({render::LegendItem::Mark::line, kWayOutColour, "B leaves A this way"});
+}
+
+}  // namespace lrb::run

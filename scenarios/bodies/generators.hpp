@@ -1,0 +1,93 @@
+#pragma once
+/// Makes bodies by our own code: seeded, closed, oriented outward, free of self-intersections.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+
+namespace lrb::generators {
+
+struct GeneratorParameter {
+  const char* name;
+  double fallback, least, most;
+  bool whole;        ///< takes whole numbers only
+  const char* what;  ///< with its unit
+};
+
+using GeneratorValues = std::map<std::string, double>;
+
+struct Generator {
+  const char* name;
+  const char* purpose;
+  int dim;
+  std::vector<GeneratorParameter> parameters;
+  Mesh (*make)(const GeneratorValues& values, std::uint64_t seed);  ///< every parameter has its value
+  /// Makes bodies whose regions are known by construction, so that no builder is needed; null for others.
+  LrbRep (*make_rep)(const GeneratorValues& values, std::uint64_t seed) = nullptr;
+};
+
+std::span<const Generator> generators();
+/// Returns a generator by its name; null if there is none.
+const Generator* find_generator(const std::string& name);
+
+/// Makes a body; parameters that `values` does not name have the generator's defaults. Throws InputError for
+/// an unknown name or parameter and for a value out of range.
+Mesh generate(const std::string& name, const GeneratorValues& values = {}, std::uint64_t seed = 1);
+/// Makes the same body with its regions, if the generator knows them; nothing if a builder has to find them.
+std::optional<LrbRep> generate_rep(const std::string& name, const GeneratorValues& values = {},
+                                   std::uint64_t seed = 1);
+
+// The generators' functions, in one file for each idea. All parameters have their values, checked by
+// generate().
+
+Mesh rock(const GeneratorValues& v, std::uint64_t seed);     // rock.cpp
+Mesh ball(const GeneratorValues& v, std::uint64_t seed);     // rock.cpp
+Mesh knot(const GeneratorValues& v, std::uint64_t seed);     // knot.cpp
+Mesh gear(const GeneratorValues& v, std::uint64_t seed);     // gear.cpp
+Mesh cog2d(const GeneratorValues& v, std::uint64_t seed);    // gear.cpp
+Mesh bowl(const GeneratorValues& v, std::uint64_t seed);     // lathe.cpp
+Mesh stick(const GeneratorValues& v, std::uint64_t seed);    // lathe.cpp
+Mesh pot(const GeneratorValues& v, std::uint64_t seed);      // lathe.cpp
+Mesh island(const GeneratorValues& v, std::uint64_t seed);   // island.cpp
+Mesh fractal(const GeneratorValues& v, std::uint64_t seed);  // fractal_generator.cpp
+LrbRep fractal_rep(const GeneratorValues& v, std::uint64_t seed);
+
+/// Adds a triangle.
+inline void add_triangle(Mesh& mesh, VertexId a, VertexId b, VertexId c) {
+  const VertexId corners[3] = {a, b, c};
+  mesh.add_face(corners);
+}
+
+/// Makes a 2D mesh of a closed polygon in the plane, counter-clockwise.
+Mesh polygon_2d(const std::vector<Eigen::Vector2d>& outline);  // island.cpp
+
+// The fractal bodies of the paper's section 4: a basic shape to which local detail is added again and again,
+// as dents under lids. The regions are known by construction, so that no builder is needed.
+
+struct FractalSpec {
+  std::string name = "fractal";
+  std::uint32_t real_faces = 2004;
+  std::uint32_t total_faces = 2532;  ///< real and pseudo
+  std::uint64_t seed = 1;
+};
+
+/// Makes a body with exactly these numbers of faces. Its outermost wrapper is the basic shape's, a prism over
+/// a pentagon (7 faces); its size is about 2. It is closed and free of self-intersections (a dent stays
+/// within the room that its face's edges leave it; tests prove it exactly for the paper's bodies). All
+/// coordinates are integer multiples of one power of two, so that corners of one face are coplanar in double
+/// arithmetic, and so are lids and the rims they cover.
+///
+/// Every dent turns one face into a lid (a pseudo face) and adds 3 to 11 faces, so that the numbers have to
+/// fit: throws InputError if they do not ((real_faces - 7) / pseudo faces must be between 2.5 and 7).
+LrbRep fractal_body(const FractalSpec& spec);
+
+/// Returns the paper's table 1: objects A to H.
+std::span<const FractalSpec> paper_objects();
+
+}  // namespace lrb::generators

@@ -1,0 +1,68 @@
+#include "scenarios/bodies/loaded_body.hpp"
+
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+
+namespace lrb::bodies {
+namespace {
+
+LoadedBody loaded(MadeBody made) {
+  return {std::move(made.rep), std::move(made.notes), made.build_seconds};
+}
+
+LoadedBody saved_body(const std::string& path) {
+  std::vector<std::string> notes;
+  LrbRep rep = proven(load_lrb(path), notes);
+  return {std::move(rep), std::move(notes), 0};
+}
+
+}  // namespace
+
+LrbRep build_from_mesh(CheckedMesh mesh, const BuildOptions& options, std::vector<std::string>& notes) {
+  if (!mesh.report().when_turned().buildable())
+    throw InputError(mesh.mesh().name + ": cannot be an LRB-rep: " + obstacles_to_build(mesh) +
+                     " | it can still be queried, not built");
+  turn_outward(mesh, notes);
+  return build_lrb(mesh, options);
+}
+
+LoadedBody body_of_mesh(Mesh mesh, const BuildOptions& options) {
+  return body_of_mesh(check(std::move(mesh)), options);
+}
+
+LoadedBody body_of_mesh(CheckedMesh mesh, const BuildOptions& options) {
+  return loaded(make_body(std::move(mesh), options));
+}
+
+Mesh read_body(const std::string& path, Corners corners, std::vector<std::string>& notes) {
+  Mesh mesh = read_mesh(path);
+  if (corners == Corners::apart) return mesh;
+  const std::string note = join_corners_of_mesh(mesh);
+  if (!note.empty()) notes.push_back(note + " (--no-join keeps them apart)");
+  return mesh;
+}
+
+LoadedBody load_body(const std::string& path, const BuildOptions& options, Corners corners) {
+  if (is_lrb_file(path)) return saved_body(path);
+  std::vector<std::string> notes;
+  Mesh mesh = read_body(path, corners, notes);
+  LoadedBody body = body_of_mesh(std::move(mesh), options);
+  body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
+  return body;
+}
+
+LoadedBody load_faces(const std::string& path, Corners corners) {
+  if (is_lrb_file(path)) return saved_body(path);
+  std::vector<std::string> notes;
+  Mesh mesh = read_body(path, corners, notes);
+  LoadedBody body = faces_of_mesh(std::move(mesh));
+  body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
+  return body;
+}
+
+LoadedBody faces_of_mesh(Mesh mesh) {
+  return loaded(make_body_of_faces(check(std::move(mesh))));
+}
+
+}  // namespace lrb::bodies

@@ -1,0 +1,256 @@
+#include "scenarios/compare/compare.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "render/pictures/panel.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/run/run_page.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/core/strings.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/trace/counters.hpp>
+#include <lrbscope/trace/divergence.hpp>
+
+namespace lrb::compare {
+namespace {
+
+using render::group_digits;
+using render::short_number;
+
+const LrbRep& rep_of(const Runs& runs, std::size_t i) {
+  return runs.of[i]->bodies[0].rep;
+}
+
+/// Returns the chart's curve of faces.
+trace::Chart chart_of_faces(const trace::Trace& trace) {
+  return trace.header.construction ? trace::chart_over_construction(trace) : trace::chart_over_events(trace);
+}
+
+run::Framing framing_of_bodies(const Runs& runs) {
+  run::Framing out;
+  out.dim = rep_of(runs, 0).dim();
+  for (std::size_t i = 0; i < 2; ++i)
+    for (const Eigen::Vector3d& v : rep_of(runs, i).vertices())
+      out.points.push_back(runs.of[i]->trace.steps[0].pose_a.apply(v));
+  return out;
+}
+
+}  // namespace
+
+bool of_one_body(const Runs& runs) {
+  return runs.of[0]->bodies.size() == 1 && runs.of[1]->bodies.size() == 1;
+}
+
+report::PageTable body_table(const Runs& runs) {
+  report::PageTable t;
+  t.title = "The LRB-reps";
+  t.columns = {"run", "real faces", "faces for each", "regions", "layers", "outermost wrapper", "events"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const LrbRep& rep = rep_of(runs, i);
+    t.rows.push_back({runs.names[i], group_digits(rep.real_face_count()),
+                      short_number(static_cast<double>(rep.face_count()) / rep.real_face_count()),
+                      group_digits(rep.region_count()), std::to_string(rep.layer_count()),
+                      group_digits(rep.outermost_faces().size()),
+                      group_digits(runs.of[i]->trace.events.size())});
+  }
+  return t;
+}
+
+report::PageTable pass_table(const Runs& runs) {
+  report::PageTable t;
+  t.title = "Pass by pass";
+  t.columns = {"pass"};
+  for (const char* what : {"stage", "faces", "regions", "caps"})
+    for (const std::string& name : runs.names) t.columns.push_back(std::string(what) + ", " + name);
+  const std::array<std::vector<trace::PassSummary>, 2> passes = {trace::passes_of(runs.of[0]->trace),
+                                                                 trace::passes_of(runs.of[1]->trace)};
+  for (std::size_t k = 0; k < std::max(passes[0].size(), passes[1].size()); ++k) {
+    t.rows.push_back({std::to_string(k + 1)});
+    for (const auto text : {+[](const trace::PassSummary& p) { return std::string(name_of(p.stage)); },
+                            +[](const trace::PassSummary& p) { return group_digits(p.faces_after); },
+                            +[](const trace::PassSummary& p) { return group_digits(p.regions); },
+                            +[](const trace::PassSummary& p) { return group_digits(p.accepted()); }})
+      for (const auto& of : passes) t.rows.back().push_back(k < of.size() ? text(of[k]) : "");
+  }
+  t.note = "Faces: of the hull after the pass. Passes that made nothing are counted.";
+  return t;
+}
+
+report::PageChart faces_chart(const Runs& runs) {
+  report::PageChart c;
+  const bool built = runs.of[0]->trace.header.construction;
+  c.title = built ? "The hull, event by event" : "The wrapper, event by event";
+  c.x_label = "event";
+  c.y_label = "faces";
+  c.stepped = true;
+  for (std::size_t i = 0; i < 2; ++i) {
+    trace::Chart chart = chart_of_faces(runs.of[i]->trace);
+    for (trace::Series& s : chart.series)
+      if (s.unit == "faces" && std::any_of(s.values.begin(), s.values.end(), [](double v) { return v > 0; }))
+        c.series.push_back({runs.names[i], chart.x, std::move(s.values)});
+  }
+  return c;
+}
+
+render::Image draw_bodies(const Runs& runs, const run::ProgressReport& progress) {
+  const run::Framing framing = framing_of_bodies(runs);
+  std::vector<render::Panel> panels;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const run::Recording& recording = *runs.of[i];
+    const run::RecordedRun recorded = run::recorded_run_of(*runs.scenarios[i], recording);
+    render::FrameSpec frame = runs.scenarios[i]->frames;
+    frame.colour_by = render::FrameSpec::ColourBy::region;
+    frame.at = render::FrameSpec::At::events;
+    frame.events = {static_cast<trace::EventId>(recording.trace.events.size() - 1)};
+    frame.width = 900;
+    frame.height = 700;
+    frame.montage = 0;
+    if (frame.views.empty()) frame.views.emplace_back();
+    frame.views.resize(1);
+    frame.views[0].title = runs.names[i];
+    panels.push_back({std::move(run::paint_frames(recorded, frame, progress, &framing).front().image), ""});
+  }
+  render::MontageOptions options;
+  options.columns = 2;
+  options.letters = false;
+  return render::montage(panels, options);
+}
+
+namespace {
+
+using render::group_digits;
+
+constexpr const char* kPicture = "compare.png";
+constexpr std::size_t kMostSteps = 200;
+
+/// Returns the first event of a step that is not the same in both.
+std::optional<std::string> different_event(const Runs& runs) {
+  const trace::Trace &x = runs.of[0]->trace, &y = runs.of[1]->trace;
+  for (std::size_t step = 0; step < step_count(runs); ++step) {
+    const auto p = x.events_of(step), q = y.events_of(step);
+    const std::size_t both = std::min(p.size(), q.size());
+    for (std::size_t i = 0; i < both; ++i)
+      if (!(p[i] == q[i]))
+        return "step " + std::to_string(x.steps[step].index) + ", event " + std::to_string(i) +
+               " of the step: \"" + describe(p[i]) + "\" in " + runs.names[0] + ", \"" + describe(q[i]) +
+               "\" in " + runs.names[1];
+    if (p.size() != q.size())
+      return "step " + std::to_string(x.steps[step].index) + ": " + group_digits(p.size()) + " events in " +
+             runs.names[0] + ", " + group_digits(q.size()) + " in " + runs.names[1];
+  }
+  return {};
+}
+
+report::PageTable steps_table(const Runs& runs) {
+  report::PageTable t;
+  t.title = "Step by step";
+  t.columns = {"step", "answer"};
+  for (const char* what : {"pairs", "face tests", "box tests"})
+    for (const std::string& name : runs.names) t.columns.push_back(std::string(what) + ", " + name);
+  for (std::size_t i = 0; i < std::min(step_count(runs), kMostSteps); ++i) {
+    const trace::Step &x = runs.of[0]->trace.steps[i], &y = runs.of[1]->trace.steps[i];
+    const bool same = x.result.relation == y.result.relation && x.result.fingerprint == y.result.fingerprint;
+    t.rows.push_back({std::to_string(x.index), same ? std::string(to_string(x.result.relation))
+                                                    : std::string(to_string(x.result.relation)) + " / " +
+                                                          to_string(y.result.relation) +
+                                                          ", NOT the same pairs"});
+    std::vector<std::string>& row = t.rows.back();
+    for (const auto value : {+[](const trace::Step& s) { return s.result.pair_count; },
+                             +[](const trace::Step& s) { return s.result.counters.face_tests; },
+                             +[](const trace::Step& s) { return s.result.counters.box_tests; }})
+      for (const trace::Step* s : {&x, &y}) row.push_back(group_digits(value(*s)));
+  }
+  if (step_count(runs) > kMostSteps) t.note = "The first " + std::to_string(kMostSteps) + " steps.";
+  return t;
+}
+
+void check_runs(const Runs& runs) {
+  const std::size_t one = runs.of[0]->bodies.size(), other = runs.of[1]->bodies.size();
+  if (one != other)
+    throw InputError(runs.names[one == 1 ? 0 : 1] + ": is a run of one body, and " +
+                     runs.names[one == 1 ? 1 : 0] + " of two");
+  if (step_count(runs) == 0) throw InputError("there is no step that both runs have");
+}
+
+void add_steps(report::Page& page, const Runs& runs) {
+  page.charts = {chart_of(runs, "Tests of boxes, step by step", "box tests", &Counters::box_tests),
+                 chart_of(runs, "Tests of faces, step by step", "face tests", &Counters::face_tests)};
+  page.tables = {totals_of(runs), steps_table(runs)};
+}
+
+void add_bodies(report::Page& page, const Runs& runs) {
+  page.charts = {faces_chart(runs)};
+  page.tables = {body_table(runs)};
+  if (report::PageTable passes = pass_table(runs); !passes.rows.empty())
+    page.tables.push_back(std::move(passes));
+}
+
+}  // namespace
+
+std::optional<std::string> first_difference(const Runs& runs) {
+  const std::optional<trace::Divergence> first =
+      trace::first_divergence(runs.of[0]->trace, runs.of[1]->trace);
+  const std::string cut = cut_words(runs);
+  if (!first && cut.empty()) return {};
+  if (!first) return "none among the events that were stored. " + cut;
+  if (first->step) return first->message();
+  const std::optional<std::string> event = different_event(runs);
+  return first->message() + (event ? "; " + *event : std::string("; all events are the same"));
+}
+
+std::vector<report::PageView> views_of(const Runs& runs, const std::string& folder) {
+  std::vector<report::PageView> out;
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::error_code error;
+    const std::filesystem::path page = std::filesystem::absolute(runs.pages[i], error).lexically_normal();
+    if (runs.pages[i].empty() || !std::filesystem::is_regular_file(page, error)) return {};
+    const std::filesystem::path from = std::filesystem::absolute(folder, error).lexically_normal();
+    out.push_back({runs.names[i], io::url_path(page.lexically_relative(from).generic_string())});
+  }
+  return out;
+}
+
+std::optional<std::string> write_comparison(const Runs& runs, const std::string& command,
+                                            const std::string& folder, const run::ProgressReport& progress) {
+  check_runs(runs);
+  refuse_folder_of_run(folder);
+  const bool alone = of_one_body(runs);
+  const std::size_t step = alone ? 0 : busiest_step(runs);
+  const render::Image picture = alone ? draw_bodies(runs, progress) : draw(runs, step, progress);
+  std::optional<std::string> difference = first_difference(runs);
+  report::Page page;
+  page.title = runs.names[0] + " and " + runs.names[1];
+  page.purpose = alone ? "Two recorded runs of one body each." : "Two recorded runs, step by step.";
+  page.verdict = difference ? "differ" : "the same";
+  if (const std::string cut = cut_words(runs); !cut.empty()) page.purpose += " " + cut;
+  page.texts = {
+      {"The first difference", difference.value_or("There is none: all events and answers are the same.")}};
+  page.command = command;
+  if (alone)
+    add_bodies(page, runs);
+  else
+    add_steps(page, runs);
+  page.views = views_of(runs, folder);
+  page.footer = report::footer(runs.of[0]->trace.header.lrbscope);
+  make_folder(folder);
+  const io::FolderLock lock(folder);
+  io::refuse_links(folder);
+  render::write_png(picture, folder + "/" + kPicture);
+  if (alone)
+    run::add_figure(page, folder, "After the last event", "A colour for each region, seen by one camera.",
+                    kPicture);
+  else
+    run::add_figure(
+        page, folder, "Where the work went, at step " + std::to_string(runs.of[0]->trace.steps[step].index),
+        "Both runs on one scale, seen by one camera; and how much they differ, face by face, where the bodies have "
+        "the same faces. Pale faces have fewer than a fiftieth of the most.",
+        kPicture);
+  io::write_text(folder + "/index.html", report::page_html(page));
+  return difference;
+}
+
+}  // namespace lrb::compare

@@ -1,0 +1,198 @@
+#include "scenarios/figure/figure_panels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/pictures/panel.hpp"
+#include "scenarios/record/moments.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/replay.hpp>
+
+namespace lrb::figure {
+namespace {
+
+using trace::EventId;
+
+/// A state that could be shown, and the number of faces of its wrappers.
+struct State {
+  EventId event = 0;
+  double faces = 0;
+};
+
+/// Returns the events after which a figure may show a state: of one body those that change its wrapper (or
+/// end a pass of its construction), of two the ends of time steps.
+std::vector<EventId> candidates(const run::RecordedRun& recorded) {
+  const trace::Trace& trace = *recorded.trace;
+  if (trace.header.construction) {
+    render::FrameSpec passes;
+    passes.at = render::FrameSpec::At::pass;
+    return run::moments(passes, trace);
+  }
+  std::vector<EventId> out;
+  if (recorded.reps.size() == 1) {
+    for (EventId e = 0; e < trace.events.size(); ++e) {
+      const EventKind kind = trace.events[e].kind;
+      if (kind == EventKind::step || kind == EventKind::refine || kind == EventKind::coarsen)
+        out.push_back(e);
+    }
+    return out;
+  }
+  for (std::size_t step = 0; step < trace.steps.size(); ++step)
+    if (trace.steps[step].first_event < trace.events.size()) out.push_back(run::last_event(trace, step));
+  return out;
+}
+
+std::vector<State> states(const run::RecordedRun& recorded) {
+  trace::Cursor cursor = recorded.reps.size() == 1
+                             ? trace::Cursor(*recorded.trace, *recorded.reps[0])
+                             : trace::Cursor(*recorded.trace, *recorded.reps[0], *recorded.reps[1]);
+  std::vector<State> out;
+  for (const EventId e : candidates(recorded)) {
+    cursor.seek(e);
+    State state{e, 0};
+    for (std::size_t i = 0; i < recorded.reps.size(); ++i)
+      state.faces += cursor.boundary_size(static_cast<Side>(i));
+    out.push_back(state);
+  }
+  return out;
+}
+
+/// Returns the state whose number of faces is nearest, as a ratio.
+EventId nearest(const std::vector<State>& all, double faces) {
+  const auto off = [&](const State& s) { return std::abs(std::log(std::max(s.faces, 1.0) / faces)); };
+  return std::min_element(all.begin(), all.end(),
+                          [&](const State& x, const State& y) { return off(x) < off(y); })
+      ->event;
+}
+
+std::vector<EventId> by_faces(const std::vector<State>& all, std::size_t panels) {
+  const double first = std::max(all.front().faces, 1.0), last = std::max(all.back().faces, 1.0);
+  if (panels == 1) return {nearest(all, std::sqrt(first * last))};
+  std::vector<EventId> out = {all.front().event};
+  for (std::size_t i = 1; i < panels; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(panels - 1);
+    out.push_back(nearest(all, first * std::pow(last / first, share)));
+  }
+  return out;
+}
+
+/// Returns time steps evenly, with the first one that has a contact in place of that nearest to it.
+std::vector<EventId> by_time(const run::RecordedRun& recorded, const std::vector<State>& all,
+                             std::size_t panels) {
+  const std::vector<trace::Step>& steps = recorded.trace->steps;
+  std::vector<std::size_t> chosen = run::evenly(all.size(), panels);
+  const auto contact = std::find_if(
+      steps.begin(), steps.end(), [](const trace::Step& s) { return s.finished && s.result.pair_count > 0; });
+  const auto first = static_cast<std::size_t>(contact - steps.begin());
+  if (first < all.size() && chosen.size() > 2) {
+    const auto off = [&](std::size_t i) { return i > first ? i - first : first - i; };
+    *std::min_element(chosen.begin() + 1, chosen.end() - 1,
+                      [&](std::size_t x, std::size_t y) { return off(x) < off(y); }) = first;
+  }
+  std::vector<EventId> out;
+  for (const std::size_t i : chosen) out.push_back(all[i].event);
+  return out;
+}
+
+std::vector<EventId> by_layer(const run::RecordedRun& recorded) {
+  if (recorded.reps.size() != 1)
+    throw InputError("--layers: is for a run of one body; of two, --steps and --events choose panels");
+  const LrbRep& rep = *recorded.reps[0];
+  std::vector<EventId> last(rep.layer_count(), 0);
+  for (EventId e = 0; e < recorded.trace->events.size(); ++e) {
+    const trace::Event& event = recorded.trace->events[e];
+    if (event.kind == EventKind::refine) last[rep.layer(event.region())] = e;
+  }
+  last.push_back(0);  // the outermost wrapper
+  return last;
+}
+
+/// Takes kMostPanels states evenly, if there are more.
+void thin_layers(Chosen& chosen) {
+  const std::vector<EventId> all = chosen.events;
+  if (all.size() <= kMostPanels) return;
+  chosen.events.clear();
+  for (const std::size_t i : run::evenly(all.size(), kMostPanels)) chosen.events.push_back(all[i]);
+  chosen.left_out = std::to_string(kMostPanels) + " of " + std::to_string(all.size()) +
+                    " panels are shown, evenly chosen; --events shows others";
+}
+
+std::vector<EventId> by_steps(const trace::Trace& trace, const std::vector<std::uint32_t>& numbers) {
+  std::vector<EventId> out;
+  for (const std::uint32_t number : numbers) {
+    const auto step = std::find_if(trace.steps.begin(), trace.steps.end(),
+                                   [&](const trace::Step& s) { return s.index == number; });
+    if (step == trace.steps.end() || step->first_event >= trace.events.size())
+      throw InputError("--steps: the run has no time step " + std::to_string(number) + ": it has " +
+                       std::to_string(trace.steps.front().index) + " to " +
+                       std::to_string(trace.steps.back().index));
+    out.push_back(run::last_event(trace, static_cast<std::size_t>(step - trace.steps.begin())));
+  }
+  return out;
+}
+
+std::vector<EventId> by_events(const trace::Trace& trace, const std::vector<std::uint32_t>& numbers) {
+  for (const std::uint32_t e : numbers)
+    if (e >= trace.events.size())
+      throw InputError("--events: the run has no event " + std::to_string(e) + ": it ends with event " +
+                       std::to_string(trace.events.size() - 1));
+  return numbers;
+}
+
+}  // namespace
+
+Chosen choose(const run::RecordedRun& recorded, const Choice& choice) {
+  const trace::Trace& trace = *recorded.trace;
+  if (trace.events.empty()) throw InputError("a figure needs a run with events, and this one has none");
+  const std::size_t panels = choice.panels > 0 ? choice.panels : recorded.reps.size() == 1 ? 6 : 4;
+  Chosen chosen;
+  std::vector<EventId>& out = chosen.events;
+  switch (choice.by) {
+    case Choice::By::changes: {
+      const std::vector<State> all = states(recorded);
+      out = recorded.reps.size() == 1 ? by_faces(all, panels) : by_time(recorded, all, panels);
+      break;
+    }
+    case Choice::By::layers:
+      out = by_layer(recorded);
+      break;
+    case Choice::By::faces: {
+      const std::vector<State> all = states(recorded);
+      for (const std::uint32_t faces : choice.numbers) out.push_back(nearest(all, std::max(faces, 1U)));
+      break;
+    }
+    case Choice::By::events:
+      out = by_events(trace, choice.numbers);
+      break;
+    case Choice::By::steps:
+      out = by_steps(trace, choice.numbers);
+      break;
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  if (choice.by == Choice::By::layers) thin_layers(chosen);
+  return chosen;
+}
+
+Eigen::AlignedBox2d seen_box(const render::DrawList& list, const render::Camera& camera) {
+  const Eigen::AlignedBox2d square(Eigen::Vector2d(0, 0), Eigen::Vector2d(kViewSide, kViewSide));
+  const render::Projection projection(camera, kViewSide, kViewSide, render::bounds(list));
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector3d& x : render::extent_points(list)) {
+    const auto at = projection.to_pixel(x);
+    if (!at) return square;
+    box.extend(*at);
+  }
+  box = box.intersection(square);
+  const bool empty = box.isEmpty() || !(box.sizes().minCoeff() > 0);
+  return empty ? square : box;
+}
+
+render::Camera middle_part(const render::Camera& camera, double height) {
+  render::Camera out = camera;
+  out.half_height *= height / kViewSide;
+  out.fov_y = 2 * std::atan(std::tan(0.5 * camera.fov_y) * height / kViewSide);
+  return out;
+}
+
+}  // namespace lrb::figure

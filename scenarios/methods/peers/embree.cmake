@@ -1,7 +1,0 @@
-find_package(embree 3.13 QUIET)
-set(embree_library "")
-if(embree_FOUND AND embree_VERSION VERSION_LESS 4)
-  set(embree_library embree)
-endif()
-lrb_need("other engines" "libembree-dev (3)" embree_library)
-lrb_add_peer(embree HAS LRB_HAS_EMBREE LIBRARIES ${embree_library})

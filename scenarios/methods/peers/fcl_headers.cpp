@@ -1,3 +1,0 @@
-// FCL again, with its templates instantiated here: see fcl_instantiated.hpp.
-#define LRB_FCL_HEADERS
-#include "scenarios/methods/peers/fcl.cpp"

@@ -1,8 +1,0 @@
-find_path(LRB_ODE_INCLUDE ode/ode.h DOC "ODE's headers")
-find_library(LRB_ODE ode DOC "ODE")
-set(ode_library "")
-if(LRB_ODE_INCLUDE AND LRB_ODE)
-  set(ode_library ${LRB_ODE})
-endif()
-lrb_need("other engines" libode-dev ode_library)
-lrb_add_peer(ode HAS LRB_HAS_ODE LIBRARIES ${ode_library})

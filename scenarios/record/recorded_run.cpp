@@ -1,0 +1,393 @@
+#include "scenarios/record/recorded_run.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <iomanip>
+#include <numeric>
+#include <optional>
+#include <sstream>
+#include <system_error>
+
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/record/approach.hpp"
+#include "scenarios/spec/scenario.hpp"
+#include <lrbscope/coherent.hpp>
+#include <lrbscope/collide.hpp>
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/replay.hpp>
+#include <lrbscope/trace/trace_json.hpp>
+#include <lrbscope/trace/work.hpp>
+
+namespace lrb::run {
+namespace {
+
+/// Throws if the body has no vertex that an event says was located.
+void check_vertex(const Recording& run, const trace::Event& e) {
+  const std::size_t side = static_cast<std::size_t>(e.side);
+  const std::size_t count =
+      side < run.bodies.size() ? run.bodies[side].rep.vertices().size() : std::size_t{0};
+  if (e.a >= count)
+    throw InputError("an event is about vertex " + std::to_string(e.a) + " of " +
+                     std::string(name_of(e.side)) + ", which has " + std::to_string(count));
+}
+
+/// Throws if the trace cannot have come from the run's bodies.
+void check_events(const std::string& path, const Recording& run) {
+  const trace::Trace& trace = run.trace;
+  try {
+    trace::Cursor cursor = run.bodies.size() == 1
+                               ? trace::Cursor(trace, run.bodies[0].rep)
+                               : trace::Cursor(trace, run.bodies[0].rep, run.bodies[1].rep);
+    if (!trace.events.empty()) cursor.seek(static_cast<trace::EventId>(trace.events.size() - 1));
+    for (const trace::Event& e : trace.events)
+      if (e.kind == EventKind::point) check_vertex(run, e);
+    for (std::size_t i = 0; i < run.trees.size(); ++i) {
+      trace::count_nodes(run.trees[i], static_cast<Side>(i), trace.events);
+      for (const trace::Event& e : trace.events)
+        if (e.kind == EventKind::begin && walks_trees(e.phase()))
+          trace::walked_tree(run.bodies[i].rep, i == 0 ? e.depth_a : e.depth_b);
+    }
+  } catch (const InputError& e) {
+    throw InputError(printable_name(path) + ": " + e.what());
+  }
+}
+
+std::vector<CollideResult> contacts_of(const trace::Trace& trace,
+                                       const std::vector<bodies::LoadedBody>& bodies) {
+  std::vector<CollideResult> out;
+  if (bodies.size() < 2 || trace.header.request.mode != Mode::all_pairs || trace.header.request.is_coarse())
+    return out;
+  CollideRequest request = trace.header.request;
+  request.contacts = true;
+  request.separation = false;  // the trace holds it
+  for (const trace::Step& step : trace.steps)
+    out.push_back(collide(bodies[0].rep, step.pose_a, bodies[1].rep, step.pose_b, request));
+  return out;
+}
+
+}  // namespace
+
+std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
+                                            const std::vector<std::string>& given,
+                                            const std::vector<std::string>& names) {
+  std::vector<std::string> paths = given;
+  if (paths.empty()) {
+    const std::filesystem::path beside = std::filesystem::path(trace_path).parent_path();
+    for (const std::string& name : names) paths.push_back((beside / name).string());
+  }
+  if (paths.size() != names.size())
+    throw InputError(trace_path + ": has " + std::to_string(names.size()) + " bodies, --bodies names " +
+                     std::to_string(paths.size()));
+  std::vector<bodies::LoadedBody> out;
+  out.reserve(paths.size());
+  for (const std::string& path : paths) out.push_back(bodies::load_body(path));
+  return out;
+}
+
+Recording open_run(trace::Trace trace, const std::string& trace_path,
+                   const std::vector<std::string>& bodies) {
+  Recording out;
+  out.trace = std::move(trace);
+  const bool alone = out.trace.header.bodies.size() == 1;
+  out.bodies =
+      find_bodies(trace_path, bodies,
+                  alone ? std::vector<std::string>{"a.lrb"} : std::vector<std::string>{"a.lrb", "b.lrb"});
+  out.trees = trees_of(out.trace, out.bodies);
+  check_events(trace_path, out);
+  out.results = contacts_of(out.trace, out.bodies);
+  return out;
+}
+
+std::string trace_of(const std::string& run) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(run, error)) return run;
+  std::string path = (std::filesystem::path(run) / "trace.json").string();
+  if (!std::filesystem::exists(path, error)) path += ".gz";
+  if (!std::filesystem::exists(path, error))
+    throw InputError(
+        printable_name(run) +
+        ": there is no trace.json or trace.json.gz: give the folder of a run, as `lrbscope run -o` writes it");
+  return path;
+}
+
+Recording open_run(const std::string& run) {
+  const std::string path = trace_of(run);
+  return open_run(trace::load_trace(path), path);
+}
+
+OpenStep open_step(const std::string& run, std::optional<std::uint32_t> number) {
+  const std::string path = trace_of(run);
+  const trace::Trace trace = trace::load_trace(path);
+  if (trace.header.bodies.size() != 2)
+    throw InputError(printable_name(path) + ": is of one body, and pairs are of two");
+  if (trace.steps.empty()) throw InputError(printable_name(path) + ": has no time step");
+  const auto at = number ? std::find_if(trace.steps.begin(), trace.steps.end(),
+                                        [&](const trace::Step& s) { return s.index == *number; })
+                         : trace.steps.end() - 1;
+  if (at == trace.steps.end())
+    throw InputError(printable_name(path) + ": has no step " + std::to_string(*number) +
+                     "; its steps go from " + std::to_string(trace.steps.front().index) + " to " +
+                     std::to_string(trace.steps.back().index));
+  OpenStep out{find_bodies(path, {}, {"a.lrb", "b.lrb"}), *at};
+  for (std::size_t i = 0; i < out.bodies.size(); ++i)
+    if (out.bodies[i].rep.hash() != trace.header.bodies[i].hash)
+      throw InputError(printable_name(path) + ": the body beside it is not the one that was recorded as " +
+                       (i == 0 ? "A" : "B"));
+  return out;
+}
+
+namespace {
+
+std::string source_of(const spec::BodySpec& spec) {
+  return spec.file.empty() ? "generator " + spec.generator : spec.file;
+}
+
+trace::RecorderSettings recorder_settings(const spec::Scenario& s) {
+  trace::RecorderSettings settings;
+  settings.scenario = s.name;
+  settings.scenario_hash = s.hash;
+  for (std::size_t i = 0; i < s.bodies.size(); ++i) settings.sources[i] = source_of(s.bodies[i]);
+  settings.request = s.request;
+  settings.clock = s.clock;
+  settings.event_cap = s.event_cap;
+  settings.level = std::max(s.events, render::needed_level(s.frames));
+  settings.coherent = s.more.coherent;
+  return settings;
+}
+
+std::string note_of(const Approach& approach) {
+  const std::string step = contact_step(approach.search);
+  if (!step.empty())
+    return "first contact at " + step + ", " + contact_way(approach.search) +
+           "; the first step in contact is step " + std::to_string(approach.first_contact);
+  return approach.met ? "first contact at step " + std::to_string(approach.first_contact)
+                      : "the bodies did not meet on the way";
+}
+
+std::vector<Pose> poses_of_b(const spec::Scenario& s, Recording& r) {
+  if (s.motion.kind != spec::Motion::Kind::approach) return spec::poses_of(s.motion, s.bodies[1].pose);
+  Approach approach = find_approach(r.bodies[0].rep, s.bodies[0].pose, r.bodies[1].rep, s.bodies[1].pose,
+                                    s.motion, s.more.distance);
+  r.notes.push_back(note_of(approach));
+  r.trace.header.first_contact = std::move(approach.search);
+  return std::move(approach.poses);
+}
+
+/// Asks the queries of a run's steps, one after another.
+class StepQueries {
+ public:
+  StepQueries(const spec::Scenario& s, const LrbRep& a, const LrbRep& b) : s_(s), a_(a), b_(b) {
+    // Caches are made whenever they can be: where they pay is a matter of time, and a trace is to be the same
+    // again.
+    if (s.more.coherent) coherent_.emplace(a, b, s.request, CoherentQuery::CacheUse::always);
+  }
+
+  CollideResult ask(std::uint32_t step, const Pose& pose_b, trace::Recorder& recorder) {
+    const Pose& pose_a = s_.bodies[0].pose;
+    try {
+      CollideResult result = coherent_ ? coherent_->collide(pose_a, pose_b, recorder)
+                                       : collide(a_, pose_a, b_, pose_b, s_.request, context_, recorder);
+      ask_more(pose_a, pose_b, recorder);
+      return result;
+    } catch (const InputError& e) {
+      throw InputError("scenario " + s_.name + ", step " + std::to_string(step) + ": " + e.what());
+    }
+  }
+
+ private:
+  void ask_more(const Pose& pose_a, const Pose& pose_b, trace::Recorder& recorder) const {
+    if (s_.more.distance) {
+      BoundsCourse told;
+      const DistanceResult found = distance(a_, pose_a, b_, pose_b, {}, told);
+      recorder.add(trace::measured(found, std::move(told.course)));
+    }
+    if (s_.more.clash) {
+      ClashCourse told;
+      const ClashResult found = clash(a_, pose_a, b_, pose_b, {}, told);
+      recorder.add(trace::measured(found, std::move(told.of_depth)));
+    }
+  }
+
+  const spec::Scenario& s_;
+  const LrbRep &a_, &b_;
+  std::optional<CoherentQuery> coherent_;
+  QueryContext context_;
+};
+
+void record_collision(const spec::Scenario& s, Recording& r, const ProgressReport& progress) {
+  const LrbRep &a = r.bodies[0].rep, &b = r.bodies[1].rep;
+  const std::vector<Pose> poses = poses_of_b(s, r);
+  trace::Recorder recorder(a, b, recorder_settings(s));
+  StepQueries queries(s, a, b);
+  for (std::uint32_t step = 0; step < poses.size(); ++step) {
+    progress("query", step, poses.size());
+    recorder.begin_step(step, s.bodies[0].pose, poses[step]);
+    r.results.push_back(queries.ask(step, poses[step], recorder));
+    recorder.end_step(r.results.back());
+  }
+  trace::Trace recorded = recorder.take();
+  recorded.header.first_contact = std::move(r.trace.header.first_contact);
+  r.trace = std::move(recorded);
+}
+
+/// Returns all regions, those of the builder's last pass (the outermost ones) first: each can then be refined
+/// when its turn comes.
+std::vector<RegionId> outside_in(const LrbRep& rep) {
+  std::vector<RegionId> order(rep.region_count());
+  std::iota(order.begin(), order.end(), RegionId{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](RegionId x, RegionId y) { return rep.layer(x) > rep.layer(y); });
+  return order;
+}
+
+void require_closed(const spec::Scenario& s, const LrbRep& rep) {
+  if (rep.closed()) return;
+  throw InputError("scenario " + s.name + ": body a, " + printable_name(source_of(s.bodies[0])) +
+                   ", is open: it has no inside, and so no wrapper to refine or to construct; close it "
+                   "(lrbscope inspect names its open edges), or show a collision");
+}
+
+void record_refinement(const spec::Scenario& s, Recording& r) {
+  const LrbRep& rep = r.bodies[0].rep;
+  require_closed(s, rep);
+  trace::Recorder recorder(rep, recorder_settings(s));
+  recorder.begin_step(0, s.bodies[0].pose);
+  for (const RegionId region : outside_in(rep))
+    recorder.refine(Side::a, region, static_cast<std::uint32_t>(rep.floor(region).size()));
+  r.trace = recorder.take();
+}
+
+void record_known(const spec::Scenario& s, Recording& r) {
+  const LrbRep& rep = r.bodies[0].rep;
+  require_closed(s, rep);
+  r.trace = trace::known_construction(rep, s.bodies[0].pose, recorder_settings(s));
+  if (rep.region_count() > 0)
+    r.notes.push_back(rep.name() +
+                      ": came with its regions: no builder could be watched, and they are shown by layers");
+}
+
+void record_construction(const spec::Scenario& s, Recording& r) {
+  trace::ConstructRecorder recorder(recorder_settings(s));
+  spec::BodySpec body = s.bodies[0];
+  body.build.probe = &recorder;
+  r.bodies.push_back(make_body(body));
+  if (recorder.empty()) return record_known(s, r);
+  r.trace = recorder.take(r.bodies[0].rep, body.pose);
+}
+
+/// Adds what follows from a run that has been recorded: how it is to be drawn, its trees, what people should
+/// know of it.
+void finish(const spec::Scenario& s, Recording& r) {
+  r.trace.header.pictures = spec::pictures_text(s.frames);
+  r.trees = trees_of(r.trace, r.bodies);
+  std::vector<std::string> of_bodies;
+  for (const bodies::LoadedBody& body : r.bodies)
+    of_bodies.insert(of_bodies.end(), body.notes.begin(), body.notes.end());
+  r.notes.insert(r.notes.begin(), of_bodies.begin(), of_bodies.end());
+  if (r.trace.truncated())
+    r.notes.push_back("the trace holds the first " + std::to_string(r.trace.events.size()) + " of " +
+                      std::to_string(r.trace.events_seen) + " events (trace.max_events)");
+}
+
+}  // namespace
+
+std::vector<trace::TreeShape> trees_of(const trace::Trace& trace,
+                                       const std::vector<bodies::LoadedBody>& bodies) {
+  std::vector<trace::TreeShape> out;
+  if (trace.header.level == EventLevel::faces || !trace.header.engine.empty() || bodies.size() != 2)
+    return out;
+  for (const bodies::LoadedBody& body : bodies) out.emplace_back(body.rep.tree());
+  return out;
+}
+
+bodies::LoadedBody make_body(const spec::BodySpec& spec) {
+  if (!spec.file.empty()) return bodies::load_body(spec.file, spec.build);
+  if (std::optional<LrbRep> rep = generators::generate_rep(spec.generator, spec.parameters, spec.build.seed))
+    return {std::move(*rep), {}, 0};
+  return bodies::body_of_mesh(generators::generate(spec.generator, spec.parameters, spec.build.seed),
+                              spec.build);
+}
+
+Recording record(const spec::Scenario& scenario, const ProgressReport& progress) {
+  if (scenario.show == spec::Show::construction) {
+    progress("build", 0, 1);
+    Recording r;
+    record_construction(scenario, r);
+    finish(scenario, r);
+    return r;
+  }
+  std::vector<bodies::LoadedBody> bodies;
+  for (std::size_t i = 0; i < scenario.bodies.size(); ++i) {
+    progress("build", i, scenario.bodies.size());
+    bodies.push_back(make_body(scenario.bodies[i]));
+  }
+  return record(scenario, std::move(bodies), progress);
+}
+
+Recording record(const spec::Scenario& scenario, std::vector<bodies::LoadedBody> bodies,
+                 const ProgressReport& progress) {
+  Recording r;
+  r.bodies = std::move(bodies);
+  switch (scenario.show) {
+    case spec::Show::collision:
+      record_collision(scenario, r, progress);
+      break;
+    case spec::Show::refinement:
+      record_refinement(scenario, r);
+      break;
+    case spec::Show::construction:
+      record_known(scenario, r);
+      break;
+  }
+  finish(scenario, r);
+  return r;
+}
+
+std::vector<std::string> mismatches(const spec::Scenario& scenario, const Recording& r) {
+  std::vector<std::string> out;
+  for (const spec::Expectation& e : scenario.expect) {
+    const std::string where = e.place + ": step " + std::to_string(e.step) + ": ";
+    if (e.step >= r.results.size()) {
+      out.push_back(where + "the run has " + std::to_string(r.results.size()) + " steps only");
+      continue;
+    }
+    const CollideResult& result = r.results[e.step];
+    const std::uint64_t print = fingerprint(result.pairs);
+    if (e.relation && *e.relation != result.relation)
+      out.push_back(where + "expected relation " + to_string(*e.relation) + ", found " +
+                    to_string(result.relation));
+    if (e.pairs && *e.pairs != result.pairs.size())
+      out.push_back(where + "expected " + std::to_string(*e.pairs) + " pairs, found " +
+                    std::to_string(result.pairs.size()));
+    if (e.fingerprint && *e.fingerprint != print)
+      out.push_back(where + "expected fingerprint " + trace::to_hex(*e.fingerprint) + ", found " +
+                    trace::to_hex(print));
+  }
+  return out;
+}
+
+std::string numbered_frame(std::size_t frame) {
+  std::ostringstream out;
+  out << "frames/frame_" << std::setw(4) << std::setfill('0') << frame;
+  return out.str();
+}
+
+std::string frame_file(std::size_t frame) {
+  return numbered_frame(frame) + ".png";
+}
+
+void remove_old_frames(const std::string& folder) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder + "/frames", error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("frame_") && (name.ends_with(".png") || name.ends_with(".svg")))
+      std::filesystem::remove(entry.path(), error);
+  }
+  for (const char* file : {"/montage.png", "/montage.svg", "/caption.txt", "/separation.png"})
+    std::filesystem::remove(folder + file, error);
+}
+
+}  // namespace lrb::run

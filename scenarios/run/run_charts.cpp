@@ -1,0 +1,253 @@
+#include "scenarios/run/run_charts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "scenarios/frames/pass_words.hpp"
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/trace/counters.hpp>
+
+namespace lrb::run {
+namespace {
+
+using render::group_digits;
+using render::short_number;
+using Passes = std::vector<trace::PassSummary>;
+
+/// What verdicts mean, in their order.
+constexpr std::array<std::string_view, kWords<CapVerdict>.size()> kMeanings = {
+    "it became part of the hull",
+    "with fewer faces it would stand off the body by more than the pass allows",
+    "with fewer faces it would add more space than a collapse may",
+    "with fewer faces some would be needles",
+    "no point lies in front of the faces that would have to go, and within the bounds of all hulls",
+    "collapsing any more edges would leave no surface",
+    "it saves too few faces to be worth a region",
+    "a polygon of the mesh has one face in the LRB-rep: it is covered as a whole or not at all",
+    "at its ring it would have left the hull inward",
+    "its own faces met in more than they share",
+    "it met what it was to cover",
+    "it met another part of the hull: a gap is too narrow for it",
+    "another component may lie under it",
+    "a cap that adds less area for what it saves was put there first",
+    "bridging joins one outline with its convex hull, and there are several",
+    "bridging is left out for hulls with very large polygons or fans",
+    "the convex hull has no inside, or the outline crosses itself",
+    "coordinates are too large for a wrapper around them",
+    "the wrapper that was planned does not hold the last hull"};
+
+std::string percent(std::uint64_t part, std::uint64_t whole) {
+  return short_number(100.0 * static_cast<double>(part) / static_cast<double>(whole)) + " %";
+}
+
+std::vector<std::string> pass_row(const trace::PassSummary& p) {
+  const bool made = p.regions > 0;
+  const double saved = static_cast<double>(p.covered) - p.lids;
+  return {made ? std::to_string(p.number()) : "",
+          std::string(name_of(p.stage)),
+          p.most_off > 0 ? short_number(p.most_off) : "",
+          p.off > 0 ? short_number(p.off) : "",
+          group_digits(p.faces_before),
+          group_digits(p.faces_after),
+          group_digits(p.regions),
+          group_digits(p.patches),
+          group_digits(p.accepted()),
+          saved > 0 ? short_number(p.lids / saved) : "",
+          group_digits(p.refused()),
+          trace::refusal_words(p.caps)};
+}
+
+report::PageTable pass_table(const Passes& passes) {
+  report::PageTable t;
+  t.title = "Pass by pass";
+  t.columns = {"pass",    "stage",   "allowed", "farthest", "faces",   "then",
+               "regions", "patches", "caps",    "cost",     "refused", "why"};
+  for (const trace::PassSummary& p : passes) t.rows.push_back(pass_row(p));
+  t.note =
+      "A pass covers the hull with patches and tries a cap on each. Allowed, farthest: how far caps may stand off the "
+      "body and how far the farthest does, in the mesh's unit, estimates by which the builder chooses. Cost: new faces "
+      "for each that the hull loses. Passes without a number made nothing; the next one allows more.";
+  const auto sum = [&](auto member) {
+    std::uint64_t n = 0;
+    for (const trace::PassSummary& p : passes) n += p.*member;
+    return n;
+  };
+  if (const std::uint64_t merged = sum(&trace::PassSummary::merged); merged > 0)
+    t.note +=
+        " " + render::counted(merged, "piece", "pieces") + " of space became part of the region around.";
+  if (const std::uint64_t retried = sum(&trace::PassSummary::retried); retried > 0)
+    t.note += " " + render::counted(retried, "cap", "caps") +
+              " met something at first, and another was made with a proof for each collapse.";
+  return t;
+}
+
+report::PageTable refusal_table(const Passes& passes) {
+  const auto caps = trace::caps_of(passes);
+  std::uint64_t all = 0;
+  for (const std::uint32_t n : caps) all += n;
+  std::vector<std::size_t> order;
+  for (std::size_t v = 0; v < caps.size(); ++v)
+    if (caps[v] > 0) order.push_back(v);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t x, std::size_t y) { return caps[x] > caps[y]; });
+  report::PageTable t;
+  t.title = "What became of the caps";
+  t.columns = {"verdict", "caps", "share", "meaning"};
+  for (const std::size_t v : order)
+    t.rows.push_back({std::string(name_of(static_cast<CapVerdict>(v))), group_digits(caps[v]),
+                      percent(caps[v], all), std::string(kMeanings[v])});
+  t.note =
+      "Over all passes: a part of the hull that gets no cap in one pass is tried again in later ones. A cap that leaves "
+      "too many faces counts by what forbids most of the collapses that are left, limits before geometry.";
+  return t;
+}
+
+/// Says what no patch could have, if there is any.
+std::string left_out_words(const Passes& passes) {
+  std::uint32_t barred = 0;
+  for (const trace::PassSummary& p : passes) barred = std::max(barred, p.barred);
+  if (barred == 0) return {};
+  return render::counted(barred, "face was", "faces were") +
+         " left to the outermost wrapper alone: they meet others, lie within another component, or belong to a very "
+         "large polygon or fan.";
+}
+
+report::PageChart chart_of(const trace::Chart& chart, const char* title, const char* y) {
+  report::PageChart out;
+  out.title = title;
+  out.x_label = std::string(chart.x_name);
+  out.y_label = y;
+  for (const trace::Series& s : chart.series) out.series.push_back({std::string(s.name), chart.x, s.values});
+  return out;
+}
+
+}  // namespace
+
+void add_construction(report::Page& page, const RecordedRun& p) {
+  const Passes passes = trace::passes_of(*p.trace);
+  const auto made = std::count_if(passes.begin(), passes.end(), [](const auto& s) { return s.regions > 0; });
+  page.numbers.push_back({"Passes", std::to_string(made),
+                          std::to_string(passes.size() - static_cast<std::size_t>(made)) + " more in vain"});
+  const auto caps = trace::caps_of(passes);
+  std::uint64_t refused = 0;
+  for (std::size_t v = 1; v < caps.size(); ++v) refused += caps[v];
+  if (caps[0] + refused > 0)
+    page.numbers.push_back({"Caps", group_digits(caps[0]), group_digits(refused) + " refused"});
+  report::PageChart hull = chart_of(trace::chart_over_construction(*p.trace),
+                                    "The hull, from the body to the outermost wrapper", "faces");
+  hull.cursor = report::PageCursor::event;
+  hull.stepped = true;
+  page.charts.push_back(std::move(hull));
+  if (caps[0] + refused > 0) {
+    page.charts.push_back(
+        chart_of(trace::chart_over_passes(*p.trace), "What became of caps, pass by pass", "caps"));
+    page.tables.push_back(refusal_table(passes));
+  }
+  page.tables.push_back(pass_table(passes));
+  if (const std::string left = left_out_words(passes); !left.empty()) page.tables.back().note += " " + left;
+}
+
+namespace {
+
+/// Two curves that hold a number between them.
+struct Ends {
+  report::PageSeries lower, upper;
+
+  explicit Ends(const std::string& what) {
+    lower.label = what + ", lower end";
+    upper.label = what + ", upper end";
+  }
+  void add(double x, double low, double high) {
+    lower.x.push_back(x);
+    lower.y.push_back(low);
+    if (!std::isfinite(high)) return;
+    upper.x.push_back(x);
+    upper.y.push_back(high);
+  }
+  void move_to(report::PageChart& chart) {
+    if (lower.x.empty()) return;
+    chart.series.push_back(std::move(lower));
+    if (!upper.x.empty()) chart.series.push_back(std::move(upper));
+  }
+};
+
+report::PageChart steps_chart(const trace::Trace& trace) {
+  report::PageChart chart;
+  chart.title = "Distance and depth, step by step";
+  chart.x_label = "step";
+  chart.y_label = "length in the meshes' unit";
+  chart.cursor = report::PageCursor::step;
+  Ends distance("distance"), depth("depth");
+  for (const trace::Step& step : trace.steps) {
+    const trace::StepResult& r = step.result;
+    if (r.distance) distance.add(step.index, r.distance->lower, r.distance->upper);
+    if (r.clash && r.clash->depth) depth.add(step.index, (*r.clash->depth)[0], (*r.clash->depth)[1]);
+  }
+  distance.move_to(chart);
+  depth.move_to(chart);
+  return chart;
+}
+
+report::PageChart course_chart(const std::vector<Bounds>& course, const std::string& what,
+                               std::uint32_t step) {
+  report::PageChart chart;
+  chart.title = "How the bounds of the " + what + " tightened, step " + std::to_string(step);
+  chart.x_label = "work";
+  chart.y_label = "length in the meshes' unit";
+  chart.stepped = true;
+  Ends ends(what);
+  for (const Bounds& b : course) ends.add(static_cast<double>(b.work), b.lower, b.upper);
+  ends.move_to(chart);
+  return chart;
+}
+
+report::PageChart search_chart(const trace::MeasuredApproach& search) {
+  report::PageChart chart;
+  chart.title = "How the first contact was found";
+  chart.x_label = "percent of the way without a contact";
+  chart.y_label = "distance there";
+  chart.note = "Each point is where the search stood: until there the bodies are proved not to meet.";
+  Ends distance("distance");
+  for (const ContactBounds& b : search.course) {
+    const double percent = 100 * b.t0;
+    if (distance.lower.x.empty() || percent > distance.lower.x.back())
+      distance.add(percent, b.lower, b.upper);
+  }
+  distance.move_to(chart);
+  return chart;
+}
+
+}  // namespace
+
+std::vector<report::PageChart> measure_charts(const trace::Trace& trace) {
+  std::vector<report::PageChart> out;
+  const trace::Step *of_distance = nullptr, *of_depth = nullptr;
+  std::size_t most_distance = 1, most_depth = 1;  // a curve has two points at least
+  for (const trace::Step& step : trace.steps) {
+    const trace::StepResult& r = step.result;
+    if (r.distance && r.distance->course.size() > most_distance) {
+      of_distance = &step;
+      most_distance = r.distance->course.size();
+    }
+    if (r.clash && r.clash->course.size() > most_depth) {
+      of_depth = &step;
+      most_depth = r.clash->course.size();
+    }
+  }
+  const bool measured =
+      was_measured(trace, &trace::StepResult::distance) || was_measured(trace, &trace::StepResult::clash);
+  if (measured && trace.steps.size() > 1) out.push_back(steps_chart(trace));
+  if (of_distance != nullptr)
+    out.push_back(course_chart(of_distance->result.distance->course, "distance", of_distance->index));
+  if (of_depth != nullptr)
+    out.push_back(course_chart(of_depth->result.clash->course, "depth", of_depth->index));
+  if (trace.header.first_contact && trace.header.first_contact->course.size() > 1)
+    out.push_back(search_chart(*trace.header.first_contact));
+  std::erase_if(out, [](const report::PageChart& c) { return c.series.empty(); });
+  return out;
+}
+
+}  // namespace lrb::run

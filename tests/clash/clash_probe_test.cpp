@@ -1,0 +1,80 @@
+// What a clash query tells a probe.
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/closed_body.hpp"
+#include <lrbscope/clash.hpp>
+
+using namespace lrb;
+
+namespace {
+
+using test::closed;
+
+ClashResult watched(const LrbRep& a, const LrbRep& b, const Pose& pose_b, ClashCourse& told) {
+  const ClashResult result = clash(a, {}, b, pose_b, {}, told);
+  const ClashResult plain = clash(a, {}, b, pose_b);
+  CHECK(result.kind == plain.kind);
+  CHECK(result.distance.lower == plain.distance.lower);
+  CHECK(result.distance.upper == plain.distance.upper);
+  REQUIRE(result.depth.has_value());
+  REQUIRE(plain.depth.has_value());
+  CHECK(result.depth->lower == plain.depth->lower);
+  CHECK(result.depth->upper == plain.depth->upper);
+  CHECK(result.translation == plain.translation);
+  return result;
+}
+
+/// The ends of a depth tighten but for the proof of the last upper end, which is a little more than what was
+/// found.
+void check_depth(const ClashCourse& told, const ClashResult& result) {
+  REQUIRE(told.of_depth.size() >= 2);
+  CHECK(told.of_distance.empty());
+  Bounds before{0, 0, std::numeric_limits<double>::infinity()};
+  for (const Bounds& now : told.of_depth) {
+    CAPTURE(now.work);
+    CHECK(now.work >= before.work);
+    CHECK(now.lower >= before.lower);
+    CHECK(now.upper <= before.upper * (1 + 1e-9));
+    CHECK(now.lower <= result.depth->upper);
+    CHECK(now.upper >= result.depth->lower * (1 - 1e-9));
+    before = now;
+  }
+  CHECK(told.of_depth.back().lower == result.depth->lower);
+  CHECK(told.of_depth.back().upper == result.depth->upper);
+}
+
+}  // namespace
+
+TEST_CASE("clash probe: the depth of convex bodies tightens from both ends") {
+  const LrbRep ball = closed(shapes::icosphere(3));
+  ClashCourse told;
+  const ClashResult result = watched(ball, ball, Pose::translation({1.1, 0.3, 0.2}), told);
+  check_depth(told, result);
+  CHECK(told.of_depth.front().lower < 0.9 * result.depth->lower);
+  CHECK(std::isinf(told.of_depth.front().upper));
+  CHECK(told.of_depth.size() > 5);
+}
+
+TEST_CASE("clash probe: the depth of a body that is not convex") {
+  const LrbRep torus = closed(shapes::torus(24, 12, 1, 0.35)), ball = closed(shapes::icosphere(2));
+  ClashCourse told;
+  const ClashResult result = watched(torus, ball, Pose::translation({1.2, 0.1, 0.3}), told);
+  REQUIRE(result.interiors_overlap == Answer::yes);
+  check_depth(told, result);
+}
+
+TEST_CASE("clash probe: of bodies that are apart the distance is told, and of those that touch, nothing") {
+  const LrbRep box = closed(shapes::box({0, 0, 0}, {1, 1, 1}));
+  ClashCourse apart, touching;
+  const ClashResult gap = watched(box, box, Pose::translation({1.5, 0.25, 0.25}), apart);
+  CHECK(apart.of_depth.empty());
+  REQUIRE(!apart.of_distance.empty());
+  CHECK(apart.of_distance.back().lower == gap.distance.lower);
+  CHECK(apart.of_distance.back().upper == gap.distance.upper);
+  watched(box, box, Pose::translation({1, 0.25, 0.25}), touching);
+  CHECK(touching.of_depth.empty());
+  CHECK(touching.of_distance.empty());
+}

@@ -1,0 +1,640 @@
+// What kind of contact, and how deep: against bodies whose answers are known, rational brute force over
+// convex pairs, and exact arithmetic over bodies of cells.
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "bench/quantities/rational_oracles.hpp"
+#include "engine/clash/surface_pieces.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/closed_body.hpp"
+#include <lrbscope/clash.hpp>
+#include <lrbscope/error.hpp>
+
+using namespace lrb;
+using Eigen::Vector3d;
+using oracle::Rational;
+using shapes::RandomEngine;
+
+namespace {
+
+/// Multiplies the number of random cases: LRB_CLASH_SHARE=100 query_tests -tc="clash*".
+int share() {
+  const char* const text = std::getenv("LRB_CLASH_SHARE");
+  return text == nullptr ? 1 : std::max(1, std::atoi(text));
+}
+
+using test::closed;
+
+ClashResult ask(const LrbRep& a, const LrbRep& b, const Pose& pose_b = {}, const ClashRequest& request = {}) {
+  return clash(a, Pose{}, b, pose_b, request);
+}
+
+ClashResult ask(const Mesh& a, const Mesh& b, const Pose& pose_b = {}, const ClashRequest& request = {}) {
+  return ask(closed(a), closed(b), pose_b, request);
+}
+
+void check_holds(const std::optional<ProvedInterval>& interval, double value, double width) {
+  REQUIRE(interval.has_value());
+  CAPTURE(interval->lower);
+  CAPTURE(interval->upper);
+  CAPTURE(value);
+  CHECK(interval->lower <= value);
+  CHECK(interval->upper >= value);
+  CHECK(interval->upper - interval->lower <= width);
+}
+
+/// The bodies are apart, as the exact query sees them, once B has moved by the translation, which is as long
+/// as the upper end of the depth.
+void check_translation(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                       const ClashResult& result) {
+  REQUIRE(result.depth.has_value());
+  REQUIRE(result.depth->upper < std::numeric_limits<double>::infinity());
+  CHECK(result.depth->lower <= result.depth->upper);
+  CHECK(result.translation.norm() <= result.depth->upper);
+  CHECK(result.translation.norm() >= result.depth->upper * (1 - 1e-12));
+  const Pose moved{pose_b.r, pose_b.t + result.translation};
+  CHECK(collide(a, pose_a, b, moved).relation == Relation::separate);
+}
+
+/// Divides each triangle into four.
+Mesh finer(const Mesh& mesh) {
+  Mesh out;
+  out.dim = 3;
+  out.vertices = mesh.vertices;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, VertexId> middles;
+  const auto middle = [&](VertexId v, VertexId w) {
+    const auto [it, is_new] = middles.try_emplace(std::minmax(v.value(), w.value()), kNull);
+    if (is_new) {
+      it->second = VertexId(out.vertices.size());
+      out.vertices.push_back(0.5 * (mesh.vertices[v] + mesh.vertices[w]));
+    }
+    return it->second;
+  };
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    const auto v = mesh.face(f);
+    REQUIRE(v.size() == 3);
+    const VertexId m[3] = {middle(v[0], v[1]), middle(v[1], v[2]), middle(v[2], v[0])};
+    out.add_face(std::array<VertexId, 3>{v[0], m[0], m[2]});
+    out.add_face(std::array<VertexId, 3>{v[1], m[1], m[0]});
+    out.add_face(std::array<VertexId, 3>{v[2], m[2], m[1]});
+    out.add_face(std::array<VertexId, 3>{m[0], m[1], m[2]});
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("clash: boxes that overlap by a known amount") {
+  const Mesh a = shapes::box();
+  struct Case {
+    Vector3d at;
+    double depth, volume;
+  };
+  for (const Case& c : {Case{{0.75, 0, 0}, 0.25, 0.25}, Case{{0.75, 0.5, 0.125}, 0.25, 0.25 * 0.5 * 0.875},
+                        Case{{-0.875, 0.25, 0.25}, 0.125, 0.125 * 0.75 * 0.75},
+                        Case{{0.5, 0.25, 0.9375}, 0.0625, 0.5 * 0.75 * 0.0625}}) {
+    CAPTURE(c.at.transpose());
+    ClashRequest request;
+    request.along = Vector3d(0, 0, 3);
+    const ClashResult r = ask(a, a, Pose::translation(c.at), request);
+    CHECK(r.interiors_overlap == Answer::yes);
+    check_holds(r.depth, c.depth, 1e-11);
+    check_holds(r.volume, c.volume, 1e-10);
+    check_holds(r.along, 1 - c.at.z(), 1e-10);
+    check_translation(closed(a), Pose{}, closed(a), Pose::translation(c.at), r);
+  }
+}
+
+TEST_CASE("clash: kinds of touching, apart, and within a clearance") {
+  const Mesh a = shapes::box();
+  const auto kind = [&](const Vector3d& at, double clearance = 0) {
+    ClashRequest request;
+    request.clearance = clearance;
+    const ClashResult r = ask(a, a, Pose::translation(at), request);
+    check_holds(r.depth, 0, 0);
+    check_holds(r.volume, 0, 0);
+    CHECK(r.interiors_overlap == Answer::no);
+    return r.kind;
+  };
+  CHECK(kind({1, 0.25, 0.5}) == ClashKind::touching_face);
+  CHECK(kind({1, 0, 0}) == ClashKind::touching_face);
+  CHECK(kind({1, 1, 0.5}) == ClashKind::touching_edge);
+  CHECK(kind({1, 1, 0}) == ClashKind::touching_edge);
+  CHECK(kind({1, 1, 1}) == ClashKind::touching_point);
+  CHECK(kind({1.25, 0, 0}) == ClashKind::apart);
+  CHECK(kind({1.25, 0, 0}, 0.25) == ClashKind::within_clearance);
+  CHECK(kind({1.25, 0, 0}, std::nextafter(0.25, 0.0)) == ClashKind::apart);
+  // A corner on a face.
+  const Mesh tip = shapes::tetrahedron();
+  CHECK(ask(a, shapes::translated(shapes::turned_inside_out(tip), {0, 0, 0})).kind != ClashKind::undecided);
+  Mesh spike = shapes::tetrahedron();
+  for (Vector3d& x : spike.vertices)
+    x = Vector3d(0.5, 0.5, 1) + Vector3d(x.x() - 0.1 * x.z(), x.y(), x.x() + x.y() + x.z());
+  CHECK(ask(a, spike).kind == ClashKind::touching_point);
+}
+
+TEST_CASE("clash: enclosed, equal, flush") {
+  const Mesh a = shapes::box();
+  const auto kind_of = [&](const Mesh& x, const Mesh& y) { return ask(x, y).kind; };
+  const Mesh small = shapes::box({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5});
+  CHECK(kind_of(a, small) == ClashKind::b_inside_a);
+  CHECK(kind_of(small, a) == ClashKind::a_inside_b);
+  CHECK(kind_of(a, a) == ClashKind::equal);
+  CHECK(kind_of(a, finer(a)) == ClashKind::equal);
+  const Mesh flush = shapes::box({0, 0.25, 0.25}, {0.5, 0.5, 0.5});
+  CHECK(kind_of(a, flush) == ClashKind::b_inside_a);
+  CHECK(ask(a, flush).shares_faces);
+  CHECK(!ask(a, small).shares_faces);
+  check_holds(ask(a, small).depth, 0.5, 1e-11);
+  check_holds(ask(a, a).depth, 1, 1e-11);
+  check_holds(ask(a, finer(a)).volume, 1, 1e-10);
+  check_holds(ask(a, a).volume, 1, 1e-10);
+  // Shifted along an edge: no face crosses another.
+  const ClashResult shifted = ask(a, shapes::translated(a, {0.5, 0, 0}));
+  CHECK(shifted.kind == ClashKind::protrudes);
+  CHECK(shifted.shares_faces);
+  check_holds(shifted.depth, 0.5, 1e-11);
+  // What fills a void touches from within, and no volume is shared.
+  const Mesh hollow = shapes::box_with_void();
+  const Mesh filling = shapes::box({1, 1, 1}, {2, 2, 2});
+  CHECK(kind_of(hollow, filling) == ClashKind::touching_face);
+  const ClashResult around = ask(hollow, shapes::box({0.5, 0.5, 0.5}, {2.5, 2.5, 2.5}));
+  CHECK(around.kind == ClashKind::protrudes);
+  check_holds(around.volume, 7, 1e-9);
+  check_holds(ask(hollow, shapes::box({1.25, 1.25, 1.25}, {1.5, 1.5, 1.5})).volume, 0, 0);
+}
+
+TEST_CASE("clash: protrudes, pierces, cuts through") {
+  const Mesh plate = shapes::box({-2, -2, 0}, {2, 2, 0.5});
+  const Mesh nail = shapes::box({-0.25, -0.25, -2}, {0.25, 0.25, 2});
+  const ClashResult through = ask(nail, plate);
+  CHECK(through.kind == ClashKind::pierces);
+  CHECK(through.pieces[0].outside == 2);
+  CHECK(through.pieces[0].inside == 1);
+  CHECK(through.pieces[1].outside == 1);
+  CHECK(through.pieces[1].inside == 2);
+  check_holds(through.volume, 0.125, 1e-9);
+  check_holds(through.depth, 2, 1e-10);
+  CHECK(ask(plate, nail).kind == ClashKind::cuts_through);
+  const ClashResult into = ask(nail, plate, Pose::translation({0, 0, 1.75}));
+  CHECK(into.kind == ClashKind::protrudes);
+  check_holds(into.depth, 0.25, 1e-11);
+  const ClashResult ball = ask(shapes::icosphere(3), shapes::box({0.5, -2, -2}, {3, 2, 2}));
+  CHECK(ball.kind == ClashKind::protrudes);
+  CHECK(ball.depth->upper <= 0.5 + 1e-9);
+  CHECK(ball.depth->lower >= 0.49);
+  CHECK(ball.depth->upper - ball.depth->lower < 1e-10);
+  // A ring, and a bar through its tube on one side; then through both.
+  const Mesh ring = shapes::torus(24, 12);
+  CHECK(ask(shapes::box({0.9, -0.1, -2}, {1.1, 0.1, 2}), ring).kind == ClashKind::pierces);
+  CHECK(ask(shapes::box({-3, -0.1, -0.1}, {3, 0.1, 0.1}), ring).pieces[0].outside == 3);
+  CHECK(ask(shapes::box({-0.1, -0.1, -3}, {0.1, 0.1, 3}), ring).kind == ClashKind::apart);
+}
+
+namespace {
+
+using Vec = std::array<Rational, 3>;
+
+Vec cross(const Vec& x, const Vec& y) {
+  return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+}
+
+std::vector<Vec> world_points(const LrbRep& rep, const Pose& pose) {
+  std::vector<Vec> out;
+  for (const Vector3d& x : rep.vertices()) {
+    const Vector3d w = pose.apply(x);
+    out.push_back({Rational(w.x()), Rational(w.y()), Rational(w.z())});
+  }
+  return out;
+}
+
+/// Every direction that can be normal to a facet of the difference of two convex bodies.
+std::vector<Vec> facet_normals(const LrbRep& a, const std::vector<Vec>& of_a, const LrbRep& b,
+                               const std::vector<Vec>& of_b) {
+  std::vector<Vec> edges[2], out;
+  const auto add = [&](const Vec& n) {
+    if (n[0] == 0 && n[1] == 0 && n[2] == 0) return;
+    out.push_back(n);
+    out.push_back({-n[0], -n[1], -n[2]});
+  };
+  for (int side = 0; side < 2; ++side) {
+    const LrbRep& rep = side == 0 ? a : b;
+    const std::vector<Vec>& x = side == 0 ? of_a : of_b;
+    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
+      VertexId v[3] = {};
+      rep.simplex(s, v);
+      add(cross(oracle::minus(x[v[1]], x[v[0]]), oracle::minus(x[v[2]], x[v[0]])));
+      for (int k = 0; k < 3; ++k)
+        if (v[k] < v[(k + 1) % 3]) edges[side].push_back(oracle::minus(x[v[(k + 1) % 3]], x[v[k]]));
+    }
+  }
+  for (const Vec& e : edges[0])
+    for (const Vec& f : edges[1]) add(cross(e, f));
+  return out;
+}
+
+/// How far B must move along n until a plane across n parts the two, times the length of n.
+Rational width(const Vec& n, const std::vector<Vec>& of_a, const std::vector<Vec>& of_b) {
+  Rational high = oracle::dot(n, of_a[0]), low = oracle::dot(n, of_b[0]);
+  for (const Vec& x : of_a) high = std::max(high, oracle::dot(n, x));
+  for (const Vec& x : of_b) low = std::min(low, oracle::dot(n, x));
+  return high - low;
+}
+
+/// Compares depth and way out of two convex bodies with the least over all facets of their difference, which
+/// are rational but for roots. Returns false if they do not overlap.
+bool check_convex(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const Vector3d& along, double narrow) {
+  const std::vector<Vec> of_a = world_points(a, pose_a), of_b = world_points(b, pose_b);
+  const Vec u = {Rational(along.x()), Rational(along.y()), Rational(along.z())};
+  Rational depth_sq = -1, way = -1;
+  for (const Vec& n : facet_normals(a, of_a, b, of_b)) {
+    const Rational w = width(n, of_a, of_b);
+    if (w <= 0) return false;
+    const Rational sq = w * w / oracle::dot(n, n), slope = oracle::dot(n, u);
+    if (depth_sq < 0 || sq < depth_sq) depth_sq = sq;
+    if (slope > 0 && (way < 0 || w / slope < way)) way = w / slope;
+  }
+  ClashRequest request;
+  request.along = along;
+  const ClashResult r = clash(a, pose_a, b, pose_b, request);
+  REQUIRE(r.depth.has_value());
+  REQUIRE(r.along.has_value());
+  CAPTURE(std::sqrt(depth_sq.convert_to<double>()));
+  CAPTURE(way.convert_to<double>());
+  CAPTURE(r.depth->lower);
+  CAPTURE(r.depth->upper);
+  CAPTURE(r.along->lower);
+  CAPTURE(r.along->upper);
+  REQUIRE(oracle::square(r.depth->lower) <= depth_sq);
+  REQUIRE(oracle::square(r.depth->upper) >= depth_sq);
+  REQUIRE(r.depth->upper - r.depth->lower <= narrow);
+  // Lengths along a vector that is of length 1 but for rounding.
+  const double length = along.stableNorm();
+  REQUIRE(r.along->lower <= way.convert_to<double>() * length * (1 + 1e-14));
+  REQUIRE(r.along->upper >= way.convert_to<double>() * length * (1 - 1e-14));
+  REQUIRE(r.along->upper - r.along->lower <= 1e-9 + narrow);
+  check_translation(a, pose_a, b, pose_b, r);
+  return true;
+}
+
+Mesh random_convex(RandomEngine& random, int which) {
+  Mesh mesh = which == 0 ? shapes::tetrahedron() : which == 1 ? shapes::box() : shapes::icosphere(0);
+  // A linear map keeps it convex.
+  Eigen::Matrix3d m;
+  do {
+    for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = shapes::uniform(random, -1, 1);
+  } while (m.determinant() < 0.05);
+  for (Vector3d& x : mesh.vertices) x = m * x;
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("clash: convex pairs against all facets of their difference, in rational arithmetic") {
+  RandomEngine random(17);
+  int overlap = 0;
+  const int pairs = 40 * share();
+  for (int i = 0; i < pairs; ++i) {
+    CAPTURE(i);
+    const LrbRep a = closed(random_convex(random, i % 2)), b = closed(random_convex(random, i / 2 % 2));
+    const Pose pose_a{shapes::random_rotation(random), Vector3d::Zero()};
+    const Pose pose_b{shapes::random_rotation(random), 0.4 * shapes::random_direction(random)};
+    overlap += check_convex(a, pose_a, b, pose_b, shapes::random_direction(random), 1e-10);
+  }
+  CHECK(overlap > pairs / 3);
+}
+
+TEST_CASE("clash: round convex bodies, and ones of very different sizes") {
+  RandomEngine random(18);
+  for (int i = 0; i < 2; ++i) {
+    const LrbRep a = closed(random_convex(random, 2));
+    const LrbRep b = closed(shapes::scaled(random_convex(random, 2), i < 1 ? 1 : 1e-3));
+    check_convex(a, Pose{}, b, Pose{shapes::random_rotation(random), 0.2 * shapes::random_direction(random)},
+                 shapes::random_direction(random), 1e-10);
+  }
+}
+
+namespace {
+
+using Cells = std::set<std::array<int, 3>>;
+
+Mesh mesh_of(const Cells& cells) {
+  return shapes::voxels(3, 3, 3, [&](int i, int j, int k) { return cells.contains({i, j, k}); });
+}
+
+/// A random polycube without edges or corners that hang together by themselves.
+Cells random_cells(RandomEngine& random) {
+  Cells cells{{1, 1, 1}};
+  for (int i = 0; i < 5; ++i) {
+    auto cell = *std::next(cells.begin(), static_cast<long>(random() % cells.size()));
+    const std::size_t axis = random() % 3;
+    cell[axis] = std::clamp(cell[axis] + (random() % 2 == 0 ? 1 : -1), 0, 2);
+    cells.insert(cell);
+  }
+  return cells;
+}
+
+/// The depth of bodies of cells, exactly but for a root: B's translations after which no two cells overlap
+/// are those outside a union of open boxes; the nearest of them is nearest in a cell of the grid of their
+/// sides.
+double cells_depth(const Cells& a, const Cells& b, const Vector3d& at) {
+  std::vector<double> sides[3];
+  std::vector<std::array<double, 3>> lows;  // boxes, 2 wide
+  for (const auto& p : a)
+    for (const auto& q : b) {
+      std::array<double, 3> low;
+      for (std::size_t k = 0; k < 3; ++k) {
+        low[k] = p[k] - q[k] - at[static_cast<int>(k)] - 1;
+        sides[k].push_back(low[k]);
+        sides[k].push_back(low[k] + 2);
+      }
+      lows.push_back(low);
+    }
+  struct Part {
+    double inside, nearest;
+  };
+  std::vector<Part> parts[3];
+  for (int k = 0; k < 3; ++k) {
+    auto& s = sides[k];
+    std::sort(s.begin(), s.end());
+    s.erase(std::unique(s.begin(), s.end()), s.end());
+    parts[k].push_back({s.front() - 1, std::min(0.0, s.front())});
+    parts[k].push_back({s.back() + 1, std::max(0.0, s.back())});
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      parts[k].push_back({s[i], s[i]});
+      if (i + 1 < s.size()) parts[k].push_back({(s[i] + s[i + 1]) / 2, std::clamp(0.0, s[i], s[i + 1])});
+    }
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const Part& x : parts[0])
+    for (const Part& y : parts[1])
+      for (const Part& z : parts[2]) {
+        const Vector3d nearest(x.nearest, y.nearest, z.nearest), inside(x.inside, y.inside, z.inside);
+        if (!(nearest.norm() < least)) continue;
+        const bool meets = std::any_of(lows.begin(), lows.end(), [&](const auto& low) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            const double d = inside[static_cast<int>(k)] - low[k];
+            if (!(d > 0 && d < 2)) return false;
+          }
+          return true;
+        });
+        if (!meets) least = nearest.norm();
+      }
+  return least;
+}
+
+double cells_volume(const Cells& a, const Cells& b, const Vector3d& at) {
+  double sum = 0;
+  for (const auto& p : a)
+    for (const auto& q : b) {
+      double v = 1;
+      for (std::size_t k = 0; k < 3; ++k)
+        v *= std::max(0.0, 1 - std::abs(p[k] - q[k] - at[static_cast<int>(k)]));
+      sum += v;
+    }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("clash: bodies of cells, not convex: intervals hold depth and volume") {
+  RandomEngine random(19);
+  int overlap = 0, found = 0;
+  for (int i = 0; i < 60 * share(); ++i) {
+    CAPTURE(i);
+    const Cells of_a = random_cells(random), of_b = random_cells(random);
+    const Mesh mesh_a = mesh_of(of_a), mesh_b = mesh_of(of_b);
+    Vector3d at;
+    for (int k = 0; k < 3; ++k) at[k] = 0.125 * (static_cast<int>(random() % 33) - 16);
+    const LrbRep a = closed(mesh_a), b = closed(mesh_b);
+    const Pose pose_b = Pose::translation(at);
+    const ClashResult r = ask(a, b, pose_b);
+    const double depth = cells_depth(of_a, of_b, at), volume = cells_volume(of_a, of_b, at);
+    CAPTURE(depth);
+    CAPTURE(volume);
+    if (r.kind == ClashKind::undecided) continue;  // cells that meet in an edge alone
+    CHECK((r.interiors_overlap == Answer::yes) == (volume > 0));
+    check_holds(r.volume, volume, 1e-9);
+    REQUIRE(r.depth.has_value());
+    CAPTURE(r.depth->lower);
+    CAPTURE(r.depth->upper);
+    CHECK(r.depth->lower <= depth * (1 + 1e-14));
+    CHECK(r.depth->upper >= depth * (1 - 1e-14));
+    if (volume == 0) continue;
+    ++overlap;
+    CHECK(r.depth->lower > 0);
+    check_translation(a, Pose{}, b, pose_b, r);
+    found += r.depth->upper < depth + 1e-9;
+  }
+  CHECK(overlap > 25 * share());
+  CHECK(found > overlap * 8 / 10);  // the shortest way out, which is not promised
+}
+
+namespace {
+
+Mesh random_round(RandomEngine& random) {
+  switch (random() % 4) {
+    case 0:
+      return shapes::bumpy_sphere(2, random(), 0.3);
+    case 1:
+      return shapes::torus(12, 8);
+    case 2:
+      return shapes::bowl(10, 5, 0.3);
+    default:
+      return shapes::l_shape();
+  }
+}
+
+/// Cells by the order of a face's border, and by rational arithmetic alone, make the same pieces.
+void check_pieces(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  QueryContext context;
+  NullProbe probe;
+  const CollideResult found = collide(a, pose_a, b, pose_b, {}, context, probe);
+  const auto quick = parting::surface_pieces(context, found);
+  const auto slow = parting::surface_pieces(context, found, true);
+  REQUIRE((quick && slow));
+  for (std::size_t side = 0; side < 2; ++side) {
+    CHECK((*quick)[side].inside == (*slow)[side].inside);
+    CHECK((*quick)[side].outside == (*slow)[side].outside);
+    CHECK((*quick)[side].most_outside == (*slow)[side].most_outside);
+  }
+}
+
+bool overlaps(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  CollideRequest request;
+  request.interiors_overlap = true;
+  return collide(a, pose_a, b, pose_b, request).interiors_overlap == Answer::yes;
+}
+
+ClashKind seen_from_b(ClashKind kind) {
+  switch (kind) {
+    case ClashKind::pierces:
+      return ClashKind::cuts_through;
+    case ClashKind::a_inside_b:
+      return ClashKind::b_inside_a;
+    case ClashKind::b_inside_a:
+      return ClashKind::a_inside_b;
+    default:
+      return kind;
+  }
+}
+
+bool have_in_common(const ProvedInterval& x, const ProvedInterval& y) {
+  return x.lower <= y.upper && y.lower <= x.upper;
+}
+
+/// Looks for what the intervals of two bodies that overlap rule out.
+void look_for_counterexamples(RandomEngine& random, const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                              const Pose& pose_b, const ClashResult& r, const Vector3d& along) {
+  check_translation(a, pose_a, b, pose_b, r);
+  REQUIRE(r.along.has_value());
+  CHECK(r.along->lower <= r.along->upper);
+  CHECK(r.depth->lower <= r.along->upper);
+  for (int i = 0; i < 12; ++i) {
+    const Vector3d less =
+        shapes::uniform(random, 0, 0.999999) * r.depth->lower * shapes::random_direction(random);
+    CHECK(overlaps(a, pose_a, b, Pose{pose_b.r, pose_b.t + less}));
+    const Vector3d on_the_way = shapes::uniform(random, 0, 0.999999) * r.along->lower * along;
+    CHECK(overlaps(a, pose_a, b, Pose{pose_b.r, pose_b.t + on_the_way}));
+  }
+  const Pose out{pose_b.r, pose_b.t + r.along->upper * (1 + 1e-12) * along};
+  CHECK(collide(a, pose_a, b, out).relation == Relation::separate);
+}
+
+}  // namespace
+
+TEST_CASE("clash: bodies of all shapes: nothing that the answers rule out is found") {
+  RandomEngine random(20);
+  int overlap = 0;
+  for (int i = 0; i < 8 * share(); ++i) {
+    CAPTURE(i);
+    const LrbRep a = closed(random_round(random)), b = closed(random_round(random));
+    const Pose pose_a{shapes::random_rotation(random), Vector3d::Zero()};
+    const Pose pose_b{shapes::random_rotation(random),
+                      shapes::uniform(random, 0.2, 1.8) * shapes::random_direction(random)};
+    const Vector3d along = shapes::random_direction(random);
+    ClashRequest request;
+    request.along = along;
+    const ClashResult r = clash(a, pose_a, b, pose_b, request), s = clash(b, pose_b, a, pose_a);
+    const CollideResult query = collide(a, pose_a, b, pose_b);
+    CAPTURE(to_string(r.kind));
+    CAPTURE(to_string(s.kind));
+    if (r.kind != ClashKind::cuts_through) CHECK(s.kind == seen_from_b(r.kind));
+    CHECK(r.pieces[0].inside == s.pieces[1].inside);
+    CHECK(r.pieces[1].outside == s.pieces[0].outside);
+    CHECK((r.kind == ClashKind::apart) == (query.relation == Relation::separate));
+    REQUIRE((r.volume && s.volume && r.depth && s.depth));
+    CHECK(have_in_common(*r.volume, *s.volume));
+    CHECK(have_in_common(*r.depth, *s.depth));
+    // Seen along other axes.
+    Eigen::Matrix3d turn;
+    turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+    ClashRequest volume;
+    volume.depth = false;
+    const ClashResult t =
+        clash(a, Pose{turn * pose_a.r, turn * pose_a.t}, b, Pose{turn * pose_b.r, turn * pose_b.t}, volume);
+    CHECK(std::abs(t.volume->lower - r.volume->lower) < 1e-9);
+    CHECK(t.volume->upper - t.volume->lower < 1e-9);
+    if (r.interiors_overlap != Answer::yes) continue;
+    ++overlap;
+    check_pieces(a, pose_a, b, pose_b);
+    look_for_counterexamples(random, a, pose_a, b, pose_b, r, along);
+  }
+  CHECK(overlap > 3 * share());
+}
+
+TEST_CASE("clash: the same solid in more faces gives the same intervals") {
+  const Pose turned = Pose::rotation({1, 2, 3}, 0.7, {0.6, 0.3, 0.2});
+  const auto compare = [&](const Mesh& a, const Mesh& b, double tolerance) {
+    ClashRequest request;
+    request.along = Vector3d(1, 0.5, -0.25);
+    const ClashResult first = ask(a, b, turned, request);
+    Mesh fine_a = a, fine_b = b;
+    for (int level = 0; level < 2; ++level) {
+      fine_a = finer(fine_a);
+      fine_b = finer(fine_b);
+      const ClashResult r = ask(fine_a, fine_b, turned, request);
+      CHECK(r.kind == first.kind);
+      const auto close = [&](const std::optional<ProvedInterval>& x, const std::optional<ProvedInterval>& y) {
+        REQUIRE((x && y));
+        CHECK(std::abs(x->lower - y->lower) <= tolerance);
+        CHECK(std::abs(x->upper - y->upper) <= tolerance);
+      };
+      close(r.depth, first.depth);
+      close(r.along, first.along);
+      close(r.volume, first.volume);
+      CHECK((r.translation - first.translation).norm() <= 1e-6);
+    }
+  };
+  compare(shapes::box(), shapes::box(), 1e-10);
+  compare(shapes::tetrahedron(2), shapes::box(), 1e-10);
+  compare(shapes::l_shape(), shapes::box(), 1e-9);
+  compare(shapes::l_shape(), shapes::comb(2, 2), 1e-9);
+}
+
+TEST_CASE("clash: round solids have narrow depths, the same in more faces") {
+  const Pose turned = Pose::rotation({1, 2, 3}, 0.7, {0.9, 0.5, 0.3});
+  const auto compare = [&](const Mesh& a, const Mesh& b, double least_share) {
+    const ClashResult first = ask(a, b, turned);
+    REQUIRE((first.depth && first.depth->upper > 0));
+    CHECK(first.depth->lower >= least_share * first.depth->upper);
+    Mesh fine_a = a, fine_b = b;
+    for (int level = 0; level < 2; ++level) {
+      fine_a = finer(fine_a);
+      fine_b = finer(fine_b);
+      const ClashResult r = ask(fine_a, fine_b, turned);
+      REQUIRE(r.depth);
+      CHECK(std::abs(r.depth->lower - first.depth->lower) <= 1e-9);
+      CHECK(std::abs(r.depth->upper - first.depth->upper) <= 1e-9);
+    }
+  };
+  compare(shapes::bumpy_sphere(1, 7, 0.3), shapes::bumpy_sphere(1, 8, 0.3), 0.95);
+  compare(shapes::torus(12, 8), shapes::bumpy_sphere(1, 7, 0.3), 0.9);
+  compare(shapes::torus(12, 8), shapes::torus(10, 6), 0.9);
+}
+
+TEST_CASE("clash: anywhere, at any size") {
+  const LrbRep a = closed(shapes::box()), b = closed(shapes::box({0, 0, 0}, {1, 1, 1}));
+  for (const double scale : {1e-100, 1e-3, 1.0, 1e60, 1e100}) {
+    CAPTURE(scale);
+    const Pose pose_a{scale * Eigen::Matrix3d::Identity(), Vector3d::Zero()};
+    const Pose pose_b{scale * Eigen::Matrix3d::Identity(), scale * Vector3d(0.75, 0.25, 0)};
+    const ClashResult r = clash(a, pose_a, b, pose_b);
+    CHECK(r.kind == ClashKind::protrudes);
+    check_holds(r.depth, 0.25 * scale, 1e-11 * scale);
+    check_holds(r.volume, 0.25 * 0.75 * scale * scale * scale, 1e-10 * scale * scale * scale);
+  }
+  const Vector3d far(1e6, -3e6, 2e6);
+  const ClashResult r = clash(a, Pose::translation(far), b, Pose::translation(far + Vector3d(0.75, 0.25, 0)));
+  check_holds(r.depth, 0.25, 1e-8);
+  check_holds(r.volume, 0.25 * 0.75, 1e-8);
+  // Mirrored bodies are inside out to their files, not to the world.
+  Pose mirror;
+  mirror.r(0, 0) = -1;
+  check_holds(ask(a, b, Pose{mirror.r, {1.25, 0, 0}}).volume, 0.75, 1e-11);
+}
+
+TEST_CASE("clash: what has no inside, and what cannot be asked") {
+  const LrbRep a = closed(shapes::box()),
+               open = LrbRep::without_regions(shapes::open_cylinder(8), false, false);
+  const ClashResult r = ask(a, open);
+  CHECK(r.kind == ClashKind::undecided);
+  CHECK(!r.depth);
+  CHECK(!r.volume);
+  CHECK(ask(a, open, Pose::translation({9, 0, 0})).kind == ClashKind::apart);
+  ClashRequest bad;
+  bad.clearance = -1;
+  CHECK_THROWS_AS(ask(a, a, {}, bad), InputError);
+  bad = {};
+  bad.along = Vector3d::Zero();
+  CHECK_THROWS_AS(ask(a, a, {}, bad), InputError);
+  const LrbRep flat = closed(shapes::circle(5));
+  CHECK_THROWS_AS(ask(flat, flat), InputError);
+}

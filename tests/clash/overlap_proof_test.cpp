@@ -1,0 +1,120 @@
+// What is proved of translations after which two bodies still overlap.
+#include "engine/clash/overlap_proof.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "engine/collide/collide_into.hpp"
+#include "engine/collide/relation.hpp"
+#include "engine/mesh/nearest_on_simplex.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/closed_body.hpp"
+
+using namespace lrb;
+using namespace lrb::parting;
+using shapes::RandomEngine;
+
+namespace {
+
+using test::closed;
+
+double distance_to(const UnitBody& body, const Vector3d& x) {
+  double least = INFINITY;
+  for (const auto& t : body.triangles)
+    least = std::min(
+        least, nearest_on_triangle(x, body.points[t[0]], body.points[t[1]], body.points[t[2]]).distance_sq);
+  return std::sqrt(least);
+}
+
+/// Two bodies as the proof sees them.
+struct Pair {
+  QueryContext query;
+  UnitBodies bodies;
+
+  Pair(const LrbRep& a, const LrbRep& b, const Pose& pose_b) {
+    query.body[0].begin(a, Pose{}, WrapperMode::regularised);
+    query.body[1].begin(b, pose_b, WrapperMode::regularised);
+    bodies = unit_bodies(query);
+  }
+  OverlapProof::IsInside inside() {
+    return [this](Side side, const Vector3d& x) {
+      const Vector3d world = bodies.frame.to_world(x);
+      return locate(query[side], world.data()) == Where::inside;
+    };
+  }
+};
+
+bool overlap_after(const LrbRep& a, const LrbRep& b, const Pose& pose_b, const Vector3d& by) {
+  CollideRequest request;
+  request.interiors_overlap = true;
+  return collide(a, Pose{}, b, Pose{pose_b.r, pose_b.t + by}, request).interiors_overlap == Answer::yes;
+}
+
+}  // namespace
+
+TEST_CASE("the clearance of a point is its distance to all triangles, and never more") {
+  RandomEngine random(41);
+  for (const Mesh& mesh : {shapes::bumpy_sphere(2, 7, 0.3), shapes::torus(12, 8), shapes::comb(3),
+                           shapes::scaled(shapes::box(), 1e-3)}) {
+    const LrbRep a = closed(mesh);
+    Pair pair(a, a, Pose::translation({1e-4, 0, 0}));
+    const SurfaceDistance surface(pair.bodies.body[0]);
+    for (int i = 0; i < 200; ++i) {
+      const Vector3d x = shapes::uniform(random, 0, 1) * shapes::random_direction(random);
+      const double distance = distance_to(pair.bodies.body[0], x), proved = surface.at(x);
+      REQUIRE(proved <= distance);
+      REQUIRE(proved >= distance - 1e-12);
+    }
+    CHECK(surface.at(pair.bodies.body[0].points[0]) == 0);
+  }
+}
+
+TEST_CASE("all translations shorter than what is proved leave an overlap, and little more does not") {
+  RandomEngine random(42);
+  const struct {
+    LrbRep a, b;
+    Pose pose_b;
+    double depth;  // about
+  } pairs[] = {
+      // Balls of radius 1: the depth is what is missing to 2, but for the faces' flatness.
+      {closed(shapes::icosphere(3)), closed(shapes::icosphere(3)), Pose::translation({1.4, 0.2, 0.1}), 0.58},
+      // As deep as the corner of the one reaches into the other.
+      {closed(shapes::box()), closed(shapes::box()), Pose::translation({0.75, 0.25, 0.5}), 0.25},
+  };
+  for (const auto& pair : pairs) {
+    Pair seen(pair.a, pair.b, pair.pose_b);
+    const SurfaceDistance a(seen.bodies.body[0]), b(seen.bodies.body[1]);
+    const Vector3d middle =
+        0.5 * (seen.bodies.frame.to_unit(pair.pose_b.t) + seen.bodies.frame.to_unit({0, 0, 0}));
+    const Vector3d common = pair.depth == 0.25 ? seen.bodies.frame.to_unit({0.87, 0.6, 0.7}) : middle;
+    OverlapProof proof(a, b, seen.inside());
+    const double most = 1.05 * std::ldexp(pair.depth, -seen.bodies.frame.exponent);
+    REQUIRE(proof.begin({common, Vector3d(0.9, 0.9, 0.9)}, most));
+    double before = 0;
+    for (int i = 0; i < 20; ++i) {
+      proof.grow(500);
+      CHECK(proof.lower() >= before);
+      before = proof.lower();
+    }
+    const double lower = seen.bodies.frame.length_to_world(proof.lower());
+    CHECK(lower > 0.95 * pair.depth);
+    CHECK(lower < 1.001 * pair.depth);
+    for (int i = 0; i < 50; ++i)
+      CHECK(overlap_after(pair.a, pair.b, pair.pose_b, 0.999999 * lower * shapes::random_direction(random)));
+    // What is left is where the way out is.
+    const Vector3d out = proof.doubtful().normalized();
+    CHECK_FALSE(overlap_after(pair.a, pair.b, pair.pose_b, 1.1 * pair.depth * out));
+  }
+}
+
+TEST_CASE("without a point of both bodies nothing is proved") {
+  const LrbRep box = closed(shapes::box());
+  Pair seen(box, box, Pose::translation({0.5, 0, 0}));
+  const SurfaceDistance a(seen.bodies.body[0]), b(seen.bodies.body[1]);
+  OverlapProof proof(a, b, seen.inside());
+  CHECK_FALSE(proof.begin({seen.bodies.frame.to_unit({0.25, 0.5, 0.5})}, 0.9));  // of A alone
+  CHECK_FALSE(proof.begin({}, 0.9));
+  CHECK(proof.lower() == 0);
+}

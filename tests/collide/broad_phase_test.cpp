@@ -1,0 +1,172 @@
+// Boxes against all vertices, bit for bit; sort and sweep against all pairs of boxes.
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/broad_phase.hpp>
+#include <lrbscope/build.hpp>
+#include <lrbscope/world_box.hpp>
+
+using namespace lrb;
+using shapes::RandomEngine;
+using Box = Eigen::AlignedBox3d;
+
+namespace {
+
+Box box_of_all_vertices(const LrbRep& rep, const Pose& pose) {
+  Box box;
+  for (FaceId f = 0; f < rep.real_face_count(); ++f)
+    for (const VertexId v : rep.face(f)) box.extend(pose.apply(rep.vertices()[v]));
+  return box;
+}
+
+void check_box(const LrbRep& rep, const Pose& pose, ExtremeVertices* last = nullptr) {
+  const Box slow = box_of_all_vertices(rep, pose), fast = world_box(rep, pose, last);
+  CHECK(slow.min() == fast.min());
+  CHECK(slow.max() == fast.max());
+  const Box either = BodyExtent(rep).in_world(pose, last);
+  CHECK(slow.min() == either.min());
+  CHECK(slow.max() == either.max());
+}
+
+std::vector<BodyPair> all_pairs(const std::vector<Box>& boxes) {
+  std::vector<BodyPair> out;
+  for (std::uint32_t i = 0; i < boxes.size(); ++i)
+    for (std::uint32_t j = i + 1; j < boxes.size(); ++j) {
+      bool meet = !boxes[i].isEmpty() && !boxes[j].isEmpty();
+      for (int k = 0; k < 3; ++k)
+        meet = meet && boxes[i].min()[k] <= boxes[j].max()[k] && boxes[j].min()[k] <= boxes[i].max()[k];
+      if (meet) out.push_back({i, j});
+    }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a world box is exactly that of all vertices") {
+  RandomEngine random(1);
+  const Mesh meshes[] = {shapes::tetrahedron(),
+                         shapes::box(),
+                         shapes::bumpy_sphere(4, 3),
+                         shapes::torus(40, 20),
+                         shapes::bowl(20, 8),
+                         shapes::comb(9),
+                         shapes::gear(12),
+                         shapes::open_cylinder(30),
+                         shapes::ring_2d(40),
+                         shapes::scaled(shapes::bumpy_sphere(3, 2), 1e-200),
+                         shapes::quad_torus(20, 9),
+                         shapes::scaled(shapes::bumpy_sphere(3, 2), 1e200),
+                         shapes::translated(shapes::bumpy_sphere(3, 2), {1e9, -1e9, 1e9})};
+  for (const Mesh& mesh : meshes) {
+    const LrbRep rep = LrbRep::without_regions(mesh, true, false);
+    CAPTURE(mesh.vertices.size());
+    const double size = rep.tree().extent();
+    check_box(rep, Pose{});
+    for (int i = 0; i < 60; ++i) {
+      Pose pose;
+      pose.r = shapes::random_rotation(random, rep.dim());
+      const double far = i % 3 == 0 ? 0 : i % 3 == 1 ? 3 * size : 1e12 * size;
+      pose.t = far * shapes::random_direction(random);
+      if (rep.dim() == 2) pose.t.z() = 0;
+      check_box(rep, pose);
+      pose.r *= i % 2 == 0 ? 1e3 : 1e-3;  // not a rotation: the box holds for any matrix
+      check_box(rep, pose);
+    }
+  }
+}
+
+TEST_CASE("pseudo faces and what is left of the last step do not change a world box") {
+  const LrbRep rep = build_lrb(shapes::bumpy_sphere(3, 5));
+  REQUIRE(rep.region_count() > 0);
+  ExtremeVertices last;
+  for (int i = 0; i < 100; ++i)
+    check_box(rep, Pose::rotation({1, 2, 3}, i < 90 ? 0.02 * i : 1.9 * i, {0.01 * i, 0, 0}), &last);
+}
+
+TEST_CASE("a large body's world box comes from its tree") {
+  const LrbRep rep = LrbRep::without_regions(shapes::bumpy_sphere(6, 1), true, false);
+  REQUIRE(rep.vertices().size() > 40'000);
+  ExtremeVertices last;
+  const BodyExtent extent(rep);
+  for (int i = 0; i < 5; ++i) {
+    const Pose pose = Pose::rotation({1, -2, 3}, i, {0, 0.1 * i, 0});
+    const Box slow = box_of_all_vertices(rep, pose), fast = extent.in_world(pose, &last);
+    CHECK(slow.min() == fast.min());
+    CHECK(slow.max() == fast.max());
+    CHECK(last.vertex[0] != kNull);
+  }
+}
+
+TEST_CASE("a body that may leave the range of doubles meets every box") {
+  const LrbRep rep = LrbRep::without_regions(shapes::box(), true, false);
+  Pose pose;
+  pose.r *= 1e308;
+  pose.t.setConstant(1.5e308);
+  const std::vector<Box> boxes = {Box(Eigen::Vector3d(5, 5, 5), Eigen::Vector3d(6, 6, 6)),
+                                  world_box(rep, pose)};
+  CHECK(SweepAndPrune().update(boxes) == all_pairs(boxes));
+  CHECK(all_pairs(boxes).size() == 1);
+}
+
+TEST_CASE("sort and sweep finds the pairs of boxes that all pairs find, step after step") {
+  RandomEngine random(2);
+  for (const int dim : {2, 3}) {
+    for (int round = 0; round < 20; ++round) {
+      SweepAndPrune sweep;
+      // Whole numbers: many boxes touch exactly, and many ends are equal.
+      const double room = round % 2 == 0 ? 12 : 40;
+      std::vector<Eigen::Vector3d> low(60), size(60), speed(60);
+      for (std::size_t i = 0; i < low.size(); ++i)
+        for (int k = 0; k < 3; ++k) {
+          const bool there = k < dim;
+          low[i][k] = there ? std::floor(shapes::uniform(random, 0, room)) : 0;
+          size[i][k] = there ? std::floor(shapes::uniform(random, 0, 4)) : 0;
+          speed[i][k] = there ? std::floor(shapes::uniform(random, -1, 2)) : 0;
+        }
+      for (int step = 0; step < 25; ++step) {
+        std::vector<Box> boxes;
+        for (std::size_t i = 0; i < low.size(); ++i) {
+          low[i] += speed[i];
+          boxes.emplace_back(low[i], low[i] + size[i]);
+        }
+        if (step % 7 == 6) boxes.resize(40);                   // bodies leave
+        if (step % 5 == 4) boxes[3] = Box();                   // empty
+        if (step % 5 == 3) boxes[4].max().setConstant(1e300);  // huge
+        CAPTURE(step);
+        CHECK(sweep.update(boxes) == all_pairs(boxes));
+      }
+    }
+  }
+}
+
+TEST_CASE("boxes that hardly move cost hardly any swaps; the axis follows those that line up") {
+  SweepAndPrune sweep;
+  std::vector<Box> boxes;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d low(0, (i * 37) % 200, 0);
+    boxes.emplace_back(low, Eigen::Vector3d(low + Eigen::Vector3d(1, 1.5, 1)));
+  }
+  CHECK(sweep.update(boxes).size() == 199);
+  CHECK(sweep.work().sorted_afresh);
+  CHECK(sweep.work().box_tests == 199);  // along y: along x it would be all of 19,900
+  sweep.update(boxes);
+  CHECK(sweep.work().swaps == 0);
+  CHECK(!sweep.work().sorted_afresh);
+  std::swap(boxes[0], boxes[(0 + 173) % 200]);  // neighbours on y: 173 * 37 = 1 (mod 200)
+  sweep.update(boxes);
+  CHECK(sweep.work().swaps == 1);
+  CHECK(!sweep.work().sorted_afresh);
+  for (Box& b : boxes)
+    b = Box(b.min().reverse().eval(), b.max().reverse().eval());  // y stays: x and z change
+  sweep.update(boxes);
+  CHECK(!sweep.work().sorted_afresh);
+  for (Box& b : boxes) {
+    std::swap(b.min().x(), b.min().y());
+    std::swap(b.max().x(), b.max().y());
+  }
+  CHECK(sweep.update(boxes).size() == 199);
+  CHECK(sweep.work().sorted_afresh);
+}

@@ -1,0 +1,582 @@
+// Coarse queries and certificates of separation against exact brute force and against distances measured
+// here.
+#include <chrono>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "engine/collide/collide_into.hpp"
+#include "engine/exact/locate.hpp"
+#include "engine/lrb/thickness.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/affine_maps.hpp"
+#include "tests/support/coarse_checks.hpp"
+#include "tests/support/shared_meshes.hpp"
+#include "tests/support/simplex_distance.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/mesh.hpp>
+
+using namespace lrb;
+using shapes::RandomEngine;
+
+namespace {
+
+struct CoarseBodies {
+  const char* name;
+  LrbRep a, b;
+};
+
+std::vector<CoarseBodies> coarse_bodies() {
+  std::vector<CoarseBodies> list;
+  list.push_back(
+      {"bumps", build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3))});
+  list.push_back({"ball in bowl", build_lrb(shapes::bowl(16, 8)), build_lrb(shapes::icosphere(2, 0.5))});
+  list.push_back({"tori", build_lrb(shapes::torus(16, 10)), build_lrb(shapes::torus(14, 8, 1, 0.25))});
+  list.push_back({"comb, no regions", build_lrb(shapes::comb(5)),
+                  LrbRep::without_regions(shapes::icosphere(1, 0.5), true, false)});
+  list.push_back({"gears 2D", build_lrb(shapes::gear(24)), build_lrb(shapes::gear(19, 0.9, 0.6))});
+  list.push_back({"ring 2D", build_lrb(shapes::ring_2d(40)), build_lrb(shapes::star(7, 0.4, 0.15))});
+  return list;
+}
+
+std::vector<std::vector<Eigen::Vector3d>> real_simplices(const LrbRep& rep, const Pose& pose) {
+  std::vector<std::vector<Eigen::Vector3d>> out;
+  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) out.push_back(test::simplex_points(rep, pose, s));
+  return out;
+}
+
+double surfaces_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  return test::surface_distance(real_simplices(a, pose_a), real_simplices(b, pose_b));
+}
+
+Pose pose_around(RandomEngine& random, const CoarseBodies& pair) {
+  const double share = shapes::uniform(random, 0, 1.1);
+  return shapes::random_pose(random, pair.a, pair.b, share);
+}
+
+CollideResult ask(const CoarseBodies& pair, const Pose& p, const CollideRequest& request,
+                  QueryContext& context) {
+  NullProbe probe;
+  return collide(pair.a, Pose{}, pair.b, p, request, context, probe);
+}
+
+/// What a coarse answer claims, against the truth.
+void check_claims(const CoarseBodies& pair, const Pose& p, const CollideResult& coarse,
+                  const BruteForceResult& truth) {
+  if (coarse.relation == Relation::unresolved) {
+    REQUIRE(!coarse.finished);
+    REQUIRE(coarse.error_bound > 0);
+    if (truth.relation == Relation::separate && std::isfinite(coarse.error_bound))
+      REQUIRE(surfaces_apart(pair.a, Pose{}, pair.b, p) <= coarse.error_bound);
+    return;
+  }
+  REQUIRE(std::string(to_string(coarse.relation)) == to_string(truth.relation));
+  if (coarse.error_bound != 0) {
+    REQUIRE(coarse.relation == Relation::crossing);
+    return;
+  }
+  REQUIRE(coarse.finished);
+  if (coarse.mode == Mode::all_pairs) {
+    REQUIRE(coarse.pairs == truth.pairs);
+    REQUIRE(coarse.meets == truth.meets);
+  }
+}
+
+double median(std::vector<double> x) {
+  std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end());
+  return x[x.size() / 2];
+}
+
+}  // namespace
+
+TEST_CASE("no point of a region's lids is further from the real faces than its thickness") {
+  RandomEngine random(3);
+  double tightest = 0;
+  for (const CoarseBodies& pair : coarse_bodies()) {
+    CAPTURE(pair.name);
+    const LrbRep& rep = pair.a;
+    const auto real = real_simplices(rep, Pose{});
+    const std::vector<double> thickness = region_thickness(rep);
+    REQUIRE(thickness.size() == rep.region_count());
+    for (RegionId r = 0; r < rep.region_count(); ++r) {
+      REQUIRE(std::isfinite(thickness[r]) == !rep.lids(r).empty());
+      if (rep.lids(r).empty()) continue;
+      std::vector<std::vector<Eigen::Vector3d>> sides;
+      for (const FaceId f : rep.lids(r))
+        for (std::uint32_t i = 0; i < Mesh::simplices_of(rep.face(f).size(), rep.dim()); ++i)
+          sides.push_back(test::simplex_points(rep, Pose{}, SimplexId(rep.first_simplex(f) + i)));
+      for (int sample = 0; sample < 12; ++sample) {
+        const Eigen::Vector3d x = test::random_point_of(random, sides[random() % sides.size()]);
+        double least = INFINITY;
+        for (const auto& s : real) least = std::min(least, test::simplex_distance({x}, s));
+        REQUIRE(least <= thickness[r]);
+        tightest = std::max(tightest, least / thickness[r]);
+      }
+    }
+  }
+  CHECK(tightest > 0.5);
+}
+
+TEST_CASE("a query with a tolerance gives the exact relation, and keeps its error bound") {
+  RandomEngine random(41);
+  int crossing = 0, with_pseudo = 0, exact = 0;
+  std::vector<double> ratios;
+  for (const CoarseBodies& pair : coarse_bodies()) {
+    CAPTURE(pair.name);
+    QueryContext context;
+    for (int i = 0; i < 30; ++i) {
+      CAPTURE(i);
+      const Pose p = pose_around(random, pair);
+      const BruteForceResult truth = brute_force(pair.a, Pose{}, pair.b, p);
+      const test::RealSurfaces real(pair.a, Pose{}, pair.b, p);
+      for (const double tolerance : {0.01, 0.1, 0.5}) {
+        CAPTURE(tolerance);
+        CollideRequest request;
+        request.tolerance = tolerance;
+        const CollideResult coarse = ask(pair, p, request, context);
+        REQUIRE(coarse.finished);
+        REQUIRE(coarse.error_bound <= 2 * tolerance * (1 + 1e-4));
+        check_claims(pair, p, coarse, truth);
+        for (const SimplexPair& q : coarse.pairs) {
+          with_pseudo += !pair.a.is_real_simplex(q.a) || !pair.b.is_real_simplex(q.b);
+          if (coarse.error_bound > 0) REQUIRE(real.off(q) <= coarse.error_bound * (1 + 1e-12));
+        }
+        crossing += coarse.relation == Relation::crossing;
+        exact += coarse.error_bound == 0;
+      }
+    }
+  }
+  CHECK(crossing > 100);
+  CHECK(exact > 200);
+  CHECK(with_pseudo > 50);
+}
+
+/// Returns the error bounds of answers about two bodies, each divided by the most that one of its pairs is
+/// off. Leaves out exact answers. Tolerances are shares of the larger body's size.
+std::vector<double> bounds_over_truth(const CoarseBodies& pair, int poses,
+                                      std::initializer_list<double> tolerances, RandomEngine& random) {
+  const auto size_of = [](const LrbRep& rep) { return shapes::box_of(rep).sizes().maxCoeff(); };
+  const double size = std::max(size_of(pair.a), size_of(pair.b));
+  std::vector<double> ratios;
+  QueryContext context;
+  for (int i = 0; i < poses; ++i) {
+    const Pose p = shapes::random_pose(random, pair.a, pair.b, shapes::uniform(random, 0.2, 0.6));
+    const test::RealSurfaces real(pair.a, Pose{}, pair.b, p);
+    for (const double tolerance : tolerances) {
+      CollideRequest request;
+      request.tolerance = tolerance * size;
+      const CollideResult coarse = ask(pair, p, request, context);
+      if (coarse.error_bound == 0) continue;
+      double most = 0;
+      for (const SimplexPair& q : coarse.pairs) most = std::max(most, real.off(q));
+      REQUIRE(most <= coarse.error_bound * (1 + 1e-12));
+      ratios.push_back(coarse.error_bound / most);
+    }
+  }
+  return ratios;
+}
+
+TEST_CASE("the error bound is at most three times what pairs are off, in the middle of all poses") {
+  RandomEngine random(46);
+  std::vector<CoarseBodies> fine;
+  fine.push_back(
+      {"bumps", build_lrb(shapes::bumpy_sphere(4, 7, 0.3)), build_lrb(shapes::bumpy_sphere(4, 8, 0.3))});
+  fine.push_back({"tori", build_lrb(shapes::torus(50, 40)), build_lrb(shapes::torus(44, 30, 1, 0.25))});
+  fine.push_back({"gears 2D", build_lrb(shapes::gear(200)), build_lrb(shapes::gear(150, 0.9, 0.6))});
+  std::vector<double> all;
+  for (const CoarseBodies& pair : fine) {
+    CAPTURE(pair.name);
+    const std::vector<double> ratios = bounds_over_truth(pair, 12, {0.01, 0.02, 0.05, 0.1}, random);
+    REQUIRE(ratios.size() > 20);
+    MESSAGE(std::string(pair.name) << ": error bound over what pairs are off, median: " << median(ratios));
+    all.insert(all.end(), ratios.begin(), ratios.end());
+  }
+  CHECK(median(all) <= 3);
+}
+
+TEST_CASE("the error bound of real models is at most three times what pairs are off, too") {
+  if (test::shared_meshes().empty()) {
+    MESSAGE("no real models: set LRB_MESHES to their folder");
+    return;
+  }
+  RandomEngine random(47);
+  for (const char* name : {"spot.obj", "rocker-arm.obj"}) {
+    CAPTURE(name);
+    const LrbRep rep = build_lrb(read_mesh((test::shared_meshes() / name).string()));
+    const std::vector<double> ratios = bounds_over_truth({name, rep, rep}, 12, {0.01, 0.02}, random);
+    REQUIRE(ratios.size() > 15);
+    MESSAGE(std::string(name) << ": error bound over what pairs are off, median: " << median(ratios));
+    CHECK(median(ratios) <= 3);
+  }
+}
+
+TEST_CASE("an answer of one pair is exact, whatever the tolerance") {
+  RandomEngine random(42);
+  for (const CoarseBodies& pair : coarse_bodies()) {
+    CAPTURE(pair.name);
+    QueryContext context;
+    for (int i = 0; i < 30; ++i) {
+      const Pose p = pose_around(random, pair);
+      const BruteForceResult truth = brute_force(pair.a, Pose{}, pair.b, p);
+      CollideRequest request;
+      request.tolerance = 0.5;
+      request.mode = Mode::first_pair;
+      const CollideResult first = ask(pair, p, request, context);
+      check_claims(pair, p, first, truth);
+      request.mode = Mode::any_pair;
+      const CollideResult any = ask(pair, p, request, context);
+      for (const CollideResult* one : {&first, &any}) {
+        REQUIRE(one->error_bound == 0);
+        REQUIRE(one->pairs.size() == std::min<std::size_t>(1, truth.pairs.size()));
+        REQUIRE(std::includes(truth.pairs.begin(), truth.pairs.end(), one->pairs.begin(), one->pairs.end()));
+      }
+    }
+  }
+}
+
+TEST_CASE("bodies that hardly touch are answered exactly, at what the exact query costs") {
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(4, 7, 0.3)), b = build_lrb(shapes::bumpy_sphere(4, 8, 0.3));
+  const CoarseBodies pair{"bumps", a, b};
+  RandomEngine random(48);
+  QueryContext context;
+  CollideRequest to_tolerance, within_tests, few_pairs;
+  to_tolerance.tolerance = few_pairs.tolerance = 0.05;
+  within_tests.max_tests = 1'000'000;
+  int to_the_end[2] = {0, 0}, coarse = 0, given_up = 0;
+  for (int i = 0; i < 40; ++i) {
+    CAPTURE(i);
+    Pose p = shapes::random_pose(random, a, b, 1.2);
+    const Eigen::Vector3d way = p.t.normalized();
+    double far = p.t.norm(), near = 0;
+    const auto meets = [&](double s) {
+      p.t = s * way;
+      return !ask(pair, p, {}, context).pairs.empty();
+    };
+    for (int k = 0; k < 40; ++k) (meets((far + near) / 2) ? near : far) = (far + near) / 2;
+    p.t = (near - 1e-4) * way;
+    const CollideResult exact = ask(pair, p, {}, context);
+    for (const int limited : {0, 1}) {
+      const CollideResult r = ask(pair, p, limited ? within_tests : to_tolerance, context);
+      REQUIRE(r.relation == exact.relation);
+      const bool all = r.error_bound == 0 && r.pairs == exact.pairs;
+      to_the_end[limited] += all && r.counters.node_pairs <= exact.counters.node_pairs;
+    }
+    p.t = (near - 0.2) * way;
+    const CollideResult deep = ask(pair, p, to_tolerance, context);
+    coarse += deep.error_bound > 0;
+    // More pairs than are wanted, of the bodies themselves, leave the list to the level.
+    few_pairs.max_pairs = deep.pairs.size();
+    given_up += ask(pair, p, few_pairs, context).pairs == deep.pairs;
+  }
+  CHECK(to_the_end[0] >= 12);
+  CHECK(to_the_end[1] >= 20);
+  CHECK(coarse >= 36);
+  CHECK(given_up == 40);
+}
+
+TEST_CASE("a finer tolerance never says less") {
+  RandomEngine random(44);
+  int finer = 0;
+  for (const CoarseBodies& pair : coarse_bodies()) {
+    CAPTURE(pair.name);
+    QueryContext context;
+    for (int i = 0; i < 30; ++i) {
+      CAPTURE(i);
+      const Pose p = pose_around(random, pair);
+      double before = INFINITY;
+      for (double tolerance = 2; tolerance > 1e-4; tolerance *= 0.7) {
+        CollideRequest request;
+        request.tolerance = tolerance;
+        const CollideResult r = ask(pair, p, request, context);
+        REQUIRE(r.error_bound <= before);
+        finer += r.error_bound < before && std::isfinite(before);
+        before = r.error_bound;
+      }
+      REQUIRE(before == 0);
+    }
+  }
+  CHECK(finer > 100);
+}
+
+TEST_CASE(
+    "wrappers alone never call bodies apart that meet: near first contact, and by what rounding leaves") {
+  RandomEngine random(45);
+  int apart = 0, meeting = 0;
+  for (const CoarseBodies& pair : coarse_bodies()) {
+    CAPTURE(pair.name);
+    QueryContext context;
+    NullProbe probe;
+    CollideRequest any;
+    any.mode = Mode::any_pair;
+    for (int i = 0; i < 12; ++i) {
+      Pose p = shapes::random_pose(random, pair.a, pair.b, 1.2);
+      const Eigen::Vector3d way = p.t.normalized();
+      double far = p.t.norm(), near = 0;
+      const auto meets = [&](double s) {
+        p.t = s * way;
+        return !collide(pair.a, Pose{}, pair.b, p, any, context, probe).pairs.empty();
+      };
+      for (int k = 0; k < 60; ++k) (meets((far + near) / 2) ? near : far) = (far + near) / 2;
+      for (const double off : {0.0, 1e-17, 1e-16, 1e-15, 1e-12, 1e-9, 1e-4, 1e-2, 0.1})
+        for (const double sign : {-1.0, 1.0}) {
+          const bool meet = meets(far + sign * off);
+          meeting += meet;
+          for (const double tolerance : {0.01, 0.1, 0.5}) {
+            const bool alone = test::wrappers_are_apart(pair.a, Pose{}, pair.b, p, tolerance, context);
+            REQUIRE(!(meet && alone));
+            apart += alone;
+          }
+        }
+    }
+  }
+  CHECK(meeting > 100);
+  CHECK(apart > 100);
+}
+
+TEST_CASE("a query with a tolerance keeps its claims under affine maps of both bodies") {
+  RandomEngine random(43);
+  int with_lids = 0, separate = 0, alone = 0;
+  for (const CoarseBodies& pair : coarse_bodies()) {
+    CAPTURE(pair.name);
+    QueryContext context;
+    NullProbe probe;
+    for (int i = 0; i < 30; ++i) {
+      CAPTURE(i);
+      const int dim = pair.a.dim();
+      const Pose p = pose_around(random, pair);
+      const Eigen::Matrix3d map =
+          test::random_map(random, static_cast<test::MapKind>(i % test::kMapKinds), dim);
+      Pose pose_a{i % 3 ? map : Eigen::Matrix3d::Identity(), {0, 0, 0}},
+          pose_b{pose_a.r * p.r, pose_a.r * p.t};
+      if (i % 3 != 1) pose_b.r = test::random_map(random, test::MapKind::sheared, dim) * pose_b.r;
+      const BruteForceResult truth = brute_force(pair.a, pose_a, pair.b, pose_b);
+      for (const double tolerance : {0.02, 0.3}) {
+        CollideRequest request;
+        request.tolerance = tolerance;
+        const CollideResult coarse = collide(pair.a, pose_a, pair.b, pose_b, request, context, probe);
+        REQUIRE(coarse.relation == truth.relation);
+        const bool apart = test::wrappers_are_apart(pair.a, pose_a, pair.b, pose_b, tolerance, context);
+        if (apart) REQUIRE(truth.relation == Relation::separate);
+        alone += apart;
+        if (coarse.error_bound > 0) {
+          ++with_lids;
+          const test::RealSurfaces real(pair.a, pose_a, pair.b, pose_b);
+          for (const SimplexPair& q : coarse.pairs)
+            REQUIRE(real.off(q) <= coarse.error_bound * (1 + 1e-9) + 1e-12 * pose_b.t.norm());
+        }
+        separate += coarse.relation == Relation::separate;
+      }
+    }
+  }
+  CHECK(with_lids > 30);
+  CHECK(separate > 30);
+  CHECK(alone > 20);
+}
+
+TEST_CASE("bodies that touch under flat lids are never called separate") {
+  // Boxes against boxes and combs: lids lie in the planes of faces, and rounding moves both.
+  RandomEngine random(77);
+  const CoarseBodies pair{"combs", build_lrb(shapes::comb(4)), build_lrb(shapes::comb(3))};
+  QueryContext context;
+  int meeting = 0;
+  for (int i = 0; i < 150; ++i) {
+    const Pose frame{shapes::random_rotation(random), 10 * shapes::random_direction(random)};
+    Pose p;
+    for (int k = 0; k < 3; ++k) p.t[k] = static_cast<double>(random() % 13) / 2 - 3;
+    const Pose pose_b{frame.r, frame.r * p.t + frame.t};
+    const BruteForceResult truth = brute_force(pair.a, frame, pair.b, pose_b);
+    meeting += truth.relation != Relation::separate;
+    CollideRequest request;
+    request.tolerance = 10;
+    NullProbe probe;
+    const CollideResult coarse = collide(pair.a, frame, pair.b, pose_b, request, context, probe);
+    REQUIRE(coarse.relation == truth.relation);
+    if (test::wrappers_are_apart(pair.a, frame, pair.b, pose_b, request.tolerance, context))
+      REQUIRE(truth.relation == Relation::separate);
+  }
+  CHECK(meeting > 50);
+}
+
+TEST_CASE("an answer at any time: within the limit, true as far as it goes, and exact in the end") {
+  RandomEngine random(13);
+  int unfinished = 0, narrowed = 0;
+  for (const CoarseBodies& pair : coarse_bodies()) {
+    CAPTURE(pair.name);
+    QueryContext context;
+    for (int i = 0; i < 12; ++i) {
+      const Pose p = pose_around(random, pair);
+      const BruteForceResult truth = brute_force(pair.a, Pose{}, pair.b, p);
+      double before = INFINITY;
+      for (std::uint64_t limit = 1; limit < 100'000; limit *= 4) {
+        CollideRequest request;
+        request.max_tests = limit;
+        const CollideResult r = ask(pair, p, request, context);
+        REQUIRE(r.counters.face_tests <= limit);
+        REQUIRE(r.error_bound <= before);
+        narrowed += r.error_bound < before && r.error_bound > 0;
+        before = r.error_bound;
+        unfinished += !r.finished;
+        check_claims(pair, p, r, truth);
+      }
+      REQUIRE(before == 0);
+      CollideRequest timed;
+      timed.max_time = 1e-9;
+      check_claims(pair, p, ask(pair, p, timed, context), truth);
+      timed.max_time = 100;
+      const CollideResult all = ask(pair, p, timed, context);
+      REQUIRE(all.finished);
+      REQUIRE(all.pairs == truth.pairs);
+    }
+  }
+  CHECK(unfinished > 30);
+  CHECK(narrowed > 15);
+}
+
+/// A clock that goes on by a nanosecond each time that it is looked at.
+struct CountedClock {
+  using duration = std::chrono::nanoseconds;
+  using time_point = std::chrono::time_point<CountedClock, duration>;
+  static inline std::int64_t looks = 0;
+  static time_point now() { return time_point(duration(++looks)); }
+};
+
+/// Asks with a limit of that many looks at the clock.
+CollideResult ask_counted(const CoarseBodies& pair, const Pose& p, double looks, QueryContext& context) {
+  NullProbe probe;
+  CollideRequest request;
+  request.max_time = looks * 1e-9;
+  CollideResult result;
+  context.body[0].begin(pair.a, Pose{}, request.wrapper);
+  context.body[1].begin(pair.b, p, request.wrapper);
+  CountedClock::looks = 0;
+  CoarseQuery<NullProbe, CountedClock>(context, request, result, probe).run();
+  return result;
+}
+
+TEST_CASE("a query with a limit in time looks at the clock often enough, and ends when it is time") {
+  std::vector<CoarseBodies> list = coarse_bodies();
+  list.push_back(
+      {"bumps", build_lrb(shapes::bumpy_sphere(5, 7, 0.3)), build_lrb(shapes::bumpy_sphere(5, 8, 0.3))});
+  RandomEngine random(14);
+  QueryContext context;
+  int unfinished = 0;
+  for (const CoarseBodies& pair : list) {
+    CAPTURE(pair.name);
+    pair.a.levels();
+    pair.b.levels();
+    for (int i = 0; i < 12; ++i) {
+      const Pose p = pose_around(random, pair);
+      for (std::int64_t limit = 2; limit < 1000; limit += limit / 2) {
+        CAPTURE(limit);
+        const CollideResult r = ask_counted(pair, p, static_cast<double>(limit), context);
+        const auto looks = static_cast<std::uint64_t>(CountedClock::looks);
+        // Each time the kernel comes back there is a look at the clock, and one more for so many tests.
+        REQUIRE(r.counters.node_pairs <= between_looks::kNodePairs * looks);
+        REQUIRE(r.counters.face_tests <= between_looks::kTests * looks);
+        // The look that finds the time to be up is the last; one more for rounding.
+        REQUIRE(CountedClock::looks <= limit + 2);
+        unfinished += !r.finished;
+      }
+    }
+  }
+  CHECK(unfinished > 200);
+}
+
+TEST_CASE("more time never makes the error bound larger") {
+  RandomEngine random(15);
+  int narrowed = 0;
+  for (const CoarseBodies& pair : coarse_bodies()) {
+    CAPTURE(pair.name);
+    pair.a.levels();
+    pair.b.levels();
+    QueryContext context;
+    for (int i = 0; i < 12; ++i) {
+      CAPTURE(i);
+      const Pose p = pose_around(random, pair);
+      const BruteForceResult truth = brute_force(pair.a, Pose{}, pair.b, p);
+      double before = INFINITY;
+      for (double limit = 1; limit < 1e5; limit *= 1.5) {
+        const CollideResult r = ask_counted(pair, p, limit, context);
+        REQUIRE(r.error_bound <= before);
+        narrowed += r.error_bound < before && r.error_bound > 0;
+        before = r.error_bound;
+        check_claims(pair, p, r, truth);
+      }
+      REQUIRE(before == 0);
+    }
+  }
+  CHECK(narrowed > 15);
+}
+
+TEST_CASE("a limit in time leaves none to make levels") {
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 7, 0.3));
+  CollideRequest request;
+  request.max_time = 100;
+  CHECK(collide(a, Pose{}, a, Pose::translation({0.5, 0, 0}), request).finished);
+  CHECK(!a.has_levels());
+  request.tolerance = 10;
+  CHECK(collide(a, Pose{}, a, Pose::translation({0.5, 0, 0}), request).error_bound == 0);
+  request.max_time = 0;
+  CHECK(collide(a, Pose{}, a, Pose::translation({0.5, 0, 0}), request).error_bound > 0);
+  CHECK(a.has_levels());
+}
+
+TEST_CASE("levels are made once, whoever asks, and fall from the outermost wrapper towards the body") {
+  for (const CoarseBodies& pair : coarse_bodies()) {
+    CAPTURE(pair.name);
+    const LrbRep copy = pair.a;
+    const WrapperLevels& levels = pair.a.levels();
+    CHECK(&copy.levels() == &levels);
+    CHECK(&pair.a.levels(2) == &levels);
+    CHECK(levels.within(0) == nullptr);
+    REQUIRE(!levels.all().empty());
+    CHECK(levels.within(INFINITY) == &levels.all()[0]);
+    double bound = INFINITY;
+    std::uint32_t faces = 0;
+    for (const WrapperLevel& level : levels.all()) {
+      CHECK(level.bound < bound);
+      CHECK(level.face_count > faces);
+      CHECK(level.face_count <= pair.a.real_face_count());
+      CHECK(levels.within(level.bound) == &level);
+      CHECK(levels.within(std::nextafter(bound, 0)) == &level);
+      bound = level.bound;
+      faces = level.face_count;
+      Wrapper wrapper(pair.a);
+      for (RegionId r = 0; r < pair.a.region_count(); ++r)
+        if (!(levels.needed()[r] <= level.bound)) wrapper.refine(r);
+      CHECK(wrapper.boundary_size() == level.face_count);
+      CHECK(level.tree.bounds_hold(pair.a.simplices()));
+    }
+  }
+}
+
+TEST_CASE("open bodies are queried as they are") {
+  const LrbRep open = LrbRep::without_regions(shapes::open_cylinder(12), false, false);
+  const LrbRep ball = build_lrb(shapes::icosphere(2, 0.1));
+  CollideRequest request;
+  request.tolerance = 1;
+  request.separation = true;
+  for (const auto& [x, relation] : {std::pair{0.0, Relation::undefined}, {50.0, Relation::separate}}) {
+    const CollideResult r = collide(open, Pose{}, ball, Pose::translation({x, 0, 0}), request);
+    CHECK(r.relation == relation);
+    CHECK(r.error_bound == 0);
+    CHECK(!r.separation);
+  }
+}
+
+TEST_CASE("what a coarse query cannot give is refused") {
+  const LrbRep a = build_lrb(shapes::box());
+  CollideRequest request;
+  request.tolerance = -1;
+  CHECK(collide(a, Pose{}, a, Pose{}, request).error_bound == 0);  // not asked for
+  request.tolerance = INFINITY;
+  CHECK_THROWS_AS(collide(a, Pose{}, a, Pose{}, request), InputError);
+  request.tolerance = 1;
+  request.contacts = true;
+  CHECK_THROWS_AS(collide(a, Pose{}, a, Pose{}, request), InputError);
+  request.contacts = false;
+  request.recursion = Recursion::paper;
+  CHECK_THROWS_AS(collide(a, Pose{}, a, Pose{}, request), InputError);
+}

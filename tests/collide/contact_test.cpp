@@ -1,0 +1,210 @@
+// Contact geometry: regions whose shape, size and place are known in closed form.
+#include <tuple>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/closed_body.hpp"
+#include <lrbscope/collide.hpp>
+
+using namespace lrb;
+
+namespace {
+
+using test::closed;
+
+CollideResult contact(const LrbRep& a, const LrbRep& b, const Pose& pose_b) {
+  CollideRequest request;
+  request.contacts = true;
+  request.interiors_overlap = true;
+  return collide(a, Pose{}, b, pose_b, request);
+}
+
+bool near(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double by = 1e-12) {
+  return (x - y).norm() <= by;
+}
+
+/// Each face with vertices of its own, as STL files and the seams of textures have them.
+Mesh torn(const Mesh& mesh) {
+  Mesh out;
+  out.dim = mesh.dim;
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    std::vector<VertexId> corners;
+    for (const VertexId v : mesh.face(f)) {
+      corners.push_back(static_cast<VertexId>(out.vertices.size()));
+      out.vertices.push_back(mesh.vertices[v]);
+    }
+    out.add_face(corners);
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("vertices that stand in one place are one: contacts across seams are whole") {
+  const Mesh ball = shapes::icosphere(2), box = shapes::box({-1, -1, -1}, {1, 1, 1});
+  const auto open = [](const Mesh& mesh) { return LrbRep::without_regions(torn(mesh), false, false); };
+  for (const auto& [x, y, by] : {std::tuple{ball, ball, Eigen::Vector3d(1.3, 0.2, 0.1)},
+                                 std::tuple{box, ball, Eigen::Vector3d(0.9, 0.8, 0.7)},
+                                 std::tuple{box, box, Eigen::Vector3d(0.5, 0.25, 2)}}) {
+    const CollideResult whole = contact(closed(x), closed(y), Pose::translation(by));
+    const CollideResult seams = contact(open(x), open(y), Pose::translation(by));
+    CHECK(seams.pairs == whole.pairs);
+    REQUIRE(seams.regions.size() == whole.regions.size());
+    for (std::size_t i = 0; i < whole.regions.size(); ++i) {
+      const ContactRegion &w = whole.regions[i], &s = seams.regions[i];
+      CHECK(s.length == w.length);
+      CHECK(s.area == w.area);
+      CHECK(s.centroid == w.centroid);
+      REQUIRE(s.loops.size() == w.loops.size());
+      for (std::size_t k = 0; k < w.loops.size(); ++k) {
+        CHECK(s.loops[k].closed);
+        CHECK(s.loops[k].points == w.loops[k].points);
+      }
+    }
+  }
+}
+
+TEST_CASE("a box on a box: one coplanar region with its area, centre and direction") {
+  const CollideResult r =
+      contact(closed(shapes::box()), closed(shapes::box()), Pose::translation({0.25, 0.5, 1}));
+  CHECK(r.relation == Relation::touching);
+  CHECK(r.interiors_overlap == Answer::no);
+  REQUIRE(r.regions.size() == 1);
+  const ContactRegion& region = r.regions[0];
+  CHECK(region.area == doctest::Approx(0.375));
+  CHECK(near(region.centroid, {0.625, 0.75, 1}));
+  CHECK(near(region.normal, {0, 0, 1}));
+  CHECK(region.depth_estimate == 0);
+  REQUIRE(region.loops.size() == 1);
+  CHECK(region.loops[0].closed);
+  CHECK(region.length == doctest::Approx(2.5));
+}
+
+TEST_CASE("a tip through a face: one closed loop with its length, area and depth") {
+  // A tetrahedron's corner at the origin, upside down, 0.25 deep into the top of a box.
+  Pose p;
+  p.r = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  p.t = {0.5, 0.5, 0.75};
+  Mesh spike = shapes::tetrahedron(4);
+  const LrbRep box = closed(shapes::box({-9, -9, 0}, {9, 9, 1}));
+  p.r = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d(1, 1, 1).normalized(), Eigen::Vector3d::UnitZ())
+            .toRotationMatrix();
+  const CollideResult r = contact(box, closed(spike), p);
+  CHECK(r.relation == Relation::crossing);
+  CHECK(r.interiors_overlap == Answer::yes);
+  REQUIRE(r.regions.size() == 1);
+  REQUIRE(r.regions[0].loops.size() == 1);
+  CHECK(r.regions[0].loops[0].closed);
+  // The cut of a cube's corner at height h is an equilateral triangle with side h * sqrt(6).
+  const double h = 0.25, side = h * std::sqrt(6.0);
+  CHECK(r.regions[0].length == doctest::Approx(3 * side));
+  CHECK(r.regions[0].area == doctest::Approx(std::sqrt(3.0) / 4 * side * side));
+  CHECK(near(r.regions[0].centroid, {0.5, 0.5, 1}));
+  CHECK(r.regions[0].normal.z() > 0.5);
+  CHECK(r.regions[0].depth_estimate == doctest::Approx(h / r.regions[0].normal.z()).epsilon(0.3));
+}
+
+TEST_CASE("a corner on a face touches in a point; an edge on a face in a segment") {
+  const LrbRep floor = closed(shapes::box({-5, -5, -1}, {5, 5, 0}));
+  Pose on_corner;
+  on_corner.r = Eigen::Matrix3d::Identity();
+  const CollideResult corner =
+      contact(floor, closed(shapes::tetrahedron()), Pose::translation({0.1, 0.2, 0}));
+  CHECK(corner.relation == Relation::touching);  // the tetrahedron stands on its face z = 0
+  REQUIRE(corner.regions.size() == 1);
+  CHECK(corner.regions[0].area == doctest::Approx(0.5));
+
+  // A roof ridge (exact coordinates): the edge from (0, 0, 0) to (1, 0, 0) of a prism that widens upwards.
+  Mesh prism;
+  prism.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}, {1, 1, 1}, {0, -1, 1}, {1, -1, 1}};
+  for (const auto& f : std::vector<std::array<VertexId, 3>>{
+           {0, 3, 1}, {0, 2, 3}, {0, 1, 5}, {0, 5, 4}, {2, 4, 5}, {2, 5, 3}, {0, 4, 2}, {1, 3, 5}})
+    prism.add_face(f);
+  const CollideResult edge = contact(floor, closed(prism), Pose::translation({0.5, 0.25, 0}));
+  CHECK(edge.relation == Relation::touching);
+  CHECK(edge.interiors_overlap == Answer::no);
+  REQUIRE(edge.regions.size() == 1);
+  CHECK(edge.regions[0].length == doctest::Approx(1));
+  CHECK(edge.regions[0].area == 0);
+  REQUIRE(edge.regions[0].loops.size() == 1);
+  CHECK_FALSE(edge.regions[0].loops[0].closed);
+
+  Pose tip = Pose::translation({0.5, 0.25, 0});
+  tip.r << 1, 0, 0, 0, 0, -1, 0, 1,
+      0;  // exact quarter turn about x: the ridge stays on the floor, one flank on it
+  CHECK(contact(floor, closed(prism), tip).relation == Relation::crossing);
+}
+
+TEST_CASE("a stick through both walls of a bowl has four regions, each a closed loop") {
+  const LrbRep bowl = closed(shapes::bowl(24, 12, 0.2));
+  const LrbRep stick = closed(shapes::box({-3, -0.05, -0.45}, {3, 0.04, -0.36}));
+  const CollideResult r = contact(bowl, stick, Pose{});
+  CHECK(r.relation == Relation::crossing);
+  REQUIRE(r.regions.size() == 4);
+  for (const ContactRegion& region : r.regions)
+    for (const ContactLoop& loop : region.loops) CHECK(loop.closed);
+}
+
+TEST_CASE("two spheres meet in one circle") {
+  const LrbRep ball = closed(shapes::icosphere(4));
+  Pose p = Pose::rotation({1, 2, 3}, 0.3, {1.6, 0, 0});
+  const CollideResult r = contact(ball, ball, p);
+  REQUIRE(r.regions.size() == 1);
+  const ContactRegion& c = r.regions[0];
+  const double radius = 0.6;  // sqrt(1 - 0.8^2)
+  CHECK(c.length == doctest::Approx(2 * 3.14159265 * radius).epsilon(0.03));
+  CHECK(c.area == doctest::Approx(3.14159265 * radius * radius).epsilon(0.04));
+  CHECK(near(c.centroid, {0.8, 0, 0}, 0.01));
+  CHECK(near(c.normal, {1, 0, 0}, 0.01));
+  CHECK(c.depth_estimate == doctest::Approx(0.4).epsilon(0.05));
+}
+
+TEST_CASE("interiors: inscribed bodies overlap, kissing bodies do not, though no two faces cross") {
+  // A tetrahedron inscribed in a cube: all its corners and edges lie on the cube's surface.
+  Mesh inscribed;
+  inscribed.vertices = {{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}};
+  for (const auto& f : std::vector<std::array<VertexId, 3>>{{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}})
+    inscribed.add_face(f);
+  const CollideResult in = contact(closed(shapes::box()), closed(inscribed), Pose{});
+  CHECK(in.relation == Relation::touching);
+  CHECK(in.interiors_overlap == Answer::yes);
+
+  const CollideResult same = contact(closed(shapes::icosphere(1)), closed(shapes::icosphere(1)), Pose{});
+  CHECK(same.relation == Relation::touching);
+  CHECK(same.interiors_overlap == Answer::yes);
+
+  const CollideResult corner =
+      contact(closed(shapes::box()), closed(shapes::box()), Pose::translation({1, 1, 1}));
+  CHECK(corner.relation == Relation::touching);
+  CHECK(corner.interiors_overlap == Answer::no);
+  REQUIRE(corner.regions.size() == 1);
+  CHECK(near(corner.regions[0].centroid, {1, 1, 1}));
+
+  // A smaller box inside a larger one, standing on its inner side of the floor.
+  const CollideResult standing =
+      contact(closed(shapes::box({0, 0, 0}, {3, 3, 3})), closed(shapes::box()), Pose::translation({1, 1, 0}));
+  CHECK(standing.relation == Relation::touching);
+  CHECK(standing.interiors_overlap == Answer::yes);
+
+  const CollideResult in_void =
+      contact(closed(shapes::box_with_void()), closed(shapes::box()), Pose::translation({1, 1, 1}));
+  CHECK(in_void.relation == Relation::touching);  // fills the void exactly: every wall in contact
+  CHECK(in_void.interiors_overlap == Answer::no);
+}
+
+TEST_CASE("2D: segments cross in points and touch along lengths") {
+  const LrbRep square = closed(shapes::polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}));
+  const CollideResult beside = contact(square, square, Pose::translation({1, 0.25, 0}));
+  CHECK(beside.relation == Relation::touching);
+  CHECK(beside.interiors_overlap == Answer::no);
+  REQUIRE(beside.regions.size() == 1);
+  CHECK(beside.regions[0].length == doctest::Approx(0.75));
+  CHECK(near(beside.regions[0].normal, {1, 0, 0}));
+  const CollideResult across = contact(square, square, Pose::translation({0.5, 0.25, 0}));
+  CHECK(across.relation == Relation::crossing);
+  CHECK(across.regions.size() == 2);
+  const CollideResult same = contact(square, square, Pose{});
+  CHECK(same.interiors_overlap == Answer::yes);
+}

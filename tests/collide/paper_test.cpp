@@ -1,0 +1,101 @@
+// The paper's recursion: where it finds the same as the complete query, and where it misses, pinned.
+#include <doctest/doctest.h>
+
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
+
+using namespace lrb;
+
+namespace {
+
+CollideResult ask(const LrbRep& a, const LrbRep& b, const Pose& p, Recursion recursion,
+                  Mode mode = Mode::all_pairs) {
+  CollideRequest request;
+  request.recursion = recursion;
+  request.mode = mode;
+  return collide(a, Pose{}, b, p, request);
+}
+
+}  // namespace
+
+TEST_CASE("the result says which recursion it used") {
+  const LrbRep a = shapes::dented_box();
+  CHECK(ask(a, a, Pose{}, Recursion::paper).recursion == Recursion::paper);
+  CHECK(ask(a, a, Pose{}, Recursion::complete).recursion == Recursion::complete);
+}
+
+TEST_CASE("without regions the paper's query is brute force, and finds all") {
+  const LrbRep a = LrbRep::without_regions(shapes::icosphere(1), true, false);
+  const LrbRep b = LrbRep::without_regions(shapes::comb(3), true, false);
+  shapes::RandomEngine random(3);
+  for (int i = 0; i < 20; ++i) {
+    const Pose p = shapes::random_pose(random, a, b, 0.4);
+    const CollideResult paper = ask(a, b, p, Recursion::paper);
+    CHECK(paper.pairs == ask(a, b, p, Recursion::complete).pairs);
+    CHECK(paper.counters.face_tests == std::uint64_t{a.face_count()} * b.face_count());
+  }
+}
+
+TEST_CASE("a rod that comes in through the lid is found") {
+  const LrbRep a = shapes::dented_box();
+  const LrbRep rod = LrbRep::without_regions(shapes::box({1.6, 1.7, 0.5}, {2.1, 2.2, 3}), true, false);
+  const CollideResult paper = ask(a, rod, Pose{}, Recursion::paper),
+                      complete = ask(a, rod, Pose{}, Recursion::complete);
+  CHECK(!complete.pairs.empty());
+  CHECK(paper.pairs == complete.pairs);
+  CHECK(paper.opened[0] == std::vector<RegionId>{0});
+}
+
+TEST_CASE(
+    "a contact under a lid that nothing touches is missed by the paper's recursion, never by the complete "
+    "one") {
+  const LrbRep a = shapes::dented_box();
+  // In the dent, below the lid at z = 2, its corner through the dent's floor at z = 1: the lid is not
+  // touched.
+  const LrbRep pebble = LrbRep::without_regions(shapes::box({1.6, 1.7, 0.9}, {2.1, 2.2, 1.5}), true, false);
+  const CollideResult complete = ask(a, pebble, Pose{}, Recursion::complete);
+  CHECK(complete.relation == Relation::crossing);
+  CHECK(complete.opened[0] == std::vector<RegionId>{0});
+  for (const Recursion recursion : {Recursion::paper, Recursion::paper_strict}) {
+    const CollideResult paper = ask(a, pebble, Pose{}, recursion);
+    CHECK(paper.pairs.empty());
+    CHECK(paper.counters.refinements == 0);
+  }
+}
+
+TEST_CASE("the strict reading finds no more than the other, and no pair that is not there") {
+  shapes::RandomEngine random(4);
+  const LrbRep a = shapes::dented_box();
+  std::size_t strict_total = 0, paper_total = 0, complete_total = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Pose p = shapes::random_pose(random, a, a, shapes::uniform(random, 0.3, 0.9));
+    const auto complete = ask(a, a, p, Recursion::complete).pairs;
+    const auto paper = ask(a, a, p, Recursion::paper).pairs;
+    const auto strict = ask(a, a, p, Recursion::paper_strict).pairs;
+    CHECK(std::includes(complete.begin(), complete.end(), paper.begin(), paper.end()));
+    CHECK(std::includes(paper.begin(), paper.end(), strict.begin(), strict.end()));
+    strict_total += strict.size();
+    paper_total += paper.size();
+    complete_total += complete.size();
+  }
+  CHECK(strict_total < paper_total);
+  CHECK(paper_total <= complete_total);
+}
+
+TEST_CASE("first_pair stops at the first real pair") {
+  const LrbRep a = shapes::dented_box();
+  const LrbRep rod = LrbRep::without_regions(shapes::box({1.6, 1.7, 0.5}, {2.1, 2.2, 3}), true, false);
+  const CollideResult one = ask(a, rod, Pose{}, Recursion::paper, Mode::first_pair);
+  CHECK(one.pairs.size() == 1);
+  CHECK(one.counters.face_tests < ask(a, rod, Pose{}, Recursion::paper).counters.face_tests);
+}
+
+TEST_CASE("2D bodies run through the same query") {
+  const LrbRep a = shapes::stairs_2d();
+  const LrbRep b = LrbRep::without_regions(shapes::polygon({{2.2, 1.8}, {5, 1.9}, {5, 2.4}}), true, false);
+  const CollideResult paper = ask(a, b, Pose{}, Recursion::paper),
+                      complete = ask(a, b, Pose{}, Recursion::complete);
+  CHECK(complete.pairs == paper.pairs);
+  CHECK(paper.opened[0] == std::vector<RegionId>{1});
+  CHECK(paper.relation == Relation::crossing);
+}

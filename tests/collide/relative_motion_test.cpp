@@ -1,0 +1,147 @@
+// What a course claims of B's motion, point by point.
+#include "engine/collide/relative_motion.hpp"
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "scenarios/bodies/shapes.hpp"
+
+using namespace lrb;
+using shapes::RandomEngine;
+
+namespace {
+
+/// One after the other: `then` after `first`.
+Pose after(const Pose& first, const Pose& then) {
+  return {then.r * first.r, then.r * first.t + then.t};
+}
+
+Eigen::Vector3d on_a(const Pose& a, const Pose& b, const Eigen::Vector3d& x) {
+  return a.r.transpose() * (b.apply(x) - a.t);
+}
+
+Eigen::Vector3d in_stretch(const Sweep& s, double at, const Eigen::Vector3d& x) {
+  return s.middle.m * x + s.middle.t + at * (s.dm * x + s.dt);
+}
+
+struct Walk {
+  Pose a, b, step_a, step_b;
+
+  /// Not rotations to the last bit, as those of a simulation.
+  explicit Walk(RandomEngine& random, double size, double drift = 0) {
+    b.t = 3 * shapes::random_direction(random);
+    for (Pose* step : {&step_a, &step_b}) {
+      const double angle = shapes::uniform(random, 0, size);
+      const Eigen::Vector3d axis = shapes::random_direction(random);
+      *step = Pose::rotation(axis, angle);
+      step->r *= 1 + drift;
+      step->t = size * shapes::random_direction(random);
+    }
+  }
+  void go() {
+    a = after(a, step_a);
+    b = after(b, step_b);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("no point of B moves further than its course says") {
+  RandomEngine random(1);
+  Mesh rod = shapes::icosphere(2);
+  for (Eigen::Vector3d& x : rod.vertices) x.x() *= 20;
+  const LrbRep body = LrbRep::without_regions(rod, true, false);
+  double largest = 0, largest_turn = 0;
+  for (int i = 0; i < 500; ++i) {
+    const double size = std::pow(10, shapes::uniform(random, -9, 0));
+    const double drift = i % 2 ? 1e-9 * shapes::uniform(random, -1, 1) : 0;
+    Walk walk(random, size, drift);
+    if (i % 5 == 0) {  // turns about B's middle alone
+      walk.step_a = {};
+      walk.step_b.t = walk.b.t - walk.step_b.r * walk.b.t;
+    }
+    RelativeMotion course(body, body);
+    REQUIRE(course.see(walk.a, walk.b));
+    CHECK(std::isinf(course.step()));
+    for (int step = 0; step < 3; ++step) {
+      const Walk before = walk;
+      walk.go();
+      if (!course.see(walk.a, walk.b)) {
+        CHECK(drift != 0);
+        break;
+      }
+      for (const Eigen::Vector3d& x : body.vertices()) {
+        const double moved = (on_a(walk.a, walk.b, x) - on_a(before.a, before.b, x)).norm();
+        REQUIRE(moved <= course.step());
+        double& share = i % 5 == 0 ? largest_turn : largest;
+        if (size > 1e-6) share = std::max(share, moved / course.step());
+      }
+    }
+  }
+  MESSAGE("the furthest went " << largest << " of what was allowed, by turning " << largest_turn);
+  CHECK(largest > 0.9);
+  CHECK(largest_turn > 0.9);
+}
+
+TEST_CASE("B is where its course puts it, while it keeps it") {
+  RandomEngine random(2);
+  const LrbRep body = LrbRep::without_regions(shapes::bumpy_sphere(2, 5, 0.3), true, false);
+  int kept = 0, served = 0;
+  for (int i = 0; i < 500; ++i) {
+    const double size = std::pow(10, shapes::uniform(random, -9, -1));
+    Walk walk(random, size);
+    walk.step_a = {};  // seen from a body that turns, the course bends
+    RelativeMotion course(body, body);
+    for (int seen = 0; seen < 3; ++seen) {
+      CHECK(!course.is_seen());
+      walk.go();
+      REQUIRE(course.see(walk.a, walk.b));
+    }
+    CHECK(course.is_seen());
+    if (!course.is_kept()) {
+      CHECK(size < 1e-6);  // lost in rounding
+      continue;
+    }
+    ++kept;
+    const int steps = 2 + i % 20;
+    const Sweep stretch = course.ahead(steps);
+    CHECK(course.along(stretch).at < -0.7);
+    for (int step = 0; step <= steps / 2 * 2; ++step) {
+      if (step > 0) walk.go();
+      REQUIRE(course.see(walk.a, walk.b));
+      const SweepPoint where = course.along(stretch);
+      REQUIRE(where.at >= -1);
+      REQUIRE(where.at <= 1);
+      for (const Eigen::Vector3d& x : body.vertices())
+        REQUIRE((on_a(walk.a, walk.b, x) - in_stretch(stretch, where.at, x)).norm() <= where.off);
+      served += where.off <= stretch.width;
+      if (size < 0.01) CHECK(where.off <= stretch.width);
+    }
+  }
+  CHECK(kept > 300);
+  CHECK(served > 3000);
+}
+
+TEST_CASE("a course that bends, or is none, is not taken for one") {
+  RandomEngine random(3);
+  const LrbRep body = LrbRep::without_regions(shapes::bumpy_sphere(2, 5, 0.3), true, false);
+  RelativeMotion course(body, body);
+  Pose b;
+  for (int i = 0; i < 200; ++i) {
+    b.t += 1e-3 * shapes::random_direction(random);
+    REQUIRE(course.see({}, b));
+    const SweepPoint here = course.along(course.about(1e-3));
+    CHECK(here.at == 0);
+    CHECK(here.off < 1e-9);
+    if (!course.is_kept()) continue;
+    const Sweep stretch = course.ahead(30);  // by chance: then no further than that goes
+    CHECK(stretch.width < 0.02);
+  }
+  b.r *= 1.01;
+  CHECK(!course.see({}, b));
+  CHECK(!course.is_seen());
+  // The products of two columns are infinite, of both signs.
+  b.r << 1, 0, 0, 0, 1e200, -1e200, 0, 1e200, 1e200;
+  CHECK(!course.see({}, b));
+}

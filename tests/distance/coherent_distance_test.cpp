@@ -1,0 +1,196 @@
+// Distances of bodies that move step by step, against those from scratch.
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "engine/distance/far_pairs.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/closed_body.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/distance.hpp>
+
+using namespace lrb;
+using shapes::RandomEngine;
+
+namespace {
+
+using test::closed;
+
+/// Moves a body by up to `share` of its size and turns it by as much; in the plane z = 0, if it is 2D.
+Pose moved(const Pose& pose, int dim, double share, RandomEngine& random) {
+  Eigen::Vector3d axis = shapes::random_direction(random), way = shapes::random_direction(random);
+  if (dim == 2) {
+    axis = Eigen::Vector3d::UnitZ();
+    way.z() = 0;
+  }
+  const Eigen::Matrix3d turn = steady::rotation(axis, shapes::uniform(random, -share, share));
+  return {turn * pose.r, pose.t + shapes::uniform(random, 0, share) * way};
+}
+
+struct CoherentDistanceTally {
+  int meet = 0, inside = 0, apart = 0;
+};
+
+/// Checks an answer against that from scratch, and the pair that meets against all pairs.
+void check_same(const LrbRep& a, const LrbRep& b, const PosePair& poses, const DistanceResult& coherent,
+                CoherentDistanceTally& t) {
+  const DistanceResult alone = distance(a, poses.a, b, poses.b);
+  REQUIRE(coherent.finished);
+  REQUIRE(coherent.meet == alone.meet);
+  if (alone.meet) {
+    ++t.meet;
+    CHECK(coherent.lower == 0);
+    CHECK(coherent.upper == 0);
+    const BruteForceResult all = brute_force(a, poses.a, b, poses.b);
+    const auto found =
+        std::lower_bound(all.pairs.begin(), all.pairs.end(),
+                         lrb::SimplexPair{coherent.witness[0].simplex, coherent.witness[1].simplex});
+    REQUIRE(found != all.pairs.end());
+    CHECK(*found == lrb::SimplexPair{coherent.witness[0].simplex, coherent.witness[1].simplex});
+    const bool crosses = all.meets[static_cast<std::size_t>(found - all.pairs.begin())] == exact::Meet::cross;
+    CHECK(coherent.relation == (crosses ? Relation::crossing : Relation::touching));
+    return;
+  }
+  CHECK(coherent.relation == alone.relation);
+  ++(alone.relation == Relation::separate ? t.apart : t.inside);
+  CHECK(coherent.lower > 0);
+  CHECK(coherent.lower <= alone.upper);
+  CHECK(coherent.upper >= alone.lower);
+  CHECK(coherent.upper - coherent.lower <= 1e-11);
+}
+
+}  // namespace
+
+TEST_CASE("random walks and jumps of both bodies are answered as from scratch") {
+  RandomEngine random(31);
+  struct {
+    const char* name;
+    LrbRep a, b;
+  } const pairs[] = {{"bumps", closed(shapes::bumpy_sphere(2, 7, 0.3)), closed(shapes::torus(9, 7))},
+                     {"ball in bowl", closed(shapes::bowl(8, 4)), closed(shapes::icosphere(1, 0.3))},
+                     {"ball in ball", closed(shapes::icosphere(2)), closed(shapes::icosphere(1, 0.4))},
+                     {"ring 2D", closed(shapes::ring_2d(30)), closed(shapes::star(5, 0.3, 0.1))}};
+  CoherentDistanceTally all;
+  for (const auto& pair : pairs) {
+    CAPTURE(pair.name);
+    const int dim = pair.a.dim();
+    CoherentDistance follows(pair.a, pair.b);
+    PosePair poses;
+    for (int i = 0; i < 300; ++i) {
+      CAPTURE(i);
+      const bool jumps = i % 40 == 0;
+      if (jumps) poses.b = shapes::random_pose(random, pair.a, pair.b, shapes::uniform(random, 0, 1.2));
+      const double share = i % 5 == 0 ? 0.1 : 0.01;
+      if (i % 2 == 0) poses.a = moved(poses.a, dim, share, random);
+      if (i % 3 != 0) poses.b = moved(poses.b, dim, share, random);
+      check_same(pair.a, pair.b, poses, follows.distance(poses.a, poses.b), all);
+    }
+  }
+  CHECK(all.meet > 50);
+  CHECK(all.inside > 50);
+  CHECK(all.apart > 50);
+}
+
+/// A ball drawn out to a needle: when it turns, what is far from its middle moves far.
+Mesh needle() {
+  return test::stretched(shapes::icosphere(2), {2, 0.02, 0.02});
+}
+
+TEST_CASE("planes that held nodes apart at earlier steps leave out nothing that is nearer") {
+  RandomEngine random(33);
+  struct {
+    const char* name;
+    LrbRep a, b;
+    double most = 0.05;  ///< that B turns in a step
+  } const pairs[] = {
+      {"rock and ring", closed(shapes::bumpy_sphere(4, 7, 0.3)), closed(shapes::torus(48, 24))},
+      {"small in bowl", closed(shapes::bowl(30, 12)), closed(shapes::bumpy_sphere(3, 5, 0.3), 0.3)},
+      {"outlines", closed(shapes::gear(60)), closed(shapes::star(40, 0.5, 0.2))},
+      {"needle by rock", closed(shapes::bumpy_sphere(3, 7, 0.3)), closed(needle()), 0.2},
+      {"needle by needles", closed(shapes::several({needle(), shapes::translated(needle(), {0, 0.3, 0.1})})),
+       closed(needle()), 0.2}};
+  for (const auto& pair : pairs) {
+    CAPTURE(pair.name);
+    const int dim = pair.a.dim();
+    CoherentDistance follows(pair.a, pair.b);
+    PosePair poses;
+    std::uint64_t steps = 0, steps_alone = 0;
+    int apart = 0;
+    for (int i = 0; i < 1000; ++i) {
+      CAPTURE(i);
+      if (i % 100 == 0)
+        poses.b = shapes::random_pose(random, pair.a, pair.b, shapes::uniform(random, 0.3, 1.6));
+      // Now hardly, now more; and now and then B turns on one spot, through more than planes outlive.
+      const double share = i % 100 < 50 ? 0.001 : i % 100 < 75 ? 0.01 : pair.most;
+      poses.b = i % 100 < 90 ? moved(poses.b, dim, share, random)
+                             : Pose{steady::rotation(Eigen::Vector3d::UnitZ(), 0.2) * poses.b.r, poses.b.t};
+      if (i % 7 == 0) poses.a = moved(poses.a, dim, share, random);
+      const DistanceResult coherent = follows.distance(poses.a, poses.b),
+                           alone = distance(pair.a, poses.a, pair.b, poses.b);
+      REQUIRE(coherent.finished);
+      REQUIRE(coherent.meet == alone.meet);
+      if (alone.meet) continue;
+      ++apart;
+      REQUIRE(coherent.relation == alone.relation);
+      REQUIRE(coherent.lower <= alone.upper);
+      REQUIRE(coherent.upper >= alone.lower);
+      REQUIRE(coherent.upper - coherent.lower <= 1e-11);
+      steps += coherent.counters.steps;
+      steps_alone += alone.counters.steps;
+    }
+    CHECK(apart > 100);
+    CHECK(10 * steps < 8 * steps_alone);
+  }
+}
+
+TEST_CASE("a body that goes in and out of another by jumps lies where it is") {
+  const LrbRep a = closed(shapes::icosphere(2)), b = closed(shapes::icosphere(1, 0.2));
+  CoherentDistance follows(a, b);
+  CoherentDistanceTally t;
+  for (int i = 0; i < 20; ++i) {
+    const double at = 0.01 * i + (i % 4 < 2 ? 0 : 1.5);
+    const PosePair poses{Pose{}, Pose::translation({at, 0, 0})};
+    check_same(a, b, poses, follows.distance(poses.a, poses.b), t);
+  }
+  CHECK(t.inside == 10);
+  CHECK(t.apart == 10);
+}
+
+TEST_CASE("nothing comes nearer from one pose to another than is said, and little less") {
+  RandomEngine random(32);
+  const LrbRep a = closed(shapes::bumpy_sphere(1, 7, 0.3)), b = closed(shapes::torus(6, 5));
+  int near_bound = 0;
+  for (int i = 0; i < 60; ++i) {
+    CAPTURE(i);
+    PosePair from{{shapes::random_rotation(random), std::pow(10, i % 5) * shapes::random_direction(random)},
+                  shapes::random_pose(random, a, b, 1.5)};
+    from.b = {from.a.r * from.b.r, from.a.r * from.b.t + from.a.t};
+    const double share = std::pow(10, -i % 7);
+    PosePair to{moved(from.a, 3, share, random), moved(from.b, 3, share, random)};
+    if (i % 2 == 0) {  // both by the same: they keep their distances
+      to.a = {steady::rotation(Eigen::Vector3d::UnitX(), 1) * from.a.r, -from.a.t};
+      to.b = {to.a.r * from.a.r.transpose() * from.b.r,
+              to.a.r * (from.a.r.transpose() * (from.b.t - from.a.t)) + to.a.t};
+    }
+    const double by = nearer_by(a, b, from, to, 10);
+    double most = 0;
+    for (const Eigen::Vector3d& x : a.vertices())
+      for (const Eigen::Vector3d& y : b.vertices())
+        most = std::max(most,
+                        (from.b.apply(y) - from.a.apply(x)).norm() - (to.b.apply(y) - to.a.apply(x)).norm());
+    CHECK(most <= by);
+    if (i % 2 == 0)
+      CHECK(by < 1e-9);
+    else
+      near_bound += most > 0.25 * by;
+  }
+  CHECK(near_bound > 10);
+  PosePair mirrored;
+  mirrored.b.r(0, 0) = -1;
+  CHECK(nearer_by(a, b, {}, mirrored, 1) == INFINITY);
+  PosePair scaled;
+  scaled.b.r *= 2;
+  CHECK(nearer_by(a, b, {}, scaled, 1) == INFINITY);
+  CHECK(nearer_by(a, b, {}, {Pose{}, Pose::translation({NAN, 0, 0})}, 1) == INFINITY);
+}

@@ -1,0 +1,113 @@
+// What a distance tells a probe: bounds that hold, tighten, and end at the answer, which is the same as
+// without.
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/distance.hpp>
+
+using namespace lrb;
+using shapes::RandomEngine;
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void check_same(const DistanceResult& x, const DistanceResult& y) {
+  CHECK(x.lower == y.lower);
+  CHECK(x.upper == y.upper);
+  CHECK(x.meet == y.meet);
+  CHECK(x.within == y.within);
+  CHECK(x.finished == y.finished);
+  CHECK(x.relation == y.relation);
+  CHECK(x.counters == y.counters);
+  for (std::size_t side = 0; side < 2; ++side) {
+    CHECK(x.witness[side].simplex == y.witness[side].simplex);
+    CHECK(x.witness[side].point == y.witness[side].point);
+  }
+}
+
+/// Checks that bounds tighten, that work grows, and that all hold a distance that is known from an interval.
+void check_course(const std::vector<Bounds>& course, const DistanceResult& exact) {
+  REQUIRE(!course.empty());
+  Bounds before{0, 0, kInfinity};
+  for (const Bounds& now : course) {
+    CAPTURE(now.work);
+    CHECK(now.work >= before.work);
+    CHECK(now.lower >= before.lower);
+    CHECK(now.upper <= before.upper);
+    CHECK((now.lower > before.lower || now.upper < before.upper));
+    CHECK(now.lower <= exact.upper);
+    CHECK(now.upper >= exact.lower);
+    before = now;
+  }
+}
+
+void check_watched(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                   const DistanceRequest& request = {}) {
+  BoundsCourse told;
+  const DistanceResult watched = distance(a, pose_a, b, pose_b, request, told);
+  const DistanceResult plain = distance(a, pose_a, b, pose_b, request);
+  check_same(watched, plain);
+  check_course(told.course, distance(a, pose_a, b, pose_b));
+  CHECK(told.course.back().lower >= watched.lower);
+  CHECK(told.course.back().upper <= watched.upper);
+  if (request.within) return;
+  if (request.relative_tolerance > 0) {  // what was known on the way may be narrower than what was asked for
+    CHECK(watched.upper - watched.lower <= request.relative_tolerance * watched.upper);
+    return;
+  }
+  CHECK(told.course.back().lower == watched.lower);
+  CHECK(told.course.back().upper == watched.upper);
+}
+
+}  // namespace
+
+TEST_CASE("distance probe: bounds hold and tighten, and the answer is the same as without") {
+  const LrbRep ball = LrbRep::without_regions(shapes::icosphere(4), true, false);
+  const LrbRep small = LrbRep::without_regions(shapes::icosphere(2), true, false);
+  RandomEngine random(7);
+  for (int i = 0; i < 12; ++i) {
+    CAPTURE(i);
+    Pose pose_a, pose_b;
+    pose_a.r = shapes::random_rotation(random);
+    pose_b.r = shapes::random_rotation(random);
+    pose_b.t = pose_b.r * Eigen::Vector3d(0.4 * i, 0.1, 0.05);  // from meeting to far apart
+    check_watched(ball, pose_a, small, pose_b);
+    DistanceRequest within;
+    within.within = 0.3;
+    check_watched(ball, pose_a, small, pose_b, within);
+    DistanceRequest few;
+    few.max_steps = static_cast<std::uint64_t>(i) + 1;
+    check_watched(ball, pose_a, small, pose_b, few);
+    DistanceRequest rough;
+    rough.relative_tolerance = 0.1;
+    check_watched(ball, pose_a, small, pose_b, rough);
+  }
+}
+
+TEST_CASE("distance probe: the walk of bodies that floats do not suit is told too") {
+  const LrbRep ball = LrbRep::without_regions(shapes::icosphere(3), true, false);
+  Pose squeezed;
+  squeezed.r = Eigen::Vector3d(1, 0.5, 0.25).asDiagonal();
+  squeezed.t = {3, 1, 0.5};
+  BoundsCourse told;
+  const DistanceResult result = distance(ball, {}, ball, squeezed, {}, told);
+  check_same(result, distance(ball, {}, ball, squeezed));
+  check_course(told.course, result);
+  CHECK(told.course.size() > 5);
+  CHECK(told.course.front().lower < 0.99 * result.lower);
+}
+
+TEST_CASE("distance probe: a course shows how the interval narrows, step by step at first") {
+  const LrbRep ball = LrbRep::without_regions(shapes::icosphere(4), true, false);
+  BoundsCourse told;
+  const DistanceResult result = distance(ball, {}, ball, Pose::translation({2.3, 0.4, 0.2}), {}, told);
+  check_course(told.course, result);
+  REQUIRE(told.course.size() > 5);
+  CHECK(told.course.front().lower < 0.9 * result.lower);
+  CHECK(told.course.front().work < 64);
+  CHECK(told.course.back().work ==
+        result.counters.steps + result.counters.pairs_in_doubles + result.counters.pairs_exact);
+}

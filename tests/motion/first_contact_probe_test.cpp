@@ -1,0 +1,88 @@
+// What a search for a first contact tells a probe.
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/first_contact.hpp>
+
+using namespace lrb;
+using Eigen::Vector3d;
+
+namespace {
+
+/// Asks with a probe, and checks what holds for whatever it is told.
+std::vector<ContactBounds> course_of(const LrbRep& a, const LrbRep& b, const Motion& motion,
+                                     FirstContactResult& watched, const FirstContactRequest& request = {}) {
+  FirstContactCourse told;
+  watched = first_contact(a, Motion::still({}), b, motion, request, told);
+  const FirstContactResult plain = first_contact(a, Motion::still({}), b, motion, request);
+  CHECK(watched.outcome == plain.outcome);
+  CHECK(watched.t0 == plain.t0);
+  CHECK(watched.t1 == plain.t1);
+  CHECK(watched.pair == plain.pair);
+  CHECK(watched.counters == plain.counters);
+  ContactBounds before;
+  for (const ContactBounds& now : told.course) {
+    CAPTURE(now.t0);
+    CHECK(now.work >= before.work);
+    CHECK(now.t0 >= before.t0);
+    CHECK(now.t1 <= before.t1);
+    DistanceRequest rough;
+    const DistanceResult there = distance(a, {}, b, motion.at(now.t0), rough);
+    CHECK(now.lower <= there.upper);
+    CHECK(now.upper >= there.lower);
+    CHECK(now.upper - now.lower <= 0.011 * now.upper + 1e-13);
+    if (now.t0 < watched.t0) CHECK(now.lower > 0);
+    before = now;
+  }
+  return told.course;
+}
+
+}  // namespace
+
+TEST_CASE("first contact probe: t0 rises and t1 falls to the answer, with the distance on the way") {
+  const LrbRep ball = LrbRep::without_regions(shapes::icosphere(3), true, false);
+  for (const double aside : {0.0, 0.7, 1.7}) {
+    CAPTURE(aside);
+    FirstContactResult result;
+    const Motion motion =
+        Motion::turning(Pose::translation({5, aside, 0.1}), {0, 0, 0.9}, {5, aside, 0.1}, {-10, 0, 0});
+    const std::vector<ContactBounds> course = course_of(ball, ball, motion, result);
+    REQUIRE(result.is_contact());
+    REQUIRE(course.size() >= 3);
+    CHECK(course.front().t0 == 0);
+    CHECK(course.front().lower == doctest::Approx(std::hypot(5, aside) - 2).epsilon(0.05));
+    CHECK(std::isinf(course.front().t1));
+    CHECK(course.back().t0 == result.t0);
+    CHECK(course.back().t1 == result.t1);
+  }
+}
+
+TEST_CASE("first contact probe: bodies that never meet, and bodies that begin in contact") {
+  const LrbRep ball = LrbRep::without_regions(shapes::icosphere(2), true, false);
+  FirstContactResult result;
+  const std::vector<ContactBounds> passing =
+      course_of(ball, ball, Motion::linear(Pose::translation({5, 2.5, 0}), {-5, 2.5, 0}), result);
+  REQUIRE(result.outcome == MotionOutcome::never);
+  CHECK(passing.back().t0 == 1);
+  CHECK(std::isinf(passing.back().t1));
+  const std::vector<ContactBounds> met =
+      course_of(ball, ball, Motion::linear(Pose::translation({1, 0, 0}), {-5, 0, 0}), result);
+  REQUIRE(met.size() == 1);
+  CHECK(met[0].t1 == 0);
+  CHECK(met[0].upper == 0);
+}
+
+TEST_CASE("first contact probe: poses that are no rotations are searched by distances, and told") {
+  const LrbRep ball = LrbRep::without_regions(shapes::icosphere(2), true, false);
+  Pose start;
+  start.r = Vector3d(1, 0.5, 2).asDiagonal();
+  start.t = {6, 0.1, 0.2};
+  FirstContactResult result;
+  const std::vector<ContactBounds> course =
+      course_of(ball, ball, Motion::linear(start, {-6, 0.1, 0.2}), result);
+  REQUIRE(result.is_contact());
+  CHECK(course.size() >= 3);
+  CHECK(course.back().t1 == result.t1);
+}

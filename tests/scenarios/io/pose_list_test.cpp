@@ -1,0 +1,143 @@
+// Lists of poses as CSV and JSON: what is read, what is refused, and that writing loses nothing.
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "scenarios/io/poses.hpp"
+#include "tests/support/folder.hpp"
+#include <lrbscope/error.hpp>
+
+using namespace lrb;
+
+namespace {
+
+const Pose kPose{(Eigen::Matrix3d() << 1, 2, 3, 5, 6, 7, 9, 10, 11).finished(), {4, 8, 12}};
+
+bool same(const Pose& x, const Pose& y) {
+  return x.r == y.r && x.t == y.t;
+}
+
+}  // namespace
+
+TEST_CASE("poses in CSV: plain rows, rows of 16, names in another order beside other columns") {
+  std::vector<std::size_t> lines;
+  const std::vector<Pose> plain = io::parse_pose_table(
+      "# made by hand\n1,2,3,4,5,6,7,8,9,10,11,12\r\n\n1, 2 ,3,4,5,6,7,8,9,10,11,12,0,0,0,1\n", "p.csv",
+      &lines);
+  REQUIRE(plain.size() == 2);
+  CHECK(same(plain[0], kPose));
+  CHECK(same(plain[1], kPose));
+  CHECK(lines == std::vector<std::size_t>{2, 4});
+
+  const std::vector<Pose> named = io::parse_pose_table(
+      "step,tx,ty,tz,r00,r01,r02,r10,r11,r12,r20,\"r21\",r22,note\n"
+      "7,4,8,12,1,2,3,5,6,7,9,10,11,\"left, then up\"\n",
+      "p.csv");
+  REQUIRE(named.size() == 1);
+  CHECK(same(named[0], kPose));
+}
+
+TEST_CASE("poses in CSV: what is wrong is said with file and line") {
+  const auto fails = [](const std::string& text, const char* message) {
+    CAPTURE(text);
+    CHECK_THROWS_WITH_AS(io::parse_pose_table(text, "p.csv"), message, InputError);
+  };
+  fails("1,2,3\n", "p.csv:1: expected 12 numbers (a row-major 3x4 pose) or 16 (4x4), found 3");
+  fails("1,2,3,4,5,6,7,8,9,10,11,12,0,0,0,2\n", "p.csv:1: the last row of the 4x4 pose is not 0, 0, 0, 1");
+  fails("1,,3,4,5,6,7,8,9,10,11,12\n", "p.csv:1: cell 2 is empty: expected a number");
+  fails("1,2,3,4,5,6,7,8,9,10,11,12,0,0,,1\n", "p.csv:1: cell 15 is empty: expected a number");
+  fails("1;2;3;4;5;6;7;8;9;10;11;12\n",
+        "p.csv:1: expected 12 numbers (a row-major 3x4 pose) or 16 (4x4), found 1");
+  fails("r00,r01\n1,2\n",
+        "p.csv:1: no column r02: expected r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz in any order");
+  fails("r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz\n1,2\n",
+        "p.csv:2: expected 12 cells, as the first line names them, found 2");
+  fails("r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz\n",
+        "p.csv: no poses: expected lines of 12 numbers (row-major 3x4)");
+  fails("1,2,3,4,5,6,x,8,9,10,11,12\n", "p.csv:1: \"x\" is not a number: expected 12 numbers a line");
+}
+
+TEST_CASE("poses in JSON: flat or in rows, 3x4 or 4x4, alone or under \"poses\"") {
+  for (const char* text : {"[[1,2,3,4,5,6,7,8,9,10,11,12]]", "[[[1,2,3,4],[5,6,7,8],[9,10,11,12]]]",
+                           "{\"poses\": [[[1,2,3,4],[5,6,7,8],[9,10,11,12],[0,0,0,1]]], \"unit\": \"mm\"}",
+                           "[[1,2,3,4,5,6,7,8,9,10,11,12,0,0,0,1]]"}) {
+    CAPTURE(text);
+    const io::PoseList list = io::parse_pose_json(text, "p.json");
+    REQUIRE(list.poses.size() == 1);
+    CHECK(same(list.poses[0], kPose));
+    CHECK(list.places[0].substr(0, 9) == "p.json:1:");
+  }
+}
+
+TEST_CASE("poses in JSON: what is wrong is said with file, line and column") {
+  const auto fails = [](const std::string& text, const char* message) {
+    CAPTURE(text);
+    CHECK_THROWS_WITH_AS(io::parse_pose_json(text, "p.json"), message, InputError);
+  };
+  fails("{}", "p.json:1:1: expected an array of poses, or an object with such an array as \"poses\"");
+  fails("[]", "p.json:1:1: expected at least 1 items, found 0");
+  fails("[\n [1,2]]", "p.json:2:2: /0: expected a pose of 12 numbers (3x4, row by row) or 16 (4x4), found 2");
+  fails("[[[1,2,3,4],[5,6,7,8],[9,10,11]]]", "p.json:1:23: /0/2: expected 4 numbers, found 3");
+  fails("[[1,2,3,4,5,6,7,8,9,10,11,12,0,0,1,1]]",
+        "p.json:1:2: /0: the last row of the 4x4 pose is not 0, 0, 0, 1");
+  fails("[[1,2,3,4,5,6,7,8,9,10,11,\"x\"]]", "p.json:1:27: /0/11: expected a number, found string");
+  fails("[[1,2,3,4,[5,6,7,[8]]]]", "p.json:1:18: /0/4/3: expected a number, found array");
+  fails("[[1,{\"x\": 2}]]", "p.json:1:5: /0/1: expected a number, found object");
+  fails("[1, 2]", "p.json:1:2: /0: expected an array, found number");
+  fails("[ null]", "p.json:1:3: /0: expected an array, found null");
+  fails("7", "p.json:1:1: expected an array of poses, or an object with such an array as \"poses\"");
+  fails("{\"poses\": 7}", "p.json:1:11: /poses: expected an array, found number");
+  fails("{\"poses\": []}", "p.json:1:11: /poses: expected at least 1 items, found 0");
+  fails("{\"poses\": [[1, true]]}", "p.json:1:16: /poses/0/1: expected a number, found boolean");
+  fails("{\"poses\":\n[[1,2,3,4,5,6,7,8,9,10,11,12]], \"poses\": []}",
+        "p.json:2:33: the key /poses occurs twice: keep one");
+  fails("[[1,2,3,4,5,6,7,8,9,10,11,12]] 5",
+        "p.json:1:32: not JSON: value - unexpected number literal; expected end of input");
+}
+
+TEST_CASE("poses in JSON: other members are skipped, whatever they hold") {
+  const io::PoseList list = io::parse_pose_json(
+      "\xef\xbb\xbf{\"meta\": {\"poses\": [1, {\"poses\": null}], \"x\": [[], 1.5, \"y\"]},\n \"poses\": "
+      "[[1,2,3,4,5,6,7,8,9,10,11,12],\n[1 , 2,3,4,\t[5,6,7,8],9,10,11,12]], \"after\": [{}]}",
+      "p.json");
+  REQUIRE(list.poses.size() == 2);
+  CHECK(same(list.poses[0], kPose));
+  CHECK(same(list.poses[1], kPose));
+  CHECK(list.places == std::vector<std::string>{"p.json:2:12", "p.json:3:1"});
+}
+
+TEST_CASE("poses in JSON: refused at the first mistake, before the rest is read; large files not at all") {
+  std::string text = "[";
+  for (int i = 0; i < 1'000'000; ++i) text += "[],";
+  CHECK_THROWS_WITH_AS(io::parse_pose_json(text + "no JSON", "p.json"),
+                       "p.json:1:2: /0: expected a pose of 12 numbers (3x4, row by row) or 16 (4x4), found 0",
+                       InputError);
+  CHECK_THROWS_WITH_AS(io::parse_pose_json(std::string(1'000'000, '['), "p.json"),
+                       "p.json:1:4: /0/0/0: expected a number, found array", InputError);
+  const test::Folder folder;
+  folder.write("p.json", "[]");
+  std::filesystem::resize_file(folder / "p.json", (std::uintmax_t{64} << 20) + 1);
+  CHECK_THROWS_WITH_AS(io::open_poses(folder / "p.json"), doctest::Contains("found more than 67108864 bytes"),
+                       InputError);
+}
+
+TEST_CASE("poses: each form is read back as the same numbers, to the last bit") {
+  constexpr double kTiny = std::numeric_limits<double>::denorm_min(),
+                   kHuge = std::numeric_limits<double>::max();
+  Pose odd{(Eigen::Matrix3d() << 0.1, -0.0, 1.0 / 3, kTiny, -kHuge, 1e-300, 2, -7, 1e22).finished(),
+           {0, -1.5, 3e8}};
+  const std::vector<Pose> poses = {kPose, odd, Pose{}};
+  const test::Folder folder;
+  for (const char* name : {"p.txt", "p.csv", "p.CSV", "p.json", "p"}) {
+    CAPTURE(name);
+    io::save_poses(folder / name, poses);
+    const io::PoseList back = io::open_poses(folder / name);
+    REQUIRE(back.poses.size() == poses.size());
+    REQUIRE(back.places.size() == poses.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      CHECK(same(back.poses[i], poses[i]));
+      CHECK(std::signbit(back.poses[i].r(0, 1)) == std::signbit(poses[i].r(0, 1)));
+    }
+  }
+}

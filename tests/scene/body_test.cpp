@@ -1,0 +1,228 @@
+// Bodies made in one call: of matrices, arrays, meshes, files; what is refused, and what is said of them.
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/folder.hpp"
+#include <lrbscope/body.hpp>
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+
+using namespace lrb;
+
+namespace {
+
+Eigen::MatrixX3d vertices_of(const Mesh& mesh) {
+  Eigen::MatrixX3d v(mesh.vertices.size(), 3);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    v.row(static_cast<Eigen::Index>(i)) = mesh.vertices[i];
+  return v;
+}
+
+template <class Integer, int Order = Eigen::ColMajor>
+Eigen::Matrix<Integer, Eigen::Dynamic, 3, Order> triangles_of(const Mesh& mesh) {
+  Eigen::Matrix<Integer, Eigen::Dynamic, 3, Order> f(mesh.face_count(), 3);
+  for (FaceId face = 0; face < mesh.face_count(); ++face)
+    for (int k = 0; k < 3; ++k)
+      f(face.value(), k) = static_cast<Integer>(mesh.face(face)[static_cast<std::size_t>(k)].value());
+  return f;
+}
+
+template <class Integer>
+std::vector<Integer> corners_of(const Mesh& mesh) {
+  std::vector<Integer> out;
+  for (const VertexId v : mesh.face_vertices) out.push_back(static_cast<Integer>(v.value()));
+  return out;
+}
+
+std::vector<double> coordinates_of(const Mesh& mesh) {
+  std::vector<double> out;
+  for (const Eigen::Vector3d& v : mesh.vertices) out.insert(out.end(), v.data(), v.data() + 3);
+  return out;
+}
+
+/// Returns the reason why a body is refused; empty: it is not.
+std::string reason(const Expected<Body>& body) {
+  return body ? std::string() : body.error().reason;
+}
+
+}  // namespace
+
+TEST_CASE("a body is the same from matrices, arrays, a mesh and files") {
+  const Mesh mesh = shapes::bumpy_sphere(2, 3);
+  BodyOptions options;
+  options.name = "rock";
+  const Body whole = Body::from(mesh, options).value();
+  CHECK(whole.name() == "bumpy sphere 3");
+  CHECK(Body::from(vertices_of(mesh), triangles_of<int>(mesh), options).value().name() == "rock");
+  CHECK(whole.is_solid());
+  CHECK(whole.has_regions());
+  CHECK(whole.notes().empty());
+  const std::uint64_t hash = whole.rep().hash();
+
+  const Eigen::MatrixX3d v = vertices_of(mesh);
+  CHECK(Body::from(v, triangles_of<int>(mesh)).value().rep().hash() == hash);
+  CHECK(Body::from(v, triangles_of<std::uint64_t, Eigen::RowMajor>(mesh)).value().rep().hash() == hash);
+  CHECK(Body::from(v.topRows(v.rows()), triangles_of<std::uint8_t>(mesh))
+            .has_value());  // a block; 162 vertices
+  const std::vector<double> x = coordinates_of(mesh);
+  CHECK(Body::from(x, corners_of<std::uint32_t>(mesh)).value().rep().hash() == hash);
+  CHECK(Body::from(x, corners_of<std::int32_t>(mesh)).value().rep().hash() == hash);
+  CHECK(Body::from(x, corners_of<std::int64_t>(mesh)).value().rep().hash() == hash);
+
+  const test::Folder folder;
+  save_lrb(whole, folder / "rock.lrb");
+  CHECK(Body::load(folder / "rock.lrb").value().rep().hash() == hash);
+  write_mesh(mesh, folder / "rock.ply");
+  CHECK(Body::load(folder / "rock.ply").value().rep().hash() == hash);
+  CHECK(Body::from(LrbRep(whole.rep().data())).rep().hash() == hash);
+}
+
+TEST_CASE("copies of a body share it, and it stands where an LRB-rep does") {
+  const Body body = Body::from(shapes::box()).value();
+  const Body copy = body;
+  CHECK(copy == body);
+  CHECK(&copy.rep() == &body.rep());
+  CHECK(!(Body::from(shapes::box()).value() == body));
+  CHECK(collide(body, Pose{}, copy, Pose::translation({0.5, 0.5, 0.5})).relation == Relation::crossing);
+}
+
+TEST_CASE("what is inside out is turned, and it is said; or left, if that is wanted") {
+  const Mesh mesh = shapes::turned_inside_out(shapes::box());
+  const Body turned = Body::from(mesh).value();
+  CHECK(turned.turned() == 1);
+  REQUIRE(turned.notes().size() == 1);
+  CHECK(turned.notes()[0].find("turned 1 component that was inside out") != std::string::npos);
+  CHECK(turned.rep().face(0)[1] == mesh.face(0)[2]);
+  const Pose inside = Pose::translation({0.25, 0.25, 0.25});
+  const Body small = Body::from(shapes::scaled(shapes::box(), 0.5)).value();
+  CHECK(collide(small, inside, turned, Pose{}).relation == Relation::a_inside_b);
+
+  BodyOptions options;
+  options.turn = false;
+  const Body left = Body::from(mesh, options).value();
+  CHECK(left.turned() == 0);
+  CHECK(left.rep().face(0)[1] == mesh.face(0)[1]);
+  CHECK(!left.has_regions());
+  CHECK(left.notes()[0].find("the body is inside out") != std::string::npos);
+}
+
+TEST_CASE("what bounds no solid is a body that says what cannot be asked of it") {
+  const Body tube = Body::from(shapes::open_cylinder(12)).value(), box = Body::from(shapes::box()).value();
+  CHECK(!tube.is_solid());
+  REQUIRE(tube.notes().size() == 2);
+  CHECK(tube.notes()[0].find("an edge has a face on one side only") != std::string::npos);
+  CHECK(tube.notes()[1].find("bounds no solid") != std::string::npos);
+  CHECK(collide(tube, Pose{}, box, Pose::translation({5, 5, 5})).relation == Relation::separate);
+  CHECK(collide(tube, Pose{}, Body::from(shapes::box({-0.1, -0.1, 0.4}, {0.1, 0.1, 0.6})).value(), Pose{})
+            .relation == Relation::undefined);
+  CHECK(collide(tube, Pose{}, box, Pose::translation({0.5, 0, 0})).relation == Relation::crossing);
+  CHECK(Body::from(LrbRep::without_regions(shapes::open_cylinder(12), false, false)).notes().size() == 1);
+}
+
+TEST_CASE("a body of faces alone gives the answers of a body with regions") {
+  BodyOptions options;
+  options.regions = false;
+  const Mesh mesh = shapes::turned_inside_out(shapes::bumpy_sphere(2, 5));
+  const Body faces = Body::from(mesh, options).value(), whole = Body::from(mesh).value();
+  CHECK(!faces.has_regions());
+  CHECK(whole.has_regions());
+  CHECK(faces.turned() == 1);
+  for (int i = 0; i < 5; ++i) {
+    const Pose pose = Pose::rotation({1, 2, 3}, i, {0.3 * i, 0.1, 0.2});
+    const CollideResult x = collide(faces, Pose{}, faces, pose), y = collide(whole, Pose{}, whole, pose);
+    CHECK(x.pairs == y.pairs);
+    CHECK(x.relation == y.relation);
+  }
+}
+
+TEST_CASE("polygons and bodies in the plane come from matrices, too") {
+  Eigen::MatrixXd corners(4, 2);
+  corners << 0, 0, 1, 0, 1, 1, 0, 1;
+  Eigen::MatrixXi sides(4, 2);
+  sides << 0, 1, 1, 2, 2, 3, 3, 0;
+  const Body square = Body::from(corners, sides).value();
+  CHECK(square.dim() == 2);
+  CHECK(square.is_solid());
+  CHECK(collide(square, Pose{}, square, Pose::translation({0.5, 0.5, 0})).pairs.size() == 2);
+
+  const Mesh box = shapes::quad_box();
+  Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> quads(6, 4);
+  for (int i = 0; i < 24; ++i)
+    quads.data()[i] = static_cast<int>(box.face_vertices[static_cast<std::size_t>(i)]);
+  CHECK(Body::from(vertices_of(box), quads).value().rep().real_face_count() == 6);
+}
+
+TEST_CASE("what cannot be a body is refused with a reason that names the element") {
+  const Mesh box = shapes::box();
+  Eigen::MatrixX3d v = vertices_of(box);
+  Eigen::Matrix<int, Eigen::Dynamic, 3> f = triangles_of<int>(box);
+  BodyOptions options;
+  options.name = "my\nbox";
+  f(3, 1) = -1;
+  CHECK(reason(Body::from(v, f, options)) ==
+        "my\\x0abox: face 3 names vertex -1, which does not exist; give 0 to 8 - 1");
+  f(3, 1) = 8;
+  CHECK(reason(Body::from(v, f)) == "body: face 3 names vertex 8, which does not exist; give 0 to 8 - 1");
+  f = triangles_of<int>(box);
+  v(5, 2) = std::numeric_limits<double>::quiet_NaN();
+  CHECK(
+      reason(Body::from(v, f)) ==
+      "body: cannot be queried: a coordinate is not finite (1 time): vertex 5, counted from 0 in file order; give "
+      "it a finite number");
+  CHECK(reason(Body::from(vertices_of(box), Eigen::MatrixX3i(0, 3))).find("the mesh has no faces") !=
+        std::string::npos);
+  CHECK(reason(Body::from(Eigen::MatrixXd(Eigen::MatrixXd::Zero(8, 2)), f)) ==
+        "body: vertices have 2 coordinates; give 3");
+  CHECK(reason(Body::from(vertices_of(box), Eigen::MatrixXi(Eigen::MatrixXi::Zero(4, 1)))) ==
+        "body: faces have 1 corners; give 3 or more, or 2 in the plane");
+  Eigen::MatrixXi side(1, 2);
+  side << 0, 1;
+  CHECK(reason(Body::from(Eigen::MatrixXd(Eigen::MatrixXd::Ones(2, 3)), side)) ==
+        "body: vertex 0 of a body in the plane has a z; give 0");
+  const std::vector<double> x(8);
+  CHECK(reason(Body::from(x, std::vector<int>{0, 0, 0})) == "body: 8 coordinates do not make vertices of 3");
+  CHECK(reason(Body::from(std::vector<double>(9), std::vector<int>{0, 1})) ==
+        "body: 2 corners do not make faces of 3");
+  CHECK(reason(Body::from(std::vector<double>(9), std::vector<std::int64_t>{0, 1, std::int64_t{1} << 32})) ==
+        "body: face 0 names vertex 4294967296, which does not exist; give 0 to 3 - 1");
+  CHECK(reason(Body::load("/nowhere/at.obj")) == "/nowhere/at.obj: no such file; check the path");
+  CHECK_THROWS_WITH_AS((void)Body::load("/nowhere/at.obj").value(),
+                       "/nowhere/at.obj: no such file; check the path", InputError);
+}
+
+TEST_CASE(
+    "an LRB-rep whose cells are not closed is queried from its faces, and a note says where it is open") {
+  const Mesh rock = shapes::bumpy_sphere(3, 1);
+  const Body sound = Body::from(rock).value();
+  REQUIRE(sound.has_regions());
+  LrbData data = sound.rep().data();
+  data.outer_cell[0] = data.outer_cell[0] == kOutside ? CellId(RegionId(0)) : kOutside;
+  const test::Folder folder;
+  save_lrb(LrbRep(data), folder / "open.lrb");
+  for (const Body& body : {Body::from(LrbRep(data)), Body::from(std::make_shared<const LrbRep>(data)),
+                           Body::load(folder / "open.lrb").value()}) {
+    CHECK(body.is_solid());
+    CHECK_FALSE(body.has_regions());
+    REQUIRE(body.notes().size() == 1);
+    CHECK(body.notes()[0].starts_with(
+        body.name() + ": queried without regions, because the proof of its LRB-rep failed: "));
+    CHECK(body.notes()[0].find("is open at edge (") != std::string::npos);
+    const Pose pose = Pose::translation({0.7, 0.2, 0.1});
+    CHECK(collide(body, Pose{}, sound, pose).pairs == collide(sound, Pose{}, sound, pose).pairs);
+    CHECK(collide(body, Pose{}, sound, pose).relation == Relation::crossing);
+  }
+}
+
+TEST_CASE("a body that intersects itself says that it has no approximate answers") {
+  const Mesh rock = shapes::bumpy_sphere(2, 1);
+  const Body body = Body::from(shapes::several({rock, shapes::translated(rock, {0.3, 0.1, 0.05})})).value();
+  REQUIRE(body.notes().size() == 1);
+  CHECK(body.notes()[0].find("has no approximate answers, because its surface intersects itself") !=
+        std::string::npos);
+}

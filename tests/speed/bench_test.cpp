@@ -1,0 +1,409 @@
+/// Speed and accuracy: data sets, records, what is computed from them, and the commands.
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "bench/rivals/method.hpp"
+#include "bench/speed/bench_runner.hpp"
+#include "bench/speed/data_set.hpp"
+#include "bench/speed/make_sets.hpp"
+#include "bench/speed/metrics.hpp"
+#include "bench/speed/peer_table.hpp"
+#include "bench/speed/record.hpp"
+#include "bench/speed/region_error.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/program.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
+
+using namespace lrb;
+using namespace lrb::bench;
+using lrb::test::Folder;
+using lrb::test::run;
+using lrb::test::slurp;
+
+namespace {
+
+bench::BodyPair small_pair() {
+  return {"spheres", "two bumpy spheres", [] { return shapes::bumpy_sphere(2, 1); },
+          [] { return shapes::bumpy_sphere(2, 2); }};
+}
+
+bench::SetOptions few() {
+  bench::SetOptions o;
+  o.poses = 4;
+  return o;
+}
+
+methods::MethodInfo info(const std::string& name) {
+  methods::MethodInfo i;
+  i.name = name;
+  if (name == "ours") i.role = methods::Role::ours;
+  return i;
+}
+
+bench::Record answer(const std::string& method, std::uint64_t question, bench::PoseClass c, double us) {
+  bench::Record r;
+  r.set = "set";
+  r.method = method;
+  r.question = question;
+  r.pose_class = c;
+  r.all.hot_us = r.first.hot_us = us;
+  r.all.cold_us = r.first.cold_us = 2 * us;
+  return r;
+}
+
+bench::DataSet made_up_set(int questions) {
+  bench::DataSet set;
+  set.name = "set";
+  for (int i = 0; i < questions; ++i) set.questions.push_back({bench::PoseClass::deep, 0, 0, {}, {}, {}});
+  return set;
+}
+
+}  // namespace
+
+TEST_CASE("quantiles are values that are there, means of ratios are geometric") {
+  CHECK(bench::quantile({5, 1, 4, 2, 3}, 0.5) == 3);
+  CHECK(bench::quantile({5, 1, 4, 2, 3}, 0.95) == 5);
+  CHECK(bench::quantile({1, 2}, 0.5) == 1);
+  CHECK(bench::quantile({}, 0.5) == 0);
+  CHECK(bench::geometric_mean({2, 8}) == doctest::Approx(4));
+}
+
+TEST_CASE("the oracle of data sets is brute force, but faster") {
+  shapes::RandomEngine random(3);
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1)), b = build_lrb(shapes::torus(12, 8));
+  std::size_t met = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Pose p = shapes::random_pose(random, a, b, 0.5);
+    const auto expected = brute_force(a, Pose{}, b, p).pairs;
+    CHECK(bench::exact_pairs(a, Pose{}, b, p) == expected);
+    met += expected.size();
+  }
+  CHECK(met > 100);
+  CHECK(bench::exact_pairs(a, Pose{}, a, Pose{}) == brute_force(a, Pose{}, a, Pose{}).pairs);
+}
+
+TEST_CASE("a data set holds poses of the classes it says, and comes back from its file as it was") {
+  const Folder folder;
+  const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
+  REQUIRE(set.questions.size() == 4 * 4 + 1);
+  for (const bench::Question& q : set.questions)
+    CHECK(q.expected.empty() == (q.pose_class == bench::PoseClass::apart));
+  CHECK(set.bodies.size() == 3);
+  const bench::DataSet again = bench::read_data_set(folder / "spheres.set.json");
+  REQUIRE(again.questions.size() == set.questions.size());
+  for (std::size_t i = 0; i < set.questions.size(); ++i) {
+    CHECK(again.questions[i].pose_b.r == set.questions[i].pose_b.r);
+    CHECK(again.questions[i].pose_b.t == set.questions[i].pose_b.t);
+    CHECK(again.questions[i].expected == set.questions[i].expected);
+    CHECK(again.questions[i].pose_class == set.questions[i].pose_class);
+  }
+  // Made again only if asked for something else.
+  const std::string before = slurp(folder / "spheres.set.json");
+  bench::make_data_set(small_pair(), few(), folder.path.string());
+  CHECK(slurp(folder / "spheres.set.json") == before);
+  bench::SetOptions other = few();
+  other.seed = 2;
+  bench::make_data_set(small_pair(), other, folder.path.string());
+  CHECK(slurp(folder / "spheres.set.json") != before);
+  folder.write("spheres.set.json", "{}");
+  CHECK_THROWS_AS(bench::read_data_set(folder / "spheres.set.json"), InputError);
+}
+
+TEST_CASE("a body a hundredth of the diagonal apart is not nearer and hardly farther") {
+  const Folder folder;
+  const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1)), b = build_lrb(shapes::bumpy_sphere(2, 2));
+  for (const bench::Question& q : set.questions) {
+    if (q.pose_class != bench::PoseClass::apart) continue;
+    // Pushed by a little more than the gap along some direction it must meet; along the line of centres it
+    // does for bodies this round.
+    Pose nearer = q.pose_b;
+    nearer.t -= 0.03 * set.diagonal * q.pose_b.t.normalized();
+    CHECK_FALSE(bench::exact_pairs(a, Pose{}, b, nearer).empty());
+  }
+}
+
+TEST_CASE("records come back from their lines, and half a line is passed over") {
+  bench::Record r = answer("spheres", 3, bench::PoseClass::small, 1.5);
+  r.setting = 4;
+  r.all.pairs = {{1, 2}, {3, 4}};
+  r.all.points = {{0.1, 0.2, 0.3}};
+  r.all.missed = 7;
+  r.build_seconds = 0.25;
+  const bench::Record same = bench::record_from(nlohmann::json::parse(to_json(r).dump()));
+  CHECK(to_json(same).dump() == to_json(r).dump());
+  CHECK(bench::name_of(same) == "spheres 4");
+  CHECK(same.all.pairs == r.all.pairs);
+  r.outcome = bench::Outcome::crashed;
+  r.message = "died";
+  CHECK(bench::record_from(to_json(r)).outcome == bench::Outcome::crashed);
+  const Folder folder;
+  const std::string line = to_json(r).dump();
+  const std::string file = folder.write("records.jsonl", line + "\n" + line.substr(0, line.size() / 2));
+  CHECK(bench::read_records(file).size() == 1);
+  CHECK(bench::read_records(folder / "none.jsonl").empty());
+  CHECK_THROWS_AS(bench::record_from(nlohmann::json::parse("{}")), InputError);
+}
+
+TEST_CASE("ratios are medians over questions; who is ahead is said") {
+  std::vector<bench::Record> records;
+  for (std::uint64_t q = 0; q < 3; ++q) {
+    records.push_back(answer("ours", q, bench::PoseClass::deep, 10));
+    records.push_back(answer("slow", q, bench::PoseClass::deep, q == 0 ? 1 : 70));
+    records.push_back(answer("fast", q, bench::PoseClass::deep, 5));
+  }
+  bench::Record dead = answer("dead", 0, bench::PoseClass::deep, 0);
+  dead.outcome = bench::Outcome::crashed;
+  records.push_back(dead);
+  const bench::PeerTable t =
+      bench::peer_table({made_up_set(3)}, {info("ours"), info("slow"), info("fast"), info("dead")}, records);
+  CHECK(t.find("set", "slow", bench::PoseClass::deep, Mode::all_pairs)->ratio == 7);
+  CHECK(t.find("set", "fast", bench::PoseClass::deep, Mode::all_pairs)->ratio == 0.5);
+  CHECK(t.find("set", "dead", bench::PoseClass::deep, Mode::all_pairs)->crashed == 1);
+  const std::string text = bench::in_brief(t);
+  CHECK(text.find("set, deep, 10 %, all pairs: fast 2.00x") != std::string::npos);
+  CHECK(text.find("slow 0") == std::string::npos);
+  CHECK(text.find("crash") != std::string::npos);
+}
+
+TEST_CASE("errors of a contact region: none for the exact list, the worst for nothing, between for a part") {
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1));
+  const Pose p = Pose::translation({1.2, 0.1, 0});
+  const auto pairs = bench::exact_pairs(a, Pose{}, a, p);
+  REQUIRE(pairs.size() > 10);
+  bench::RegionMaker maker(a, Pose{}, a, p);
+  const bench::Region exact = maker.of_pairs(pairs);
+  const bench::RegionError none = bench::region_error(exact, maker.of_pairs(pairs), 2);
+  CHECK(none.hausdorff == 0);
+  CHECK(none.length == 0);
+  CHECK(none.normal < 1e-6);
+  const bench::RegionError worst = bench::region_error(exact, maker.of_pairs({}), 2);
+  CHECK(worst.hausdorff == 1);
+  CHECK(worst.depth == 1);
+  const bench::RegionError part =
+      bench::region_error(exact, maker.of_pairs({pairs.begin(), pairs.begin() + 5}), 2);
+  CHECK(part.hausdorff > 0);
+  CHECK(part.hausdorff < 1);
+  CHECK(part.length > 0);
+  CHECK(bench::region_error(bench::of_points({}), bench::of_points({}), 2).hausdorff == 0);
+  CHECK(bench::region_error(bench::of_points({{0, 0, 0}}), bench::of_points({{1, 0, 0}}), 2).hausdorff ==
+        0.5);
+}
+
+TEST_CASE("how far points are off two bodies: both distances together") {
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1));
+  const Pose near = Pose::translation({1.2, 0.1, 0}), far = Pose::translation({10, 0, 0});
+  bench::RegionMaker maker(a, Pose{}, a, near);
+  const bench::Region exact = maker.of_pairs(bench::exact_pairs(a, Pose{}, a, near));
+  REQUIRE(exact.points.size() > 10);
+  CHECK(bench::BodyDistance(a, Pose{}, a, near).off(exact.points) < 1e-12);
+  CHECK(bench::BodyDistance(a, Pose{}, a, near).off({}) == 0);
+  // A point of A, whose nearest point of B is a vertex of it or not much nearer.
+  const Eigen::Vector3d x = a.vertices()[0];
+  double nearest = 1e9;
+  for (FaceId f = 0; f < a.real_face_count(); ++f)
+    for (const VertexId v : a.face(f)) nearest = std::min(nearest, (far.apply(a.vertices()[v]) - x).norm());
+  CHECK(bench::BodyDistance(a, Pose{}, a, far).off({x}) <= nearest);
+  CHECK(bench::BodyDistance(a, Pose{}, a, far).off({x}) > nearest - 0.1);
+}
+
+TEST_CASE(
+    "an answer to a tolerance is no further off than it says, and one pair that meets is off by nothing") {
+  const Folder folder;
+  const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
+  const auto entries = methods::registered_methods();
+  std::vector<bench::Record> records;
+  std::vector<methods::MethodInfo> infos;
+  for (const char* name : {"ours-tolerance", "ours-one-pair"}) {
+    const methods::MethodEntry& entry = methods::find_method(entries, name);
+    infos.push_back(entry.info);
+    bench::BenchRunner runner(entry, entry.info.knob.empty() ? std::nullopt : std::optional(0.1), set, true);
+    for (std::uint64_t q = 0; q < set.questions.size(); ++q) records.push_back(runner.ask(q));
+  }
+  bool any_off = false;
+  for (const bench::Point& p : bench::measure_points({set}, infos, records)) {
+    CAPTURE(p.method);
+    const double off = *p.errors[static_cast<std::size_t>(bench::Metric::off)];
+    REQUIRE(p.proved_off);
+    CHECK(off <= *p.proved_off + 1e-12);
+    CHECK(*p.errors[static_cast<std::size_t>(bench::Metric::contact)] == 0);
+    if (p.method == "ours-one-pair") CHECK(*p.proved_off == 0);
+    any_off |= off > 1e-6;
+  }
+  CHECK(any_off);
+}
+
+TEST_CASE("points: what fails scores the worst, and the frontier is what nothing beats in both") {
+  const Folder folder;
+  const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
+  std::vector<methods::MethodInfo> infos = {info("right"), info("blind"), info("dead"), info("slow"),
+                                            info("told")};
+  infos.back().told_more = true;
+  std::vector<bench::Record> records;
+  for (std::uint64_t q = 0; q < set.questions.size(); ++q)
+    for (const methods::MethodInfo& m : infos) {
+      bench::Record r = answer(m.name, q, set.questions[q].pose_class,
+                               m.name == "slow"    ? 9
+                               : m.name == "blind" ? 1
+                               : m.name == "told"  ? 0.5
+                                                   : 2);
+      r.set = set.name;
+      if (m.name != "blind") r.all.pairs = set.questions[q].expected;
+      r.all.contact = !r.all.pairs.empty();
+      if (m.name == "right" || (m.name == "slow" && q > 0)) r.all.error_bound = 0.25 * set.diagonal;
+      if (m.name == "dead") r.outcome = bench::Outcome::timed_out;
+      records.push_back(r);
+    }
+  std::size_t seen = 0;
+  const bench::PoseClass first_class = set.questions[0].pose_class;
+  for (const bench::Point& p : bench::measure_points({set}, infos, records)) {
+    const bool meets = p.pose_class != bench::PoseClass::apart;
+    CHECK(p.proved_off.has_value() ==
+          (p.method == "right" || (p.method == "slow" && p.pose_class != first_class)));
+    if (p.method == "told") CHECK_FALSE(p.frontier);  // it knew more
+    if (p.method == "right") {
+      CHECK(*p.proved_off == doctest::Approx(0.25));
+      CHECK(p.error() == 0);
+      CHECK(p.frontier == meets);  // apart, to see nothing is as right, and faster
+    }
+    if (p.method == "slow") CHECK_FALSE(p.frontier);
+    if (p.method == "blind") {
+      CHECK(p.error() == (meets ? 1 : 0));
+      CHECK(p.frontier);
+    }
+    if (p.method == "dead") {
+      CHECK(p.error() == 1);
+      CHECK(p.failed() == p.questions);
+      CHECK(*p.errors[static_cast<std::size_t>(bench::Metric::recall)] == 1);
+      CHECK_FALSE(p.frontier);
+    }
+    ++seen;
+  }
+  CHECK(seen == 5 * bench::classes_of(bench::Quantity::pairs).size());
+}
+
+TEST_CASE("a sphere tree misses nothing, and is closer to the truth at deeper levels") {
+  const auto spheres = methods::find_method(methods::registered_methods(), "spheres").make();
+  const LrbRep a = build_lrb(shapes::torus(32, 12));  // far from its own outermost sphere
+  const auto body_a = spheres->build(a), body_b = spheres->build(a);
+  shapes::RandomEngine random(7);
+  std::size_t wolves[2] = {0, 0}, met = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Pose p = shapes::random_pose(random, a, a, 0.3 + 0.01 * i);
+    const bool meets = !bench::exact_pairs(a, Pose{}, a, p).empty();
+    met += meets;
+    int k = 0;
+    for (const double level : {2.0, 20.0}) {
+      spheres->set(level);
+      const auto answer = spheres->query(*body_a, Pose{}, *body_b, p, Mode::all_pairs);
+      CHECK((answer.contact || !meets));
+      wolves[k++] += answer.contact && !meets;
+    }
+  }
+  CHECK(met > 0);
+  CHECK(wolves[1] < wolves[0]);
+}
+
+TEST_CASE("the commands: records, table, charts; what is there is not asked again") {
+  const Folder folder;
+  const std::vector<std::string> bench = {"bench", "--faces",  "320",           "--poses", "1", "--method",
+                                          "ours",  "--method", "ours-floating", "-o",      "b"};
+  const auto first = run(folder, bench);
+  CHECK(first.code == 0);
+  CHECK(first.out.find("ours-floating") != std::string::npos);
+  const std::string records = slurp(folder / "b/records.jsonl");
+  CHECK(std::count(records.begin(), records.end(), '\n') == 3 * 5 * 2);
+  CHECK(run(folder, bench).code == 0);
+  CHECK(slurp(folder / "b/records.jsonl") == records);
+
+  const auto chart = run(folder, {"chart", "--faces", "320", "--poses", "1", "--method", "ours", "--method",
+                                  "spheres", "--no-scenes", "-o", "c"});
+  CHECK(chart.code == 0);
+  CHECK(slurp(folder / "c/index.html").find("sphere tree") != std::string::npos);
+  const std::string points = slurp(folder / "c/points.jsonl");
+  CHECK(std::count(points.begin(), points.end(), '\n') == 3 * 5 * 7);
+  CHECK(run(folder, {"chart", "draw", "-o", "nothing"}).code == 2);
+  CHECK(run(folder, {"bench", "--method", "nobody", "-o", "b"}).code == 2);
+}
+
+TEST_CASE("numbers are judged by how far they are off what is known, in diagonals or parts of the motion") {
+  const auto error = [](Quantity quantity, double known, const bench::Record& r) {
+    bench::DataSet set;
+    set.name = r.set;
+    set.quantity = quantity;
+    set.diagonal = 2;
+    set.questions.resize(1);
+    set.questions[0].number = {known, known};
+    return bench::measure_points({set}, {info("some")}, {r}).at(0);
+  };
+  const auto said = [](double lower, double upper) {
+    bench::Record r = answer("some", 0, bench::PoseClass::apart, 3);
+    r.all.lower = lower;
+    r.all.upper = upper;
+    if (upper > lower) r.all.error_bound = upper - lower;
+    return r;
+  };
+  CHECK(error(Quantity::distance, 1, said(1, 1)).error() == 0);
+  CHECK(error(Quantity::distance, 1, said(0.5, 1.5)).error() == 0.25);
+  CHECK(*error(Quantity::distance, 1, said(0.5, 1.5)).proved_off == 0.5);
+  CHECK_FALSE(error(Quantity::distance, 1, said(0.5, 0.5)).proved_off);
+  CHECK(error(Quantity::distance, 1, said(0, 1e300)).error() == 1);
+  CHECK(error(Quantity::first_contact, 0.5, said(0.25, 0.25)).error() == 0.25);
+  CHECK(error(Quantity::first_contact, 0.5, said(2, 2)).error() == 1);
+  CHECK(error(Quantity::first_contact, 2, said(0.9, 0.9)).error() == 1);
+  CHECK(error(Quantity::first_contact, 2, said(2, 2)).error() == 0);
+  bench::Record dead = said(1, 1);
+  dead.outcome = bench::Outcome::crashed;
+  CHECK(error(Quantity::depth, 1, dead).error() == 1);
+  const bench::Point p = error(Quantity::depth, 1, said(1, 1));
+  CHECK(p.frontier);
+  CHECK(p.errors[static_cast<std::size_t>(Metric::penetration)].has_value());
+}
+
+TEST_CASE(
+    "a data set of numbers is the same when it is read again, and is whole when all numbers are known") {
+  const Folder folder;
+  bench::DataSet set = made_up_set(2);
+  set.quantity = Quantity::first_contact;
+  set.questions[1].from = {1, 2, 0.1};
+  set.questions[1].to = {-1, -2, 0.3};
+  set.questions[1].number = {0.25, 0.5};
+  const bench::DataSet again = bench::read_data_set(bench::write_data_set(set, folder.path.string()));
+  CHECK(again.quantity == set.quantity);
+  CHECK(again.questions[1].from == set.questions[1].from);
+  CHECK(again.questions[1].to == set.questions[1].to);
+  CHECK(again.questions[1].number->most == 0.5);
+  CHECK_FALSE(again.questions[0].number);
+  CHECK_FALSE(bench::is_complete(again));
+  set.questions[0].number = {2, 2};
+  CHECK(bench::is_complete(set));
+}
+
+TEST_CASE("chart --quantity: the right answers, records, points and a page for each number") {
+  const Folder folder;
+  const auto chart = [&](const std::string& quantity, std::vector<std::string> more = {}) {
+    std::vector<std::string> words = {"chart", "--quantity", quantity, "--faces", "80", "--poses", "1"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(folder, words);
+  };
+  const auto lines = [&](const std::string& file) {
+    const std::string text = slurp(folder / file);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  CHECK(chart("distance", {"--no-scenes", "--method", "ours", "--method", "ours-within"}).code == 0);
+  CHECK(lines("out/chart-distance/points.jsonl") == 3 * 4 * (5 + 1));
+  CHECK(slurp(folder / "out/chart-distance/index.html").find("error of the distance / diagonal") !=
+        std::string::npos);
+  CHECK(chart("first_contact", {"--no-scenes", "--method", "sampled-10"}).code == 0);
+  CHECK(lines("out/chart-first_contact/points.jsonl") == 3 * 3);
+  CHECK(chart("depth", {"--method", "ours"}).code == 0);
+  for (const bench::Record& r : bench::read_records(folder / "out/chart-depth/records.jsonl"))
+    CHECK(*r.all.lower <= *r.all.upper);
+  CHECK(slurp(folder / "out/chart-depth/index.html").find("scenes/rocks-80-depth-deep/index.html") !=
+        std::string::npos);
+  CHECK(chart("length").code == 2);
+}

@@ -1,0 +1,146 @@
+// Numbers in the stability experiment: what rational arithmetic says is right, how answers are judged, and
+// that ours are.
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "bench/quantities/number_method.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/program.hpp"
+#include <lrbscope/error.hpp>
+
+using namespace lrb;
+using namespace lrb::stability;
+
+namespace {
+
+cases::Case boxes(const Eigen::Vector3d& shift) {
+  cases::Case c;
+  c.a = c.b = cases::body(shapes::box());
+  c.pose_b = Pose::translation(shift);
+  return c;
+}
+
+void check_number(Quantity quantity, const cases::Case& c, double right) {
+  const RightAnswer e = true_number(quantity, c);
+  REQUIRE(e.refusal == "");
+  CHECK(*e.least <= right);
+  CHECK(*e.most >= right);
+  CHECK(*e.most - *e.least <= 1e-15 * right);
+}
+
+const NumberMethod& ours(Quantity quantity) {
+  static const std::vector<NumberMethod> kMethods = own_number_methods();
+  for (const NumberMethod& m : kMethods)
+    if (m.quantity == quantity && m.info.name == "ours") return m;
+  throw InputError("ours is not there");
+}
+
+Outcome judged(Quantity quantity, double lower, double upper, double least, double most, bool proves) {
+  NumberMethod method;
+  method.quantity = quantity;
+  method.proves = proves;
+  RightAnswer e;
+  e.least = least;
+  e.most = most;
+  Record r;
+  judge_number(r, method, {lower, upper, 0}, e, 1);
+  return r.outcome;
+}
+
+}  // namespace
+
+TEST_CASE("true numbers of two boxes") {
+  check_number(Quantity::distance, boxes({4, 5, 0.5}), 5);
+  check_number(Quantity::distance, boxes({1, 0, 0}), 0);
+  check_number(Quantity::distance, boxes({0.5, 0.5, 0.5}), 0);
+  check_number(Quantity::depth, boxes({0.75, 0.25, 0.5}), 0.25);
+  check_number(Quantity::depth, boxes({1, 0.25, 0.5}), 0);
+  cases::Case large = boxes({0.5, 0.5, 0.5});
+  large.b = cases::body(shapes::l_shape());
+  CHECK(true_number(Quantity::depth, large).refusal.find("more than 20 triangles") != std::string::npos);
+  CHECK(!true_number(Quantity::depth, large).least);
+}
+
+TEST_CASE("B meets A at the time at which an exact query finds it") {
+  const cases::Case c = boxes({0.25, 0.5, 0.875});
+  const RightAnswer e = true_number(Quantity::first_contact, c);
+  const Asked q = asked(c);
+  const double gap = q.from.z() + 0.875 - 1, way = q.from.z() - q.to.z();  // from above, face on face
+  const double by_x = q.from.x() + 0.25 - 1, by_y = q.from.y() + 0.5 - 1;
+  REQUIRE(gap > 0);
+  REQUIRE(by_x + gap / way * (q.to.x() - q.from.x()) < 0);
+  REQUIRE(by_y + gap / way * (q.to.y() - q.from.y()) < 0);
+  CHECK(*e.least <= gap / way * (1 + 1e-15));
+  CHECK(*e.most >= gap / way * (1 - 1e-15));
+}
+
+TEST_CASE("judging numbers") {
+  const auto distance = [](double lower, double upper, double right, bool proves) {
+    return judged(Quantity::distance, lower, upper, right, right, proves);
+  };
+  CHECK(distance(1, 1.1, 1.05, true) == Outcome::right);
+  CHECK(distance(1, 1.1, 1.2, true) == Outcome::wrong);
+  CHECK(distance(1, 1.1, 0.9, true) == Outcome::wrong);
+  CHECK(distance(1, 1, 1 + 1e-7, false) == Outcome::right);
+  CHECK(distance(1, 1, 1 + 1e-5, false) == Outcome::wrong);
+  CHECK(distance(0, 0, 1e-16, false) == Outcome::wrong);
+  CHECK(distance(1e-16, 1e-16, 0, false) == Outcome::wrong);
+  CHECK(distance(0, 0, 0, false) == Outcome::right);
+  CHECK(judged(Quantity::first_contact, kNever, kNever, 0.5, 0.5, false) == Outcome::wrong);
+  CHECK(judged(Quantity::first_contact, 0.5, 0.5, kNever, kNever, false) == Outcome::wrong);
+  CHECK(judged(Quantity::first_contact, kNever, kNever, kNever, kNever, false) == Outcome::right);
+  CHECK(judged(Quantity::first_contact, 0.5, 0.5, 0.5005, 0.5005, false) == Outcome::right);
+  CHECK(judged(Quantity::first_contact, 0.5, 0.5, 0.51, 0.51, false) == Outcome::wrong);
+}
+
+TEST_CASE("our numbers are right from benign to degenerate") {
+  int right = 0;
+  for (const Quantity quantity : {Quantity::distance, Quantity::first_contact, Quantity::depth})
+    for (const char* name : {"kiss", "sliver", "thin", "far", "scale"})
+      for (const int dial : {0, 6, 10}) {
+        CAPTURE(name);
+        CAPTURE(dial);
+        CAPTURE(name_of(quantity));
+        const cases::Case c = cases::make_case(*cases::find_family(name), 3, dial, 0);
+        Record r;
+        ask_number(ours(quantity), c, true_number(quantity, c), r);
+        CAPTURE(r.relation);
+        CAPTURE(r.expected_relation);
+        CHECK((r.outcome == Outcome::right || r.outcome == Outcome::refused));
+        right += r.outcome == Outcome::right;
+      }
+  CHECK(right > 20);
+}
+
+// However short a span of time is, more pairs may stay near than the search looks for at first.
+TEST_CASE("a needle that passes many triangles is decided") {
+  for (const int dial : {2, 5, 10}) {
+    CAPTURE(dial);
+    const cases::Case c = cases::make_case(*cases::find_family("sliver"), 1, dial, 1);
+    Record r;
+    ask_number(ours(Quantity::first_contact), c, true_number(Quantity::first_contact, c), r);
+    CHECK(r.outcome == Outcome::right);
+  }
+}
+
+TEST_CASE("lrbscope stability --quantity: table, records, a case again, a quantity that is none") {
+  setenv("LRBSCOPE_METHODS", LRBSCOPE_FOLDER, 1);
+  const test::Folder folder;
+  const std::vector<std::string> kiss = {"stability", "--quantity", "distance", "--family", "kiss",
+                                         "--method",  "ours",       "--cases",  "1"};
+  test::Outcome o = test::run(folder, kiss);
+  CHECK(o.code == 0);
+  CHECK(o.out.find("out/stability-distance/records.jsonl\n") != std::string::npos);
+  CHECK(test::slurp(folder / "out/stability-distance/index.html").find("how far are their surfaces apart") !=
+        std::string::npos);
+  std::vector<std::string> again = kiss;
+  again.insert(again.end(), {"--dial", "3", "--only", "0"});
+  o = test::run(folder, again);
+  CHECK(o.code == 0);
+  CHECK(o.out.find("kiss, dial 3, case 0, ours: right\n  distance: ") == 0);
+  o = test::run(folder, {"stability", "--quantity", "length"});
+  CHECK(o.code == 2);
+  CHECK(o.error_lines() == 1);
+  unsetenv("LRBSCOPE_METHODS");
+}

@@ -1,0 +1,395 @@
+#include "bench/stability/stability_report.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "bench/stability/case_picture.hpp"
+#include "bench/stability/outcome_grid.hpp"
+#include "bench/stability/stability_print.hpp"
+#include "bench/stability/worst_case.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/report/gnuplot.hpp"
+#include "tests/stability/made_up_grid.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/text.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/render/style.hpp>
+
+using namespace lrb;
+using lrb::test::count;
+using namespace lrb::stability;
+
+namespace {
+
+std::string scratch_folder(const std::string& name) {
+  static const test::Folder all;
+  const auto path = all.path / name;
+  std::filesystem::create_directories(path);
+  return path.string();
+}
+
+/// Names an element that is not closed in order; empty: all are.
+std::string unbalanced(const std::string& markup) {
+  static const std::set<std::string> kVoid = {"meta", "link", "img", "br", "input", "wbr"};
+  std::vector<std::string> open;
+  std::size_t at = 0;
+  while ((at = markup.find('<', at)) != std::string::npos) {
+    std::size_t end = at + 1;
+    for (char quote = 0; end < markup.size() && (quote != 0 || markup[end] != '>'); ++end)
+      if (quote != 0 ? markup[end] == quote : markup[end] == '"') quote = quote != 0 ? 0 : '"';
+    const std::string tag = markup.substr(at + 1, end - at - 1);
+    at = end;
+    if (tag[0] == '!' || tag[0] == '?') continue;
+    const std::string name =
+        tag.substr(tag[0] == '/' ? 1 : 0, tag.find_first_of(" \n\t/>", 1) - (tag[0] == '/' ? 1 : 0));
+    if (tag[0] == '/') {
+      if (open.empty() || open.back() != name) return "/" + name;
+      open.pop_back();
+    } else if (tag.back() != '/' && !kVoid.contains(name)) {
+      open.push_back(name);
+      // What is in these is no markup.
+      if (name == "script" || name == "style") at = markup.find("</" + name, at);
+    }
+  }
+  return open.empty() ? "" : open.back();
+}
+
+std::map<std::uint32_t, int> colours(const render::Image& image) {
+  std::map<std::uint32_t, int> out;
+  for (const render::Rgba& p : image.pixels()) ++out[(p.r << 16U) | (p.g << 8U) | p.b];
+  return out;
+}
+
+/// Pixels of exactly this colour below the title and above the legend.
+int pixels_of(const render::Image& image, render::Rgba c) {
+  render::Image middle(image.width(), image.height() - 180);
+  for (int y = 0; y < middle.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) middle.at(x, y) = image.at(x, y + 90);
+  return colours(middle)[(c.r << 16U) | (c.g << 8U) | c.b];
+}
+
+cases::Body made(const Mesh& mesh) {
+  return cases::body(mesh);
+}
+
+cases::Case boxes(double scale = 1, const Eigen::Vector3d& by = Eigen::Vector3d::Zero()) {
+  cases::Case c;
+  c.a = made(shapes::scaled(shapes::box(), scale));
+  c.b = made(shapes::scaled(shapes::l_shape(), scale));
+  c.pose_a = Pose::translation(by);
+  c.pose_b = Pose::translation(by + scale * Eigen::Vector3d(0.5, 0.25, 0.75));
+  return c;
+}
+
+render::Image picture(const cases::Case& c, std::size_t drop = 2, bool with_extra = true) {
+  static render::Rasterizer rasterizer;
+  const std::vector<SimplexPair> expected = brute_force(*c.a, c.pose_a, *c.b, c.pose_b).pairs;
+  REQUIRE(expected.size() > drop);
+  std::vector<SimplexPair> answered(expected.begin() + static_cast<std::ptrdiff_t>(drop), expected.end());
+  const std::set<SimplexPair> known(expected.begin(), expected.end());
+  for (SimplexId a = 0; with_extra && a < c.a->real_simplex_count(); ++a)
+    if (!known.contains({a, 1})) {
+      answered.push_back({a, 1});
+      break;
+    }
+  return worst_case_picture(c, expected, answered, {"title", "wrong", {}}, rasterizer);
+}
+
+/// Share of pixels that clearly differ.
+double differing(const render::Image& a, const render::Image& b) {
+  REQUIRE(a.pixels().size() == b.pixels().size());
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < a.pixels().size(); ++i) {
+    const render::Rgba p = a.pixels()[i], q = b.pixels()[i];
+    n += std::abs(p.r - q.r) + std::abs(p.g - q.g) + std::abs(p.b - q.b) > 60;
+  }
+  return static_cast<double>(n) / static_cast<double>(a.pixels().size());
+}
+
+/// For one test: another gnuplot, or none.
+struct GnuplotIs {
+  explicit GnuplotIs(const char* program) { setenv("LRB_GNUPLOT", program, 1); }
+  ~GnuplotIs() { unsetenv("LRB_GNUPLOT"); }
+};
+
+}  // namespace
+
+TEST_CASE("the page is whole, and fetches nothing") {
+  const std::string folder = scratch_folder("page");
+  const Grid grid = made_up_grid();
+  ReportOptions options;
+  options.command = [](const Record& r) { return "show <" + r.family + ">"; };
+  options.pictures.resize(grid.cells.size());
+  render::write_png(render::Image(8, 8, render::palette::kBlue), folder + "/first.png");
+  options.pictures[1] = "first.png";
+  const std::string html = report::page_html(stability_page(grid, folder, options));
+  CHECK(unbalanced(html) == "");
+  CHECK(html.find("http:") == std::string::npos);
+  CHECK(html.find("https:") == std::string::npos);
+  CHECK(html.find("@import") == std::string::npos);
+  CHECK_FALSE(std::regex_search(html, std::regex("url\\(")));
+  CHECK(count(html, "<img src=\"data:image/png;base64,") == 1);
+  CHECK(count(html, "<img src=") == 1);
+}
+
+TEST_CASE("dials have their physical values on page and charts") {
+  const Grid grid = made_up_grid();
+  const auto family = [&](const char* name) {
+    return std::find_if(grid.families.begin(), grid.families.end(),
+                        [&](const FamilyRow& f) { return f.name == name; });
+  };
+  REQUIRE(family("shared") != grid.families.end());
+  const std::vector<std::string>& off = family("shared")->values;
+  REQUIRE(off.size() == cases::kDialSettings);
+  CHECK(off[0] == "0.1");  // as slack() has it
+  CHECK(off[3] == "1e-6");
+  CHECK(off[9] == "1e-16");
+  CHECK(off[10] == "0");
+  CHECK(family("far")->values[10] == "1e16");
+  const std::string html = report::page_html(stability_page(grid, ".", {}));
+  CHECK(html.find(">1e-6</i>") != std::string::npos);
+  CHECK(html.find("of 0 to 10 (1e-11)") != std::string::npos);
+  CHECK(profile_chart(grid).script.find("'1e-11' 6") != std::string::npos);
+}
+
+TEST_CASE("the page has every cell, every mark and every worst case") {
+  const Grid grid = made_up_grid();
+  const std::string html = report::page_html(stability_page(grid, ".", {}));
+  const std::size_t families = grid.families.size(), methods = grid.methods.size();
+  CHECK(count(html, "<td ") == (families + 1) * (methods - 1));  // one is absent, and named
+  CHECK(html.find("1 method is not installed here: Bullet 3.24, GImpact.") != std::string::npos);
+  std::size_t worst = 0, crashed = 0, timed_out = 0, refused = 0;
+  for (const Cell& c : grid.cells) {
+    const CellSummary s = summarise(c);
+    worst += c.worst ? 1 : 0;
+    crashed += s.crashed > 0;
+    timed_out += s.timed_out > 0;
+    refused += s.refused > 0;
+  }
+  CHECK(count(html, "<dialog ") == worst);
+  CHECK(count(html, "href=\"#case-") == worst);
+  // One more for the sums of each method that has any: CGAL, FCL, and ours with FCL in float.
+  CHECK(count(html, "class=\"mark crashed\"") == crashed + 1);
+  CHECK(count(html, "class=\"mark timed-out\"") == timed_out + 1);
+  CHECK(count(html, "class=\"mark refused\"") == refused + 2);
+  for (const char* what : {"wrong answer", "crashed", "timed out", "refused", "refusals alone"})
+    CHECK(html.find(what) != std::string::npos);
+  for (std::size_t m = 0; m < methods; ++m)  // the sums too
+    if (grid.methods[m].present) {
+      const CellSummary s = summarise(sum_of_column(grid, m));
+      CHECK(html.find("all families \u00d7 ") != std::string::npos);
+      CHECK(s.cases == families * cases::kDialSettings * 30);
+    }
+}
+
+TEST_CASE("names are escaped, and their addresses are plain") {
+  Grid grid = made_up_grid();
+  grid.methods[1].name = "a\"><script>x";
+  grid.methods[1].title = "<script>alert(1)</script>";
+  const std::string html = report::page_html(stability_page(grid, ".", {}));
+  CHECK(html.find("<script>alert") == std::string::npos);
+  CHECK(html.find("<b>&\"quoted\"") == std::string::npos);
+  CHECK(html.find("&lt;b&gt;&amp;") != std::string::npos);
+  CHECK(unbalanced(html) == "");
+  const std::regex sheet("<dialog [^>]*id=\"([^\"]*)\"");
+  for (std::sregex_iterator i(html.begin(), html.end(), sheet), end; i != end; ++i)
+    CHECK(std::regex_match((*i)[1].str(), std::regex("[A-Za-z0-9-]+")));
+}
+
+TEST_CASE("refusals are no failures, and first failures are found along the dial") {
+  Cell c;
+  c.cases.fill(10);
+  c.refused[3] = 10;
+  CHECK(summarise(c).failures() == 0);
+  CHECK(summarise(c).only_refused());
+  c.timed_out[7] = 1;
+  c.crashed[9] = 2;
+  c.wrong[10] = 3;
+  const CellSummary s = summarise(c);
+  CHECK(s.failures() == 6);
+  CHECK(s.first_failing == 7);
+  CHECK(s.level() == 2);
+  CHECK_FALSE(s.only_refused());
+}
+
+TEST_CASE("a grid that does not fit together is refused") {
+  Grid grid = made_up_grid();
+  grid.cells.pop_back();
+  CHECK_THROWS_AS(stability_page(grid, ".", {}), InputError);
+}
+
+TEST_CASE("without gnuplot there is the page, and one line on what is missing") {
+  const GnuplotIs none("lrbscope-has-no-such-program");
+  const std::string folder = scratch_folder("no_gnuplot");
+  const ReportFiles files = write_stability_report(made_up_grid(), folder);
+  CHECK(files.written == std::vector<std::string>{"index.html"});
+  CHECK(files.missing.find("gnuplot-nox") != std::string::npos);
+  CHECK(files.missing.find('\n') == std::string::npos);
+  CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
+  CHECK_FALSE(report::has_gnuplot());
+}
+
+TEST_CASE("the charts are drawn, and texts in them are no commands" * doctest::skip(!report::has_gnuplot())) {
+  const std::string folder = scratch_folder("charts");
+  Grid grid = made_up_grid();
+  grid.methods[0].title = "it's `touch " + folder + "/ran` <& @x $y \\n \"q\" ";
+  grid.families[0].name = "`touch " + folder + "/ran`'; system('touch " + folder + "/ran')";
+  const ReportFiles files = write_stability_report(grid, folder);
+  CHECK(files.missing == "");
+  CHECK_FALSE(std::filesystem::exists(folder + "/ran"));
+  for (const char* name : {"stability.svg", "stability-profiles.svg"}) {
+    const std::string svg = io::read_text(folder + "/" + name);
+    CHECK(unbalanced(svg) == "");
+    CHECK(svg.find("&lt;&amp;") != std::string::npos);
+    CHECK(svg.find("coplanar") != std::string::npos);
+  }
+  const std::string svg = io::read_text(folder + "/stability.svg");
+  CHECK(count(svg, "not installed here: Bullet") == 1);
+  // A crash, a time-out and a refusal have their marks.
+  for (const char* mark : {"\u2715", "\u25f7", "\u2298"}) CHECK(count(svg, mark) > 1);
+  const render::Image png = render::read_png(folder + "/stability.png").image;
+  CHECK(png.width() > 1500);
+  const auto found = colours(png);
+  CHECK(found.contains(0xd55e00));
+  CHECK(found.contains(0x14161a));
+  CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 5);  // nothing is left behind
+}
+
+TEST_CASE("gnuplot's complaint comes back in one line" * doctest::skip(!report::has_gnuplot())) {
+  const std::string path = scratch_folder("complaint") + "/chart.svg";
+  report::Gnuplot chart;
+  chart.script = "plot nonsense(\n";
+  try {
+    report::draw(chart, path);
+    FAIL("no error");
+  } catch (const EnvironmentError& e) {
+    CHECK(std::string(e.what()).find("chart.svg") != std::string::npos);
+    CHECK(std::string(e.what()).find('\n') == std::string::npos);
+  }
+  CHECK_FALSE(std::filesystem::exists(path));
+  chart.script = "plot x\n";
+  CHECK_THROWS_AS(report::draw(chart, path + ".gif"), InputError);
+}
+
+TEST_CASE("a 2D picture has exactly the colours of its marks") {
+  cases::Case c;
+  c.a = made(shapes::l_shape_2d());
+  c.b = c.a;
+  c.pose_b = Pose::translation({0.5, 0.25, 0});
+  const render::Image all = picture(c, 1, true);
+  CHECK(pixels_of(all, found_colour()) > 100);
+  CHECK(pixels_of(all, missed_colour()) > 100);
+  CHECK(pixels_of(all, extra_colour()) > 100);
+  const render::Image right = picture(c, 0, false);
+  CHECK(pixels_of(right, found_colour()) > 100);
+  CHECK(pixels_of(right, missed_colour()) == 0);
+  CHECK(pixels_of(right, extra_colour()) == 0);
+}
+
+TEST_CASE("size and place of the world do not show in the picture") {
+  const render::Image here = picture(boxes());
+  CHECK(here == picture(boxes(0x1p-400)));
+  CHECK(here == picture(boxes(0x1p900)));
+  // Far away the close-up's box is rounded: edges may move by a fraction of a pixel.
+  CHECK(differing(here, picture(boxes(1, {0x1p40, -0x1p40, 0x1p30}))) < 0.002);
+  CHECK(differing(here, picture(boxes(), 3)) > 0.01);
+}
+
+TEST_CASE("what is missed is seen beside a body 1e60 times as large") {
+  cases::Case c = boxes(1e-60);
+  c.b = made(shapes::box({-1, -1, 0}, {1, 1, 1}));
+  c.pose_b = Pose::translation({0, 0, 0.5e-60});
+  const render::Image image = picture(c, 2, false);
+  int red = 0;
+  for (int y = 90; y < image.height() - 90; ++y)
+    for (int x = image.width() / 2 + 10; x < image.width(); ++x) {  // the close-up
+      const render::Rgba p = image.at(x, y);
+      red += p.r > 100 && p.r > 2 * p.g && p.r > p.b + 40;
+    }
+  CHECK(red > 1000);
+}
+
+TEST_CASE("what cannot be drawn is refused") {
+  render::Rasterizer rasterizer;
+  cases::Case c = boxes();
+  c.pose_a.t.x() = std::numeric_limits<double>::infinity();
+  CHECK_THROWS_AS(worst_case_picture(c, {}, std::nullopt, {}, rasterizer), InputError);
+  c = boxes();
+  const std::vector<SimplexPair> wild = {{0, 99999}};
+  CHECK_THROWS_AS(worst_case_picture(c, wild, std::nullopt, {}, rasterizer), InputError);
+}
+
+TEST_CASE("every cell that failed gets a picture, and the old ones go") {
+  const std::string folder = scratch_folder("worst");
+  std::filesystem::create_directories(folder + "/worst");
+  io::write_text(folder + "/worst/of-an-earlier-run.png", "old");
+  Grid grid = made_up_grid();
+  for (std::size_t i = 0; i < grid.cells.size(); ++i)
+    if (i / grid.methods.size() > 2) grid.cells[i].worst.reset();  // few are enough
+  grid.cells[1].worst->family = "none of ours";
+  std::size_t asked = 0;
+  const std::vector<std::string> pictures = draw_worst_cases(grid, folder, [&](const Record& r) {
+    ++asked;
+    const cases::Case c = cases::make_case(*cases::find_family(r.family), r.seed, r.dial, r.case_index);
+    return AnsweredPairs{brute_force(*c.a, c.pose_a, *c.b, c.pose_b).pairs, Pairs{}};
+  });
+  REQUIRE(pictures.size() == grid.cells.size());
+  std::size_t drawn = 0;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    CHECK(pictures[i].empty() == (!grid.cells[i].worst || i == 1));
+    if (!pictures[i].empty()) CHECK(render::read_png(folder + "/" + pictures[i]).image.width() > 1000);
+    drawn += pictures[i].empty() ? 0 : 1;
+  }
+  CHECK(drawn > 5);
+  CHECK(asked == drawn);
+  CHECK_FALSE(std::filesystem::exists(folder + "/worst/of-an-earlier-run.png"));
+}
+
+TEST_CASE("every family's cases can be drawn at both ends of the dial") {
+  render::Rasterizer rasterizer;
+  for (const cases::Family& family : cases::all_families())
+    for (const int dial : {0, cases::kDialSettings - 1}) {
+      CAPTURE(family.name);
+      const cases::Case c = cases::make_case(family, 5, dial, 0);
+      std::vector<SimplexPair> pairs;
+      bool drawable = true;
+      try {
+        pairs = brute_force(*c.a, c.pose_a, *c.b, c.pose_b).pairs;
+      } catch (const InputError&) {
+        drawable = false;  // beyond the range of coordinates: a refusal, drawn if its vertices are finite
+      }
+      const auto draw_it = [&] {
+        return worst_case_picture(c, pairs, std::nullopt, {"t", "", {}}, rasterizer);
+      };
+      if (drawable)
+        CHECK_NOTHROW(draw_it());
+      else
+        try {
+          draw_it();
+        } catch (const InputError&) {
+        }
+    }
+}
+
+TEST_CASE("a case is the same every time, and follows seed, index and dial") {
+  const cases::Family& family = *cases::find_family("sliver");
+  const auto hash = [&](std::uint64_t seed, int dial, std::uint64_t index) {
+    const cases::Case c = cases::make_case(family, seed, dial, index);
+    return std::pair(c.a->hash() ^ c.b->hash(), c.pose_b.t.x());
+  };
+  CHECK(hash(1, 4, 7) == hash(1, 4, 7));
+  CHECK(hash(1, 4, 7) != hash(2, 4, 7));
+  CHECK(hash(1, 4, 7) != hash(1, 4, 8));
+  CHECK(hash(1, 4, 7) != hash(1, 5, 7));
+  CHECK_THROWS_AS(cases::make_case(family, 1, cases::kDialSettings, 0), InputError);
+  CHECK_THROWS_AS(cases::make_case(family, 1, -1, 0), InputError);
+}

@@ -1,0 +1,425 @@
+/// The stability experiment: what becomes of methods that misbehave, records, counting, and the command.
+
+#include <csignal>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include "bench/cases/families.hpp"
+#include "bench/rivals/triangles.hpp"
+#include "bench/stability/judge.hpp"
+#include "bench/stability/outcome_grid.hpp"
+#include "bench/stability/stability_experiment.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/program.hpp"
+#include <lrbscope/error.hpp>
+
+using namespace lrb;
+using namespace lrb::stability;
+using lrb::test::Folder;
+using lrb::test::run;
+using lrb::test::slurp;
+
+namespace {
+
+/// Set while it lives.
+struct Environment {
+  Environment(const char* n, const std::string& value) : name(n) { setenv(name, value.c_str(), 1); }
+  ~Environment() { unsetenv(name); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+  const char* name;
+};
+
+/// The workers, with methods that misbehave among them.
+struct Workers {
+  Environment where{"LRBSCOPE_METHODS", LRBSCOPE_FOLDER};
+  Environment fakes{"LRBSCOPE_FAKE_METHODS", "1"};
+};
+
+workers::WorkerMethod method(const std::string& name) {
+  for (const workers::WorkerMethod& m : workers::find_methods())
+    if (m.column.name == name) return m;
+  FAIL("no method " << name);
+  return {};
+}
+
+std::vector<Record> ask(const std::vector<std::string>& methods, std::uint64_t cases, double timeout = 20,
+                        unsigned jobs = 2) {
+  ExperimentOptions o;
+  o.families = {"shared", "identical"};
+  for (const std::string& name : methods) o.methods.push_back(method(name));
+  o.cases = cases;
+  o.dial = 10;
+  o.jobs = jobs;
+  o.timeout = timeout;
+  return run_experiment(o, {});
+}
+
+Record some_record() {
+  Record r;
+  r.family = "touch";
+  r.method = "fcl";
+  r.dial = 7;
+  r.case_index = 12;
+  r.seed = 18446744073709551615u;
+  r.outcome = Outcome::wrong;
+  r.expected = 5;
+  r.missed = 2;
+  r.extra = 1;
+  r.relation = "separate";
+  r.expected_relation = "touching";
+  r.microseconds = 0.25;
+  r.message = "a \"quoted\" word, and \n a line";
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("what becomes of a method that misbehaves") {
+  const Workers workers;
+  const auto outcome_of_contact = [](const std::string& name, double timeout) {
+    std::map<Outcome, int> with, without;
+    for (const Record& r : ask({name}, 6, timeout)) {
+      ++(r.expected > 0 ? with : without)[r.outcome];
+      if (r.outcome != Outcome::right && name != "fake-miss") CHECK(!r.message.empty());
+    }
+    CHECK(with.size() == 1);
+    CHECK(without.size() <= 1);
+    CHECK(without.count(Outcome::right) == without.size());
+    return with.begin()->first;
+  };
+  CHECK(outcome_of_contact("ours", 20) == Outcome::right);
+  CHECK(outcome_of_contact("fake-crash", 20) == Outcome::crashed);
+  CHECK(outcome_of_contact("fake-refuse", 20) == Outcome::refused);
+  CHECK(outcome_of_contact("fake-throw", 20) == Outcome::crashed);
+  CHECK(outcome_of_contact("fake-miss", 20) == Outcome::wrong);
+}
+
+TEST_CASE("a method that hangs on three cases in a row is not asked the others of its family") {
+  const Workers workers;
+  std::map<std::string, int> in_a_row, asked;
+  for (const Record& r : ask({"fake-hang"}, 12, 0.4)) {
+    const bool given_up = in_a_row[r.family] == 3, hung = r.outcome == Outcome::timed_out;
+    CHECK((r.message.compare(0, 9, "not asked") == 0) == given_up);
+    CHECK(hung == (given_up || r.expected > 0));
+    if (given_up) continue;
+    ++asked[r.family];
+    in_a_row[r.family] = hung ? in_a_row[r.family] + 1 : 0;
+  }
+  for (const char* family : {"shared", "identical"}) {
+    CHECK(in_a_row[family] == 3);
+    CHECK(asked[family] < 12);
+  }
+}
+
+TEST_CASE("every case has its record, in order, whatever died and however many ran at a time") {
+  const Workers workers;
+  const auto key = [](const Record& r) {
+    return r.family + " " + r.method + " " + std::to_string(r.dial) + " " + std::to_string(r.case_index) +
+           " " + std::string(name_of(r.outcome)) + " " + std::to_string(r.missed);
+  };
+  std::vector<std::string> expected;
+  for (const char* family : {"shared", "identical"})
+    for (const char* name : {"fake-crash", "plain", "fake-miss"})
+      for (int i = 0; i < 5; ++i)
+        expected.push_back(std::string(family) + " " + name + " 10 " + std::to_string(i));
+  const std::vector<Record> two = ask({"fake-crash", "plain", "fake-absent", "fake-miss"}, 5),
+                            one = ask({"fake-crash", "plain", "fake-absent", "fake-miss"}, 5, 20, 1);
+  REQUIRE(two.size() == expected.size());
+  REQUIRE(one.size() == expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    CHECK(key(two[i]).compare(0, expected[i].size(), expected[i]) == 0);
+    CHECK(key(one[i]) == key(two[i]));
+    CHECK(two[i].expected > 0);  // known even of those that died
+  }
+}
+
+TEST_CASE("a case asked again gives the same record, and its pairs") {
+  const Workers workers;
+  const std::vector<Record> all = ask({"fake-miss"}, 3);
+  const Replay again = replay(method("fake-miss"), "shared", 10, 2, 1, 20);
+  CHECK(again.record.missed == all[2].missed);
+  CHECK(again.record.expected == all[2].expected);
+  CHECK(again.expected.size() == all[2].expected);
+  REQUIRE(again.answered);
+  CHECK(again.answered->size() + all[2].missed == again.expected.size());
+  const Replay died = replay(method("fake-crash"), "shared", 10, 2, 1, 20);
+  CHECK(died.record.outcome == Outcome::crashed);
+  CHECK(died.record.message.find("signal 6") != std::string::npos);
+  CHECK(died.expected == again.expected);
+  CHECK(!died.answered);
+}
+
+TEST_CASE("a worker that is not there, or is no worker") {
+  const Folder folder;
+  const Environment where("LRBSCOPE_METHODS", folder.path.string());
+  CHECK_THROWS_AS(workers::find_methods(), EnvironmentError);
+  const test::Outcome o = run(folder, {"stability"});
+  CHECK(o.code == 3);
+  CHECK(o.out.empty());
+  CHECK(o.error_lines() == 1);
+  CHECK(o.err.find("lrbscope-methods: not found; it is built beside lrbscope") != std::string::npos);
+  CHECK(o.err.find("cmake --build --preset release --target lrbscope-workers)") != std::string::npos);
+  CHECK(folder.tree().empty());
+  std::filesystem::permissions(folder.write("lrbscope-methods", "#!/bin/sh\nexit 9\n"),
+                               std::filesystem::perms::owner_all);
+  CHECK_THROWS_AS(workers::find_methods(), EnvironmentError);
+}
+
+TEST_CASE("records survive their file") {
+  const Folder folder;
+  Record plain;
+  plain.family = "plane";
+  plain.method = "cgal";
+  plain.outcome = Outcome::refused;
+  const std::string text = to_lines({some_record(), plain});
+  const std::vector<Record> back = read_records(folder.write("records.jsonl", text));
+  REQUIRE(back.size() == 2);
+  CHECK(to_lines(back) == text);
+  CHECK(back[0].seed == 18446744073709551615u);
+  CHECK(back[0].message == some_record().message);
+  CHECK(back[1].outcome == Outcome::refused);
+}
+
+TEST_CASE("a file of records that is wrong is refused by line") {
+  const Folder folder;
+  const std::string good = to_lines({some_record()});
+  const auto complaint = [&](const std::string& text) -> std::string {
+    try {
+      read_records(folder.write("r.jsonl", text));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const auto with = [&](const std::string& what, const std::string& other) {
+    std::string text = good;
+    const std::size_t at = text.find(what);
+    REQUIRE(at != std::string::npos);
+    return good + text.replace(at, what.size(), other);
+  };
+  for (const std::string& bad :
+       {with("\"wrong\"", "\"odd\""), with("\"dial\":7", "\"dial\":11"), with("7", "\"7\""),
+        with("\"missed\":2,", ""), good + "{\n", good + "[]\n"}) {
+    CAPTURE(bad);
+    CHECK(complaint(bad).find("r.jsonl:2: ") != std::string::npos);
+  }
+}
+
+TEST_CASE("counting") {
+  std::vector<workers::MethodColumn> methods(2);
+  methods[0].name = "ours";
+  methods[1].name = "fcl";
+  std::vector<FamilyRow> families(1);
+  families[0].name = "touch";
+  std::vector<Record> records;
+  const auto add = [&](int dial, Outcome o, std::uint64_t missed) {
+    Record r = some_record();
+    r.dial = dial;
+    r.outcome = o;
+    r.missed = missed;
+    r.extra = 0;
+    r.case_index = records.size();
+    records.push_back(r);
+  };
+  add(2, Outcome::right, 0);
+  add(5, Outcome::wrong, 3);
+  add(4, Outcome::wrong, 3);
+  add(3, Outcome::wrong, 1);
+  add(1, Outcome::refused, 0);
+  records.push_back(some_record());
+  records.back().method = "unknown";
+  Grid g = count_grid(methods, families, records);
+  const Cell& cell = g.at(0, 1);
+  CHECK(Cell::sum(g.at(0, 0).cases) == 0);
+  CHECK(Cell::sum(cell.cases) == 5);
+  CHECK(cell.failures() == 3);
+  CHECK(cell.answered() == 4);
+  CHECK(cell.wrong[4] == 1);
+  CHECK(cell.refused[1] == 1);
+  REQUIRE(cell.worst);
+  CHECK(cell.worst->case_index == 2);  // as bad as that at 5, but sooner
+  CHECK(table(g).find("3/4 @3") != std::string::npos);
+  add(9, Outcome::timed_out, 0);
+  CHECK(count_grid(methods, families, records).at(0, 1).worst->outcome == Outcome::timed_out);
+  add(10, Outcome::crashed, 0);
+  CHECK(count_grid(methods, families, records).at(0, 1).worst->outcome == Outcome::crashed);
+}
+
+TEST_CASE("judging") {
+  methods::MethodInfo info;
+  methods::MethodAnswer answer;
+  RightAnswer expected;
+  expected.pairs = {{0, 1}, {2, 3}};
+  expected.relation = Relation::crossing;
+  answer.contact = true;
+  answer.pairs = {{0, 1}, {4, 4}};
+  Record r;
+  judge(r, info, answer, expected);
+  CHECK(r.outcome == Outcome::wrong);
+  CHECK(r.missed == 1);
+  CHECK(r.extra == 1);
+
+  info.loose = true;  // pairs too many are no fault of a list that is meant to have them
+  judge(r, info, answer, expected);
+  CHECK(r.outcome == Outcome::wrong);
+  answer.pairs = {{0, 1}, {2, 3}, {4, 4}};
+  judge(r, info, answer, expected);
+  CHECK(r.outcome == Outcome::right);
+  CHECK(r.extra == 1);
+  judge(r, info, answer, RightAnswer{});
+  CHECK(r.outcome == Outcome::wrong);
+  info.loose = false;
+  judge(r, info, answer, expected);
+  CHECK(r.outcome == Outcome::wrong);
+
+  info.pairs = false;  // only yes or no, and that is right
+  answer.inside = false;
+  judge(r, info, answer, expected);
+  CHECK(r.outcome == Outcome::right);
+  CHECK(r.expected_relation == "contact");
+
+  expected = RightAnswer{};
+  expected.relation = Relation::b_inside_a;
+  answer = methods::MethodAnswer{};
+  answer.inside = false;
+  judge(r, info, answer, expected);
+  CHECK(r.outcome == Outcome::wrong);
+  expected.relation = Relation::undefined;  // nothing to be inside of
+  judge(r, info, answer, expected);
+  CHECK(r.outcome == Outcome::right);
+
+  expected.refusal = "body A, vertex 3 is at no double";
+  judge(r, info, answer, expected);
+  CHECK(r.outcome == Outcome::wrong);
+}
+
+TEST_CASE("judging a method by itself, with the bodies exchanged") {
+  methods::MethodInfo info;
+  methods::MethodAnswer ab, ba;
+  ab.pairs = {{0, 1}, {0, 2}, {3, 1}};
+  ba.pairs = {{1, 0}, {1, 3}, {2, 0}};
+  Record r;
+  judge_swapped(r, info, ab, ba, false);
+  CHECK(r.outcome == Outcome::right);
+  ba.pairs = {{1, 0}, {2, 0}};
+  judge_swapped(r, info, ab, ba, false);
+  CHECK(r.outcome == Outcome::wrong);
+  CHECK(r.missed == 1);
+  ab.pairs = ba.pairs = {};
+  ab.relation = Relation::a_inside_b;
+  ba.relation = Relation::b_inside_a;
+  judge_swapped(r, info, ab, ba, false);
+  CHECK(r.outcome == Outcome::right);
+  ba.relation = Relation::a_inside_b;
+  judge_swapped(r, info, ab, ba, false);
+  CHECK(r.outcome == Outcome::wrong);
+  judge_swapped(r, info, ab, ba, true);  // each may hold a piece of the other
+  CHECK(r.outcome == Outcome::right);
+}
+
+// If the benign end were not benign the grid could not say where along the dial a method starts to fail.
+TEST_CASE("the textbook's method is right at the benign end of every dial, and not at the other") {
+  StabilityRunner plain(methods::find_method(methods::registered_methods(), "plain"));
+  int failing = 0, failed = 0;
+  for (const cases::Family& f : cases::all_families()) {
+    CAPTURE(f.name);
+    CHECK(std::string(f.benign) != "");
+    CHECK(std::string(f.degenerate) != "");
+    const auto failures = [&](int dial) {
+      int n = 0;
+      for (std::uint64_t i = 0; i < 8; ++i) {
+        const cases::Case c = cases::make_case(f, 1, dial, i);
+        Record r;
+        plain.ask(f, c, expected_answer(c), r);
+        n += r.outcome == Outcome::wrong;
+      }
+      return n;
+    };
+    const int benign = failures(0);
+    CHECK(benign <= 1);
+    failed += benign;
+    failing += failures(8) > 0;
+  }
+  CHECK(failed <= 3);
+  CHECK(failing > 15);
+}
+
+TEST_CASE("a textbook's test of triangles, where nothing is near") {
+  const auto meet = [](std::initializer_list<Eigen::Vector3d> a, std::initializer_list<Eigen::Vector3d> b) {
+    return methods::plain_triangles_meet(a.begin(), b.begin());
+  };
+  CHECK(meet({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 1}, {2, 2, 1}}));
+  CHECK(!meet({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{3, 3, -1}, {3, 3, 1}, {4, 4, 1}}));
+  CHECK(!meet({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 1}, {1, 2, 1}, {2, 2, 3}}));
+  CHECK(meet({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {9, 9, 0}, {9, 8, 0}}));
+  CHECK(meet({{0, 0, 0}, {9, 0, 0}, {0, 9, 0}}, {{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}));
+  CHECK(!meet({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 5, 0}, {9, 9, 0}, {9, 8, 0}}));
+}
+
+TEST_CASE("lrbscope stability: table, records, exit code") {
+  const Workers workers;
+  const Folder folder;
+  const std::vector<std::string> small = {"stability", "--cases", "2",        "--family", "touch",
+                                          "--method",  "plain",   "--method", "ours"};
+  test::Outcome o = run(folder, small);
+  CHECK(o.code == 0);
+  CHECK(o.err.empty());
+  CHECK(o.out.find("touch") != std::string::npos);
+  CHECK(o.out.find("out/stability/records.jsonl\n") != std::string::npos);
+  CHECK(read_records(folder / "out/stability/records.jsonl").size() == 44);
+
+  o = run(folder, {"stability", "--family", "identical", "--method", "fake-miss", "--dial", "10", "--only",
+                   "0", "--pairs"});
+  CHECK(o.code == 1);
+  CHECK(o.out.find("identical, dial 10, case 0, fake-miss: wrong") == 0);
+  CHECK(o.out.find("  missed:") != std::string::npos);
+  CHECK(o.out.find("  found:") != std::string::npos);
+}
+
+TEST_CASE("lrbscope stability: arguments that are wrong") {
+  const Workers workers;
+  const Folder folder;
+  const std::vector<std::vector<std::string>> wrong = {{"--family", "tuch"},
+                                                       {"--method", "odd"},
+                                                       {"--dial", "11"},
+                                                       {"--dial", "-1"},
+                                                       {"--cases", "0"},
+                                                       {"--cases", "many"},
+                                                       {"--jobs", "0"},
+                                                       {"--timeout", "0"},
+                                                       {"--seed", "-1"},
+                                                       {"--only", "3"},
+                                                       {"--only", "3", "--family", "touch"},
+                                                       {"--only", "3", "--dial", "1"},
+                                                       {"--only", "x"},
+                                                       {"extra"}};
+  for (const std::vector<std::string>& arguments : wrong) {
+    std::vector<std::string> all = {"stability", "--method", "ours"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const test::Outcome o = run(folder, all);
+    CAPTURE(o.err);
+    CHECK(o.code == 2);
+    CHECK(o.out.empty());
+    CHECK(o.error_lines() == 1);
+    CHECK(folder.tree().empty());
+  }
+}
+
+TEST_CASE("lrbscope stability: an interruption leaves no file and no worker") {
+  const Workers workers;
+  const Folder folder;
+  const std::string line =
+      "cd '" + folder.path.string() +
+      "' && timeout -s INT 1.5 '" LRBSCOPE_BINARY
+      "' stability --family identical --method fake-hang --seed 7203954 --timeout 600 2>err; "
+      "echo $? >code; sleep 0.3; ps -eo args | grep -c '[l]rbscope-methods .*--seed 7203954' >left";
+  CHECK(std::system(line.c_str()) != -1);
+  CHECK(slurp(folder / "left") == "0\n");
+  CHECK(slurp(folder / "err").find("interrupted by SIGINT") != std::string::npos);
+  CHECK(!std::filesystem::exists(folder / "out/stability/records.jsonl"));
+}

@@ -1,0 +1,98 @@
+// lrbscope distance: what it prints, and what it refuses.
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/json_lines.hpp"
+#include <lrbscope/mesh.hpp>
+
+namespace lrb::test {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Boxes {
+  Folder folder;
+  Boxes() {
+    folder.write("cube.obj", kCube);
+    write_mesh(shapes::box({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}), folder / "small.obj");
+    // 2 away along x; held; touching; past a corner by 3 and 4 in y and z
+    folder.write("poses.txt",
+                 "1 0 0 2.75  0 1 0 0  0 0 1 0\n1 0 0 0  0 1 0 0  0 0 1 0\n"
+                 "1 0 0 0.75  0 1 0 0  0 0 1 0\n1 0 0 0  0 1 0 3.75  0 0 1 4.75\n");
+  }
+  std::vector<std::string> arguments(std::vector<std::string> more) const {
+    std::vector<std::string> args = {"--quiet", "distance", "cube.obj", "small.obj", "--poses", "poses.txt"};
+    args.insert(args.end(), more.begin(), more.end());
+    return args;
+  }
+  std::vector<Json> lines(std::vector<std::string> more = {}) const {
+    std::vector<Json> out = lines_of(folder, arguments(std::move(more)));
+    REQUIRE(out.size() == 4);
+    return out;
+  }
+};
+
+TEST_CASE("distance: intervals, points, and what differs for solids") {
+  const auto lines = Boxes().lines();
+  const double expected[] = {2, 0.25, 0, 5};
+  for (std::size_t i = 0; i < 4; ++i) {
+    CAPTURE(i);
+    const Json& line = lines[i];
+    CHECK(line["pose"] == i);
+    CHECK(line["lower"].get<double>() <= expected[i]);
+    CHECK(line["upper"].get<double>() >= expected[i]);
+    CHECK(line["upper"].get<double>() - line["lower"].get<double>() < 1e-11);
+    double square = 0;
+    for (std::size_t x = 0; x < 3; ++x)
+      square += std::pow(line["point_a"][x].get<double>() - line["point_b"][x].get<double>(), 2);
+    CHECK(std::sqrt(square) == doctest::Approx(expected[i]).epsilon(1e-12));
+    CHECK(line.contains("solids") == (i == 1));
+    CHECK(!line.contains("within"));
+    CHECK(!line.contains("us"));
+  }
+  CHECK(lines[1]["solids"] == 0);
+  CHECK(lines[2]["upper"] == 0);
+  CHECK(lines[3]["point_a"][1] == 1);
+  CHECK(lines[3]["point_a"][2] == 1);
+}
+
+TEST_CASE("distance: within, tolerance, budget, features and times") {
+  const Boxes boxes;
+  const auto within = boxes.lines({"--within", "2"});
+  CHECK(within[0]["within"] == true);
+  CHECK(within[1]["within"] == true);
+  CHECK(within[2]["within"] == true);
+  CHECK(within[3]["within"] == false);
+  CHECK(boxes.lines({"--within", "1.9999999999999998"})[0]["within"] == false);
+  const auto wide = boxes.lines({"--tolerance", "1"});
+  CHECK(wide[0]["upper"].get<double>() - wide[0]["lower"].get<double>() <= 1);
+  const auto few = boxes.lines({"--budget", "1"});
+  CHECK(few[0].contains("finished"));
+  CHECK(few[0]["lower"].get<double>() <= 2);
+  CHECK(few[0]["upper"].get<double>() >= 2);
+  const auto features = boxes.lines({"--features", "--repeat", "3"});
+  CHECK(features[3]["on_a"]["vertices"].size() <= 3);
+  CHECK(features[3]["on_a"]["face"].get<int>() < 6);
+  CHECK(features[3]["us"].get<double>() > 0);
+}
+
+TEST_CASE("distance: what cannot be asked is refused in one line") {
+  const Boxes boxes;
+  check_refused(boxes.folder, boxes.arguments({"--within", "-1"}));
+  check_refused(boxes.folder, boxes.arguments({"--within", "nan"}));
+  check_refused(boxes.folder, boxes.arguments({"--tolerance", "-1e-9"}));
+  check_refused(boxes.folder, boxes.arguments({"--budget", "0"}));
+  check_refused(boxes.folder, {"distance", "cube.obj", "none.obj", "--poses", "poses.txt"});
+  boxes.folder.write("bad.txt", "1 0 0\n");
+  check_refused(boxes.folder, {"distance", "cube.obj", "small.obj", "--poses", "bad.txt"});
+  boxes.folder.write("far.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1e308 1e308 1e308 1e308 0 1 0 0 0 0 1 0\n");
+  CHECK(check_refused(boxes.folder, {"distance", "cube.obj", "small.obj", "--poses", "far.txt"})
+            .err.find("far.txt:2") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace lrb::test

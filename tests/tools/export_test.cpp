@@ -1,0 +1,84 @@
+// lrbscope export: what it writes, and what it refuses.
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "scenarios/io/poses.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/program.hpp"
+#include <lrbscope/mesh.hpp>
+
+namespace lrb::test {
+namespace {
+
+TEST_CASE("export: a body, its wrapper, and a run by folder, trace and scenario") {
+  const Folder folder;
+  folder.write("cube.obj", kCube);
+  CHECK(run(folder, {"-q", "export", "cube.obj", "-o", "cube.ply"}).code == 0);
+  CHECK(read_mesh(folder / "cube.ply").face_count() == 6);
+  CHECK(run(folder, {"-q", "export", "cube.obj", "--layer", "0", "-o", "real.obj"}).code == 0);
+  CHECK(read_mesh(folder / "real.obj").face_count() == 6);
+
+  REQUIRE(run(folder, {"-q", "run", "stick_through_wall", "-o", "r"}).code == 0);
+  for (const char* input : {"r", "r/trace.json", "stick_through_wall"}) {
+    CAPTURE(input);
+    const Outcome o = run(folder, {"export", input, "-o", "r.vtp", "--ascii"});
+    CAPTURE(o.err);
+    CHECK(o.code == 0);
+    CHECK(o.out == "r.vtp\n");
+    std::filesystem::rename(folder / "r.vtp", folder / (input[0] == 's' ? "scenario.vtp" : "trace.vtp"));
+  }
+  CHECK(slurp(folder / "scenario.vtp") == slurp(folder / "trace.vtp"));
+  CHECK(
+      run(folder, {"-q", "export", "r", "--event", "0", "--what", "wrapper", "--of", "a", "-o", "first.ply"})
+          .code == 0);
+  CHECK(run(folder, {"-q", "export", "r", "--what", "body", "--of", "a", "-o", "a.ply"}).code == 0);
+  CHECK(read_mesh(folder / "first.ply").face_count() < read_mesh(folder / "a.ply").face_count());
+}
+
+TEST_CASE("export: poses of a run, and from one form to another") {
+  const Folder folder;
+  REQUIRE(run(folder, {"-q", "export", "stick_through_wall", "--what", "poses", "-o", "p.csv"}).code == 0);
+  for (const char* name : {"p.json", "p.txt", "again.csv"})
+    REQUIRE(run(folder, {"-q", "export", name == std::string("p.json") ? "p.csv" : "p.json", "--what",
+                         "poses", "-o", name})
+                .code == 0);
+  CHECK(slurp(folder / "p.csv") == slurp(folder / "again.csv"));
+  folder.write("cube.obj", kCube);
+  const Outcome text = run(folder, {"-q", "query", "cube.obj", "cube.obj", "--poses", "p.txt"});
+  CHECK(text.code == 0);
+  CHECK(!text.out.empty());
+  for (const char* name : {"p.csv", "p.json"}) {
+    const Outcome o = run(folder, {"-q", "query", "cube.obj", "cube.obj", "--poses", name});
+    CHECK(o.code == 0);
+    CHECK(o.out == text.out);
+  }
+}
+
+TEST_CASE("export: what cannot be is refused, and nothing is written") {
+  const Folder folder;
+  folder.write("cube.obj", kCube);
+  folder.write("p.csv", "1,2\n");
+  const auto refused = [&](std::vector<std::string> words, const char* what) {
+    words.insert(words.begin(), {"-q", "export"});
+    const Outcome o = check_refused(folder, words);
+    CHECK_MESSAGE(o.err.find(what) != std::string::npos, o.err);
+  };
+  refused({"cube.obj", "-o", "cube.stl"}, "expected a name that ends in .ply, .vtp, .glb or .obj");
+  refused({"cube.obj", "-o", "cube.obj2", "--ascii"}, ".ply, .vtp, .glb or .obj");
+  refused({"cube.obj", "-o", "c.glb", "--ascii"}, "--ascii: is for .ply and .vtp");
+  refused({"cube.obj", "-o", "c.ply", "--regions"}, "--regions: is for .glb and .obj");
+  refused({"cube.obj", "-o", "c.ply", "--step", "1"}, "--step: is for runs");
+  refused({"cube.obj", "-o", "c.ply", "--what", "contacts"}, "--what contacts: is for runs");
+  refused({"cube.obj", "-o", "c.ply", "--colour-by", "hits"}, "counts are for runs");
+  refused({"cube.obj", "-o", "c.ply", "--faces", "2"}, "the outermost wrapper has");
+  refused({"cube.obj", "-o", "c.ply", "--what", "boddy"}, "boddy");
+  refused({"no_such_thing", "-o", "c.ply"}, "no_such_thing");
+  refused({"islands", "-o", "c.ply", "--step", "999"}, "the trace holds no such step");
+  refused({"islands", "-o", "c.ply", "--event", "99999999"}, "events, numbered from 0");
+  refused({"islands", "-o", "c.ply", "--faces", "50"}, "are for a body alone");
+  refused({"p.csv", "-o", "p.json", "--what", "poses"}, "p.csv:1: expected 12 numbers");
+}
+
+}  // namespace
+}  // namespace lrb::test

@@ -1,0 +1,163 @@
+/// inspect --draw: what is wrong with a mesh, pointed out in a picture.
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/faulty_meshes.hpp"
+#include "tests/support/program.hpp"
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/render/scene.hpp>
+#include <lrbscope/render/style.hpp>
+
+namespace lrb::test {
+
+using namespace shapes;
+namespace {
+
+using nlohmann::json;
+
+/// Pixels of a colour outside the legend, as it is or shaded: lit faces keep the proportions of its channels.
+std::size_t pixels_of(const render::Image& image, render::Rgba colour) {
+  const double size = std::hypot(colour.r, colour.g, colour.b);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < image.pixels().size() * 7 / 8; ++i) {  // below is the legend
+    const render::Rgba p = image.pixels()[i];
+    const double other = std::hypot(p.r, p.g, p.b), dot = p.r * colour.r + p.g * colour.g + p.b * colour.b;
+    const bool same_hue = size > 0 && other > 0.5 * size && dot > 0.998 * size * other;
+    count += p == colour || same_hue;
+  }
+  return count;
+}
+
+struct Drawn {
+  const char* kind;
+  Mesh mesh;
+  std::vector<render::Rgba> colours;
+};
+
+}  // namespace
+
+TEST_CASE("the picture shows each kind of fault in its colour") {
+  const Mesh ball = icosphere(1);
+  const auto n = static_cast<VertexId>(ball.vertices.size());
+  Mesh star = circle(5);
+  for (std::size_t i = 0; i < 5; ++i) {
+    star.face_vertices[2 * i] = VertexId(2 * i % 5);
+    star.face_vertices[2 * i + 1] = VertexId(2 * (i + 1) % 5);
+  }
+  for (const Drawn& d : std::vector<Drawn>{
+           {"open", without_faces(ball, {7}), {render::palette::kVermillion}},
+           {"fin",
+            with_face(ball, {{2, 0, 0}}, {ball.face(0)[0], ball.face(0)[1], n}),
+            {render::palette::kVermillion, render::palette::kPurple, render::palette::kOrange}},
+           {"vertex", welded(several({box(), box({1, 1, 1}, {2, 2, 2})})), {render::palette::kPurple}},
+           {"flipped", with_flipped(ball, {7}), {render::palette::kBlue}},
+           {"doubled", with_doubled(ball, {7}), {render::palette::kGreen}},
+           {"crossing",
+            several({ball, translated(ball, {0.7, 0.1, 0.2})}),
+            {render::palette::kOrange, render::palette::kSkyBlue, render::palette::kContact}},
+           {"collapsed", with_merged(ball, ball.face(0)[0], ball.face(0)[1]), {render::palette::kYellow}},
+           {"no area", with_face(ball, {}, {0, 0, 0}), {render::palette::kYellow}},
+           {"inside out within", several({ball, icosphere(1, 0.4)}), {render::palette::kSkyBlue}},
+           {"soup", as_soup(ball), {render::palette::kGreen, render::palette::kVermillion}},
+           {"a point",
+            with_face(Mesh{}, {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, {0, 1, 2}),
+            {render::palette::kYellow}},
+           {"huge and open", scaled(without_faces(ball, {7}), 1e308), {render::palette::kVermillion}},
+           {"tiny and open", scaled(without_faces(ball, {7}), 1e-300), {render::palette::kVermillion}},
+           {"2D open", without_faces(circle(9), {3}), {render::palette::kVermillion}},
+           {"2D branch", with_face(circle(9), {{2, 0, 0}}, {0, 9}), {render::palette::kPurple}},
+           {"2D flipped", with_flipped(circle(9), {3}), {render::palette::kBlue}},
+           {"2D crossing",
+            star,
+            {render::palette::kOrange, render::palette::kSkyBlue, render::palette::kContact}}}) {
+    CAPTURE(std::string(d.kind));
+    const Folder folder;
+    write_mesh(d.mesh, folder / "m.obj");
+    const Outcome o = run(folder, {"inspect", "m.obj", "--json", "--no-join", "--draw", "new/m.png"});
+    CAPTURE(o.err);
+    REQUIRE(o.code == 0);
+    CHECK(o.err.empty());
+    CHECK(json::parse(o.out)["drawing"] == "new/m.png");
+    const render::Image image = render::read_png(folder / "new/m.png").image;
+    for (const render::Rgba& colour : d.colours) {
+      CAPTURE(int(colour.r));
+      CHECK(pixels_of(image, colour) > 40);
+    }
+  }
+}
+
+TEST_CASE("all rims are drawn, however many edges are open, and the picture is as large as asked") {
+  const Folder folder;
+  // Every hundredth face is missing: 13 holes, of which the first eight open edges show three.
+  const Mesh ball = icosphere(3);
+  std::set<FaceId> gone;
+  for (std::uint32_t f = 0; f < ball.face_count(); f += 100) gone.insert(FaceId(f));
+  write_mesh(without_faces(ball, gone), folder / "m.obj");
+  write_mesh(without_faces(ball, {0}), folder / "one.obj");
+  const auto drawn = [&](const std::string& mesh, std::vector<std::string> more) {
+    more.insert(more.begin(), {"inspect", mesh, "--json", "--draw", "m.png"});
+    const Outcome o = run(folder, more);
+    CAPTURE(o.err);
+    REQUIRE(o.code == 0);
+    CHECK(json::parse(o.out)["boundary_loops"].size() == (mesh == "one.obj" ? 1 : gone.size()));
+    return render::read_png(folder / "m.png").image;
+  };
+  const render::Image all = drawn("m.obj", {"--from", "0,-1,0.2"}),
+                      one = drawn("one.obj", {"--from", "0,-1,0.2"});
+  CHECK(all.width() == 1600);
+  const auto whole = [](const render::Image& image) {  // the left half: the first of two panels
+    std::size_t count = 0;
+    for (int y = 0; y < image.height() * 7 / 8; ++y)
+      for (int x = 0; x < image.width() / 2; ++x) count += image.at(x, y) == render::palette::kVermillion;
+    return count;
+  };
+  CHECK(whole(all) > 3 * whole(one));
+  const render::Image small = drawn("m.obj", {"--size", "900x500"});
+  CHECK(small.width() == 900);
+  CHECK(small.height() == 500);
+}
+
+TEST_CASE("open edges are counted by loops") {
+  const Mesh m = without_faces(icosphere(1), {7, 40});
+  const MeshReport report = check_mesh(m);
+  const std::vector<BoundaryLoop> loops = find_boundary_loops(m, examine(m).use);
+  CHECK(render::findings::caption(MeshFault::open_edge, report[MeshFault::open_edge], 3, loops) ==
+        "6 open edges in 2 loops, of 3 and 3");
+}
+
+TEST_CASE("a clean mesh says that there is nothing to draw, and no picture is written") {
+  const Folder folder;
+  folder.write("cube.obj", kCube);
+  const std::vector<std::string> before = folder.tree();
+  const Outcome o = run(folder, {"inspect", "cube.obj", "--json", "--draw", "new/x.png"});
+  CHECK(o.code == 0);
+  CHECK(o.err.find("cube.obj: nothing to draw") != std::string::npos);
+  CHECK(json::parse(o.out)["drawing"].is_null());
+  CHECK(folder.tree() == before);
+}
+
+TEST_CASE("an LRB-rep has no findings to draw") {
+  const Folder folder;
+  folder.write("cube.obj", kCube);
+  REQUIRE(run(folder, {"build", "cube.obj", "-o", "cube.lrb"}).code == 0);
+  check_refused(folder, {"inspect", "cube.lrb", "--draw", "x.png"});
+}
+
+TEST_CASE("kinds that say the same are drawn once") {
+  const Mesh doubled = with_doubled(icosphere(1), {3, 9});  // they also meet
+  CHECK(render::findings::kinds(check_mesh(doubled)) ==
+        std::vector{MeshFault::duplicate_face, MeshFault::non_manifold_edge});
+  const Mesh collapsed = with_face(icosphere(1), {}, {0, 0, 1});
+  CHECK(render::findings::kinds(check_mesh(collapsed)) == std::vector{MeshFault::zero_area_face});
+  CHECK(render::findings::kinds(check_mesh(icosphere(1))).empty());
+  const MeshReport open = check_mesh(without_faces(icosphere(1), {7, 40, 77}));
+  CHECK(render::findings::caption(MeshFault::open_edge, open[MeshFault::open_edge], 3)
+            .starts_with("9 open edges: "));
+  CHECK(render::findings::caption(MeshFault::open_edge, open[MeshFault::open_edge], 3).ends_with(", …"));
+}
+
+}  // namespace lrb::test

@@ -1,0 +1,87 @@
+#include <algorithm>
+#include <memory>
+
+#include "bench/speed/peer_table.hpp"
+#include "bench/speed/survey.hpp"
+#include "scenarios/io/files.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/terminal.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+
+namespace lrb::cli {
+namespace {
+
+using namespace lrb::bench;
+using workers::WorkerMethod;
+
+struct BenchOptions : MeasureOptions {
+  BenchOptions() { folder = folder_help = "out/bench"; }
+  std::vector<std::uint32_t> faces = {20000, 100000};
+};
+
+/// Returns true for ours and for engines that answer the same question.
+bool is_peer(const workers::WorkerMethod& m) {
+  return !m.info.approximate && !m.info.convex && m.info.role != methods::Role::no_peer;
+}
+
+int run_bench(const BenchOptions& o, const Globals& globals) {
+  std::vector<workers::WorkerMethod> methods = workers::find_all_methods();
+  std::erase_if(methods, [](const workers::WorkerMethod& m) { return !is_peer(m); });
+  methods = chosen(methods, o.methods, "method", [](const workers::WorkerMethod& m) { return m.info.name; });
+  make_folder(o.folder);
+  const io::FolderLock lock(o.folder);
+  std::vector<bench::BodyPair> pairs;
+  if (!o.models.empty()) pairs = bench::pairs_of_models(o.models);
+  for (const std::uint32_t n : o.faces)
+    if (n > 0)
+      for (bench::BodyPair& p : bench::generated_pairs(n)) {
+        pairs.push_back(std::move(p));
+        if (n != o.faces.front()) break;
+      }
+  bench::SurveyOptions survey_options;
+  survey_options.folder = o.folder;
+  survey_options.timeout = o.timeout;
+  survey_options.contestants = bench::contestants(methods);
+  {
+    Progress bar("bodies", pairs.size(), globals.quiet);
+    for (const bench::BodyPair& p : pairs) {
+      bar.set(survey_options.sets.size(), p.what);
+      survey_options.sets.push_back(bench::make_data_set(p, o.set, o.folder));
+    }
+  }
+  Progress bar("bench", 0, globals.quiet);
+  const std::vector<bench::Record> records =
+      bench::survey(survey_options, [&](std::uint64_t done, std::uint64_t total, const std::string& what) {
+        bar.set_total(total);
+        bar.set(done, what);
+      });
+  bar.finish();
+  std::vector<methods::MethodInfo> infos;
+  for (const workers::WorkerMethod& m : methods) infos.push_back(m.info);
+  const bench::PeerTable table = bench::peer_table(survey_options.sets, infos, records);
+  const std::string head = bench::machine() + "; built with " + bench::build_flags() + "\n\n";
+  print(head + bench::in_brief(table));
+  io::write_text(o.folder + "/peers.txt", head + bench::in_brief(table) + "\n" + bench::in_full(table));
+  print(o.folder + "/peers.txt\n" + o.folder + "/records.jsonl\n");
+  return kOk;
+}
+
+}  // namespace
+
+Command add_bench(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "bench",
+      "Compare our query with other engines on the same bodies and poses: how many times as long they take");
+  const auto o = std::make_shared<BenchOptions>();
+  add_measure_options(*app, *o);
+  app->add_option("--faces", o->faces,
+                  "Numbers of faces of the bodies to generate: every kind in the first size, rocks in the "
+                  "others; 0: none [20000 100000]")
+      ->check(CLI::Range(0, 2000000))
+      ->type_name("N");
+  return {app, [o, &globals] { return run_bench(*o, globals); }};
+}
+
+}  // namespace lrb::cli

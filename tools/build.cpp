@@ -1,0 +1,118 @@
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "scenarios/bodies/body_figures.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/bodies/region_figures.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/terminal.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/validate.hpp>
+#include <lrbscope/wrapper.hpp>
+
+namespace lrb::cli {
+namespace {
+
+struct BuildCommandOptions {
+  bodies::Corners corners = bodies::Corners::joined;
+  std::string mesh, out;
+  BuildOptions build;
+  bool json = false, no_validate = false;
+};
+
+constexpr double kMega = 1e6;
+
+/// Returns the largest amount of memory that this process ever held, in bytes.
+std::uint64_t peak_bytes() {
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  return 1024 * static_cast<std::uint64_t>(use.ru_maxrss);
+}
+
+std::string as_text(const nlohmann::ordered_json& j, const ValidateReport* report) {
+  const auto figure = [&](const char* key) { return for_people(j[key], 4); };
+  std::ostringstream out;
+  out << j["name"].get<std::string>() << "\n"
+      << "  faces    " << figure("real_faces") << " real + " << figure("pseudo_faces")
+      << " pseudo = " << figure("total_faces") << " (" << figure("total_per_real") << " per real face), "
+      << figure("outer_faces") << " outermost\n"
+      << "  regions  " << figure("regions") << " in " << figure("layers") << " layers\n"
+      << "  volume   solid " << figure("volume_solid") << ", outermost wrapper " << figure("volume_outer")
+      << ", convex hull " << figure("volume_hull") << "\n"
+      << "  memory   " << figure("bytes_per_real_face") << " bytes a real face; the program held "
+      << for_people(j["peak_bytes"].get<double>() / kMega, 3) << " MB at most\n"
+      << "  built in " << figure("seconds") << " s\n";
+  if (report != nullptr) {
+    out << "  valid    " << (report->valid ? "yes" : "NO") << "\n";
+    for (const std::string& line : report->violations) out << "    " << line << "\n";
+  }
+  return out.str();
+}
+
+int run_build(const BuildCommandOptions& o, const Globals& globals) {
+  std::vector<std::string> notes;
+  Mesh mesh = bodies::read_body(o.mesh, o.corners, notes);
+  BuildOptions options = o.build;
+  Progress progress("build", 0, globals.quiet);
+  options.progress = [&](std::uint32_t pass, std::uint32_t faces) {
+    progress.set(pass, "hull of " + std::to_string(faces) + " faces");
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  const LrbRep rep = bodies::build_from_mesh(check(std::move(mesh)), options, notes);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  progress.finish();
+  for (std::string line : {bodies::poor_line(rep, o.build), note_no_levels(rep)})
+    if (!line.empty()) notes.push_back(std::move(line));
+  note(globals, notes);
+
+  nlohmann::ordered_json j = bodies::body_figures(rep);
+  if (o.json)
+    j["levels"] = bodies::level_json(bodies::level_figures(rep, bodies::kLevelShares, o.build.threads));
+  j["seconds"] = seconds;
+  j["peak_bytes"] = peak_bytes();
+  j["notes"] = notes;  // what was done to the mesh, for nothing is done in silence, and what is poor
+  ValidateReport report;
+  if (o.no_validate) {
+    j["valid"] = nullptr;
+  } else {
+    ValidateOptions validating;
+    validating.threads = o.build.threads;
+    report = validate(rep, validating);
+    j["valid"] = report.valid;
+    j["real_pairs_meeting"] = report.real_pairs_meeting;
+    j["violations"] = report.violations;
+  }
+  if (!o.out.empty()) {
+    rep.levels(o.build.threads);
+    save_lrb(rep, o.out);
+    j["file"] = o.out;
+    note(globals, {"wrote " + o.out});
+  }
+  print(o.json ? one_line(j) : as_text(j, o.no_validate ? nullptr : &report));
+  return o.no_validate || report.valid ? kOk : kMismatch;
+}
+
+}  // namespace
+
+Command add_build(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand("build", "Build a mesh's LRB-rep, prove that it is right, save it");
+  const auto o = std::make_shared<BuildCommandOptions>();
+  app->add_option("MESH", o->mesh, "OBJ, STL, PLY or OFF")->required();
+  app->add_option("-o,--output", o->out, "Write the LRB-rep here")->type_name("FILE.lrb");
+  o->build.threads = 0;
+  add_build_options(*app, o->build);
+  app->add_flag("--json", o->json, "Print the figures as one JSON object");
+  app->add_flag("--no-validate", o->no_validate, "Skip the proof that the LRB-rep keeps its promises");
+  add_join_option(*app, o->corners);
+  return {app, [o, &globals] { return run_build(*o, globals); }};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+#include <memory>
+
+#include "bench/speed/chart_page.hpp"
+#include "bench/speed/peer_table.hpp"
+#include "bench/speed/scenes.hpp"
+#include "bench/speed/survey.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/report/gnuplot.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/terminal.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+
+namespace lrb::cli {
+namespace {
+
+using namespace lrb::bench;
+using workers::WorkerMethod;
+
+struct ChartOptions : MeasureOptions {
+  ChartOptions() {
+    folder_help = "out/chart, or out/chart-QUANTITY";
+    set.poses = 8;
+  }
+  std::uint32_t faces = 2000;
+  bool scenes = true;
+};
+
+/// Returns the data sets of an earlier run that were asked for this, by name.
+std::vector<bench::DataSet> read_sets(const std::string& folder, methods::Quantity quantity) {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.path().string().ends_with(".set.json")) files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  std::vector<bench::DataSet> sets;
+  std::transform(files.begin(), files.end(), std::back_inserter(sets), bench::read_data_set);
+  std::erase_if(sets, [&](const bench::DataSet& s) { return s.quantity != quantity; });
+  if (sets.empty())
+    throw InputError(printable_name(folder) + ": no data sets there; run `lrbscope chart measure` first");
+  return sets;
+}
+
+void measure(const ChartOptions& o, const std::vector<workers::WorkerMethod>& methods,
+             const Globals& globals) {
+  bench::SurveyOptions options;
+  options.folder = o.folder;
+  options.timeout = o.timeout;
+  options.keep = true;
+  options.contestants = bench::contestants(methods);
+  std::vector<bench::BodyPair> pairs;
+  if (!o.models.empty()) pairs = bench::pairs_of_models(o.models);
+  if (o.faces > 0)
+    for (bench::BodyPair& p : bench::generated_pairs(o.faces)) pairs.push_back(std::move(p));
+  for (const bench::BodyPair& p : pairs) options.sets.push_back(bench::make_data_set(p, o.set, o.folder));
+  Progress bar("measure", 0, globals.quiet);
+  bench::survey(options, [&](std::uint64_t done, std::uint64_t total, const std::string& what) {
+    bar.set_total(total);
+    bar.set(done, what);
+  });
+  print(o.folder + "/records.jsonl\n");
+}
+
+void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& methods, const Globals& globals) {
+  const std::vector<bench::DataSet> sets = read_sets(o.folder, o.set.quantity);
+  std::vector<methods::MethodInfo> infos;
+  std::transform(methods.begin(), methods.end(), std::back_inserter(infos),
+                 [](const workers::WorkerMethod& m) { return m.info; });
+  std::vector<bench::Point> points;
+  {
+    Progress bar("errors", 0, globals.quiet);
+    points = bench::measure_points(sets, infos, bench::read_records(o.folder + "/records.jsonl"),
+                                   [&](std::size_t done, std::size_t total) {
+                                     bar.set_total(total);
+                                     bar.set(done);
+                                   });
+  }
+  io::write_text(o.folder + "/points.jsonl", bench::to_lines(points));
+  std::map<bench::SceneKey, std::string> scenes;
+  if (o.scenes) scenes = bench::write_scenes(sets, points, o.folder, progress_report(globals.quiet));
+  report::Page page = bench::accuracy_page(sets, points, infos, [&](const bench::Point& p) {
+    const auto it = scenes.find({p.set, p.pose_class});
+    return it == scenes.end() ? std::string() : it->second;
+  });
+  page.numbers = {{"Machine", bench::machine(), bench::build_flags()}};
+  page.command = globals.command_line;
+  page.links = {{"records.jsonl", "records.jsonl", "every answer of every method"},
+                {"points.jsonl", "points.jsonl", "what was computed from them"}};
+  for (const auto& [key, target] : scenes)
+    page.links.push_back({key.first + ", " + bench::title(key.second), target, "scene, trace and pictures"});
+  try {
+    const report::Gnuplot chart = bench::accuracy_chart(sets, points, infos);
+    for (const char* ending : {".svg", ".png"}) {
+      report::draw(chart, o.folder + "/chart" + ending);
+      page.links.push_back({std::string("chart") + ending, std::string("chart") + ending, "for print"});
+      print(o.folder + "/chart" + ending + "\n");
+    }
+  } catch (const EnvironmentError& e) {
+    std::cerr << "lrbscope: " << e.what() << "\n";
+  }
+  io::write_text(o.folder + "/index.html", report::page_html(page));
+  print(o.folder + "/index.html\n");
+}
+
+int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals) {
+  const methods::Quantity quantity = o.set.quantity;
+  const bool pairs = quantity == methods::Quantity::pairs;
+  if (o.folder.empty()) o.folder = pairs ? "out/chart" : "out/chart-" + std::string(name_of(quantity));
+  const std::vector<workers::WorkerMethod> methods =
+      chosen(pairs ? workers::find_all_methods() : workers::find_number_methods(quantity), o.methods,
+             "method", [](const workers::WorkerMethod& m) { return m.info.name; });
+  make_folder(o.folder);
+  const io::FolderLock lock(o.folder);
+  if (measures) measure(o, methods, globals);
+  if (draws) draw(o, methods, globals);
+  return kOk;
+}
+
+}  // namespace
+
+Command add_chart(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "chart", "Chart speed against accuracy: every method at every setting, exact ones and approximations");
+  const auto o = std::make_shared<ChartOptions>();
+  app->require_subcommand(0, 1);
+  CLI::App* measures =
+      app->add_subcommand("measure", "Only measure: add raw records to those in the folder")->fallthrough();
+  CLI::App* draws =
+      app->add_subcommand("draw", "Only draw: errors, charts and page from the records")->fallthrough();
+  add_measure_options(*app, *o);
+  add_quantity_option(*app, o->set.quantity);
+  app->add_option("--faces", o->faces, "Number of faces of the bodies to generate; 0: none [2000]")
+      ->check(CLI::Range(0, 200000))
+      ->type_name("N");
+  app->add_flag("!--no-scenes", o->scenes, "Do not run the scenarios that the chart's points link to");
+  return {app, [o, &globals, measures, draws] {
+            return run_chart(*o, !draws->parsed(), !measures->parsed(), globals);
+          }};
+}
+
+}  // namespace lrb::cli

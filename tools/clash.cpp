@@ -1,0 +1,184 @@
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <memory>
+#include <sstream>
+#include <utility>
+
+#include "engine/clash/clash_parts.hpp"
+#include "render/pictures/answer_picture.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "tools/bounds_chart.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/pose_lines.hpp"
+#include "tools/terminal.hpp"
+#include "trace/trace_json_parts.hpp"
+#include <lrbscope/trace/json_write.hpp>
+
+namespace lrb::cli {
+namespace {
+
+struct ClashOptions {
+  std::string a, b, poses;
+  ClashRequest request;
+  std::vector<double> along;
+  std::uint32_t repeat = 0;
+  bool table = false;
+  DrawOptions draw;
+  bodies::Corners corners = bodies::Corners::joined;
+};
+
+void write_interval(trace::JsonWriter& w, const char* name, const std::optional<ProvedInterval>& interval) {
+  if (!interval) return;
+  w.key(name).begin_array().value(interval->lower);
+  w.value(std::isfinite(interval->upper) ? interval->upper : std::numeric_limits<double>::quiet_NaN());
+  w.end_array();  // not a number is written as null
+}
+
+void write_pieces(trace::JsonWriter& w, const char* name, const SurfacePieces& pieces) {
+  w.key(name).begin_object().member("inside", pieces.inside).member("outside", pieces.outside).end_object();
+}
+
+bool is_apart(const ClashResult& r) {
+  return r.kind == ClashKind::apart || r.kind == ClashKind::within_clearance;
+}
+
+std::string line_of(std::size_t pose, const ClashResult& result, const std::vector<Bounds>& course,
+                    const ClashOptions& o, double us) {
+  return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
+    w.begin_object().member("pose", std::uint64_t{pose}).member("kind", to_string(result.kind));
+    if (result.reason != ClashReason::none) w.member("reason", name_of(result.reason));
+    if (result.shares_faces) w.member("shares_faces", true);
+    w.key("distance").begin_array().value(result.distance.lower).value(result.distance.upper).end_array();
+    write_interval(w, "depth", result.depth);
+    if (result.depth && std::isfinite(result.depth->upper)) {
+      w.key("translation").begin_array();
+      for (int k = 0; k < 3; ++k) w.value(result.translation[k]);
+      w.end_array();
+    }
+    write_interval(w, "along", result.along);
+    write_interval(w, "volume", result.volume);
+    if (!is_apart(result) && result.kind != ClashKind::undecided) {
+      write_pieces(w, "pieces_a", result.pieces[0]);
+      write_pieces(w, "pieces_b", result.pieces[1]);
+    }
+    if (o.draw.course) trace::write_course(w, course);
+    if (o.repeat > 0) w.member("us", us);
+    w.end_object();
+  });
+}
+
+/// Returns an interval with the digits that both ends have, or both ends.
+std::string interval_text(const std::optional<ProvedInterval>& interval) {
+  if (!interval) return "-";
+  std::ostringstream out;
+  out << std::setprecision(9);
+  if (interval->upper - interval->lower <= 1e-9 * interval->upper) {
+    out << interval->upper;
+  } else {
+    out << std::setprecision(6) << interval->lower << " .. " << interval->upper;
+  }
+  return out.str();
+}
+
+using Row = std::vector<std::string>;
+
+Row row_of(std::size_t pose, const ClashResult& r, const ClashOptions& o) {
+  const std::string reason(name_of(r.reason));
+  Row row{std::to_string(pose), to_string(r.kind) + (reason.empty() ? "" : ": " + reason),
+          r.shares_faces ? "yes" : "no", interval_text(r.distance), interval_text(r.depth)};
+  std::ostringstream move;
+  move << std::setprecision(6) << r.translation.x() << " " << r.translation.y() << " " << r.translation.z();
+  row.push_back(r.depth && std::isfinite(r.depth->upper) ? move.str() : "-");
+  if (r.along || o.request.along) row.push_back(interval_text(r.along));
+  row.push_back(interval_text(r.volume));
+  return row;
+}
+
+std::string table_text(const std::vector<Row>& rows) {
+  std::vector<std::size_t> width;
+  for (const Row& row : rows)
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (c == width.size()) width.push_back(0);
+      width[c] = std::max(width[c], row[c].size());
+    }
+  std::ostringstream out;
+  for (const Row& row : rows) {
+    for (std::size_t c = 0; c + 1 < row.size(); ++c)
+      out << std::left << std::setw(static_cast<int>(width[c]) + 2) << row[c];
+    out << row.back() << "\n";
+  }
+  return out.str();
+}
+
+Row headings(const ClashOptions& o) {
+  Row row{"pose", "kind", "shares faces", "distance", "depth", "translation"};
+  if (o.request.along) row.push_back("along");
+  row.push_back("volume");
+  return row;
+}
+
+int run_clash(ClashOptions o, const Globals& globals) {
+  if (!o.along.empty()) o.request.along = Eigen::Vector3d(o.along[0], o.along[1], o.along[2]);
+  const PoseLines list(o.poses);
+  const run::AnswerLook look = look_of(o.draw);
+  const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
+  check_request(a.rep, o.request);
+  note(globals, a.notes);
+  note(globals, b.notes);
+  list.check(a.rep, b.rep);
+  ClashContext context;
+  std::vector<Row> rows{headings(o)};
+  Progress progress("clash", list.poses.size(), globals.quiet);
+  for (std::size_t i = 0; i < list.poses.size(); ++i) {
+    const auto ask = [&] { return clash(a.rep, Pose{}, b.rep, list.poses[i], o.request, context); };
+    ClashCourse told;
+    const ClashResult result =
+        o.draw.is_watched() ? clash(a.rep, Pose{}, b.rep, list.poses[i], o.request, context, &told) : ask();
+    const bool has_depth = !told.of_depth.empty();
+    const std::vector<Bounds>& course = has_depth ? told.of_depth : told.of_distance;
+    const double us = o.repeat > 0 ? median_us(o.repeat, ask) : 0;
+    if (o.table)
+      rows.push_back(row_of(i, result, o));
+    else
+      print(line_of(i, result, course, o, us));
+    if (!o.draw.picture.empty())
+      run::draw_clash(a.rep, Pose{}, b.rep, list.poses[i], result, look,
+                      picture_name(o.draw.picture, i, list.poses.size()));
+    if (!o.draw.chart.empty() && !course.empty())
+      report::draw(bounds_chart(course, has_depth ? "depth" : "distance",
+                                has_depth ? "queries asked, steps in which hulls grew"
+                                          : "pairs of boxes opened, pairs of faces measured"),
+                   picture_name(o.draw.chart, i, list.poses.size()));
+    progress.set(i + 1);
+  }
+  if (o.table) print(table_text(rows));
+  return kOk;
+}
+
+}  // namespace
+
+Command add_clash(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "clash", "Tell what kind of contact two solids have, and how deep, for each pose of B in a list");
+  const auto o = std::make_shared<ClashOptions>();
+  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
+  app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
+  app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
+  app->add_option("--clearance", o->request.clearance,
+                  "Distance up to which bodies that do not meet are \"within_clearance\"")
+      ->type_name("D");
+  app->add_option("--along", o->along, "Also find how far B must move in this direction to leave A")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X,Y,Z");
+  app->add_flag("--table", o->table, "Print a table for people instead of JSON");
+  add_draw_options(*app, o->draw, "Draw the solids with the way on which B leaves A");
+  add_repeat_option(*app, o->repeat, "pose");
+  add_join_option(*app, o->corners);
+  return {app, [o, &globals] { return run_clash(*o, globals); }};
+}
+
+}  // namespace lrb::cli

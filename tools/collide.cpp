@@ -1,0 +1,152 @@
+#include <filesystem>
+#include <memory>
+
+#include <Eigen/Geometry>
+
+#include "render/pictures/panel.hpp"
+#include "scenarios/frames/animation.hpp"
+#include "scenarios/frames/chosen_view.hpp"
+#include "scenarios/io/poses.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/spec/scenario.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/terminal.hpp"
+#include <lrbscope/core/hash.hpp>
+#include <lrbscope/error.hpp>
+
+namespace lrb::cli {
+namespace {
+
+struct CollideOptions {
+  bodies::Corners corners = bodies::Corners::joined;
+  std::string a, b, folder, poses, approach;
+  CollideRequest request;
+  PictureOptions picture;
+  spec::StepQuestions more;
+  std::optional<EventLevel> events;
+  bool json = false;
+};
+
+/// Returns a motion on which B's middle heads for A's, from where it is clear of it, and goes on for a while
+/// after the first contact.
+spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, const LrbRep& b) {
+  const Eigen::AlignedBox3d box_a = run::box_of(a), box_b = run::box_of(b);
+  spec::Motion m;
+  m.kind = spec::Motion::Kind::approach;
+  m.target = box_a.center() - box_b.center();
+  constexpr double kClear = 1.02;  // in distances at which balls around both boxes touch
+  m.from = direction.normalized() * kClear * (box_a.diagonal().norm() + box_b.diagonal().norm()) / 2;
+  m.step_length = 0.004;
+  m.steps = 100'000;
+  m.before = 12;
+  m.into = 18;
+  m.exact = true;
+  return m;
+}
+
+/// Returns a direction beside the path on which B comes, a little on B's side and above, so that the gap
+/// between the bodies is seen; for bodies that do not come, `otherwise`.
+Eigen::Vector3d beside(const spec::Motion& motion, const Eigen::Vector3d& up,
+                       const Eigen::Vector3d& otherwise) {
+  const Eigen::Vector3d side = motion.from.cross(up.normalized());
+  if (motion.kind != spec::Motion::Kind::approach || !(side.squaredNorm() > 0)) return otherwise;
+  return 0.8 * side.normalized() + 0.3 * motion.from.normalized() + 0.45 * up.normalized();
+}
+
+/// Looks from where least of the contacts is hidden, and makes no close-up of what is nearly the whole.
+void choose_views(const CollideOptions& o, spec::Scenario& scenario, run::Recording& recording) {
+  const run::RecordedRun recorded = run::recorded_run_of(scenario, recording);
+  std::vector<render::FrameSpec::View>& views = scenario.frames.views;
+  const Eigen::Vector3d up = views[0].up;
+  if (o.picture.camera.from.empty()) {
+    const Eigen::Vector3d from = run::least_hidden(recorded, up, beside(scenario.motion, up, views[0].from));
+    for (render::FrameSpec::View& view : views) view.from = from;
+  }
+  run::widen_close_ups(recorded, views);
+  recording.trace.header.pictures = spec::pictures_text(scenario.frames);
+}
+
+spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::LoadedBody>& bodies) {
+  spec::Scenario s;
+  s.name = std::filesystem::path(o.a).stem().string() + "-" + std::filesystem::path(o.b).stem().string();
+  s.bodies = {{}, {}};
+  s.bodies[0].file = o.a;
+  s.bodies[1].file = o.b;
+  s.request = o.request;
+  s.request.contacts = o.request.mode == Mode::all_pairs;
+  s.more = o.more;
+  if (o.events) s.events = *o.events;
+  s.frames.montage = 6;
+  s.frames.views = whole_and_contact();
+  if (!o.poses.empty()) {
+    s.motion.kind = spec::Motion::Kind::poses;
+    s.motion.poses = io::open_poses(o.poses).poses;
+  } else {
+    // The default direction is aslant: along an axis, bodies that are lined up with it would meet in whole
+    // faces first.
+    Eigen::Vector3d direction(1, 0.35, 0.25);
+    if (!o.approach.empty()) direction = io::parse_vector(o.approach, "--approach");
+    if (!(direction.squaredNorm() > 0)) throw InputError("--approach: expected a direction that is not zero");
+    if (bodies[0].rep.dim() == 2) direction.z() = 0;
+    s.motion = approach_from(direction, bodies[0].rep, bodies[1].rep);
+  }
+  Fnv64 hash;
+  for (const bodies::LoadedBody& body : bodies) hash.add_value(body.rep.hash());
+  for (const Pose& pose : s.motion.poses) {
+    hash.add_bytes(pose.r.data(), sizeof(double) * 9);
+    hash.add_bytes(pose.t.data(), sizeof(double) * 3);
+  }
+  hash.add_bytes(s.motion.from.data(), sizeof(double) * 3);
+  s.hash = hash.value();
+  apply(o.picture, s.frames);
+  return s;
+}
+
+int run_collide(const CollideOptions& o, const Globals& globals) {
+  if (!o.poses.empty()) io::open_poses(o.poses);  // a typing error in this file should not cost a build
+  if (!o.picture.animation.empty()) run::check_animation(o.picture.animation);
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  std::vector<bodies::LoadedBody> bodies;
+  for (const std::string& path : {o.a, o.b}) {
+    progress("build", bodies.size(), 2);
+    bodies.push_back(bodies::load_body(path, {}, o.corners));
+  }
+  if (bodies[0].rep.dim() != bodies[1].rep.dim())
+    throw InputError(o.a + " and " + o.b + ": one is 2D, the other 3D: give two of a kind");
+  spec::Scenario scenario = make_scenario(o, bodies);
+  const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
+  run::Recording recording = run::record(scenario, std::move(bodies), progress);
+  choose_views(o, scenario, recording);
+  const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress);
+  animate_frames(o.picture, folder);
+  return report_outcome(outcome, folder, o.json, globals);
+}
+
+}  // namespace
+
+Command add_collide(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "collide", "Let two bodies of yours approach each other until they touch, drawn and explained");
+  const auto o = std::make_shared<CollideOptions>();
+  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
+  app->add_option("B", o->b, "Mesh or .lrb file; moves")->required();
+  app->add_option("-o,--output", o->folder, "Folder to write to [out/A-B]")->type_name("DIR");
+  auto* poses = app->add_option("--poses", o->poses,
+                                "File with the pose of B for each step: lines of 12 numbers, .csv or .json")
+                    ->type_name("FILE");
+  app->add_option("--approach", o->approach, "Direction that B comes from, seen from A")
+      ->type_name("X,Y,Z")
+      ->excludes(poses);
+  add_request_options(*app, o->request);
+  app->add_flag("--distance", o->more.distance, "Bound how far apart the bodies are, too, at each step");
+  app->add_flag("--clash", o->more.clash, "Find what kind of contact they have, and how deep, at each step");
+  add_events_option(*app, o->events);
+  add_picture_options(*app, o->picture);
+  add_animation_option(*app, o->picture);
+  app->add_flag("--json", o->json, "Print the summary instead of the page's path");
+  add_join_option(*app, o->corners);
+  return {app, [o, &globals] { return run_collide(*o, globals); }};
+}
+
+}  // namespace lrb::cli

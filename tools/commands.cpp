@@ -1,0 +1,54 @@
+/// The list of all commands.
+#include "tools/commands.hpp"
+
+#include <array>
+
+namespace lrb::cli {
+
+// Each adds a command with its options to the program, and returns what runs it.
+Command add_run(CLI::App& root, const Globals& globals);
+Command add_collide(CLI::App& root, const Globals& globals);
+Command add_crowd(CLI::App& root, const Globals& globals);
+Command add_query(CLI::App& root, const Globals& globals);
+Command add_distance(CLI::App& root, const Globals& globals);
+Command add_why(CLI::App& root, const Globals& globals);
+Command add_clash(CLI::App& root, const Globals& globals);
+Command add_sweep(CLI::App& root, const Globals& globals);
+Command add_build(CLI::App& root, const Globals& globals);
+Command add_inspect(CLI::App& root, const Globals& globals);
+Command add_close(CLI::App& root, const Globals& globals);
+Command add_levels(CLI::App& root, const Globals& globals);
+Command add_xray(CLI::App& root, const Globals& globals);
+Command add_compare(CLI::App& root, const Globals& globals);
+Command add_render(CLI::App& root, const Globals& globals);
+Command add_export(CLI::App& root, const Globals& globals);
+Command add_figure(CLI::App& root, const Globals& globals);
+Command add_paper(CLI::App& root, const Globals& globals);
+Command add_golden(CLI::App& root, const Globals& globals);
+Command add_stability(CLI::App& root, const Globals& globals);
+Command add_doctor(CLI::App& root, const Globals& globals);
+Command add_list(CLI::App& root, const Globals& globals);
+Command add_bench(CLI::App& root, const Globals& globals);
+Command add_chart(CLI::App& root, const Globals& globals);
+Command add_completion(CLI::App& root, const Globals& globals);
+Command add_manual(CLI::App& root, const Globals& globals);
+
+namespace {
+
+/// The commands in the order of --help.
+constexpr auto kCommands = std::to_array<Command (*)(CLI::App&, const Globals&)>({
+    add_run,    add_collide, add_crowd,   add_query,      add_distance, add_why,       add_clash,
+    add_sweep,  add_build,   add_inspect, add_close,      add_levels,   add_xray,      add_compare,
+    add_render, add_export,  add_figure,  add_paper,      add_golden,   add_stability, add_doctor,
+    add_list,   add_bench,   add_chart,   add_completion, add_manual,
+});
+
+}  // namespace
+
+std::vector<Command> add_commands(CLI::App& root, const Globals& globals) {
+  std::vector<Command> commands;
+  for (const auto add : kCommands) commands.push_back(add(root, globals));
+  return commands;
+}
+
+}  // namespace lrb::cli

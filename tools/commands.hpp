@@ -1,0 +1,49 @@
+#pragma once
+/// The commands of `lrbscope`, one file each in commands/ and measuring/. stdout is for data, stderr for
+/// people. Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <lrbscope/core/strings.hpp>
+
+namespace lrb::cli {
+
+inline constexpr int kOk = 0, kMismatch = 1, kBadInput = 2, kEnvironment = 3;
+
+/// What applies to every command.
+struct Globals {
+  bool quiet = false;        ///< nothing on stderr but errors
+  std::string command_line;  ///< as it was given, quoted for a shell
+};
+
+struct Command {
+  CLI::App* app;
+  std::function<int()> run;
+};
+
+/// Adds all commands to the program, in their order in --help. They are listed in commands.cpp.
+std::vector<Command> add_commands(CLI::App& root, const Globals& globals);
+
+/// Parses the command line and runs the command; turns exceptions into one line on stderr and an exit code.
+int main(int argc, char** argv);
+
+/// Prints lines for people to stderr, unless quiet.
+void note(const Globals& globals, const std::vector<std::string>& lines);
+
+using io::shell_word;
+
+/// Returns JSON on one line. Bytes that are not UTF-8, which a file's name may have, become U+FFFD.
+std::string one_line(const nlohmann::ordered_json& value);
+
+/// Returns a value as people read it: numbers that are not whole have `digits` significant digits.
+std::string for_people(const nlohmann::ordered_json& value, int digits);
+
+/// Writes to stdout and makes sure that it arrived. Throws EnvironmentError.
+void print(const std::string& text);
+
+}  // namespace lrb::cli

@@ -1,0 +1,74 @@
+#include "scenarios/compare/compare.hpp"
+
+#include <array>
+#include <filesystem>
+#include <memory>
+
+#include "scenarios/record/recorded_run.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/terminal.hpp"
+
+namespace lrb::cli {
+namespace {
+
+struct CompareOptions {
+  std::string first, second, folder, up;
+};
+
+/// Returns what the pictures of a run need: its name, and where to look from.
+spec::Scenario scenario_of(const run::Recording& recording, const std::string& up) {
+  spec::Scenario s;
+  s.name = recording.trace.header.scenario;
+  s.frames.views.emplace_back();
+  PictureOptions picture;
+  picture.camera.up = up;
+  apply(picture, s.frames);
+  return s;
+}
+
+/// Returns short names of two folders: their last parts, if these differ.
+std::array<std::string, 2> names_of(const std::string& first, const std::string& second) {
+  const auto last = [](const std::string& path) {
+    const std::filesystem::path p(path);
+    return (p.has_filename() ? p.filename() : p.parent_path().filename()).string();
+  };
+  if (last(first) == last(second)) return {first, second};
+  return {last(first), last(second)};
+}
+
+/// Returns the page of a run that is given by its folder, or by its trace.
+std::string page_of(const std::string& run) {
+  const std::filesystem::path p(run);
+  return ((std::filesystem::is_directory(p) ? p : p.parent_path()) / "index.html").string();
+}
+
+int run_compare(const CompareOptions& o, const Globals& globals) {
+  const std::array<run::Recording, 2> recordings = {run::open_run(o.first), run::open_run(o.second)};
+  const std::array<spec::Scenario, 2> scenarios = {scenario_of(recordings[0], o.up),
+                                                   scenario_of(recordings[1], o.up)};
+  const compare::Runs runs{{&recordings[0], &recordings[1]},
+                           names_of(o.first, o.second),
+                           {&scenarios[0], &scenarios[1]},
+                           {page_of(o.first), page_of(o.second)}};
+  const std::string folder = o.folder.empty() ? "out/compare" : o.folder;
+  const std::optional<std::string> difference =
+      compare::write_comparison(runs, globals.command_line, folder, progress_report(globals.quiet));
+  print(difference.value_or("the runs are the same") + "\n" + folder + "/index.html\n");
+  return kOk;
+}
+
+}  // namespace
+
+Command add_compare(CLI::App& root, const Globals& globals) {
+  CLI::App* app =
+      root.add_subcommand("compare", "Show two recorded runs side by side, and what differs first");
+  const auto o = std::make_shared<CompareOptions>();
+  app->add_option("RUN1", o->first, "A run's folder or trace, as run, collide and xray write it")->required();
+  app->add_option("RUN2", o->second, "Folder or trace of the run to compare it with")->required();
+  app->add_option("-o,--output", o->folder, "Folder to write to [out/compare]")->type_name("DIR");
+  add_up_option(*app, o->up);
+  return {app, [o, &globals] { return run_compare(*o, globals); }};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,112 @@
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "engine/distance/distance_context.hpp"
+#include "render/pictures/answer_picture.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "tools/bounds_chart.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/pose_lines.hpp"
+#include "tools/terminal.hpp"
+#include "trace/trace_json_parts.hpp"
+#include <lrbscope/trace/json_write.hpp>
+
+namespace lrb::cli {
+namespace {
+
+struct DistanceOptions {
+  bodies::Corners corners = bodies::Corners::joined;
+  std::string a, b, poses;
+  DistanceRequest request;
+  std::uint32_t repeat = 0;
+  bool features = false;
+  DrawOptions draw;
+};
+
+void write_feature(trace::JsonWriter& w, const char* name, const Witness& witness) {
+  w.key(name).begin_object().member("face", witness.face.value()).member("simplex", witness.simplex.value());
+  write_feature_of(w, witness);
+  w.end_object();
+}
+
+std::string line_of(std::size_t pose, const DistanceResult& result, const std::vector<Bounds>& course,
+                    const DistanceOptions& o, double us) {
+  return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
+    w.begin_object().member("pose", std::uint64_t{pose});
+    w.member("lower", result.lower).member("upper", result.upper);
+    write_vector(w, "point_a", result.witness[0].point);
+    write_vector(w, "point_b", result.witness[1].point);
+    if (result.solids_meet() && result.upper > 0) w.member("solids", 0.0);
+    if (o.request.within) {
+      w.key("within");
+      result.within ? w.value(*result.within) : w.value(std::numeric_limits<double>::quiet_NaN());  // null
+    }
+    if (o.request.max_steps > 0) w.member("finished", result.finished);
+    if (o.features) {
+      write_feature(w, "on_a", result.witness[0]);
+      write_feature(w, "on_b", result.witness[1]);
+    }
+    if (o.draw.course) trace::write_course(w, course);
+    if (o.repeat > 0) w.member("us", us);
+    w.end_object();
+  });
+}
+
+int run_distance(const DistanceOptions& o, const Globals& globals) {
+  const PoseLines list(o.poses);
+  check_request(o.request);
+  const run::AnswerLook look = look_of(o.draw);
+  const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
+  note(globals, a.notes);
+  note(globals, b.notes);
+  list.check(a.rep, b.rep);
+  DistanceContext context;
+  Progress progress("distance", list.poses.size(), globals.quiet);
+  for (std::size_t i = 0; i < list.poses.size(); ++i) {
+    const auto ask = [&] { return distance(a.rep, Pose{}, b.rep, list.poses[i], o.request, context); };
+    BoundsCourse told;
+    const DistanceResult result = o.draw.is_watched() ? distance(a.rep, Pose{}, b.rep, list.poses[i],
+                                                                 o.request, context, nullptr, &told)
+                                                      : ask();
+    print(line_of(i, result, told.course, o, o.repeat > 0 ? median_us(o.repeat, ask) : 0));
+    if (!o.draw.picture.empty())
+      run::draw_distance(a.rep, Pose{}, b.rep, list.poses[i], result, look,
+                         picture_name(o.draw.picture, i, list.poses.size()));
+    if (!o.draw.chart.empty())
+      report::draw(bounds_chart(told.course, "distance", "pairs of boxes opened, pairs of faces measured"),
+                   picture_name(o.draw.chart, i, list.poses.size()));
+    progress.set(i + 1);
+  }
+  return kOk;
+}
+
+}  // namespace
+
+Command add_distance(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "distance", "Bound the distance of two bodies for each pose of B in a list, one line of JSON each");
+  const auto o = std::make_shared<DistanceOptions>();
+  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
+  app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
+  app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
+  app->add_option("--within", o->request.within, "Only say whether the surfaces are at most this far apart")
+      ->type_name("D");
+  app->add_option("--tolerance", o->request.tolerance,
+                  "Stop when the interval is this narrow, in the meshes' unit")
+      ->type_name("E");
+  app->add_option("--relative-tolerance", o->request.relative_tolerance,
+                  "Stop when the interval is this narrow, as a share of the distance")
+      ->type_name("E");
+  app->add_option("--budget", o->request.max_steps, "Stop after this many steps, pairs of boxes opened")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
+      ->type_name("N");
+  app->add_flag("--features", o->features, "Add the vertex, edge or face of each body that is nearest");
+  add_draw_options(*app, o->draw, "Draw the bodies with the way between their nearest points");
+  add_repeat_option(*app, o->repeat, "pose");
+  add_join_option(*app, o->corners);
+  return {app, [o, &globals] { return run_distance(*o, globals); }};
+}
+
+}  // namespace lrb::cli

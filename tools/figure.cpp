@@ -1,0 +1,225 @@
+#include "scenarios/figure/figure.hpp"
+
+#include <filesystem>
+#include <memory>
+
+#include "render/pictures/panel.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/crowd/crowd_trace.hpp"
+#include "scenarios/frames/chosen_view.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/record/recorded_run.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/spec/scenario.hpp"
+#include "scenarios/spec/shipped.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/terminal.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/core/hash.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/trace_json.hpp>
+
+namespace lrb::cli {
+namespace {
+
+struct FigureOptions {
+  std::string source, file, width, line_width;
+  std::vector<std::string> bodies;
+  std::vector<std::uint32_t> faces, events, steps;
+  bool layers = false, close_up = false;
+  PictureOptions picture;
+  figure::FigureSpec figure;
+};
+
+/// What a figure is drawn from, with what its pictures look like where the call does not say.
+struct Source {
+  std::string name, purpose;
+  run::Recording recording;
+  render::FrameSpec frames;
+  bool own_view = false;  ///< nobody has said where it is to be seen from
+};
+
+bool is_mesh_name(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  return ending == ".obj" || ending == ".stl" || ending == ".ply" || ending == ".off" || ending == ".lrb";
+}
+
+/// Returns the run in which the wrapper of a body of the user's shrinks onto it.
+Source refine_body(const std::string& path, const run::ProgressReport& progress) {
+  spec::Scenario s;
+  s.name = std::filesystem::path(path).stem().string();
+  s.show = spec::Show::refinement;
+  s.bodies.resize(1);
+  s.bodies[0].file = path;
+  return {s.name, {}, run::record(s, progress), {}, true};
+}
+
+Source run_of_scenario(const std::string& name, const run::ProgressReport& progress) {
+  const spec::Scenario s = spec::open_scenario(name);
+  return {s.name, s.purpose, run::record(s, progress), s.frames, false};
+}
+
+Source open_trace(const std::string& path, const std::vector<std::string>& bodies) {
+  const std::string json = trace::load_trace_text(path);
+  if (crowd::is_crowd_trace(json))
+    throw InputError(printable_name(path) + ": is the trace of a crowd; `lrbscope render` draws it");
+  Source out;
+  out.recording = run::open_run(trace::trace_from_json(json, printable_name(path)), path, bodies);
+  out.name = out.recording.trace.header.scenario;
+  out.frames = spec::read_pictures(out.recording.trace.header.pictures, printable_name(path));
+  return out;
+}
+
+bool is_trace_name(const std::string& path) {
+  const std::string file = std::filesystem::path(path).filename().string();
+  return file.ends_with(".json.gz") || (file.ends_with(".json") && !file.ends_with(spec::kScenarioEnding) &&
+                                        file.find("trace") != std::string::npos);
+}
+
+Source open_source(const FigureOptions& o, const run::ProgressReport& progress) {
+  std::error_code error;
+  if (std::filesystem::is_directory(o.source, error) || is_trace_name(o.source))
+    return open_trace(run::trace_of(o.source), o.bodies);
+  if (!o.bodies.empty())
+    throw InputError("--bodies: is for a trace, and " + printable_name(o.source) + " is none");
+  return is_mesh_name(o.source) ? refine_body(o.source, progress) : run_of_scenario(o.source, progress);
+}
+
+/// Returns which panels are asked for. Of --faces, --events, --steps and --layers, one at most is given.
+figure::Choice choice_of(const FigureOptions& o) {
+  using By = figure::Choice::By;
+  figure::Choice choice = o.figure.choice;
+  if (o.layers) choice.by = By::layers;
+  for (const auto& [numbers, by] :
+       {std::pair{&o.faces, By::faces}, {&o.events, By::events}, {&o.steps, By::steps}}) {
+    if (numbers->empty()) continue;
+    choice.by = by;
+    choice.numbers = *numbers;
+  }
+  return choice;
+}
+
+figure::FigureSpec figure_spec(const FigureOptions& o, const std::string& file) {
+  figure::FigureSpec spec = o.figure;
+  spec.format = figure::format_of(file);
+  constexpr double kLeast = 20 * figure::kPointsPerMm, kMost = 500 * figure::kPointsPerMm;
+  if (!o.width.empty()) spec.width = figure::parse_length(o.width, "--width", kLeast, kMost);
+  if (!o.line_width.empty())
+    spec.line_width = figure::parse_length(o.line_width, "--line-width", figure::kHairline, 3);
+  if (o.picture.dpi) spec.dpi = *o.picture.dpi;
+  spec.choice = choice_of(o);
+  return spec;
+}
+
+render::FrameSpec frame_spec(const FigureOptions& o, const Source& source) {
+  render::FrameSpec frames = source.frames;
+  if (o.close_up) frames.views = whole_and_contact(frames.views);
+  PictureOptions picture = o.picture;
+  picture.dpi.reset();  // it is the figure's
+  if (!picture.style) picture.style = render::FrameSpec::Style::print;
+  apply(picture, frames);
+  run::check_views(frames.views, source.recording.bodies[0].rep.dim());
+  if (source.own_view && picture.camera.from.empty()) {
+    if (frames.views.empty()) frames.views.emplace_back();
+    for (render::FrameSpec::View& view : frames.views)
+      view.from = run::broadside(run::box_of(source.recording.bodies[0].rep), view.up);
+  }
+  const trace::TraceHeader& header = source.recording.trace.header;
+  if (const EventLevel needed = render::needed_level(frames); needed > header.level)
+    throw InputError(
+        "--colour-by or --node-boxes: the run does not hold the events for it; record it with --events " +
+        std::string(name_of(needed)));
+  return frames;
+}
+
+int run_figure(const FigureOptions& o, const Globals& globals) {
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  if (!o.file.empty()) static_cast<void>(figure_spec(o, o.file));  // a typing error should not cost a run
+  const Source source = open_source(o, progress);
+  const std::string file = o.file.empty() ? "out/" + source.name + ".pdf" : o.file;
+  const figure::FigureSpec spec = figure_spec(o, file);
+  render::FrameSpec frames = frame_spec(o, source);
+  const run::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
+  if (o.close_up) run::widen_close_ups(recorded, frames.views);
+  const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);
+  note(globals, source.recording.notes);
+  if (!drawn.left_out.empty()) note(globals, {drawn.left_out});
+  std::filesystem::path caption(file);
+  caption.replace_extension(".caption.txt");
+  io::write_text(file, drawn.bytes);
+  io::write_text(caption.string(), drawn.caption + "\n");
+  print(file + "\n");
+  return kOk;
+}
+
+void add_panel_options(CLI::App& app, FigureOptions& o) {
+  auto* panels = app.add_option("--panels", o.figure.choice.panels,
+                                "Most panels, where the picture changes [6; of two bodies 4]")
+                     ->check(CLI::Range(std::size_t{1}, figure::kMostPanels))
+                     ->type_name("N");
+  const auto add = [&](const char* name, std::vector<std::uint32_t>& numbers, const char* what) {
+    return app.add_option(name, numbers, what)->delimiter(',')->type_name("N,N,...")->excludes(panels);
+  };
+  auto* faces = add("--faces", o.faces, "Panels whose wrappers have about so many faces");
+  auto* events = add("--events", o.events, "Panels after these events");
+  auto* steps = add("--steps", o.steps, "Panels after these time steps");
+  auto* layers =
+      app.add_flag("--layers", o.layers,
+                   "A panel for each layer of regions of one body, 26 of them at most, evenly chosen")
+          ->excludes(panels);
+  faces->excludes(events)->excludes(steps)->excludes(layers);
+  events->excludes(steps)->excludes(layers);
+  steps->excludes(layers);
+}
+
+void add_paper_options(CLI::App& app, FigureOptions& o) {
+  app.add_option("--width", o.width, "Width on paper: mm, cm, in or pt [85mm]")->type_name("LENGTH");
+  app.add_option("--columns", o.figure.columns, "Panels side by side [those that suit them]")
+      ->check(CLI::Range(1, 26))
+      ->type_name("N");
+  app.add_option("--font-size", o.figure.font_size, "Size of all texts in points")
+      ->check(CLI::Range(4.0, 24.0))
+      ->capture_default_str()
+      ->type_name("PT");
+  app.add_option("--line-width", o.line_width,
+                 "Width of thin lines, from 0.25pt; others are in proportion [0.35pt]")
+      ->type_name("LENGTH");
+  app.add_option("--dpi", o.picture.dpi,
+                 "Pixels to an inch of faces of 3D bodies, and of a PNG [600; of a PNG 300]")
+      ->check(CLI::Range(spec::kLeastDpi, spec::kMostDpi))
+      ->type_name("N");
+  app.add_flag("--title,!--no-title", o.figure.titles,
+               "Write below each panel what it shows [its letter alone]");
+  app.add_flag("--legend,!--no-legend", o.figure.legend,
+               "Leave legend and colour bar out, or have them [they are there]");
+  app.add_flag("--caption", o.figure.caption,
+               "Set the caption below; it is always written to FIG.caption.txt");
+  add_style_option(app, o.picture, "print");
+  app.add_flag("--transparent", o.picture.transparent, "Draw without a background");
+}
+
+}  // namespace
+
+Command add_figure(CLI::App& root, const Globals& globals) {
+  CLI::App* app =
+      root.add_subcommand("figure", "Lay out panels of a run for a width on paper, as PDF, SVG or PNG");
+  const auto o = std::make_shared<FigureOptions>();
+  app->add_option(
+         "SOURCE", o->source,
+         "A run's folder or trace, a scenario, or a mesh or .lrb file, whose wrapper shrinks onto it")
+      ->required();
+  app->add_option("-o,--output", o->file, "File to write [out/NAME.pdf]")->type_name("FIG.pdf|svg|png");
+  app->add_option("--bodies", o->bodies, "Bodies of a trace [a.lrb and b.lrb beside it]")
+      ->type_name("FILE")
+      ->expected(1, 2);
+  add_panel_options(*app, *o);
+  add_paper_options(*app, *o);
+  app->add_flag("--close-up", o->close_up, "Add panels of the contact, bodies alone");
+  add_camera_options(*app, o->picture.camera);
+  add_orbit_option(*app, o->picture.camera);
+  add_colour_options(*app, o->picture);
+  return {app, [o, &globals] { return run_figure(*o, globals); }};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,379 @@
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+
+#include "scenarios/golden/check.hpp"
+#include "scenarios/golden/golden_report.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/spec/shipped.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/terminal.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+
+namespace lrb::cli {
+namespace {
+
+struct GoldenOptions {
+  std::vector<std::string> scenarios;
+  std::string goldens = "goldens", folder = "out/golden", variant, size;
+  std::optional<std::uint32_t> frames;
+  std::vector<golden::Level> levels;  ///< none: as each golden says
+  std::optional<double> large_share;  ///< of pixels; none: as each golden says
+  std::string junit;
+  unsigned jobs = 1;
+  bool json = false;
+};
+
+/// Applies what the call says of how to compare.
+void apply(const GoldenOptions& o, golden::GoldenSpec& spec) {
+  if (!o.levels.empty()) {
+    spec.levels = {};
+    for (const golden::Level level : o.levels) spec.levels[static_cast<std::size_t>(level)] = true;
+  }
+  if (o.large_share) spec.tolerance.large_share = *o.large_share;
+}
+
+std::string approve_command(const GoldenOptions& o, const std::string& name) {
+  return "lrbscope golden approve --goldens " + shell_word(o.goldens) + " " + name;
+}
+
+struct NamedGolden {
+  std::string name;
+  std::optional<spec::Scenario> scenario;  ///< nothing unless it has been opened
+};
+
+/// Finds a golden by its own name, or by its scenario: the name of a shipped one, or a file.
+NamedGolden find_golden(const GoldenOptions& o, const std::string& word) {
+  if (golden::has_golden(o.goldens, word)) return {word, std::nullopt};
+  spec::Scenario scenario = spec::open_scenario(word);
+  if (!golden::has_golden(o.goldens, scenario.name))
+    throw InputError(word + ": no golden in " + o.goldens +
+                     " yet; make it with: lrbscope golden approve --goldens " + shell_word(o.goldens) + " " +
+                     shell_word(word));
+  return {scenario.name, std::move(scenario)};
+}
+
+std::vector<NamedGolden> goldens_to_test(const GoldenOptions& o) {
+  std::vector<NamedGolden> out;
+  if (o.scenarios.empty())
+    for (const std::string& name : golden::golden_names(o.goldens)) out.push_back({name, std::nullopt});
+  for (const std::string& word : o.scenarios) out.push_back(find_golden(o, word));
+  return out;
+}
+
+std::string as_json(const golden::GoldenResult& r) {
+  nlohmann::ordered_json images = nlohmann::ordered_json::array();
+  for (const golden::ImageVerdict& v : r.verdict.images)
+    images.push_back({{"file", v.file}, {"passed", v.passed}, {"equal", v.equal}, {"text", v.text}});
+  nlohmann::ordered_json line = {
+      {"scenario", r.name}, {"passed", r.verdict.passed()}, {"seconds", r.seconds},       {"steps", r.steps},
+      {"events", r.events}, {"divergence", nullptr},        {"images", std::move(images)}};
+  for (const golden::Effect& e : r.verdict.effects)
+    line["effects"].push_back({{"step", e.step},
+                               {"what", e.what},
+                               {"expected", e.expected},
+                               {"found", e.found},
+                               {"answer", e.kind == golden::Effect::Kind::answer}});
+  for (const std::string& cause : r.verdict.causes) line["causes"].push_back(cause);
+  if (!r.verdict.refusal.empty()) line["refusal"] = r.verdict.refusal;
+  if (r.verdict.divergence) line["divergence"] = r.verdict.divergence->message();
+  if (!r.verdict.diagnosis.empty()) line["diagnosis"] = r.verdict.diagnosis;
+  if (!r.verdict.passed()) line["approve"] = r.approve;
+  return one_line(line);
+}
+
+/// A golden whose scenario has been run, or why it could not be.
+struct Tried {
+  std::optional<golden::Golden> golden;
+  std::optional<golden::GoldenRun> run;
+  std::string refusal;
+  double seconds = 0;
+};
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point began) {
+  return std::chrono::duration<double>(Clock::now() - began).count();
+}
+
+/// Reads a golden and runs its scenario. One that is damaged or refused fails by itself; the others are
+/// tested all the same.
+Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressReport& progress) {
+  const auto began = Clock::now();
+  Tried out;
+  try {
+    out.golden = golden::load_golden(o.goldens, g.name);
+    apply(o, out.golden->spec);
+    spec::Scenario scenario =
+        g.scenario ? *g.scenario : golden::golden_scenario(o.goldens, g.name, out.golden->spec);
+    out.run = golden::record_golden(std::move(scenario), out.golden->spec, progress);
+  } catch (const InputError& e) {
+    out.refusal = e.what();
+  }
+  out.seconds = seconds_since(began);
+  return out;
+}
+
+/// Runs scenarios on several threads, at most --jobs ahead of the one that is asked for: runs take memory.
+class Trials {
+ public:
+  Trials(const GoldenOptions& o, const Globals& globals, const std::vector<NamedGolden>& todo)
+      : o_(o), todo_(todo), progress_(o.jobs > 1 ? run::kSilent : progress_report(globals.quiet)) {}
+
+  Tried take(std::size_t i) {
+    if (o_.jobs <= 1) return try_one(o_, todo_[i], progress_);
+    for (; begun_.size() < std::min(todo_.size(), i + o_.jobs);)
+      begun_.push_back(std::async(std::launch::async, try_one, std::cref(o_), std::cref(todo_[begun_.size()]),
+                                  std::cref(progress_)));
+    return begun_[i].get();
+  }
+
+ private:
+  const GoldenOptions& o_;
+  const std::vector<NamedGolden>& todo_;
+  run::ProgressReport progress_;
+  std::vector<std::future<Tried>> begun_;
+};
+
+/// Draws the pictures of what was tried, and compares.
+golden::GoldenResult judge(Tried& tried, const NamedGolden& g, const GoldenOptions& o, const Globals& globals,
+                           bool report) {
+  const auto began = Clock::now();
+  const std::string approve = approve_command(o, g.name);
+  golden::GoldenResult result;
+  try {
+    if (!tried.refusal.empty()) throw InputError(tried.refusal);
+    golden::paint_golden(*tried.run, tried.golden->spec, progress_report(globals.quiet));
+    result = golden::test_golden(*tried.golden, *tried.run, approve, report);
+  } catch (const InputError& e) {
+    tried.run.reset();
+    result = golden::untested_golden(g.name, e.what(), approve);
+  }
+  result.seconds = tried.seconds + seconds_since(began);
+  result.page = o.folder + "/index.html";
+  return result;
+}
+
+/// `report`: writes a page in any case, with every picture on it.
+int run_test(const GoldenOptions& o, const Globals& globals, bool report) {
+  const std::vector<NamedGolden> todo = goldens_to_test(o);
+  std::vector<std::string> names;
+  for (const NamedGolden& g : todo) names.push_back(g.name);
+  std::optional<io::FolderLock> lock;
+  const auto lock_folder = [&] {
+    make_folder(o.folder);
+    if (!lock) lock.emplace(o.folder);
+  };
+  if (report || std::filesystem::exists(o.folder)) lock_folder();
+  golden::clear_golden_report(o.folder, names);
+  std::vector<golden::GoldenResult> results;
+  Trials trials(o, globals, todo);
+  bool passed = true;
+  for (std::size_t i = 0; i < todo.size(); ++i) {
+    Tried tried = trials.take(i);
+    results.push_back(judge(tried, todo[i], o, globals, report));
+    passed = passed && results.back().verdict.passed();
+    if (!passed) lock_folder();
+    if (tried.run) golden::write_failures(results.back(), *tried.run, o.folder);
+    print(o.json ? as_json(results.back()) : golden::result_text(results.back()));
+  }
+  if (report || !passed) {
+    golden::write_golden_page(results, o.folder, globals.command_line);
+    if (!o.json) print(o.folder + "/index.html\n");
+  }
+  if (!o.junit.empty()) io::write_text(o.junit, golden::junit_xml(results));
+  return passed ? kOk : kMismatch;
+}
+
+std::uintmax_t bytes_in(const std::string& folder) {
+  std::uintmax_t bytes = 0;
+  std::error_code error;
+  for (const auto& file : std::filesystem::directory_iterator(folder, error))
+    if (file.is_regular_file(error)) bytes += file.file_size(error);
+  return bytes;
+}
+
+std::string levels_words(const golden::GoldenSpec& spec) {
+  std::string out;
+  for (const EnumWord<golden::Level>& w : kWords<golden::Level>)
+    if (spec.compares(w.value)) out.append(out.empty() ? "" : ", ").append(w.word);
+  return out;
+}
+
+int run_list(const GoldenOptions& o) {
+  std::uintmax_t all = 0;
+  const std::vector<std::string> names = golden::golden_names(o.goldens);
+  for (const std::string& name : names) {
+    const golden::GoldenSpec spec = golden::read_golden_spec(o.goldens, name);
+    const std::uintmax_t bytes = bytes_in((std::filesystem::path(o.goldens) / name).string());
+    all += bytes;
+    if (o.json)
+      print(one_line({{"golden", name},
+                      {"scenario", spec.scenario},
+                      {"compare", levels_words(spec)},
+                      {"size", {spec.width, spec.height}},
+                      {"frames", spec.frames},
+                      {"bytes", bytes}}));
+    else
+      print(name + ": " + spec.scenario + "; compares " + levels_words(spec) + "; up to " +
+            std::to_string(spec.frames) + " pictures of " + std::to_string(spec.width) + "x" +
+            std::to_string(spec.height) + "; " + std::to_string((bytes + 1023) / 1024) + " KiB\n");
+  }
+  if (!o.json)
+    print(std::to_string(names.size()) + " goldens, " + std::to_string((all + 1023) / 1024) + " KiB\n");
+  return kOk;
+}
+
+/// Throws InputError if a golden is of another scenario, which is still there: two of one name would take
+/// turns in one folder.
+void refuse_another(const GoldenOptions& o, const std::string& name, const std::string& kept,
+                    const std::string& reference, const std::string& word) {
+  if (kept == reference) return;
+  golden::GoldenSpec other;
+  other.scenario = kept;
+  try {
+    golden::golden_scenario(o.goldens, name, other);
+  } catch (const InputError&) {
+    return;  // it has gone, or has another name by now
+  }
+  const std::filesystem::path folder = std::filesystem::path(o.goldens) / name;
+  throw InputError(printable_name(word) + ": has the name of another scenario, whose golden is in " +
+                   printable_name(folder.string()) + " (its \"scenario\" is " + kept +
+                   "): rename one of the two, or approve into another folder with --goldens");
+}
+
+golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& name,
+                                   const spec::Scenario& scenario, const std::string& word) {
+  golden::GoldenSpec spec;
+  if (golden::has_golden(o.goldens, name)) {
+    spec = golden::read_golden_spec(o.goldens, name);
+    if (name != word) {
+      const std::string reference = golden::scenario_reference(o.goldens, scenario, word);
+      refuse_another(o, name, spec.scenario, reference, word);
+      spec.scenario = reference;
+    }
+  } else {
+    golden::set_default_size(spec, scenario.frames);
+    spec.scenario = golden::scenario_reference(o.goldens, scenario, word);
+  }
+  if (!o.size.empty()) {
+    PictureOptions picture;
+    picture.size = o.size;
+    render::FrameSpec frames;
+    apply(picture, frames);
+    spec.width = frames.width;
+    spec.height = frames.height;
+  }
+  if (o.frames) spec.frames = *o.frames;
+  apply(o, spec);
+  return spec;
+}
+
+int run_approve(const GoldenOptions& o, const Globals& globals) {
+  const std::vector<std::string> words = o.scenarios.empty() ? golden::golden_names(o.goldens) : o.scenarios;
+  for (const std::string& word : words) {
+    spec::Scenario scenario =
+        golden::has_golden(o.goldens, word)
+            ? golden::golden_scenario(o.goldens, word, golden::read_golden_spec(o.goldens, word))
+            : spec::open_scenario(word);
+    const std::string name = scenario.name;
+    const golden::GoldenSpec spec = spec_to_approve(o, name, scenario, word);
+    const golden::GoldenRun run =
+        golden::play_golden(std::move(scenario), spec, progress_report(globals.quiet));
+    const std::vector<std::string> done = golden::approve_golden(o.goldens, spec, run, o.variant);
+    for (const std::string& line : done) print(line + "\n");
+    if (done.empty()) print("unchanged " + name + "\n");
+  }
+  return kOk;
+}
+
+void add_folder(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
+  app.add_option("--goldens", o->goldens, "Folder with what is approved")
+      ->type_name("DIR")
+      ->capture_default_str();
+}
+
+CLI::App* add_part(CLI::App& golden, const std::string& name, const std::string& what,
+                   const std::shared_ptr<GoldenOptions>& o, const std::string& none) {
+  CLI::App* app = golden.add_subcommand(name, what);
+  app->add_option("SCENARIO", o->scenarios, "Shipped scenarios, or JSON files [" + none + "]");
+  add_folder(*app, o);
+  return app;
+}
+
+/// How to compare: for a call of test, or kept by approve.
+void add_comparison(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
+  std::vector<std::string> words;
+  for (const EnumWord<golden::Level>& w : kWords<golden::Level>) words.emplace_back(w.word);
+  app.add_option_function<std::vector<std::string>>(
+         "--compare",
+         [o](const std::vector<std::string>& chosen) {
+           for (const std::string& word : chosen) o->levels.push_back(from_name<golden::Level>(word).value());
+         },
+         "What must be as approved, separated by commas: answers, events, pictures [all, or as the golden says]")
+      ->delimiter(',')
+      ->allow_extra_args(false)  // scenarios may follow
+      ->check(CLI::IsMember(words).description(""))
+      ->type_name(all_names<golden::Level>(",", ","));
+  app.add_option("--picture-tolerance", o->large_share,
+                 "Share of a picture's pixels that may differ strongly [0.0005, or as the golden says]")
+      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("SHARE");
+}
+
+void add_output(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
+  add_comparison(app, o);
+  app.add_option("--junit", o->junit, "Write the results as JUnit XML, too")->type_name("FILE");
+  app.add_option("--jobs", o->jobs,
+                 "Number of scenarios that are run at the same time; results do not depend on it")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("-o,--output", o->folder, "Folder for the page and for what differs")
+      ->type_name("DIR")
+      ->capture_default_str();
+  app.add_flag("--json", o->json, "Print a line of JSON for each scenario");
+}
+
+}  // namespace
+
+Command add_golden(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand("golden", "Compare runs with approved traces and pictures");
+  const auto o = std::make_shared<GoldenOptions>();
+  app->require_subcommand(1);
+  CLI::App* test =
+      add_part(*app, "test", "Compare; if events, counters or pictures differ, write a page and exit with 1",
+               o, "all goldens");
+  add_output(*test, o);
+  CLI::App* approve = add_part(
+      *app, "approve", "Approve today's runs where they differ: make them the goldens", o, "all goldens");
+  approve
+      ->add_option("--variant", o->variant,
+                   "Put pictures that differ beside the approved ones, under this name")
+      ->type_name("NAME");
+  approve->add_option("--size", o->size, "Size of the pictures [480 wide, of the scenario's shape]")
+      ->type_name("WxH");
+  approve->add_option("--frames", o->frames, "Number of pictures, evenly chosen from the scenario's [3]")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N");
+  add_comparison(*approve, o);
+  CLI::App* list = app->add_subcommand(
+      "list", "List what has been approved, how it is compared, and what it takes on disk");
+  add_folder(*list, o);
+  list->add_flag("--json", o->json, "Print a line of JSON for each golden");
+  CLI::App* report =
+      add_part(*app, "report", "As test, but always with a page, of every picture", o, "all goldens");
+  add_output(*report, o);
+  return {app, [o, &globals, test, report, list] {
+            if (list->parsed()) return run_list(*o);
+            if (test->parsed()) return run_test(*o, globals, false);
+            if (report->parsed()) return run_test(*o, globals, true);
+            return run_approve(*o, globals);
+          }};
+}
+
+}  // namespace lrb::cli

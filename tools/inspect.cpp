@@ -1,0 +1,427 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iomanip>
+#include <memory>
+#include <span>
+#include <sstream>
+#include <string>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "render/pictures/body_picture.hpp"
+#include "render/pictures/findings_picture.hpp"
+#include "render/pictures/panel.hpp"
+#include "scenarios/bodies/body_figures.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/bodies/region_figures.hpp"
+#include "scenarios/frames/chosen_view.hpp"
+#include "scenarios/frames/frames.hpp"
+#include "scenarios/io/files.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/mesh_repair.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/validate.hpp>
+
+namespace lrb::cli {
+
+// Regions and tried settings as `lrbscope inspect --regions` tells of them.
+
+/// Returns all regions, in the order given. The keys are those of `--json`.
+nlohmann::ordered_json regions_json(std::span<const bodies::RegionFigures> regions);
+/// Returns them as a table for people: the first of them.
+std::string regions_text(const nlohmann::ordered_json& regions);
+
+nlohmann::ordered_json trials_json(std::span<const bodies::Trial> trials);
+std::string trials_text(const nlohmann::ordered_json& trials);
+
+/// Returns what stands below a region's picture.
+std::string region_caption(const bodies::RegionFigures& region);
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InspectOptions {
+  bodies::Corners corners = bodies::Corners::joined;
+  std::string file, picture, drawing;
+  PictureOptions pictures;
+  bool validate = false, render = false, json = false;
+  bool regions = false, tried = false;
+  bodies::RegionOrder sort = bodies::RegionOrder::waste;
+  unsigned threads = 0;
+};
+
+Json box_json(const std::vector<Eigen::Vector3d>& vertices) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : vertices) box.extend(v);
+  if (box.isEmpty()) return nullptr;
+  return {{"low", {box.min().x(), box.min().y(), box.min().z()}},
+          {"high", {box.max().x(), box.max().y(), box.max().z()}}};
+}
+
+Json loops_json(const std::vector<BoundaryLoop>& loops) {
+  Json out = Json::array();
+  for (const BoundaryLoop& l : loops) {
+    const Eigen::Vector3d &low = l.box.min(), &high = l.box.max();
+    Json vertices = Json::array();
+    for (const VertexId v : l.vertices) vertices.push_back(v.value());
+    out.push_back({{"edges", l.edges()},
+                   {"length", l.length},
+                   {"low", {low.x(), low.y(), low.z()}},
+                   {"high", {high.x(), high.y(), high.z()}},
+                   {"planar", l.planar},
+                   {"is_loop", l.is_loop},
+                   {"vertices", std::move(vertices)}});
+  }
+  return out;
+}
+
+/// Returns boundary loops for people: the longest, a line each.
+std::string loops_text(const Json& loops) {
+  constexpr std::size_t kMostLines = 20;
+  constexpr int kDigits = 4;
+  std::size_t edges = 0;
+  for (const Json& l : loops) edges += l["edges"].get<std::size_t>();
+  std::ostringstream out;
+  out << "boundary: " << edges << " open edges in " << loops.size()
+      << (loops.size() == 1 ? " loop" : " loops") << (loops.empty() ? "\n" : ", the longest first:\n");
+  for (std::size_t i = 0; i < std::min(loops.size(), kMostLines); ++i) {
+    const Json& l = loops[i];
+    out << "  " << i << ": " << l["edges"] << " edges, length " << for_people(l["length"], kDigits) << ", "
+        << (l["planar"] ? "flat" : "not flat") << (l["is_loop"] ? "" : ", interrupted") << ", from "
+        << for_people(l["low"], kDigits) << " to " << for_people(l["high"], kDigits) << "\n";
+  }
+  if (loops.size() > kMostLines) out << "  and " << loops.size() - kMostLines << " more: --json lists all\n";
+  return out.str();
+}
+
+/// Returns the findings: of each its kind, how often it occurs, the elements, and a line for people. An
+/// element is a number, or an array of two.
+Json findings_json(const Mesh& mesh, const MeshReport& report) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < kMeshFaultCount; ++i) {
+    const auto fault = static_cast<MeshFault>(i);
+    if (report[fault].count == 0) continue;
+    Json elements = Json::array();
+    for (const auto& [first, second] : report[fault].first)
+      elements.push_back(second == kNull ? Json(first) : Json{first, second});
+    out.push_back({{"kind", name_of(fault)},
+                   {"count", report[fault].count},
+                   {"elements", std::move(elements)},
+                   {"text", report.line(fault, mesh)}});
+  }
+  return out;
+}
+
+Json mesh_json(const CheckedMesh& checked, const std::vector<BoundaryLoop>& loops) {
+  const Mesh& mesh = checked.mesh();
+  const MeshReport& report = checked.report();
+  Json j;
+  j["file"] = mesh.name;
+  j["kind"] = "mesh";
+  j["dim"] = mesh.dim;
+  j["vertices"] = mesh.vertices.size();
+  j["faces"] = mesh.face_count();
+  j["box"] = box_json(mesh.vertices);
+  j["components"] = report.components;
+  j["genus"] = report.genus >= 0 ? Json(report.genus) : Json(nullptr);
+  j["closed"] = report.closed;
+  j["bounds_solid"] = report.bounds_solid;
+  j["buildable"] = report.when_turned().buildable();  // because `build` turns it
+  j["queryable"] = report.queryable();
+  j["findings"] = findings_json(mesh, report);
+  j["boundary_loops"] = loops_json(loops);
+  return j;
+}
+
+Json layers_json(const LrbRep& rep) {
+  std::vector<std::array<std::uint64_t, 3>> layers(rep.layer_count());
+  for (RegionId r = 0; r < rep.region_count(); ++r) {
+    layers[rep.layer(r)][0] += 1;
+    layers[rep.layer(r)][1] += rep.lids(r).size();
+    layers[rep.layer(r)][2] += rep.floor(r).size();
+  }
+  Json out = Json::array();
+  for (const auto& l : layers) out.push_back({{"regions", l[0]}, {"lids", l[1]}, {"floor_faces", l[2]}});
+  return out;
+}
+
+/// Returns how pictures are to be drawn; of findings (`drawing`), as high as they need unless a size is
+/// given.
+render::FrameSpec sheet_frames(const InspectOptions& o, bool drawing) {
+  if (!o.render && o.drawing.empty()) {
+    const CameraOptions& camera = o.pictures.camera;
+    const std::pair<bool, const char*> of_pictures[] = {{!o.pictures.size.empty(), "--size"},
+                                                        {o.pictures.dpi.has_value(), "--dpi"},
+                                                        {o.pictures.style.has_value(), "--style"},
+                                                        {!camera.from.empty(), "--from"},
+                                                        {!camera.look_at.empty(), "--look-at"},
+                                                        {camera.zoom.has_value(), "--zoom"},
+                                                        {camera.orthographic.has_value(), "--projection"},
+                                                        {!camera.up.empty(), "--up"}};
+    for (const auto& [given, name] : of_pictures)
+      if (given)
+        throw InputError(std::string(name) + ": is for pictures; add --render or --draw, or leave " + name +
+                         " out");
+  }
+  render::FrameSpec frames;
+  frames.width = drawing ? run::kFindingsSheetWidth : run::kBodySheetWidth;
+  frames.height = drawing ? 0 : run::kBodySheetHeight;
+  apply(o.pictures, frames);
+  if (frames.height > 0) run::check_frame_size(frames);
+  return frames;
+}
+
+void draw_findings(const run::FaultyMesh& faulty, const InspectOptions& o, Json& j,
+                   std::vector<std::string>& notes) {
+  const std::string& path = o.drawing;
+  const auto& findings = faulty.report.findings;
+  const bool any =
+      std::any_of(findings.begin(), findings.end(), [](const MeshFinding& f) { return f.count > 0; });
+  const render::FrameSpec frames = sheet_frames(o, true);
+  run::check_views(frames.views, faulty.mesh.dim);
+  if (any) make_folder_of(path);
+  if (any && run::draw_findings(faulty, path, frames)) {
+    j["drawing"] = path;
+    return;
+  }
+  j["drawing"] = nullptr;
+  notes.push_back(faulty.mesh.name + ": nothing to draw: there are no findings; " + path +
+                  " was not written");
+}
+
+/// Measures the regions, and draws the worst ten if pictures are asked for (`picture` is not empty).
+void tell_regions(const LrbRep& rep, const InspectOptions& o, const render::FrameSpec& frames,
+                  const std::string& picture, Json& j) {
+  if (rep.region_count() == 0)
+    throw InputError(rep.name() + ": has no regions to list: it is open, or no LRB-rep can be made of it");
+  const std::vector<bodies::RegionFigures> regions = bodies::region_figures(rep, o.sort, o.threads);
+  j["total_waste"] = bodies::total_waste(regions);
+  j["region_figures"] = regions_json(regions);
+  if (!picture.empty()) {
+    constexpr std::size_t kWorst = 10;
+    std::vector<run::ShownRegion> shown;
+    for (std::size_t i = 0; i < std::min(kWorst, regions.size()); ++i)
+      shown.push_back({regions[i].region, region_caption(regions[i])});
+    run::draw_region_sheet(rep, bodies::waste_over_faces(rep, regions), "a face's share of the waste", shown,
+                           picture, frames);
+  }
+  if (!o.tried) return;
+  const std::vector<bodies::Trial> trials = bodies::try_settings(rep, o.threads);
+  j["trials"] = trials_json(trials);
+  j["advice"] = bodies::advice(rep, trials);
+}
+
+void look_broadside(const LrbRep& rep, render::FrameSpec& frames) {
+  if (frames.views.empty()) frames.views.emplace_back();
+  frames.views[0].from = run::broadside(run::box_of(rep), frames.views[0].up);
+}
+
+std::string as_text(const Json& j) {
+  std::ostringstream out;
+  for (const auto& [key, value] : j.items()) {
+    if (value.is_array() && (key == "findings" || key == "violations" || key == "advice")) {
+      out << key << (value.empty() ? ": none\n" : ":\n");
+      for (const auto& line : value)
+        out << "  " << (line.is_object() ? line["text"] : line).get<std::string>() << "\n";
+    } else if (key == "boundary_loops") {
+      if (!value.empty()) out << loops_text(value);
+    } else if (key == "region_figures") {
+      out << regions_text(value);
+    } else if (key == "trials") {
+      out << trials_text(value);
+    } else if (key == "layers_from_the_solid") {
+      out << "layers, from the solid outward:\n";
+      for (const auto& l : value)
+        out << "  " << l["regions"] << " regions, " << l["lids"] << " lids over " << l["floor_faces"]
+            << " faces\n";
+    } else {
+      constexpr int kDigits = 6;  // of coordinates
+      out << key << ": " << for_people(value, kDigits)
+          << (key == "total_waste" ? std::string(" (") + bodies::kUsualWaste + ")" : "") << "\n";
+    }
+  }
+  return out.str();
+}
+
+int run_inspect(const InspectOptions& o, const Globals& globals) {
+  render::FrameSpec frames = sheet_frames(o, false);
+  Json j;
+  std::unique_ptr<LrbRep> rep;
+  std::vector<std::string> notes;
+  if (bodies::is_lrb_file(o.file)) {
+    if (!o.drawing.empty())
+      throw InputError(
+          printable_name(o.file) +
+          ": is an LRB-rep, which has no findings to draw; give its mesh, or draw it with --render");
+    rep = std::make_unique<LrbRep>(load_lrb(o.file));
+    j["file"] = o.file;
+    j["kind"] = "LRB-rep";
+    j.update(bodies::body_figures(*rep));
+    j["layers_from_the_solid"] = layers_json(*rep);
+  } else {
+    constexpr std::size_t kMostElements =
+        1'000'000;  // of a kind, so that the answer is no larger than a mesh
+    CheckedMesh mesh =
+        check(bodies::read_body(o.file, o.corners, notes), o.json ? kMostElements : MeshFinding::kShown);
+    mesh.find_self_intersections();
+    const std::vector<BoundaryLoop> loops = find_boundary_loops(mesh.mesh(), mesh.use());
+    j = mesh_json(mesh, loops);
+    const MeshReport shown = mesh.report().shortened();
+    if (!o.drawing.empty()) draw_findings({mesh.mesh(), shown, loops}, o, j, notes);
+    if (o.validate)
+      rep = std::make_unique<LrbRep>(bodies::build_from_mesh(std::move(mesh), {}, notes));
+    else if (o.render || o.regions)
+      rep = std::make_unique<LrbRep>(bodies::body_of_mesh(std::move(mesh)).rep);
+  }
+  bool valid = true;
+  if (o.validate) {
+    ValidateOptions validating;
+    validating.threads = 0;
+    const ValidateReport report = validate(*rep, validating);
+    valid = report.valid;
+    j["valid"] = report.valid;
+    j["violations"] = report.violations;
+    j["volume_error"] = report.volume_error;
+  }
+  std::string picture;
+  if (o.render) {
+    run::check_views(frames.views, rep->dim());
+    picture = o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() +
+                                      (o.regions ? "-regions.png" : ".png")
+                                : o.picture;
+    make_folder_of(picture);
+    if (o.pictures.camera.from.empty()) look_broadside(*rep, frames);
+    if (!o.regions) run::draw_body_sheet(*rep, picture, frames);
+    j["picture"] = picture;
+  }
+  if (o.regions) tell_regions(*rep, o, frames, picture, j);
+  note(globals, notes);
+  print(o.json ? one_line(j) : as_text(j));
+  return valid ? kOk : kMismatch;
+}
+
+}  // namespace
+
+Command add_inspect(CLI::App& root, const Globals& globals) {
+  CLI::App* app =
+      root.add_subcommand("inspect", "Tell what a mesh or an LRB-rep is, and what is wrong with it");
+  const auto o = std::make_shared<InspectOptions>();
+  app->add_option("FILE", o->file, "Mesh or .lrb file")->required();
+  app->add_flag("--validate", o->validate,
+                "Prove that the LRB-rep keeps its promises (a mesh is built first); exit code 1 if not");
+  app->add_flag(
+      "--render", o->render,
+      "Draw the body, its layers and its outermost wrapper; with --regions, where regions waste most and the "
+      "worst ten");
+  auto* regions =
+      app->add_flag("--regions", o->regions, "List the regions (a mesh is built first), the worst first");
+  add_choice<bodies::RegionOrder>(*app, "--sort", o->sort, "What is worst [waste]");
+  app->add_flag("--try", o->tried, "With --regions: build it with other settings, and tell which help")
+      ->needs(regions);
+  app->get_option("--sort")->needs(regions);
+  app->add_option("--draw", o->drawing,
+                  "Draw what is wrong with a mesh, to this picture: the first offenders are pointed out")
+      ->type_name("FILE.png");
+  app->add_option("-o,--output", o->picture, "Picture to write [out/NAME.png]")->type_name("FILE.png");
+  add_size_options(*app, o->pictures);
+  add_camera_options(*app, o->pictures.camera);
+  app->add_flag("--json", o->json, "Print one JSON object");
+  add_join_option(*app, o->corners);
+  return {app, [o, &globals] { return run_inspect(*o, globals); }};
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kRegionDigits = 3;
+
+}  // namespace
+
+nlohmann::ordered_json regions_json(std::span<const bodies::RegionFigures> regions) {
+  Json out = Json::array();
+  for (const bodies::RegionFigures& r : regions)
+    out.push_back({{"region", r.region.value()},
+                   {"layer", r.layer},
+                   {"lids", r.lids},
+                   {"floor", r.floor},
+                   {"volume", r.volume},
+                   {"distance", std::isfinite(r.thickness) ? Json(r.thickness) : Json(nullptr)},
+                   {"parent", is_region(r.parent) ? Json(r.parent.value()) : Json("outside")},
+                   {"waste", r.waste}});
+  return out;
+}
+
+std::string regions_text(const Json& regions) {
+  constexpr std::size_t kMostRows = 25;
+  constexpr int kWidth = 11;
+  std::ostringstream out;
+  out << "regions:\n";
+  for (const char* title : {"region", "layer", "lids", "floor", "volume", "distance", "parent", "waste"})
+    out << std::setw(kWidth) << title;
+  out << "\n";
+  for (std::size_t i = 0; i < std::min(regions.size(), kMostRows); ++i) {
+    for (const auto& [key, value] : regions[i].items())
+      out << std::setw(kWidth) << (value.is_null() ? "-" : for_people(value, kRegionDigits));
+    out << "\n";
+  }
+  if (regions.size() > kMostRows)
+    out << "  and " << regions.size() - kMostRows << " more: --json lists all\n";
+  return out.str() +
+         "(distance: no point of its lids is further from the body. waste: floor faces that it opens for nothing, "
+         "for each point thrown into the outermost wrapper: its share of the wrapper's volume times its floor; over all regions " +
+         bodies::kUsualWaste + ".)\n";
+}
+
+Json trials_json(std::span<const bodies::Trial> trials) {
+  Json out = Json::array();
+  for (const bodies::Trial& t : trials)
+    out.push_back({{"setting", t.setting.empty() ? "as it is" : t.setting},
+                   {"total_per_real", t.figures.total_per_real},
+                   {"outer_faces", t.figures.outer_faces},
+                   {"outer_per_hull", t.figures.outer_per_hull},
+                   {"waste", t.figures.waste},
+                   {"seconds", t.setting.empty() ? Json(nullptr) : Json(t.figures.seconds)}});
+  return out;
+}
+
+std::string trials_text(const Json& trials) {
+  constexpr int kName = 20, kWidth = 20;
+  std::ostringstream out;
+  out << "tried:\n" << std::left << std::setw(kName) << "  setting" << std::right;
+  for (const char* title :
+       {"faces per real face", "outermost faces", "wrapper over hull", "waste", "seconds"})
+    out << std::setw(kWidth) << title;
+  out << "\n";
+  for (const Json& t : trials)
+    for (const auto& [key, value] : t.items()) {
+      if (key == "setting")
+        out << "  " << std::left << std::setw(kName - 2) << value.get<std::string>() << std::right;
+      else
+        out << std::setw(kWidth) << (value.is_null() ? "-" : for_people(value, kRegionDigits));
+      if (key == "seconds") out << "\n";
+    }
+  return out.str();
+}
+
+std::string region_caption(const bodies::RegionFigures& r) {
+  const auto plural = [](std::uint32_t n, const char* what) {
+    return render::group_digits(n) + " " + what + (n == 1 ? "" : "s");
+  };
+  return "region " + std::to_string(r.region) + ", layer " + std::to_string(r.layer) + ": " +
+         plural(r.lids, "lid") + " over " + plural(r.floor, "face") + ", off by " +
+         (std::isfinite(r.thickness) ? for_people(r.thickness, kRegionDigits) : "no bound") + "; parent " +
+         (is_region(r.parent) ? std::to_string(r.parent) : "outside") + ", waste " +
+         for_people(r.waste, kRegionDigits);
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,85 @@
+#include <iomanip>
+#include <memory>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/levels/level_report.hpp"
+#include "scenarios/bodies/body_figures.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include <lrbscope/wrapper.hpp>
+
+namespace lrb::cli {
+namespace {
+
+struct LevelsOptions {
+  bodies::Corners corners = bodies::Corners::joined;
+  std::string body, folder, up;
+  std::vector<double> shares;
+  BuildOptions build;
+  bool json = false;
+};
+
+std::string as_table(const std::vector<bodies::LevelFigures>& levels, const LrbRep& rep) {
+  constexpr int kWidth = 12, kDigits = 4;
+  std::ostringstream out;
+  out << std::setprecision(kDigits);
+  out << rep.name() << ": " << rep.real_face_count() << " faces\n";
+  for (const char* title : {"share", "tolerance", "faces", "proved off"}) out << std::setw(kWidth) << title;
+  out << "\n";
+  for (const bodies::LevelFigures& l : levels)
+    out << std::setw(kWidth) << l.share << std::setw(kWidth) << l.tolerance << std::setw(kWidth) << l.faces
+        << std::setw(kWidth) << l.bound << "\n";
+  return out.str();
+}
+
+int run_levels(const LevelsOptions& o, const Globals& globals) {
+  const bodies::LoadedBody body = bodies::load_body(o.body, o.build, o.corners);
+  levels::LevelReportOptions report{o.shares, {}, o.build.threads, globals.command_line};
+  if (!o.up.empty()) report.view = turned_up(report.view, o.up[0] - 'x');
+  if (!o.folder.empty()) levels::check_drawable(body.rep, report.shares);
+  note(globals, body.notes);
+  if (const std::string why = note_no_levels(body.rep); !why.empty()) note(globals, {why});
+  if (!o.folder.empty()) note(globals, levels::write_level_report(body.rep, report, o.folder));
+  const std::string page = o.folder.empty() ? "" : o.folder + "/index.html";
+  const auto levels = bodies::level_figures(body.rep, o.shares, o.build.threads);
+  if (o.json) {
+    nlohmann::ordered_json j;
+    j["name"] = body.rep.name();
+    j["real_faces"] = body.rep.real_face_count();
+    j["levels"] = bodies::level_json(levels);
+    if (!page.empty()) j["page"] = page;
+    print(one_line(j));
+  } else {
+    print(as_table(levels, body.rep) + (page.empty() ? "" : page + "\n"));
+  }
+  return kOk;
+}
+
+}  // namespace
+
+Command add_levels(CLI::App& root, const Globals& globals) {
+  CLI::App* app =
+      root.add_subcommand("levels", "How many faces a body needs at a row of tolerances, and the proof");
+  const auto o = std::make_shared<LevelsOptions>();
+  o->shares.assign(std::begin(bodies::kLevelShares), std::end(bodies::kLevelShares));
+  app->add_option("BODY", o->body, "Mesh or .lrb file")->required();
+  app->add_option("--at", o->shares, "Tolerances, as shares of the largest side of the body's box")
+      ->check(CLI::Range(0.0, 1.0).description(""))
+      ->type_name("SHARE...")
+      ->capture_default_str();
+  app->add_option(
+         "-o,--output", o->folder,
+         "Draw the wrappers, how far they are off and how many faces that takes: pictures and a page")
+      ->type_name("FOLDER");
+  add_up_option(*app, o->up);
+  o->build.threads = 0;
+  add_build_options(*app, o->build);
+  app->add_flag("--json", o->json, "As one JSON object");
+  add_join_option(*app, o->corners);
+  return {app, [o, &globals] { return run_levels(*o, globals); }};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+
+#include "tools/commands.hpp"
+#include "tools/terminal.hpp"
+#include "trace/json_read.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/trace.hpp>
+
+int main(int argc, char** argv) {
+  return lrb::cli::main(argc, argv);
+}
+
+namespace lrb::cli {
+namespace {
+
+std::string command_line(int argc, char** argv) {
+  std::string out = "lrbscope";
+  for (int i = 1; i < argc; ++i) out += " " + shell_word(argv[i]);
+  return out;
+}
+
+int complain(const char* kind, const std::string& message, int code) {
+  std::cerr << "lrbscope: " << kind << printable_name(message)
+            << std::endl;  // one line, no control characters
+  return code;
+}
+
+template <class Run>
+int guarded(const Run& run) {
+  try {
+    return run();
+  } catch (const InputError& e) {
+    return complain("", e.what(), kBadInput);
+  } catch (const EnvironmentError& e) {
+    return complain("", e.what(), kEnvironment);
+  } catch (const std::bad_alloc&) {
+    return complain("", "out of memory: try a smaller input or a larger machine", kEnvironment);
+  } catch (const std::length_error&) {  // a container that no memory can hold
+    return complain("", "out of memory: try a smaller input or a larger machine", kEnvironment);
+  } catch (const std::system_error& e) {
+    return complain("", std::string("the system refused: ") + e.what(), kEnvironment);
+  } catch (const std::exception& e) {
+    return complain("internal error, please report it: ", e.what(), kEnvironment);
+  }
+}
+
+}  // namespace
+
+void note(const Globals& globals, const std::vector<std::string>& lines) {
+  if (globals.quiet) return;
+  for (const std::string& line : lines) std::cerr << "note: " << line << "\n";
+}
+
+std::string for_people(const nlohmann::ordered_json& value, int digits) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) {
+    if (!std::isfinite(value.get<double>())) return "beyond 1.8e308";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*g", digits, value.get<double>());
+    return text;
+  }
+  if (!value.is_structured()) return value.dump();
+  std::string out;
+  for (const auto& [key, item] : value.items()) {
+    out += out.empty() ? "" : ", ";
+    if (value.is_object()) out += key + " ";
+    out += for_people(item, digits);
+  }
+  return value.is_array() ? "(" + out + ")" : out;
+}
+
+std::string one_line(const nlohmann::ordered_json& value) {
+  return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+void print(const std::string& text) {
+  errno = 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (written && std::fflush(stdout) == 0) return;
+  const int reason = errno;
+  if (reason == EPIPE) end_as_by_closed_pipe();
+  throw EnvironmentError(std::string("stdout: cannot be written (") + std::strerror(reason) +
+                         "); check where it leads and the space left there");
+}
+
+namespace {
+
+/// Prints what CLI11 says for --help and --version.
+int print_help(CLI::App& app, const CLI::ParseError& request) {
+  std::ostringstream text;
+  app.exit(request, text, text);
+  print(text.str());
+  return kOk;
+}
+
+/// The first argument that is not an option: the command's name.
+std::string_view command_word(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (argv[i][0] != '-') return argv[i];
+  return "";
+}
+
+/// Returns the command that was named, down to its own: that of `lrbscope golden test` is test.
+const CLI::App& named_command(const CLI::App& app) {
+  const std::vector<CLI::App*> below = app.get_subcommands();
+  return below.empty() ? app : named_command(*below.front());
+}
+
+/// Returns "lrbscope golden test".
+std::string call_of(const CLI::App& app) {
+  return app.get_parent() == nullptr ? app.get_name() : call_of(*app.get_parent()) + " " + app.get_name();
+}
+
+/// Returns what is wrong with a command line that CLI11 refused. `word`: the first that is no option.
+std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std::string word) {
+  const CLI::App* app = &root;
+  const auto is_named = [&](const CLI::App* a) { return a->get_name() == word; };
+  if (word.empty() || !root.get_subcommands(is_named).empty()) {
+    app = &named_command(root);
+    const std::vector<std::string> words = root.remaining(true);
+    const auto other = std::find_if(words.begin(), words.end(),
+                                    [](const std::string& w) { return !w.empty() && w[0] != '-'; });
+    word = other == words.end() ? "" : *other;
+  }
+  const std::string help = " (see " + call_of(*app) + " --help)";
+  std::vector<std::string> known;
+  for (const CLI::App* c : app->get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
+    known.push_back(c->get_name());
+  if (known.empty() || word.empty()) return error.what() + help;
+  const std::string near = io::nearest_word(word, known);
+  return in_quotes(word) + " is no command of " + call_of(*app) +
+         (near.empty() ? "" : "; did you mean \"" + near + "\"?") + help;
+}
+
+/// Throws InputError for an option or argument that is given as an empty text: mostly a variable of the
+/// shell that is not set.
+void refuse_empty_values(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& value : option->results())
+      if (value.empty())
+        throw InputError(option->get_name() +
+                         ": expected a value, found an empty text; is a variable unset?");
+  for (const CLI::App* below : app.get_subcommands()) refuse_empty_values(*below);
+}
+
+int parse_and_run(int argc, char** argv) {
+  CLI::App app("An exact two-body collision engine that can be watched.", "lrbscope");
+  app.set_version_flag("--version", std::string("lrbscope ") + trace::lrbscope_version());
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.footer(
+      "Exit codes: 0 ok, 1 mismatch, 2 usage or input error, 3 environment. `lrbscope COMMAND --help` tells "
+      "more.");
+  Globals globals;
+  globals.command_line = command_line(argc, argv);
+  app.add_flag("-q,--quiet", globals.quiet, "Print nothing to stderr but errors");
+  const std::vector<Command> commands = add_commands(app, globals);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return print_help(app, e);
+    return complain("", usage_error(app, e, std::string(command_word(argc, argv))), kBadInput);
+  }
+  refuse_empty_values(app);
+  for (const Command& command : commands)
+    if (command.app->parsed()) return command.run();
+  return kBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  end_cleanly_on_signals();
+  end_cleanly_on_terminate();
+  return guarded([&] { return parse_and_run(argc, argv); });
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,303 @@
+#include "tools/options.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <thread>
+#include <type_traits>
+
+#include "scenarios/frames/animation.hpp"
+#include "scenarios/io/poses.hpp"
+#include "scenarios/spec/scenario.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/record_fields.hpp>
+
+namespace lrb::cli {
+namespace {
+
+/// Returns the option that sets a field of a request: "--max-tests" for max_tests.
+template <class Value>
+std::string option_of(Value CollideRequest::*member) {
+  std::string out = "--";
+  for_each_field<CollideRequest>([&](const auto& field) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype((field.member))>, Value CollideRequest::*>)
+      if (field.member == member) out += field.name;
+  });
+  std::replace(out.begin(), out.end(), '_', '-');
+  return out;
+}
+
+template <class Target>
+void add_recursion(CLI::App& app, Target& recursion) {
+  add_choice<Recursion>(app, option_of(&CollideRequest::recursion), recursion,
+                        "complete never misses; paper is the paper's own");
+}
+
+/// Adds an option that takes a number of things, from 1.
+void add_count(CLI::App& app, const std::string& name, std::uint64_t& count, const std::string& what) {
+  app.add_option(name, count, what)
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
+      ->type_name("N");
+}
+
+/// Reads --size.
+void apply_size(const std::string& size, render::FrameSpec& spec) {
+  if (size.empty()) return;
+  const char* end = size.data() + size.size();
+  const auto [x, e1] = std::from_chars(size.data(), end, spec.width);
+  const bool has_x = e1 == std::errc() && x != end && *x == 'x';
+  const auto [last, e2] = has_x ? std::from_chars(x + 1, end, spec.height)
+                                : std::from_chars_result{x, std::errc::invalid_argument};
+  constexpr int kLeast = 64, kMost = 8192;
+  if (e2 != std::errc() || last != end || spec.width < kLeast || spec.height < kLeast || spec.width > kMost ||
+      spec.height > kMost)
+    throw InputError("--size: expected WIDTHxHEIGHT from 64x64 to 8192x8192, found \"" + size + "\"");
+}
+
+}  // namespace
+
+void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion) {
+  add_recursion(app, recursion);
+}
+
+void add_events_option(CLI::App& app, std::optional<EventLevel>& level) {
+  add_choice<EventLevel>(
+      app, "--events", level,
+      "What is recorded. faces: face tests, refinements and contacts; nodes: pairs of tree nodes and "
+      "phases, too; all: also the pairs that planes part");
+}
+
+void add_request_options(CLI::App& app, CollideRequest& request) {
+  add_choice<Mode>(app, option_of(&CollideRequest::mode), request.mode,
+                   "all: every pair; first: one pair, which crosses if any does; any: the first that meets");
+  add_recursion(app, request.recursion);
+  add_choice<Predicates>(app, option_of(&CollideRequest::predicates), request.predicates,
+                         "floating: without the exact fallback, wrong where doubles cannot decide");
+  add_count(app, option_of(&CollideRequest::max_pairs), request.max_pairs,
+            "Largest number of pairs; a query with more is refused [" + std::to_string(kMostPairs) +
+                "; with contacts " + std::to_string(kMostPairsWithContacts) + "]");
+}
+
+void add_coarse_options(CLI::App& app, CollideRequest& request) {
+  app.add_option(option_of(&CollideRequest::tolerance), request.tolerance,
+                 "Answer with the coarsest wrappers that are no further off the bodies than this, in the "
+                 "meshes' unit, and list their pairs")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("LENGTH");
+  add_count(app, option_of(&CollideRequest::max_tests), request.max_tests,
+            "Largest number of face tests: one pair first, then wrappers, coarsest first");
+  app.add_option(option_of(&CollideRequest::max_time), request.max_time,
+                 "Time limit of a query in seconds; gives the best answer found by then")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
+}
+
+void add_repeat_option(CLI::App& app, std::uint32_t& repeat, const std::string& what) {
+  app.add_option("--repeat", repeat,
+                 "Repeat each " + what + "'s query N times, and add the median time in microseconds")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+}
+
+void add_join_option(CLI::App& app, bodies::Corners& corners) {
+  app.add_flag_callback(
+      "--no-join", [&corners] { corners = bodies::Corners::apart; },
+      "Keep corners of a mesh apart that lie in exactly the same place [where the surface is open there, they "
+      "are joined; faces keep their numbers]. Corners of STL files are always joined");
+}
+
+void add_build_options(CLI::App& app, BuildOptions& options) {
+  app.add_option("--patch", options.patch_interior, "Number of interior vertices to aim for in a patch")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--max-outer", options.max_outer_faces,
+                 "Number of faces to aim for in the outermost wrapper")
+      ->check(CLI::Range(4, 1000))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_flag("--lean", options.lean,
+               "Build fewer faces in all (1.5 a real face, not 2), for wrappers that fit less well");
+  app.add_option("--seed", options.seed, "Seed of the order in which patches grow")
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--threads", options.threads,
+                 "Number of threads to build on [all of the machine's]; the LRB-rep does not depend on it")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+}
+
+void add_size_options(CLI::App& app, PictureOptions& options) {
+  app.add_option("--size", options.size, "Size of the frames in pixels")->type_name("WxH");
+  app.add_option(
+         "--dpi", options.dpi,
+         "For print: keep the size that --size has at 96 dpi, in more pixels; lines and texts grow with them")
+      ->check(CLI::Range(spec::kLeastDpi, spec::kMostDpi))
+      ->type_name("N");
+  add_style_option(app, options, "screen");
+}
+
+void add_style_option(CLI::App& app, PictureOptions& options, const std::string& usual) {
+  add_choice<render::FrameSpec::Style>(
+      app, "--style", options.style,
+      "print: black on white, thin lines, kinds that differ in grey; dark: for slides [" + usual + "]");
+}
+
+void add_picture_options(CLI::App& app, PictureOptions& options) {
+  add_size_options(app, options);
+  app.add_flag("--transparent", options.transparent, "Draw without a background");
+  app.add_flag_callback(
+      "--no-title", [&options] { options.titles = false; },
+      "Leave title, event, counters and titles of views out of the frames");
+  app.add_flag_callback(
+      "--no-legend", [&options] { options.legend = false; }, "Leave legend and colour bar out");
+  app.add_option_function<std::string>(
+         "--format", [&options](const std::string& word) { options.svg = word == "svg"; },
+         "svg: write frames and montage as SVG as well, for 2D bodies")
+      ->check(CLI::IsMember({"png", "svg"}).description(""))
+      ->type_name("png|svg");
+  add_choice<render::FrameSpec::At>(app, "--frames", options.at, "When to draw a frame");
+  app.add_option("--every", options.every, "Draw every N-th of these")
+      ->check(CLI::Range(1, 1000000000))
+      ->type_name("N");
+  app.add_option("--most", options.most, "Largest number of frames, evenly chosen")
+      ->check(CLI::Range(1, 10000))
+      ->type_name("N");
+  add_camera_options(app, options.camera);
+  add_orbit_option(app, options.camera);
+  add_colour_options(app, options);
+}
+
+void add_colour_options(CLI::App& app, PictureOptions& options) {
+  add_choice<render::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by, "What the colours mean");
+  add_choice<render::FrameSpec::ColourPer>(
+      app, "--colour-per", options.colour_per,
+      "Whose number colours a face: its own, or its region's or level's sum");
+  app.add_option(
+         "--node-boxes", options.node_boxes,
+         "Draw the boxes of tree nodes of this depth that the walk came to: solid where they met, else dashed")
+      ->check(CLI::Range(0U, spec::kMostDepth))
+      ->type_name("DEPTH");
+}
+
+void apply(const PictureOptions& options, render::FrameSpec& spec) {
+  if (!options.animation.empty()) run::check_animation(options.animation);
+  apply_size(options.size, spec);
+  if (options.dpi) spec.dpi = *options.dpi;
+  if (options.svg) spec.svg = *options.svg;
+  spec.transparent |= options.transparent;
+  if (options.style) spec.style = *options.style;
+  spec.titles &= options.titles;
+  spec.legend &= options.legend;
+  if (options.at) {
+    spec.at = *options.at;
+    spec.every = 1;
+  }
+  if (options.every) spec.every = *options.every;
+  if (options.most) spec.most = *options.most;
+  if (options.colour_by) spec.colour_by = *options.colour_by;
+  if (options.colour_per) spec.colour_per = *options.colour_per;
+  if (options.node_boxes) spec.node_boxes = options.node_boxes;
+  apply(options.camera, spec.views);
+}
+
+void add_camera_options(CLI::App& app, CameraOptions& options) {
+  app.add_option("--from", options.from,
+                 "Direction to look from, seen from the bodies, in the axes of their files")
+      ->type_name("X,Y,Z");
+  app.add_option("--look-at", options.look_at, "Point in the middle of the picture [the bodies' middle]")
+      ->type_name("X,Y,Z");
+  app.add_option("--zoom", options.zoom, "Above 1: closer")->check(CLI::Range(0.01, 1000.0))->type_name("N");
+  app.add_option_function<std::string>(
+         "--projection",
+         [&options](const std::string& word) { options.orthographic = word == "orthographic"; },
+         "How depth is shown")
+      ->check(CLI::IsMember({"perspective", "orthographic"}).description(""))
+      ->type_name("perspective|orthographic");
+  add_up_option(app, options.up);
+}
+
+void add_orbit_option(CLI::App& app, CameraOptions& options) {
+  app.add_option("--orbit", options.orbit,
+                 "Turn the camera round the bodies by so many degrees, from the first frame to the last")
+      ->check(CLI::Range(-36000.0, 36000.0))
+      ->type_name("DEGREES");
+}
+
+void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& views) {
+  const bool any = !options.from.empty() || !options.look_at.empty() || !options.up.empty() || options.zoom ||
+                   options.orthographic || options.orbit;
+  if (!any) return;
+  if (views.empty()) views.emplace_back();
+  for (render::FrameSpec::View& view : views) {
+    view.directed = !options.from.empty() || !options.up.empty() || options.orthographic.has_value() ||
+                    options.orbit.has_value();
+    if (!options.up.empty()) {
+      const int axis = options.up[0] - 'x';
+      const render::ViewDirection turned = turned_up({view.from, view.up}, axis);
+      const render::ViewDirection fixed = turned_up({view.eye, view.target}, axis);
+      view.from = turned.from;
+      view.up = turned.up;
+      view.eye = fixed.from;
+      view.target = fixed.up;
+    }
+    if (!options.from.empty()) {
+      view.from = io::parse_vector(options.from, "--from");
+      if (view.camera == render::FrameSpec::Camera::fixed) view.camera = render::FrameSpec::Camera::scene;
+    }
+    if (!(view.from.cross(view.up).squaredNorm() > 0))
+      throw InputError(
+          "--from: expected a direction that is not zero and does not lie along the one that points up (" +
+          (options.up.empty() ? "z" : options.up) + "; see --up)");
+    if (!options.look_at.empty()) view.look_at = io::parse_vector(options.look_at, "--look-at");
+    if (options.zoom) view.zoom = *options.zoom;
+    if (options.orthographic) view.orthographic = *options.orthographic;
+    if (options.orbit) {
+      view.camera = render::FrameSpec::Camera::orbit;
+      view.turn_degrees = *options.orbit;
+    }
+  }
+}
+
+void add_up_option(CLI::App& app, std::string& up) {
+  app.add_option("--up", up, "Axis that points up in the pictures [z]")
+      ->check(CLI::IsMember({"x", "y", "z"}).description(""))
+      ->type_name("x|y|z");
+}
+
+render::ViewDirection turned_up(const render::ViewDirection& view, int axis) {
+  const auto turned = [axis](const Eigen::Vector3d& v) {
+    Eigen::Vector3d out;
+    for (int i = 0; i < 3; ++i) out[(i + axis + 1) % 3] = v[i];
+    return out;
+  };
+  return {turned(view.from), turned(view.up)};
+}
+
+void add_animation_option(CLI::App& app, PictureOptions& options) {
+  app.add_option("--animate", options.animation, "Make a moving picture of the frames too, by ffmpeg")
+      ->type_name("OUT.mp4|gif|webp");
+}
+
+void animate_frames(const PictureOptions& options, const std::string& folder) {
+  if (!options.animation.empty()) run::animate(folder, options.animation);
+}
+
+std::uint32_t all_cores() {
+  return std::max(1U, std::thread::hardware_concurrency());
+}
+
+std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as) {
+  render::FrameSpec::View whole, contact;
+  if (!as.empty() && as[0].camera != render::FrameSpec::Camera::fixed) {
+    whole.from = contact.from = as[0].from;
+    whole.up = contact.up = as[0].up;
+    whole.orthographic = contact.orthographic = as[0].orthographic;
+  }
+  whole.title = "Whole, with wrappers";
+  contact.title = "Contact, bodies alone";
+  contact.camera = render::FrameSpec::Camera::contact;
+  contact.wrapper = false;
+  return {whole, contact};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,177 @@
+#pragma once
+/// Options that several commands have.
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "bench/speed/make_sets.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/spec/scenario.hpp"
+#include "tools/commands.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/camera.hpp>
+
+namespace lrb::cli {
+
+/// Returns those of `all` that are named, in their order; all if none is named. Throws InputError for an
+/// unknown name.
+template <class T, class NameOf>
+std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::string>& names, const char* what,
+                      const NameOf& name_of) {
+  if (names.empty()) return all;
+  std::vector<std::string> known;
+  std::transform(all.begin(), all.end(), std::back_inserter(known), name_of);
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    std::string list;
+    for (const std::string& k : known) list.append(list.empty() ? "" : ", ").append(k);
+    throw InputError(std::string("there is no ") + what + " '" + name + "'; known: " + list);
+  }
+  std::vector<T> out;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(out),
+               [&](const T& t) { return std::find(names.begin(), names.end(), name_of(t)) != names.end(); });
+  return out;
+}
+
+// The options that commands which measure share.
+
+struct MeasureOptions {
+  std::string folder, folder_help, models;
+  std::vector<std::string> methods;
+  bench::SetOptions set;
+  double timeout = 20;
+};
+
+/// Adds the options; the help names the values in `o` as defaults.
+inline void add_measure_options(CLI::App& app, MeasureOptions& o) {
+  app.add_option("-o,--output", o.folder,
+                 "Folder to write to; a survey that it holds is continued [" + o.folder_help + "]")
+      ->type_name("DIR");
+  app.add_option("--models", o.models, "Folder of meshes to collide as well, each with the next one")
+      ->type_name("DIR");
+  app.add_option("--method", o.methods, "Only these methods")->type_name("NAME");
+  app.add_option("--poses", o.set.poses,
+                 "Number of poses of each class [" + std::to_string(o.set.poses) + "]")
+      ->check(CLI::Range(1, 10000))
+      ->type_name("N");
+  app.add_option("--seed", o.set.seed, "Seed of the poses [1]")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("S");
+  app.add_option("--timeout", o.timeout, "Seconds that a method has for a pose [20]")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->type_name("S");
+}
+
+/// Adds --quantity: what methods are asked for.
+inline void add_quantity_option(CLI::App& app, methods::Quantity& quantity) {
+  app.add_option_function<std::string>(
+         "--quantity",
+         [&quantity](const std::string& word) {
+           const auto known = from_name<methods::Quantity>(word);
+           if (!known)
+             throw CLI::ValidationError("--quantity",
+                                        "'" + word + "': use " + all_names<methods::Quantity>());
+           quantity = *known;
+         },
+         "What to ask for: pairs (the default), distance, first_contact, depth")
+      ->type_name("Q");
+}
+
+/// Adds an option that takes one of an enum's words.
+template <class Enum, class Target>
+void add_choice(CLI::App& app, const std::string& name, Target& target, const std::string& what) {
+  std::vector<std::string> words;
+  words.reserve(kWords<Enum>.size());
+  for (const EnumWord<Enum>& entry : kWords<Enum>) words.emplace_back(entry.word);
+  app.add_option_function<std::string>(
+         name, [&target](const std::string& word) { target = from_name<Enum>(word).value(); }, what)
+      ->check(CLI::IsMember(words).description(""))
+      ->type_name(all_names<Enum>("|", "|"));
+}
+
+/// Adds --mode, --recursion, --predicates and --max-pairs.
+void add_request_options(CLI::App& app, CollideRequest& request);
+/// Adds --tolerance, --max-tests and --max-time.
+void add_coarse_options(CLI::App& app, CollideRequest& request);
+/// Adds --recursion, which takes precedence over a scenario.
+void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion);
+/// Adds --events, which takes precedence over a scenario.
+void add_events_option(CLI::App& app, std::optional<EventLevel>& level);
+/// Adds --no-join.
+void add_join_option(CLI::App& app, bodies::Corners& corners);
+/// Adds --repeat. what: what a query is asked for, "pose".
+void add_repeat_option(CLI::App& app, std::uint32_t& repeat, const std::string& what);
+/// Adds --patch, --max-outer, --lean, --seed and --threads.
+void add_build_options(CLI::App& app, BuildOptions& options);
+
+/// The options --from, --look-at, --zoom, --projection and --up, and --orbit where it is added, too: where
+/// pictures are seen from. They take precedence over a scenario.
+struct CameraOptions {
+  std::string from, look_at, up;
+  std::optional<double> orbit;
+  std::optional<double> zoom;
+  std::optional<bool> orthographic;
+};
+void add_camera_options(CLI::App& app, CameraOptions& options);
+/// Adds --orbit, which pictures of several moments have.
+void add_orbit_option(CLI::App& app, CameraOptions& options);
+/// Changes all views. --up turns what they have; --from and --look-at are given in the axes of the bodies'
+/// files, and are not turned. Throws InputError for what is no camera.
+void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& views);
+
+/// The options of cameras, and --size, --dpi, --style, --no-title, --no-legend, --transparent, --format,
+/// --frames, --every, --most, --colour-by, --colour-per and --node-boxes, which take precedence over a
+/// scenario.
+struct PictureOptions {
+  CameraOptions camera;
+  std::string size, animation;
+  std::optional<double> dpi;
+  std::optional<bool> svg;
+  bool transparent = false;
+  std::optional<render::FrameSpec::Style> style;
+  bool titles = true, legend = true;
+  std::optional<render::FrameSpec::At> at;
+  std::optional<std::uint32_t> every, most;
+  std::optional<render::FrameSpec::ColourBy> colour_by;
+  std::optional<render::FrameSpec::ColourPer> colour_per;
+  std::optional<std::uint32_t> node_boxes;
+};
+void add_picture_options(CLI::App& app, PictureOptions& options);
+/// Adds --size, --dpi and --style alone.
+void add_size_options(CLI::App& app, PictureOptions& options);
+/// Adds --style alone; `usual` is taken if it is not given.
+void add_style_option(CLI::App& app, PictureOptions& options, const std::string& usual);
+/// Adds --colour-by and --node-boxes alone.
+void add_colour_options(CLI::App& app, PictureOptions& options);
+void apply(const PictureOptions& options, render::FrameSpec& spec);
+
+/// Adds --animate, for commands that call animate_frames().
+void add_animation_option(CLI::App& app, PictureOptions& options);
+/// Makes the moving picture, if one was asked for, of the frames in a folder.
+void animate_frames(const PictureOptions& options, const std::string& folder);
+
+/// Adds --up, which takes x, y or z.
+void add_up_option(CLI::App& app, std::string& up);
+/// Returns a view in which an axis (0, 1, 2) points up in place of z.
+render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
+
+/// Returns two views side by side: the whole scene with the wrappers, and the contact with the bodies alone.
+/// They look from where the first of the views given does.
+std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as = {});
+
+/// Returns the number of threads of the machine; at least 1.
+std::uint32_t all_cores();
+
+/// Prints the outcome of a run and returns its exit code.
+int report_outcome(const run::RunOutcome& outcome, const std::string& folder, bool json,
+                   const Globals& globals);
+
+}  // namespace lrb::cli

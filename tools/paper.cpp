@@ -1,0 +1,278 @@
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "scenarios/io/files.hpp"
+#include "scenarios/paper/experiment.hpp"
+#include "scenarios/paper/paper_report.hpp"
+#include "scenarios/paper/protocol.hpp"
+#include "scenarios/paper/series.hpp"
+#include "scenarios/paper/sweep.hpp"
+#include "tools/commands.hpp"
+#include "tools/terminal.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+
+namespace lrb::cli {
+
+// The series of `lrbscope paper`: reads its options and runs it.
+
+struct PaperSeriesOptions {
+  std::vector<std::string> meshes;
+  resolutions::ResolutionOptions resolutions;  ///< most = 0: no series
+  bool lean = false;
+};
+void add_series_options(CLI::App& app, PaperSeriesOptions& options);
+
+/// Makes the bodies from the given meshes, or our own; A is the paper's object.
+std::vector<paper::SeriesObject> make_series(const PaperSeriesOptions& options, const LrbRep& a,
+                                             const Globals& globals);
+/// Runs the collisions.
+std::vector<paper::ContactStep> run_series(const LrbRep& a, std::span<const paper::SeriesObject> objects,
+                                           const paper::SweepOptions& sweep, const Globals& globals);
+
+/// Writes a shard's series, to be merged later: series.jsonl and series_times.jsonl.
+void write_series_shard(const std::vector<paper::ContactStep>& steps, const std::string& folder);
+/// Reads those that lie beside the records.jsonl of the shards.
+std::vector<paper::ContactStep> read_series_shards(const std::vector<std::string>& records);
+
+namespace {
+
+struct PaperOptions {
+  std::string folder = "out/paper", experiment = "paper", shard;
+  std::vector<std::string> merge;
+  std::optional<std::uint32_t> collisions, steps_after;  ///< these take precedence over the experiment
+  std::optional<double> step;
+  std::optional<std::uint64_t> seed;
+  std::uint32_t jobs = 1;
+  PaperSeriesOptions series;
+  bool json = false, print = false;
+};
+
+paper::PaperExperiment experiment_of(const PaperOptions& o) {
+  paper::PaperExperiment e = paper::open_experiment(o.experiment);
+  if (o.collisions) e.protocol.collisions = *o.collisions;
+  if (o.steps_after) e.protocol.steps_after = *o.steps_after;
+  if (o.step) e.protocol.step = *o.step;
+  if (o.seed) e.protocol.seed = *o.seed;
+  return e;
+}
+
+/// Reads "i/n", i from 0.
+paper::Shard read_shard(const std::string& text) {
+  paper::Shard s;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%9u/%9u%c", &s.index, &s.count, &rest) != 2 || s.index >= s.count)
+    throw InputError("--shard " + text + ": expected i/n with i from 0 to n - 1, as in 0/4");
+  return s;
+}
+
+std::vector<paper::ContactStep> read_shards(const std::vector<std::string>& files) {
+  std::vector<paper::ContactStep> steps;
+  for (const std::string& file : files)
+    for (paper::ContactStep& s : paper::read_json_lines(io::read_text(file), file))
+      steps.push_back(std::move(s));
+  return paper::merged(std::move(steps));
+}
+
+/// Runs a part of the command, and notes the time it took.
+class PartTimes {
+ public:
+  template <class Part>
+  auto run(const std::string& name, const Part& part) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto result = part();
+    taken.emplace_back(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    return result;
+  }
+  std::vector<std::pair<std::string, double>> taken;
+};
+
+std::vector<paper::ContactStep> sweep_objects(std::span<const paper::PaperObject> objects,
+                                              const paper::SweepOptions& sweep, const Globals& globals) {
+  Progress progress("paper", 0, globals.quiet);
+  return paper::run_sweep(objects, sweep, [&](std::uint64_t done, std::uint64_t of) {
+    progress.set_total(of);
+    progress.set(done);
+  });
+}
+
+/// Takes the protocol and the resolutions from the shards that are to be merged; leaves out the series where
+/// the experiment has none. Throws InputError if there is nothing to cut into shards.
+void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
+  if (!experiment.collides() && (!o.shard.empty() || !o.merge.empty()))
+    throw InputError("experiment " + experiment.name + ": has no collisions; leave out --shard and --merge");
+  if (!o.merge.empty()) {
+    const paper::ShardFile whole = paper::read_shard_files(o.merge);
+    experiment.protocol = whole.protocol;
+    o.series.resolutions = whole.resolutions;
+    o.series.lean = whole.lean;
+  } else if (!experiment.collides() || (experiment.name != "paper" && o.series.meshes.empty())) {
+    o.series.resolutions.most = 0;  // other experiments have a series only with meshes for it
+  }
+}
+
+/// `series_steps`: null if there is no series.
+void write_shard(const PaperOptions& o, const paper::SweepOptions& sweep,
+                 const std::vector<paper::ContactStep>& steps,
+                 const std::vector<paper::ContactStep>* series_steps) {
+  paper::write_shard_file({sweep.shard, sweep.protocol, o.series.resolutions, o.series.lean}, o.folder);
+  io::write_text(o.folder + "/records.jsonl", paper::to_json_lines(steps));
+  if (series_steps != nullptr) write_series_shard(*series_steps, o.folder);
+  print(o.folder + "/records.jsonl\n");
+}
+
+int run_paper(PaperOptions o, const Globals& globals) {
+  if (o.print) {
+    print(paper::shipped_experiment(o.experiment));
+    return kOk;
+  }
+  paper::PaperExperiment experiment = experiment_of(o);
+  settle(o, experiment);
+  const bool merging = !o.merge.empty();
+  paper::SweepOptions sweep{experiment.protocol, {}, o.jobs};
+  if (!o.shard.empty()) sweep.shard = read_shard(o.shard);
+  const bool with_series = o.series.resolutions.most > 0;
+  std::vector<paper::ContactStep> steps = read_shards(o.merge), series_steps;
+  if (merging && with_series) series_steps = read_series_shards(o.merge);
+  PartTimes clock;
+  std::vector<std::string> notes;
+  const std::vector<paper::PaperObject> objects =
+      clock.run("the paper's objects", [&] { return paper::make_objects(experiment, notes); });
+  note(globals, notes);
+  if (merging) paper::check_records({objects, steps, experiment, globals.command_line});
+  make_folder(o.folder);
+  const io::FolderLock lock(o.folder);
+  const LrbRep& a = objects[0].rep;
+  if (!merging && experiment.collides())
+    steps = clock.run("their collisions", [&] { return sweep_objects(objects, sweep, globals); });
+  const std::vector<paper::SeriesObject> series =
+      clock.run("bodies at several resolutions", [&] { return make_series(o.series, a, globals); });
+  if (!merging && with_series)
+    series_steps = clock.run("their collisions", [&] { return run_series(a, series, sweep, globals); });
+  if (!o.shard.empty()) {
+    write_shard(o, sweep, steps, with_series ? &series_steps : nullptr);
+    return kOk;
+  }
+  const paper::SeriesReport series_report{a, series, series_steps, sweep.jobs};
+  note(globals, paper::write_paper_report({objects, steps, experiment, globals.command_line,
+                                           with_series ? &series_report : nullptr, clock.taken},
+                                          o.folder));
+  print(o.json ? io::read_text(o.folder + "/tables.json") : o.folder + "/index.html\n");
+  return kOk;
+}
+
+}  // namespace
+
+Command add_paper(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "paper",
+      "Repeat the paper's experiment: its tables and figures, close-ups of single collisions, and the same on meshes");
+  const auto o = std::make_shared<PaperOptions>();
+  app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR")->capture_default_str();
+  app->add_option("--experiment", o->experiment,
+                  "What to do and report: paper, table1, table2, figures, close_up, or a JSON file")
+      ->type_name("NAME|FILE")
+      ->capture_default_str();
+  app->add_flag("--print", o->print,
+                "Print the experiment of that name, to start one of your own from, and do nothing else");
+  app->add_option("--collisions", o->collisions, "Number of collisions of A with each object [100]")
+      ->check(CLI::Range(1u, paper::kMostCollisions))
+      ->type_name("N");
+  app->add_option("--step", o->step, "Time step as a share of the diagonal [0.005]")
+      ->check(CLI::Range(paper::kLeastStep, paper::kMostStep))
+      ->type_name("SHARE");
+  app->add_option("--steps-after", o->steps_after, "Number of time steps counted after the first contact [5]")
+      ->check(CLI::Range(0u, paper::kMostStepsAfter))
+      ->type_name("N");
+  app->add_option("--seed", o->seed, "Seed of directions and rotations [1]")->type_name("N");
+  app->add_option("--jobs", o->jobs, "Number of threads; the result does not depend on it")
+      ->check(CLI::Range(1u, 1024u))
+      ->type_name("N")
+      ->capture_default_str();
+  CLI::Option* shard =
+      app->add_option("--shard", o->shard,
+                      "Run only part i (from 0) of n of the collisions, and write only records")
+          ->type_name("i/n");
+  CLI::Option* merge = app->add_option("--merge", o->merge,
+                                       "Report the records of all shards instead of computing any; with the "
+                                       "shards' --meshes, if they had any")
+                           ->type_name("records.jsonl...")
+                           ->excludes(shard);
+  add_series_options(*app, o->series);
+  for (const char* of_shards :
+       {"--collisions", "--step", "--steps-after", "--seed", "--resolutions", "--subdivide", "--lean"})
+    merge->excludes(app->get_option(of_shards));
+  app->add_flag("--json", o->json, "Print the tables instead of the page's path");
+  return {app, [o, &globals] { return run_paper(*o, globals); }};
+}
+
+void add_series_options(CLI::App& app, PaperSeriesOptions& o) {
+  app.add_option("--meshes", o.meshes,
+                 "Meshes, or folders of meshes, to collide at several resolutions [two bodies of our own]")
+      ->type_name("PATH...");
+  app.add_option(
+         "--resolutions", o.resolutions.most,
+         "Number of resolutions of each body, each with half as many faces as the one before; 0 leaves this "
+         "part out")
+      ->check(CLI::Range(0, 30))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("--subdivide", o.resolutions.subdivisions,
+                 "How often to subdivide each body first; each time replaces a face by four")
+      ->check(CLI::Range(0, 4))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_flag("--lean", o.lean,
+               "Build these bodies with fewer faces in all, for wrappers that fit less well");
+}
+
+std::vector<paper::SeriesObject> make_series(const PaperSeriesOptions& o, const LrbRep& a,
+                                             const Globals& globals) {
+  if (o.resolutions.most == 0) return {};
+  std::vector<std::string> notes;
+  const std::vector<Mesh> bodies =
+      o.meshes.empty() ? paper::own_series_bodies() : paper::read_series_bodies(o.meshes, notes);
+  note(globals, notes);
+  Progress progress("resolutions", 0, globals.quiet);
+  std::uint64_t done = 0;
+  BuildOptions building;
+  building.lean = o.lean;
+  return paper::make_series(bodies, o.resolutions, building, paper::diagonal(a),
+                            [&] { progress.set(++done); });
+}
+
+std::vector<paper::ContactStep> run_series(const LrbRep& a, std::span<const paper::SeriesObject> objects,
+                                           const paper::SweepOptions& sweep, const Globals& globals) {
+  Progress progress("resolutions collide", 0, globals.quiet);
+  return paper::run_series(a, objects, sweep, [&](std::uint64_t done, std::uint64_t of) {
+    progress.set_total(of);
+    progress.set(done);
+  });
+}
+
+void write_series_shard(const std::vector<paper::ContactStep>& steps, const std::string& folder) {
+  io::write_text(folder + "/series.jsonl", paper::to_json_lines(steps));
+  io::write_text(folder + "/series_times.jsonl", paper::times_to_json_lines(steps));
+}
+
+std::vector<paper::ContactStep> read_series_shards(const std::vector<std::string>& records) {
+  const auto beside = [](const std::string& file, const char* name) {
+    return (std::filesystem::path(file).parent_path() / name).string();
+  };
+  std::vector<paper::ContactStep> steps;
+  for (const std::string& file : records) {
+    const std::string path = beside(file, "series.jsonl");
+    for (paper::ContactStep& s : paper::read_json_lines(io::read_text(path), path))
+      steps.push_back(std::move(s));
+  }
+  steps = paper::merged(std::move(steps));
+  for (const std::string& file : records) {
+    const std::string path = beside(file, "series_times.jsonl");
+    paper::read_times(io::read_text(path), path, steps);
+  }
+  return steps;
+}
+
+}  // namespace lrb::cli

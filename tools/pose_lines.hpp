@@ -1,0 +1,74 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenarios/io/poses.hpp"
+#include <lrbscope/distance.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/trace/json_write.hpp>
+
+namespace lrb::cli {
+
+// Writes points and witnesses as `distance` and `sweep` print them.
+
+inline void write_vector(trace::JsonWriter& w, const char* name, const Eigen::Vector3d& x) {
+  w.key(name).begin_array().value(x.x()).value(x.y()).value(x.z()).end_array();
+}
+
+/// Writes what of a face is nearest: its kind, and the vertices that span it.
+inline void write_feature_of(trace::JsonWriter& w, const Witness& witness) {
+  static constexpr const char* kNames[] = {"vertex", "edge", "face"};
+  w.member("feature", kNames[witness.corner_count - 1]);
+  w.key("vertices").begin_array();
+  for (int k = 0; k < witness.corner_count; ++k)
+    w.value(witness.corners[static_cast<std::size_t>(k)].value());
+  w.end_array();
+}
+
+/// Returns the median time in microseconds of `repeat` calls of ask(); repeat > 0.
+template <class Ask>
+double median_us(std::uint32_t repeat, const Ask& ask) {
+  std::vector<double> us;
+  for (std::uint32_t i = 0; i < repeat; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    ask();
+    us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
+  }
+  const std::size_t middle = us.size() / 2;
+  std::nth_element(us.begin(), us.begin() + static_cast<std::ptrdiff_t>(middle), us.end());
+  return us[middle];
+}
+
+/// The poses of a command, and where each stands in its file.
+struct PoseLines {
+  explicit PoseLines(const std::string& path) : PoseLines(io::open_poses(path)) {}
+  explicit PoseLines(io::PoseList list) : poses(std::move(list.poses)), places(std::move(list.places)) {}
+
+  /// Calls ask(), and puts the place of the pose before the message of an InputError.
+  template <class Ask>
+  auto at(std::size_t i, const Ask& ask) const {
+    try {
+      return ask();
+    } catch (const InputError& e) {
+      throw InputError(places[i] + ": " + e.what());
+    }
+  }
+
+  /// Throws InputError unless the bodies can be asked about at every pose: before anything is printed.
+  void check(const LrbRep& a, const LrbRep& b) const;
+
+  std::vector<Pose> poses;
+  std::vector<std::string> places;
+};
+
+/// Returns a picture's file: `path`, or with the number of the pose before its ending if there are several
+/// poses.
+std::string picture_name(const std::string& path, std::size_t pose, std::size_t poses);
+
+}  // namespace lrb::cli

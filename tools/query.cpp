@@ -1,0 +1,194 @@
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "engine/clash/clash_parts.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "engine/distance/distance_context.hpp"
+#include "render/pictures/explain_picture.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/pose_lines.hpp"
+#include "tools/terminal.hpp"
+#include "trace/trace_json_parts.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/wrapper.hpp>
+
+namespace lrb::cli {
+namespace {
+
+struct QueryOptions {
+  bodies::Corners corners = bodies::Corners::joined;
+  std::string a, b, poses, draw;
+  CollideRequest request;
+  bool pairs = false, kind = false, distance = false;
+  std::uint32_t repeat = 0;
+};
+
+/// Returns the median time in microseconds of the repeated runs of one query, in a warm context.
+double repeated_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
+                   QueryContext& context) {
+  NullProbe probe;
+  return median_us(o.repeat, [&] {
+    const CollideResult result = collide(a, Pose{}, b, pose, o.request, context, probe);
+    if (result.mode != o.request.mode) throw std::logic_error("the query changed its mode");
+  });
+}
+
+/// Touching bodies may overlap all the same (see Relation::touching). This is decided for a query that found
+/// all pairs exactly, if there are few enough of them: 1000 take 0.1 s and more (docs/measurements.md).
+constexpr std::size_t kMostPairsToDecide = 1000;
+
+bool tells_overlap(const CollideRequest& request) {
+  return request.mode == Mode::all_pairs && request.recursion == Recursion::complete &&
+         request.predicates == Predicates::exact && !request.is_coarse();
+}
+
+void decide_overlap(QueryContext& context, const CollideRequest& request, CollideResult& result) {
+  if (result.relation != Relation::touching || result.pairs.size() > kMostPairsToDecide) return;
+  CollideRequest overlap = request;
+  overlap.interiors_overlap = true;
+  describe_contact(context, overlap, result);
+}
+
+/// Writes [[number of A, number of B], ...].
+template <class Numbers>
+void write_pairs(trace::JsonWriter& w, const char* name, const std::vector<SimplexPair>& pairs,
+                 const Numbers& numbers) {
+  w.key(name).begin_array();
+  for (const SimplexPair& pair : pairs) {
+    const auto [a, b] = numbers(pair);
+    w.begin_array().value(a).value(b).end_array();
+  }
+  w.end_array();
+}
+
+/// What is asked besides, of other queries.
+struct More {
+  std::optional<ClashResult> kind;
+  std::optional<DistanceResult> distance;
+};
+
+/// Memory of what asks them.
+struct MoreContext {
+  ClashContext clash;
+  DistanceContext distance;
+};
+
+More ask_more(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
+              MoreContext& context) {
+  More out;
+  if (o.kind) {
+    ClashRequest request;
+    request.depth = request.volume = false;
+    out.kind = clash(a, Pose{}, b, pose, request, context.clash);
+  }
+  if (o.distance) {
+    DistanceRequest request;
+    request.relation = false;
+    out.distance = distance(a, Pose{}, b, pose, request, context.distance);
+  }
+  return out;
+}
+
+std::string line_of(std::size_t pose, const CollideResult& result, const More& more, const QueryOptions& o,
+                    double us, const LrbRep& a, const LrbRep& b) {
+  using Two = std::pair<std::uint32_t, std::uint32_t>;
+  const CollideRequest& request = o.request;
+  return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
+    w.begin_object().member("pose", std::uint64_t{pose}).member("relation", name_of(result.relation));
+    w.member("pairs", std::uint64_t{result.pairs.size()});
+    w.member("fingerprint", trace::to_hex(fingerprint(result.pairs)));
+    if (tells_overlap(request) && result.relation == Relation::touching)
+      w.member("interiors_overlap", name_of(result.interiors_overlap));
+    if (more.kind) w.member("kind", name_of(more.kind->kind));
+    if (more.kind && more.kind->reason != ClashReason::none) w.member("reason", name_of(more.kind->reason));
+    if (more.distance) {
+      w.key("distance").begin_array().value(more.distance->lower).value(more.distance->upper);
+      w.end_array();
+    }
+    if (request.recursion != Recursion::complete) w.member("recursion", name_of(request.recursion));
+    if (request.predicates != Predicates::exact) w.member("predicates", name_of(request.predicates));
+    if (request.is_coarse()) w.member("finished", result.finished).member("error_bound", result.error_bound);
+    if (request.separation && result.separation) {
+      w.key("separation");
+      trace::write_json(w, *result.separation);
+    }
+    if (o.repeat > 0) w.member("us", us);
+    if (o.pairs) write_pairs(w, "list", result.pairs, [](const SimplexPair& p) { return Two(p.a, p.b); });
+    if (o.pairs && request.is_coarse())
+      write_pairs(w, "pseudo", result.pairs, [&](const SimplexPair& p) {
+        return Two(a.is_real_simplex(p.a) ? 0 : 1, b.is_real_simplex(p.b) ? 0 : 1);
+      });
+    w.end_object();
+  });
+}
+
+/// Returns true if an answer depends on more than the bodies' faces, namely on wrappers.
+bool needs_regions(const CollideRequest& request) {
+  return request.recursion != Recursion::complete || request.is_coarse() || request.separation;
+}
+
+int run_query(const QueryOptions& o, const Globals& globals) {
+  const PoseLines list(o.poses);
+  const std::vector<Pose>& poses = list.poses;
+  const auto load = [&](const std::string& path) {
+    return needs_regions(o.request) ? bodies::load_body(path, {}, o.corners)
+                                    : bodies::load_faces(path, o.corners);
+  };
+  const bodies::LoadedBody a = load(o.a), b = load(o.b);
+  note(globals, a.notes);
+  note(globals, b.notes);
+  list.check(a.rep, b.rep);
+  if (o.kind) check_request(a.rep, ClashRequest{});
+  if (o.request.is_coarse()) check_coarse_request(o.request);
+  if (o.request.is_coarse())
+    for (const bodies::LoadedBody* body : {&a, &b}) {
+      if (const std::string why = note_no_levels(body->rep); !why.empty()) note(globals, {why});
+      body->rep.levels(0);
+    }
+  QueryContext context;
+  MoreContext more;
+  NullProbe probe;
+  Progress progress("query", poses.size(), globals.quiet);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    CollideResult result =
+        list.at(i, [&] { return collide(a.rep, Pose{}, b.rep, poses[i], o.request, context, probe); });
+    if (tells_overlap(o.request)) decide_overlap(context, o.request, result);
+    const double us = o.repeat > 0 ? repeated_us(a.rep, b.rep, poses[i], o, context) : 0;
+    print(line_of(i, result, ask_more(a.rep, b.rep, poses[i], o, more), o, us, a.rep, b.rep));
+    if (!o.draw.empty() && result.separation)
+      run::draw_separation(a.rep, Pose{}, b.rep, poses[i], *result.separation,
+                           picture_name(o.draw, i, poses.size()));
+    progress.set(i + 1);
+  }
+  return kOk;
+}
+
+}  // namespace
+
+Command add_query(CLI::App& root, const Globals& globals) {
+  CLI::App* app =
+      root.add_subcommand("query", "Answer exactly for each pose of B in a list, one line of JSON each");
+  const auto o = std::make_shared<QueryOptions>();
+  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
+  app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
+  app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
+  add_request_options(*app, o->request);
+  add_coarse_options(*app, o->request);
+  auto* separation = app->add_flag("--separation", o->request.separation,
+                                   "Add, for separate bodies, the coarsest wrappers that prove it");
+  app->add_option("--draw-separation", o->draw, "Draw these wrappers to this picture")
+      ->needs(separation)
+      ->type_name("PNG");
+  app->add_flag("--pairs", o->pairs, "Add the sorted list of pairs");
+  app->add_flag("--kind", o->kind, "Add what kind of contact the solids have, as `clash` tells it");
+  app->add_flag("--distance", o->distance, "Add the interval that holds the surfaces' distance");
+  add_repeat_option(*app, o->repeat, "pose");
+  add_join_option(*app, o->corners);
+  return {app, [o, &globals] { return run_query(*o, globals); }};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,234 @@
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/crowd/crowd_report.hpp"
+#include "scenarios/crowd/crowd_trace.hpp"
+#include "scenarios/frames/frames.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/record/recorded_run.hpp"
+#include "scenarios/run/run_page.hpp"
+#include "scenarios/spec/scenario.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/terminal.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/trace/trace_json.hpp>
+
+namespace lrb::cli {
+namespace {
+
+struct RenderOptions {
+  std::string trace, folder;
+  std::vector<std::string> bodies;
+  std::vector<std::uint32_t> events;
+  PictureOptions picture;
+  std::uint32_t montage = 0, columns = 0;
+  bool close_up = false, hide_rest = false;
+  std::vector<std::string> regions, layers;
+};
+
+constexpr const char* kFromTrace = "Drawn from a recorded run.";
+
+std::string output_folder(const RenderOptions& o) {
+  return o.folder.empty()
+             ? "out/" + std::filesystem::path(o.trace).parent_path().filename().string() + "-render"
+             : o.folder;
+}
+
+/// A number of one of the bodies, as options name it.
+struct OfBody {
+  std::size_t body = 0;
+  std::uint32_t number = 0;
+};
+
+/// Reads a number: "12" and "a12" are A's, "b12" is B's. `what` is numbered, and body b has counts[b] of it.
+OfBody read_of_body(const std::string& option, const std::string& what, const std::string& text,
+                    const std::vector<std::uint32_t>& counts) {
+  const bool named = text.starts_with('a') || text.starts_with('b');
+  OfBody out;
+  out.body = text.starts_with('b') ? 1 : 0;
+  const char *first = text.data() + (named ? 1 : 0), *last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(first, last, out.number);
+  if (error != std::errc() || end != last)
+    throw InputError(option + ": expected a " + what + "'s number, or a or b and the number, found " +
+                     printable_name(text));
+  if (out.body >= counts.size()) throw InputError(option + " " + text + ": there is no body B in this trace");
+  if (out.number >= counts[out.body])
+    throw InputError(option + " " + text + ": the body has " + std::to_string(counts[out.body]) + " " + what +
+                     "s, numbered from 0");
+  return out;
+}
+
+/// Shows the regions alone that are asked for, and says of each what it is: once, unless frames are asked
+/// for.
+void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodies, render::FrameSpec& spec) {
+  std::vector<std::uint32_t> regions, layers;
+  for (const bodies::LoadedBody& body : bodies) {
+    regions.push_back(body.rep.region_count());
+    layers.push_back(body.rep.layer_count());
+  }
+  for (const std::string& text : o.regions) {
+    const OfBody r = read_of_body("--region", "region", text, regions);
+    spec.isolate[r.body].emplace_back(r.number);
+  }
+  for (const std::string& text : o.layers) {
+    const OfBody layer = read_of_body("--layer", "layer", text, layers);
+    const LrbRep& rep = bodies[layer.body].rep;
+    for (RegionId r = 0; r < rep.region_count(); ++r)
+      if (rep.layer(r) == layer.number) spec.isolate[layer.body].push_back(r);
+  }
+  if (o.regions.empty() && o.layers.empty()) return;
+  for (std::vector<RegionId>& of_body : spec.isolate) {
+    std::sort(of_body.begin(), of_body.end());
+    of_body.erase(std::unique(of_body.begin(), of_body.end()), of_body.end());
+  }
+  if (o.events.empty() && !o.picture.at) {
+    spec.at = render::FrameSpec::At::events;
+    spec.events = {0};
+    if (o.montage == 0) spec.montage = 0;
+  }
+  spec.ghost_rest = !o.hide_rest;
+}
+
+/// Returns how to draw: as the run was drawn, `pictures`, but for what the call says.
+render::FrameSpec frame_spec(const RenderOptions& o, spec::Show show, const std::string& pictures = "") {
+  render::FrameSpec spec = spec::read_pictures(pictures, printable_name(o.trace), spec::default_frames(show));
+  if (o.close_up) spec.views = whole_and_contact(spec.views);
+  apply(o.picture, spec);
+  if (!o.events.empty()) {
+    spec.at = render::FrameSpec::At::events;
+    spec.events = o.events;
+  }
+  if (o.montage > 0) spec.montage = o.montage;
+  if (o.columns > 0) spec.montage_columns = o.columns;
+  return spec;
+}
+
+/// Returns what a recorded run shows.
+spec::Show show_of(const trace::Trace& trace, std::size_t bodies) {
+  if (trace.header.construction) return spec::Show::construction;
+  return bodies == 2 ? spec::Show::collision : spec::Show::refinement;
+}
+
+/// Throws for options that frames of a crowd do not have.
+void refuse_for_crowd(const RenderOptions& o) {
+  using At = render::FrameSpec::At;
+  const auto& at = o.picture.at;
+  const std::pair<bool, const char*> none[] = {
+      {!o.events.empty(), "--events"},
+      {o.montage > 0, "--montage"},
+      {o.columns > 0, "--columns"},
+      {!o.regions.empty(), "--region"},
+      {!o.layers.empty(), "--layer"},
+      {o.hide_rest, "--no-ghost"},
+      {o.picture.svg.value_or(false), "--format svg"},
+      {o.picture.colour_by.has_value(), "--colour-by"},
+      {o.picture.colour_per.has_value(), "--colour-per"},
+      {o.picture.node_boxes.has_value(), "--node-boxes"},
+      {at == At::refinement || at == At::pass || at == At::every, "--frames refinement, pass or event"}};
+  for (const auto& [given, name] : none)
+    if (given) throw InputError(std::string(name) + ": is not for the trace of a crowd; leave it out");
+}
+
+int render_crowd(const RenderOptions& o, const Globals& globals, const std::string& text) {
+  refuse_for_crowd(o);
+  crowd::CrowdTrace trace = crowd::read_crowd_trace(text, o.trace);
+  trace.crowd.purpose = kFromTrace;
+  trace.crowd.frames = frame_spec(o, spec::Show::collision);
+  run::check_frame_size(trace.crowd.frames);
+  std::vector<std::string> names;
+  for (const spec::CrowdKind& kind : trace.crowd.kinds) names.push_back(kind.name + ".lrb");
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  const crowd::CrowdRun run =
+      crowd::replay_crowd(trace, run::find_bodies(o.trace, o.bodies, names), all_cores(), progress);
+  note(globals, run.notes);
+  const std::string folder = output_folder(o);
+  crowd::redraw_crowd(trace.crowd, run, folder, globals.command_line, o.trace, progress);
+  animate_frames(o.picture, folder);
+  print(folder + "/index.html\n");
+  return kOk;
+}
+
+int run_render(const RenderOptions& given, const Globals& globals) {
+  RenderOptions o = given;
+  o.trace = run::trace_of(given.trace);
+  std::string json = trace::load_trace_text(o.trace);
+  if (crowd::is_crowd_trace(json)) return render_crowd(o, globals, json);
+  trace::Trace read = trace::trace_from_json(json, printable_name(o.trace));
+  json = {};
+  const run::Recording recording = run::open_run(std::move(read), o.trace, o.bodies);
+  const trace::Trace& trace = recording.trace;
+  const std::vector<bodies::LoadedBody>& bodies = recording.bodies;
+  const run::RecordedRun p = run::recorded_run_of(trace.header.scenario, {}, recording);
+  const std::string folder = output_folder(o);
+  render::FrameSpec spec = frame_spec(o, show_of(trace, bodies.size()), trace.header.pictures);
+  isolate(o, bodies, spec);
+  const std::vector<std::pair<std::string, std::string>> text = {
+      {"Software", "lrbscope " + trace.header.lrbscope},
+      {"lrbscope:scenario", trace.header.scenario},
+      {"lrbscope:scenario_hash", trace::to_hex(trace.header.scenario_hash)},
+  };
+  if (const EventLevel needed = render::needed_level(spec); needed > trace.header.level)
+    throw InputError(
+        printable_name(o.trace) +
+        " does not hold the events for --colour-by or --node-boxes; record the run with --events " +
+        std::string(name_of(needed)));
+  if (render::needed_level(spec) == EventLevel::nodes && recording.trees.empty())
+    throw InputError("--colour-by or --node-boxes: " + printable_name(o.trace) + " is of " +
+                     trace.header.engine + ", whose trees are not in it; `lrbscope xray` draws them");
+  run::check_frames(p, spec);  // throws before anything is written
+  make_folder(folder);
+  const io::FolderLock lock(folder);
+  io::refuse_links(folder);
+  const run::DrawnFrames drawn = run::draw_frames(p, spec, folder, text, progress_report(globals.quiet));
+  const std::string trace_link = std::filesystem::relative(o.trace, folder).generic_string();
+  run::ReportText report{trace.header.scenario, kFromTrace, globals.command_line, trace_link, {}};
+  if (o.bodies.empty()) report.why = "lrbscope why --run " + shell_word(o.trace);
+  report::Page page = run::run_page(p, drawn, folder, report);
+  std::erase_if(page.links, [](const report::PageLink& l) { return l.target == "summary.json"; });
+  io::write_text(folder + "/index.html", report::page_html(page));
+  animate_frames(o.picture, folder);
+  print(folder + "/index.html\n");
+  return kOk;
+}
+
+}  // namespace
+
+Command add_render(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand("render", "Draw pictures of a recorded run, without running it again");
+  const auto o = std::make_shared<RenderOptions>();
+  app->add_option("TRACE", o->trace, "A run's folder, or its trace.json or trace.json.gz")->required();
+  app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR");
+  app->add_option(
+         "--bodies", o->bodies,
+         "Bodies that were recorded [a.lrb and b.lrb beside the trace; KIND.lrb for each kind of a crowd]")
+      ->type_name("FILE")
+      ->expected(1, static_cast<int>(spec::kMostCrowdBodies));
+  app->add_option("--events", o->events, "Draw after these events")->delimiter(',')->type_name("N,N,...");
+  app->add_option("--montage", o->montage, "Number of panels of a montage [as the run had them]")
+      ->check(CLI::Range(1, 26))
+      ->type_name("N");
+  app->add_option("--columns", o->columns, "Columns of the montage [as the run had them]")
+      ->check(CLI::Range(1, 26))
+      ->type_name("N");
+  app->add_flag("--close-up", o->close_up, "Add a second view, of the contact");
+  app->add_option("--region", o->regions,
+                  "Show only these regions (N or aN of A, bN of B), close up, and the rest as a ghost")
+      ->delimiter(',')
+      ->type_name("N,N,...");
+  app->add_option("--layer", o->layers,
+                  "Show only the regions of these layers (K or aK of A, bK of B; 0 lies on the body)")
+      ->delimiter(',')
+      ->type_name("K,K,...");
+  app->add_flag("--no-ghost", o->hide_rest, "With --region or --layer: leave out the rest");
+  add_picture_options(*app, o->picture);
+  add_animation_option(*app, o->picture);
+  return {app, [o, &globals] { return run_render(*o, globals); }};
+}
+
+}  // namespace lrb::cli

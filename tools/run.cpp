@@ -1,0 +1,114 @@
+#include <iostream>
+#include <memory>
+
+#include "scenarios/crowd/crowd_report.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/spec/shipped.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/terminal.hpp"
+
+namespace lrb::cli {
+namespace {
+
+struct CrowdOptions {
+  std::string crowd, folder;
+  std::uint32_t jobs = 0;  ///< 0: all cores
+  std::optional<std::uint32_t> steps;
+  std::optional<trace::Clock> clock;
+  bool no_frames = false, json = false;
+};
+
+int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
+  spec::Crowd crowd = spec::open_crowd(o.crowd);
+  if (o.steps) crowd.steps = *o.steps;
+  if (o.clock) crowd.clock = *o.clock;
+  if (o.no_frames) crowd.frames.at = render::FrameSpec::At::none;
+  const std::string folder = o.folder.empty() ? "out/" + crowd.name : o.folder;
+  if (o.folder.empty()) io::refuse_run_of_another(folder, o.crowd);
+  const std::uint32_t jobs = o.jobs > 0 ? o.jobs : all_cores();
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, jobs, progress);
+  note(globals, run.notes);
+  note(globals, {crowd::crowd_speed(run)});
+  const std::string summary = crowd::write_crowd(crowd, run, folder, globals.command_line, progress);
+  if (o.folder.empty()) io::mark_run(folder, o.crowd);
+  print(o.json ? summary : folder + "/index.html\n");
+  return kOk;
+}
+
+}  // namespace
+
+Command add_crowd(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "crowd", "Move many bodies: at each step a query for each pair whose boxes meet, on all cores");
+  const auto o = std::make_shared<CrowdOptions>();
+  app->add_option("CROWD", o->crowd, "A shipped crowd (see lrbscope list), or a JSON file")
+      ->type_name("NAME|FILE")
+      ->default_val("crowd");
+  app->add_option("-o,--output", o->folder, "Folder to write to [out/NAME]")->type_name("DIR");
+  app->add_option("--jobs", o->jobs, "Number of threads [all cores]; the result does not depend on it")
+      ->check(CLI::Range(1u, 1024u))
+      ->type_name("N");
+  app->add_option("--steps", o->steps, "Number of time steps, instead of the crowd's own")
+      ->check(CLI::Range(1u, 100000u))
+      ->type_name("N");
+  add_choice<trace::Clock>(
+      *app, "--clock", o->clock,
+      "Time in the trace. event: the same for any number of threads, a track for each body; "
+      "wall: a track for each thread");
+  app->add_flag("--no-frames", o->no_frames, "Draw nothing");
+  app->add_flag("--json", o->json, "Print the summary instead of the page's path");
+  return {app, [o, &globals] { return run_crowd_command(*o, globals); }};
+}
+
+namespace {
+
+struct RunCommandOptions {
+  std::string scenario, folder;
+  PictureOptions picture;
+  std::optional<Recursion> recursion;
+  std::optional<EventLevel> events;
+  bool json = false;
+};
+
+int run_run(const RunCommandOptions& o, const Globals& globals) {
+  spec::Scenario scenario = spec::open_scenario(o.scenario);
+  apply(o.picture, scenario.frames);
+  if (o.recursion) scenario.request.recursion = *o.recursion;
+  if (o.events) scenario.events = *o.events;
+  const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
+  if (o.folder.empty()) io::refuse_run_of_another(folder, o.scenario);
+  run::RunOutcome outcome =
+      run::run_scenario(scenario, folder, globals.command_line, progress_report(globals.quiet));
+  if (o.folder.empty()) io::mark_run(folder, o.scenario);
+  animate_frames(o.picture, folder);
+  return report_outcome(outcome, folder, o.json, globals);
+}
+
+}  // namespace
+
+int report_outcome(const run::RunOutcome& outcome, const std::string& folder, bool json,
+                   const Globals& globals) {
+  note(globals, outcome.notes);
+  for (const std::string& line : outcome.mismatches) std::cerr << "lrbscope: mismatch: " << line << "\n";
+  print(json ? outcome.summary : folder + "/index.html\n");
+  return outcome.mismatches.empty() ? kOk : kMismatch;
+}
+
+Command add_run(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand("run", "Run a scenario: frames, trace, numbers and a page");
+  const auto o = std::make_shared<RunCommandOptions>();
+  app->add_option("SCENARIO", o->scenario, "A shipped scenario (see lrbscope list), or a JSON file")
+      ->required();
+  app->add_option("-o,--output", o->folder, "Folder to write to [out/NAME]")->type_name("DIR");
+  add_recursion_option(*app, o->recursion);
+  add_events_option(*app, o->events);
+  add_picture_options(*app, o->picture);
+  add_animation_option(*app, o->picture);
+  app->add_flag("--json", o->json, "Print the summary instead of the page's path");
+  return {app, [o, &globals] { return run_run(*o, globals); }};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,242 @@
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <sstream>
+
+#include "bench/stability/outcome_grid.hpp"
+#include "bench/stability/stability_experiment.hpp"
+#include "bench/stability/stability_report.hpp"
+#include "bench/stability/worst_case.hpp"
+#include "scenarios/io/files.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/terminal.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+
+namespace lrb::cli {
+namespace {
+
+using namespace lrb::stability;
+
+struct StabilityOptions {
+  std::string folder;
+  std::vector<std::string> families, methods;
+  std::optional<int> dial;
+  std::optional<std::uint64_t> only;
+  std::uint64_t cases = 100, seed = 1;
+  unsigned jobs = 2;
+  double timeout = 5;
+  bool pairs = false;
+  Quantity quantity = Quantity::pairs;
+};
+
+void print_pairs(std::ostream& out, const char* what, const std::vector<SimplexPair>& pairs) {
+  static constexpr std::size_t kToALine = 10;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (i % kToALine == 0) out << (i > 0 ? "\n" : "") << "  " << what << ":";
+    out << " " << pairs[i].a << "-" << pairs[i].b;
+  }
+  if (!pairs.empty()) out << "\n";
+}
+
+std::vector<SimplexPair> without(const std::vector<SimplexPair>& a, const std::vector<SimplexPair>& b) {
+  std::vector<SimplexPair> out;
+  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(out));
+  return out;
+}
+
+std::string describe(const Replay& r, Quantity quantity, bool pairs) {
+  std::ostringstream out;
+  const stability::Record& record = r.record;
+  out << record.family << ", dial " << record.dial << ", case " << record.case_index << ", " << record.method
+      << ": " << name_of(record.outcome);
+  if (!record.message.empty()) out << " (" << record.message << ")";
+  out << "\n";
+  if (quantity == Quantity::pairs) {
+    out << "  pairs: " << record.expected << " expected, ";
+    if (r.answered)
+      out << r.answered->size() << " answered, " << record.missed << " missed, " << record.extra
+          << " too many\n";
+    else
+      out << "no list answered\n";
+  }
+  if (!record.relation.empty())
+    out << "  " << (quantity == Quantity::pairs ? "relation" : name_of(quantity)) << ": "
+        << record.expected_relation << " expected, " << record.relation << " answered\n";
+  if (pairs && r.answered) {
+    print_pairs(out, "missed", without(r.expected, *r.answered));
+    print_pairs(out, "extra", without(*r.answered, r.expected));
+    print_pairs(out, "found", without(r.expected, without(r.expected, *r.answered)));
+  } else if (pairs) {
+    print_pairs(out, "expected", r.expected);
+  }
+  return out.str();
+}
+
+int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
+               const std::vector<FamilyRow>& families) {
+  if (families.size() != 1 || !o.dial) throw InputError("--only CASE needs one --family and a --dial");
+  bool all_right = true;
+  for (const workers::WorkerMethod& m : methods) {
+    if (!m.column.present) {
+      print(m.column.name + ": absent. " + m.column.remark + "\n");
+      continue;
+    }
+    const Replay r = replay(m, families[0].name, *o.dial, *o.only, o.seed, o.timeout, o.quantity);
+    print(describe(r, o.quantity, o.pairs));
+    all_right = all_right && (r.record.outcome == stability::Outcome::right ||
+                              r.record.outcome == stability::Outcome::refused);
+  }
+  return all_right ? kOk : kMismatch;
+}
+
+Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
+              const std::vector<FamilyRow>& families, const Globals& globals) {
+  const auto begin = std::chrono::steady_clock::now();
+  ExperimentOptions experiment;
+  experiment.quantity = o.quantity;
+  experiment.methods = methods;
+  for (const FamilyRow& f : families) experiment.families.push_back(f.name);
+  experiment.cases = o.cases;
+  experiment.seed = o.seed;
+  experiment.dial = o.dial;
+  experiment.jobs = o.jobs;
+  experiment.timeout = o.timeout;
+  Progress bar("stability", 0, globals.quiet);
+  const std::vector<stability::Record> records =
+      run_experiment(experiment, [&](std::uint64_t done, std::uint64_t total, const std::string& what) {
+        bar.set_total(total);
+        bar.set(done, what);
+      });
+  bar.finish();
+  io::write_text(o.folder + "/records.jsonl", to_lines(records));
+  std::vector<workers::MethodColumn> columns;
+  for (const workers::WorkerMethod& m : methods) columns.push_back(m.column);
+  Grid grid = count_grid(std::move(columns), families, records);
+  grid.quantity = o.quantity;
+  grid.command = globals.command_line;
+  grid.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return grid;
+}
+
+std::string command_of(const stability::Record& r, Quantity quantity) {
+  if (quantity != Quantity::pairs)
+    return "lrbscope stability --quantity " + std::string(name_of(quantity)) + " --family " + r.family +
+           " --method " + r.method + " --dial " + std::to_string(r.dial) + " --only " +
+           std::to_string(r.case_index) + " --seed " + std::to_string(r.seed);
+  return "lrbscope stability --family " + r.family + " --method " + r.method + " --dial " +
+         std::to_string(r.dial) + " --only " + std::to_string(r.case_index) + " --seed " +
+         std::to_string(r.seed) + " --pairs";
+}
+
+/// Writes the page and its pictures, for which the worst cases are asked again.
+void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
+                  const Grid& grid, const Globals& globals) {
+  Progress bar("pictures", 0, globals.quiet);
+  ReportOptions report;
+  report.pictures = draw_worst_cases(
+      grid, o.folder,
+      [&](const stability::Record& r) {
+        const auto method = std::find_if(methods.begin(), methods.end(), [&](const workers::WorkerMethod& m) {
+          return m.column.name == r.method;
+        });
+        Replay again = replay(*method, r.family, r.dial, r.case_index, r.seed, o.timeout, o.quantity);
+        return AnsweredPairs{std::move(again.expected), std::move(again.answered)};
+      },
+      [&](std::size_t done, std::size_t total) {
+        bar.set_total(total);
+        bar.set(done, "worst cases");
+      });
+  bar.finish();
+  report.command = [&](const stability::Record& r) { return command_of(r, o.quantity); };
+  report.links = {{"records.jsonl", "records.jsonl", "every answer of every method, one JSON object a line"}};
+  const ReportFiles files = write_stability_report(grid, o.folder, report);
+  if (!files.missing.empty()) std::cerr << "lrbscope: " << files.missing << "\n";
+  for (const std::string& f : files.written) print(o.folder + "/" + f + "\n");
+}
+
+/// Our methods must not fail; others may.
+bool ours_failed(const Grid& grid, const std::vector<workers::WorkerMethod>& methods) {
+  for (std::size_t m = 0; m < methods.size(); ++m)
+    for (std::size_t f = 0; f < grid.families.size(); ++f)
+      if (methods[m].info.role == methods::Role::ours && grid.at(f, m).failures() > 0) return true;
+  return false;
+}
+
+/// Returns the methods that answer with what is asked for.
+std::vector<workers::WorkerMethod> methods_for(Quantity quantity) {
+  if (quantity == Quantity::pairs) return workers::find_methods();
+  std::vector<workers::WorkerMethod> methods = workers::find_number_methods(quantity);
+  std::erase_if(methods, [](const workers::WorkerMethod& m) { return !m.info.hard_cases; });
+  return methods;
+}
+
+/// Returns the families that are asked about unless others are named: for numbers those of small bodies, as
+/// rational arithmetic is slow.
+std::vector<FamilyRow> families_for(const StabilityOptions& o) {
+  std::vector<FamilyRow> rows =
+      chosen(stability::family_rows(), o.families, "family", [](const FamilyRow& f) { return f.name; });
+  if (o.quantity != Quantity::pairs && o.families.empty())
+    std::erase_if(rows, [](const FamilyRow& f) {
+      static constexpr std::string_view kFamilies[] = {"touch",  "shared", "coplanar", "kiss",
+                                                       "sliver", "thin",   "far",      "scale"};
+      return std::find(std::begin(kFamilies), std::end(kFamilies), f.name) == std::end(kFamilies);
+    });
+  return rows;
+}
+
+int run_stability(StabilityOptions o, const Globals& globals) {
+  if (o.folder.empty())
+    o.folder =
+        o.quantity == Quantity::pairs ? "out/stability" : "out/stability-" + std::string(name_of(o.quantity));
+  const std::vector<FamilyRow> families = families_for(o);
+  const auto methods = chosen(methods_for(o.quantity), o.methods, "method",
+                              [](const workers::WorkerMethod& m) { return m.column.name; });
+  if (o.only) return replay_one(o, methods, families);
+  make_folder(o.folder);
+  const io::FolderLock lock(o.folder);
+  const Grid grid = run_grid(o, methods, families, globals);
+  print(table(grid));
+  print(o.folder + "/records.jsonl\n");
+  write_report(o, methods, grid, globals);
+  if (!ours_failed(grid, methods)) return kOk;
+  std::cerr << "lrbscope: mismatch: our own answers differ from exact brute force\n";
+  return kMismatch;
+}
+
+}  // namespace
+
+Command add_stability(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "stability", "Put families of hard cases to our query and to other engines: who fails where");
+  const auto o = std::make_shared<StabilityOptions>();
+  app->add_option("-o,--output", o->folder, "Folder to write to [out/stability, or out/stability-QUANTITY]")
+      ->type_name("DIR");
+  add_quantity_option(*app, o->quantity);
+  app->add_option("--family", o->families, "Only these families")->type_name("NAME");
+  app->add_option("--method", o->methods, "Only these methods")->type_name("NAME");
+  app->add_option("--dial", o->dial,
+                  "Only this setting of the families' dials, from 0 (benign) to 10 (degenerate)")
+      ->check(CLI::Range(0, kDialSettings - 1))
+      ->type_name("K");
+  app->add_option("--cases", o->cases, "Number of cases for each setting [100]")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+  app->add_option("--seed", o->seed, "Seed of the cases [1]")->check(CLI::NonNegativeNumber)->type_name("S");
+  app->add_option("--jobs", o->jobs, "Number of processes at a time [2]")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N");
+  app->add_option("--timeout", o->timeout, "Seconds that a method has for a case [5]")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->type_name("S");
+  app->add_option("--only", o->only, "Ask this case again and print what came out")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("CASE");
+  app->add_flag("--pairs", o->pairs, "With --only: print the pairs expected and answered");
+  return {app, [o, &globals] { return run_stability(*o, globals); }};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,174 @@
+#include "tools/terminal.hpp"
+
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <thread>
+
+#include <unistd.h>
+
+#include "tools/commands.hpp"
+#include <lrbscope/core/file.hpp>
+
+namespace lrb::cli {
+namespace {
+
+/// Returns true if colours are not wanted (https://no-color.org): the variable is set and not empty.
+bool colour_wanted() {
+  const char* no_colour = std::getenv("NO_COLOR");
+  const char* terminal = std::getenv("TERM");
+  return (no_colour == nullptr || *no_colour == '\0') && terminal != nullptr &&
+         std::string(terminal) != "dumb";
+}
+
+}  // namespace
+
+Progress::Progress(std::string label, std::uint64_t total, bool quiet)
+    : label_(std::move(label)),
+      total_(total),
+      enabled_(!quiet && ::isatty(STDERR_FILENO) == 1),
+      colour_(colour_wanted()),
+      begin_(std::chrono::steady_clock::now()),
+      last_(begin_) {}
+
+void Progress::set(std::uint64_t done, const std::string& detail) {
+  if (!enabled_) return;
+  constexpr std::chrono::milliseconds kBetweenDrawings(80);
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_ < kBetweenDrawings && done != total_) return;
+  last_ = now;
+  drawn_ = true;
+  std::string line = label_ + " ";
+  if (total_ > 0) {
+    constexpr std::uint64_t kWidth = 28;
+    const std::uint64_t full = std::min(kWidth, kWidth * done / total_);
+    std::string bar;
+    for (std::uint64_t i = 0; i < kWidth; ++i) bar += i < full ? "#" : ".";
+    line += (colour_ ? "\033[36m" + bar + "\033[0m" : bar) + " " + std::to_string(done) + "/" +
+            std::to_string(total_);
+    const double elapsed = std::chrono::duration<double>(now - begin_).count();
+    if (done > 0 && elapsed > 1) {
+      const double left =
+          elapsed * static_cast<double>(total_ - std::min(done, total_)) / static_cast<double>(done);
+      line += ", " + std::to_string(static_cast<int>(left + 0.5)) + " s left";
+    }
+  } else {
+    line += std::to_string(done);
+  }
+  if (!detail.empty()) line += ", " + detail;
+  std::cerr << "\r\033[K" << line << std::flush;
+}
+
+void Progress::finish() {
+  if (drawn_) std::cerr << "\r\033[K" << std::flush;
+  drawn_ = false;
+}
+
+run::ProgressReport progress_report(bool quiet) {
+  struct Parts {
+    std::string what;
+    std::unique_ptr<Progress> bar;
+  };
+  return [quiet, parts = std::make_shared<Parts>()](const std::string& what, std::uint64_t done,
+                                                    std::uint64_t total) {
+    if (what != parts->what) {
+      parts->bar = std::make_unique<Progress>(what, total, quiet);
+      parts->what = what;
+    }
+    parts->bar->set(done);
+  };
+}
+
+namespace {
+
+constexpr std::string_view kOutOfMemoryLine =
+    "lrbscope: out of memory: try a smaller input or a larger machine\n";
+
+bool pipes_end_us = false;
+
+bool is_ignored(int signal) {
+  struct sigaction now {};
+  return sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
+
+/// Ends the process by the signal itself.
+void die_of(int signal) {
+  sigset_t only;
+  sigemptyset(&only);
+  sigaddset(&only, signal);
+  std::signal(signal, SIG_DFL);
+  pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
+  std::raise(signal);
+}
+
+std::string farewell(int signal) {
+  const char* name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
+  const char* clear = isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";  // there may be a progress bar
+  return std::string(clear) + "lrbscope: interrupted by " + name +
+         ": files written so far are whole, the others are missing; run it again\n";
+}
+
+/// Runs on a thread, which may take locks and allocate, as a signal handler may not.
+void wait_for(const sigset_t& signals) {
+  int signal = 0;
+  if (sigwait(&signals, &signal) != 0) return;
+  abandon_atomic_files();
+  const std::string line = farewell(signal);
+  if (write(STDERR_FILENO, line.data(), line.size()) < 0) {
+    // There is nobody left to tell.
+  }
+  die_of(signal);
+}
+
+/// There may be no memory left, so nothing here takes any.
+[[noreturn]] void say_why_and_end() {
+  std::string_view line = "lrbscope: internal error, please report it: std::terminate was called\n";
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+    line = kOutOfMemoryLine;
+  } catch (...) {
+    // The line above says all we know.
+  }
+  abandon_atomic_files();
+  if (write(STDERR_FILENO, line.data(), line.size()) < 0) {
+    // There is nobody left to tell.
+  }
+  _exit(kEnvironment);
+}
+
+}  // namespace
+
+void end_cleanly_on_terminate() {
+  std::set_terminate(say_why_and_end);
+}
+
+void end_cleanly_on_signals() {
+  pipes_end_us = !is_ignored(SIGPIPE);
+  std::signal(SIGPIPE, SIG_IGN);  // writing fails with EPIPE instead, where we can act on it
+  sigset_t signals, before;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (!is_ignored(signal)) sigaddset(&signals, signal);
+  pthread_sigmask(SIG_BLOCK, &signals, &before);
+  try {
+    std::thread(wait_for, signals).detach();
+  } catch (const std::system_error&) {  // no thread can be started: the signals then end us at once, as
+                                        // without us
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  }
+}
+
+void end_as_by_closed_pipe() {
+  if (!pipes_end_us) return;
+  abandon_atomic_files();
+  die_of(SIGPIPE);
+}
+
+}  // namespace lrb::cli

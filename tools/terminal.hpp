@@ -1,0 +1,49 @@
+#pragma once
+/// Ends the program in order when it is told to end.
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "scenarios/record/recorded_run.hpp"
+
+namespace lrb::cli {
+
+/// A progress bar on stderr, drawn on a terminal only, and removed when the work is done.
+class Progress {
+ public:
+  /// `total` 0: not known; a counter is drawn instead of a bar.
+  Progress(std::string label, std::uint64_t total, bool quiet);
+  ~Progress() { finish(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void set(std::uint64_t done, const std::string& detail = {});
+  void set_total(std::uint64_t total) { total_ = total; }
+  void finish();
+
+ private:
+  std::string label_;
+  std::uint64_t total_;
+  bool enabled_, colour_, drawn_ = false;
+  std::chrono::steady_clock::time_point begin_, last_;
+};
+
+/// Returns a function that draws the progress of a job of several parts, a bar for each.
+run::ProgressReport progress_report(bool quiet);
+
+/// Installs handlers so that SIGINT, SIGTERM and SIGHUP remove the files that were begun, say so in a line,
+/// and then end the program as they would have done by themselves: a shell sees what happened. Finished files
+/// stay. Signals that the caller ignores stay ignored. Call it once, before any thread is started.
+void end_cleanly_on_signals();
+
+/// Installs a handler so that an exception that nobody can catch removes the files that were begun and ends
+/// the program with a line and code 3. (It is a std::bad_alloc in a destructor of nlohmann-json; these
+/// allocate.)
+void end_cleanly_on_terminate();
+
+/// Ends the program silently, as SIGPIPE does, because nobody reads its stdout any more; returns if the
+/// caller had that signal ignored.
+void end_as_by_closed_pipe();
+
+}  // namespace lrb::cli

@@ -1,0 +1,112 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "render/pictures/explain_picture.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/io/poses.hpp"
+#include "scenarios/record/recorded_run.hpp"
+#include "scenarios/run/explanation_text.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/explain.hpp>
+
+namespace lrb::cli {
+namespace {
+
+struct WhyOptions {
+  bodies::Corners corners = bodies::Corners::joined;
+  std::string a, b, poses, run, picture;
+  std::size_t pose = 0;
+  std::optional<std::uint32_t> step;
+  std::vector<std::uint32_t> pair;
+  bool json = false;
+};
+
+/// Two bodies, and where they stand.
+struct Scene {
+  const LrbRep& a;
+  const LrbRep& b;
+  Pose pose_a, pose_b;
+};
+
+Pose pose_of(const WhyOptions& o) {
+  if (o.poses.empty()) return {};
+  const std::vector<Pose> poses = io::open_poses(o.poses).poses;
+  if (o.pose >= poses.size())
+    throw InputError(printable_name(o.poses) + ": has " + std::to_string(poses.size()) +
+                     " poses, numbered from 0; there is no pose " + std::to_string(o.pose));
+  return poses[o.pose];
+}
+
+int explain(const WhyOptions& o, const Scene& scene) {
+  if (o.pair.empty()) {
+    const WalkExplanation e = explain_walk(scene.a, scene.pose_a, scene.b, scene.pose_b);
+    if (!o.picture.empty() && !e.result.pairs.empty())
+      throw InputError(
+          "-o: the bodies meet, so that nothing parts them; draw two of their faces with --pair");
+    if (!o.picture.empty()) make_folder_of(o.picture);
+    if (!o.picture.empty()) run::draw_parting(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
+    print(o.json ? one_line(run::explanation_json(e)) : run::explanation_text(e));
+    return kOk;
+  }
+  const PairExplanation e = explain_pair(scene.a, scene.pose_a, scene.b, scene.pose_b,
+                                         {SimplexId(o.pair[0]), SimplexId(o.pair[1])});
+  if (!o.picture.empty()) {
+    make_folder_of(o.picture);
+    run::draw_pair(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
+  }
+  print(o.json ? one_line(run::explanation_json(e, scene.a, scene.b))
+               : run::explanation_text(e, scene.a, scene.b));
+  return kOk;
+}
+
+int run_why(const WhyOptions& o, const Globals& globals) {
+  if (!o.run.empty()) {
+    const run::OpenStep open = run::open_step(o.run, o.step);
+    return explain(o, {open.bodies[0].rep, open.bodies[1].rep, open.step.pose_a, open.step.pose_b});
+  }
+  if (o.b.empty()) throw InputError("why: expected two bodies, A and B, or --run with a step of a run");
+  const Pose pose = pose_of(o);
+  const bodies::LoadedBody a = bodies::load_body(o.a, {}, o.corners),
+                           b = bodies::load_body(o.b, {}, o.corners);
+  note(globals, a.notes);
+  note(globals, b.notes);
+  return explain(o, {a.rep, b.rep, {}, pose});
+}
+
+}  // namespace
+
+Command add_why(CLI::App& root, const Globals& globals) {
+  CLI::App* app =
+      root.add_subcommand("why", "Tell why two faces are in an answer, or are not, or why bodies are apart");
+  const auto o = std::make_shared<WhyOptions>();
+  auto* a = app->add_option("A", o->a, "Mesh or .lrb file; does not move");
+  app->add_option("B", o->b, "Mesh or .lrb file; the pose is applied to it");
+  auto* poses = app->add_option("--poses", o->poses, "File with poses, as for `query` [B stays in place]");
+  app->add_option("--pose", o->pose, "Number of the pose in the file, from 0")
+      ->needs(poses)
+      ->capture_default_str();
+  auto* run = app->add_option("--run", o->run, "A run's folder or trace, in the place of A and B")
+                  ->excludes(a)
+                  ->excludes(poses)
+                  ->type_name("DIR");
+  app->add_option("--step", o->step, "Number of the run's time step [the last]")->needs(run)->type_name("N");
+  app->add_option("--pair", o->pair, "A simplex of A and one of B, as `query --pairs` numbers them")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("I,J");
+  app->add_option("-o,--output", o->picture,
+                  "Draw the two faces with what is about them, or without --pair what parts the bodies")
+      ->type_name("FILE.png");
+  app->add_flag("--json", o->json, "Print one JSON object");
+  add_join_option(*app, o->corners);
+  return {app, [o, &globals] { return run_why(*o, globals); }};
+}
+
+}  // namespace lrb::cli

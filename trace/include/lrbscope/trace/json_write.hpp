@@ -1,0 +1,181 @@
+#pragma once
+/// Writes JSON as text into a buffer that empties itself into a sink: builds no tree and allocates nothing
+/// for a value.
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <lrbscope/ids.hpp>
+
+namespace lrb::trace {
+
+/// Returns a number as 16 hexadecimal digits. Files hold 64-bit hashes so, because many readers take JSON's
+/// numbers for doubles.
+inline std::string to_hex(std::uint64_t value) {
+  std::string out(16, '0');
+  for (std::size_t i = 16; i-- > 0; value >>= 4) out[i] = "0123456789abcdef"[value & 15];
+  return out;
+}
+
+/// Reads what to_hex() returned; nothing unless it is exactly 16 lower-case digits.
+inline std::optional<std::uint64_t> from_hex(std::string_view text) {
+  if (text.size() != 16) return std::nullopt;
+  std::uint64_t value = 0;
+  for (const char c : text) {
+    const bool digit = c >= '0' && c <= '9';
+    if (!digit && (c < 'a' || c > 'f')) return std::nullopt;
+    value = value << 4 | static_cast<std::uint64_t>(digit ? c - '0' : c - 'a' + 10);
+  }
+  return value;
+}
+
+/// Takes bytes: a file, a string, ...
+class ByteSink {
+ public:
+  virtual ~ByteSink() = default;
+  virtual void write(std::string_view bytes) = 0;
+};
+
+class StringSink final : public ByteSink {
+ public:
+  void write(std::string_view bytes) override { text.append(bytes); }
+  std::string text;
+};
+
+/// Writes values only; the caller writes brackets and commas. Made for the millions of events.
+class JsonOut {
+ public:
+  explicit JsonOut(ByteSink& sink) : sink_(&sink), buffer_(kBuffer) {}
+  JsonOut(const JsonOut&) = delete;
+  JsonOut& operator=(const JsonOut&) = delete;
+
+  void raw(std::string_view text) {
+    if (text.size() > buffer_.size() - used_) {
+      flush();
+      if (text.size() > buffer_.size()) return sink_->write(text);
+    }
+    std::memcpy(buffer_.data() + used_, text.data(), text.size());
+    used_ += text.size();
+  }
+  void raw(char c) { raw(std::string_view(&c, 1)); }
+
+  void number(std::uint64_t value) {
+    reserve_number();
+    char* const begin = buffer_.data() + used_;
+    used_ += static_cast<std::size_t>(std::to_chars(begin, begin + kNumber, value).ptr - begin);
+  }
+
+  /// Writes the shortest decimal that reads back as the same double, or null if it is not finite (JSON has no
+  /// word for that). It always has a point or an exponent, so that -0.0 stays a double.
+  void number(double value);
+
+  /// Does the same for a float: the shortest decimal that reads back as the same float.
+  void number(float value);
+
+  /// Writes a string in quotes, escaped; bytes that are not UTF-8 become U+FFFD.
+  void string(std::string_view text);
+
+  void flush() {
+    sink_->write({buffer_.data(), used_});
+    used_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kBuffer = 1 << 16;
+  static constexpr std::size_t kNumber = 32;  ///< to_chars needs at most 24 for a double, 20 for an integer
+
+  template <class Floating>
+  void floating(Floating value);
+  void reserve_number() {
+    if (buffer_.size() - used_ < kNumber) flush();
+  }
+
+  ByteSink* sink_;
+  std::vector<char> buffer_;
+  std::size_t used_ = 0;
+};
+
+/// Writes brackets, commas and line breaks by itself. For metadata, summaries and answers.
+class JsonWriter {
+ public:
+  /// As `broken_levels`: everything on one line, without spaces.
+  static constexpr int kCompact = -1;
+
+  /// Puts each member of the outermost `broken_levels` containers on a line of its own; containers nested
+  /// deeper stay on one line. `indent` is the indentation of the outermost one, in levels.
+  JsonWriter(JsonOut& out, int broken_levels, int indent = 0)
+      : out_(&out), broken_levels_(broken_levels), indent_(indent) {}
+
+  JsonWriter& begin_object() { return open('{'); }
+  JsonWriter& end_object() { return close('}'); }
+  JsonWriter& begin_array() { return open('['); }
+  JsonWriter& end_array() { return close(']'); }
+  JsonWriter& key(std::string_view name);
+
+  template <class T>
+  JsonWriter& value(const T& v) {
+    separate();
+    if constexpr (std::is_same_v<T, bool>)
+      out_->raw(v ? "true" : "false");
+    else if constexpr (std::is_floating_point_v<T>)
+      out_->number(v);
+    else if constexpr (std::is_unsigned_v<T>)
+      out_->number(static_cast<std::uint64_t>(v));
+    else
+      out_->string(v);
+    return *this;
+  }
+  /// Writes a value that is JSON already, on one line.
+  JsonWriter& json(std::string_view text) {
+    separate();
+    out_->raw(text);
+    return *this;
+  }
+  template <class Kind>
+  JsonWriter& value(Id<Kind> id) {
+    return value(id.value());
+  }
+  template <class T>
+  JsonWriter& member(std::string_view name, const T& v) {
+    return key(name).value(v);
+  }
+
+ private:
+  struct Level {
+    bool empty = true;
+    bool broken = false;
+  };
+  JsonWriter& open(char bracket);
+  JsonWriter& close(char bracket);
+  void separate();
+  void break_line(std::size_t depth);
+
+  JsonOut* out_;
+  int broken_levels_;
+  int indent_;
+  bool after_key_ = false;
+  std::vector<Level> levels_;
+};
+
+/// Returns what write(writer) writes, with a newline at its end. indent: as JsonWriter has it.
+template <class Write>
+std::string json_text(int indent, const Write& write) {
+  StringSink sink;
+  JsonOut out(sink);
+  JsonWriter writer(out, indent);
+  write(writer);
+  out.raw('\n');
+  out.flush();
+  return std::move(sink.text);
+}
+
+}  // namespace lrb::trace

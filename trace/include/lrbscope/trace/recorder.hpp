@@ -1,0 +1,252 @@
+#pragma once
+/// A probe that writes down what the query does, as plain structs in a flat array.
+///
+///   Recorder recorder(a, b, settings);
+///   for each time step:
+///     recorder.begin_step(i, pose_a, pose_b);
+///     recorder.end_step(collide(a, pose_a, b, pose_b, request, context, recorder));
+///   Trace trace = recorder.take();
+///
+/// An event costs some nanoseconds on the event clock (tests/bench/trace_bench.cpp measures it); the wall
+/// clock adds the time of reading steady_clock.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <lrbscope/build.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/observe.hpp>
+#include <lrbscope/pose.hpp>
+#include <lrbscope/trace/trace.hpp>
+
+namespace lrb::trace {
+
+/// Times the events of a recording.
+class WallClock {
+ public:
+  /// Returns the nanoseconds since this began, and never the same number twice, so that no two events of a
+  /// timeline coincide.
+  std::uint64_t now_ns() {
+    const auto elapsed = std::chrono::steady_clock::now() - began_;
+    const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(elapsed).count();
+    return last_ns_ = std::max(last_ns_ + 1, static_cast<std::uint64_t>(ns));
+  }
+
+ private:
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  std::uint64_t last_ns_ = 0;
+};
+
+struct RecorderSettings {
+  std::string scenario;  ///< name
+  std::uint64_t scenario_hash = 0;
+  std::array<std::string, 2> sources;  ///< where the bodies came from, as the user gave it
+  CollideRequest request;  ///< as given to collide(): decides what can be the cause of a refinement
+  Clock clock = Clock::event;
+  std::uint32_t event_cap =
+      1'000'000;  ///< events beyond this number are counted but not stored (at most kMaxId)
+  EventLevel level = EventLevel::faces;
+  std::string engine;     ///< another one whose walk is told, over trees of its own; empty: ours
+  bool coherent = false;  ///< steps go on from the ones before
+};
+
+class Recorder final : public CollideProbe {
+ public:
+  static constexpr bool kEnabled = true;
+
+  /// Prepares to record queries of two bodies, which must outlive the recorder.
+  Recorder(const LrbRep& a, const LrbRep& b, RecorderSettings settings);
+  /// Prepares to record one body; of the events, only refine() and coarsen() of Side::a make sense.
+  Recorder(const LrbRep& a, RecorderSettings settings);
+
+  /// Begins a time step: both wrappers are the outermost ones again. `index` must ascend and poses must be
+  /// finite, else throws InputError.
+  void begin_step(std::uint32_t index, const Pose& pose_a, const Pose& pose_b = {});
+  /// Adds, before a step ends, what was asked about it besides.
+  void add(MeasuredDistance distance);
+  void add(MeasuredClash clash);
+  void end_step(const CollideResult& result);
+
+  void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a,
+                 std::uint32_t depth_b) override {
+    // Whichever of the two refinements came later made the test possible. None is 0, and 0 - 1 is kNull.
+    const std::uint32_t cause = std::max(brought_in(0, a), brought_in(1, b)) - 1u;
+    const EventId id = push({.a = a,
+                             .b = b,
+                             .cause = cause,
+                             .depth_a = saturated(depth_a),
+                             .depth_b = saturated(depth_b),
+                             .kind = EventKind::face_test,
+                             .meet = meet});
+    last_test_ = id;
+    last_hit_ = meet == exact::Meet::disjoint ? kNull : id;
+  }
+
+  void refine(Side side, RegionId region, std::uint32_t faces_added) override {
+    const EventId id = push({.a = region,
+                             .b = faces_added,
+                             .cause = cause_of_refinement(),
+                             .kind = EventKind::refine,
+                             .side = side});
+    // In unregularised mode a region's second lid brings in no faces: the first one's refinement stays the
+    // cause.
+    if (faces_added != 0 && id != kNull) refined_by_[static_cast<std::size_t>(side)][region] = id + 1;
+  }
+
+  /// Records that a wrapper grew back over a region, in a coarse query.
+  void coarsen(Side side, RegionId region, std::uint32_t faces_removed) override {
+    push({.a = region,
+          .b = faces_removed,
+          .cause = cause_of_refinement(),
+          .kind = EventKind::coarsen,
+          .side = side});
+  }
+
+  void contact(SimplexId a, SimplexId b, exact::Meet meet) override {
+    push({.a = a, .b = b, .cause = last_hit_, .kind = EventKind::contact, .meet = meet});
+  }
+
+  EventLevel level() const override { return settings_.level; }
+
+  std::uint32_t node_pair(const NodeVisit& visit) override {
+    const std::uint32_t depth = visit.parent == kNull ? 0 : trace_.events[visit.parent].depth_a + 1u;
+    const NodeWork work{visit.box_tests, visit.met, visit.parted, visit.certain};
+    last_pair_ = push({.a = visit.a,
+                       .b = visit.b,
+                       .cause = visit.parent,
+                       .boundary = std::bit_cast<std::uint32_t>(work),
+                       .depth_a = saturated(depth),
+                       .kind = EventKind::node_pair,
+                       .detail = static_cast<std::uint8_t>(visit.step)});
+    return last_pair_;
+  }
+
+  void plane_test(SimplexId a, SimplexId b, Side whose) override {
+    push({.a = a, .b = b, .cause = last_pair_, .kind = EventKind::plane_test, .side = whose});
+  }
+
+  void tested_by(TestedBy how) override {
+    if (last_test_ != kNull) trace_.events[last_test_].detail = static_cast<std::uint8_t>(how);
+  }
+
+  void point(Side whose, VertexId v, Where where) override {
+    push({.a = v, .kind = EventKind::point, .side = whose, .detail = static_cast<std::uint8_t>(where)});
+  }
+
+  void begin(Phase phase, std::uint32_t walked_a, std::uint32_t walked_b) override {
+    phase_ = push({.a = static_cast<std::uint32_t>(phase),
+                   .depth_a = saturated(walked_a),
+                   .depth_b = saturated(walked_b),
+                   .kind = EventKind::begin});
+  }
+
+  void end(Phase phase, std::uint64_t count) override {
+    push({.a = static_cast<std::uint32_t>(phase),
+          .b = static_cast<std::uint32_t>(std::min(count, std::uint64_t{kMaxId})),
+          .cause = phase_,
+          .kind = EventKind::end});
+    phase_ = kNull;
+  }
+
+  std::uint64_t events_seen() const { return seen_; }
+  std::uint64_t events_stored() const { return trace_.events.size(); }
+
+  /// Replays what was recorded to fill in Event::boundary and where pairs of nodes ended, and hands the trace
+  /// over. The recorder is then empty and can begin another run with the same settings. Throws
+  /// std::logic_error if there were events before the first step.
+  Trace take();
+
+ private:
+  static std::uint16_t saturated(std::uint32_t depth) {
+    return static_cast<std::uint16_t>(std::min(depth, std::uint32_t{0xffff}));
+  }
+
+  /// In the paper's recursion, returns the face test that has just hit. Returns kNull for the complete query:
+  /// it opens regions before it tests what they hide, because bounds overlap, so that no event is the cause,
+  /// least of all the test that happened to come before.
+  EventId cause_of_refinement() const {
+    return settings_.request.recursion == Recursion::complete ? kNull : last_hit_;
+  }
+
+  /// Returns 1 + the refine event of this step that put the simplex's face on the boundary; 0: there is none.
+  std::uint32_t brought_in(std::size_t side, SimplexId simplex) const {
+    const LrbRep& rep = *reps_[side];
+    const CellId cell = rep.outer_cell(rep.face_of_simplex(simplex));
+    if (!is_region(cell)) return 0;
+    const std::uint32_t by = refined_by_[side][cell];
+    return by > step_event_ ? by : 0;
+  }
+
+  EventId push(const Event& event) {
+    ++seen_;
+    if (trace_.events.size() >= settings_.event_cap) return kNull;
+    trace_.events.push_back(event);
+    if (settings_.clock == Clock::wall) trace_.wall_ns.push_back(clock_.now_ns());
+    return static_cast<EventId>(trace_.events.size() - 1);
+  }
+
+  void start_over();
+  void close_step();
+
+  std::array<const LrbRep*, 2> reps_{};
+  RecorderSettings settings_;
+  Trace trace_;
+  std::array<std::vector<std::uint32_t>, 2>
+      refined_by_;  ///< (regions) 1 + refine event, of this step or an old one
+  std::uint64_t seen_ = 0;
+  std::uint64_t seen_before_step_ = 0;
+  EventId step_event_ = 0;    ///< first event of the current step
+  EventId last_hit_ = kNull;  ///< the last face test, if it hit
+  EventId last_test_ = kNull, last_pair_ = kNull, phase_ = kNull;
+  WallClock clock_;
+};
+
+// Writes down what a builder does, as events of a trace.
+//
+// ```
+// ConstructRecorder recorder(settings);
+// options.probe = &recorder;
+// LrbRep rep = build_lrb(mesh, options);
+// Trace trace = recorder.take(rep, pose);
+// ```
+
+class ConstructRecorder final : public ConstructProbe {
+ public:
+  explicit ConstructRecorder(RecorderSettings settings);
+
+  void pass(const PassStart& start) override;
+  void patch(const GrownPatch& patch) override;
+  void cap(const TriedCap& cap) override;
+  void region(RegionId region) override;
+  void merged(RegionId into, std::uint32_t pieces) override;
+  void end_pass(const PassEnd& end) override;
+  void closed(std::uint32_t faces) override;
+
+  /// Returns true if no builder has told anything.
+  bool empty() const { return seen_ == 1; }
+
+  /// Replays what was recorded on the body that was built, which counts the faces of the hull, and hands the
+  /// trace over: one time step, at whose beginning the wrapper is the body itself. The recorder is then
+  /// empty.
+  Trace take(const LrbRep& rep, const Pose& pose);
+
+ private:
+  EventId push(const Event& event);
+
+  RecorderSettings settings_;
+  Trace trace_;
+  WallClock clock_;
+  std::uint64_t seen_ = 0;
+  EventId pass_ = kNull, patch_ = kNull, cap_ = kNull;
+};
+
+/// Returns the trace of a body that came with its regions: what would have been told of passes that made
+/// them.
+Trace known_construction(const LrbRep& rep, const Pose& pose, const RecorderSettings& settings);
+
+}  // namespace lrb::trace
