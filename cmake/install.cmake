@@ -20,7 +20,7 @@ foreach(component IN ITEMS engine trace render)
   endforeach()
 endforeach()
 
-# Programs that are compiled again go on with a later minor version from 1.0 on; those that are not need the one that they were
+# Programs that are compiled again go on with a later minor version; those that are not need the one that they were
 # compiled for, whose number is part of the name by which they find a shared library (docs/compatibility.md).
 set(lrb_soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 

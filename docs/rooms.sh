@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # docs/rooms.sh [ROOMS]: draws which room may see which, from tests/layers/rooms.txt, as SVG to stdout: this is docs/rooms.svg,
 # which the test `docs` compares. A room stands above all that it may see; an arrow leads down to what it sees. Arrows that
-# follow from others are left out. Colours stand for the top folders, so that rooms are named without them.
+# follow from others are left out. Colours stand for the top folders, so that most rooms are named without them. Lines with
+# "has", which tell whose the public headers are, are not drawn.
 set -euo pipefail
 rooms=${1:-$(dirname "${BASH_SOURCE[0]}")/../tests/layers/rooms.txt}
 awk '
@@ -26,9 +27,12 @@ awk '
     if (r ~ /^engine/) return "#dbe9f6"
     if (r ~ /^trace/) return "#e3f1dc"
     if (r ~ /^render/) return "#fbe8d0"
-    return "#f1e3f3"
+    if (r ~ /^scenarios/) return "#f1e3f3"
+    if (r ~ /^bench/) return "#f8dcdc"
+    if (r ~ /^tools/) return "#f5f0c4"
+    return "#d9eeee"
   }
-  function label(r) { sub(/^(engine|scenarios)\//, "", r); return r }
+  function label(r) { sub(/^(engine|render|scenarios|bench)\//, "", r); return r }
   function put(item, f) { floor[item] = f; row[f, wide[f]++] = item }
   function link(upper, lower) { below[upper, downs[upper]++] = lower; above[lower, ups[lower]++] = upper }
   # An arrow leads through a point on each floor between its ends, where it takes room like a narrow box.
@@ -55,19 +59,25 @@ awk '
       for (j = k; j > 0 && key[row[f, j]] < key[row[f, j - 1]]; j--) { t = row[f, j]; row[f, j] = row[f, j - 1]; row[f, j - 1] = t }
   }
   function apart(one, other) { return (size[one] + size[other]) / 2 + gap }
-  # Puts each item as near to where it wants to be as its neighbours allow: the mean of pushing right and pushing left.
-  function place_row(f,   k, r, right, left) {
+  # Puts the items of a floor as near to where they want to be as their neighbours allow: least squares, weighted by the number
+  # of links. Items that would overlap form a block, which stands at their mean.
+  function place_row(f,   k, r, shift, blocks, n, sum, weight, last, w) {
     for (k = 0; k < wide[f]; k++) {
       r = row[f, k]
-      right[k] = key[r]
-      if (k && right[k] < right[k - 1] + apart(row[f, k - 1], r)) right[k] = right[k - 1] + apart(row[f, k - 1], r)
+      if (k) shift[k] = shift[k - 1] + apart(row[f, k - 1], r)
+      w = ups[r] + downs[r] + 0.01
+      n = ++blocks
+      sum[n] = w * (key[r] - shift[k]); weight[n] = w; last[n] = k
+      for (; n > 1 && sum[n - 1] / weight[n - 1] > sum[n] / weight[n]; n--) {
+        sum[n - 1] += sum[n]; weight[n - 1] += weight[n]; last[n - 1] = k
+      }
+      blocks = n
     }
-    for (k = wide[f] - 1; k >= 0; k--) {
-      r = row[f, k]
-      left[k] = key[r]
-      if (k < wide[f] - 1 && left[k] > left[k + 1] - apart(r, row[f, k + 1])) left[k] = left[k + 1] - apart(r, row[f, k + 1])
+    n = 1
+    for (k = 0; k < wide[f]; k++) {
+      if (k > last[n]) n++
+      x[row[f, k]] = sum[n] / weight[n] + shift[k]
     }
-    for (k = 0; k < wide[f]; k++) x[row[f, k]] = (right[k] + left[k]) / 2
   }
   # Where an arrow leaves or enters a box: arrows are spread along the edge in the order of where they come from or go to.
   function port(item, other, up,   i, n, o, place) {
@@ -78,7 +88,7 @@ awk '
     }
     return x[item] + size[item] * ((place + 1) / (n + 1) - 0.5)
   }
-  /^ *(#|$)/ { next }
+  /^ *(#|$)/ || / has / { next }
   { split($0, half, /: */); count++; name[count] = half[1]; seen[half[1]] = half[2] }
   END {
     h = 26; dy = 70; gap = 14; left = 12; top = 46
@@ -92,7 +102,11 @@ awk '
       n = split(seen[name[i]], part, " ")
       for (j = 1; j <= n; j++) if (!follows(name[i], part[j])) add_arrow(name[i], part[j])
     }
-    for (f = 0; f <= floors; f++) for (k = 0; k < wide[f]; k++) x[row[f, k]] = 100 * k
+    for (i = 1; i <= count; i++) { # tips of arrows do not overlap
+      r = name[i]
+      if (size[r] < 11 * (ups[r] + 1)) size[r] = 11 * (ups[r] + 1)
+    }
+    for (f = 0; f <= floors; f++) for (k = 0; k < wide[f]; k++) x[row[f, k]] = 100 * (k - (wide[f] - 1) / 2)
     # Orders the floors by turns from below and from above, then moves items towards what they are linked to.
     for (pass = 0; pass < 24; pass++)
       for (i = 0; i <= floors; i++) {
@@ -101,7 +115,7 @@ awk '
         sort_row(f)
         place_row(f)
       }
-    for (pass = 0; pass < 60; pass++)
+    for (pass = 0; pass < 200; pass++)
       for (i = 0; i <= floors; i++) {
         f = pass % 2 ? floors - i : i
         for (k = 0; k < wide[f]; k++) key[row[f, k]] = mean_of(row[f, k], 1, 1)
@@ -133,7 +147,7 @@ awk '
       }
       printf "<path d=\"%s\" fill=\"none\" stroke=\"#55606c\" marker-end=\"url(#tip)\"/>\n", path
     }
-    n = split("scenarios/ trace render engine/", part, " ")
+    n = split("tools python/ bench/ scenarios/ render/ trace engine/", part, " ")
     for (i = 1; i <= n; i++)
       printf "<rect x=\"%d\" y=\"12\" width=\"16\" height=\"16\" rx=\"3\" fill=\"%s\" stroke=\"#55606c\"/><text x=\"%d\" y=\"25\">%s</text>\n", left + 110 * (i - 1), colour(part[i]), left + 110 * (i - 1) + 22, part[i]
     for (i = 1; i <= count; i++) {

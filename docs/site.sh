@@ -26,7 +26,8 @@ cp "$tree/CONTRIBUTING.md" "$out/pages/contributing.md"
     echo "\`cmake --build --preset release --target api\` makes the reference of all public headers with Doxygen. The headers:"
   fi
   echo
-  sed -n 's|^engine/.*|- [&](../&)|p' "$tree/engine/public_headers.txt"
+  (cd "$tree" && find engine/include trace/include render/include -name '*.hpp' -not -path '*/core/*' | LC_ALL=C sort |
+    sed 's|^[a-z]*/include/\(.*\)|- [`<\1>`](../&)|')
 } >"$out/pages/reference.md"
 
 # Lists of lines need a blank line before them, which hosts of repositories do not ask for; links out of the folder get copies.

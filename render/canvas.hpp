@@ -1,5 +1,5 @@
 #pragma once
-/// Paper to paint on, whatever file it becomes: SVG (svg_canvas.hpp), PDF or pixels (cairo_canvas.hpp).
+/// Paper to paint on, whatever file it becomes: SVG (SvgCanvas), PDF or pixels (CairoCanvas).
 /// Whoever paints does not know which. Lengths are in the paper's own units, x to the right, y down.
 
 #include <cstddef>

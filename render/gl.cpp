@@ -1,5 +1,5 @@
 /// For builds with the leak sanitizer: Mesa keeps about a kilobyte per process for good, which is not ours to
-/// free. (Pulled in by offscreen.cpp, so that every program that draws has it.)
+/// free.
 
 #include "render/gl.hpp"
 
@@ -81,7 +81,7 @@ namespace lrb::render {
 /// Stands for this file where it must be linked.
 void suppress_mesa_leaks() {}
 
-void suppress_mesa_leaks();  // mesa_leaks.cpp
+void suppress_mesa_leaks();
 
 /// The pixels that OSMesa is given to draw into. We draw into framebuffer objects instead, whose pixels do
 /// not depend on the number of threads; these only serve to make the context current.

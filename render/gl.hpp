@@ -1,6 +1,6 @@
 #pragma once
 /// The functions of OpenGL 3.3 core that we use, loaded at run time: whoever makes the context
-/// (offscreen.hpp) chooses the library that provides them, and nothing else links one.
+/// (Offscreen) chooses the library that provides them, and nothing else links one.
 
 #include <cstddef>
 #include <memory>
@@ -140,7 +140,7 @@ inline GlObject make_vertex_array(const Gl& gl) {
 GlProgram make_program(const Gl& gl, const std::string& name, const std::string& vertex,
                        const std::string& fragment);
 
-// An OpenGL 3.3 core context without a window. Only offscreen.cpp knows that it is Mesa's OSMesa: a context
+// An OpenGL 3.3 core context without a window. Only gl.cpp knows that it is Mesa's OSMesa: a context
 // from EGL (surfaceless) could replace it by filling in the same table of functions. (Mesa 25.1 removed
 // OSMesa.)
 

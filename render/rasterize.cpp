@@ -1,4 +1,4 @@
-// Off-screen rendering with OpenGL. One frame: project the draw list on the CPU (screen_mesh.hpp), then paint
+// Off-screen rendering with OpenGL. One frame: project the draw list on the CPU (ScreenMesh), then paint
 // in layers: fills by stencil, opaque faces and lines by depth test, translucent faces in sorted order, and
 // what is on top with its hidden part weakened. At last the supersampled image is averaged in integers.
 

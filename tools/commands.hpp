@@ -1,6 +1,6 @@
 #pragma once
-/// The commands of `lrbscope`, one file each in commands/ and measuring/. stdout is for data, stderr for
-/// people. Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
+/// The commands of `lrbscope`, a file each in this folder, listed in commands.cpp. stdout is for data, stderr
+/// for people. Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
 
 #include <functional>
 #include <string>

@@ -46,7 +46,7 @@ inline int rank_of(const Family& f) {
 }
 
 /// Returns the families of the program. A file NAME_families.cpp of this folder defines `std::vector<Family>
-/// NAME_families()`, and its families are registered: they need no other list (cmake/registry.cmake).
+/// NAME_families()`, and bench/CMakeLists.txt names it (lrb_registry).
 std::vector<Family> registered_families();
 
 /// Returns the same families, in their order.

@@ -98,7 +98,7 @@ int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries
 }  // namespace lrb::worker_programs
 
 // The main() of every worker program: what differs is which methods it is linked with
-// (bench/rivals/methods.cmake).
+// (bench/rivals/rivals.cmake).
 
 int main(int argc, char** argv) {
   return lrb::worker_programs::worker_main(argc, argv, lrb::methods::registered_methods());

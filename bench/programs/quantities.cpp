@@ -85,7 +85,7 @@ nlohmann::ordered_json known_number(const NumberMethod& method, const DataSet& s
   }
 }
 
-// lrbscope-quantities: a worker as worker.hpp has it, for methods that answer with a number. --quantity Q
+// lrbscope-quantities: a worker as in methods.cpp, for methods that answer with a number. --quantity Q
 // says with which one, or the data set of --questions does; without --method it prints the right answers.
 
 namespace {

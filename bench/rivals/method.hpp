@@ -140,9 +140,8 @@ inline MethodEntry absent(const char* name, const char* title, const char* packa
   return {info};
 }
 
-/// Returns the methods of the program that this is linked to, in their order. A file NAME.cpp in own/ or
-/// peers/ defines `std::vector<MethodEntry> NAME_methods()`, and the program has them: they need no other
-/// list (cmake/registry.cmake).
+/// Returns the methods of the program that this is linked to, in their order. A file of this folder defines
+/// `std::vector<MethodEntry> NAME_methods()`, and rivals.cmake names it.
 std::vector<MethodEntry> registered_methods();
 
 /// Returns the method of that name. Throws InputError if there is none, or it is absent.

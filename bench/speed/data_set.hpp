@@ -70,7 +70,7 @@ struct Question {
   PoseClass pose_class = PoseClass::apart;
   std::size_t a = 0, b = 0;  ///< indices into DataSet::bodies
   Pose pose_a, pose_b;
-  std::vector<SimplexPair> expected;           ///< ascending; see oracle.hpp
+  std::vector<SimplexPair> expected;           ///< ascending; see bench_runner.hpp
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};  ///< first contact: where B is at t = 0 and 1, beside pose_b
   std::optional<KnownNumber> number = {};      ///< what is asked for if it is a number
 };

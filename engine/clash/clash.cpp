@@ -4,7 +4,7 @@
 /// 3. Otherwise cut each surface by the other and count the pieces inside and outside (surface_pieces.hpp):
 ///    they decide whether interiors overlap, and the kind.
 /// 4. Overlapping interiors: bound the penetration depth (depth.hpp) and the common volume
-///    (shared_volume.hpp).
+///    (shared_volume.cpp).
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 /// Bounds the penetration depth of two solids: the length of the shortest translation that separates them
 /// (Cameron and Culley 1986). Steps:
 /// 1. Lower bound: convex sets inside both bodies, and the depth of their Minkowski difference
-///    (convex_depth.hpp).
+///    (minkowski.hpp).
 /// 2. Upper bound: the depth of the convex hulls. For two convex bodies that is all: both bounds agree up to
 ///    rounding.
 /// 3. Otherwise search for shorter translations: along face normals, then by small rotations of the best

@@ -1,4 +1,4 @@
-/// Volume of the intersection of two closed bodies as a sum over pairs of triangles (shared_volume.hpp).
+/// Volume of the intersection of two closed bodies as a sum over pairs of triangles.
 /// Steps:
 /// 1. Project all triangles along x, and find the pairs whose boxes overlap, by strips across y.
 /// 2. Clip one triangle of a pair by the other (Sutherland and Hodgman 1974).

@@ -13,7 +13,7 @@
 namespace lrb::parting {
 
 /// The point is within 1e-13 of the extent of the edge that is cut, and two roundings, of the exact one
-/// (pair_contact.hpp). That edge is the face's own: this end is where an edge of the face pierces the other
+/// (pair_contact.cpp). That edge is the face's own: this end is where an edge of the face pierces the other
 /// triangle.
 SimpleCut::End SimpleCut::End::on_border(int edge, const Eigen::Vector3d& x, const double* const corners[3],
                                          SimplexId by) {

@@ -1,6 +1,6 @@
 /// Counts the pieces into which each of two surfaces is cut by the other; exact. For each surface:
 /// 1. Cut the triangles that intersect the other body into cells: by the chains of intersection segments
-///    (simple_cut.hpp), or in rational arithmetic (exact::CutFace) where the configuration is degenerate.
+///    (simple_cut.cpp), or in rational arithmetic (exact::CutFace) where the configuration is degenerate.
 /// 2. Make a graph of the uncut triangles and the cells. Two nodes are connected if they share a part of an
 ///    edge that is not on the other surface. Its connected components, found by union-find, are the pieces.
 /// 3. Locate one point of each piece: inside the other solid, outside, or on its surface.
@@ -156,7 +156,7 @@ class CutSurface {
   std::optional<exact::CutFace> rational_cut(SimplexId s, const TouchedFace& face) {
     const double* corners[3];
     body_.world.corners(s, corners);
-    // Triangles in the face's plane cut by their outline only (face_cutters.hpp).
+    // Triangles in the face's plane cut by their outline only (collide/interiors.hpp).
     FaceCutters cutters(corners, holder_);
     for (const std::uint32_t i : face.pairs) cutters.add(others(result_.pairs[i]));
     return exact::CutFace::make(corners, cutters.all(), kInteriorCellsPerFace);

@@ -14,7 +14,7 @@
 /// Whether the exact query goes on depends on the bodies and poses alone, not on the tolerance: so a finer
 /// tolerance never gives a larger error bound.
 ///
-/// Why levels never call bodies separate that meet. Each wrapper encloses its body (wrapper_level.hpp), so
+/// Why levels never call bodies separate that meet. Each wrapper encloses its body (wrapper.hpp), so
 /// bodies whose wrappers share no point share none. Two wrappers share no point if no two of their faces meet
 /// and no connected piece of either one's boundary has a point in the other: pairs of faces are found as the
 /// complete query finds them, and pieces are located exactly. But in the world, rounding moves hidden

@@ -1,6 +1,6 @@
 #pragma once
 /// Defines collide() for any probe, at no cost beyond the probe's own: for code of ours, which is compiled
-/// with the engine's private headers. Users of the installed engine have collide_probe.hpp.
+/// with the engine's private headers. Users of the installed engine have <lrbscope/observe.hpp>.
 
 #include <algorithm>
 #include <cstdint>

@@ -192,7 +192,7 @@ std::vector<ContactLoop> chain_edges(std::span<const std::array<std::uint32_t, 2
 // Describes a contact: the intersection of each pair, and the connected regions of these with loops, length,
 // area, centroid, normal and a depth estimate.
 //
-// 1. Compute the intersection of each pair exactly, and connect the pieces to a graph (contact_graph.hpp).
+// 1. Compute the intersection of each pair exactly, and connect the pieces to a graph (contact_regions.hpp).
 // 2. Average centroid and normal of each component over its pieces of the highest dimension.
 // 3. Chain the edges of each component into loops.
 // 4. Estimate the depth from the vertices that each body encloses of the other, along the normal.

@@ -1,5 +1,5 @@
 #pragma once
-/// The builder for bodies in the plane: the idea of patch_builder.hpp, one dimension down.
+/// The builder for bodies in the plane: the idea of build_by_patches(), one dimension down.
 ///
 /// A patch is a chain of segments, and its ring is the chain's two ends. The cap is the chord between them
 /// where the chain lies behind it, else two segments whose common vertex lies in front of all the chain's

@@ -1,7 +1,7 @@
 // The outermost wrapper: a convex polytope with few faces around the points.
 // 1. Reduce the points to those near their convex hull.
 // 2. Replace each by a small tetrahedron: the hull of these is the hull moved outward.
-// 3. Simplify that hull outward with two settings (polytope_simplify.hpp).
+// 3. Simplify that hull outward with two settings (simplify_polytope()).
 // 4. Keep the candidate of least volume that contains all points, tested exactly. A box is the fallback.
 
 #include "engine/construct/closing.hpp"

@@ -29,7 +29,7 @@ CapVerdict bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std
 /// points, which keep a distance of at least a quarter of `distance` times their largest extent from its
 /// faces (to rounding; confirm with holds()). Empty if the coordinates are too large for that.
 ///
-/// Moves the convex hull of the points outward, simplifies it (polytope_simplify.hpp) in a few ways, of which
+/// Moves the convex hull of the points outward, simplifies it (simplify_polytope()) in a few ways, of which
 /// the tightest wins, and makes the result convex. Jacobson, "Progressive Convex Hull Simplification", 2026,
 /// removes half-spaces instead; but there a plane costs up to four triangles, and here one.
 Mesh enclosing_polytope(std::span<const Eigen::Vector3d> points, std::uint32_t max_faces, double distance,

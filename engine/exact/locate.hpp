@@ -16,7 +16,7 @@ namespace lrb::exact {
 /// A point with rational coordinates. Immutable; copies share them. In 2D z = 0.
 class RationalPoint {
  public:
-  struct Coordinates;  // private to engine/exact (rational_point.hpp): keeps Boost out of this header
+  struct Coordinates;  // private to engine/exact (rational.hpp): keeps Boost out of this header
 
   /// Makes the exact point of `dim` (2 or 3) finite doubles.
   explicit RationalPoint(const double* p, int dim = 3);

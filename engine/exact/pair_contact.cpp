@@ -24,7 +24,7 @@ namespace lrb::exact {
 
 namespace {
 
-/// A determinant in doubles and a bound on its error, derived as in plane_side.hpp and orient_axes.hpp
+/// A determinant in doubles and a bound on its error, derived as in plane_side.hpp and predicates.hpp
 /// (underflow is included; overflow makes the bound infinite or not a number).
 struct Approximate {
   double value, error;
@@ -47,7 +47,7 @@ Approximate volume(const double* a, const double* b, const double* c, const doub
 }
 
 Approximate area(const double* a, const double* b, const double* c, int x, int y) {
-  // Four roundings at most; 5 units cover them (orient_axes.hpp).
+  // Four roundings at most; 5 units cover them (predicates.hpp).
   const double left = (b[x] - a[x]) * (c[y] - a[y]), right = (b[y] - a[y]) * (c[x] - a[x]);
   return {left - right, 5 * 0x1p-53 * (std::fabs(left) + std::fabs(right)) + kTiny};
 }

@@ -1,5 +1,5 @@
 // Broad phase among the faces of one mesh: self-traversal of a bounding volume hierarchy.
-// 1. Usual meshes: a tree of axis-aligned boxes (box_pairs.hpp).
+// 1. Usual meshes: a tree of axis-aligned boxes (face_pairs.hpp).
 // 2. Meshes whose boxes overlap too much, by large faces, high-valence vertices or a sample of the boxes: a
 //    tree whose nodes have an oriented box as well. The faces of a high-valence vertex form one subtree.
 //    Pairs within it are found by their directions from that vertex (hubs.hpp), all other pairs by the

@@ -1,6 +1,6 @@
 /// Motions by rotation about a fixed axis at constant speed plus constant translation, piece by piece.
 ///
-/// Poses are computed in long double, whose functions round alike on every processor (core/steady_math.hpp),
+/// Poses are computed in long double, whose functions round alike on every processor (core/random.hpp),
 /// and rounded to double once. motion_bounds.hpp bounds the error.
 
 #include <algorithm>

@@ -173,7 +173,7 @@ inline float grow_of(const Between& w, int side, int axis) {
 }
 
 /// Returns the boxes unchanged: the axes of a node under a rotation are its own. Under other maps see
-/// affine_boxes.inl.
+/// affine_kernel.inl.
 inline const Boxes& boxes_on_own(const Boxes& boxes, Side, const Between&) {
   return boxes;
 }

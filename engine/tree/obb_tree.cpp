@@ -1,7 +1,7 @@
 // Builds the 8-wide tree of oriented boxes (principal axes: Gottschalk, Lin and Manocha 1996; quantized child
 // boxes: Ylitie, Karras and Laine 2017).
 // 1. Choose the unit, a power of two, so that coordinates are at most about 1.
-// 2. Build a binary tree (binary_tree.hpp), and collapse it to eight children per node (collapse.hpp).
+// 2. Build a binary tree, and collapse it to eight children per node (binary_tree.hpp).
 // 3. Lay out nodes and blocks depth first.
 // 4. Fill each node by itself, in parallel: fit a frame, compute the boxes in it, quantize them outwards.
 

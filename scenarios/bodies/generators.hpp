@@ -43,19 +43,19 @@ Mesh generate(const std::string& name, const GeneratorValues& values = {}, std::
 std::optional<LrbRep> generate_rep(const std::string& name, const GeneratorValues& values = {},
                                    std::uint64_t seed = 1);
 
-// The generators' functions, in one file for each idea. All parameters have their values, checked by
+// The generators' functions (generated_solids.cpp, fractal.cpp). All parameters have their values, checked by
 // generate().
 
-Mesh rock(const GeneratorValues& v, std::uint64_t seed);     // rock.cpp
-Mesh ball(const GeneratorValues& v, std::uint64_t seed);     // rock.cpp
-Mesh knot(const GeneratorValues& v, std::uint64_t seed);     // knot.cpp
-Mesh gear(const GeneratorValues& v, std::uint64_t seed);     // gear.cpp
-Mesh cog2d(const GeneratorValues& v, std::uint64_t seed);    // gear.cpp
-Mesh bowl(const GeneratorValues& v, std::uint64_t seed);     // lathe.cpp
-Mesh stick(const GeneratorValues& v, std::uint64_t seed);    // lathe.cpp
-Mesh pot(const GeneratorValues& v, std::uint64_t seed);      // lathe.cpp
-Mesh island(const GeneratorValues& v, std::uint64_t seed);   // island.cpp
-Mesh fractal(const GeneratorValues& v, std::uint64_t seed);  // fractal_generator.cpp
+Mesh rock(const GeneratorValues& v, std::uint64_t seed);
+Mesh ball(const GeneratorValues& v, std::uint64_t seed);
+Mesh knot(const GeneratorValues& v, std::uint64_t seed);
+Mesh gear(const GeneratorValues& v, std::uint64_t seed);
+Mesh cog2d(const GeneratorValues& v, std::uint64_t seed);
+Mesh bowl(const GeneratorValues& v, std::uint64_t seed);
+Mesh stick(const GeneratorValues& v, std::uint64_t seed);
+Mesh pot(const GeneratorValues& v, std::uint64_t seed);
+Mesh island(const GeneratorValues& v, std::uint64_t seed);
+Mesh fractal(const GeneratorValues& v, std::uint64_t seed);
 LrbRep fractal_rep(const GeneratorValues& v, std::uint64_t seed);
 
 /// Adds a triangle.
@@ -65,7 +65,7 @@ inline void add_triangle(Mesh& mesh, VertexId a, VertexId b, VertexId c) {
 }
 
 /// Makes a 2D mesh of a closed polygon in the plane, counter-clockwise.
-Mesh polygon_2d(const std::vector<Eigen::Vector2d>& outline);  // island.cpp
+Mesh polygon_2d(const std::vector<Eigen::Vector2d>& outline);
 
 // The fractal bodies of the paper's section 4: a basic shape to which local detail is added again and again,
 // as dents under lids. The regions are known by construction, so that no builder is needed.

@@ -20,7 +20,7 @@ struct LoadedBody {
 
 using lrb::is_lrb_file;
 
-/// Whether corners in exactly the same place are joined when a mesh is read (join_corners.hpp).
+/// Whether corners in exactly the same place are joined when a mesh is read (<lrbscope/mesh_repair.hpp>).
 enum class Corners : std::uint8_t { joined, apart };
 
 /// Reads a mesh file. Adds a line to `notes` if corners were joined.

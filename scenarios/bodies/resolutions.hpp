@@ -29,7 +29,7 @@ struct ResolutionOptions {
   std::uint32_t least_faces = 500;
 };
 
-/// Returns the finest one first; each has half of the faces of the one before (decimate.hpp). A mesh of
+/// Returns the finest one first; each has half of the faces of the one before (decimate.cpp). A mesh of
 /// polygons becomes one of triangles. Throws InputError for a mesh that no LRB-rep can be built of.
 std::vector<Mesh> resolutions(const Mesh& mesh, const ResolutionOptions& options);
 

@@ -84,7 +84,7 @@ struct PageNumber {
 
 /// A picture of a sequence.
 struct PageFrame {
-  std::string data_uri;  ///< see inline_image.hpp
+  std::string data_uri;  ///< see assets.hpp
   std::string caption;
   std::string file;   ///< link to the full picture, relative to the page; may be empty
   double event = -1;  ///< where it stands on charts over events; negative: nowhere
@@ -131,7 +131,7 @@ struct PageTable {
 /// A picture with its caption.
 struct PageFigure {
   std::string title, caption;
-  std::string data_uri;  ///< see inline_image.hpp
+  std::string data_uri;  ///< see assets.hpp
   std::string file;      ///< link to the full picture, relative to the page; may be empty
   std::string svg =
       {};  ///< in place of data_uri: the picture's own markup, so that its parts can say what they are

@@ -1,6 +1,6 @@
 #pragma once
 /// Makes a run into data for its page: for the view in three dimensions, the table of events and the panel of
-/// faces and regions (report/page/scene_*.js).
+/// faces and regions (report/web/scene_*.js).
 
 #include <cstddef>
 #include <string>

@@ -100,10 +100,9 @@ def check_conda(tree, version):
          "recipe.yaml has keys that conda's recipes do not have")
     source = os.path.join(tree, "cmake/recipes/conda", recipe["source"]["path"])
     need(os.path.exists(os.path.join(source, recipe["about"]["license_file"])), "recipe.yaml: no licence")
-    headers = open(tree + "/engine/public_headers.txt").read()
     for file in recipe["tests"][0]["package_contents"]["files"]:
-        if file.startswith("include/lrbscope/"):
-            need(file[len("include/lrbscope/"):] in headers, file + " is not installed")
+        if file.startswith("include/"):
+            need(os.path.exists(os.path.join(tree, "engine", file)), file + " is not installed")
     return cmake_options(recipe["build"]["script"])
 
 
@@ -124,7 +123,7 @@ def check_pyproject(tree, version):
     for key in ("readme", "license"):
         file = project["project"][key]
         need(os.path.exists(os.path.join(tree, file if key == "readme" else file["file"])), "pyproject.toml: no " + key)
-    cmake = open(tree + "/scenarios/python/python.cmake").read()
+    cmake = open(tree + "/python/CMakeLists.txt").read()
     for target in settings["build"]["targets"]:
         need("add_custom_target(%s " % target in cmake, "pyproject.toml builds %s, which is no target" % target)
     for component in settings["install"]["components"]:

@@ -11,7 +11,7 @@ required_conan_version = ">=2.0"
 
 class LrbscopeConan(ConanFile):
     name = "lrbscope"
-    version = "1.0.0"
+    version = "2.0.0"
     package_type = "static-library"
     description = "An exact two-body collision engine that can be watched: the engine, as a library"
     license = "MIT"
@@ -59,6 +59,6 @@ class LrbscopeConan(ConanFile):
         self.cpp_info.set_property("cmake_file_name", "lrbscope")
         self.cpp_info.set_property("cmake_target_name", "lrb::engine")
         self.cpp_info.libs = ["lrb_engine"]
-        self.cpp_info.includedirs = [os.path.join("include", "lrbscope")]
+        self.cpp_info.includedirs = ["include"]
         self.cpp_info.cxxflags = ["-ffp-contract=off"]  # answers are defined for operations that are rounded one by one
         self.cpp_info.requires = ["eigen::eigen", "boost::headers", "onetbb::libtbb"]

@@ -143,7 +143,7 @@ std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes);
 /// Says why there can be no LRB-rep of a mesh, even if it were turned.
 std::string obstacles_to_build(const CheckedMesh& mesh);
 
-/// Joins corners in exactly the same place where the surface is open there (join_corners.hpp). Returns a note
+/// Joins corners in exactly the same place where the surface is open there (mesh_repair.hpp). Returns a note
 /// that says so; empty if there were none.
 std::string join_corners_of_mesh(Mesh& mesh);
 

@@ -157,7 +157,7 @@ struct BuildOptions {
   ConstructProbe* probe = nullptr;  ///< is told everything that happens; null: nobody. Must outlive the build
 };
 
-/// Builds by patch caps on progressive hulls (patch_builder.hpp); 2D meshes go through chain_builder.hpp. The
+/// Builds by patch caps on progressive hulls (patch_builder.cpp); 2D meshes go through chain_builder.cpp. The
 /// mesh must be closed, manifold and oriented, with the solid behind its faces, as MeshReport::buildable()
 /// says: InputError names the offenders otherwise. A body that is inside out is turned by
 /// CheckedMesh::turn_outward(). Deterministic for a seed, on any number of threads.

@@ -207,7 +207,7 @@ std::uint64_t fingerprint(const std::vector<SimplexPair>& pairs);
 /// Queries body `a` at pose_a against body `b` at pose_b; both must be 3D, or both 2D (else InputError).
 /// Poses must be finite, and so must be the world coordinates of every vertex that a face uses (else
 /// InputError, naming it). A vertex that no face uses need not, but may be refused where the body comes
-/// near 1.8e308. To watch a query: collide_probe.hpp.
+/// near 1.8e308. To watch a query: observe.hpp.
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request = {});
 

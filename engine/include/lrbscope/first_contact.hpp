@@ -8,7 +8,7 @@
 /// At t1 collide() finds one.
 ///
 /// Spans of time in which no pair of simplices can meet are passed in one walk of the trees
-/// (swept_pairs.hpp). Where there are pairs that may meet, each advances by conservative steps: as long as
+/// (pair_motion.hpp). Where there are pairs that may meet, each advances by conservative steps: as long as
 /// the slab that parts the two is proved to do so for a bound on their motion along its normal
 /// (pair_motion.hpp; Mirtich, "Impulse-based Dynamic Simulation", 1996, has conservative advancement; Tang,
 /// Kim and Manocha, "C2A", 2009, bounds along the direction between two parts). Steps towards a contact

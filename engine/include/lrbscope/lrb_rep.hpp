@@ -151,7 +151,7 @@ class LrbRep {
   /// Returns the simplices as the tree sees them; the view refers to this LRB-rep.
   SimplexView simplices() const;
   const ObbTree& tree() const { return tree_; }
-  /// Returns the levels that coarse queries walk (wrapper_level.hpp). They come from the file, or are made by
+  /// Returns the levels that coarse queries walk (wrapper.hpp). They come from the file, or are made by
   /// the first call, which takes time of the order of building; other threads that call wait for it.
   /// `threads`: 1 inside work that is shared among threads already.
   const WrapperLevels& levels(unsigned threads = 1) const;

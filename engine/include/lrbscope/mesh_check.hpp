@@ -83,7 +83,7 @@ struct MeshReport {
   std::vector<std::string> obstacles(const Mesh& mesh) const;
 };
 
-/// Checks everything (to go on with the mesh, see checked_mesh.hpp); self-intersections exactly and by a box
+/// Checks everything (to go on with the mesh, see CheckedMesh); self-intersections exactly and by a box
 /// tree, only if asked (they take the longest). Faces without area count as zero_area_face only, and what
 /// they touch is no self-intersection. In 2D vertices are judged as edges are in 3D: one segment must lead to
 /// each and one away from it.

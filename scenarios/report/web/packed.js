@@ -1,4 +1,4 @@
-// ---- numbers packed as text by packed.hpp
+// ---- numbers packed as text by assets.hpp
 const NONE = 0xffffffff;
 
 /** Returns a Float32Array, or a Uint32Array in which NONE stands for kNull. */

@@ -64,7 +64,7 @@ std::string read_file(const std::string& path,
 std::string_view what_is_no_file(const std::string& path);
 
 /// Returns `text` in single quotes for use in a message: control characters and bytes beyond printable ASCII
-/// appear as \xNN, and what follows the first `limit` characters is cut off. The message stays on one line
+/// appear as \\xNN, and what follows the first `limit` characters is cut off. The message stays on one line
 /// whatever a file contains.
 std::string in_quotes(std::string_view text, std::size_t limit = 40);
 

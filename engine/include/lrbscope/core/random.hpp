@@ -9,7 +9,7 @@
 namespace lrb {
 
 /// SplitMix64 (Steele, Lea and Flood 2014). Gives the same numbers for the same seed on every machine and
-/// with every standard library, unlike the distributions of <random>.
+/// with every standard library, unlike the standard library's distributions.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

@@ -1,6 +1,6 @@
 #pragma once
 /// A recorded run: header, time steps and events as flat arrays. Everything else is made from it: replays
-/// (cursor.hpp), numbers (counters.hpp), pictures (render/) and files (trace_json.hpp).
+/// (replay.hpp), numbers (counters.hpp), pictures (render/) and files (trace_json.hpp).
 
 #include <array>
 #include <bit>
@@ -84,7 +84,7 @@ inline constexpr std::uint32_t kTraceVersion = 3;
 /// The name of the format in a trace's metadata.
 inline constexpr std::string_view kTraceFormat = "lrbscope trace";
 
-/// Returns the version of lrbscope that this library was built from, e.g. "1.0.0".
+/// Returns the version of lrbscope that this library was built from, e.g. "2.0.0".
 const char* lrbscope_version();
 
 /// Index of an event in Trace::events; kNull: none.
