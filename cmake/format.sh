@@ -10,6 +10,6 @@ case "${1:-}" in
 esac
 # Versions format differently; this is Debian 12's.
 program=$(command -v clang-format-14) || { echo "format.sh: clang-format-14 is missing: apt-get install clang-format-14" >&2 && exit 3; }
-find engine trace render scenarios bench tools python tests '(' -name '*.cpp' -o -name '*.hpp' -o -name '*.inl' ')' -print0 |
+find engine trace render scenarios bench tools python examples tests '(' -name '*.cpp' -o -name '*.hpp' -o -name '*.inl' ')' -print0 |
   xargs -0 -P "$(nproc)" -n 40 "$program" --style=file "${how[@]}" ||
   { echo "format.sh: run cmake/format.sh --mend" >&2 && exit 1; }

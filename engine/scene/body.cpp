@@ -17,6 +17,11 @@
 
 namespace lrb {
 
+const BodyOptions& default_body_options() {
+  static const BodyOptions options;
+  return options;
+}
+
 // From a checked mesh to an LRB-rep.
 // 1. Reject meshes that cannot be queried at all.
 // 2. Orient components outwards, if requested and needed.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # docs.sh TREE [LRBSCOPE]: checks the pages of the tree: every relative link and anchor of every .md leads somewhere;
 # docs/rooms.svg is what docs/rooms.sh draws; and, given the program, every `lrbscope` line of a shell block names a command
-# and options that its --help has; and each block of code is run by a test (runner() says which).
+# and options that its --help has; each block of code is run by a test (runner() says which); and a block below the line <!-- examples/FILE --> is that file.
 set -euo pipefail
 cd "$1"
 program=${2:-}
@@ -49,6 +49,21 @@ for page in README.md docs/*.md; do
     [ -e "$test" ] || complain "$test is not there, which runs blocks of $language"
     case "$language" in cpp | cmake | python | text) grep -q "$page" "$test" || complain "$page: its blocks of $language are not run by $test" ;; esac
   done
+done
+
+# Every example is linked from a page; the blocks that show one are its text.
+shown=0
+for page in $pages; do
+  while IFS= read -r file; do
+    shown=$((shown + 1))
+    [ -e "$file" ] || { complain "$page: shows $file, which does not exist"; continue; }
+    block=$(awk -v mark="<!-- $file -->" '$0 == mark { on = 1; next } on && /^```/ { if (inside) exit; inside = 1; next } on && !inside { exit } inside' "$page")
+    [ "$block" = "$(cat "$file")" ] || complain "$page: the block below <!-- $file --> differs from $file: copy the file"
+  done < <(sed -n 's/^<!-- \(examples\/.*\) -->$/\1/p' "$page")
+done
+[ "$shown" -ge 4 ] || complain "docs.sh: found only $shown blocks that show examples"
+for file in examples/*.{cpp,py,sh}; do
+  grep -qF "](../$file)" docs/*.md || complain "$file: no page in docs/ links to it"
 done
 
 commands=0

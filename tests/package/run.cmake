@@ -51,6 +51,10 @@ run(${CMAKE_COMMAND} -S "${SOURCE}" -B "${place}/user" ${toolchain} "-DCMAKE_PRE
 run(${CMAKE_COMMAND} --build "${place}/user")
 run("${place}/user/user")
 run("${place}/user/user_picture")
+# The examples, as a project of their own.
+run(${CMAKE_COMMAND} -S "${tree}/examples" -B "${place}/examples" ${toolchain} "-DCMAKE_PREFIX_PATH=${prefix}")
+run(${CMAKE_COMMAND} --build "${place}/examples")
+run("${place}/examples/collide" "${tree}/tests/data/gear.obj" "${tree}/tests/data/l_block.obj" 0 0 0)
 
 # By hand and pkg-config, as in a Makefile.
 file(GLOB_RECURSE pc "${prefix}/lrbscope.pc")

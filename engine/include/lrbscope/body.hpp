@@ -26,6 +26,8 @@ struct BodyOptions {
       true;  ///< join corners in exactly the same place when a file is read, where the surface is open there
   std::string name = "body";  ///< for messages, of bodies that come from no file
 };
+/// Returns a BodyOptions as it is by default.
+const BodyOptions& default_body_options();
 
 /// A body that can be queried. Const once made, and shared by its copies, which cost nothing: give each
 /// thread one. Stands wherever a `const LrbRep&` is asked for; must then outlive what refers to it.
@@ -44,25 +46,25 @@ class Body {
   /// by index, what is not finite and corners that do not exist, and as Mesh does.
   template <class V, class F>
   static Expected<Body> from(const Eigen::MatrixBase<V>& vertices, const Eigen::MatrixBase<F>& faces,
-                             const BodyOptions& options = {});
+                             const BodyOptions& options = default_body_options());
 
   /// Does the same for arrays: x, y, z of each vertex; three corners of each triangle.
   static Expected<Body> from(std::span<const double> coordinates, std::span<const std::uint32_t> corners,
-                             const BodyOptions& options = {});
+                             const BodyOptions& options = default_body_options());
   static Expected<Body> from(std::span<const double> coordinates, std::span<const std::int32_t> corners,
-                             const BodyOptions& options = {});
+                             const BodyOptions& options = default_body_options());
   static Expected<Body> from(std::span<const double> coordinates, std::span<const std::int64_t> corners,
-                             const BodyOptions& options = {});
+                             const BodyOptions& options = default_body_options());
 
   /// Does the same for a mesh; its name is used, unless it has none.
-  static Expected<Body> from(Mesh mesh, const BodyOptions& options = {});
+  static Expected<Body> from(Mesh mesh, const BodyOptions& options = default_body_options());
 
   /// Takes an LRB-rep that has been made elsewhere, and that others may have, too.
   static Body from(LrbRep rep);
   static Body from(std::shared_ptr<const LrbRep> rep);
 
   /// Reads a mesh file as read_mesh() does, or an .lrb file, told apart by content.
-  static Expected<Body> load(const std::string& path, const BodyOptions& options = {});
+  static Expected<Body> load(const std::string& path, const BodyOptions& options = default_body_options());
 
   const LrbRep& rep() const { return *held_->rep; }
   operator const LrbRep&() const { return *held_->rep; }
