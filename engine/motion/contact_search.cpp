@@ -179,10 +179,11 @@ double FirstContactSearch::advance(SimplexPair pair, const PieceState& at_a, con
         n = across;
       }
     }
+    const double before = t;
     t = std::min(span.end, later(t, parted));
     if (t >= span.end) hint_ = n;
-    // Steps towards a contact shrink quickly: stop once they are negligible.
-    if (t >= span.end || parted < least || i >= kMostStepsOfPair) return t;
+    // Steps towards a contact shrink quickly: stop once they are negligible, or too short for t to change.
+    if (t >= span.end || parted < least || t == before || i >= kMostStepsOfPair) return t;
     if (is_spent()) return t;
     moving.place(a_->at(t), b_->at(t));
   }
