@@ -1,5 +1,5 @@
 /// No motion, however degenerate, and no tolerance, however small, takes a search for a first contact more
-/// than a hundred times the work of an ordinary one: for every kind of body of the matrix that can be loaded,
+/// than forty times the work of an ordinary one: for every kind of body of the matrix that can be loaded,
 /// against itself.
 
 #include <numbers>
