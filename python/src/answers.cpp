@@ -1,3 +1,5 @@
+#include "python/src/answers.hpp"
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -8,7 +10,7 @@
 #include <pybind11/pybind11.h>
 #include <unistd.h>
 
-#include "python/src/bindings.hpp"
+#include "python/src/bind.hpp"
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/record_fields.hpp>

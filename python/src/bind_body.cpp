@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "python/src/bindings.hpp"
+#include "python/src/answers.hpp"
+#include "python/src/bind.hpp"
 #include "python/src/objects.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include <lrbscope/lrb_rep.hpp>

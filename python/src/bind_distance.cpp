@@ -1,5 +1,6 @@
 #include "engine/distance/distance_context.hpp"
-#include "python/src/bindings.hpp"
+#include "python/src/answers.hpp"
+#include "python/src/bind.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/first_contact.hpp>
 

@@ -41,8 +41,6 @@ std::size_t checked_index(py::ssize_t i, std::size_t n);
 /// Returns contact regions as Python has them.
 py::list regions_of(const Answer& answer);
 
-void bind_answers(py::module_& m);
-
 /// Returns the number of threads that an argument stands for: 0 as many as the machine runs at once, but one
 /// in a process that was forked from the one that loaded the module. Threads do not survive a fork, and who
 /// forks has processes for all cores.
@@ -57,27 +55,12 @@ void run_batch(std::size_t n, unsigned threads,
 /// Throws what signal handlers raised, such as KeyboardInterrupt. Takes the lock of Python.
 void check_signals();
 
-/// Binds what managers of many objects are made of: boxes of bodies, and which of them meet.
-void bind_boxes(py::module_& m);
-
-void bind_clash(py::module_& m);
-
-void bind_coherent(py::module_& m);
-
 /// Asks about pairs of bodies without the lock of Python, as run_batch() does.
 std::vector<CollideResult> answers_of(std::span<const PosedPair> pairs, const CollideRequest& request,
                                       unsigned threads);
 
-void bind_collide(py::module_& m);
-
 /// Returns a distance as Python has it.
 py::object distance_object(DistanceResult result);
-
-void bind_distance(py::module_& m);
-
-void bind_explain(py::module_& m);
-
-void bind_first_contact(py::module_& m);
 
 /// What can be asked for by name, in the order in which functions take it. None: as CollideRequest has it.
 struct RequestArguments {
@@ -86,11 +69,5 @@ struct RequestArguments {
 };
 
 CollideRequest request_of(const RequestArguments& given);
-
-void bind_scenario(py::module_& m);
-
-void bind_scene(py::module_& m);
-
-void bind_wrapper(py::module_& m);
 
 }  // namespace lrb::python
