@@ -186,6 +186,7 @@ void bind_results(py::module_& m) {
                         "Answers for k poses: a sequence of Result, in the order of the poses.");
   c.def("__len__", [](const Answers& a) { return a.all->size(); });
   c.def("__getitem__", &item);
+  bind_iterator(c);
   c.def_property_readonly(
       "relations",
       [](const Answers& a) {

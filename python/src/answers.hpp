@@ -38,6 +38,15 @@ bool in_contact(const CollideResult& r);
 /// Returns an element of a list-like object as Python counts, from the end if negative; throws IndexError.
 std::size_t checked_index(py::ssize_t i, std::size_t n);
 
+/// Gives a list-like class its iterator, without which types and isinstance() do not take it for iterable.
+template <class Class>
+void bind_iterator(Class& c) {
+  c.def("__iter__", [](const py::object& self) {
+    self.cast<const typename Class::type&>();  // raises TypeError for an object without a value
+    return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
+  });
+}
+
 /// Returns contact regions as Python has them.
 py::list regions_of(const Answer& answer);
 
