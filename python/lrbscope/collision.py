@@ -15,12 +15,38 @@ Objects collide if their surfaces meet, or if one lies in another that is a soli
 meet; an object inside another has none. Distances are those of the solids, 0 where objects collide.
 """
 
+from __future__ import annotations
+
+import hashlib
 import math
+from collections import OrderedDict
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
 from . import _core
-from ._objects import BodyCache
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable, Iterator, Sequence
+    from typing import Literal, Optional, Protocol
+
+    import numpy.typing as npt
+
+    from ._core import Body, Result, Scene
+
+    class _Mesh(Protocol):
+        @property
+        def vertices(self) -> Any: ...
+        @property
+        def faces(self) -> Any: ...
+
+    _Floats = npt.NDArray[np.float64]
+    _Pose = Optional[npt.ArrayLike]
+    _Names = tuple[Any, Any]
+    _Contacts = list["ContactData"]
+    _Nearest = Optional["DistanceData"]
+    _No = Literal[False]
+    _Yes = Literal[True]
 
 _EXTERNAL = "__external"
 
@@ -31,31 +57,33 @@ class ContactData:
     names: set of the two objects' names. Points and vectors are in the world frame.
     """
 
-    def __init__(self, names, faces, point, normal, depth):
-        self.names = set(names)
-        self._faces = dict(zip(names, faces))
+    def __init__(
+        self, names: _Names, faces: Sequence[int], point: _Floats, normal: _Floats, depth: float
+    ) -> None:
+        self.names: set[Any] = set(names)
+        self._faces: dict[Any, int] = dict(zip(names, faces))
         self._point, self._normal, self._depth = point, normal, depth
 
     @property
-    def normal(self):
+    def normal(self) -> _Floats:
         """(3,) float: unit, from the first object to the second, averaged over the contact region; else
         of the first's face.
         """
         return self._normal
 
     @property
-    def point(self):
+    def point(self) -> _Floats:
         """(3,) float: the middle of the intersection of the two triangles."""
         return self._point
 
     @property
-    def depth(self):
+    def depth(self) -> float:
         """float: an estimate of how deep the objects are in each other in the contact region, along the
         normal.
         """
         return self._depth
 
-    def index(self, name):
+    def index(self, name: Hashable) -> int:
         """Return the face of the object of this name."""
         return self._faces[name]
 
@@ -63,47 +91,75 @@ class ContactData:
 class DistanceData:
     """The nearest points of two objects. names: set of their names."""
 
-    def __init__(self, names, faces, points, distance):
-        self.names = set(names)
-        self._faces = dict(zip(names, faces))
-        self._points = dict(zip(names, points))
+    def __init__(self, names: _Names, faces: Sequence[int], points: _Floats, distance: float) -> None:
+        self.names: set[Any] = set(names)
+        self._faces: dict[Any, int] = dict(zip(names, faces))
+        self._points: dict[Any, _Floats] = dict(zip(names, points))
         self._distance = distance
 
     @property
-    def distance(self):
+    def distance(self) -> float:
         """float: the distance between the two objects, the world's unit."""
         return self._distance
 
-    def index(self, name):
+    def index(self, name: Hashable) -> int:
         """Return the face of the object of this name that is nearest."""
         return self._faces[name]
 
-    def point(self, name):
+    def point(self, name: Hashable) -> _Floats:
         """Return the nearest point on the object of this name, (3,) float, world frame."""
         return self._points[name]
 
 
-class _Standing:
-    """A body at a pose."""
+class _BodyCache:
+    """Bodies of meshes that were given lately, so that one mesh is not taken in again and again."""
 
-    def __init__(self, body, transform):
-        self.body = body
-        self.pose = np.eye(4) if transform is None else np.array(transform, dtype=float)
-        if self.pose.shape != (4, 4):
-            raise _core.InputError(f"transform: expected shape (4, 4), got {self.pose.shape}")
+    _MOST = 64
+
+    def __init__(self) -> None:
+        self._bodies: OrderedDict[Any, Body] = OrderedDict()
+
+    def body(self, mesh: _Mesh) -> Body:
+        """Return the body of anything with `vertices` and `faces`; without regions, which no answer here
+        needs.
+        """
+        if isinstance(mesh, _core.Body):
+            return mesh
+        try:
+            vertices, faces = mesh.vertices, mesh.faces
+        except AttributeError:
+            kind = type(mesh).__name__
+            raise TypeError(f"mesh: expected something with vertices and faces, got {kind}") from None
+        vertices, faces = np.ascontiguousarray(vertices), np.ascontiguousarray(faces)
+        key = tuple(
+            (a.dtype.str, a.shape, hashlib.blake2b(a.view(np.uint8).reshape(-1) if a.size else b"").digest())
+            for a in (vertices, faces)
+        )
+        if key not in self._bodies:
+            self._bodies[key] = _core.Body(vertices, faces, regions=False, name="mesh")
+            if len(self._bodies) > self._MOST:
+                self._bodies.popitem(last=False)
+        self._bodies.move_to_end(key)
+        return self._bodies[key]
 
 
-def _face_normal(thing, face):
-    corners = thing.body.vertices[thing.body.faces[face][:3]] @ thing.pose[:3, :3].T
-    normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+def _pose_of(transform: _Pose) -> _Floats:
+    pose = np.eye(4) if transform is None else np.array(transform, dtype=float)
+    if pose.shape != (4, 4):
+        raise _core.InputError(f"transform: expected shape (4, 4), got {pose.shape}")
+    return pose
+
+
+def _face_normal(body: Body, pose: _Floats, face: int) -> _Floats:
+    corners = body.vertices[body.faces[face][:3]] @ pose[:3, : body.dim].T
+    along = [0, 0, 1] if body.dim == 2 else corners[2] - corners[0]
+    normal: _Floats = np.cross(corners[1] - corners[0], along)
     length = np.linalg.norm(normal)
     return normal / length if length > 0 else normal
 
 
-def contacts_of(result, a):
-    """Yield (pair's number, point, normal, depth) for each pair of a result with contacts. a: has `body`
-    and `pose`.
-    """
+def contacts_of(result: Result, body: Body, pose: _Floats) -> Iterator[tuple[int, _Floats, _Floats, float]]:
+    """Yield (pair's number, point, normal, depth) for each pair of a result with contacts. body, pose: A."""
     points, pair_of_point = result.points
     middles = np.zeros((len(result.pairs), 3))
     np.add.at(middles, pair_of_point, points)
@@ -112,18 +168,18 @@ def contacts_of(result, a):
     for region in result.regions:
         normal, depth = region.normal, region.depth_estimate
         for i in region.pairs:
-            yield int(i), middles[i], normal if normal.any() else _face_normal(a, faces[i, 0]), depth
+            yield int(i), middles[i], normal if normal.any() else _face_normal(body, pose, faces[i, 0]), depth
 
 
-def _contact_data(names, result, a):
+def _contact_data(names: _Names, result: Result, body: Body, pose: _Floats) -> _Contacts:
     faces = result.face_pairs
     return [
         ContactData(names, (int(faces[i, 0]), int(faces[i, 1])), point, normal, depth)
-        for i, point, normal, depth in contacts_of(result, a)
+        for i, point, normal, depth in contacts_of(result, body, pose)
     ]
 
 
-def _answer(first, *rest):
+def _answer(first: Any, *rest: tuple[bool, Any]) -> Any:
     """Return what was asked for: `first` alone, or with those of `rest` that are wanted, (wanted, value)
     each.
     """
@@ -131,11 +187,12 @@ def _answer(first, *rest):
     return (first, *more) if more else first
 
 
-def _sorted_names(names):
+def _sorted_names(names: _Names) -> _Names:
     try:
-        return tuple(sorted(names))
+        a, b = sorted(names)
     except TypeError:  # names of different kinds
-        return tuple(sorted(names, key=str))
+        a, b = sorted(names, key=str)
+    return a, b
 
 
 class CollisionManager:
@@ -143,41 +200,82 @@ class CollisionManager:
     or a Body. The objects are bodies of a Scene.
     """
 
-    def __init__(self):
-        self._cache = BodyCache()
-        self._scene = _core.Scene()
-        self._keys, self._names = {}, {}  # keys by name, names by key
+    # What is returned beside the answer depends on two flags; where these are no constants it is Any.
 
-    def add_object(self, name, mesh, transform=None):
+    def __init__(self) -> None:
+        self._cache = _BodyCache()
+        self._scene = _core.Scene()
+        self._keys: dict[Any, int] = {}  # by name
+        self._names: dict[int, Any] = {}  # by key
+
+    def add_object(self, name: Hashable, mesh: _Mesh, transform: _Pose = None) -> Body:
         """Add an object, or replace the one of this name. transform: (4, 4) float. Returns its Body."""
-        thing = _Standing(self._cache.body(mesh), transform)
-        key = self._scene.add(thing.body, thing.pose)
+        body = self._cache.body(mesh)
+        key = self._scene.add(body, _pose_of(transform))
         if name in self._keys:
             self.remove_object(name)
         self._keys[name], self._names[key] = key, name
-        return thing.body
+        return body
 
-    def remove_object(self, name):
+    def remove_object(self, name: Hashable) -> None:
         """Take an object out. Raises ValueError if there is none of this name."""
         key = self._known(name)
         self._scene.remove(key)
         del self._keys[name], self._names[key]
 
-    def set_transform(self, name, transform):
+    def set_transform(self, name: Hashable, transform: npt.ArrayLike) -> None:
         """Move an object. transform: (4, 4) float. Raises ValueError if there is none of this name."""
-        self._scene.move(self._known(name), _Standing(None, transform).pose)
+        self._scene.move(self._known(name), _pose_of(transform))
 
-    def in_collision_single(self, mesh, transform=None, return_names=False, return_data=False):
+    @overload
+    def in_collision_single(
+        self, mesh: _Mesh, transform: _Pose = None, return_names: _No = False, return_data: _No = False
+    ) -> bool: ...
+    @overload
+    def in_collision_single(
+        self, mesh: _Mesh, transform: _Pose = None, *, return_names: _Yes, return_data: _No = False
+    ) -> tuple[bool, set[Any]]: ...
+    @overload
+    def in_collision_single(
+        self, mesh: _Mesh, transform: _Pose = None, return_names: _No = False, *, return_data: _Yes
+    ) -> tuple[bool, _Contacts]: ...
+    @overload
+    def in_collision_single(
+        self, mesh: _Mesh, transform: _Pose = None, *, return_names: _Yes, return_data: _Yes
+    ) -> tuple[bool, set[Any], _Contacts]: ...
+    @overload
+    def in_collision_single(
+        self, mesh: _Mesh, transform: _Pose = None, return_names: bool = False, return_data: bool = False
+    ) -> Any: ...
+    def in_collision_single(
+        self, mesh: _Mesh, transform: _Pose = None, return_names: bool = False, return_data: bool = False
+    ) -> Any:
         """Ask whether a mesh collides with any object.
 
         Returns bool; with return_names also a set of names; with return_data also a list of ContactData, in
         which the mesh is called '__external' and is the first object.
         """
-        other = _Standing(self._cache.body(mesh), transform)
-        hit, names, data = self._collide(return_names, return_data, outside=other)
+        outside = self._cache.body(mesh), _pose_of(transform)
+        hit, names, data = self._collide(return_names, return_data, outside=outside)
         return _answer(hit, (return_names, {b for _, b in names}), (return_data, data))
 
-    def in_collision_internal(self, return_names=False, return_data=False):
+    @overload
+    def in_collision_internal(self, return_names: _No = False, return_data: _No = False) -> bool: ...
+    @overload
+    def in_collision_internal(
+        self, return_names: _Yes, return_data: _No = False
+    ) -> tuple[bool, set[_Names]]: ...
+    @overload
+    def in_collision_internal(
+        self, return_names: _No = False, *, return_data: _Yes
+    ) -> tuple[bool, _Contacts]: ...
+    @overload
+    def in_collision_internal(
+        self, return_names: _Yes, return_data: _Yes
+    ) -> tuple[bool, set[_Names], _Contacts]: ...
+    @overload
+    def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any: ...
+    def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """Ask whether any two objects collide.
 
         Returns bool; with return_names also a set of pairs of names, each in alphabetical order; with
@@ -186,7 +284,29 @@ class CollisionManager:
         hit, names, data = self._collide(return_names, return_data)
         return _answer(hit, (return_names, {_sorted_names(n) for n in names}), (return_data, data))
 
-    def in_collision_other(self, other_manager, return_names=False, return_data=False):
+    @overload
+    def in_collision_other(
+        self, other_manager: CollisionManager, return_names: _No = False, return_data: _No = False
+    ) -> bool: ...
+    @overload
+    def in_collision_other(
+        self, other_manager: CollisionManager, return_names: _Yes, return_data: _No = False
+    ) -> tuple[bool, set[_Names]]: ...
+    @overload
+    def in_collision_other(
+        self, other_manager: CollisionManager, return_names: _No = False, *, return_data: _Yes
+    ) -> tuple[bool, _Contacts]: ...
+    @overload
+    def in_collision_other(
+        self, other_manager: CollisionManager, return_names: _Yes, return_data: _Yes
+    ) -> tuple[bool, set[_Names], _Contacts]: ...
+    @overload
+    def in_collision_other(
+        self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
+    ) -> Any: ...
+    def in_collision_other(
+        self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
+    ) -> Any:
         """Ask whether any object collides with one of another manager.
 
         Returns bool; with return_names also a set of pairs of names, this manager's first; with return_data
@@ -195,17 +315,53 @@ class CollisionManager:
         hit, names, data = self._collide(return_names, return_data, other=other_manager)
         return _answer(hit, (return_names, set(names)), (return_data, data))
 
-    def min_distance_single(self, mesh, transform=None, return_name=False, return_data=False):
+    @overload
+    def min_distance_single(
+        self, mesh: _Mesh, transform: _Pose = None, return_name: _No = False, return_data: _No = False
+    ) -> float: ...
+    @overload
+    def min_distance_single(
+        self, mesh: _Mesh, transform: _Pose = None, *, return_name: _Yes, return_data: _No = False
+    ) -> tuple[float, Any]: ...
+    @overload
+    def min_distance_single(
+        self, mesh: _Mesh, transform: _Pose = None, return_name: _No = False, *, return_data: _Yes
+    ) -> tuple[float, _Nearest]: ...
+    @overload
+    def min_distance_single(
+        self, mesh: _Mesh, transform: _Pose = None, *, return_name: _Yes, return_data: _Yes
+    ) -> tuple[float, Any, _Nearest]: ...
+    @overload
+    def min_distance_single(
+        self, mesh: _Mesh, transform: _Pose = None, return_name: bool = False, return_data: bool = False
+    ) -> Any: ...
+    def min_distance_single(
+        self, mesh: _Mesh, transform: _Pose = None, return_name: bool = False, return_data: bool = False
+    ) -> Any:
         """Find how far a mesh is from the nearest object.
 
         Returns float, inf if there is none; with return_name also its name; with return_data also a
         DistanceData, in which the mesh is called '__external'.
         """
-        other = _Standing(self._cache.body(mesh), transform)
-        distance, names, data = self._nearest(outside=other)
+        outside = self._cache.body(mesh), _pose_of(transform)
+        distance, names, data = self._nearest(outside=outside)
         return _answer(distance, (return_name, names[1]), (return_data, data))
 
-    def min_distance_internal(self, return_names=False, return_data=False):
+    @overload
+    def min_distance_internal(self, return_names: _No = False, return_data: _No = False) -> float: ...
+    @overload
+    def min_distance_internal(self, return_names: _Yes, return_data: _No = False) -> tuple[float, _Names]: ...
+    @overload
+    def min_distance_internal(
+        self, return_names: _No = False, *, return_data: _Yes
+    ) -> tuple[float, _Nearest]: ...
+    @overload
+    def min_distance_internal(
+        self, return_names: _Yes, return_data: _Yes
+    ) -> tuple[float, _Names, _Nearest]: ...
+    @overload
+    def min_distance_internal(self, return_names: bool = False, return_data: bool = False) -> Any: ...
+    def min_distance_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """Find how far the two nearest objects are apart.
 
         Returns float, inf if there are not two; with return_names also their names in alphabetical order;
@@ -215,7 +371,29 @@ class CollisionManager:
         names = names if data is None else _sorted_names(names)
         return _answer(distance, (return_names, names), (return_data, data))
 
-    def min_distance_other(self, other_manager, return_names=False, return_data=False):
+    @overload
+    def min_distance_other(
+        self, other_manager: CollisionManager, return_names: _No = False, return_data: _No = False
+    ) -> float: ...
+    @overload
+    def min_distance_other(
+        self, other_manager: CollisionManager, return_names: _Yes, return_data: _No = False
+    ) -> tuple[float, _Names]: ...
+    @overload
+    def min_distance_other(
+        self, other_manager: CollisionManager, return_names: _No = False, *, return_data: _Yes
+    ) -> tuple[float, _Nearest]: ...
+    @overload
+    def min_distance_other(
+        self, other_manager: CollisionManager, return_names: _Yes, return_data: _Yes
+    ) -> tuple[float, _Names, _Nearest]: ...
+    @overload
+    def min_distance_other(
+        self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
+    ) -> Any: ...
+    def min_distance_other(
+        self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
+    ) -> Any:
         """Find how far the objects are from the nearest of another manager.
 
         Returns float, inf if one has no objects; with return_names also the names, this manager's first; with
@@ -224,43 +402,53 @@ class CollisionManager:
         found = self._nearest(other=other_manager)
         return _answer(found[0], (return_names, found[1]), (return_data, found[2]))
 
-    def _known(self, name):
+    def _known(self, name: Hashable) -> int:
         if name not in self._keys:
             raise ValueError(f"{name} not in collision manager!")
         return self._keys[name]
 
-    def _others(self, outside, other):
+    def _others(
+        self, outside: tuple[Body, _Floats] | None, other: CollisionManager | None
+    ) -> tuple[tuple[Scene | Body | None, _Floats | None], Callable[[int, int], _Names]]:
         """Return the arguments that name the others to a scene's functions, and what gives names to pairs of
         keys.
         """
         if outside is not None:
-            return (outside.body, outside.pose), lambda a, b: (_EXTERNAL, self._names[b])
+            return outside, lambda a, b: (_EXTERNAL, self._names[b])
         if other is self:  # each object meets itself
             other = self._copy()
         names = self._names if other is None else other._names
         scene = None if other is None else other._scene
-        return (scene,), lambda a, b: (self._names[a], names[b])
+        return (scene, None), lambda a, b: (self._names[a], names[b])
 
-    def _copy(self):
+    def _copy(self) -> CollisionManager:
         copy = CollisionManager()
         for name, key in self._keys.items():
             copy.add_object(name, self._scene.body(key), self._scene.pose(key))
         return copy
 
-    def _collide(self, want_names, want_data, outside=None, other=None):
+    def _collide(
+        self,
+        want_names: bool,
+        want_data: bool,
+        outside: tuple[Body, _Floats] | None = None,
+        other: CollisionManager | None = None,
+    ) -> tuple[bool, list[_Names], _Contacts]:
         """Return whether any pair collides, names of those that do, and their contacts."""
         others, names_of = self._others(outside, other)
         if not (want_names or want_data):
             return self._scene.any_meet(*others), [], []
         met = self._scene.collide(*others, mode="all" if want_data else "any", contacts=want_data)
-        names, data = [names_of(a, b) for a, b in met.keys.tolist()], []
+        keys = met.keys.tolist()
+        names, data = [names_of(a, b) for a, b in keys], []
         if want_data:
-            for pair, (a, _), result in zip(names, met.keys.tolist(), met):
-                first = outside or _Standing(self._scene.body(a), self._scene.pose(a))
-                data += _contact_data(pair, result, first)
+            for pair, (a, _), result in zip(names, keys, met):
+                data += _contact_data(pair, result, *outside or (self._scene.body(a), self._scene.pose(a)))
         return bool(names), names, data
 
-    def _nearest(self, outside=None, other=None):
+    def _nearest(
+        self, outside: tuple[Body, _Floats] | None = None, other: CollisionManager | None = None
+    ) -> tuple[float, _Names, _Nearest]:
         """Return distance, names and data of the nearest pair."""
         others, names_of = self._others(outside, other)
         found = self._scene.nearest(*others, solids=True)
@@ -271,7 +459,7 @@ class CollisionManager:
         return distance, names, DistanceData(names, nearest.faces, nearest.points, distance)
 
 
-def scene_to_collision(scene):
+def scene_to_collision(scene: Any) -> tuple[CollisionManager, dict[Any, Body]]:
     """Make a CollisionManager of all nodes of a trimesh.Scene that have a geometry.
 
     Returns the manager, in which objects have their nodes' names, and a dict of the nodes' bodies.

@@ -16,16 +16,31 @@ estimates, but signed distances of shapes are proved. What is not there raises U
 OcTree, costs, motions other than CCDM_TRANS and CCDM_LINEAR.
 """
 
+from __future__ import annotations
+
 import enum
 import math
 import sys
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
 from . import _core
 from .collision import contacts_of
 
-facets = 64
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+    import numpy.typing as npt
+
+    from ._core import Body, Distance, FirstContact, Result, Scene
+
+    _Floats = npt.NDArray[np.float64]
+    _Surface = tuple[_Floats, Any]  # vertices and faces
+    _CollisionCallback = Callable[["CollisionObject", "CollisionObject", Any], bool]
+    _DistanceCallback = Callable[["CollisionObject", "CollisionObject", Any], tuple[bool, float]]
+
+facets: int = 64
 """int: the number of facets around of shapes that are made from now on."""
 
 
@@ -58,21 +73,21 @@ class CCDSolverType(enum.IntEnum):
     CCDC_POLYNOMIAL_SOLVER = 3
 
 
-def _vector(given, size, what):
+def _vector(given: npt.ArrayLike, size: int, what: str) -> _Floats:
     out = np.array(given, dtype=float).squeeze()
     if out.shape != (size,):
         raise ValueError(f"{what}: expected {size} numbers, got shape {np.shape(given)}")
     return out
 
 
-def _matrix(given):
+def _matrix(given: npt.ArrayLike) -> _Floats:
     out = np.array(given, dtype=float)
     if out.shape != (3, 3):
         raise ValueError(f"a rotation: expected shape (3, 3), got {out.shape}")
     return out
 
 
-def _matrix_of_quaternion(given):
+def _matrix_of_quaternion(given: npt.ArrayLike) -> _Floats:
     """Return the rotation of w, x, y, z, of any length but 0."""
     q = _vector(given, 4, "a quaternion")
     length = np.linalg.norm(q)
@@ -88,14 +103,14 @@ def _matrix_of_quaternion(given):
     )
 
 
-def _quaternion_of_matrix(r):
+def _quaternion_of_matrix(r: _Floats) -> _Floats:
     """Return w, x, y, z with w >= 0; the largest component first, so that nothing is lost to rounding."""
     squares = np.array([r[0, 0] + r[1, 1] + r[2, 2], *(2 * np.diag(r) - np.trace(r))]) + 1
     differences = {(0, 1): r[2, 1] - r[1, 2], (0, 2): r[0, 2] - r[2, 0], (0, 3): r[1, 0] - r[0, 1]}
     sums = {(1, 2): r[0, 1] + r[1, 0], (1, 3): r[0, 2] + r[2, 0], (2, 3): r[1, 2] + r[2, 1]}
     products = {**differences, **sums}  # four times q[i] q[j]
     i = int(np.argmax(squares))
-    q = np.array([squares[i] if j == i else products[tuple(sorted((i, j)))] for j in range(4)])
+    q = np.array([squares[i] if j == i else products[min(i, j), max(i, j)] for j in range(4)])
     q /= np.linalg.norm(q)
     return -q if q[0] < 0 else q
 
@@ -105,49 +120,50 @@ class Transform:
     y, z.
     """
 
-    def __init__(self, *args):
+    def __init__(self, *args: npt.ArrayLike | Transform) -> None:
         self._r, self._t = np.eye(3), np.zeros(3)
-        if len(args) > 2:
+        given: tuple[Any, ...] = args
+        if len(given) > 2:
             raise ValueError("Too many arguments to Transform().")
-        if len(args) == 1 and isinstance(args[0], Transform):
-            self._r, self._t = args[0].getRotation(), args[0].getTranslation()
-        elif len(args) == 1 and np.shape(args[0]) == (3,):
-            self.setTranslation(args[0])
-        elif args:
-            if np.shape(args[0]) == (3, 3):
-                self.setRotation(args[0])
-            elif np.shape(args[0]) == (4,):
-                self.setQuatRotation(args[0])
+        if len(given) == 1 and isinstance(given[0], Transform):
+            self._r, self._t = given[0].getRotation(), given[0].getTranslation()
+        elif len(given) == 1 and np.shape(given[0]) == (3,):
+            self.setTranslation(given[0])
+        elif given:
+            if np.shape(given[0]) == (3, 3):
+                self.setRotation(given[0])
+            elif np.shape(given[0]) == (4,):
+                self.setQuatRotation(given[0])
             else:
                 raise ValueError("Invalid input to Transform().")
-            if len(args) == 2:
-                self.setTranslation(args[1])
+            if len(given) == 2:
+                self.setTranslation(given[1])
 
-    def getRotation(self):
+    def getRotation(self) -> _Floats:
         """Return the rotation, (3, 3)."""
         return self._r.copy()
 
-    def getTranslation(self):
+    def getTranslation(self) -> _Floats:
         """Return the translation, (3,)."""
         return self._t.copy()
 
-    def getQuatRotation(self):
+    def getQuatRotation(self) -> _Floats:
         """Return the rotation as w, x, y, z."""
         return _quaternion_of_matrix(self._r)
 
-    def setRotation(self, R):
+    def setRotation(self, R: npt.ArrayLike) -> None:
         """Set the rotation, (3, 3)."""
         self._r = _matrix(R)
 
-    def setTranslation(self, T):
+    def setTranslation(self, T: npt.ArrayLike) -> None:
         """Set the translation, (3,)."""
         self._t = _vector(T, 3, "a translation")
 
-    def setQuatRotation(self, q):
+    def setQuatRotation(self, q: npt.ArrayLike) -> None:
         """Set the rotation from w, x, y, z."""
         self._r = _matrix_of_quaternion(q)
 
-    def _pose(self):
+    def _pose(self) -> _Floats:
         pose = np.eye(4)
         pose[:3, :3], pose[:3, 3] = self._r, self._t
         return pose
@@ -160,9 +176,9 @@ class CollisionGeometry:
     _object_type = 0
     _is_shape = True  # a solid; else a surface
 
-    _made = None
+    _made: Body | None = None
 
-    def __setattr__(self, name, value):
+    def __setattr__(self, name: str, value: Any) -> None:
         if not name.startswith("_"):  # a measure, which the body was made to
             self._made = None
             if isinstance(value, (list, tuple, np.ndarray)):
@@ -170,28 +186,29 @@ class CollisionGeometry:
                 value.flags.writeable = False
         object.__setattr__(self, name, value)
 
-    def getNodeType(self):
+    def getNodeType(self) -> int:
         """Return FCL's number of the kind of shape."""
         return self._node_type
 
-    def computeLocalAABB(self):
+    def computeLocalAABB(self) -> None:
         """Do nothing: boxes are found when they are needed."""
 
     @property
-    def aabb_center(self):
+    def aabb_center(self) -> _Floats:
         """(3,) float: the middle of the box of the geometry."""
-        return self._body().box().mean(axis=0)
+        middle: _Floats = self._body().box().mean(axis=0)
+        return middle
 
-    def _surface(self):
+    def _surface(self) -> _Surface:
         """Return vertices and faces."""
         raise ValueError("this geometry has no surface: take one of its kinds, such as BVHModel")
 
-    def _body(self):
+    def _body(self) -> Body:
         if self._made is None:
             self._made = _core.Body(*self._surface(), regions=False, name=type(self).__name__)
         return self._made
 
-    def __getstate__(self):
+    def __getstate__(self) -> dict[str, Any]:
         return {key: value for key, value in self.__dict__.items() if key != "_made"}
 
 
@@ -202,30 +219,31 @@ class BVHModel(CollisionGeometry):
     _object_type = 1
     _is_shape = False
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._state = 0  # 1: begun, 2: ended
-        self._vertices, self._triangles = [], []
+        self._vertices: list[_Floats] = []
+        self._triangles: list[tuple[int, int, int]] = []
 
-    def num_tries_(self):
+    def num_tries_(self) -> int:
         """Return the number of triangles."""
         return len(self._triangles)
 
-    def buildState(self):
+    def buildState(self) -> int:
         """Return 0 if nothing was begun, 1 between beginModel() and endModel(), then 2."""
         return self._state
 
-    def beginModel(self, num_tris_=0, num_vertices_=0):
+    def beginModel(self, num_tris_: int = 0, num_vertices_: int = 0) -> int:
         """Begin anew. The numbers are not needed. Returns 0."""
         self._state, self._vertices, self._triangles, self._made = 1, [], [], None
         return 0
 
-    def addVertex(self, x, y, z):
+    def addVertex(self, x: float, y: float, z: float) -> bool:
         """Add a vertex."""
         self._check(1)
         self._vertices.append(_vector([x, y, z], 3, "a vertex"))
         return True
 
-    def addTriangle(self, v1, v2, v3):
+    def addTriangle(self, v1: npt.ArrayLike, v2: npt.ArrayLike, v3: npt.ArrayLike) -> bool:
         """Add a triangle of three points, (3,) each."""
         self._check(1)
         n = len(self._vertices)
@@ -233,7 +251,7 @@ class BVHModel(CollisionGeometry):
         self._triangles.append((n, n + 1, n + 2))
         return True
 
-    def addSubModel(self, verts, triangles):
+    def addSubModel(self, verts: npt.ArrayLike, triangles: npt.ArrayLike) -> bool:
         """Add a mesh: verts (n, 3) float, triangles (m, 3) int."""
         self._check(1)
         verts, triangles = np.asarray(verts, dtype=float), np.asarray(triangles)
@@ -244,21 +262,21 @@ class BVHModel(CollisionGeometry):
             raise ValueError(f"triangles: expected integers, got {triangles.dtype}")
         n = len(self._vertices)
         self._vertices += list(verts)
-        self._triangles += [tuple(int(i) + n for i in t) for t in triangles]
+        self._triangles += [(int(a) + n, int(b) + n, int(c) + n) for a, b, c in triangles]
         return True
 
-    def endModel(self):
+    def endModel(self) -> int:
         """End. Returns 0."""
         self._check(1)
         self._state = 2
         self._body()  # complains now, if the mesh cannot be queried
         return 0
 
-    def _check(self, state):
+    def _check(self, state: int) -> None:
         if self._state != state:
             raise ValueError("BVH construction does not follow correct sequence")
 
-    def _surface(self):
+    def _surface(self) -> _Surface:
         self._check(2)
         vertices, triangles = np.array(self._vertices), np.array(self._triangles, dtype=np.int64)
         return vertices.reshape(-1, 3), triangles.reshape(-1, 3)
@@ -272,17 +290,18 @@ class Convex(CollisionGeometry):
     _node_type = 15
     _object_type = 2
 
-    def __init__(self, vertices, num_faces, faces):
+    def __init__(self, vertices: npt.ArrayLike, num_faces: int, faces: Iterable[int]) -> None:
         self.num_faces = num_faces
-        faces, self._faces, at = [int(i) for i in faces], [], 0
-        while at < len(faces):
-            self._faces.append(faces[at + 1 : at + 1 + faces[at]])
-            at += 1 + faces[at]
+        row, at = [int(i) for i in faces], 0
+        self._faces: list[list[int]] = []
+        while at < len(row):
+            self._faces.append(row[at + 1 : at + 1 + row[at]])
+            at += 1 + row[at]
         if len(self._faces) != num_faces:
             raise ValueError(f"faces: expected {num_faces}, got {len(self._faces)}")
         self._vertices = np.array(vertices, dtype=float)
 
-    def _surface(self):
+    def _surface(self) -> _Surface:
         return self._vertices, self._faces
 
 
@@ -292,10 +311,10 @@ class TriangleP(CollisionGeometry):
     _node_type = 18
     _object_type = 2
 
-    def __init__(self, a, b, c):
+    def __init__(self, a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike) -> None:
         self.a, self.b, self.c = (_vector(v, 3, "a corner") for v in (a, b, c))
 
-    def _surface(self):
+    def _surface(self) -> _Surface:
         return np.array([self.a, self.b, self.c]), np.array([[0, 1, 2]])
 
 
@@ -305,16 +324,16 @@ class Box(CollisionGeometry):
     _node_type = 9
     _object_type = 2
 
-    def __init__(self, x, y, z):
+    def __init__(self, x: float, y: float, z: float) -> None:
         self.side = np.array([x, y, z], dtype=float)
 
-    def _surface(self):
+    def _surface(self) -> _Surface:
         corners = np.array([[i >> 2 & 1, i >> 1 & 1, i & 1] for i in range(8)]) - 0.5
         sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
         return corners * self.side, [t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))]
 
 
-def _turned(profile):
+def _turned(profile: Sequence[tuple[float, float]]) -> _Surface:
     """Return the surface of a profile, points (radius, z) from the lower pole to the upper, turned about
     z.
     """
@@ -334,7 +353,7 @@ def _turned(profile):
     return np.concatenate([poles[0], *rings, poles[1]]), faces
 
 
-def _half_circle(radius, begin, end):
+def _half_circle(radius: float, begin: float, end: float) -> list[tuple[float, float]]:
     """Return points of a half circle between two angles of latitude."""
     angles = np.linspace(begin, end, facets // 2 + 1 if end - begin > 2 else facets // 4 + 1)
     return [(radius * math.cos(a), radius * math.sin(a)) for a in angles]
@@ -346,10 +365,10 @@ class Ellipsoid(CollisionGeometry):
     _node_type = 11
     _object_type = 2
 
-    def __init__(self, a, b, c):
+    def __init__(self, a: float, b: float, c: float) -> None:
         self.radii = np.array([a, b, c], dtype=float)
 
-    def _surface(self):
+    def _surface(self) -> _Surface:
         vertices, faces = _turned(_half_circle(1, -math.pi / 2, math.pi / 2))
         return vertices * self.radii, faces
 
@@ -360,10 +379,10 @@ class Sphere(CollisionGeometry):
     _node_type = 10
     _object_type = 2
 
-    def __init__(self, radius):
+    def __init__(self, radius: float) -> None:
         self.radius = float(radius)
 
-    def _surface(self):
+    def _surface(self) -> _Surface:
         vertices, faces = _turned(_half_circle(1, -math.pi / 2, math.pi / 2))
         return vertices * self.radius, faces
 
@@ -374,10 +393,10 @@ class Capsule(CollisionGeometry):
     _node_type = 12
     _object_type = 2
 
-    def __init__(self, radius, lz):
+    def __init__(self, radius: float, lz: float) -> None:
         self.radius, self.lz = float(radius), float(lz)
 
-    def _surface(self):
+    def _surface(self) -> _Surface:
         half = self.lz / 2
         low = [(r, z - half) for r, z in _half_circle(self.radius, -math.pi / 2, 0)]
         high = [(r, z + half) for r, z in _half_circle(self.radius, 0, math.pi / 2)]
@@ -390,10 +409,10 @@ class Cone(CollisionGeometry):
     _node_type = 13
     _object_type = 2
 
-    def __init__(self, radius, lz):
+    def __init__(self, radius: float, lz: float) -> None:
         self.radius, self.lz = float(radius), float(lz)
 
-    def _surface(self):
+    def _surface(self) -> _Surface:
         half = self.lz / 2
         return _turned([(0, -half), (self.radius, -half), (0, half)])
 
@@ -404,97 +423,109 @@ class Cylinder(CollisionGeometry):
     _node_type = 14
     _object_type = 2
 
-    def __init__(self, radius, lz):
+    def __init__(self, radius: float, lz: float) -> None:
         self.radius, self.lz = float(radius), float(lz)
 
-    def _surface(self):
+    def _surface(self) -> _Surface:
         half = self.lz / 2
         return _turned([(0, -half), (self.radius, -half), (self.radius, half), (0, half)])
 
 
-def _missing(name, why):
-    class Missing(CollisionGeometry):
-        def __init__(self, *args, **kwargs):
-            raise Unsupported(f"lrbscope.fcl has no {name}: {why}")
+class _Missing(CollisionGeometry):
+    _instead = ""
 
-    Missing.__name__ = Missing.__qualname__ = name
-    Missing.__doc__ = f"Raises Unsupported: {why}."
-    return Missing
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        raise Unsupported(f"lrbscope.fcl has no {type(self).__name__}: {self._instead}")
 
 
-Halfspace = _missing("Halfspace", "it has no end; take a Box that is large enough")
-Plane = _missing("Plane", "it has no end; take a thin Box that is large enough")
-OcTree = _missing("OcTree", "make a mesh of its occupied cells")
+class Halfspace(_Missing):
+    """Raises Unsupported: it has no end."""
+
+    _instead = "it has no end; take a Box that is large enough"
+
+
+class Plane(_Missing):
+    """Raises Unsupported: it has no end."""
+
+    _instead = "it has no end; take a thin Box that is large enough"
+
+
+class OcTree(_Missing):
+    """Raises Unsupported."""
+
+    _instead = "make a mesh of its occupied cells"
 
 
 class CollisionObject:
     """A geometry that stands somewhere."""
 
-    def __init__(self, geom=None, tf=None, _no_instance=False):
+    def __init__(
+        self, geom: CollisionGeometry | None = None, tf: Transform | None = None, _no_instance: bool = False
+    ) -> None:
         if geom is None:
             raise ValueError("a CollisionObject needs a geometry")
         self._geom = geom
         self._tf = Transform() if tf is None else Transform(tf)
 
-    def getObjectType(self):
+    def getObjectType(self) -> int:
         """Return FCL's number: 1 a mesh, 2 a shape."""
         return self._geom._object_type
 
-    def getNodeType(self):
+    def getNodeType(self) -> int:
         """Return FCL's number of the kind of shape."""
         return self._geom.getNodeType()
 
-    def getTranslation(self):
+    def getTranslation(self) -> _Floats:
         """Return the translation, (3,)."""
         return self._tf.getTranslation()
 
-    def setTranslation(self, vec):
+    def setTranslation(self, vec: npt.ArrayLike) -> None:
         """Set the translation, (3,)."""
         self._tf.setTranslation(vec)
 
-    def getRotation(self):
+    def getRotation(self) -> _Floats:
         """Return the rotation, (3, 3)."""
         return self._tf.getRotation()
 
-    def setRotation(self, mat):
+    def setRotation(self, mat: npt.ArrayLike) -> None:
         """Set the rotation, (3, 3)."""
         self._tf.setRotation(mat)
 
-    def getQuatRotation(self):
+    def getQuatRotation(self) -> _Floats:
         """Return the rotation as w, x, y, z."""
         return self._tf.getQuatRotation()
 
-    def setQuatRotation(self, q):
+    def setQuatRotation(self, q: npt.ArrayLike) -> None:
         """Set the rotation from w, x, y, z."""
         self._tf.setQuatRotation(q)
 
-    def getTransform(self):
+    def getTransform(self) -> Transform:
         """Return where it stands."""
         return Transform(self._tf)
 
-    def setTransform(self, tf):
+    def setTransform(self, tf: Transform) -> None:
         """Set where it stands."""
         self._tf = Transform(tf)
 
-    def isOccupied(self):
+    def isOccupied(self) -> bool:
         """Return True: it is not one of an octree's cells."""
         return True
 
-    def isFree(self):
+    def isFree(self) -> bool:
         """Return False."""
         return False
 
-    def isUncertain(self):
+    def isUncertain(self) -> bool:
         """Return False."""
         return False
 
     @property
-    def body(self):
+    def body(self) -> Body:
         """The lrbscope.Body of its geometry."""
         return self._geom._body()
 
     @property
-    def pose(self):
+    def pose(self) -> _Floats:
         """(4, 4) float: where it stands."""
         return self._tf._pose()
 
@@ -502,10 +533,12 @@ class CollisionObject:
 class Contact:
     """Where two objects meet. b1, b2: triangles, -1 of shapes; normal: from o1 to o2; pos: world frame."""
 
-    def __init__(self):
-        self.o1 = self.o2 = None
+    def __init__(self) -> None:
+        self.o1: CollisionGeometry | None = None
+        self.o2: CollisionGeometry | None = None
         self.b1 = self.b2 = -1
-        self.normal, self.pos = np.zeros(3), np.zeros(3)
+        self.normal: _Floats = np.zeros(3)
+        self.pos: _Floats = np.zeros(3)
         self.penetration_depth = 0.0
 
 
@@ -518,13 +551,13 @@ class CollisionRequest:
 
     def __init__(
         self,
-        num_max_contacts=1,
-        enable_contact=False,
-        num_max_cost_sources=1,
-        enable_cost=False,
-        use_approximate_cost=True,
-        gjk_solver_type=GJKSolverType.GST_LIBCCD,
-    ):
+        num_max_contacts: int = 1,
+        enable_contact: bool = False,
+        num_max_cost_sources: int = 1,
+        enable_cost: bool = False,
+        use_approximate_cost: bool = True,
+        gjk_solver_type: GJKSolverType = GJKSolverType.GST_LIBCCD,
+    ) -> None:
         if enable_cost:
             raise Unsupported("lrbscope.fcl has no costs: leave enable_cost out")
         self.num_max_contacts, self.enable_contact = num_max_contacts, enable_contact
@@ -535,8 +568,10 @@ class CollisionRequest:
 class CollisionResult:
     """is_collision: bool; contacts: list of Contact."""
 
-    def __init__(self):
-        self.is_collision, self.contacts, self.cost_sources = False, [], []
+    def __init__(self) -> None:
+        self.is_collision = False
+        self.contacts: list[Contact] = []
+        self.cost_sources: list[CostSource] = []
 
 
 class DistanceRequest:
@@ -544,10 +579,10 @@ class DistanceRequest:
 
     def __init__(
         self,
-        enable_nearest_points=False,
-        enable_signed_distance=False,
-        gjk_solver_type=GJKSolverType.GST_LIBCCD,
-    ):
+        enable_nearest_points: bool = False,
+        enable_signed_distance: bool = False,
+        gjk_solver_type: GJKSolverType = GJKSolverType.GST_LIBCCD,
+    ) -> None:
         self.enable_nearest_points = enable_nearest_points
         self.enable_signed_distance = enable_signed_distance
         self.gjk_solver_type = gjk_solver_type
@@ -556,9 +591,11 @@ class DistanceRequest:
 class DistanceResult:
     """min_distance; nearest_points: two (3,) arrays, world frame; b1, b2: triangles, -1 of shapes."""
 
-    def __init__(self, min_distance_=sys.float_info.max):
-        self.min_distance, self.nearest_points = min_distance_, [None, None]
-        self.o1 = self.o2 = None
+    def __init__(self, min_distance_: float = sys.float_info.max) -> None:
+        self.min_distance = min_distance_
+        self.nearest_points: list[Any] = [None, None]
+        self.o1: CollisionGeometry | None = None
+        self.o2: CollisionGeometry | None = None
         self.b1 = self.b2 = -1
 
 
@@ -567,12 +604,12 @@ class ContinuousCollisionRequest:
 
     def __init__(
         self,
-        num_max_iterations=10,
-        toc_err=0.0001,
-        ccd_motion_type=CCDMotionType.CCDM_TRANS,
-        gjk_solver_type=GJKSolverType.GST_LIBCCD,
-        ccd_solver_type=CCDSolverType.CCDC_NAIVE,
-    ):
+        num_max_iterations: int = 10,
+        toc_err: float = 0.0001,
+        ccd_motion_type: CCDMotionType = CCDMotionType.CCDM_TRANS,
+        gjk_solver_type: GJKSolverType = GJKSolverType.GST_LIBCCD,
+        ccd_solver_type: CCDSolverType = CCDSolverType.CCDC_NAIVE,
+    ) -> None:
         self.num_max_iterations, self.toc_err = num_max_iterations, toc_err
         self.ccd_motion_type = ccd_motion_type
         self.gjk_solver_type, self.ccd_solver_type = gjk_solver_type, ccd_solver_type
@@ -581,14 +618,16 @@ class ContinuousCollisionRequest:
 class ContinuousCollisionResult:
     """is_collide: bool; time_of_contact: from 0 to 1, 1 if they do not meet."""
 
-    def __init__(self, is_collide=False, time_of_contact=1.0):
+    def __init__(self, is_collide: bool = False, time_of_contact: float = 1.0) -> None:
         self.is_collide, self.time_of_contact = is_collide, time_of_contact
 
 
 class CollisionData:
     """What managers hand to callbacks of collisions."""
 
-    def __init__(self, request=None, result=None):
+    def __init__(
+        self, request: CollisionRequest | None = None, result: CollisionResult | None = None
+    ) -> None:
         self.request = CollisionRequest() if request is None else request
         self.result = CollisionResult() if result is None else result
         self.done = False
@@ -597,31 +636,33 @@ class CollisionData:
 class DistanceData:
     """What managers hand to callbacks of distances."""
 
-    def __init__(self, request=None, result=None):
+    def __init__(self, request: DistanceRequest | None = None, result: DistanceResult | None = None) -> None:
         self.request = DistanceRequest() if request is None else request
         self.result = DistanceResult() if result is None else result
         self.done = False
 
 
-def _holds(o1, o2, relation):
+def _holds(o1: CollisionObject, o2: CollisionObject, relation: str) -> bool:
     """Return whether a shape holds the other object. Inside a mesh there is nothing."""
     holder = {"a_inside_b": o2, "b_inside_a": o1}.get(relation)
     return holder is not None and holder._geom._is_shape
 
 
-def _contact(o1, o2, b1=-1, b2=-1):
+def _contact(o1: CollisionObject, o2: CollisionObject, b1: int = -1, b2: int = -1) -> Contact:
     c = Contact()
     c.o1, c.o2 = o1._geom, o2._geom
     c.b1, c.b2 = (-1 if o._geom._is_shape else int(b) for o, b in ((o1, b1), (o2, b2)))
     return c
 
 
-def _contacts(o1, o2, result, full):
+def _contacts(o1: CollisionObject, o2: CollisionObject, result: Result, full: bool) -> Iterator[Contact]:
     """Yield a Contact for each pair of triangles.
 
     Where one object is a shape, for each triangle of the other; of two shapes for each contact region.
     """
-    found = contacts_of(result, o1) if full else ((i, None, None, 0.0) for i in range(len(result.pairs)))
+    found: Iterable[tuple[int, Any, Any, float]] = ((i, None, None, 0.0) for i in range(len(result.pairs)))
+    if full:
+        found = contacts_of(result, o1.body, o1.pose)
     of_region = {}
     if full and o1._geom._is_shape and o2._geom._is_shape:
         of_region = {int(i): n for n, region in enumerate(result.regions) for i in region.pairs}
@@ -638,12 +679,17 @@ def _contacts(o1, o2, result, full):
         yield c
 
 
-def collide(o1, o2, request=None, result=None):
+def collide(
+    o1: CollisionObject,
+    o2: CollisionObject,
+    request: CollisionRequest | None = None,
+    result: CollisionResult | None = None,
+) -> int:
     """Find whether two objects collide, and where. Returns the number of contacts; adds to `result`."""
     request = CollisionRequest() if request is None else request
     result = CollisionResult() if result is None else result
     many = request.num_max_contacts > 1 or request.enable_contact
-    found = _core.collide(
+    found: Result = _core.collide(
         o1.body,
         o2.body,
         o2.pose,
@@ -651,7 +697,7 @@ def collide(o1, o2, request=None, result=None):
         mode="all" if many else "any",
         contacts=bool(request.enable_contact),
     )
-    contacts = []
+    contacts: list[Contact] = []
     if len(found.pairs):
         for c in _contacts(o1, o2, found, request.enable_contact):
             if len(contacts) >= request.num_max_contacts:
@@ -660,13 +706,18 @@ def collide(o1, o2, request=None, result=None):
     elif _holds(o1, o2, found.relation):
         contacts.append(_contact(o1, o2))
         inner = o1 if found.relation == "a_inside_b" else o2
-        contacts[0].pos = inner.pose[:3, :3] @ inner.body.vertices[0] + inner.pose[:3, 3]
+        contacts[0].pos = inner.pose[:3, : inner.body.dim] @ inner.body.vertices[0] + inner.pose[:3, 3]
     result.is_collision = result.is_collision or bool(len(found.pairs)) or bool(contacts)
     result.contacts += contacts
     return len(contacts)
 
 
-def distance(o1, o2, request=None, result=None):
+def distance(
+    o1: CollisionObject,
+    o2: CollisionObject,
+    request: DistanceRequest | None = None,
+    result: DistanceResult | None = None,
+) -> float:
     """Find how far two objects are apart.
 
     Returns the distance, the world's unit: 0 for meshes that meet, -1 where a shape and something else
@@ -674,7 +725,7 @@ def distance(o1, o2, request=None, result=None):
     """
     request = DistanceRequest() if request is None else request
     result = DistanceResult() if result is None else result
-    found = _core.distance(o1.body, o2.body, o2.pose, o1.pose)
+    found: Distance = _core.distance(o1.body, o2.body, o2.pose, o1.pose)
     shapes = [o for o in (o1, o2) if o._geom._is_shape]
     value = found.upper
     if (found.meet and shapes) or _holds(o1, o2, found.relation):
@@ -689,7 +740,7 @@ def distance(o1, o2, request=None, result=None):
     return value
 
 
-def defaultCollisionCallback(o1, o2, cdata):
+def defaultCollisionCallback(o1: CollisionObject, o2: CollisionObject, cdata: CollisionData) -> bool:
     """Collide two objects; returns True when there are more contacts than were asked for."""
     if cdata.done:
         return True
@@ -699,7 +750,9 @@ def defaultCollisionCallback(o1, o2, cdata):
     return cdata.done
 
 
-def defaultDistanceCallback(o1, o2, cdata):
+def defaultDistanceCallback(
+    o1: CollisionObject, o2: CollisionObject, cdata: DistanceData
+) -> tuple[bool, float]:
     """Measure two objects; returns whether that is all, and the least distance so far."""
     if cdata.done:
         return True, cdata.result.min_distance
@@ -718,49 +771,50 @@ class DynamicAABBTreeCollisionManager:
     tree_topdown_level = tree_init_level = 0
     octree_as_geometry_collide, octree_as_geometry_distance = True, False
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.clear()
 
-    def registerObjects(self, other_objs):
+    def registerObjects(self, other_objs: Iterable[CollisionObject]) -> None:
         """Add objects."""
         for o in other_objs:
             self.registerObject(o)
 
-    def registerObject(self, obj):
+    def registerObject(self, obj: CollisionObject) -> None:
         """Add an object."""
         if not isinstance(obj, CollisionObject):
             raise TypeError(f"expected a CollisionObject, got {type(obj).__name__}")
         self._objects[self._scene.add(obj.body, obj.pose)] = obj
 
-    def unregisterObject(self, obj):
+    def unregisterObject(self, obj: CollisionObject) -> None:
         """Take an object out, if it is there."""
         for key in [key for key, o in self._objects.items() if o is obj]:
             self._scene.remove(key)
             del self._objects[key]
 
-    def setup(self):
+    def setup(self) -> None:
         """Do nothing."""
 
-    def update(self, arg=None):
+    def update(self, arg: CollisionObject | Sequence[CollisionObject] | None = None) -> None:
         """Do nothing."""
 
-    def getObjects(self):
+    def getObjects(self) -> list[CollisionObject]:
         """Return a list of the objects."""
         return list(self._objects.values())
 
-    def clear(self):
+    def clear(self) -> None:
         """Take all objects out."""
-        self._scene, self._objects = _core.Scene(), {}  # objects by key
+        self._scene = _core.Scene()
+        self._objects: dict[int, CollisionObject] = {}  # by key
 
-    def empty(self):
+    def empty(self) -> bool:
         """Return whether there are no objects."""
         return not self._objects
 
-    def size(self):
+    def size(self) -> int:
         """Return the number of objects."""
         return len(self._objects)
 
-    def _moved(self):
+    def _moved(self) -> Scene:
         """Return the scene with all objects where they stand now, and with the bodies that they have now."""
         objects = list(self._objects.items())
         if any(o.body is not self._scene.body(key) for key, o in objects):
@@ -770,7 +824,7 @@ class DynamicAABBTreeCollisionManager:
             self._scene.move(list(self._objects), np.array([o.pose for _, o in objects]))
         return self._scene
 
-    def _arguments(self, args):
+    def _arguments(self, args: tuple[Any, ...]) -> tuple[Any, ...]:
         """Return the arguments that name the others to the scene's functions, what gives the objects of a
         pair of keys, and data and callback.
         """
@@ -784,7 +838,17 @@ class DynamicAABBTreeCollisionManager:
             return (scene,), lambda a, b: (self._objects[a], other._objects[b]), *args[1:]
         return (other.body, other.pose), lambda a, b: (self._objects[b], other), *args[1:]
 
-    def collide(self, *args):
+    @overload
+    def collide(self, data: Any, callback: _CollisionCallback, /) -> None: ...
+    @overload
+    def collide(
+        self,
+        other: CollisionObject | DynamicAABBTreeCollisionManager,
+        data: Any,
+        callback: _CollisionCallback,
+        /,
+    ) -> None: ...
+    def collide(self, *args: Any) -> None:
         """collide(data, callback), (object, data, callback) or (manager, data, callback).
 
         Calls callback(o1, o2, data) for objects whose boxes meet, until it returns True.
@@ -795,7 +859,17 @@ class DynamicAABBTreeCollisionManager:
             if callback(*objects_of(a, b), data):
                 return
 
-    def distance(self, *args):
+    @overload
+    def distance(self, data: Any, callback: _DistanceCallback, /) -> None: ...
+    @overload
+    def distance(
+        self,
+        other: CollisionObject | DynamicAABBTreeCollisionManager,
+        data: Any,
+        callback: _DistanceCallback,
+        /,
+    ) -> None: ...
+    def distance(self, *args: Any) -> None:
         """distance(data, callback), (object, data, callback) or (manager, data, callback).
 
         Calls callback(o1, o2, data), which returns whether that is all and the least distance so far, for
@@ -820,7 +894,7 @@ class DynamicAABBTreeCollisionManager:
                 return
 
 
-def _motion(o, tf_end, kind):
+def _motion(o: CollisionObject, tf_end: Transform, kind: CCDMotionType) -> _Floats:
     """Return the poses between which an object moves, (2, 4, 4)."""
     end = Transform(tf_end)
     if kind == CCDMotionType.CCDM_TRANS:
@@ -830,7 +904,14 @@ def _motion(o, tf_end, kind):
     return np.array([o.pose, end._pose()])
 
 
-def continuousCollide(o1, tf1_end, o2, tf2_end, request=None, result=None):
+def continuousCollide(
+    o1: CollisionObject,
+    tf1_end: Transform,
+    o2: CollisionObject,
+    tf2_end: Transform,
+    request: ContinuousCollisionRequest | None = None,
+    result: ContinuousCollisionResult | None = None,
+) -> float:
     """Find when two objects first collide while they move from where they stand to the given Transforms.
 
     As ccd_motion_type says they keep their rotation (CCDM_TRANS), or turn by the shortest arc (CCDM_LINEAR).
@@ -840,7 +921,8 @@ def continuousCollide(o1, tf1_end, o2, tf2_end, request=None, result=None):
     request = ContinuousCollisionRequest() if request is None else request
     result = ContinuousCollisionResult() if result is None else result
     motions = [_motion(o, end, request.ccd_motion_type) for o, end in ((o1, tf1_end), (o2, tf2_end))]
-    found = _core.first_contact(o1.body, o2.body, motions[1], motions[0], tolerance=min(request.toc_err, 1.0))
+    tolerance = min(request.toc_err, 1.0)
+    found: FirstContact = _core.first_contact(o1.body, o2.body, motions[1], motions[0], tolerance=tolerance)
     collides = found.outcome != "never" or _holds(o1, o2, found.at_begin)
     time = 0.0 if _holds(o1, o2, found.at_begin) else found.t0
     result.is_collide = result.is_collide or collides

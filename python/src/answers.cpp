@@ -1,3 +1,5 @@
+#include "python/src/answers.hpp"
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -8,7 +10,7 @@
 #include <pybind11/pybind11.h>
 #include <unistd.h>
 
-#include "python/src/bindings.hpp"
+#include "python/src/bind.hpp"
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/record_fields.hpp>
@@ -184,6 +186,7 @@ void bind_results(py::module_& m) {
                         "Answers for k poses: a sequence of Result, in the order of the poses.");
   c.def("__len__", [](const Answers& a) { return a.all->size(); });
   c.def("__getitem__", &item);
+  bind_iterator(c);
   c.def_property_readonly(
       "relations",
       [](const Answers& a) {

@@ -69,10 +69,11 @@ Pose pose(py::handle given, const char* what);
 Mesh mesh_of_arrays(py::handle vertices, py::handle faces, const std::string& name);
 
 /// Returns an array that nobody can write to and that shows memory of `owner`, which it keeps alive. T: as
-/// numpy has it.
+/// numpy has it. strides: in bytes; empty for numbers one after the other.
 template <class T>
-py::array_t<T> view(std::vector<py::ssize_t> shape, const T* data, py::handle owner) {
-  py::array_t<T> out(std::move(shape), data, owner);
+py::array_t<T> view(std::vector<py::ssize_t> shape, const T* data, py::handle owner,
+                    std::vector<py::ssize_t> strides = {}) {
+  py::array_t<T> out(std::move(shape), std::move(strides), data, owner);
   py::detail::array_proxy(out.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return out;
 }

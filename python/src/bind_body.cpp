@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "python/src/bindings.hpp"
+#include "python/src/answers.hpp"
+#include "python/src/bind.hpp"
 #include "python/src/objects.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include <lrbscope/lrb_rep.hpp>
@@ -67,6 +68,15 @@ void save(const Body& body, py::handle file) {
     save_lrb(body.rep(), name);
   else
     write_mesh(real_mesh(body), name);
+}
+
+/// Shows the first n vertices, with as many coordinates as the constructor takes: (n, 3), or (n, 2) of a body
+/// in the plane.
+py::array_t<double> vertices_of(const py::object& self, std::size_t n) {
+  const LrbRep& rep = self.cast<const Body&>().rep();
+  return view({static_cast<py::ssize_t>(n), rep.dim()},
+              reinterpret_cast<const double*>(rep.vertices().data()), self,
+              {sizeof(Eigen::Vector3d), sizeof(double)});
 }
 
 /// Returns faces [begin, end) of a body: ids where all have as many corners, else a list of arrays.
@@ -242,31 +252,26 @@ Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the 
 void bind_geometry(BodyClass& c) {
   c.def_property_readonly(
       "vertices",
-      [](const py::object& self) {
-        const Body& b = self.cast<const Body&>();
-        const double* data = reinterpret_cast<const double*>(b.rep().vertices().data());
-        return view({static_cast<py::ssize_t>(b.vertex_count()), 3}, data, self);
-      },
-      "(n, 3) float64: the mesh's vertices, its unit. Read-only, shares the body's memory.");
+      [](const py::object& self) { return vertices_of(self, self.cast<const Body&>().vertex_count()); },
+      "(n, 3) float64, (n, 2) in the plane: the mesh's vertices, its unit. Read-only, shares the body's "
+      "memory.");
   c.def_property_readonly(
       "all_vertices",
       [](const py::object& self) {
-        const auto all = self.cast<const Body&>().rep().vertices();
-        return view({static_cast<py::ssize_t>(all.size()), 3}, reinterpret_cast<const double*>(all.data()),
-                    self);
+        return vertices_of(self, self.cast<const Body&>().rep().vertices().size());
       },
-      "(v, 3) float64: `vertices`, then those that only pseudo faces have.");
+      "(v, 3) float64, (v, 2) in the plane: `vertices`, then those that only pseudo faces have.");
   c.def_property_readonly(
       "faces",
       [](const py::object& self) {
         return faces_of(self, FaceId{0}, FaceId(self.cast<const Body&>().rep().real_face_count()));
       },
-      "(m, 3) uint32: the corners of each face; a list of arrays if faces differ in their number of "
-      "corners.");
+      "(m, 3) uint32, (m, 2) in the plane: the corners of each face; a list of arrays if faces differ in "
+      "their number of corners.");
   c.def_property_readonly(
       "triangles", &triangles_of,
-      "(t, 3) uint32: the corners of each triangle, which pairs name. A polygon is its fan from the "
-      "first corner.");
+      "(t, 3) uint32, (t, 2) in the plane: the corners of each triangle, which pairs name. A polygon is its fan "
+      "from the first corner.");
   c.def_property_readonly("face_of_triangle", &face_of_triangle,
                           "(t,) uint32: the face that each triangle is of.");
   c.def("box", &box, py::arg("pose") = py::none(),

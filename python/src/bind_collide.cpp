@@ -1,7 +1,8 @@
 #include <mutex>
 
 #include "engine/collide/collide_into.hpp"
-#include "python/src/bindings.hpp"
+#include "python/src/answers.hpp"
+#include "python/src/bind.hpp"
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/parallel.hpp>
 

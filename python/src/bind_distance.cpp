@@ -1,5 +1,6 @@
 #include "engine/distance/distance_context.hpp"
-#include "python/src/bindings.hpp"
+#include "python/src/answers.hpp"
+#include "python/src/bind.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/first_contact.hpp>
 
@@ -257,6 +258,7 @@ void bind_distances(py::module_& m) {
   c.def("__len__", [](const Distances& d) { return d.all->size(); });
   c.def("__getitem__",
         [](const Distances& d, py::ssize_t i) { return d.at(checked_index(i, d.all->size())); });
+  bind_iterator(c);
   c.def_property_readonly(
       "lower", [](const Distances& d) { return ends_of(d, &DistanceResult::lower); }, "(k,) float64");
   c.def_property_readonly(
@@ -444,6 +446,7 @@ void bind_first_contacts(py::module_& m) {
   c.def("__len__", [](const FirstContacts& f) { return f.all->size(); });
   c.def("__getitem__",
         [](const FirstContacts& f, py::ssize_t i) { return f.at(checked_index(i, f.all->size())); });
+  bind_iterator(c);
   const auto ends = [&c](const char* name, double FirstContactResult::*end, const char* text) {
     c.def_property_readonly(
         name,

@@ -1,4 +1,5 @@
-#include "python/src/bindings.hpp"
+#include "python/src/answers.hpp"
+#include "python/src/bind.hpp"
 #include "scenarios/run/explanation_text.hpp"
 #include <lrbscope/explain.hpp>
 

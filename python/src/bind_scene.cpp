@@ -2,7 +2,8 @@
 #include <optional>
 #include <unordered_map>
 
-#include "python/src/bindings.hpp"
+#include "python/src/answers.hpp"
+#include "python/src/bind.hpp"
 #include "python/src/objects.hpp"
 #include <lrbscope/broad_phase.hpp>
 #include <lrbscope/scene.hpp>

@@ -1,4 +1,5 @@
-#include "python/src/bindings.hpp"
+#include "python/src/answers.hpp"
+#include "python/src/bind.hpp"
 #include "python/src/objects.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 

@@ -1,5 +1,5 @@
-#include "python/src/bindings.hpp"
-#include "python/src/objects.hpp"
+#include "python/src/arguments.hpp"
+#include "python/src/bind.hpp"
 #include <lrbscope/trace/trace.hpp>
 
 namespace lrb::python {

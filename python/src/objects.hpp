@@ -45,8 +45,6 @@ using BodyPtr = std::shared_ptr<Body>;
 const Body& body(py::handle given, const char* what);
 BodyPtr shared_body(py::handle given, const char* what);
 
-void bind_body(py::module_& m);
-
 /// A recorded run as Python has it: what the pictures and pages of scenarios/run are made of, with bodies
 /// that it shares.
 class Recorded {
@@ -64,8 +62,6 @@ class Recorded {
 
 /// Takes a recording over.
 std::shared_ptr<Recorded> recorded_of(run::Recording recording, const spec::Scenario& scenario);
-
-void bind_recorded(py::module_& m);
 
 /// How a picture is to look, as Python gives it. None: as render() says.
 struct PictureArguments {

@@ -251,7 +251,7 @@ def ask_python(matrix, name):
         file, saved = (os.path.join(matrix.folder, f"{kind}.{ending}") for ending in ("obj", f"{os.getpid()}.lrb"))
         made = lrbscope.Body.load(file, regions=door != "no regions")
         if door == "arrays" and isinstance(made.faces, np.ndarray):
-            return lrbscope.Body(made.vertices[:, : made.dim], made.faces)  # 2D: (n, 2)
+            return lrbscope.Body(made.vertices, made.faces)
         if door == "lrb with levels":
             made.levels()
         if door.startswith("lrb"):

@@ -10,11 +10,25 @@ class Mesh:
         self.vertices, self.faces = vertices, faces
 
 
-def cube_arrays(side=1.0):
-    """Return a cube from the origin on, twelve triangles."""
-    v = np.array([[i >> 2 & 1, i >> 1 & 1, i & 1] for i in range(8)], dtype=float) * side
+def cube_arrays(side=1.0, corner=0.0):
+    """Return a cube from a corner on, the origin if none is given, twelve triangles. side, corner: numbers, or
+    three each for a box.
+    """
+    v = np.array([[i >> 2 & 1, i >> 1 & 1, i & 1] for i in range(8)], dtype=float) * side + corner
     sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     return v, np.array([t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))])
+
+
+def open_cube_arrays():
+    """Return a cube without its last triangle, which bounds no solid."""
+    vertices, faces = cube_arrays()
+    return vertices, faces[:-1]
+
+
+def square_arrays(side=1.0, corner=0.0):
+    """Return a square in the plane from a corner on, four segments."""
+    v = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float) * side + corner
+    return v, np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
 
 
 def ball_arrays(splits=2, radius=1.0):

@@ -8,7 +8,15 @@ import pytest
 
 import lrbscope
 from lrbscope import Body, InputError
-from shapes import ball_arrays, cube_arrays, shifted
+from shapes import (
+    ball_arrays,
+    cube_arrays,
+    open_cube_arrays,
+    placed,
+    random_poses,
+    shifted,
+    square_arrays,
+)
 
 
 def test_arrays_come_back_without_a_copy():
@@ -63,26 +71,43 @@ def test_polygons_and_triangles_of_their_fans():
 
 
 def test_a_body_in_the_plane():
-    square = Body([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1], [1, 2], [2, 3], [3, 0]])
-    assert square.dim == 2 and square.is_solid and square.faces.shape == (4, 2)
+    vertices, faces = square_arrays()
+    square = Body(vertices.tolist(), faces.tolist())
+    assert square.dim == 2 and square.is_solid
+    assert np.array_equal(square.vertices, vertices) and np.array_equal(square.faces, faces)
+    assert np.array_equal(square.triangles, faces) and square.all_vertices.shape[1] == 2
+    assert np.shares_memory(square.vertices, square.all_vertices)
+    with pytest.raises(ValueError):
+        square.vertices[0, 0] = 1
+    for again in (Body(square.vertices, square.faces), pickle.loads(pickle.dumps(square))):
+        assert again.hash == square.hash and np.array_equal(again.vertices, vertices)
     assert lrbscope.collide(square, square, shifted(0.5, 0.5, 0)).relation == "crossing"
+
+
+def test_vertices_and_faces_make_the_body_again(ball, tmp_path):
+    star = np.array([np.exp(2j * np.pi * i / 10) * (1 + i % 2) for i in range(10)])
+    plane = Body(np.column_stack([star.real, star.imag]), [[i, (i + 1) % 10] for i in range(10)])
+    assert plane.region_count > 0 and len(plane.all_vertices) > len(plane.vertices) == 10
+    plane.save(tmp_path / "plane.lrb")
+    for body in (ball, plane, Body.load(tmp_path / "plane.lrb")):
+        again = Body(body.vertices, body.faces, name=body.name)
+        assert again.hash == body.hash and again.vertices.shape == body.vertices.shape
+        assert np.array_equal(again.all_vertices, body.all_vertices)
 
 
 def test_what_is_inside_out_is_turned_and_said():
     vertices, faces = cube_arrays()
     body = Body(vertices, faces[:, ::-1], name="inverted")
     assert any("inside out" in note for note in body.notes)
-    assert lrbscope.collide(Body(vertices * 0.5 + 0.25, faces), body).relation == "a_inside_b"
+    assert lrbscope.collide(Body(*cube_arrays(0.5, 0.25)), body).relation == "a_inside_b"
 
 
 def test_an_open_surface_is_a_body_but_no_solid():
-    vertices, faces = cube_arrays()
-    body = Body(vertices, faces[:-1])
+    body = Body(*open_cube_arrays())
     assert not body.is_solid and body.region_count == 0 and body.notes
     assert lrbscope.collide(body, body, shifted(0.5, 0.25, 0.125)).relation == "crossing"
     assert lrbscope.collide(body, body, shifted(5, 0, 0)).relation == "separate"
-    small = Body(vertices * 0.25 + 0.25, faces)
-    assert lrbscope.collide(body, small).relation == "undefined"
+    assert lrbscope.collide(body, Body(*cube_arrays(0.25, 0.25))).relation == "undefined"
 
 
 def test_answers_do_not_depend_on_regions(ball):
@@ -182,8 +207,6 @@ def test_the_build_does_not_depend_on_threads():
 
 def test_box(cube, ball, rng):
     assert cube.box(shifted(1, 2, 3)).tolist() == [[1, 2, 3], [2, 3, 4]]
-    from shapes import placed, random_poses
-
     for pose in random_poses(rng, 5, 3):
         world = placed(ball.vertices, pose)
         assert np.array_equal(ball.box(pose), [world.min(axis=0), world.max(axis=0)])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lrbscope import Body, InputError, clash
-from shapes import cube_arrays, shifted
+from shapes import cube_arrays, open_cube_arrays, shifted
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,7 @@ def test_requests(cube):
 
 
 def test_what_goes_through(cube):
-    rod = Body(cube_arrays()[0] * (0.25, 0.25, 4) + (0.3, 0.3, -2), cube_arrays()[1])
+    rod = Body(*cube_arrays((0.25, 0.25, 4), (0.3, 0.3, -2)))
     assert clash(rod, cube).kind == "pierces" and clash(cube, rod).kind == "cuts_through"
 
 
@@ -56,8 +56,8 @@ def test_what_is_refused(cube):
 
 def overlapping_boxes():
     """Return two boxes that overlap, as one mesh."""
-    vertices, faces = cube_arrays()
-    return np.vstack([vertices, vertices * (1.5, 0.5, 0.5) + (0.5, 0.25, 0.25)]), np.vstack([faces, faces + len(vertices)])
+    (vertices, faces), (others, _) = cube_arrays(), cube_arrays((1.5, 0.5, 0.5), (0.5, 0.25, 0.25))
+    return np.vstack([vertices, others]), np.vstack([faces, faces + len(vertices)])
 
 
 def test_b2_clash_answers_the_same_through_every_door(cube, tmp_path):
@@ -75,6 +75,6 @@ def test_b2_clash_answers_the_same_through_every_door(cube, tmp_path):
         assert c.depth == found[0].depth and c.translation.tolist() == found[0].translation.tolist()
         assert clash(cube, cube, shifted(0.75, 0.125, 0)).reason is None
     for body in bodies:
-        assert clash(body, cube).reason == "A intersects itself" and clash(cube, body, shifted(9, 0, 0)).reason is None
-    open_body = Body(cube_arrays()[0], cube_arrays()[1][:-1])
-    assert clash(cube, open_body, shifted(0.5, 0.25, 0.125)).reason == "B bounds no solid"
+        assert clash(body, cube).reason == "A intersects itself"
+        assert clash(cube, body, shifted(9, 0, 0)).reason is None
+    assert clash(cube, Body(*open_cube_arrays()), shifted(0.5, 0.25, 0.125)).reason == "B bounds no solid"

@@ -9,7 +9,7 @@ from shapes import ball_arrays, brute_pairs, cube_arrays, placed, random_poses, 
 
 
 def test_relations(cube):
-    small = Body(cube_arrays()[0] * 0.25 + 0.3, cube_arrays()[1])
+    small = Body(*cube_arrays(0.25, 0.3))
     for pose, relation in [
         (shifted(0.5, 0.25, 0.125), "crossing"),
         (shifted(1, 0, 0), "touching"),

@@ -22,7 +22,7 @@ def test_cubes(cube):
 def test_surfaces_that_meet_and_solids(cube):
     d = distance(cube, cube, shifted(0.5, 0.25, 0.125))
     assert d.meet and d.lower == d.upper == 0
-    small = Body(cube_arrays()[0] * 0.5 + 0.25, cube_arrays()[1])
+    small = Body(*cube_arrays(0.5, 0.25))
     inside = distance(small, cube)
     assert not inside.meet and np.isclose(inside.upper, 0.25) and inside.solids == (0, 0)
     assert inside.relation == "a_inside_b"

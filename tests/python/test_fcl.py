@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lrbscope import InputError, fcl
-from shapes import ball_arrays, cube_arrays
+from shapes import ball_arrays, cube_arrays, square_arrays
 
 
 def model(vertices, faces):
@@ -99,7 +99,7 @@ def test_meshes_collide():
         assert (c.pos >= (0.5, 0.25, 0.125)).all() and (c.pos <= 1).all() and c.penetration_depth > 0
     assert fcl.collide(a, b, fcl.CollisionRequest(num_max_contacts=5)) == 5
     assert fcl.collide(a, fcl.CollisionObject(m, at(5))) == 0
-    small = model(cube_arrays()[0] * 0.25 + 0.3, cube_arrays()[1])
+    small = model(*cube_arrays(0.25, 0.3))
     assert fcl.collide(a, fcl.CollisionObject(small)) == 0, "meshes are surfaces"
 
 
@@ -135,6 +135,16 @@ def test_shapes_have_their_volume(shape, volume):
     assert body.is_solid and not any("inside out" in note for note in body.notes)
     assert volume * 0.995 < found <= volume * 1.0000001
     assert np.allclose(body.vertices.mean(axis=0)[:2], corners.mean(axis=(0, 1))[:2], atol=1e-6)
+
+
+def test_shapes_in_the_plane():
+    def square(side, corner):
+        vertices, faces = square_arrays(side, corner)
+        return fcl.CollisionObject(fcl.Convex(vertices, 4, np.insert(faces, 0, 2, axis=1).ravel()), at(2))
+
+    result = fcl.CollisionResult()
+    assert fcl.collide(square(1, 0), square(0.5, 0.25), fcl.CollisionRequest(), result) == 1
+    assert result.contacts[0].pos.tolist() == [2.25, 0.25, 0]
 
 
 def test_distances():
@@ -207,6 +217,20 @@ def manager(*objects):
     return m
 
 
+def collided(m, *others, **request):
+    """Return the CollisionResult of a manager's collide()."""
+    data = fcl.CollisionData(request=fcl.CollisionRequest(**request))
+    m.collide(*others, data, fcl.defaultCollisionCallback)
+    return data.result
+
+
+def nearest(m, *others, callback=fcl.defaultDistanceCallback):
+    """Return the distance that a manager's distance() finds."""
+    data = fcl.DistanceData()
+    m.distance(*others, data, callback)
+    return data.result.min_distance
+
+
 def test_managers():
     """What python-fcl's example asks of managers."""
     box, sphere, cone = fcl.Box(1, 2, 3), fcl.Sphere(4), fcl.Cone(5, 6)
@@ -215,22 +239,12 @@ def test_managers():
     two = manager(fcl.CollisionObject(cone), fcl.CollisionObject(mesh))
     three = manager(fcl.CollisionObject(box), fcl.CollisionObject(sphere))
     for m, collides in ((one, False), (two, True)):
-        data = fcl.CollisionData()
-        m.collide(data, fcl.defaultCollisionCallback)
-        assert data.result.is_collision is collides
-    data = fcl.DistanceData()
-    one.distance(data, fcl.defaultDistanceCallback)
-    assert abs(data.result.min_distance - 15.5) < 0.005
-    data = fcl.DistanceData()
-    two.distance(data, fcl.defaultDistanceCallback)
-    assert data.result.min_distance <= 0
-    request = fcl.CollisionRequest(num_max_contacts=100, enable_contact=True)
-    data = fcl.CollisionData(request=request)
-    one.collide(fcl.CollisionObject(mesh), data, fcl.defaultCollisionCallback)
-    assert data.result.is_collision and {c.o1 for c in data.result.contacts} == {sphere}
-    data = fcl.CollisionData(request=request)
-    three.collide(two, data, fcl.defaultCollisionCallback)
-    assert data.result.is_collision and {c.o2 for c in data.result.contacts} == {cone, mesh}
+        assert collided(m).is_collision is collides
+    assert abs(nearest(one) - 15.5) < 0.005 and nearest(two) <= 0
+    result = collided(one, fcl.CollisionObject(mesh), num_max_contacts=100, enable_contact=True)
+    assert result.is_collision and {c.o1 for c in result.contacts} == {sphere}
+    result = collided(three, two, num_max_contacts=100, enable_contact=True)
+    assert result.is_collision and {c.o2 for c in result.contacts} == {cone, mesh}
 
 
 def test_managers_keep_objects():
@@ -239,16 +253,14 @@ def test_managers_keep_objects():
     assert m.size() == 2 and not m.empty() and m.getObjects() == [a, b]
     b.setTranslation(np.array([5, 0, 0]))
     m.update(b)
-    data = fcl.CollisionData()
-    m.collide(data, fcl.defaultCollisionCallback)
-    assert not data.result.is_collision
+    assert not collided(m).is_collision
     m.unregisterObject(b)
     assert m.getObjects() == [a]
     m.clear()
     assert m.empty()
-    m.distance(fcl.DistanceData(), fcl.defaultDistanceCallback)
+    nearest(m)
     with pytest.raises(ValueError, match="callback"):
-        m.collide(data)
+        m.collide(fcl.CollisionData())
     with pytest.raises(TypeError, match="CollisionObject"):
         m.registerObject(3)
 
@@ -273,14 +285,11 @@ def test_a_mesh_that_is_built_anew_is_asked_anew():
     corners = np.vstack([np.zeros(3), np.eye(3)])
     mesh = model(corners, triangles)
     m = manager(fcl.CollisionObject(mesh), fcl.CollisionObject(fcl.Box(1, 1, 1), at(5)))
-    data = fcl.CollisionData()
-    m.collide(data, fcl.defaultCollisionCallback)
-    assert not data.result.is_collision
+    assert not collided(m).is_collision
     mesh.beginModel()
     mesh.addSubModel(corners * 9, triangles)
     mesh.endModel()
-    m.collide(data, fcl.defaultCollisionCallback)
-    assert data.result.is_collision and m.size() == 2
+    assert collided(m).is_collision and m.size() == 2
 
 
 def test_the_nearest_of_many(rng):
@@ -293,10 +302,7 @@ def test_the_nearest_of_many(rng):
         asked.append((o1, o2))
         return fcl.defaultDistanceCallback(o1, o2, data)
 
-    data = fcl.DistanceData()
-    m.distance(data, callback)
     least = min(fcl.distance(a, b) for i, a in enumerate(spheres) for b in spheres[:i])
-    assert data.result.min_distance == least and len(asked) < 40
-    lone, data = fcl.CollisionObject(fcl.Box(1, 1, 1), at(50)), fcl.DistanceData()
-    m.distance(lone, data, fcl.defaultDistanceCallback)
-    assert data.result.min_distance == min(fcl.distance(s, lone) for s in spheres)
+    assert nearest(m, callback=callback) == least and len(asked) < 40
+    lone = fcl.CollisionObject(fcl.Box(1, 1, 1), at(50))
+    assert nearest(m, lone) == min(fcl.distance(s, lone) for s in spheres)

@@ -8,7 +8,7 @@ import pytest
 
 import lrbscope
 from lrbscope import CollisionManager, InputError
-from shapes import Mesh, ball_arrays, cube_arrays, random_poses, shifted
+from shapes import Mesh, ball_arrays, cube_arrays, open_cube_arrays, random_poses, shifted, square_arrays
 
 
 @pytest.fixture()
@@ -103,11 +103,26 @@ def test_distances(three, box):
 def test_one_in_another_collides():
     m = CollisionManager()
     m.add_object("outer", Mesh(*cube_arrays()))
-    inner = Mesh(cube_arrays()[0] * 0.25 + 0.3, cube_arrays()[1])
+    inner = Mesh(*cube_arrays(0.25, 0.3))
     assert m.in_collision_single(inner, return_names=True, return_data=True) == (True, {"outer"}, [])
     assert m.min_distance_single(inner) == 0
-    m.add_object("outer", Mesh(cube_arrays()[0], cube_arrays()[1][:-1]))  # open: no solid
+    m.add_object("outer", Mesh(*open_cube_arrays()))  # open: no solid
     assert m.in_collision_single(inner) is False and m.min_distance_single(inner) > 0.2
+
+
+def test_objects_in_the_plane():
+    m = CollisionManager()
+    square = m.add_object("square", Mesh(*square_arrays()))
+    assert square.dim == 2
+    for pose, n in ((shifted(0.75, 0.5, 0), 2), (np.eye(4), 12)):
+        hit, data = m.in_collision_single(square, pose, return_data=True)
+        assert hit and len(data) == n
+        assert all(np.isclose(np.linalg.norm(c.normal), 1) and c.normal[2] == 0 for c in data)
+    edges = {tuple(c.normal + 0.0) for c in data}
+    assert edges == {(0, -1, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0)}, "of segments: outward"
+    hit, data = m.in_collision_single(square, shifted(1, 0.25, 0), return_data=True)
+    assert hit and {c.point[0] for c in data} == {1.0}
+    assert np.isclose(m.min_distance_single(square, shifted(3, 0, 0)), 2)
 
 
 def test_objects_come_and_go(box):

@@ -9,7 +9,7 @@ import pytest
 
 import lrbscope
 from lrbscope import Body, InputError, Scene
-from shapes import ball_arrays, cube_arrays, random_poses, shifted
+from shapes import ball_arrays, cube_arrays, open_cube_arrays, random_poses, shifted
 
 
 def brute(bodies, poses):
@@ -23,6 +23,13 @@ def brute(bodies, poses):
     return found
 
 
+def scene_of(bodies, poses):
+    s = Scene()
+    for body, pose in zip(bodies, poses):
+        s.add(body, pose)
+    return s
+
+
 def told(meetings):
     return {tuple(k): (r.relation, r.fingerprint) for k, r in zip(meetings.keys.tolist(), meetings)}
 
@@ -32,7 +39,7 @@ def kinds():
     return [
         Body(*ball_arrays(1, 0.8)),
         Body(*cube_arrays(0.2), regions=False),
-        Body(cube_arrays()[0], cube_arrays()[1][:-1]),  # open
+        Body(*open_cube_arrays()),
     ]
 
 
@@ -87,11 +94,7 @@ def test_bodies_come_go_and_move(crowd, rng):
 
 def test_others(crowd):
     bodies, poses = crowd
-    one, two = Scene(), Scene()
-    for body, pose in zip(bodies, poses):
-        one.add(body, pose)
-    for body, pose in zip(bodies[:20], poses[:20]):
-        two.add(body, pose @ shifted(0.1, 0.2, 0.3))
+    one, two = scene_of(bodies, poses), scene_of(bodies[:20], poses[:20] @ shifted(0.1, 0.2, 0.3))
     wanted = {}
     for i in range(60):
         for j in range(20):
@@ -111,9 +114,7 @@ def test_nearest(crowd, kinds):
     bodies, poses = crowd
     poses = poses.copy()
     poses[:, :3, 3] *= 5
-    s = Scene()
-    for body, pose in zip(bodies, poses):
-        s.add(body, pose)
+    s = scene_of(bodies, poses)
     pairs = [(i, j) for j in range(60) for i in range(j)]
     apart = {(i, j): lrbscope.distance(bodies[i], bodies[j], poses[j], poses[i]) for i, j in pairs}
     a, b, d = s.nearest()
@@ -129,9 +130,7 @@ def test_nearest(crowd, kinds):
 
 def test_near_boxes(crowd):
     bodies, poses = crowd
-    s = Scene()
-    for body, pose in zip(bodies, poses):
-        s.add(body, pose)
+    s = scene_of(bodies, poses)
     boxes = [b.box(p) for b, p in zip(bodies, poses)]
     gaps = {}
     for j in range(60):
@@ -189,11 +188,7 @@ def test_what_is_refused(kinds):
 
 
 def test_threads_share_a_scene(crowd):
-    bodies, poses = crowd
-    one, two = Scene(), Scene()
-    for body, pose in zip(bodies, poses):
-        one.add(body, pose)
-        two.add(body, pose)
+    one, two = scene_of(*crowd), scene_of(*crowd)
     wanted, across = told(one.collide()), told(one.collide(two))
     with ThreadPoolExecutor(4) as pool:
         found = list(pool.map(lambda i: told(one.collide()) if i % 2 else told(two.collide(one)), range(12)))
@@ -210,9 +205,7 @@ def _asked_in_a_child(_):
 
 def test_a_scene_goes_on_after_a_fork(crowd):
     global SCENE
-    SCENE = Scene()
-    for body, pose in zip(*crowd):
-        SCENE.add(body, pose)
+    SCENE = scene_of(*crowd)
     wanted = told(SCENE.collide())  # threads have been started before the fork
     with multiprocessing.get_context("fork").Pool(2) as pool:
         assert pool.map(_asked_in_a_child, range(3)) == [wanted] * 3

@@ -5,6 +5,7 @@ import pytest
 
 import lrbscope
 from lrbscope import InputError, Wrapper
+from shapes import ball_arrays
 
 
 def test_from_outermost_to_the_body(ball):
@@ -62,8 +63,6 @@ def test_what_is_refused(ball):
 
 
 def test_a_wrapper_keeps_its_body():
-    from shapes import ball_arrays
-
     w = Wrapper(lrbscope.Body(*ball_arrays(2)))
     w.refine_all()
     assert len(w) == w.body.real_face_count

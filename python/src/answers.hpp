@@ -38,10 +38,17 @@ bool in_contact(const CollideResult& r);
 /// Returns an element of a list-like object as Python counts, from the end if negative; throws IndexError.
 std::size_t checked_index(py::ssize_t i, std::size_t n);
 
+/// Gives a list-like class its iterator, without which types and isinstance() do not take it for iterable.
+template <class Class>
+void bind_iterator(Class& c) {
+  c.def("__iter__", [](const py::object& self) {
+    self.cast<const typename Class::type&>();  // raises TypeError for an object without a value
+    return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
+  });
+}
+
 /// Returns contact regions as Python has them.
 py::list regions_of(const Answer& answer);
-
-void bind_answers(py::module_& m);
 
 /// Returns the number of threads that an argument stands for: 0 as many as the machine runs at once, but one
 /// in a process that was forked from the one that loaded the module. Threads do not survive a fork, and who
@@ -57,27 +64,12 @@ void run_batch(std::size_t n, unsigned threads,
 /// Throws what signal handlers raised, such as KeyboardInterrupt. Takes the lock of Python.
 void check_signals();
 
-/// Binds what managers of many objects are made of: boxes of bodies, and which of them meet.
-void bind_boxes(py::module_& m);
-
-void bind_clash(py::module_& m);
-
-void bind_coherent(py::module_& m);
-
 /// Asks about pairs of bodies without the lock of Python, as run_batch() does.
 std::vector<CollideResult> answers_of(std::span<const PosedPair> pairs, const CollideRequest& request,
                                       unsigned threads);
 
-void bind_collide(py::module_& m);
-
 /// Returns a distance as Python has it.
 py::object distance_object(DistanceResult result);
-
-void bind_distance(py::module_& m);
-
-void bind_explain(py::module_& m);
-
-void bind_first_contact(py::module_& m);
 
 /// What can be asked for by name, in the order in which functions take it. None: as CollideRequest has it.
 struct RequestArguments {
@@ -86,11 +78,5 @@ struct RequestArguments {
 };
 
 CollideRequest request_of(const RequestArguments& given);
-
-void bind_scenario(py::module_& m);
-
-void bind_scene(py::module_& m);
-
-void bind_wrapper(py::module_& m);
 
 }  // namespace lrb::python

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace lrb::python {
+
+namespace py = pybind11;
+
+// Each binds one subject. module.cpp calls them in the order in which the classes need each other.
+void bind_answers(py::module_& m);
+void bind_body(py::module_& m);
+/// Binds what managers of many objects are made of: boxes of bodies, and which of them meet.
+void bind_boxes(py::module_& m);
+void bind_clash(py::module_& m);
+void bind_coherent(py::module_& m);
+void bind_collide(py::module_& m);
+void bind_distance(py::module_& m);
+void bind_explain(py::module_& m);
+void bind_first_contact(py::module_& m);
+void bind_recorded(py::module_& m);
+void bind_scenario(py::module_& m);
+void bind_scene(py::module_& m);
+void bind_wrapper(py::module_& m);
+
+}  // namespace lrb::python
