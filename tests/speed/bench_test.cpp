@@ -227,7 +227,7 @@ TEST_CASE(
   bool any_off = false;
   for (const bench::Point& p : bench::measure_points({set}, infos, records)) {
     CAPTURE(p.method);
-    const double off = *p.errors[static_cast<std::size_t>(bench::Metric::off)];
+    const double off = *p.errors[static_cast<std::size_t>(bench::Metric::deviation)];
     REQUIRE(p.proved_off);
     CHECK(off <= *p.proved_off + 1e-12);
     CHECK(*p.errors[static_cast<std::size_t>(bench::Metric::contact)] == 0);
