@@ -23,7 +23,7 @@ bool lists_pairs(const methods::MethodInfo& m) {
   return m.pairs;
 }
 bool gives_points(const methods::MethodInfo& m) {
-  return m.approximate || m.convex;
+  return m.has(methods::Trait::approximate) || m.has(methods::Trait::convex);
 }
 
 bool is_of_number(Metric m) {
@@ -178,7 +178,7 @@ Point finished(Gathered g) {
 void mark_frontiers(std::vector<Point>& points, const std::vector<methods::MethodInfo>& methods) {
   const auto told_more = [&](const Point& p) {
     return std::any_of(methods.begin(), methods.end(), [&](const methods::MethodInfo& m) {
-      return m.name == p.method && m.told_more;
+      return m.name == p.method && m.has(methods::Trait::knows_poses_in_advance);
     });
   };
   for (Point& p : points) {

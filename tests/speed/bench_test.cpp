@@ -242,7 +242,7 @@ TEST_CASE("points: what fails scores the worst, and the frontier is what nothing
   const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
   std::vector<methods::MethodInfo> infos = {info("right"), info("blind"), info("dead"), info("slow"),
                                             info("told")};
-  infos.back().told_more = true;
+  infos.back().traits.set(methods::Trait::knows_poses_in_advance);
   std::vector<bench::Record> records;
   for (std::uint64_t q = 0; q < set.questions.size(); ++q)
     for (const methods::MethodInfo& m : infos) {
