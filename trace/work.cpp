@@ -32,16 +32,17 @@ NodeCounts count_nodes(const TreeShape& tree, Side side, std::span<const Event> 
   bool is_body = true;
   for (const Event& e : events) {
     if (e.kind == EventKind::begin && walks_trees(e.phase()))
-      is_body = (side == Side::a ? e.depth_a : e.depth_b) == 0;
+      is_body = (side == Side::a ? e.phase_begin().walked_a : e.phase_begin().walked_b) == 0;
     if (e.kind != EventKind::node_pair || !is_body) continue;
-    const std::uint32_t node = side == Side::a ? e.a : e.b;
+    const payload::NodePair pair = e.node_pair();
+    const std::uint32_t node = side == Side::a ? pair.a : pair.b;
     if (node >= tree.size())
       throw InputError("the trace visits node " + std::to_string(node) + " of " + std::string(name_of(side)) +
                        "'s tree, which has " + std::to_string(tree.size()) +
                        "; the trace is damaged: record it again");
     ++counts.visits[node];
-    counts.ended[node] += e.work().met == 0;
-    counts.box_tests[node] += e.work().box_tests;
+    counts.ended[node] += pair.work.met == 0;
+    counts.box_tests[node] += pair.work.box_tests;
   }
   return counts;
 }
@@ -241,7 +242,7 @@ std::uint64_t work_count(const Event& e) {
     case EventKind::node_pair:
       return e.work().met;
     case EventKind::end:
-      return e.b;
+      return e.phase_end().count;
     case EventKind::point:  // the phase's end has their number
     case EventKind::plane_test:
       return 0;
@@ -298,9 +299,10 @@ class WalkFollower {
 
   void see(const Event& e) {
     if (e.kind != EventKind::begin) return;
-    if (e.phase() == Phase::walk) walk_ = e.depth_a > 0 || e.depth_b > 0 ? Walk::levels : Walk::bodies;
-    if (e.phase() == Phase::cache) walk_ = Walk::cache;
-    if (e.phase() == Phase::cached || e.phase() == Phase::kept) walk_ = Walk::cached;
+    const auto [phase, walked_a, walked_b] = e.phase_begin();
+    if (phase == Phase::walk) walk_ = walked_a > 0 || walked_b > 0 ? Walk::levels : Walk::bodies;
+    if (phase == Phase::cache) walk_ = Walk::cache;
+    if (phase == Phase::cached || phase == Phase::kept) walk_ = Walk::cached;
   }
   Walk walk() const { return walk_; }
 

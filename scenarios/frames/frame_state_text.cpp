@@ -60,7 +60,8 @@ std::string FrameState::event_text() const {
       return "face test " + std::to_string(face_of(Side::a)) + " against " +
              std::to_string(face_of(Side::b)) + ": " + std::string(trace::name_of(e.meet));
     case EventKind::refine:
-      return "refine " + region + ": " + render::counted(e.b, "face", "faces") + " under it";
+      return "refine " + region + ": " + render::counted(e.wrapper_change().faces, "face", "faces") +
+             " under it";
     case EventKind::coarsen:
       return region + " added";
     case EventKind::contact:
@@ -111,9 +112,8 @@ std::string FrameState::open_text() const {
 }
 
 std::string FrameState::node_pair_text(const trace::Event& e) {
-  const trace::NodeWork work = e.work();
-  const trace::NodeEnd end = e.node_end();
-  std::string out = "nodes " + std::to_string(e.a) + " of A and " + std::to_string(e.b) + " of B: ";
+  const auto [a, b, work, end, pairs_above] = e.node_pair();
+  std::string out = "nodes " + std::to_string(a) + " of A and " + std::to_string(b) + " of B: ";
   if (work.met == 0)
     return out + (end.apart                     ? "apart along " + std::string(name_of(end.axis))
                   : end.step == NodeStep::whole ? "apart across an edge of each"
