@@ -16,9 +16,8 @@ namespace lrb::render {
 /// triangles without edges.
 std::vector<double> edge_room(const DrawList& list, const Projection& projection);
 
-/// Returns, for each triangle with edges, the room of all those of its style: so much, or more, have those
-/// that cover half of what they cover together on the screen. Edges of a style then fade as one, and a mesh
-/// shows all of them, or none.
+/// Returns, for each triangle with edges, the median room of its style, weighted by area on the screen. Edges
+/// of a style then fade together: a mesh shows all of them, or none.
 std::vector<double> even_edge_room(const DrawList& list, const Projection& projection);
 
 /// Rises smoothly from 0 at `gone` to 1 at `full`.

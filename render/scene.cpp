@@ -64,12 +64,12 @@ Rgba Context::region_colour(RegionId r) const {
 Rgba Context::colour_of(FaceId f, CellId cell) const {
   // Faces without a value are pale; the others are on the scale.
   if (options.colour_by == ColourBy::value) {
-    if (!has_value(f)) return style().pale(colour(), 0.78);
+    if (!has_value(f)) return style().pale(colour(), palette::kNoValuePale);
     const double range = value_high - value_low;
     return palette::viridis(range > 0 ? (body.face_values[f] - value_low) / range : 0);
   }
   if (is_region(cell)) return region_colour(cell.as_region());
-  return options.colour_by == ColourBy::kind ? colour() : style().pale(colour(), 0.75);
+  return options.colour_by == ColourBy::kind ? colour() : style().pale(colour(), palette::kGroundPale);
 }
 
 void Context::add_key(LegendItem::Mark mark, Rgba colour, const std::string& text) const {

@@ -140,7 +140,7 @@ class Scene3dBuilder {
     }
     if (any_in_contact) c_.add_key(Mark::solid, style_.contact, "real faces that meet");
     if (c_.options.colour_by == ColourBy::value) {
-      c_.add_key(Mark::solid, style_.pale(c_.colour(), 0.78),
+      c_.add_key(Mark::solid, style_.pale(c_.colour(), palette::kNoValuePale),
                  c_.name() + (c_.value_low > 0 ? ", faces with fewer " : ", faces without ") +
                      c_.options.value_name);
     } else {

@@ -73,10 +73,10 @@ constexpr Style kScreen = {.paper = kWhite,
                            .under_test = palette::kUnderTest,
                            .front = palette::kPaleFront,
                            .back = palette::kPaleBack,
-                           .edge_ink = {18, 20, 24},
-                           .solid_ink = {10, 14, 20},
-                           .solid_share = 0.28,
-                           .lid_pale = 0.70,
+                           .edge_ink = palette::kEdgeInk,
+                           .solid_ink = palette::kSolidInk,
+                           .solid_share = palette::kSolidShare,
+                           .lid_pale = palette::kLidPale,
                            .weight = 1};
 
 /// Black on white; kinds lie further apart in lightness than on a screen, for presses without colours.
@@ -89,11 +89,11 @@ constexpr Style kPrint = {.paper = kWhite,
                           .refining = {0, 116, 82},
                           .under_test = {248, 238, 120},
                           .front = {240, 241, 243},
-                          .back = {178, 170, 160},
+                          .back = palette::kPaleBack,
                           .edge_ink = kBlack,
-                          .solid_ink = {10, 14, 20},
+                          .solid_ink = palette::kSolidInk,
                           .solid_share = 0.34,
-                          .lid_pale = 0.70,
+                          .lid_pale = palette::kLidPale,
                           .weight = 0.7F};
 
 /// For slides: nearly black behind, lines and texts light.

@@ -23,7 +23,8 @@ struct BenchOptions : MeasureOptions {
 
 /// Returns true for ours and for engines that answer the same question.
 bool is_peer(const workers::WorkerMethod& m) {
-  return !m.info.approximate && !m.info.convex && m.info.role != methods::Role::no_peer;
+  return !m.info.has(methods::Trait::approximate) && !m.info.has(methods::Trait::convex) &&
+         m.info.role != methods::Role::no_peer;
 }
 
 int run_bench(const BenchOptions& o, const Globals& globals) {

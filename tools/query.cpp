@@ -65,21 +65,21 @@ void write_pairs(trace::JsonWriter& w, const char* name, const std::vector<Simpl
   w.end_array();
 }
 
-/// What is asked besides, of other queries.
-struct More {
+/// Answers of --kind and --distance.
+struct ExtraAnswers {
   std::optional<ClashResult> kind;
   std::optional<DistanceResult> distance;
 };
 
-/// Memory of what asks them.
-struct MoreContext {
+/// Memory of the queries that give them, from one pose to the next.
+struct ExtraContexts {
   ClashContext clash;
   DistanceContext distance;
 };
 
-More ask_more(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
-              MoreContext& context) {
-  More out;
+ExtraAnswers extra_answers(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
+                           ExtraContexts& context) {
+  ExtraAnswers out;
   if (o.kind) {
     ClashRequest request;
     request.depth = request.volume = false;
@@ -93,8 +93,8 @@ More ask_more(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOpt
   return out;
 }
 
-std::string line_of(std::size_t pose, const CollideResult& result, const More& more, const QueryOptions& o,
-                    double us, const LrbRep& a, const LrbRep& b) {
+std::string line_of(std::size_t pose, const CollideResult& result, const ExtraAnswers& extra,
+                    const QueryOptions& o, double us, const LrbRep& a, const LrbRep& b) {
   using Two = std::pair<std::uint32_t, std::uint32_t>;
   const CollideRequest& request = o.request;
   return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
@@ -103,10 +103,11 @@ std::string line_of(std::size_t pose, const CollideResult& result, const More& m
     w.member("fingerprint", trace::to_hex(fingerprint(result.pairs)));
     if (tells_overlap(request) && result.relation == Relation::touching)
       w.member("interiors_overlap", name_of(result.interiors_overlap));
-    if (more.kind) w.member("kind", name_of(more.kind->kind));
-    if (more.kind && more.kind->reason != ClashReason::none) w.member("reason", name_of(more.kind->reason));
-    if (more.distance) {
-      w.key("distance").begin_array().value(more.distance->lower).value(more.distance->upper);
+    if (extra.kind) w.member("kind", name_of(extra.kind->kind));
+    if (extra.kind && extra.kind->reason != ClashReason::none)
+      w.member("reason", name_of(extra.kind->reason));
+    if (extra.distance) {
+      w.key("distance").begin_array().value(extra.distance->lower).value(extra.distance->upper);
       w.end_array();
     }
     if (request.recursion != Recursion::complete) w.member("recursion", name_of(request.recursion));
@@ -150,7 +151,7 @@ int run_query(const QueryOptions& o, const Globals& globals) {
       body->rep.levels(0);
     }
   QueryContext context;
-  MoreContext more;
+  ExtraContexts extra;
   NullProbe probe;
   Progress progress("query", poses.size(), globals.quiet);
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -158,7 +159,7 @@ int run_query(const QueryOptions& o, const Globals& globals) {
         list.at(i, [&] { return collide(a.rep, Pose{}, b.rep, poses[i], o.request, context, probe); });
     if (tells_overlap(o.request)) decide_overlap(context, o.request, result);
     const double us = o.repeat > 0 ? repeated_us(a.rep, b.rep, poses[i], o, context) : 0;
-    print(line_of(i, result, ask_more(a.rep, b.rep, poses[i], o, more), o, us, a.rep, b.rep));
+    print(line_of(i, result, extra_answers(a.rep, b.rep, poses[i], o, extra), o, us, a.rep, b.rep));
     if (!o.draw.empty() && result.separation)
       run::draw_separation(a.rep, Pose{}, b.rep, poses[i], *result.separation,
                            picture_name(o.draw, i, poses.size()));

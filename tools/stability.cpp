@@ -170,7 +170,8 @@ bool ours_failed(const Grid& grid, const std::vector<workers::WorkerMethod>& met
 std::vector<workers::WorkerMethod> methods_for(Quantity quantity) {
   if (quantity == Quantity::pairs) return workers::find_methods();
   std::vector<workers::WorkerMethod> methods = workers::find_number_methods(quantity);
-  std::erase_if(methods, [](const workers::WorkerMethod& m) { return !m.info.hard_cases; });
+  std::erase_if(methods,
+                [](const workers::WorkerMethod& m) { return !m.info.has(methods::Trait::hard_cases); });
   return methods;
 }
 

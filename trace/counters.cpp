@@ -28,7 +28,9 @@ class WrapperSizes {
 
   void take(const Event& e) {
     if (e.kind == EventKind::step) reset();
-    if (e.changes_wrapper() && e.boundary != kNull) faces[static_cast<std::size_t>(e.side)] = e.boundary;
+    if (!e.changes_wrapper()) return;
+    const payload::WrapperChange change = e.wrapper_change();
+    if (change.wrapper_faces != kNull) faces[static_cast<std::size_t>(change.side)] = change.wrapper_faces;
   }
 
   std::array<std::uint32_t, 2> faces{};
@@ -149,7 +151,8 @@ Histogram tests_by_depth(const Trace& trace) {
               {}};
   for (const Event& e : trace.events) {
     if (e.kind != EventKind::face_test) continue;
-    const std::size_t depth = std::max(e.depth_a, e.depth_b);
+    const payload::FaceTest test = e.face_test();
+    const std::size_t depth = std::max(test.depth_a, test.depth_b);
     if (depth >= h.counts.size()) h.counts.resize(depth + 1);
     ++h.counts[depth];
   }
@@ -289,10 +292,11 @@ using Caps = std::array<std::uint32_t, kWords<CapVerdict>.size()>;
 PassSummary begin_pass(EventId id, const Event& e, std::uint32_t faces) {
   PassSummary p;
   p.first = p.last = id;
-  p.stage = e.stage();
-  p.layer = e.a;
-  p.barred = e.b;
-  p.most_off = e.off();
+  const payload::Pass pass = e.pass();
+  p.stage = pass.stage;
+  p.layer = pass.layer;
+  p.barred = pass.barred;
+  p.most_off = pass.most_off;
   p.faces_before = p.faces_after = faces;
   return p;
 }
@@ -300,14 +304,15 @@ PassSummary begin_pass(EventId id, const Event& e, std::uint32_t faces) {
 void take_cap(PassSummary& p, const Event& e, const Event* tried_before) {
   // A second cap over the same patch replaces the verdict of the first.
   if (tried_before) {
-    --p.caps[tried_before->detail];
+    --p.caps[static_cast<std::size_t>(tried_before->verdict())];
     ++p.retried;
   }
-  ++p.caps[e.detail];
-  if (e.verdict() != CapVerdict::stands) return;
-  p.lids += e.a;
-  p.covered += e.b;
-  if (std::isfinite(e.off())) p.off = std::max(p.off, e.off());
+  const payload::Cap cap = e.cap();
+  ++p.caps[static_cast<std::size_t>(cap.verdict)];
+  if (cap.verdict != CapVerdict::stands) return;
+  p.lids += cap.faces;
+  p.covered += cap.covered;
+  if (std::isfinite(cap.off)) p.off = std::max(p.off, cap.off);
 }
 
 void take(PassSummary& p, EventId id, const Trace& trace) {
@@ -324,17 +329,19 @@ void take(PassSummary& p, EventId id, const Trace& trace) {
     }
     case EventKind::region:
       ++p.regions;
-      p.faces_after = e.boundary;
+      p.faces_after = e.wrapper_change().wrapper_faces;
       break;
     case EventKind::merged:
-      p.merged += e.b;
+      p.merged += e.merged().pieces;
       break;
-    case EventKind::pass_end:
-      p.no_patch = e.a;
-      p.waiting = e.b;
-      p.given_up = e.depth_a != 0;
-      p.faces_after = e.boundary;
+    case EventKind::pass_end: {
+      const payload::PassEnd end = e.pass_end();
+      p.no_patch = end.no_patch;
+      p.waiting = end.waiting;
+      p.given_up = end.given_up;
+      p.faces_after = end.wrapper_faces;
       break;
+    }
     default:
       break;
   }
@@ -378,7 +385,7 @@ Chart chart_over_construction(const Trace& trace) {
   double faces = trace.header.bodies[0].real_faces;
   for (EventId id = 0; id < trace.events.size(); ++id) {
     const Event& e = trace.events[id];
-    if (e.kind == EventKind::region) faces = e.boundary;
+    if (e.kind == EventKind::region) faces = e.wrapper_change().wrapper_faces;
     // Only regions change the front; the last event extends the curve to the end.
     if (e.kind != EventKind::region && e.kind != EventKind::step && id + 1 != trace.events.size()) continue;
     chart.x.push_back(id);

@@ -18,16 +18,16 @@ std::uint16_t saturated(std::uint32_t value) {
   return static_cast<std::uint16_t>(std::min(value, std::uint32_t{0xffff}));
 }
 
-/// Returns a distance as Event::boundary holds it; what is negative was not measured.
-std::uint32_t bits_of(double off) {
-  return off < 0 ? std::uint32_t{kNull} : std::bit_cast<std::uint32_t>(static_cast<float>(off));
+/// Returns a deviation as events have it; negative ones were not measured.
+float deviation_of(double off) {
+  return off < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(off);
 }
 
 }  // namespace
 
 ConstructRecorder::ConstructRecorder(RecorderSettings settings) : settings_(std::move(settings)) {
   settings_.event_cap = std::min(settings_.event_cap, kMaxId);
-  push({.kind = EventKind::step});
+  push(Event::of(payload::Step{}));
 }
 
 EventId ConstructRecorder::push(const Event& event) {
@@ -40,49 +40,43 @@ EventId ConstructRecorder::push(const Event& event) {
 
 void ConstructRecorder::pass(const PassStart& start) {
   cap_ = kNull;
-  pass_ = push({.a = start.layer,
-                .boundary = bits_of(start.most_off),
-                .kind = EventKind::pass,
-                .detail = static_cast<std::uint8_t>(start.stage)});
+  pass_ = push(Event::of(payload::Pass{
+      .stage = start.stage, .layer = start.layer, .most_off = static_cast<float>(start.most_off)}));
 }
 
 void ConstructRecorder::patch(const GrownPatch& patch) {
-  patch_ = push({.a = patch.vertex,
-                 .b = patch.faces,
-                 .cause = pass_,
-                 .depth_a = saturated(patch.interior),
-                 .kind = EventKind::patch});
+  patch_ = push(Event::of(payload::Patch{patch.vertex, patch.faces, saturated(patch.interior)}, pass_));
 }
 
 void ConstructRecorder::cap(const TriedCap& cap) {
-  cap_ = push({.a = cap.faces,
-               .b = cap.covered,
-               .cause = patch_,
-               .boundary = bits_of(cap.off),
-               .depth_a = cap.careful,
-               .kind = EventKind::cap,
-               .detail = static_cast<std::uint8_t>(cap.verdict)});
+  cap_ = push(Event::of(payload::Cap{.faces = cap.faces,
+                                     .covered = cap.covered,
+                                     .verdict = cap.verdict,
+                                     .careful = cap.careful,
+                                     .off = deviation_of(cap.off)},
+                        patch_));
 }
 
 void ConstructRecorder::region(RegionId region) {
-  push({.a = region, .cause = cap_ != kNull ? cap_ : pass_, .kind = EventKind::region});
+  push(Event::of(payload::WrapperChange{.region = region}, EventKind::region, cap_ != kNull ? cap_ : pass_));
 }
 
 void ConstructRecorder::merged(RegionId into, std::uint32_t pieces) {
-  push({.a = into, .b = pieces, .cause = cap_, .kind = EventKind::merged});
+  push(Event::of(payload::Merged{into, pieces}, cap_));
 }
 
 void ConstructRecorder::end_pass(const PassEnd& end) {
-  const EventId id = push({.a = end.no_patch,
-                           .b = end.waiting,
-                           .cause = pass_,
-                           .depth_a = end.given_up,
-                           .kind = EventKind::pass_end});
-  if (id != kNull) trace_.events[pass_].b = end.barred;
+  const EventId id = push(Event::of(
+      payload::PassEnd{.no_patch = end.no_patch, .waiting = end.waiting, .given_up = end.given_up}, pass_));
+  if (id == kNull) return;
+  // Only the end of a pass tells how many faces it left out.
+  payload::Pass pass = trace_.events[pass_].pass();
+  pass.barred = end.barred;
+  trace_.events[pass_] = Event::of(pass);
 }
 
 void ConstructRecorder::closed(std::uint32_t) {
-  push({.kind = EventKind::closed});
+  push(Event::of(payload::Closed{}));
 }
 
 Trace ConstructRecorder::take(const LrbRep& rep, const Pose& pose) {
@@ -104,10 +98,15 @@ Trace ConstructRecorder::take(const LrbRep& rep, const Pose& pose) {
   const LrbRep* reps[] = {&rep};
   Replay hull(reps, header.request.wrapper, true);
   for (Event& e : trace_.events) {
-    if (e.kind == EventKind::region) e.b = static_cast<std::uint32_t>(rep.floor(e.region()).size());
+    if (e.kind == EventKind::region) {
+      payload::WrapperChange change = e.wrapper_change();
+      change.faces = static_cast<std::uint32_t>(rep.floor(change.region).size());
+      e = Event::of(change, EventKind::region, e.cause);
+    }
     if (hull.apply(e, trace_.events) || e.kind == EventKind::pass_end)
-      e.boundary = hull.boundary_size(Side::a);
-    if (e.kind == EventKind::closed) e.a = rep.region_count(), e.b = hull.boundary_size(Side::a);
+      e.set_wrapper_faces(hull.boundary_size(Side::a));
+    if (e.kind == EventKind::closed)
+      e = Event::of(payload::Closed{rep.region_count(), hull.boundary_size(Side::a)});
   }
   Trace out = std::move(trace_);
   *this = ConstructRecorder(settings_);
@@ -155,7 +154,8 @@ void find_axes(Trace& trace, const std::array<const LrbRep*, 2>& reps) {
     // Node numbers refer to the tree that the current phase traverses: the body's or that of a level of
     // detail.
     if (e.kind == EventKind::begin && walks_trees(e.phase()))
-      tree = {&walked_tree(*reps[0], e.depth_a), &walked_tree(*reps[1], e.depth_b)};
+      tree = {&walked_tree(*reps[0], e.phase_begin().walked_a),
+              &walked_tree(*reps[1], e.phase_begin().walked_b)};
     if (e.kind != EventKind::node_pair || e.work().met != 0) continue;
     // Repeat the box test with axes: the query does not record them, to stay fast.
     BoxPair boxes;
@@ -164,7 +164,7 @@ void find_axes(Trace& trace, const std::array<const LrbRep*, 2>& reps) {
     NodeEnd end = e.node_end();
     end.axis = boxes.axis;
     end.apart = boxes.gap > 0;
-    e.detail = end.bits();
+    e.set_node_end(end);
   }
 }
 
@@ -227,7 +227,7 @@ void Recorder::begin_step(std::uint32_t index, const Pose& pose_a, const Pose& p
   if (reps_[1]) step.pose_b = pose_b;
   step.first_event = step_event_;
   trace_.steps.push_back(std::move(step));
-  push({.a = index, .kind = EventKind::step});
+  push(Event::of(payload::Step{index}));
 }
 
 void Recorder::add(MeasuredDistance distance) {
@@ -252,9 +252,7 @@ void Recorder::end_step(const CollideResult& result) {
   step.result.error_bound = result.error_bound;
   step.result.finished = result.finished;
   step.result.separation = result.separation;
-  push({.a = static_cast<std::uint32_t>(result.relation),
-        .b = static_cast<std::uint32_t>(result.pairs.size()),
-        .kind = EventKind::result});
+  push(Event::of(payload::Result{result.relation, static_cast<std::uint32_t>(result.pairs.size())}));
   last_hit_ = kNull;
 }
 
@@ -270,7 +268,7 @@ Trace Recorder::take() {
   // Replay the wrappers to add their sizes to the events.
   Replay replay(reps_, settings_.request.wrapper);
   for (Event& event : trace_.events)
-    if (replay.apply(event, trace_.events)) event.boundary = replay.boundary_size(event.side);
+    if (replay.apply(event, trace_.events)) event.set_wrapper_faces(replay.boundary_size(event.side));
   Trace out = std::move(trace_);
   start_over();
   return out;

@@ -51,12 +51,13 @@ void Cursor::apply_to(EventId event) {
   const Event& e = trace_->events[event];
   if (!replay_.apply(e, trace_->events)) return;
   const std::uint32_t size = replay_.boundary_size(e.side);
-  if (e.boundary == kNull || e.boundary == size) return;
+  const std::uint32_t recorded = e.wrapper_change().wrapper_faces;
+  if (recorded == kNull || recorded == size) return;
   rewind();
   throw InputError("trace: event " + std::to_string(event) + " (" + std::string(name_of(e.kind)) +
                    " region " + std::to_string(e.region()) + " of " + std::string(name_of(e.side)) +
                    "): the wrapper has " + std::to_string(size) + " faces, recorded were " +
-                   std::to_string(e.boundary) + "; the trace is damaged: record it again");
+                   std::to_string(recorded) + "; the trace is damaged: record it again");
 }
 
 void Cursor::rewind() {

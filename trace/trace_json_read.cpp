@@ -211,15 +211,14 @@ void read_node_pair(const TraceNode& args, Event& e) {
     end.apart = args.has("apart along");
     end.axis = args.at(end.apart ? "apart along" : "overlap least along").named<BoxAxis>();
   }
-  e.depth_a = args.at("pairs above").integer<std::uint16_t>();
-  e.boundary = std::bit_cast<std::uint32_t>(work);
-  e.detail = end.bits();
+  const auto pairs_above = args.at("pairs above").integer<std::uint16_t>();
+  e = Event::of(payload::NodePair{e.a, e.b, work, end, pairs_above}, e.cause);
 }
 
 /// Reads what only the events from EventLevel::nodes on have.
 void read_more(const TraceNode& args, Event& e) {
   if (e.kind == EventKind::face_test && args.has("decided by"))
-    e.detail = static_cast<std::uint8_t>(args.at("decided by").named<TestedBy>());
+    e.set_tested_by(args.at("decided by").named<TestedBy>());
   if (e.kind == EventKind::node_pair) read_node_pair(args, e);
   if (e.kind == EventKind::plane_test) e.side = args.at("plane of").named<Side>();
   if (e.kind == EventKind::point) {

@@ -314,24 +314,24 @@ class TraceWriter {
     if (e.kind == EventKind::face_test) {
       write_meet(e.meet);
       out_.raw(",\"depth of A\":");
-      out_.number(std::uint64_t{e.depth_a});
+      out_.number(std::uint64_t{e.face_test().depth_a});
       out_.raw(",\"depth of B\":");
-      out_.number(std::uint64_t{e.depth_b});
+      out_.number(std::uint64_t{e.face_test().depth_b});
       if (e.tested_by() != TestedBy::untold) write_word("decided by", name_of(e.tested_by()));
     }
     // From here on, fields that depend on the kind of the event and on the detail of the trace.
     if (e.kind == EventKind::node_pair) return write_node_pair(e);
     if (e.kind == EventKind::plane_test) write_word("plane of", name_of(e.side));
     if (e.kind == EventKind::pass || e.kind == EventKind::cap) return write_built(e);
-    if (e.kind == EventKind::patch) write_number("interior vertices", e.depth_a);
-    if (e.kind == EventKind::pass_end && e.depth_a != 0) out_.raw(",\"given up\":true");
+    if (e.kind == EventKind::patch) write_number("interior vertices", e.patch().interior);
+    if (e.kind == EventKind::pass_end && e.pass_end().given_up) out_.raw(",\"given up\":true");
     if (e.kind == EventKind::point) {
       write_word("of", name_of(e.side));
       write_word("where", name_of(e.where()));
     }
     if (e.kind == EventKind::begin && walks_trees(e.phase())) {
-      write_number("level of A", e.depth_a);
-      write_number("level of B", e.depth_b);
+      write_number("level of A", e.phase_begin().walked_a);
+      write_number("level of B", e.phase_begin().walked_b);
     }
     // The size of the wrapper after the event; not every event has one.
     if (e.boundary != kNull) {
@@ -355,8 +355,7 @@ class TraceWriter {
   }
 
   void write_node_pair(const Event& e) {
-    const NodeEnd end = e.node_end();
-    const NodeWork work = e.work();
+    const auto [a, b, work, end, pairs_above] = e.node_pair();
     write_word("step", name_of(end.step));
     write_number("box tests", work.box_tests);
     write_number("boxes that meet", work.met);
@@ -365,7 +364,7 @@ class TraceWriter {
       write_number("certain", work.certain);
     }
     if (work.met == 0) write_word(end.apart ? "apart along" : "overlap least along", name_of(end.axis));
-    write_number("pairs above", e.depth_a);
+    write_number("pairs above", pairs_above);
     write_cause(e.cause);
   }
 
@@ -375,7 +374,7 @@ class TraceWriter {
       write_word("stage", name_of(e.stage()));
     else
       write_word("verdict", name_of(e.verdict()));
-    if (e.kind == EventKind::cap && e.depth_a != 0) out_.raw(",\"careful\":true");
+    if (e.kind == EventKind::cap && e.cap().careful) out_.raw(",\"careful\":true");
     if (e.kind == EventKind::pass ? e.off() > 0 : e.boundary != kNull) {
       out_.raw(e.kind == EventKind::pass ? ",\"distance allowed\":" : ",\"distance\":");
       out_.number(e.off());
@@ -493,7 +492,8 @@ class TraceWriter {
     }
     // Step 2: the size of the wrapper that the event changed.
     const bool change = e.changes_wrapper();
-    if (change && e.boundary != kNull) faces_[static_cast<std::size_t>(e.side)] = e.boundary;
+    if (const std::uint32_t faces = e.wrapper_change().wrapper_faces; change && faces != kNull)
+      faces_[static_cast<std::size_t>(e.side)] = faces;
     // Step 3: emit counters ("C"). Wrapper sizes at each change, work at regular intervals and at both ends
     // of a step.
     if (t_.header.construction) {

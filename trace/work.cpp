@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include <lrbscope/enum_words.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/explain.hpp>
 #include <lrbscope/trace/work.hpp>
@@ -31,16 +32,17 @@ NodeCounts count_nodes(const TreeShape& tree, Side side, std::span<const Event> 
   bool is_body = true;
   for (const Event& e : events) {
     if (e.kind == EventKind::begin && walks_trees(e.phase()))
-      is_body = (side == Side::a ? e.depth_a : e.depth_b) == 0;
+      is_body = (side == Side::a ? e.phase_begin().walked_a : e.phase_begin().walked_b) == 0;
     if (e.kind != EventKind::node_pair || !is_body) continue;
-    const std::uint32_t node = side == Side::a ? e.a : e.b;
+    const payload::NodePair pair = e.node_pair();
+    const std::uint32_t node = side == Side::a ? pair.a : pair.b;
     if (node >= tree.size())
       throw InputError("the trace visits node " + std::to_string(node) + " of " + std::string(name_of(side)) +
                        "'s tree, which has " + std::to_string(tree.size()) +
                        "; the trace is damaged: record it again");
     ++counts.visits[node];
-    counts.ended[node] += e.work().met == 0;
-    counts.box_tests[node] += e.work().box_tests;
+    counts.ended[node] += pair.work.met == 0;
+    counts.box_tests[node] += pair.work.box_tests;
   }
   return counts;
 }
@@ -130,65 +132,71 @@ void TreeShape::finish() {
 
 namespace {
 
-enum class Part : std::uint8_t {
-  traversal,
-  leaves,
-  float_tests,
-  shared_corner_tests,
-  filter_tests,
-  expansion_tests,
-  other_tests,
-  wrappers,
-  sorting,
-  relation,
-  separation,
-  contact_geometry,
-  cache,
+/// What files and charts call a part of the work.
+struct PartRow {
+  WorkPart part;
+  std::string_view name;     ///< in files, snake_case
+  std::string_view what;     ///< what WorkShare::count counts
+  std::string_view phase;    ///< in the chart; empty: the walk that is going on
+  std::string_view outcome;  ///< in the chart
 };
-constexpr std::array<WorkShare, 13> kParts = {{{"traversal", "pairs of boxes that meet"},
-                                               {"leaves", "pairs of faces"},
-                                               {"float_tests", "face tests"},
-                                               {"shared_corner_tests", "face tests"},
-                                               {"filter_tests", "face tests"},
-                                               {"expansion_tests", "face tests"},
-                                               {"other_tests", "face tests"},
-                                               {"wrappers", "regions refined or taken back"},
-                                               {"sorting", "pairs"},
-                                               {"relation", "points located"},
-                                               {"separation", "faces of the wrappers"},
-                                               {"contact_geometry", "contact regions"},
-                                               {"cache_making", "pairs kept"}}};
+constexpr auto kParts = std::to_array<PartRow>({
+    {WorkPart::traversal, "traversal", "pairs of boxes that meet", "", "boxes of nodes"},
+    {WorkPart::leaves, "leaves", "pairs of faces", "", "boxes and planes of faces"},
+    {WorkPart::float_tests, "float_tests", "face tests", "", "face tests: floats"},
+    {WorkPart::shared_corner_tests, "shared_corner_tests", "face tests", "", "face tests: shared corners"},
+    {WorkPart::filter_tests, "filter_tests", "face tests", "", "face tests: filter"},
+    {WorkPart::expansion_tests, "expansion_tests", "face tests", "", "face tests: expansions"},
+    {WorkPart::other_tests, "other_tests", "face tests", "", "face tests"},
+    {WorkPart::wrappers, "wrappers", "regions refined or taken back", "", "wrappers refined"},
+    {WorkPart::sorting, "sorting", "pairs", "sorting", ""},
+    {WorkPart::relation, "relation", "points located", "relation", ""},
+    {WorkPart::separation, "separation", "faces of the wrappers", "separation", ""},
+    {WorkPart::contact_geometry, "contact_geometry", "contact regions", "contact geometry", ""},
+    {WorkPart::cache_making, "cache_making", "pairs kept", "cache making", "pairs kept"},
+});
 
-Part part_of_test(TestedBy by) {
-  switch (by) {
-    case TestedBy::untold:
-      return Part::other_tests;
-    case TestedBy::floats:
-      return Part::float_tests;
-    case TestedBy::shared_corners:
-      return Part::shared_corner_tests;
-    case TestedBy::filter:
-      return Part::filter_tests;
-    case TestedBy::expansions:
-      return Part::expansion_tests;
-  }
-  return Part::other_tests;
+consteval bool is_in_enum_order() {
+  for (std::size_t i = 0; i < kParts.size(); ++i)
+    if (static_cast<std::size_t>(kParts[i].part) != i) return false;
+  return true;
+}
+static_assert(is_in_enum_order());
+
+bool belongs_to_walk(const PartRow& row) {
+  return row.phase.empty();
 }
 
-std::optional<Part> part_of_phase(Phase phase) {
+WorkPart part_of_test(TestedBy by) {
+  switch (by) {
+    case TestedBy::untold:
+      return WorkPart::other_tests;
+    case TestedBy::floats:
+      return WorkPart::float_tests;
+    case TestedBy::shared_corners:
+      return WorkPart::shared_corner_tests;
+    case TestedBy::filter:
+      return WorkPart::filter_tests;
+    case TestedBy::expansions:
+      return WorkPart::expansion_tests;
+  }
+  return WorkPart::other_tests;
+}
+
+std::optional<WorkPart> part_of_phase(Phase phase) {
   switch (phase) {
     case Phase::walk:
       return {};
     case Phase::sort:
-      return Part::sorting;
+      return WorkPart::sorting;
     case Phase::relation:
-      return Part::relation;
+      return WorkPart::relation;
     case Phase::separation:
-      return Part::separation;
+      return WorkPart::separation;
     case Phase::contacts:
-      return Part::contact_geometry;
+      return WorkPart::contact_geometry;
     case Phase::cache:
-      return Part::cache;
+      return WorkPart::cache_making;
     case Phase::kept:    // its regions are counted with the wrappers'
     case Phase::cached:  // its tests are counted with the others
       return {};
@@ -196,21 +204,23 @@ std::optional<Part> part_of_phase(Phase phase) {
   return {};
 }
 
-std::optional<Part> part_of(const Event& e) {
+}  // namespace
+
+std::optional<WorkPart> work_part(const Event& e) {
   switch (e.kind) {
     case EventKind::node_pair:
-      return e.node_end().step == NodeStep::leaves ? Part::leaves : Part::traversal;
+      return e.node_end().step == NodeStep::leaves ? WorkPart::leaves : WorkPart::traversal;
     case EventKind::face_test:
       return part_of_test(e.tested_by());
     case EventKind::refine:
     case EventKind::coarsen:
-      return Part::wrappers;
+      return WorkPart::wrappers;
     case EventKind::point:
-      return Part::relation;
+      return WorkPart::relation;
     case EventKind::end:
       return part_of_phase(e.phase());
     case EventKind::plane_test:
-      return Part::leaves;
+      return WorkPart::leaves;
     case EventKind::step:
     case EventKind::contact:
     case EventKind::result:
@@ -227,14 +237,12 @@ std::optional<Part> part_of(const Event& e) {
   return {};
 }
 
-}  // namespace
-
 std::uint64_t work_count(const Event& e) {
   switch (e.kind) {
     case EventKind::node_pair:
       return e.work().met;
     case EventKind::end:
-      return e.b;
+      return e.phase_end().count;
     case EventKind::point:  // the phase's end has their number
     case EventKind::plane_test:
       return 0;
@@ -243,70 +251,79 @@ std::uint64_t work_count(const Event& e) {
   }
 }
 
-std::optional<std::size_t> work_part(const Event& e) {
-  const std::optional<Part> part = part_of(e);
-  if (!part) return {};
-  return static_cast<std::size_t>(*part);
+namespace {
+
+/// Returns the seconds that an event took: events are recorded when their work is done, so this is the time
+/// since the event before. 0 on the event clock.
+double elapsed_s(const Trace& trace, EventId event) {
+  constexpr double kNanosecond = 1e-9;
+  if (trace.wall_ns.empty()) return 0;
+  return kNanosecond * static_cast<double>(trace.wall_ns[event] - trace.wall_ns[event - 1]);
 }
 
+}  // namespace
+
 std::vector<WorkShare> work_shares(const Trace& trace) {
-  std::vector<WorkShare> out(kParts.begin(), kParts.end());
-  constexpr double kNanosecond = 1e-9;
+  std::vector<WorkShare> out;
+  for (const PartRow& row : kParts) out.push_back({row.name, row.what});
   for (EventId i = 0; i < trace.events.size(); ++i) {
     const Event& e = trace.events[i];
-    const std::optional<Part> part = part_of(e);
+    const std::optional<WorkPart> part = work_part(e);
     if (!part) continue;
     WorkShare& share = out[static_cast<std::size_t>(*part)];
     ++share.events;
     share.count += work_count(e);
     if (e.kind == EventKind::node_pair) share.box_tests += e.work().box_tests;
-    // An event is recorded when its work is done, so its time is the difference to the event before.
-    if (!trace.wall_ns.empty())
-      share.seconds += kNanosecond * static_cast<double>(trace.wall_ns[i] - trace.wall_ns[i - 1]);
+    share.seconds += elapsed_s(trace, i);
   }
   return out;
 }
 
 namespace {
 
-/// How the chart names the parts of work_shares(), in their order; an empty phase: that of the walk.
-struct PartWords {
-  std::string_view phase, outcome;
-};
-constexpr std::array<PartWords, 13> kPartWords = {{{"", "boxes of nodes"},
-                                                   {"", "boxes and planes of faces"},
-                                                   {"", "face tests: floats"},
-                                                   {"", "face tests: shared corners"},
-                                                   {"", "face tests: filter"},
-                                                   {"", "face tests: expansions"},
-                                                   {"", "face tests"},
-                                                   {"", "wrappers refined"},
-                                                   {"sorting", ""},
-                                                   {"relation", ""},
-                                                   {"separation", ""},
-                                                   {"contact geometry", ""},
-                                                   {"cache making", "pairs kept"}}};
-constexpr std::size_t kWalks = 5;
-constexpr std::array<std::string_view, kWalks> kWalkWords = {"walk of the bodies", "walk of levels",
-                                                             "recursion", "cache making", "cached pairs"};
+/// Which walk of the trees is going on.
+enum class Walk : std::uint8_t { bodies, levels, recursion, cache, cached };
+constexpr auto words_of(Walk) {
+  return std::array<EnumWord<Walk>, 5>{{{Walk::bodies, "walk of the bodies"},
+                                        {Walk::levels, "walk of levels"},
+                                        {Walk::recursion, "recursion"},
+                                        {Walk::cache, "cache making"},
+                                        {Walk::cached, "cached pairs"}}};
+}
 
 /// Follows which walk is going on.
 class WalkFollower {
  public:
   explicit WalkFollower(const Trace& trace)
-      : walk_(trace.header.request.recursion == Recursion::complete ? 0 : 2) {}
+      : walk_(trace.header.request.recursion == Recursion::complete ? Walk::bodies : Walk::recursion) {}
 
   void see(const Event& e) {
     if (e.kind != EventKind::begin) return;
-    if (e.phase() == Phase::walk) walk_ = e.depth_a > 0 || e.depth_b > 0 ? 1 : 0;
-    if (e.phase() == Phase::cache) walk_ = 3;
-    if (e.phase() == Phase::cached || e.phase() == Phase::kept) walk_ = 4;
+    const auto [phase, walked_a, walked_b] = e.phase_begin();
+    if (phase == Phase::walk) walk_ = walked_a > 0 || walked_b > 0 ? Walk::levels : Walk::bodies;
+    if (phase == Phase::cache) walk_ = Walk::cache;
+    if (phase == Phase::cached || phase == Phase::kept) walk_ = Walk::cached;
   }
-  std::size_t walk() const { return walk_; }
+  Walk walk() const { return walk_; }
 
  private:
-  std::size_t walk_;
+  Walk walk_;
 };
+
+/// The chart's cells, one for each walk and part: walk by walk, in the order of the parts.
+constexpr std::size_t kCells = kWords<Walk>.size() * kParts.size();
+Walk walk_of_cell(std::size_t cell) {
+  return static_cast<Walk>(cell / kParts.size());
+}
+const PartRow& part_of_cell(std::size_t cell) {
+  return kParts[cell % kParts.size()];
+}
+/// Returns the cell of a part's work. Work outside of walks has the cells of the first walk.
+std::size_t cell_of(WorkPart part, Walk walk) {
+  const auto column = static_cast<std::size_t>(part);
+  const std::size_t row = belongs_to_walk(kParts[column]) ? static_cast<std::size_t>(walk) : 0;
+  return row * kParts.size() + column;
+}
 
 std::uint64_t operations_of(const Event& e) {
   if (e.kind != EventKind::node_pair) return work_count(e);
@@ -317,7 +334,6 @@ std::uint64_t operations_of(const Event& e) {
 }  // namespace
 
 std::vector<WorkOutcome> outcomes_of_step(const Trace& trace, const WorkChart& chart, std::size_t step) {
-  constexpr double kNanosecond = 1e-9;
   std::vector<WorkOutcome> out = chart.outcomes;
   for (WorkOutcome& o : out) o.events = o.operations = 0, o.seconds = 0;
   const EventId first = trace.steps[step].first_event;
@@ -327,44 +343,39 @@ std::vector<WorkOutcome> outcomes_of_step(const Trace& trace, const WorkChart& c
     WorkOutcome& o = out[chart.of_event[i]];
     ++o.events;
     o.operations += operations_of(trace.events[i]);
-    if (!trace.wall_ns.empty())
-      o.seconds += kNanosecond * static_cast<double>(trace.wall_ns[i] - trace.wall_ns[i - 1]);
+    o.seconds += elapsed_s(trace, i);
   }
   return out;
 }
 
 WorkChart work_chart(const Trace& trace) {
-  constexpr std::size_t kParts = kPartWords.size();
-  constexpr double kNanosecond = 1e-9;
-  // Step 1: one cell for each traversal and kind of work.
-  std::vector<WorkOutcome> all(kWalks * kParts);
+  // Step 1: one cell for each walk and kind of work.
+  std::vector<WorkOutcome> all(kCells);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const PartWords& words = kPartWords[i % kParts];
-    all[i].phase = words.phase.empty() ? kWalkWords[i / kParts] : words.phase;
-    all[i].outcome = words.outcome;
+    const PartRow& part = part_of_cell(i);
+    all[i].phase = belongs_to_walk(part) ? name_of(walk_of_cell(i)) : part.phase;
+    all[i].outcome = part.outcome;
   }
   WorkChart out;
   out.of_event.assign(trace.events.size(), WorkChart::kNone);
-  // Step 2: attribute each event to a cell. Work outside traversals uses the first row.
+  // Step 2: attribute each event to a cell.
   WalkFollower follower(trace);
   for (EventId i = 0; i < trace.events.size(); ++i) {
     const Event& e = trace.events[i];
     follower.see(e);
-    const std::optional<std::size_t> part = work_part(e);
+    const std::optional<WorkPart> part = work_part(e);
     if (!part) continue;
-    const bool of_walk = kPartWords[*part].phase.empty();
-    const std::size_t at = (of_walk ? follower.walk() : 0) * kParts + *part;
+    const std::size_t at = cell_of(*part, follower.walk());
     out.of_event[i] = static_cast<std::uint8_t>(at);
     ++all[at].events;
     all[at].operations += operations_of(e);
-    if (!trace.wall_ns.empty())
-      all[at].seconds += kNanosecond * static_cast<double>(trace.wall_ns[i] - trace.wall_ns[i - 1]);
+    all[at].seconds += elapsed_s(trace, i);
   }
-  // Step 3: drop empty cells, with traversals before the other phases.
+  // Step 3: drop empty cells, with walks before the other phases.
   std::vector<std::size_t> order;
   for (const bool of_walk : {true, false})
     for (std::size_t i = 0; i < all.size(); ++i)
-      if (all[i].events > 0 && kPartWords[i % kParts].phase.empty() == of_walk) order.push_back(i);
+      if (all[i].events > 0 && belongs_to_walk(part_of_cell(i)) == of_walk) order.push_back(i);
   // Step 4: renumber the events' cells accordingly.
   std::vector<std::uint8_t> place(all.size(), WorkChart::kNone);
   for (const std::size_t i : order) {

@@ -99,7 +99,7 @@ NumberMethod less(const char* name, const char* title, const char* remark, metho
   m.info.name = name;
   m.info.remark = remark;
   m.info.role = methods::Role::ours_other;
-  m.info.hard_cases = false;
+  m.info.traits.set(methods::Trait::hard_cases, false);
   m.info.style = std::move(style);
   return m;
 }
@@ -110,7 +110,7 @@ NumberMethod sampled_method(int n) {
   m.info.name = "sampled-" + std::to_string(n);
   m.info.title = "exact query, " + std::to_string(n) + " steps";
   m.info.remark = "Our exact query at equal times; says the first at which bodies meet.";
-  m.info.hard_cases = n > kTooFewForHardCases;
+  m.info.traits.set(methods::Trait::hard_cases, n > kTooFewForHardCases);
   m.info.style = {"exact query at 10, 100, 1000 times", "#6b6b6b", "crossRot", 2};
   m.quantity = Quantity::first_contact;
   m.ask = [n](const Asked& q, Setting) { return sampled(q, n); };

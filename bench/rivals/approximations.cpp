@@ -76,7 +76,8 @@ std::vector<MethodEntry> plain_double_methods() {
       "Every pair of triangles by Moeller's test of intervals (1997) with its usual epsilon; 2D: by sides. "
       "No "
       "boxes, no relation.";
-  info.plane = info.moves_exactly = true;
+  info.traits.set(Trait::takes_2d);
+  info.traits.set(Trait::moves_exactly);
   return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<PlainDouble>(); }}};
 }
 
@@ -205,8 +206,8 @@ std::vector<MethodEntry> spheres_methods() {
       "still "
       "overlaps there counts as contact. Never misses, often cries wolf.";
   info.pairs = false;
-  info.hard_cases = false;
-  info.approximate = true;
+  info.traits.set(Trait::hard_cases, false);
+  info.traits.set(Trait::approximate);
   info.knob = "level";
   info.settings = {2, 4, 6, 8, 10, 12};
   return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Spheres>(); }}};

@@ -123,7 +123,7 @@ std::vector<MethodEntry> LRB_BULLET_METHODS() {
   info.name = kSingle ? "bullet" : "bullet-double";
   info.title = "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
                std::to_string(BT_BULLET_VERSION % 100) + ", GImpact, " + (kSingle ? "float" : "double");
-  info.loose = true;
+  info.traits.set(Trait::loose);
   info.remark =
       std::string(
           "All pairs: contactPairTest() of two btGImpactMeshShapes with margin 0; a pair for the triangles "

@@ -158,7 +158,7 @@ MethodEntry entry(const char* name, const char* how, const char* remark, int ran
           "callback in double with an epsilon; it has no way to stop at the first pair. Body B moves "
           "at every query, ") +
       remark;
-  info.hard_cases = false;
+  info.traits.set(Trait::hard_cases, false);
   return {info, make};
 }
 
@@ -183,7 +183,7 @@ std::vector<MethodEntry> embree_methods() {
   std::vector<MethodEntry> entries = {
       absent("embree", "Embree, rtcCollide, refitted", "libembree-dev", kRank, kStyle),
       absent("embree-rebuilt", "Embree, rtcCollide, rebuilt", "libembree-dev", kRank + 1, kStyle)};
-  for (MethodEntry& e : entries) e.info.hard_cases = false;
+  for (MethodEntry& e : entries) e.info.traits.set(Trait::hard_cases, false);
   return entries;
 }
 

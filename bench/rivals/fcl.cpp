@@ -104,7 +104,7 @@ std::vector<MethodEntry> fcl_headers_methods() {
                "As fcl, but for its code, which is instantiated from its headers with our compiler's flags.",
                kRank),
       []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<double>>(); }};
-  entry.info.hard_cases = false;
+  entry.info.traits.set(Trait::hard_cases, false);
   entry.info.role = Role::aim;
   return {entry};
 }
@@ -135,7 +135,7 @@ namespace lrb::methods {
 
 std::vector<MethodEntry> fcl_headers_methods() {
   MethodEntry entry = absent("fcl-headers", "FCL, compiled with our flags", "libfcl-dev", kRank, kStyle);
-  entry.info.hard_cases = false;
+  entry.info.traits.set(Trait::hard_cases, false);
   entry.info.role = Role::aim;
   return {entry};
 }

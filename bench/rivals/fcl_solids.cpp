@@ -161,8 +161,8 @@ MethodEntry octree() {
       "a mesh. "
       "The knob is the number of cells along A's diagonal.";
   info.pairs = false;
-  info.hard_cases = false;
-  info.approximate = true;
+  info.traits.set(Trait::hard_cases, false);
+  info.traits.set(Trait::approximate);
   info.knob = "cells";
   info.settings = {16, 32, 64, 128};
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Octree>(); }};
@@ -179,8 +179,8 @@ MethodEntry gjk() {
       "bodies are "
       "convex and neither lies in the other.";
   info.pairs = false;
-  info.hard_cases = false;
-  info.convex = true;
+  info.traits.set(Trait::hard_cases, false);
+  info.traits.set(Trait::convex);
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Gjk>(); }};
 }
 
@@ -198,10 +198,11 @@ namespace lrb::methods {
 
 std::vector<MethodEntry> fcl_solids_methods() {
   MethodEntry octree = absent("fcl-octree", "FCL, octree against mesh", "libfcl-dev", kRank, kOctreeStyle);
-  octree.info.approximate = true;
+  octree.info.traits.set(Trait::approximate);
   MethodEntry gjk = absent("fcl-gjk", "FCL, GJK of convex hulls", "libfcl-dev", kRank + 1, kGjkStyle);
-  gjk.info.convex = true;
-  octree.info.hard_cases = gjk.info.hard_cases = false;
+  gjk.info.traits.set(Trait::convex);
+  octree.info.traits.set(Trait::hard_cases, false);
+  gjk.info.traits.set(Trait::hard_cases, false);
   return {octree, gjk};
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,6 +27,50 @@ constexpr auto words_of(Says) {
   return std::to_array<EnumWord<Says>>(
       {{Says::nothing, "nothing"}, {Says::inside, "inside"}, {Says::relation, "relation"}});
 }
+
+/// What sets a method apart from one that answers exactly for two bodies at two poses.
+enum class Trait : std::uint8_t {
+  /// Its list includes pairs that are near or behind each other, because that is what contact means to it:
+  /// extra pairs are counted, but are wrong only where the bodies do not meet at all.
+  loose,
+  takes_2d,  ///< takes 2D bodies
+  /// Moves vertices exactly as Pose::apply does. Other methods can be given the same question only with world
+  /// coordinates in the body and poses that move nothing.
+  moves_exactly,
+  hard_cases,  ///< takes part in `stability`; else only in `bench` and `chart`
+  /// Gives pairs, or points of contact, up to an error that a knob trades for time.
+  approximate,
+  convex,                  ///< answers for the bodies' convex hulls
+  knows_poses_in_advance,  ///< not an answer to the same question
+  own_rep,                 ///< works on the LRB-rep as it comes: building a body means building that
+};
+/// The words are JSON keys of lists of methods.
+constexpr auto words_of(Trait) {
+  return std::to_array<EnumWord<Trait>>({{Trait::loose, "loose"},
+                                         {Trait::takes_2d, "plane"},
+                                         {Trait::moves_exactly, "moves_exactly"},
+                                         {Trait::hard_cases, "hard_cases"},
+                                         {Trait::approximate, "approximate"},
+                                         {Trait::convex, "convex"},
+                                         {Trait::knows_poses_in_advance, "told_more"},
+                                         {Trait::own_rep, "own_rep"}});
+}
+
+class Traits {
+ public:
+  constexpr Traits() = default;
+  constexpr Traits(std::initializer_list<Trait> traits) {
+    for (const Trait t : traits) set(t);
+  }
+  constexpr bool has(Trait t) const { return (bits_ & bit(t)) != 0; }
+  constexpr void set(Trait t, bool on = true) {
+    bits_ = static_cast<std::uint8_t>(on ? bits_ | bit(t) : bits_ & ~bit(t));
+  }
+
+ private:
+  static constexpr unsigned bit(Trait t) { return 1U << static_cast<unsigned>(t); }
+  std::uint8_t bits_ = 0;
+};
 
 /// The part that a method plays where methods are compared.
 enum class Role : std::uint8_t {
@@ -60,26 +105,16 @@ struct MethodInfo {
   std::string title;   ///< for people, with the version: "FCL 0.7.0, OBBRSS, double"
   std::string remark;  ///< what it answers, and how it was asked
   bool present = true;
-  bool pairs = true;  ///< lists the pairs; else it only says whether the surfaces meet
-  /// Its list includes pairs that are near or behind each other, because that is what contact means to it:
-  /// extra pairs are counted, but are wrong only where the bodies do not meet at all.
-  bool loose = false;
+  bool pairs = true;          ///< lists the pairs; else it only says whether the surfaces meet
   Says says = Says::nothing;  ///< what it says besides
-  bool plane = false;         ///< takes 2D bodies
-  /// Moves vertices exactly as Pose::apply does. Other methods can be given the same question only with world
-  /// coordinates in the body and poses that move nothing.
-  bool moves_exactly = false;
-  bool hard_cases = true;  ///< takes part in `stability`; else only in `bench` and `chart`
-  /// Gives pairs, or points of contact, up to an error that a knob trades for time.
-  bool approximate = false;
-  bool convex = false;           ///< answers for the bodies' convex hulls
-  bool told_more = false;        ///< knows the poses before: not an answer to the same question
-  bool own_rep = false;          ///< works on the LRB-rep as it comes: building a body means building that
+  Traits traits = {Trait::hard_cases};
   std::string knob;              ///< what `settings` set: "level"; empty: there is nothing to set
   std::vector<double> settings;  ///< settings worth a sweep, from coarse to fine
   MethodStyle style = {};
   Role role = Role::peer;
   int rank = 1000;  ///< the methods' order in tables and charts: by rank, then by file
+
+  bool has(Trait t) const { return traits.has(t); }
 };
 
 /// A body in a method's own form.

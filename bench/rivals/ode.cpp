@@ -103,8 +103,8 @@ std::vector<MethodEntry> ode_methods() {
       "Pairs of the contact points of dCollide(), at most 65535, where one may stand for several pairs: its "
       "list "
       "is not meant to be complete. Trees and vertices in float.";
-  info.loose = true;
-  info.hard_cases = false;
+  info.traits.set(Trait::loose);
+  info.traits.set(Trait::hard_cases, false);
   return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Ode>(); }}};
 }
 
@@ -116,7 +116,7 @@ namespace lrb::methods {
 
 std::vector<MethodEntry> ode_methods() {
   MethodEntry entry = absent("ode", "ODE, triangle meshes", "libode-dev", kRank, kStyle);
-  entry.info.hard_cases = false;
+  entry.info.traits.set(Trait::hard_cases, false);
   return {entry};
 }
 

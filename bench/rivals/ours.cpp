@@ -165,7 +165,9 @@ MethodInfo our_info(const char* name, const char* title, const char* remark, int
   info.title = title;
   info.remark = remark;
   info.says = Says::relation;
-  info.plane = info.moves_exactly = info.own_rep = true;
+  info.traits.set(Trait::takes_2d);
+  info.traits.set(Trait::moves_exactly);
+  info.traits.set(Trait::own_rep);
   info.rank = rank;
   info.role = Role::ours_other;
   info.style = {"lrbscope, variants", "#4aa3dc", "circle", 6};
@@ -173,8 +175,9 @@ MethodInfo our_info(const char* name, const char* title, const char* remark, int
 }
 
 void coarse(MethodInfo& info) {
-  info.pairs = info.hard_cases = false;
-  info.approximate = true;
+  info.pairs = false;
+  info.traits.set(Trait::hard_cases, false);
+  info.traits.set(Trait::approximate);
   info.says = Says::nothing;
 }
 
@@ -218,8 +221,8 @@ MethodEntry ours_coherent() {
       "ours-coherent", "lrbscope, coherent",
       "As ours, at the last of nine poses that are 0.1 % of A's diagonal apart; the others are not timed.",
       13);
-  info.hard_cases = false;
-  info.told_more = true;
+  info.traits.set(Trait::hard_cases, false);
+  info.traits.set(Trait::knows_poses_in_advance);
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoherent>(); }};
 }
 

@@ -51,7 +51,7 @@ const BenchRunner::Built& BenchRunner::built(std::size_t body, std::size_t side)
   const double before = heap_bytes();
   const methods::Stopwatch watch;
   b.body = method_->build(rep);
-  b.seconds = info_.own_rep ? file.build_seconds : watch.microseconds() / 1e6;
+  b.seconds = info_.has(methods::Trait::own_rep) ? file.build_seconds : watch.microseconds() / 1e6;
   b.bytes = heap_bytes() - before;
   return b;
 }
@@ -92,7 +92,7 @@ Reply BenchRunner::ask(const Question& q, Mode mode) {
   if (info_.pairs && mode == Mode::all_pairs) {
     r.missed = difference(q.expected, answer.pairs);
     r.extra = difference(answer.pairs, q.expected);
-  } else if (info_.pairs && !info_.loose) {
+  } else if (info_.pairs && !info_.has(methods::Trait::loose)) {
     r.missed = r.contact ? 0 : !q.expected.empty();
     r.extra = difference(answer.pairs, q.expected);
   } else {

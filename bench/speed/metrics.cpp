@@ -13,33 +13,7 @@
 namespace lrb::bench {
 namespace {
 
-constexpr MetricInfo kInfos[kMetrics] = {
-    {"contact", "share of poses where contact is said and there is none, or the reverse", 1},
-    {"precision", "1 - precision: share of the pairs listed that do not meet", 1},
-    {"recall", "1 - recall: share of the pairs that meet and are not listed", 1},
-    {"hausdorff", "Hausdorff distance of the contact regions, over the larger body's diagonal", 1},
-    {"off",
-     "largest distance of a point of the answer from the one body and from the other, added up, over the "
-     "diagonal",
-     1},
-    {"length", "error of the contact curves' length, over the larger of both", 1},
-    {"area", "error of the contact's area, over the larger of both", 1},
-    {"centroid", "distance of the contacts' centroids, over the diagonal", 1},
-    {"normal", "angle between the normals of the largest contact, over 180 degrees", 1},
-    {"depth", "error of the largest estimated depth, over the diagonal", 1},
-    {"distance", "error of the distance, over the larger body's diagonal", 1},
-    {"time",
-     "error of the time of first contact, in parts of the motion; 1: never, where that is wrong, or not "
-     "never, where that is right",
-     1},
-    {"penetration", "error of the penetration depth, over the larger body's diagonal", 1},
-};
-
-constexpr Metric kOfNumbers[] = {Metric::distance, Metric::time, Metric::penetration};
-constexpr Metric kAll[kMetrics] = {Metric::contact,    Metric::precision, Metric::recall,   Metric::hausdorff,
-                                   Metric::off,        Metric::length,    Metric::area,     Metric::centroid,
-                                   Metric::normal,     Metric::depth,     Metric::distance, Metric::time,
-                                   Metric::penetration};
+constexpr Metric kOfNumbers[] = {Metric::distance, Metric::time_of_impact, Metric::penetration};
 
 std::optional<double>& at(Errors& e, Metric m) {
   return e[static_cast<std::size_t>(m)];
@@ -49,7 +23,7 @@ bool lists_pairs(const methods::MethodInfo& m) {
   return m.pairs;
 }
 bool gives_points(const methods::MethodInfo& m) {
-  return m.approximate || m.convex;
+  return m.has(methods::Trait::approximate) || m.has(methods::Trait::convex);
 }
 
 bool is_of_number(Metric m) {
@@ -60,15 +34,15 @@ bool is_of_number(Metric m) {
 bool applies(const methods::MethodInfo& info, Metric m) {
   if (is_of_number(m)) return false;
   if (m == Metric::contact) return true;
-  if (m == Metric::hausdorff || m == Metric::off || m == Metric::centroid)
+  if (m == Metric::hausdorff || m == Metric::deviation || m == Metric::centroid)
     return lists_pairs(info) || gives_points(info);
   return lists_pairs(info);
 }
 
 Errors worst_of(const methods::MethodInfo& info) {
   Errors e;
-  for (const Metric m : kAll)
-    if (applies(info, m)) at(e, m) = metric_info(m).worst;
+  for (const MetricInfo& m : kMetricInfos)
+    if (applies(info, m.metric)) at(e, m.metric) = m.worst;
   return e;
 }
 
@@ -136,7 +110,7 @@ class Judge {
   }
 
   static void set_region(Errors& e, const methods::MethodInfo& info, const RegionError& r, double off) {
-    const std::pair<Metric, double> values[] = {{Metric::hausdorff, r.hausdorff}, {Metric::off, off},
+    const std::pair<Metric, double> values[] = {{Metric::hausdorff, r.hausdorff}, {Metric::deviation, off},
                                                 {Metric::length, r.length},       {Metric::area, r.area},
                                                 {Metric::centroid, r.centroid},   {Metric::normal, r.normal},
                                                 {Metric::depth, r.depth}};
@@ -166,9 +140,8 @@ void add(Gathered& g, const Record& r, const Errors& e, double unit) {
   p.refused += r.outcome == Outcome::refused;
   p.crashed += r.outcome == Outcome::crashed;
   p.timed_out += r.outcome == Outcome::timed_out;
-  for (const Metric m : kAll)
-    if (const auto& value = e[static_cast<std::size_t>(m)])
-      at(g.sums, m) = at(g.sums, m).value_or(0) + *value;
+  for (std::size_t m = 0; m < kMetrics; ++m)
+    if (e[m]) g.sums[m] = g.sums[m].value_or(0) + *e[m];
   Point one;
   one.errors = e;
   if (one.error() > g.worst) {
@@ -189,8 +162,8 @@ void add(Gathered& g, const Record& r, const Errors& e, double unit) {
 Point finished(Gathered g) {
   Point& p = g.point;
   const auto n = static_cast<double>(p.questions);
-  for (const Metric m : kAll)
-    if (const auto& sum = at(g.sums, m)) at(p.errors, m) = *sum / n;
+  for (std::size_t m = 0; m < kMetrics; ++m)
+    if (g.sums[m]) p.errors[m] = *g.sums[m] / n;
   if (g.proved_sum) p.proved_off = *g.proved_sum / n;
   p.median = median(g.us);
   p.p95 = quantile(g.us, 0.95);
@@ -204,8 +177,9 @@ Point finished(Gathered g) {
 /// answers another question.
 void mark_frontiers(std::vector<Point>& points, const std::vector<methods::MethodInfo>& methods) {
   const auto told_more = [&](const Point& p) {
-    return std::any_of(methods.begin(), methods.end(),
-                       [&](const methods::MethodInfo& m) { return m.name == p.method && m.told_more; });
+    return std::any_of(methods.begin(), methods.end(), [&](const methods::MethodInfo& m) {
+      return m.name == p.method && m.has(methods::Trait::knows_poses_in_advance);
+    });
   };
   for (Point& p : points) {
     const auto takes_part = [&](const Point& x) {
@@ -222,16 +196,12 @@ void mark_frontiers(std::vector<Point>& points, const std::vector<methods::Metho
 
 }  // namespace
 
-const MetricInfo& metric_info(Metric m) {
-  return kInfos[static_cast<std::size_t>(m)];
-}
-
 Metric chart_metric(Quantity quantity) {
   switch (quantity) {
     case Quantity::distance:
       return Metric::distance;
     case Quantity::first_contact:
-      return Metric::time;
+      return Metric::time_of_impact;
     case Quantity::depth:
       return Metric::penetration;
     case Quantity::pairs:
@@ -242,7 +212,7 @@ Metric chart_metric(Quantity quantity) {
 
 double Point::error() const {
   for (const Metric m :
-       {Metric::hausdorff, Metric::distance, Metric::time, Metric::penetration, Metric::contact})
+       {Metric::hausdorff, Metric::distance, Metric::time_of_impact, Metric::penetration, Metric::contact})
     if (const auto& e = errors[static_cast<std::size_t>(m)]) return *e;
   return metric_info(Metric::contact).worst;
 }
@@ -323,8 +293,8 @@ std::string to_lines(const std::vector<Point>& points) {
     value["refused"] = p.refused;
     value["crashed"] = p.crashed;
     value["timed_out"] = p.timed_out;
-    for (const Metric m : kAll)
-      if (const auto& e = p.errors[static_cast<std::size_t>(m)]) value["errors"][metric_info(m).name] = *e;
+    for (const MetricInfo& info : kMetricInfos)
+      if (const auto& e = p.errors[static_cast<std::size_t>(info.metric)]) value["errors"][info.name] = *e;
     if (p.proved_off) value["proved_off"] = *p.proved_off;
     value["us"] = {{"median", p.median}, {"p95", p.p95}, {"p99", p.p99}};
     value["build_s"] = p.build_seconds;

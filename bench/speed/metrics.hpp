@@ -3,6 +3,7 @@
 /// class of poses).
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -20,24 +21,58 @@ enum class Metric : std::uint8_t {
   precision,  ///< share of the pairs found that do not meet (1 - precision)
   recall,     ///< share of the pairs that meet and were not found (1 - recall)
   hausdorff,  ///< distance of the contact regions
-  off,        ///< distance of the answer's points from both bodies
+  deviation,  ///< distance of the answer's points from both bodies
   length,
   area,
   centroid,
   normal,
   depth,
-  distance,     ///< of a number that was asked for
-  time,         ///< likewise: of first contact
-  penetration,  ///< likewise: the depth
+  distance,        ///< error of the distance, where a method is asked for that number
+  time_of_impact,  ///< error of the time of first contact, where a method is asked for it
+  penetration,     ///< error of the penetration depth, where a method is asked for it
 };
-inline constexpr std::size_t kMetrics = 13;
 
 struct MetricInfo {
-  const char* name;
+  Metric metric;
+  const char* name;  ///< in files and tables
   const char* what;  ///< with its unit
   double worst;
 };
-const MetricInfo& metric_info(Metric m);
+inline constexpr auto kMetricInfos = std::to_array<MetricInfo>({
+    {Metric::contact, "contact", "share of poses where contact is said and there is none, or the reverse", 1},
+    {Metric::precision, "precision", "1 - precision: share of the pairs listed that do not meet", 1},
+    {Metric::recall, "recall", "1 - recall: share of the pairs that meet and are not listed", 1},
+    {Metric::hausdorff, "hausdorff",
+     "Hausdorff distance of the contact regions, over the larger body's diagonal", 1},
+    {Metric::deviation, "off",
+     "largest distance of a point of the answer from the one body and from the other, added up, over the "
+     "diagonal",
+     1},
+    {Metric::length, "length", "error of the contact curves' length, over the larger of both", 1},
+    {Metric::area, "area", "error of the contact's area, over the larger of both", 1},
+    {Metric::centroid, "centroid", "distance of the contacts' centroids, over the diagonal", 1},
+    {Metric::normal, "normal", "angle between the normals of the largest contact, over 180 degrees", 1},
+    {Metric::depth, "depth", "error of the largest estimated depth, over the diagonal", 1},
+    {Metric::distance, "distance", "error of the distance, over the larger body's diagonal", 1},
+    {Metric::time_of_impact, "time",
+     "error of the time of first contact, in parts of the motion; 1: never, where that is wrong, or not "
+     "never, where that is right",
+     1},
+    {Metric::penetration, "penetration", "error of the penetration depth, over the larger body's diagonal",
+     1},
+});
+inline constexpr std::size_t kMetrics = kMetricInfos.size();
+
+/// Returns the line of a metric. Number `i` of the table is that of static_cast<Metric>(i).
+constexpr const MetricInfo& metric_info(Metric m) {
+  return kMetricInfos[static_cast<std::size_t>(m)];
+}
+consteval bool metrics_are_in_enum_order() {
+  for (std::size_t i = 0; i < kMetrics; ++i)
+    if (static_cast<std::size_t>(kMetricInfos[i].metric) != i) return false;
+  return true;
+}
+static_assert(metrics_are_in_enum_order());
 /// Returns how wrong an answer is where this is asked for: the error that the chart shows.
 Metric chart_metric(Quantity quantity);
 
@@ -50,8 +85,8 @@ struct Point {
   PoseClass pose_class = PoseClass::apart;
   std::size_t questions = 0, refused = 0, crashed = 0, timed_out = 0;
   Errors errors;  ///< means over the questions
-  /// What is proved, mean: Metric::off is no more; or where a number was asked for, its interval is as wide,
-  /// in the unit of its error. Nothing: not proved.
+  /// What is proved, mean: Metric::deviation is no more; or where a number was asked for, its interval is as
+  /// wide, in the unit of its error. Nothing: not proved.
   std::optional<double> proved_off;
   double median = 0, p95 = 0, p99 = 0;  ///< microseconds, hot, all pairs, over the questions that were
                                         ///< answered

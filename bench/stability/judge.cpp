@@ -122,7 +122,7 @@ void judge(Record& record, const MethodInfo& info, const MethodAnswer& answer, c
   }
   // Bodies that are not closed can only be asked about their surfaces.
   conclude(record, answer.relation || expected.relation != Relation::undefined,
-           !info.loose || expected.pairs.empty());
+           !info.has(methods::Trait::loose) || expected.pairs.empty());
 }
 
 void judge_swapped(Record& record, const MethodInfo& info, const MethodAnswer& answer,

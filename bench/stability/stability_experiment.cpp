@@ -276,7 +276,7 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
 }
 
 StabilityRunner::Posed StabilityRunner::place(const LrbRep& rep, const Pose& pose, int side) {
-  if (!info_.moves_exactly) return {method_->build(methods::at_pose(rep, pose)), Pose{}};
+  if (!info_.has(methods::Trait::moves_exactly)) return {method_->build(methods::at_pose(rep, pose)), Pose{}};
   static constexpr std::size_t kMostKept = 200;
   if (kept_.size() > kMostKept) kept_.clear();
   BodyPointer& body = kept_[{rep.hash(), side}];
@@ -290,9 +290,10 @@ void StabilityRunner::ask(const cases::Family& family, const cases::Case& c, con
   const Mode mode = info_.pairs ? Mode::all_pairs : Mode::first_pair;
   record.expected = expected.pairs.size();
   workers::note_failures(record, [&] {
-    if (c.a->dim() == 2 && !info_.plane)
+    if (c.a->dim() == 2 && !info_.has(methods::Trait::takes_2d))
       throw InputError("a 2D body: not asked, because it answers for 3D bodies only");
-    if (!expected.refusal.empty() && !info_.moves_exactly) throw InputError(expected.refusal + ": not asked");
+    if (!expected.refusal.empty() && !info_.has(methods::Trait::moves_exactly))
+      throw InputError(expected.refusal + ": not asked");
     const Posed a = place(*c.a, c.pose_a, 0), b = place(*c.b, c.pose_b, 1);
     methods::MethodAnswer answer = method_->query(*a.body, a.pose, *b.body, b.pose, mode);
     record.microseconds = answer.microseconds;

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "bench/stability/outcome_grid.hpp"
+#include "render/page_palette.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/render/style.hpp>
@@ -11,21 +12,13 @@
 namespace lrb::stability {
 namespace {
 
+namespace page = render::page;
+
 // ---- the grid. Units are those of one cell, x to the right, y up, with the first row's top at 0
 
 constexpr double kCellWidth = 17, kCellHeight = 10.5;  // millimetres
 constexpr double kLeft = 2.9, kBottom = 1.8;
 constexpr double kFont = 6.5, kSmall = 0.8, kLine = 0.24;  // points; share of it
-
-constexpr render::Rgba kWrong = render::palette::kVermillion;
-constexpr render::Rgba kCrashed{20, 22, 26};
-constexpr render::Rgba kTimedOut{160, 69, 138};
-constexpr render::Rgba kRefused{154, 160, 166};
-constexpr render::Rgba kOnlyRefused{228, 230, 232};
-/// Colours as on the page: pale blue where nothing fails, then ever more orange.
-constexpr std::array<render::Rgba, 5> kLevels = {render::Rgba{226, 238, 246}, render::Rgba{253, 241, 220},
-                                                 render::Rgba{251, 220, 174}, render::Rgba{245, 180, 107},
-                                                 render::Rgba{232, 138, 60}};
 
 std::string colour(render::Rgba c) {
   return std::to_string((static_cast<unsigned>(c.r) << 16) + (static_cast<unsigned>(c.g) << 8) + c.b);
@@ -106,18 +99,19 @@ void add_bars(Sheet& sheet, const Cell& cell, double x, double y) {
       sheet.rect(left, at, right, top, c);
       at = top;
     };
-    part(cell.wrong[i], kWrong);
-    part(cell.crashed[i], kCrashed);
-    part(cell.timed_out[i], kTimedOut);
-    part(cell.refused[i], kRefused);
+    part(cell.wrong[i], page::kWrong.light);
+    part(cell.crashed[i], page::kCrashed.light);
+    part(cell.timed_out[i], page::kTimedOut.light);
+    part(cell.refused[i], page::kRefused.light);
   }
 }
 
 void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   constexpr double kGap = 0.02;
   const CellSummary s = summarise(cell);
-  sheet.rect(x + kGap, y + kGap, x + 1 - kGap, y + 1 - kGap,
-             s.only_refused() ? kOnlyRefused : kLevels[static_cast<std::size_t>(s.level())]);
+  sheet.rect(
+      x + kGap, y + kGap, x + 1 - kGap, y + 1 - kGap,
+      s.only_refused() ? page::kOnlyRefused.light : page::kLevels[static_cast<std::size_t>(s.level())].light);
   const std::string failures = std::to_string(s.failures()) + "/" + std::to_string(s.answered());
   sheet.text(x + 0.06, y + 0.8, Sheet::small, failures);
   std::string marks;
@@ -163,12 +157,12 @@ void add_legend(Sheet& sheet, double y, double columns, const std::string& absen
     sheet.text(x + 0.29, y, Sheet::small, text);
     x += needed;
   };
-  for (std::size_t i = 0; i < kLevels.size(); ++i) item(kLevels[i], kLevelNames[i]);
-  item(kOnlyRefused, "refusals alone");
-  item(kWrong, "wrong answer");
-  item(kCrashed, "\u2715 crashed");
-  item(kTimedOut, "\u25f7 timed out");
-  item(kRefused, "\u2298 refused");
+  for (std::size_t i = 0; i < page::kLevels.size(); ++i) item(page::kLevels[i].light, kLevelNames[i]);
+  item(page::kOnlyRefused.light, "refusals alone");
+  item(page::kWrong.light, "wrong answer");
+  item(page::kCrashed.light, "\u2715 crashed");
+  item(page::kTimedOut.light, "\u25f7 timed out");
+  item(page::kRefused.light, "\u2298 refused");
   sheet.text(-kLeft + 0.1, y - 0.42, Sheet::small,
              "Failures/cases not refused; bars: share of cases along the dial, benign to degenerate.",
              render::palette::kFaint);
@@ -181,10 +175,12 @@ constexpr int kProfileColumns = 4;
 
 /// Returns the style of line i; lines differ in colour, dash and mark.
 std::string line_style(std::size_t i) {
-  static constexpr std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                          "#1d1f22", "#56b4e9", "#e69f00", "#7a5195"};
+  namespace palette = render::palette;
+  static constexpr std::array<render::Rgba, 8> kColours = {
+      palette::kBlue,   palette::kVermillion, palette::kGreen,  palette::kPurple,
+      page::kInk.light, palette::kSkyBlue,    palette::kOrange, {122, 81, 149}};
   static constexpr std::array<int, 8> kPoints = {7, 5, 9, 11, 13, 6, 4, 8};
-  return "lc rgb '" + std::string(kColours[i % kColours.size()]) + "' pt " +
+  return "lc rgb '" + render::css(kColours[i % kColours.size()]) + "' pt " +
          std::to_string(kPoints[i % kPoints.size()]) + " ps 0.35 dt " +
          std::to_string(1 + i / kColours.size()) + " lw 1.1";
 }
@@ -212,10 +208,11 @@ std::string panel_heading(const FamilyRow& family, bool first) {
   for (std::size_t i = 0; i < kDialSettings; i += kEvery)
     marks += (i > 0 ? ", " : "") + tick_text(family.values.empty() ? "" : family.values[i]) + " " +
              std::to_string(i);
-  out += "set xtics (" + marks + ") nomirror scale 0.4 offset 0,0.5 font 'DejaVu Sans,5' tc rgb '#62676e'\n";
+  out += "set xtics (" + marks + ") nomirror scale 0.4 offset 0,0.5 font 'DejaVu Sans,5' tc rgb '" +
+         render::css(page::kSoft.light) + "'\n";
   const auto end = [&](int number, const std::string& text, const char* where) {
     out += "set label " + std::to_string(number) + " " + report::gnuplot_text(text) + " at graph " + where +
-           " font 'DejaVu Sans,5' tc rgb '#62676e'\n";
+           " font 'DejaVu Sans,5' tc rgb '" + render::css(page::kSoft.light) + "'\n";
   };
   end(1, family.benign.empty() ? " " : family.benign + " \u2192", "0,-0.23 left");
   end(2, family.degenerate.empty() ? " " : family.degenerate, "1,-0.34 right");
@@ -335,7 +332,9 @@ report::Gnuplot profile_chart(const Grid& grid) {
   plots += profile_key(grid, present, key_rows, chart);
   chart.script +=
       "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset yrange [-3:103]\nset ytics "
-      "0,50,100 nomirror scale 0.4 offset 0.6,0 tc rgb '#1c1e22'\n"
+      "0,50,100 nomirror scale 0.4 offset 0.6,0 tc rgb '" +
+      render::css(render::palette::kInk) +
+      "'\n"
       "set grid ytics lw 0.4 lc rgb '#d8dadc' dt 1\n";
   chart.script +=
       "set xrange [-0.6:" + io::number_text(kDialSettings - 0.4) + "]\n" + plots + "\nunset multiplot\n";

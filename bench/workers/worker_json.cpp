@@ -10,40 +10,48 @@ inline constexpr auto kFields<methods::MethodStyle> =
                field("shape", &methods::MethodStyle::shape), field("point", &methods::MethodStyle::point)};
 
 template <>
-inline constexpr auto kFields<methods::MethodInfo> =
-    std::tuple{field("name", &methods::MethodInfo::name),
-               field("title", &methods::MethodInfo::title),
-               field("remark", &methods::MethodInfo::remark),
-               field("present", &methods::MethodInfo::present),
-               field("pairs", &methods::MethodInfo::pairs),
-               field("loose", &methods::MethodInfo::loose),
-               field("says", &methods::MethodInfo::says),
-               field("plane", &methods::MethodInfo::plane),
-               field("moves_exactly", &methods::MethodInfo::moves_exactly),
-               field("hard_cases", &methods::MethodInfo::hard_cases),
-               field("approximate", &methods::MethodInfo::approximate),
-               field("convex", &methods::MethodInfo::convex),
-               field("told_more", &methods::MethodInfo::told_more),
-               field("own_rep", &methods::MethodInfo::own_rep),
-               field("knob", &methods::MethodInfo::knob),
-               field("settings", &methods::MethodInfo::settings),
-               field("style", &methods::MethodInfo::style),
-               field("role", &methods::MethodInfo::role),
-               field("rank", &methods::MethodInfo::rank)};
+inline constexpr auto kFields<methods::MethodInfo> = std::tuple{
+    field("name", &methods::MethodInfo::name),     field("title", &methods::MethodInfo::title),
+    field("remark", &methods::MethodInfo::remark), field("present", &methods::MethodInfo::present),
+    field("pairs", &methods::MethodInfo::pairs),   field("says", &methods::MethodInfo::says),
+    field("knob", &methods::MethodInfo::knob),     field("settings", &methods::MethodInfo::settings),
+    field("style", &methods::MethodInfo::style),   field("role", &methods::MethodInfo::role),
+    field("rank", &methods::MethodInfo::rank)};
 
 static_assert(covers_all_fields<methods::MethodStyle>);
-static_assert(covers_all_fields<methods::MethodInfo>);
+// All but the traits, which are keys of their own.
+static_assert(kFieldCount<methods::MethodInfo> + 1 == detail::member_count<methods::MethodInfo>());
 
 }  // namespace lrb
 
 namespace lrb::workers {
 
 nlohmann::ordered_json to_json(const methods::MethodInfo& info) {
-  return io::record_to_json(info);
+  const nlohmann::ordered_json record = io::record_to_json(info);
+  nlohmann::ordered_json out;
+  const auto add = [&](methods::Trait t) { out[std::string(name_of(t))] = info.has(t); };
+  // The first trait comes before "says", the others after it.
+  for (const auto& [key, value] : record.items()) {
+    if (key == "says") add(methods::Trait::loose);
+    out[key] = value;
+    if (key != "says") continue;
+    for (const auto& entry : kWords<methods::Trait>)
+      if (entry.value != methods::Trait::loose) add(entry.value);
+  }
+  return out;
 }
 
 methods::MethodInfo method_info_from(const nlohmann::json& value) {
-  return io::record_from_json<methods::MethodInfo>(value);
+  auto info = io::record_from_json<methods::MethodInfo>(value);
+  for (const auto& entry : kWords<methods::Trait>) {
+    const char* key = entry.word.data();
+    try {
+      info.traits.set(entry.value, value.at(key).get<bool>());
+    } catch (const nlohmann::json::exception& e) {
+      throw InputError(std::string(key) + ": " + e.what());
+    }
+  }
+  return info;
 }
 
 }  // namespace lrb::workers

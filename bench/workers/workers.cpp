@@ -155,7 +155,7 @@ std::vector<WorkerMethod> methods_of(const std::string& program, const std::vect
 
 std::vector<WorkerMethod> find_methods() {
   std::vector<WorkerMethod> methods = find_all_methods();
-  std::erase_if(methods, [](const WorkerMethod& m) { return !m.info.hard_cases; });
+  std::erase_if(methods, [](const WorkerMethod& m) { return !m.info.has(methods::Trait::hard_cases); });
   return methods;
 }
 

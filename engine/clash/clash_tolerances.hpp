@@ -37,11 +37,12 @@ inline constexpr double kLittleLost = 0.97;
 inline constexpr double kFlatShare = 0x1p-40, kClipShare = 0x1p-45;
 inline constexpr unsigned kMostHalfSpaces = 400;
 inline constexpr double kLeastClearance = 0x1p-36;
-/// Gain from which on the hull of differences is grown, and how often it may be. Smaller: no nearer to the
-/// depth than rounding; fewer: wide intervals for round bodies.
+/// Smallest gain for which the EPA polytope of a Minkowski difference is grown. Smaller: no nearer to the
+/// depth than rounding.
 inline constexpr double kDepthGain = 0x1p-48;
+/// Maximum number of steps by which it is grown. Fewer: wide intervals for round bodies.
 inline constexpr unsigned kMostDepthSteps = 1500;
-/// The same where the hull has to hold the origin, or to give a direction to begin with, and no more.
+/// The same if the polytope only has to contain the origin, or to give a first direction.
 inline constexpr unsigned kRoughDepthSteps = 100;
 /// Bound on the error of a difference of two points of convex sets whose coordinates are at most 1: 2 u in
 /// length for the difference, and 4 u where one of them was moved by a product before.
@@ -52,16 +53,24 @@ inline constexpr double kDifferenceRounding = 0x1p-50;
 inline constexpr double kPartingMargin = 0x1p-42, kMostPartingMargin = 0x1p-6;
 /// Largest world coordinate up to which translations are tried: beyond it they could overflow.
 inline constexpr double kLargestMoved = 0x1p1020;
-/// Where to look for the shortest way out of bodies that are not convex. Nothing is proved by these, they
-/// only say how long it is looked for: directions whose coordinates round to the same multiples of 1 /
-/// kDirectionGrid, about 0.6 degrees, count as one, and so many are tried; in each, so many lengths; the best
-/// one is turned by ever less.
+
+// The search for the shortest separating translation of bodies that are not convex. These only bound how long
+// it takes; what it finds is proved apart.
+
+/// Directions are deduplicated on a grid of 1 / kDirectionGrid (about 0.6 degrees).
 inline constexpr double kDirectionGrid = 100;
+/// Number of directions that are tried: those of largest contact area, and those of largest face area.
 inline constexpr unsigned kDirectionsInContact = 32, kDirectionsOfFaces = 16;
+/// Number of lengths that are tried in each direction, and in the best one at the end.
 inline constexpr int kDirectionSamples = 16, kWaySamples = 128;
+/// Share by which a direction's translation must be shorter than the best one so far.
 inline constexpr double kDirectionGain = 0x1p-20;
+/// The best direction is refined by rotations of decreasing angle: the first and the last angle, in radians,
+/// and the share of the angle by which a rotation must shorten the translation.
 inline constexpr double kFirstTurn = 0.2, kLeastTurn = 1e-5, kTurnGain = 0x1p-6;
+/// Maximum number of rotations, and of steps of the other searches.
 inline constexpr unsigned kMostSteps = 200;
+
 /// Where to look for the point that lies deepest in both bodies: points of a grid, so many each way, or twice
 /// and four times as many if none of them lies in both; then steps, until they are this share of its
 /// clearance. A point counts as deeper if it is so by more than rounding (kClearlyMore).

@@ -237,7 +237,7 @@ void DepthFinder::tell(double least) {
 
 /// Grows the Minkowski difference and reports its bounds: those of sets inside the bodies are lower bounds,
 /// those of the convex hulls upper bounds.
-void DepthFinder::find_depth(ConvexDifference& difference, unsigned most_steps, bool is_inner) {
+void DepthFinder::find_depth(MinkowskiDifference& difference, unsigned most_steps, bool is_inner) {
   if (teller_ == nullptr) {
     difference.find_depth(most_steps);
     return;
@@ -350,13 +350,13 @@ DepthFinder::Depth DepthFinder::depth() {
   double lower = 0;
   // Step 1: proven lower bound from convex sets around a common point.
   if (const std::optional<Common> sets = common_sets(Vector3d::Zero(), WholeTriangles::no)) {
-    ConvexDifference difference(sets->a, sets->b);
+    MinkowskiDifference difference(sets->a, sets->b);
     find_depth(difference, kMostDepthSteps, true);
     lower = difference.depth_lower();
   }
   // Step 2: upper bound from the convex hulls, which contain the bodies.
   const ConvexPoints &a = bodies_.body[0].points, &b = bodies_.body[1].points;
-  ConvexDifference hulls(a, b);
+  MinkowskiDifference hulls(a, b);
   find_depth(hulls, convex ? kMostDepthSteps : kRoughDepthSteps, false);
   double best = hulls.depth_upper();
   Vector3d best_n = hulls.direction();
@@ -387,7 +387,7 @@ double DepthFinder::along_lower(const Vector3d& n) {
     // Convex sets of the bodies with B at the current translation.
     const std::optional<Common> sets = common_sets(from * n, WholeTriangles::yes);
     if (!sets) break;
-    ConvexDifference difference(sets->a, sets->b);
+    MinkowskiDifference difference(sets->a, sets->b);
     // The hull must contain the origin first; then it grows only where the ray along n leaves it.
     difference.find_depth(kRoughDepthSteps);
     difference.follow(n);

@@ -46,7 +46,7 @@ class DepthFinder {
   std::vector<Vector3d> directions();
   void improve(const Vector3d& n, double& best, Vector3d& best_n);
   void refine(double& best, Vector3d& best_n);
-  void find_depth(ConvexDifference& difference, unsigned most_steps, bool is_inner);
+  void find_depth(MinkowskiDifference& difference, unsigned most_steps, bool is_inner);
   void tell(double least);
   double hull_width(const Vector3d& n) const;
   double along_lower(const Vector3d& n);

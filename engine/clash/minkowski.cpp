@@ -36,20 +36,20 @@ const Vector3d& farthest(const ConvexPoints& points, const Vector3d& n) {
 
 }  // namespace
 
-ConvexDifference::ConvexDifference(const ConvexPoints& a, const ConvexPoints& b) : a_(a), b_(b) {
+MinkowskiDifference::MinkowskiDifference(const ConvexPoints& a, const ConvexPoints& b) : a_(a), b_(b) {
   solid_ = begin();
 }
 
-Vector3d ConvexDifference::support(const Vector3d& n) const {
+Vector3d MinkowskiDifference::support(const Vector3d& n) const {
   // Support point of A - B: that of A along n, minus that of B against n.
   return farthest(a_, n) - farthest(b_, -n);
 }
 
-double ConvexDifference::width(const Vector3d& n) const {
+double MinkowskiDifference::width(const Vector3d& n) const {
   return n.dot(support(n));
 }
 
-bool ConvexDifference::begin() {
+bool MinkowskiDifference::begin() {
   const Vector3d first = support(Vector3d::UnitX());
   Vector3d second = first, third = first, fourth = first;
   const auto consider = [](Vector3d& best, double& most, const Vector3d& x, double value) {
@@ -87,7 +87,7 @@ bool ConvexDifference::begin() {
   return hull_.begin({first, second, third, fourth});
 }
 
-bool ConvexDifference::grow(std::size_t facet) {
+bool MinkowskiDifference::grow(std::size_t facet) {
   PointHull::Facet& f = hull_.facets()[facet];
   f.is_final = true;  // unless it is replaced
   // A facet too thin for a normal cannot be improved.
@@ -103,7 +103,7 @@ bool ConvexDifference::grow(std::size_t facet) {
   return width - f.offset > kDepthGain && hull_.add(x);
 }
 
-unsigned ConvexDifference::find_depth(unsigned most_steps) {
+unsigned MinkowskiDifference::find_depth(unsigned most_steps) {
   if (!solid_) return 0;
   unsigned step = 0;
   for (; step < most_steps && upper_ > 0; ++step) {
@@ -120,13 +120,13 @@ unsigned ConvexDifference::find_depth(unsigned most_steps) {
   return step;
 }
 
-double ConvexDifference::exit_of(const PointHull::Facet& f, const Vector3d& n) {
+double MinkowskiDifference::exit_of(const PointHull::Facet& f, const Vector3d& n) {
   // Ray against plane: without a positive slope the ray stays behind the facet.
   const double slope = f.normal.dot(n);
   return slope > 0 ? f.offset / slope : kInfinity;
 }
 
-void ConvexDifference::follow(const Vector3d& n) {
+void MinkowskiDifference::follow(const Vector3d& n) {
   if (!solid_) return;
   for (unsigned step = 0; step < kMostDepthSteps; ++step) {
     const std::vector<PointHull::Facet>& facets = hull_.facets();
@@ -141,7 +141,7 @@ void ConvexDifference::follow(const Vector3d& n) {
 
 /// The hull's points are off by kDifferenceRounding, so that the true difference contains the hull up to a
 /// layer of this thickness.
-double ConvexDifference::depth_lower() const {
+double MinkowskiDifference::depth_lower() const {
   const Vector3d origin = Vector3d::Zero();
   // If the origin is not strictly inside, the sets need not overlap. Exact.
   if (!solid_ || !hull_.holds_inside(origin)) return 0;
@@ -162,7 +162,7 @@ double ConvexDifference::depth_lower() const {
 /// If the hull P contains x = s n and a ball of radius r around the origin, the true difference contains (1 -
 /// e / r) P, where e is kDifferenceRounding: its support function is at least that of P less e, and that of P
 /// is at least r.
-double ConvexDifference::along_lower(const Vector3d& n) const {
+double MinkowskiDifference::along_lower(const Vector3d& n) const {
   const double radius = depth_lower();
   if (!(radius > 0)) return 0;
   // Where the ray leaves the hull, rounded.

@@ -51,9 +51,9 @@ class PointHull {
 /// A and of B moved by d overlap exactly if d is inside it. An inner polytope is known, which grows where its
 /// boundary is nearest to the origin (EPA: van den Bergen, "Proximity Queries and Penetration Depth
 /// Computation on 3D Game Objects", 2001, but with an exact hull and proven bounds).
-class ConvexDifference {
+class MinkowskiDifference {
  public:
-  ConvexDifference(const ConvexPoints& a, const ConvexPoints& b);
+  MinkowskiDifference(const ConvexPoints& a, const ConvexPoints& b);
 
   /// Grows the hull until the distance of the origin to its boundary is that of the Minkowski difference, or
   /// for `most_steps` steps. Continues earlier calls. Returns the number of steps.

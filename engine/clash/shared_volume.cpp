@@ -178,13 +178,11 @@ void add_pair(const Seen& a, const Seen& b, Sum& sum) {
   const bool a_is_less = a.diameter <= b.diameter;
   const Seen &small = a_is_less ? a : b, &large = a_is_less ? b : a;
   // An ambiguous orientation: the area is so small that it counts as error only.
-  if (a.sign == 0 || b.sign == 0) {
-    for (const Seen* s : {&a, &b})
-      if (s->sign == 0) {
-        sum.add(0, kSideError * s->diameter * s->diameter);
-        return;
-      }
-  }
+  for (const Seen* s : {&a, &b})
+    if (s->sign == 0) {
+      sum.add(0, kSideError * s->diameter * s->diameter);
+      return;
+    }
   // Clip to the left of the three edges of the larger triangle.
   Polygon polygon;
   for (const Vector2d& x : small.p) polygon.add(x);

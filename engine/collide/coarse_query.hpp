@@ -309,7 +309,7 @@ class CoarseQuery {
     return false;
   }
 
-  /// Leaves of what was found the first pair that crosses; nothing if none does.
+  /// Keeps only the first crossing pair. Clears the result if no pair crosses.
   static void keep_one_crossing(CollideResult& found) {
     const auto crossing = std::find(found.meets.begin(), found.meets.end(), exact::Meet::cross);
     const auto kept = static_cast<std::size_t>(crossing - found.meets.begin());

@@ -162,8 +162,8 @@ void PatchPass::find_cap(Job& job, const CapGoal& goal, Bench& bench) const {
     job.tried[job.tries - 1].off = std::min(goal.off, off_of(bench.cap));
 }
 
-/// Makes a cap of the patch that is worth it; what it meets is not looked at, or of single collapses if
-/// `careful`.
+/// Simplifies the patch into a cap that is worth a region. Intersections with the hull are checked after each
+/// collapse if `careful`, otherwise not at all.
 CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& bench, bool careful) const {
   CapSurface& cap = bench.cap;
   cap.load(hull_, patch, static_cast<VertexId>(complex_.vertices().size()));

@@ -26,11 +26,12 @@ std::string stage_words(const trace::PassSummary& pass) {
 namespace {
 
 std::string cap_words(const trace::Event& e) {
-  const std::string size =
-      e.b == 0 ? "no cap, nothing could be left out"
-               : "cap of " + render::counted(e.a, "face", "faces") + " over " + render::group_digits(e.b);
-  std::string out = size + ": " + std::string(name_of(e.verdict()));
-  if (std::isfinite(e.off())) out += ", " + render::short_number(e.off()) + " off the body";
+  const trace::payload::Cap cap = e.cap();
+  const std::string size = cap.covered == 0 ? "no cap, nothing could be left out"
+                                            : "cap of " + render::counted(cap.faces, "face", "faces") +
+                                                  " over " + render::group_digits(cap.covered);
+  std::string out = size + ": " + std::string(name_of(cap.verdict));
+  if (std::isfinite(cap.off)) out += ", " + render::short_number(cap.off) + " off the body";
   return out;
 }
 
@@ -39,21 +40,21 @@ std::string cap_words(const trace::Event& e) {
 std::string built_words(const trace::Event& e) {
   switch (e.kind) {
     case EventKind::pass:
-      return "pass " + std::to_string(e.a + 1) + " begins: " + std::string(name_of(e.stage()));
+      return "pass " + std::to_string(e.pass().layer + 1) + " begins: " + std::string(name_of(e.stage()));
     case EventKind::patch:
-      return "patch of " + render::counted(e.b, "face", "faces") + " grown from vertex " +
-             std::to_string(e.a);
+      return "patch of " + render::counted(e.patch().faces, "face", "faces") + " grown from vertex " +
+             std::to_string(e.patch().vertex);
     case EventKind::cap:
       return cap_words(e);
     case EventKind::region:
-      return "region " + std::to_string(e.a) + " made: " + render::counted(e.b, "face", "faces") +
-             " under it";
+      return "region " + std::to_string(e.region()) +
+             " made: " + render::counted(e.wrapper_change().faces, "face", "faces") + " under it";
     case EventKind::merged:
-      return render::counted(e.b, "inner shell", "inner shells") + " became part of region " +
-             std::to_string(e.a);
+      return render::counted(e.merged().pieces, "inner shell", "inner shells") + " became part of region " +
+             std::to_string(e.merged().into);
     case EventKind::closed:
-      return "built: " + render::counted(e.a, "region", "regions") + ", outermost wrapper of " +
-             render::counted(e.b, "face", "faces");
+      return "built: " + render::counted(e.closed().regions, "region", "regions") +
+             ", outermost wrapper of " + render::counted(e.closed().outer_faces, "face", "faces");
     default:
       return {};
   }

@@ -233,8 +233,8 @@ class Approval {
   const GoldenRun& run_;
 };
 
-/// Calls something that reads a golden; returns nothing if files are missing or damaged and that `may_fail`,
-/// because approving replaces them by sound ones.
+/// Loads a golden. With `may_fail`, returns nullopt if its files are missing or damaged: approving replaces
+/// them.
 std::optional<Golden> load_if_sound(const std::string& goldens, const std::string& name, bool may_fail) {
   try {
     return load_golden(goldens, name);

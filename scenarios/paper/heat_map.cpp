@@ -28,14 +28,15 @@ struct PanelView {
   bool near;                     ///< where the bodies meet, else the whole body
 };
 
-std::vector<double> tests_of(const PaperPair& pair, const PanelView& s) {
-  const trace::FaceCounts counts = trace::count_faces(pair.rep(s.side), s.side, s.collision->trace.events);
+std::vector<double> tests_of(const PaperPair& pair, const PanelView& view) {
+  const trace::FaceCounts counts =
+      trace::count_faces(pair.rep(view.side), view.side, view.collision->trace.events);
   return {counts.tests.begin(), counts.tests.end()};
 }
 
-Pose pose_of(const PanelView& s) {
-  const ContactStep& last = s.collision->steps.back();
-  return s.side == Side::a ? last.pose_a : last.pose_x;
+Pose pose_of(const PanelView& view) {
+  const ContactStep& last = view.collision->steps.back();
+  return view.side == Side::a ? last.pose_a : last.pose_x;
 }
 
 Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
@@ -45,11 +46,11 @@ Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
 }
 
 /// Returns the direction from the place of the other body, a little aside, onto the faces that it met.
-render::ViewDirection view_of(const PaperPair& pair, const PanelView& s) {
-  const ContactStep& last = s.collision->steps.back();
+render::ViewDirection view_of(const PaperPair& pair, const PanelView& view) {
+  const ContactStep& last = view.collision->steps.back();
   const Eigen::Vector3d way =
       box_of(pair.x.rep, last.pose_x).center() - box_of(pair.a.rep, last.pose_a).center();
-  const Eigen::Vector3d from = (s.side == Side::a ? way : -way).normalized();
+  const Eigen::Vector3d from = (view.side == Side::a ? way : -way).normalized();
   int flat = 0;  // the axis that is most nearly perpendicular to the direction
   from.cwiseAbs().minCoeff(&flat);
   const Eigen::Vector3d up = Eigen::Vector3d::Unit(flat), aside = from.cross(up).normalized();
@@ -72,14 +73,15 @@ std::vector<Eigen::Vector3d> largest_contact(const CollideResult& contact) {
   return render::contact_points(std::span(&*largest, 1));
 }
 
-render::Camera camera_of(const PaperPair& pair, const PanelView& s) {
-  const LrbRep& rep = pair.rep(s.side);
+render::Camera camera_of(const PaperPair& pair, const PanelView& view) {
+  const LrbRep& rep = pair.rep(view.side);
   render::FitOptions fit;
-  fit.view = view_of(pair, s);
+  fit.view = view_of(pair, view);
   constexpr double kAround = 1.2, kLeast = 0.12;  // as shares of the contact's size and of the body's
-  return s.near ? render::fit_contact(largest_contact(*s.contact), box_of(rep, pose_of(s)), kPanelWidth,
-                                      kPanelHeight, fit, kAround, kLeast)
-                : render::fit_camera(render::body_points(rep, pose_of(s)), kPanelWidth, kPanelHeight, fit);
+  return view.near
+             ? render::fit_contact(largest_contact(*view.contact), box_of(rep, pose_of(view)), kPanelWidth,
+                                   kPanelHeight, fit, kAround, kLeast)
+             : render::fit_camera(render::body_points(rep, pose_of(view)), kPanelWidth, kPanelHeight, fit);
 }
 
 /// Returns the place of a count on the scale, which is logarithmic because a few faces get most of the tests:
@@ -90,22 +92,22 @@ double share(double tests, double most) {
 
 /// Draws the wrapper as the last time step left it, without anything translucent, so that colours are those
 /// of the scale; and where the bodies meet.
-render::DrawList wrapper_list(const PaperPair& pair, const PanelView& s, double most) {
-  const LrbRep& rep = pair.rep(s.side);
-  const std::vector<double> tests = tests_of(pair, s);
-  trace::Cursor cursor(s.collision->trace, pair.a.rep, pair.x.rep);
-  cursor.seek(static_cast<trace::EventId>(s.collision->trace.events.size() - 1));
+render::DrawList wrapper_list(const PaperPair& pair, const PanelView& view, double most) {
+  const LrbRep& rep = pair.rep(view.side);
+  const std::vector<double> tests = tests_of(pair, view);
+  trace::Cursor cursor(view.collision->trace, pair.a.rep, pair.x.rep);
+  cursor.seek(static_cast<trace::EventId>(view.collision->trace.events.size() - 1));
   render::DrawList list;
   list.edge_styles[0] = {render::with_alpha(render::kWhite, 110), 0.8F};
-  for (const FaceId f : cursor.wrapper(s.side).boundary()) {
+  for (const FaceId f : cursor.wrapper(view.side).boundary()) {
     render::DrawTriangle t;
     t.colour = tests[f] > 0 ? render::palette::viridis(share(tests[f], most)) : render::palette::kPaleFront;
     t.edges = 7;
     std::vector<Eigen::Vector3d> corners;
-    for (const VertexId v : rep.face(f)) corners.push_back(pose_of(s).apply(rep.vertices()[v]));
+    for (const VertexId v : rep.face(f)) corners.push_back(pose_of(view).apply(rep.vertices()[v]));
     list.add_polygon(corners, t);
   }
-  for (const ContactRegion& region : s.contact->regions)
+  for (const ContactRegion& region : view.contact->regions)
     for (const ContactLoop& loop : region.loops) {
       render::DrawLine line;
       line.points = loop.points;
@@ -120,36 +122,37 @@ render::DrawList wrapper_list(const PaperPair& pair, const PanelView& s, double 
   return list;
 }
 
-render::Panel draw_panel(render::Rasterizer& rasterizer, const PaperPair& pair, const PanelView& s,
+render::Panel draw_panel(render::Rasterizer& rasterizer, const PaperPair& pair, const PanelView& view,
                          double most) {
   render::RasterOptions raster;
   raster.width = kPanelWidth;
   raster.height = kPanelHeight;
   raster.lighting = kSoft;
-  const std::string what = s.near ? ", close up"
-                                  : ", " + std::string(s.which) + ": " +
-                                        render::group_digits(s.collision->comparisons) + " face tests";
-  return {rasterizer.draw(wrapper_list(pair, s, most), camera_of(pair, s), raster), pair.name(s.side) + what};
+  const std::string what = view.near ? ", close up"
+                                     : ", " + std::string(view.which) + ": " +
+                                           render::group_digits(view.collision->comparisons) + " face tests";
+  return {rasterizer.draw(wrapper_list(pair, view, most), camera_of(pair, view), raster),
+          pair.name(view.side) + what};
 }
 
 }  // namespace
 
 render::Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, const CloseUp& hardest) {
   const CollideResult contacts[2] = {contact_of(pair, easiest), contact_of(pair, hardest)};
-  std::vector<PanelView> sitters;
+  std::vector<PanelView> views;
   for (const bool hard : {false, true})
     for (const Side side : {Side::a, Side::b})
       for (const bool near : {false, true})
-        sitters.push_back(
+        views.push_back(
             {side, hard ? &hardest : &easiest, &contacts[hard ? 1 : 0], hard ? "hardest" : "easiest", near});
   double most = 0;
-  for (const PanelView& s : sitters) {
-    const std::vector<double> tests = tests_of(pair, s);
+  for (const PanelView& view : views) {
+    const std::vector<double> tests = tests_of(pair, view);
     most = std::max(most, *std::max_element(tests.begin(), tests.end()));
   }
   render::Rasterizer rasterizer;
   std::vector<render::Panel> panels;
-  for (const PanelView& s : sitters) panels.push_back(draw_panel(rasterizer, pair, s, most));
+  for (const PanelView& view : views) panels.push_back(draw_panel(rasterizer, pair, view, most));
   render::MontageOptions options;
   options.columns = 4;
   options.text_height = 28;

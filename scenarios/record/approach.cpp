@@ -33,8 +33,7 @@ double diagonal_of(const LrbRep& rep) {
 
 namespace {
 
-/// The steps of a motion that approaches, of which it takes so many to pass the target by as much as it began
-/// before it: B is as far behind it then.
+/// The steps of an approach. After `count` of them B is as far beyond the target as it started before it.
 struct Steps {
   const spec::Motion& motion;
   const Pose& start;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/canvas.hpp"
+#include "render/page_palette.hpp"
 #include "scenarios/io/files.hpp"
 
 namespace lrb::report {
@@ -308,9 +309,10 @@ std::string page_html(const Page& page) {
                                   : "<span class=\"verdict" + std::string(page.is_bad ? " bad" : "") + "\">" +
                                         render::escape_markup(page.verdict) + "</span>";
     if (key == "style")
-      return std::string(io::embedded_file("page.css")) +
-             (page.scene.empty() ? "" : std::string(io::embedded_file("scene.css"))) +
-             (page.grid.empty() ? "" : std::string(io::embedded_file("grid.css"))) +
+      return render::page_root_css() + std::string(io::embedded_file("page.css")) +
+             (page.scene.empty() ? ""
+                                 : render::scene_root_css() + std::string(io::embedded_file("scene.css"))) +
+             (page.grid.empty() ? "" : render::grid_root_css() + std::string(io::embedded_file("grid.css"))) +
              (page.views.empty() ? "" : std::string(io::embedded_file("views.css"))) +
              (page.comparisons.empty() ? "" : std::string(io::embedded_file("comparison.css")));
     if (key == "texts") return texts_html(page);

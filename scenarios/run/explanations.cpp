@@ -63,7 +63,7 @@ std::vector<Asked> pairs_of(const RecordedRun& p, const Explained& what) {
   return out;
 }
 
-/// Leaves at most so many: those that meet first.
+/// Keeps at most `most` pairs; intersecting pairs come first.
 void choose(std::vector<Asked>& pairs, std::size_t most) {
   if (pairs.size() <= most) return;
   std::stable_partition(pairs.begin(), pairs.end(), [](const Asked& x) { return x.meets; });

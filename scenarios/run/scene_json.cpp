@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "render/page_palette.hpp"
 #include "render/pictures/marks.hpp"
 #include "render/pictures/panel.hpp"
 #include "render/pictures/tree_boxes.hpp"
@@ -77,18 +78,9 @@ std::string packed_each(const Range& range, Get get) {
   return packed(out);
 }
 
-std::string css(render::Rgba c) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string out = "#";
-  for (const std::uint8_t byte : {c.r, c.g, c.b}) {
-    out += kDigits[byte >> 4];
-    out += kDigits[byte & 15];
-  }
-  return out;
-}
-
 json colours() {
   namespace palette = render::palette;
+  using render::css;
   constexpr std::uint32_t kStops = 17, kCategories = 96;
   json scale = json::array(), categories = json::array();
   for (std::uint32_t i = 0; i < kStops; ++i)
@@ -101,6 +93,12 @@ json colours() {
           {"selected", css(palette::kPurple)},
           {"wrong", css(palette::kWrong)},
           {"ink", css(palette::kInk)},
+          {"edgeInk", css(palette::kEdgeInk)},
+          {"shares",
+           {{"edge", palette::kEdgeShare},
+            {"lid", palette::kLidPale},
+            {"ground", palette::kGroundPale},
+            {"noValue", palette::kNoValuePale}}},
           {"wayOut", css(kWayOutColour)},
           {"scale", std::move(scale)},
           {"categories", std::move(categories)}};
@@ -242,7 +240,7 @@ json kinds_json() {
     out.push_back({{"name", name_of(kind)},
                    {"a", fields.a},
                    {"b", fields.b},
-                   {"colour", css(render::palette::event(kind))}});
+                   {"colour", render::css(render::palette::event(kind))}});
   }
   return out;
 }

@@ -227,7 +227,7 @@ TEST_CASE(
   bool any_off = false;
   for (const bench::Point& p : bench::measure_points({set}, infos, records)) {
     CAPTURE(p.method);
-    const double off = *p.errors[static_cast<std::size_t>(bench::Metric::off)];
+    const double off = *p.errors[static_cast<std::size_t>(bench::Metric::deviation)];
     REQUIRE(p.proved_off);
     CHECK(off <= *p.proved_off + 1e-12);
     CHECK(*p.errors[static_cast<std::size_t>(bench::Metric::contact)] == 0);
@@ -242,7 +242,7 @@ TEST_CASE("points: what fails scores the worst, and the frontier is what nothing
   const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
   std::vector<methods::MethodInfo> infos = {info("right"), info("blind"), info("dead"), info("slow"),
                                             info("told")};
-  infos.back().told_more = true;
+  infos.back().traits.set(methods::Trait::knows_poses_in_advance);
   std::vector<bench::Record> records;
   for (std::uint64_t q = 0; q < set.questions.size(); ++q)
     for (const methods::MethodInfo& m : infos) {

@@ -264,7 +264,7 @@ TEST_CASE("judging") {
   CHECK(r.missed == 1);
   CHECK(r.extra == 1);
 
-  info.loose = true;  // pairs too many are no fault of a list that is meant to have them
+  info.traits.set(methods::Trait::loose);  // pairs too many are no fault of a list that is meant to have them
   judge(r, info, answer, expected);
   CHECK(r.outcome == Outcome::wrong);
   answer.pairs = {{0, 1}, {2, 3}, {4, 4}};
@@ -273,7 +273,7 @@ TEST_CASE("judging") {
   CHECK(r.extra == 1);
   judge(r, info, answer, RightAnswer{});
   CHECK(r.outcome == Outcome::wrong);
-  info.loose = false;
+  info.traits.set(methods::Trait::loose, false);
   judge(r, info, answer, expected);
   CHECK(r.outcome == Outcome::wrong);
 

@@ -1,7 +1,7 @@
 #pragma once
 /// FCL's interface on this engine: for programs written for FCL 0.7 that want exact answers without being
-/// rewritten. Needs FCL's headers and library (Debian: libfcl-dev), which go on answering for all that is no
-/// mesh.
+/// rewritten. Needs FCL's headers and library (Debian: libfcl-dev). FCL still answers for geometry other
+/// than meshes.
 ///
 /// Include this header and write lrb::fcl:: where fcl:: stood; collide() and distance() of two meshes
 /// (BVHModel of any bounding volume) are then this engine's, and every other name of FCL is FCL's own:

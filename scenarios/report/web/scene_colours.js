@@ -10,6 +10,8 @@ class Colours {
     this.categories = json.categories.map(rgb);
     for (const name of ["contact", "refining", "underTest", "selected", "ink", "wrong", "wayOut"]) this[name] = rgb(json[name]);
     this.stops = json.scale;
+    this.edgeInk = rgb(json.edgeInk);
+    this.shares = json.shares; // how far colours move: of edges towards edgeInk, of pale faces towards white
   }
 
   onScale(t) {
@@ -18,18 +20,22 @@ class Colours {
     return mixed(this.scale[i], this.scale[i + 1], at - i);
   }
   edge(side) {
-    return mixed(this.bodies[side], [18 / 255, 20 / 255, 24 / 255], 0.72);
+    return mixed(this.bodies[side], this.edgeInk, this.shares.edge);
+  }
+
+  lid(side) {
+    return mixed(this.bodies[side], WHITE, this.shares.lid);
   }
 
   /** Returns what colours faces in a mode: {of(side, face), key: {most, title} or null}. `newest`: regions of earlier layers
       are pale; 0: none is. */
   mode(bodies, by, counts, newest = 0) {
     const layers = 1 + bodies.reduce((most, b) => b.layer.reduce((m, l) => Math.max(m, l), most), 0);
-    const pale = (side) => mixed(this.bodies[side], WHITE, 0.75);
+    const pale = (side) => mixed(this.bodies[side], WHITE, this.shares.ground);
     if (by === "kind")
       return {
         of: (side, face) =>
-          bodies[side].isReal(face) ? this.bodies[side] : mixed(this.bodies[side], WHITE, 0.7),
+          bodies[side].isReal(face) ? this.bodies[side] : this.lid(side),
         key: null,
       };
     if (by === "layer")
@@ -57,7 +63,7 @@ class Colours {
       of: (side, face) =>
         counts[side][face] > 0
           ? this.onScale(counts[side][face] / most)
-          : mixed(this.bodies[side], WHITE, 0.78),
+          : mixed(this.bodies[side], WHITE, this.shares.noValue),
       key: { most, title: "" },
     };
   }

@@ -40,12 +40,12 @@ class Legend {
       const name = bodies.length > 1 ? `${SIDES[b.side]} ${b.name}` : b.name,
         colour = colours.bodies[b.side];
       items.push([
-        css(key ? mixed(colour, WHITE, 0.78) : colour),
+        css(key ? mixed(colour, WHITE, colours.shares.noValue) : colour),
         `${name}, real faces${key && COUNTERS.includes(now.by) ? ` without ${now.by}` : ""}`,
         key ? css(colours.edge(b.side)) : "",
       ]);
       if (!key && now.by === "kind" && b.regionCount)
-        items.push([css(mixed(colour, WHITE, 0.7)), `${name}, pseudo faces`, css(colours.edge(b.side))]);
+        items.push([css(colours.lid(b.side)), `${name}, pseudo faces`, css(colours.edge(b.side))]);
     });
     if (now.by === "region")
       items.push([css(colours.categories[0]), `pseudo faces, a colour for each region${passes ? "; pale: of earlier passes" : ""}`, ""]);

@@ -76,7 +76,7 @@ class Projection {
   /// Maps the world to the eye's frame: x right, y up, z = distance in front of the eye.
   Eigen::Vector3d to_eye(const Eigen::Vector3d& world) const { return axes_ * (world - eye_); }
   /// Maps the eye's frame to pixels from the bottom left, y up, and depth in [-1, 1]. z must be at least
-  /// near().
+  /// near_depth().
   Eigen::Vector3d to_screen(const Eigen::Vector3d& eye) const;
   /// Maps the world to pixels from the top left, y down; nothing for a point behind the eye.
   std::optional<Eigen::Vector2d> to_pixel(const Eigen::Vector3d& world) const;

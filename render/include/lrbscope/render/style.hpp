@@ -59,9 +59,10 @@ inline constexpr Rgba kTransparent{0, 0, 0, 0};
 
 namespace lrb::render::palette {
 
-// Every colour of the project, in one place. Categories are from Okabe and Ito's palette, which people with
-// any common colour vision can tell apart (M. Okabe, K. Ito, "Color Universal Design", 2008); scalars are
-// viridis. What must be told apart also differs in brightness, for print in grey.
+// The colours of all pictures; render/page_palette.hpp has those of pages. Categories are from Okabe and
+// Ito's palette, which people with any common colour vision can tell apart (M. Okabe, K. Ito, "Color
+// Universal Design", 2008); scalars are viridis. What must be told apart also differs in brightness, for
+// print in grey.
 
 inline constexpr Rgba kOrange{230, 159, 0};
 inline constexpr Rgba kSkyBlue{86, 180, 233};
@@ -87,18 +88,30 @@ inline constexpr Rgba kRefining = kGreen;
 inline constexpr Rgba kRefining2d = mix(kGreen, kWhite, 0.4);  ///< as a fill, under lines
 inline constexpr Rgba kUnderTest = kYellow;
 
+/// What edges and solids differ from their body's colour towards, and by how much.
+inline constexpr Rgba kEdgeInk{18, 20, 24};
+inline constexpr double kEdgeShare = 0.72;
+inline constexpr Rgba kSolidInk{10, 14, 20};
+inline constexpr double kSolidShare = 0.28;
+
+/// How far faces fade towards the paper: pseudo faces, real faces beside coloured regions, and faces without
+/// a value.
+inline constexpr double kLidPale = 0.70;
+inline constexpr double kGroundPale = 0.75;
+inline constexpr double kNoValuePale = 0.78;
+
 /// Returns the colour of a body: blue or orange, which differ in brightness too.
 constexpr Rgba body(Side side) {
   return side == Side::a ? Rgba{52, 126, 190} : Rgba{236, 168, 52};
 }
 /// Returns the colour of real faces' edges: the body's, much darker.
 constexpr Rgba edge_of(Rgba c) {
-  return mix(c, {18, 20, 24}, 0.72);
+  return mix(c, kEdgeInk, kEdgeShare);
 }
 /// Returns the colour of a solid under pseudo faces in 2D: darker than the regions around it (the paper's
 /// figure 1).
 constexpr Rgba solid_2d(Rgba c) {
-  return mix(c, {10, 14, 20}, 0.28);
+  return mix(c, kSolidInk, kSolidShare);
 }
 constexpr Rgba region_2d(Rgba c) {
   return mix(c, kWhite, 0.62);
@@ -168,7 +181,7 @@ struct Style {
 
   /// Returns the colour of lines along what has colour `c`: outlines, and edges of what one sees through.
   /// (Edges on solid faces are palette::edge_of() in every style: a face is no paper.)
-  constexpr Rgba edge_of(Rgba c) const { return mix(c, edge_ink, kEdgeShare); }
+  constexpr Rgba edge_of(Rgba c) const { return mix(c, edge_ink, palette::kEdgeShare); }
   /// Returns a colour faded by `share`.
   constexpr Rgba pale(Rgba c, double share) const { return mix(c, paper, share); }
   /// Returns the colour of a solid under pseudo faces in 2D, which stands out from the regions around it (the
@@ -178,9 +191,6 @@ struct Style {
   constexpr Rgba body(Side side) const { return bodies[static_cast<std::size_t>(side)]; }
   /// Returns the colour that this style has for one of the palette's kinds; any other colour as it is.
   Rgba of(Rgba kind) const;
-
- private:
-  static constexpr double kEdgeShare = 0.72;
 };
 
 const Style& style_of(StyleName name);

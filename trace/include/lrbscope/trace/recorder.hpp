@@ -76,23 +76,18 @@ class Recorder final : public CollideProbe {
                  std::uint32_t depth_b) override {
     // Whichever of the two refinements came later made the test possible. None is 0, and 0 - 1 is kNull.
     const std::uint32_t cause = std::max(brought_in(0, a), brought_in(1, b)) - 1u;
-    const EventId id = push({.a = a,
-                             .b = b,
-                             .cause = cause,
-                             .depth_a = saturated(depth_a),
-                             .depth_b = saturated(depth_b),
-                             .kind = EventKind::face_test,
-                             .meet = meet});
+    const EventId id = push(Event::of(
+        payload::FaceTest{
+            .a = a, .b = b, .meet = meet, .depth_a = saturated(depth_a), .depth_b = saturated(depth_b)},
+        cause));
     last_test_ = id;
     last_hit_ = meet == exact::Meet::disjoint ? kNull : id;
   }
 
   void refine(Side side, RegionId region, std::uint32_t faces_added) override {
-    const EventId id = push({.a = region,
-                             .b = faces_added,
-                             .cause = cause_of_refinement(),
-                             .kind = EventKind::refine,
-                             .side = side});
+    const EventId id =
+        push(Event::of(payload::WrapperChange{.region = region, .faces = faces_added, .side = side},
+                       EventKind::refine, cause_of_refinement()));
     // In unregularised mode a region's second lid brings in no faces: the first one's refinement stays the
     // cause.
     if (faces_added != 0 && id != kNull) refined_by_[static_cast<std::size_t>(side)][region] = id + 1;
@@ -100,64 +95,56 @@ class Recorder final : public CollideProbe {
 
   /// Records that a wrapper grew back over a region, in a coarse query.
   void coarsen(Side side, RegionId region, std::uint32_t faces_removed) override {
-    push({.a = region,
-          .b = faces_removed,
-          .cause = cause_of_refinement(),
-          .kind = EventKind::coarsen,
-          .side = side});
+    push(Event::of(payload::WrapperChange{.region = region, .faces = faces_removed, .side = side},
+                   EventKind::coarsen, cause_of_refinement()));
   }
 
   void contact(SimplexId a, SimplexId b, exact::Meet meet) override {
-    push({.a = a, .b = b, .cause = last_hit_, .kind = EventKind::contact, .meet = meet});
+    push(Event::of(payload::Contact{a, b, meet}, last_hit_));
   }
 
   EventLevel level() const override { return settings_.level; }
 
   std::uint32_t node_pair(const NodeVisit& visit) override {
-    const std::uint32_t depth = visit.parent == kNull ? 0 : trace_.events[visit.parent].depth_a + 1u;
-    const NodeWork work{visit.box_tests, visit.met, visit.parted, visit.certain};
-    last_pair_ = push({.a = visit.a,
-                       .b = visit.b,
-                       .cause = visit.parent,
-                       .boundary = std::bit_cast<std::uint32_t>(work),
-                       .depth_a = saturated(depth),
-                       .kind = EventKind::node_pair,
-                       .detail = static_cast<std::uint8_t>(visit.step)});
+    const std::uint32_t depth =
+        visit.parent == kNull ? 0 : trace_.events[visit.parent].node_pair().pairs_above + 1u;
+    last_pair_ =
+        push(Event::of(payload::NodePair{.a = visit.a,
+                                         .b = visit.b,
+                                         .work = {visit.box_tests, visit.met, visit.parted, visit.certain},
+                                         .end = {.step = visit.step},
+                                         .pairs_above = saturated(depth)},
+                       visit.parent));
     return last_pair_;
   }
 
   void plane_test(SimplexId a, SimplexId b, Side whose) override {
-    push({.a = a, .b = b, .cause = last_pair_, .kind = EventKind::plane_test, .side = whose});
+    push(Event::of(payload::PlaneTest{a, b, whose}, last_pair_));
   }
 
   void tested_by(TestedBy how) override {
-    if (last_test_ != kNull) trace_.events[last_test_].detail = static_cast<std::uint8_t>(how);
+    if (last_test_ != kNull) trace_.events[last_test_].set_tested_by(how);
   }
 
   void point(Side whose, VertexId v, Where where) override {
-    push({.a = v, .kind = EventKind::point, .side = whose, .detail = static_cast<std::uint8_t>(where)});
+    push(Event::of(payload::Point{v, whose, where}));
   }
 
   void begin(Phase phase, std::uint32_t walked_a, std::uint32_t walked_b) override {
-    phase_ = push({.a = static_cast<std::uint32_t>(phase),
-                   .depth_a = saturated(walked_a),
-                   .depth_b = saturated(walked_b),
-                   .kind = EventKind::begin});
+    phase_ = push(Event::of(payload::PhaseBegin{phase, saturated(walked_a), saturated(walked_b)}));
   }
 
   void end(Phase phase, std::uint64_t count) override {
-    push({.a = static_cast<std::uint32_t>(phase),
-          .b = static_cast<std::uint32_t>(std::min(count, std::uint64_t{kMaxId})),
-          .cause = phase_,
-          .kind = EventKind::end});
+    const auto stored = static_cast<std::uint32_t>(std::min(count, std::uint64_t{kMaxId}));
+    push(Event::of(payload::PhaseEnd{phase, stored}, phase_));
     phase_ = kNull;
   }
 
   std::uint64_t events_seen() const { return seen_; }
   std::uint64_t events_stored() const { return trace_.events.size(); }
 
-  /// Replays what was recorded to fill in Event::boundary and where pairs of nodes ended, and hands the trace
-  /// over. The recorder is then empty and can begin another run with the same settings. Throws
+  /// Replays what was recorded to fill in the sizes of wrappers and where pairs of nodes ended, and hands the
+  /// trace over. The recorder is then empty and can begin another run with the same settings. Throws
   /// std::logic_error if there were events before the first step.
   Trace take();
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -111,8 +112,91 @@ struct NodeEnd {
   }
 };
 
-/// One event, 24 bytes. The meaning of `a` and `b` depends on the kind: see LRB_EVENTS in
-/// engine/include/lrbscope/observe.hpp.
+/// What an event says, by its kind: the numbers of an Event. Event::of() packs them, and the accessor of the
+/// kind's name unpacks them.
+namespace payload {
+
+struct Step {
+  std::uint32_t index = 0;
+};
+struct FaceTest {
+  SimplexId a{}, b{};
+  exact::Meet meet = exact::Meet::disjoint;
+  std::uint16_t depth_a = 0, depth_b = 0;  ///< regions between a face and the outside; 65535: or more
+  TestedBy tested_by = TestedBy::untold;
+};
+/// Refine, coarsen, region.
+struct WrapperChange {
+  RegionId region{};
+  std::uint32_t faces = 0;              ///< added, removed, or covered
+  std::uint32_t wrapper_faces = kNull;  ///< of the wrapper afterwards; kNull: not known
+  Side side = Side::a;                  ///< whose wrapper
+};
+struct Contact {
+  SimplexId a{}, b{};
+  exact::Meet meet = exact::Meet::disjoint;
+};
+struct Result {
+  Relation relation = Relation::separate;
+  std::uint32_t pairs = 0;
+};
+struct NodePair {
+  std::uint32_t a = 0, b = 0;  ///< the nodes
+  NodeWork work;
+  NodeEnd end;
+  std::uint16_t pairs_above = 0;  ///< 65535: or more
+};
+struct PlaneTest {
+  SimplexId a{}, b{};
+  Side whose = Side::a;  ///< whose plane
+};
+struct Point {
+  VertexId vertex{};
+  Side whose = Side::a;  ///< whose vertex
+  Where where{};
+};
+struct PhaseBegin {
+  Phase phase{};
+  std::uint16_t walked_a = 0, walked_b = 0;  ///< see NullProbe::begin()
+};
+struct PhaseEnd {
+  Phase phase{};
+  std::uint32_t count = 0;
+};
+struct Pass {
+  BuildStage stage{};
+  std::uint32_t layer = 0;
+  std::uint32_t barred = 0;  ///< as PassEnd::barred
+  float most_off = 0;        ///< as PassStart::most_off
+};
+struct Patch {
+  VertexId vertex{};
+  std::uint32_t faces = 0;
+  std::uint16_t interior = 0;  ///< as GrownPatch::interior; 65535: or more
+};
+struct Cap {
+  std::uint32_t faces = 0, covered = 0;
+  CapVerdict verdict{};
+  bool careful = false;
+  float off = std::numeric_limits<float>::quiet_NaN();  ///< mesh's unit; not finite: not measured
+};
+struct Merged {
+  RegionId into{};
+  std::uint32_t pieces = 0;
+};
+struct PassEnd {
+  std::uint32_t no_patch = 0, waiting = 0;
+  bool given_up = false;
+  std::uint32_t wrapper_faces = kNull;  ///< kNull: not known
+};
+struct Closed {
+  std::uint32_t regions = 0, outer_faces = 0;
+};
+
+}  // namespace payload
+
+/// One event, 24 bytes. The numbers from `a` to `detail`, but for `cause`, are storage: what they mean
+/// depends on the kind. Use of() and the accessors, each for events of its kind only.
 struct Event {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -122,34 +206,140 @@ struct Event {
   /// the beginning of the phase. Patch, pass end: the pass. Cap: the patch. Region, merged: the cap, or the
   /// pass if it has none.
   EventId cause = kNull;
-  std::uint32_t boundary = kNull;  ///< refine, coarsen, region, pass end: number of faces of that wrapper
-                                   ///< afterwards; kNull: not known. Node pair: work(). Pass, cap: off()
-  std::uint16_t depth_a =
-      0;  ///< face test: number of regions between A's face and the outside (65535: that or
-          ///< more). Node pair: number of pairs above. Begin: what is walked of A, see NullProbe. Patch:
-          ///< interior vertices. Cap: 1 if TriedCap::careful. Pass end: 1 if PassEnd::given_up
-  std::uint16_t depth_b = 0;  ///< face test, begin: the same for B
+  std::uint32_t boundary = kNull;
+  std::uint16_t depth_a = 0;
+  std::uint16_t depth_b = 0;
   EventKind kind = EventKind::step;
-  Side side = Side::a;  ///< refine, coarsen: whose wrapper; plane test: whose plane; point: whose vertex
-  exact::Meet meet = exact::Meet::disjoint;  ///< face test, contact
-  std::uint8_t detail = 0;  ///< face test: tested_by(); node pair: node_end(); point: where(); pass: stage();
-                            ///< cap: verdict()
+  Side side = Side::a;
+  exact::Meet meet = exact::Meet::disjoint;
+  std::uint8_t detail = 0;
 
-  /// Return what the numbers `a` and `b` stand for: in a face test or a contact the simplex of a body, in a
-  /// refinement or a coarsening the region.
-  SimplexId simplex(Side of) const { return SimplexId(of == Side::a ? a : b); }
-  RegionId region() const { return RegionId(a); }
-  TestedBy tested_by() const { return static_cast<TestedBy>(detail); }
-  NodeWork work() const { return std::bit_cast<NodeWork>(boundary); }
-  NodeEnd node_end() const { return NodeEnd::from_bits(detail); }
-  Where where() const { return static_cast<Where>(detail); }
-  Phase phase() const { return static_cast<Phase>(a); }
-  BuildStage stage() const { return static_cast<BuildStage>(detail); }
-  CapVerdict verdict() const { return static_cast<CapVerdict>(detail); }
-  /// Returns how far caps may stand off the body in this pass (0: as far as they like), or how far this one
-  /// does (not finite: nobody measured); mesh's unit.
+  static Event of(const payload::Step& p) { return {.a = p.index, .kind = EventKind::step}; }
+  static Event of(const payload::FaceTest& p, EventId cause) {
+    return {.a = p.a,
+            .b = p.b,
+            .cause = cause,
+            .depth_a = p.depth_a,
+            .depth_b = p.depth_b,
+            .kind = EventKind::face_test,
+            .meet = p.meet,
+            .detail = static_cast<std::uint8_t>(p.tested_by)};
+  }
+  /// `kind`: refine, coarsen or region.
+  static Event of(const payload::WrapperChange& p, EventKind kind, EventId cause) {
+    return {.a = p.region,
+            .b = p.faces,
+            .cause = cause,
+            .boundary = p.wrapper_faces,
+            .kind = kind,
+            .side = p.side};
+  }
+  static Event of(const payload::Contact& p, EventId cause) {
+    return {.a = p.a, .b = p.b, .cause = cause, .kind = EventKind::contact, .meet = p.meet};
+  }
+  static Event of(const payload::Result& p) {
+    return {.a = static_cast<std::uint32_t>(p.relation), .b = p.pairs, .kind = EventKind::result};
+  }
+  static Event of(const payload::NodePair& p, EventId cause) {
+    return {.a = p.a,
+            .b = p.b,
+            .cause = cause,
+            .boundary = std::bit_cast<std::uint32_t>(p.work),
+            .depth_a = p.pairs_above,
+            .kind = EventKind::node_pair,
+            .detail = p.end.bits()};
+  }
+  static Event of(const payload::PlaneTest& p, EventId cause) {
+    return {.a = p.a, .b = p.b, .cause = cause, .kind = EventKind::plane_test, .side = p.whose};
+  }
+  static Event of(const payload::Point& p) {
+    return {.a = p.vertex,
+            .kind = EventKind::point,
+            .side = p.whose,
+            .detail = static_cast<std::uint8_t>(p.where)};
+  }
+  static Event of(const payload::PhaseBegin& p) {
+    return {.a = static_cast<std::uint32_t>(p.phase),
+            .depth_a = p.walked_a,
+            .depth_b = p.walked_b,
+            .kind = EventKind::begin};
+  }
+  static Event of(const payload::PhaseEnd& p, EventId cause) {
+    return {.a = static_cast<std::uint32_t>(p.phase), .b = p.count, .cause = cause, .kind = EventKind::end};
+  }
+  static Event of(const payload::Pass& p) {
+    return {.a = p.layer,
+            .b = p.barred,
+            .boundary = std::bit_cast<std::uint32_t>(p.most_off),
+            .kind = EventKind::pass,
+            .detail = static_cast<std::uint8_t>(p.stage)};
+  }
+  static Event of(const payload::Patch& p, EventId cause) {
+    return {.a = p.vertex, .b = p.faces, .cause = cause, .depth_a = p.interior, .kind = EventKind::patch};
+  }
+  static Event of(const payload::Cap& p, EventId cause) {
+    return {.a = p.faces,
+            .b = p.covered,
+            .cause = cause,
+            .boundary = std::isnan(p.off) ? std::uint32_t{kNull} : std::bit_cast<std::uint32_t>(p.off),
+            .depth_a = p.careful,
+            .kind = EventKind::cap,
+            .detail = static_cast<std::uint8_t>(p.verdict)};
+  }
+  static Event of(const payload::Merged& p, EventId cause) {
+    return {.a = p.into, .b = p.pieces, .cause = cause, .kind = EventKind::merged};
+  }
+  static Event of(const payload::PassEnd& p, EventId cause) {
+    return {.a = p.no_patch,
+            .b = p.waiting,
+            .cause = cause,
+            .boundary = p.wrapper_faces,
+            .depth_a = p.given_up,
+            .kind = EventKind::pass_end};
+  }
+  static Event of(const payload::Closed& p) {
+    return {.a = p.regions, .b = p.outer_faces, .kind = EventKind::closed};
+  }
+
+  // What is known only later.
+  void set_tested_by(TestedBy how) { detail = static_cast<std::uint8_t>(how); }  ///< face test
+  void set_node_end(NodeEnd end) { detail = end.bits(); }                        ///< node pair
+  /// Refine, coarsen, region, pass end: the number of faces of the wrapper afterwards.
+  void set_wrapper_faces(std::uint32_t faces) { boundary = faces; }
+
+  payload::Step step() const { return {a}; }
+  payload::FaceTest face_test() const {
+    return {SimplexId(a), SimplexId(b), meet, depth_a, depth_b, tested_by()};
+  }
+  payload::WrapperChange wrapper_change() const { return {region(), b, boundary, side}; }
+  payload::Contact contact() const { return {SimplexId(a), SimplexId(b), meet}; }
+  payload::Result result() const { return {static_cast<Relation>(a), b}; }
+  payload::NodePair node_pair() const { return {a, b, work(), node_end(), depth_a}; }
+  payload::PlaneTest plane_test() const { return {SimplexId(a), SimplexId(b), side}; }
+  payload::Point point() const { return {VertexId(a), side, where()}; }
+  payload::PhaseBegin phase_begin() const { return {phase(), depth_a, depth_b}; }
+  payload::PhaseEnd phase_end() const { return {phase(), b}; }
+  payload::Pass pass() const { return {stage(), a, b, off()}; }
+  payload::Patch patch() const { return {VertexId(a), b, depth_a}; }
+  payload::Cap cap() const { return {a, b, verdict(), depth_a != 0, off()}; }
+  payload::Merged merged() const { return {RegionId(a), b}; }
+  payload::PassEnd pass_end() const { return {a, b, depth_a != 0, boundary}; }
+  payload::Closed closed() const { return {a, b}; }
+
+  // Single numbers of payloads, for readers that need no more.
+  SimplexId simplex(Side of) const { return SimplexId(of == Side::a ? a : b); }  ///< face test, contact
+  RegionId region() const { return RegionId(a); }                         ///< refine, coarsen, region, merged
+  TestedBy tested_by() const { return static_cast<TestedBy>(detail); }    ///< face test
+  NodeWork work() const { return std::bit_cast<NodeWork>(boundary); }     ///< node pair
+  NodeEnd node_end() const { return NodeEnd::from_bits(detail); }         ///< node pair
+  Where where() const { return static_cast<Where>(detail); }              ///< point
+  Phase phase() const { return static_cast<Phase>(a); }                   ///< begin, end
+  BuildStage stage() const { return static_cast<BuildStage>(detail); }    ///< pass
+  CapVerdict verdict() const { return static_cast<CapVerdict>(detail); }  ///< cap
+  /// Pass: maximum deviation allowed for caps (0: unlimited). Cap: its deviation (not finite: not measured).
+  /// Mesh's unit.
   float off() const { return std::bit_cast<float>(boundary); }
-  /// Returns true if it changes a wrapper.
+  /// Returns true if it changes a wrapper: the event has a wrapper_change().
   bool changes_wrapper() const {
     return kind == EventKind::refine || kind == EventKind::coarsen || kind == EventKind::region;
   }

@@ -1,0 +1,53 @@
+#include "render/page_palette.hpp"
+
+#include <vector>
+
+namespace lrb::render {
+namespace {
+
+using Colours = std::vector<PageColour>;
+
+Colours operator+(Colours colours, std::span<const PageColour> more) {
+  colours.insert(colours.end(), more.begin(), more.end());
+  return colours;
+}
+
+}  // namespace
+
+std::string css(Rgba c) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string out = "#";
+  for (const std::uint8_t byte : {c.r, c.g, c.b}) {
+    out += kDigits[byte >> 4];
+    out += kDigits[byte & 15];
+  }
+  return out;
+}
+
+std::string root_css(std::span<const PageColour> colours) {
+  std::string light, dark;
+  for (const PageColour& c : colours) {
+    const std::string name = " --" + std::string(c.name) + ": ";
+    light += name + css(c.light) + ";";
+    dark += name + css(c.dark) + ";";
+  }
+  return ":root {" + light + " }\n@media (prefers-color-scheme: dark) {\n  :root {" + dark + " }\n}\n";
+}
+
+std::string page_root_css() {
+  using namespace page;
+  return root_css(Colours{kPaper, kCard, kInk, kSoft, kLine, kAccent, kGrid, kBad, kGood} + kSeries);
+}
+
+std::string scene_root_css() {
+  using namespace page;
+  return root_css(Colours{kSketchBody, kSketchRegion, kSketchBare});
+}
+
+std::string grid_root_css() {
+  using namespace page;
+  return root_css(Colours{kWrong, kCrashed, kTimedOut, kRefused, kOnlyRefused} + kLevels +
+                  Colours{kOnLevel4});
+}
+
+}  // namespace lrb::render

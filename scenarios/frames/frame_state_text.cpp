@@ -1,0 +1,288 @@
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "render/pictures/body_picture.hpp"
+#include "render/pictures/explain_picture.hpp"
+#include "render/pictures/marks.hpp"
+#include "render/pictures/panel.hpp"
+#include "scenarios/frames/face_colours.hpp"
+#include "scenarios/frames/frame_state.hpp"
+#include "scenarios/frames/pass_words.hpp"
+#include <lrbscope/render/style.hpp>
+#include <lrbscope/trace/trace.hpp>
+
+namespace lrb::run {
+namespace {
+
+std::string relation_words(Relation r) {
+  switch (r) {
+    case Relation::a_inside_b:
+      return "A inside B";
+    case Relation::b_inside_a:
+      return "B inside A";
+    default:
+      return to_string(r);
+  }
+}
+
+}  // namespace
+
+std::string error_bound_text(double bound) {
+  return bound == 0 ? "0 (exact)" : std::isfinite(bound) ? render::short_number(bound) : "none yet";
+}
+
+std::string FrameState::isolated_text() const {
+  std::string out;
+  for (std::size_t i = 0; i < reps_.size(); ++i) {
+    if (spec_.isolate[i].empty()) continue;
+    const std::string owner = is_single() ? "" : i == 0 ? " of A" : " of B";
+    out += (out.empty() ? "" : "; ") + region_words(*reps_[i], spec_.isolate[i], owner);
+  }
+  return out;
+}
+
+std::string FrameState::event_text() const {
+  if (const std::string regions = isolated_text(); !regions.empty()) return regions;
+  if (trace_.header.construction) return construction_text();
+  const trace::Event& e = cursor_.event();
+  const std::string side = e.side == Side::a ? "A" : "B";
+  const auto face_of = [&](Side of) { return rep(of).face_of_simplex(e.simplex(of)); };
+  const auto face = [&](Side of) {
+    const FaceId f = face_of(of);
+    return (rep(of).is_real(f) ? "face " : "pseudo face ") + std::to_string(f);
+  };
+  const std::string region = "region " + std::to_string(e.region()) + (is_single() ? "" : " of " + side);
+  switch (e.kind) {
+    case EventKind::step:
+      return first_wrappers_text();
+    case EventKind::face_test:
+      return "face test " + std::to_string(face_of(Side::a)) + " against " +
+             std::to_string(face_of(Side::b)) + ": " + std::string(trace::name_of(e.meet));
+    case EventKind::refine:
+      return "refine " + region + ": " + render::counted(e.wrapper_change().faces, "face", "faces") +
+             " under it";
+    case EventKind::coarsen:
+      return region + " added";
+    case EventKind::contact:
+      return "contact: " + face(Side::a) + " of A meets " + face(Side::b) + " of B";
+    case EventKind::result:
+      return result_text();
+    case EventKind::plane_test:
+      return "simplex " + std::to_string(e.a) + " of A and " + std::to_string(e.b) +
+             " of B: parted by the plane of " + side + "'s";
+    case EventKind::node_pair:
+      return node_pair_text(e);
+    case EventKind::point:
+      return "vertex " + std::to_string(e.a) + " of " + side + ": " + std::string(name_of(e.where())) +
+             (e.side == Side::a ? " of B" : " of A");
+    case EventKind::begin:
+      return std::string(name_of(e.phase())) + " begins";
+    case EventKind::end:
+      return std::string(name_of(e.phase())) + " ends";
+    default:  // of constructions
+      return {};
+  }
+}
+
+std::string FrameState::construction_text() const {
+  const trace::Event& e = cursor_.event();
+  if (e.kind == EventKind::step)
+    return "the body, " + render::counted(reps_[0]->real_face_count(), "face", "faces");
+  return e.kind == EventKind::pass_end ? pass_words(*now_.pass) : built_words(e);
+}
+
+std::string FrameState::first_wrappers_text() const {
+  const auto has_none = [](const LrbRep* rep) { return rep->region_count() == 0; };
+  if (is_single())
+    return has_none(reps_[0]) ? "the body itself, which has no wrapper" : "the outermost wrapper";
+  const bool a = has_none(reps_[0]), b = has_none(reps_[1]);
+  if (a && b) return "the bodies themselves, which have no wrappers";
+  if (a || b)
+    return std::string(a ? "A itself, which has no wrapper; B's" : "B itself, which has no wrapper; A's") +
+           " is the outermost one";
+  return "both wrappers are the outermost ones";
+}
+
+std::string FrameState::open_text() const {
+  const bool a = !reps_[0]->closed(), b = !reps_[1]->closed();
+  return a && b ? "undefined, for both bodies are open"
+         : a    ? "undefined, for A is open"
+                : "undefined, for B is open";
+}
+
+std::string FrameState::node_pair_text(const trace::Event& e) {
+  const auto [a, b, work, end, pairs_above] = e.node_pair();
+  std::string out = "nodes " + std::to_string(a) + " of A and " + std::to_string(b) + " of B: ";
+  if (work.met == 0)
+    return out + (end.apart                     ? "apart along " + std::string(name_of(end.axis))
+                  : end.step == NodeStep::whole ? "apart across an edge of each"
+                                                : "no boxes in them meet");
+  if (end.step != NodeStep::leaves)
+    return out + render::counted(work.met, "pair of boxes meets", "pairs of boxes meet");
+  return out + render::counted(work.met, "pair of faces", "pairs of faces") + ", " +
+         render::counted(work.met - work.parted, "left to test", "left to test");
+}
+
+std::string FrameState::measured_text() const {
+  if (now_.answer == nullptr) return {};
+  std::string out;
+  if (now_.gap) out = now_.gap->text + " apart";
+  if (now_.answer->clash && now_.answer->clash->kind != ClashKind::apart)
+    out += (out.empty() ? "" : ", ") + kind_words(now_.answer->clash->kind, now_.answer->clash->reason);
+  if (now_.way_out) out += ", " + now_.way_out->text + " deep";
+  return out;
+}
+
+std::uint32_t FrameState::boundary_size(Side side) const {
+  return now_.proof != nullptr ? now_.proof->face_count[static_cast<std::size_t>(side)]
+                               : cursor_.boundary_size(side);
+}
+
+trace::Totals FrameState::totals() const {
+  return trace::count_events(events_so_far());
+}
+
+std::string FrameState::result_text() const {
+  const std::string measured = measured_text();
+  if (measured.empty()) return relation_text();
+  const Relation relation = cursor_.step()->result.relation;
+  return (relation == Relation::separate ? "separate: " : relation_text() + "; ") + measured;
+}
+
+std::string FrameState::relation_text() const {
+  const trace::StepResult& r = cursor_.step()->result;
+  if (const Separation* proof = now_.proof)
+    return "separate: wrappers of " + render::group_digits(proof->face_count[0]) + " and " +
+           render::counted(proof->face_count[1], "face prove it", "faces prove it");
+  if (r.relation == Relation::unresolved)
+    return std::isfinite(r.error_bound)
+               ? "unresolved: in contact, or no further apart than " + render::short_number(r.error_bound)
+               : "unresolved: the limit came before the coarsest wrappers were compared";
+  if (now_.parting) {
+    const trace::Step& step = *cursor_.step();
+    const std::string words = parting_words(*now_.parting, *reps_[0], step.pose_a, *reps_[1], step.pose_b);
+    if (!words.empty()) return "separate: " + words;
+  }
+  const bool open = !reps_[0]->closed() || !reps_[1]->closed();
+  return (r.relation == Relation::undefined && open ? open_text() : relation_words(r.relation)) + ": " +
+         render::counted(r.pair_count, "pair of faces meets", "pairs of faces meet");
+}
+
+render::Overlay FrameState::overlay(const std::string& title) const {
+  render::Overlay o;
+  o.title = title;
+  if (!is_single()) o.title += "  ·  step " + std::to_string(step());
+  o.event = event_text();
+  o.event_colour = now_.parting   ? kPartingColour
+                   : now_.way_out ? kWayOutColour
+                                  : style_of(spec_).of(render::palette::event(cursor_.event().kind));
+  o.style = style_name(spec_);
+  if (trace_.header.construction) {
+    add_construction(o);
+    return o;
+  }
+  add_counters(o);
+  return o;
+}
+
+void FrameState::add_counters(render::Overlay& o) const {
+  if (!is_single()) return add_pair_counters(o);
+  const trace::Totals t = totals();
+  o.counters = {{"wrapper", render::group_digits(cursor_.boundary_size(Side::a)) + " faces"},
+                {"refined", render::group_digits(t.refinements[0] - t.coarsenings[0]) + " of " +
+                                render::group_digits(reps_[0]->region_count()) + " regions"}};
+}
+
+void FrameState::add_pair_counters(render::Overlay& o) const {
+  const trace::Totals t = totals();
+  if (trace_.header.engine.empty()) {
+    const auto refined = [&](Side side) {
+      const auto i = static_cast<std::size_t>(side);
+      return now_.proof != nullptr ? std::uint64_t{now_.proof->refined[i].size()} : t.refinements[i];
+    };
+    for (const Side side : {Side::a, Side::b})
+      o.counters.push_back({std::string(rep(side).region_count() > 0 ? "wrapper " : "no wrapper, ") +
+                                (side == Side::a ? "A" : "B"),
+                            render::group_digits(boundary_size(side))});
+    o.counters.push_back(
+        {"refined", render::group_digits(refined(Side::a)) + " + " + render::group_digits(refined(Side::b))});
+  } else {  // another engine has no wrappers
+    o.counters.push_back({"pairs of boxes", render::group_digits(t.node_pairs)});
+  }
+  o.counters.push_back({"face tests", render::group_digits(t.face_tests)});
+  o.counters.push_back({"contacts", render::group_digits(t.contacts)});
+  if (!now_.wrong.empty()) o.counters.push_back({"wrong pairs", render::group_digits(now_.wrong.size())});
+  if (now_.answer != nullptr && trace_.header.request.is_coarse())
+    o.counters.push_back({"error bound", error_bound_text(now_.answer->error_bound)});
+}
+
+void FrameState::add_construction(render::Overlay& o) const {
+  std::uint64_t made = 0;
+  for (const trace::PassSummary& p : passes_)
+    if (p.last <= cursor_.position()) made += p.regions;
+  if (const trace::PassSummary* pass = now_.pass) {
+    if (pass->last > cursor_.position()) made += now_.built.size();
+    o.title += "  ·  " + stage_words(*pass);
+  }
+  o.counters = {
+      {"hull", render::counted(cursor_.boundary_size(Side::a), "face", "faces")},
+      {"regions", render::group_digits(made) + " of " + render::group_digits(reps_[0]->region_count())}};
+}
+
+std::string FrameState::construction_caption() const {
+  std::string text = event_text();
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  const trace::PassSummary* pass = now_.pass;
+  if (!now_.is_pass_end)
+    return text + ". Hull: " + render::counted(cursor_.boundary_size(Side::a), "face", "faces") + ".";
+  text += ". " + std::string(name_of(pass->stage));
+  if (pass->most_off > 0)
+    text += " by caps at most " + render::short_number(pass->most_off) +
+            " off the body (the farthest: " + render::short_number(pass->off) + ")";
+  if (pass->covered > 0)
+    text += "; " + render::counted(pass->accepted(), "cap", "caps") + " of " +
+            render::counted(pass->lids, "face", "faces") + " over " + render::group_digits(pass->covered);
+  return text + ".";
+}
+
+std::string FrameState::short_caption() const {
+  if (trace_.header.construction) {
+    const std::uint32_t faces = cursor_.boundary_size(Side::a);
+    const bool built = faces == reps_[0]->outermost_faces().size();
+    const trace::PassSummary* pass = now_.pass;
+    if (pass == nullptr) return "the body, " + render::counted(faces, "face", "faces");
+    return "pass " + std::to_string(pass->number()) + (built ? ", the outermost wrapper" : "") + ", " +
+           render::counted(faces, "face", "faces");
+  }
+  if (is_single()) {
+    const trace::Totals t = totals();
+    const std::uint64_t refined = t.refinements[0] - t.coarsenings[0], all = reps_[0]->region_count();
+    const std::string state = all == 0         ? "the body itself, which has no wrappers"
+                              : refined == 0   ? "outermost wrapper"
+                              : refined == all ? "the body itself"
+                                               : render::group_digits(refined) + " of " +
+                                                     render::counted(all, "region", "regions") + " refined";
+    return state + ", " + render::counted(cursor_.boundary_size(Side::a), "face", "faces");
+  }
+  return "step " + std::to_string(step()) + ": " + event_text();
+}
+
+std::string FrameState::caption() const {
+  if (trace_.header.construction) return construction_caption();
+  const trace::Totals t = totals();
+  std::string out = !is_single() ? "Step " + std::to_string(step()) + ", event " : "Event ";
+  out += std::to_string(cursor_.position()) + ": " + event_text() + ". ";
+  out += is_single()
+             ? "Wrapper: " + render::group_digits(cursor_.boundary_size(Side::a)) + " faces."
+             : "Wrappers: " + render::group_digits(boundary_size(Side::a)) + " + " +
+                   render::group_digits(boundary_size(Side::b)) + " faces; " +
+                   render::counted(t.face_tests, "face test", "face tests") + ", " +
+                   render::counted(t.refinements[0] + t.refinements[1], "refinement", "refinements") + ".";
+  if (now_.answer != nullptr && trace_.header.request.is_coarse())
+    out += " Error bound: " + error_bound_text(now_.answer->error_bound) +
+           (now_.answer->finished ? "." : "; a limit was reached.");
+  return out;
+}
+
+}  // namespace lrb::run
