@@ -6,7 +6,6 @@
 #include <sstream>
 #include <utility>
 
-#include "engine/clash/clash_parts.hpp"
 #include "render/pictures/answer_picture.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "tools/bounds_chart.hpp"
@@ -16,6 +15,7 @@
 #include "tools/terminal.hpp"
 #include "trace/trace_json_parts.hpp"
 #include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::cli {
 namespace {
@@ -129,17 +129,18 @@ int run_clash(ClashOptions o, const Globals& globals) {
   note(globals, a.notes);
   note(globals, b.notes);
   list.check(a.rep, b.rep);
-  ClashContext context;
+  Workspace workspace;
   std::vector<Row> rows{headings(o)};
   Progress progress("clash", list.poses.size(), globals.quiet);
   for (std::size_t i = 0; i < list.poses.size(); ++i) {
-    const auto ask = [&] { return clash(a.rep, Pose{}, b.rep, list.poses[i], o.request, context); };
+    const auto ask = [&](ClashProbe* probe) {
+      return clash(a.rep, Pose{}, b.rep, list.poses[i], o.request, workspace, probe).value();
+    };
     ClashCourse told;
-    const ClashResult result =
-        o.draw.is_watched() ? clash(a.rep, Pose{}, b.rep, list.poses[i], o.request, context, &told) : ask();
+    const ClashResult result = ask(o.draw.is_watched() ? &told : nullptr);
     const bool has_depth = !told.of_depth.empty();
     const std::vector<Bounds>& course = has_depth ? told.of_depth : told.of_distance;
-    const double us = o.repeat > 0 ? median_us(o.repeat, ask) : 0;
+    const double us = o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0;
     if (o.table)
       rows.push_back(row_of(i, result, o));
     else

@@ -2,7 +2,6 @@
 #include <memory>
 #include <utility>
 
-#include "engine/distance/distance_context.hpp"
 #include "render/pictures/answer_picture.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "tools/bounds_chart.hpp"
@@ -12,6 +11,7 @@
 #include "tools/terminal.hpp"
 #include "trace/trace_json_parts.hpp"
 #include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::cli {
 namespace {
@@ -62,15 +62,15 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
   note(globals, a.notes);
   note(globals, b.notes);
   list.check(a.rep, b.rep);
-  DistanceContext context;
+  Workspace workspace;
   Progress progress("distance", list.poses.size(), globals.quiet);
   for (std::size_t i = 0; i < list.poses.size(); ++i) {
-    const auto ask = [&] { return distance(a.rep, Pose{}, b.rep, list.poses[i], o.request, context); };
+    const auto ask = [&](BoundsProbe* probe) {
+      return distance(a.rep, Pose{}, b.rep, list.poses[i], o.request, workspace, probe).value();
+    };
     BoundsCourse told;
-    const DistanceResult result = o.draw.is_watched() ? distance(a.rep, Pose{}, b.rep, list.poses[i],
-                                                                 o.request, context, nullptr, &told)
-                                                      : ask();
-    print(line_of(i, result, told.course, o, o.repeat > 0 ? median_us(o.repeat, ask) : 0));
+    const DistanceResult result = ask(o.draw.is_watched() ? &told : nullptr);
+    print(line_of(i, result, told.course, o, o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0));
     if (!o.draw.picture.empty())
       run::draw_distance(a.rep, Pose{}, b.rep, list.poses[i], result, look,
                          picture_name(o.draw.picture, i, list.poses.size()));

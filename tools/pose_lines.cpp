@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "engine/collide/collide_into.hpp"
+#include <lrbscope/collide.hpp>
 
 namespace lrb::cli {
 

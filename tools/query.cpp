@@ -2,9 +2,6 @@
 #include <optional>
 #include <utility>
 
-#include "engine/clash/clash_parts.hpp"
-#include "engine/collide/collide_into.hpp"
-#include "engine/distance/distance_context.hpp"
 #include "render/pictures/explain_picture.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "tools/commands.hpp"
@@ -14,6 +11,7 @@
 #include "trace/trace_json_parts.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/workspace.hpp>
 #include <lrbscope/wrapper.hpp>
 
 namespace lrb::cli {
@@ -27,12 +25,17 @@ struct QueryOptions {
   std::uint32_t repeat = 0;
 };
 
-/// Returns the median time in microseconds of the repeated runs of one query, in a warm context.
+/// Returns the answer to one query, with memory of its own.
+CollideResult ask(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
+                  Workspace& workspace) {
+  return std::move(collide(a, Pose{}, b, pose, o.request, workspace).value());
+}
+
+/// Returns the median time in microseconds of the repeated runs of one query, in a warm workspace.
 double repeated_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
-                   QueryContext& context) {
-  NullProbe probe;
+                   Workspace& workspace) {
   return median_us(o.repeat, [&] {
-    const CollideResult result = collide(a, Pose{}, b, pose, o.request, context, probe);
+    const CollideResult result = ask(a, b, pose, o, workspace);
     if (result.mode != o.request.mode) throw std::logic_error("the query changed its mode");
   });
 }
@@ -46,11 +49,12 @@ bool tells_overlap(const CollideRequest& request) {
          request.predicates == Predicates::exact && !request.is_coarse();
 }
 
-void decide_overlap(QueryContext& context, const CollideRequest& request, CollideResult& result) {
+void decide_overlap(const LrbRep& a, const LrbRep& b, const Pose& pose, const CollideRequest& request,
+                    Workspace& workspace, CollideResult& result) {
   if (result.relation != Relation::touching || result.pairs.size() > kMostPairsToDecide) return;
   CollideRequest overlap = request;
   overlap.interiors_overlap = true;
-  describe_contact(context, overlap, result);
+  describe_contact(a, Pose{}, b, pose, overlap, workspace, result).value();
 }
 
 /// Writes [[number of A, number of B], ...].
@@ -71,24 +75,18 @@ struct ExtraAnswers {
   std::optional<DistanceResult> distance;
 };
 
-/// Memory of the queries that give them, from one pose to the next.
-struct ExtraContexts {
-  ClashContext clash;
-  DistanceContext distance;
-};
-
 ExtraAnswers extra_answers(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
-                           ExtraContexts& context) {
+                           Workspace& workspace) {
   ExtraAnswers out;
   if (o.kind) {
     ClashRequest request;
     request.depth = request.volume = false;
-    out.kind = clash(a, Pose{}, b, pose, request, context.clash);
+    out.kind = clash(a, Pose{}, b, pose, request, workspace).value();
   }
   if (o.distance) {
     DistanceRequest request;
     request.relation = false;
-    out.distance = distance(a, Pose{}, b, pose, request, context.distance);
+    out.distance = distance(a, Pose{}, b, pose, request, workspace).value();
   }
   return out;
 }
@@ -144,22 +142,19 @@ int run_query(const QueryOptions& o, const Globals& globals) {
   note(globals, b.notes);
   list.check(a.rep, b.rep);
   if (o.kind) check_request(a.rep, ClashRequest{});
-  if (o.request.is_coarse()) check_coarse_request(o.request);
+  if (o.request.is_coarse()) check_request(o.request);
   if (o.request.is_coarse())
     for (const bodies::LoadedBody* body : {&a, &b}) {
       if (const std::string why = note_no_levels(body->rep); !why.empty()) note(globals, {why});
       body->rep.levels(0);
     }
-  QueryContext context;
-  ExtraContexts extra;
-  NullProbe probe;
+  Workspace workspace;
   Progress progress("query", poses.size(), globals.quiet);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    CollideResult result =
-        list.at(i, [&] { return collide(a.rep, Pose{}, b.rep, poses[i], o.request, context, probe); });
-    if (tells_overlap(o.request)) decide_overlap(context, o.request, result);
-    const double us = o.repeat > 0 ? repeated_us(a.rep, b.rep, poses[i], o, context) : 0;
-    print(line_of(i, result, extra_answers(a.rep, b.rep, poses[i], o, extra), o, us, a.rep, b.rep));
+    CollideResult result = list.at(i, [&] { return ask(a.rep, b.rep, poses[i], o, workspace); });
+    if (tells_overlap(o.request)) decide_overlap(a.rep, b.rep, poses[i], o.request, workspace, result);
+    const double us = o.repeat > 0 ? repeated_us(a.rep, b.rep, poses[i], o, workspace) : 0;
+    print(line_of(i, result, extra_answers(a.rep, b.rep, poses[i], o, workspace), o, us, a.rep, b.rep));
     if (!o.draw.empty() && result.separation)
       run::draw_separation(a.rep, Pose{}, b.rep, poses[i], *result.separation,
                            picture_name(o.draw, i, poses.size()));

@@ -2,8 +2,6 @@
 #include <memory>
 #include <utility>
 
-#include "engine/collide/collide_into.hpp"
-#include "engine/motion/contact_search.hpp"
 #include "render/pictures/answer_picture.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/io/poses.hpp"
@@ -16,6 +14,7 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::cli {
 namespace {
@@ -107,15 +106,15 @@ int run_sweep(const SweepOptions& o, const Globals& globals) {
   check_query(a.rep, Pose{}, b.rep, Pose{});
   const std::vector<Motion> motions = motions_of(list, printable_name(o.motions), a.rep, b.rep);
   const Motion still = Motion::still({});
-  FirstContactContext context;
+  Workspace workspace;
   Progress progress("sweep", motions.size(), globals.quiet);
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    const auto ask = [&] { return first_contact(a.rep, still, b.rep, motions[i], o.request, context); };
+    const auto ask = [&](FirstContactProbe* probe) {
+      return std::move(first_contact(a.rep, still, b.rep, motions[i], o.request, workspace, probe).value());
+    };
     FirstContactCourse told;
-    const FirstContactResult result =
-        o.draw.is_watched() ? first_contact(a.rep, still, b.rep, motions[i], o.request, context, &told)
-                            : ask();
-    print(line_of(i, result, told.course, o, o.repeat > 0 ? median_us(o.repeat, ask) : 0));
+    const FirstContactResult result = ask(o.draw.is_watched() ? &told : nullptr);
+    print(line_of(i, result, told.course, o, o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0));
     if (!o.draw.picture.empty())
       run::draw_first_contact(a.rep, b.rep, motions[i], result, look,
                               picture_name(o.draw.picture, i, motions.size()));

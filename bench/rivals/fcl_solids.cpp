@@ -25,7 +25,7 @@ constexpr int kRank = 90;
 #include <fcl/narrowphase/collision.h>
 
 #include "bench/rivals/triangles.hpp"
-#include "engine/construct/convex_hull.hpp"
+#include <lrbscope/build.hpp>
 #include <lrbscope/error.hpp>
 
 namespace lrb::methods {
@@ -127,7 +127,7 @@ class Gjk : public Method {
     std::vector<Eigen::Vector3d> points;
     for (std::size_t v = 0; v < used.size(); ++v)
       if (used[v]) points.push_back(t.vertices[v]);
-    const Mesh mesh = construct::convex_hull_mesh(points);
+    const Mesh mesh = convex_hull_mesh(points);
     if (mesh.face_count() == 0) throw InputError("a flat body: it has no convex hull");
     auto vertices = std::make_shared<std::vector<fcl::Vector3d>>(mesh.vertices.begin(), mesh.vertices.end());
     auto faces = std::make_shared<std::vector<int>>();

@@ -4,11 +4,11 @@
 
 #include "bench/rivals/method.hpp"
 #include "bench/rivals/triangles.hpp"
-#include "engine/collide/collide_into.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/contact.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::methods {
 namespace {
@@ -27,6 +27,12 @@ CollideRequest request_for(Mode mode) {
   CollideRequest request;
   request.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;
   return request;
+}
+
+/// Returns the answer to a query with memory of its own, which is part of what is timed.
+CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const CollideRequest& request, Workspace& workspace) {
+  return std::move(collide(a, pose_a, b, pose_b, request, workspace).value());
 }
 
 MethodAnswer answer_from(CollideResult result, double microseconds) {
@@ -60,9 +66,8 @@ class Ours : public Method {
     CollideRequest request = request_for(mode);
     request.recursion = recursion_;
     request.predicates = predicates_;
-    NullProbe probe;
     const Stopwatch watch;
-    CollideResult result = collide(rep_of(a), pose_a, rep_of(b), pose_b, request, context_, probe);
+    CollideResult result = ask(rep_of(a), pose_a, rep_of(b), pose_b, request, workspace_);
     MethodAnswer answer = answer_from(std::move(result), watch.microseconds());
     if (recursion_ == Recursion::complete && predicates_ == Predicates::exact) answer.error_bound = 0;
     return answer;
@@ -71,7 +76,7 @@ class Ours : public Method {
  private:
   Recursion recursion_;
   Predicates predicates_;
-  QueryContext context_;
+  Workspace workspace_;
 };
 
 double diagonal_of(const LrbRep& rep) {
@@ -124,9 +129,8 @@ class OursCoarse : public Method {
     if (content_ == Content::one_pair) request.mode = Mode::first_pair;
     if (content_ == Content::tolerance) request.tolerance = setting_ * diagonal_of(rep_a);
     if (content_ == Content::tests) request.max_tests = static_cast<std::uint64_t>(setting_);
-    NullProbe probe;
     const Stopwatch watch;
-    const CollideResult result = collide(rep_a, pose_a, rep_b, pose_b, request, context_, probe);
+    const CollideResult result = ask(rep_a, pose_a, rep_b, pose_b, request, workspace_);
     MethodAnswer answer;
     answer.microseconds = watch.microseconds();
     answer.contact = !result.pairs.empty();
@@ -156,7 +160,7 @@ class OursCoarse : public Method {
 
   Content content_;
   double setting_ = 0;
-  QueryContext context_;
+  Workspace workspace_;
 };
 
 MethodInfo our_info(const char* name, const char* title, const char* remark, int rank) {

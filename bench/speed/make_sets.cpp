@@ -10,7 +10,6 @@
 #include "bench/speed/bench_runner.hpp"
 #include "bench/speed/data_set.hpp"
 #include "bench/speed/make_sets.hpp"
-#include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/bodies/shapes.hpp"
@@ -28,8 +27,7 @@ Approaches::Approaches(const LrbRep& a, const LrbRep& b, double diagonal, std::u
 }
 
 bool Approaches::meets(const Pose& pose_b) {
-  NullProbe probe;
-  return !collide(a_, Pose{}, b_, pose_b, request_, context_, probe).pairs.empty();
+  return !collide(a_, Pose{}, b_, pose_b, request_, workspace_).value().pairs.empty();
 }
 
 Approach Approaches::next(double depth) {

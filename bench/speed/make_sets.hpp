@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "bench/speed/data_set.hpp"
-#include "engine/collide/query_context.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/mesh.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::bench {
 
@@ -37,7 +37,7 @@ class Approaches {
   const LrbRep &a_, &b_;
   double diagonal_;
   shapes::RandomEngine random_;
-  QueryContext context_;
+  Workspace workspace_;
   CollideRequest request_;
 };
 

@@ -51,12 +51,21 @@ Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3d>& points) {
   return points.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(points.size()));
 }
 
+/// A triangle of a posed body, as the exact predicates take it.
+struct WorldTriangle {
+  WorldTriangle(const LrbRep& rep, const Pose& pose, SimplexId simplex) {
+    VertexId v[3] = {};
+    rep.simplex(simplex, v);
+    for (int k = 0; k < 3; ++k) x[k] = pose.apply(rep.vertices()[v[k]]);
+  }
+  Eigen::Vector3d x[3];  ///< world frame
+  const double* corners[3] = {x[0].data(), x[1].data(), x[2].data()};
+};
+
 }  // namespace
 
-RegionMaker::RegionMaker(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  context_.body[0].begin(a, pose_a, WrapperMode::regularised);
-  context_.body[1].begin(b, pose_b, WrapperMode::regularised);
-}
+RegionMaker::RegionMaker(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b)
+    : a_(a), b_(b), pose_a_(pose_a), pose_b_(pose_b) {}
 
 Region RegionMaker::of_pairs(const std::vector<SimplexPair>& pairs) {
   CollideResult result;
@@ -64,21 +73,18 @@ Region RegionMaker::of_pairs(const std::vector<SimplexPair>& pairs) {
   request.contacts = true;
   Region out;
   for (const SimplexPair& p : pairs) {
-    const double *a[3], *b[3];
-    context_.body[0].world.corners(p.a, a);
-    context_.body[1].world.corners(p.b, b);
-    const exact::Meet meet = exact::meet_triangles(a, b);
+    const WorldTriangle a(a_, pose_a_, p.a), b(b_, pose_b_, p.b);
+    const exact::Meet meet = exact::meet_triangles(a.corners, b.corners);
     if (meet != exact::Meet::disjoint) {
       result.pairs.push_back(p);
       result.meets.push_back(meet);
       continue;
     }
     Eigen::Vector3d sum(0, 0, 0);
-    for (int k = 0; k < 3; ++k)
-      sum += Eigen::Map<const Eigen::Vector3d>(a[k]) + Eigen::Map<const Eigen::Vector3d>(b[k]);
+    for (int k = 0; k < 3; ++k) sum += a.x[k] + b.x[k];
     out.points.push_back(sum / 6);
   }
-  describe_contact(context_, request, result);
+  describe_contact(a_, pose_a_, b_, pose_b_, request, workspace_, result).value();
   double largest = -1;
   for (const exact::PairContact& c : result.contacts)
     for (std::uint8_t i = 0; i < c.corner_count; ++i) out.points.push_back(c.corners[i].x);

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bench/speed/record.hpp"
-#include "engine/collide/collide_into.hpp"
 #include "engine/lrb/thickness.hpp"
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::bench {
 
@@ -32,13 +32,16 @@ struct RegionError {
 /// Describes lists of pairs of two bodies at given poses.
 class RegionMaker {
  public:
+  /// Keeps references to the bodies.
   RegionMaker(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
   /// Describes the region of these pairs. Pairs that do not meet count only for the points, where the middles
   /// of their triangles stand for them.
   Region of_pairs(const std::vector<SimplexPair>& pairs);
 
  private:
-  QueryContext context_;
+  const LrbRep &a_, &b_;
+  Pose pose_a_, pose_b_;
+  Workspace workspace_;
 };
 
 /// Tells how far points in the world are off two posed bodies.

@@ -68,18 +68,19 @@ ClashKind overlapping_kind(const std::array<SurfacePieces, 2>& pieces) {
 
 /// Measures the distance of disjoint solids, and compares it with the clearance.
 void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                 const ClashRequest& request, ClashContext& context, ClashProbe* probe, ClashResult& result) {
+                 const ClashRequest& request, DistanceContext& context, ClashProbe* probe,
+                 ClashResult& result) {
   DistanceRequest ask;
   ask.relation = false;
   GapTeller teller(probe);
   const DistanceResult d =
-      distance(a, pose_a, b, pose_b, ask, context.distance, nullptr, probe != nullptr ? &teller : nullptr);
+      distance(a, pose_a, b, pose_b, ask, context, nullptr, probe != nullptr ? &teller : nullptr);
   result.distance = {d.lower, d.upper};
   bool within = d.upper <= request.clearance;
   // The interval contains the clearance: compare exactly. This request ends when that is decided.
   if (!within && d.lower <= request.clearance) {
     ask.within = request.clearance;
-    within = distance(a, pose_a, b, pose_b, ask, context.distance).within.value_or(false);
+    within = distance(a, pose_a, b, pose_b, ask, context).within.value_or(false);
   }
   result.kind = within ? ClashKind::within_clearance : ClashKind::apart;
 }
@@ -164,7 +165,7 @@ void check_request(const LrbRep& a, const ClashRequest& request) {
 }
 
 ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                  const ClashRequest& request, ClashContext& context, ClashProbe* probe) {
+                  const ClashRequest& request, DistanceContext& context, ClashProbe* probe) {
   check_query(a, pose_a, b, pose_b);
   check_request(a, request);
   NullProbe unwatched;
@@ -192,13 +193,13 @@ ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
 
 ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const ClashRequest& request) {
-  ClashContext context;
+  DistanceContext context;
   return clash(a, pose_a, b, pose_b, request, context);
 }
 
 ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const ClashRequest& request, ClashProbe& probe) {
-  ClashContext context;
+  DistanceContext context;
   return clash(a, pose_a, b, pose_b, request, context, &probe);
 }
 

@@ -17,7 +17,9 @@ constexpr double kWorthwhile = 0.6;
 
 }  // namespace
 
-void check_coarse_request(const CollideRequest& request) {
+void check_request(const CollideRequest& request) {
+  // Only a tolerance or a limit restricts what else can be requested.
+  if (!request.is_coarse()) return;
   if (!(request.tolerance >= 0) || !std::isfinite(request.tolerance))
     throw InputError("the tolerance of a query must be a finite length, 0 or more");
   if (!(request.max_time >= 0)) throw InputError("the time limit of a query must be 0 or more seconds");

@@ -43,9 +43,6 @@
 
 namespace lrb {
 
-/// Throws InputError if a coarse query is combined with a request that it cannot answer.
-void check_coarse_request(const CollideRequest& request);
-
 /// One step of a coarse query: a level of each body; null: the body itself.
 struct CoarseStep {
   const WrapperLevel *a = nullptr, *b = nullptr;

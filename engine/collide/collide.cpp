@@ -51,14 +51,24 @@ void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
   check_world(b, pose_b, 'B');
 }
 
-template CollideResult collide<NullProbe>(const LrbRep&, const Pose&, const LrbRep&, const Pose&,
-                                          const CollideRequest&, QueryContext&, NullProbe&);
+void collide_watched(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                     const CollideRequest& request, QueryContext& context, CollideProbe* probe,
+                     CollideResult& result) {
+  if (probe != nullptr) {
+    Teller teller(*probe);
+    collide_into(a, pose_a, b, pose_b, request, context, teller, result);
+  } else {
+    NullProbe unwatched;
+    collide_into(a, pose_a, b, pose_b, request, context, unwatched, result);
+  }
+}
 
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request) {
   QueryContext context;
-  NullProbe probe;
-  return collide(a, pose_a, b, pose_b, request, context, probe);
+  CollideResult result;
+  collide_watched(a, pose_a, b, pose_b, request, context, nullptr, result);
+  return result;
 }
 
 void CollideProbe::face_test(SimplexId, SimplexId, exact::Meet, std::uint32_t, std::uint32_t) {}
@@ -80,8 +90,9 @@ void CollideProbe::end(Phase, std::uint64_t) {}
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request, CollideProbe& probe) {
   QueryContext context;
-  Teller teller(probe);
-  return collide(a, pose_a, b, pose_b, request, context, teller);
+  CollideResult result;
+  collide_watched(a, pose_a, b, pose_b, request, context, &probe, result);
+  return result;
 }
 
 }  // namespace lrb

@@ -19,9 +19,6 @@
 
 namespace lrb {
 
-/// Throws InputError if the query is not possible for these bodies and poses.
-void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
-
 /// Asks for body `a` at pose_a against body `b` at pose_b, as collide() in collide.hpp does. `context`:
 /// memory that a query needs and the next one can use again, one per thread. `probe`: see NullProbe.
 /// `result`: new, or emptied by clear().
@@ -29,7 +26,7 @@ template <class Probe>
 void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const CollideRequest& request, QueryContext& context, Probe& probe, CollideResult& result) {
   check_query(a, pose_a, b, pose_b);
-  if (request.is_coarse()) check_coarse_request(request);
+  if (request.is_coarse()) check_request(request);
   result.recursion = request.recursion;
   result.mode = request.mode;
   context.body[0].begin(a, pose_a, request.wrapper);
@@ -76,6 +73,11 @@ CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, cons
   collide_into(a, pose_a, b, pose_b, request, context, probe, result);
   return result;
 }
+
+/// Does the same for a probe from outside the engine; null: none. Compiled once, in collide.cpp.
+void collide_watched(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                     const CollideRequest& request, QueryContext& context, CollideProbe* probe,
+                     CollideResult& result);
 
 // Passes what a query tells on to a CollideProbe.
 

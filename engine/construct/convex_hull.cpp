@@ -279,15 +279,19 @@ class Hull {
 };
 
 }  // namespace
+}  // namespace lrb::construct
 
-std::vector<Triangle> convex_hull(std::span<const Eigen::Vector3d> points) {
-  return points.size() < 4 ? std::vector<Triangle>() : Hull(points).run();
+namespace lrb {
+
+std::vector<std::array<std::uint32_t, 3>> convex_hull(std::span<const Eigen::Vector3d> points) {
+  if (points.size() < 4) return {};
+  return construct::Hull(points).run();
 }
 
 Mesh convex_hull_mesh(std::span<const Eigen::Vector3d> points) {
   Mesh mesh;
   std::vector<VertexId> number(points.size(), kNull);
-  for (const Triangle& t : convex_hull(points)) {
+  for (const std::array<std::uint32_t, 3>& t : convex_hull(points)) {
     VertexId corners[3];
     for (int i = 0; i < 3; ++i) {
       // Number the vertices in the order of their first use; interior points get no number.
@@ -302,6 +306,10 @@ Mesh convex_hull_mesh(std::span<const Eigen::Vector3d> points) {
   }
   return mesh;
 }
+
+}  // namespace lrb
+
+namespace lrb::construct {
 
 // Convex polygons in 2D.
 // convex_outline(): monotone chains (Andrew 1979). Sort the points, then build the lower and the upper chain.

@@ -68,9 +68,6 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
                         const DistanceRequest& request, DistanceContext& context,
                         KnownFromBefore* before = nullptr, BoundsProbe* probe = nullptr);
 
-/// Throws InputError if a request cannot be answered.
-void check_request(const DistanceRequest& request);
-
 /// Returns true if floats are accurate enough for the distance: the poses are rotations, the bodies are not
 /// far from each other, and rounding of their coordinates does not outweigh their sizes.
 bool suits_floats(const TreeKernel& tree);

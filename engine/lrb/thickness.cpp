@@ -29,6 +29,7 @@
 
 #include "engine/core/tolerances.hpp"
 #include <lrbscope/parallel.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb {
 namespace {

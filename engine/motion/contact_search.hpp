@@ -26,9 +26,6 @@ FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const 
                                  const Motion& motion_b, const FirstContactRequest& request,
                                  FirstContactContext& context, FirstContactProbe* probe = nullptr);
 
-/// Throws InputError if a request cannot be answered.
-void check_request(const FirstContactRequest& request);
-
 /// One search. free_until(): the bodies are proved not to meet from 0 to there, but in what is doubtful.
 class FirstContactSearch {
  public:

@@ -2,8 +2,10 @@
 #include <numeric>
 #include <tuple>
 
+#include "engine/clash/clash_parts.hpp"
 #include "engine/collide/collide_into.hpp"
-#include "engine/distance/distance_context.hpp"
+#include "engine/collide/contact_regions.hpp"
+#include "engine/motion/contact_search.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/workspace.hpp>
@@ -11,13 +13,23 @@
 namespace lrb {
 
 struct Workspace::Memory {
-  DistanceContext context;  ///< its QueryContext serves collide(), too
-  CollideResult result;
+  FirstContactContext context;
+  // The last answers.
+  CollideResult collision;
+  DistanceResult distance;
+  ClashResult clash;
+  FirstContactResult contact;
+
+  // One context serves all questions: each query sets what it reads, so that only memory is left to the next.
+  DistanceContext& of_distance() { return context.distance; }
+  QueryContext& of_collision() { return context.distance.query; }
 };
 
-/// Answers into `answer`, whose memory is used again.
+/// Answer into `answer`; collide_into() reuses its memory.
 void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const CollideRequest& request, QueryContext& context, Expected<CollideResult>& answer);
+void distance_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                   const DistanceRequest& request, Workspace& workspace, Expected<DistanceResult>& answer);
 
 std::vector<std::size_t> order_by_bodies(std::span<const PosedPair> pairs) {
   std::vector<std::size_t> order(pairs.size());
@@ -68,7 +80,7 @@ void Batch::collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::s
                     const CollideRequest& request, CollideAnswers& answers) {
   answers.resize(poses_b.size());
   work_->for_each(poses_b.size(), [&](std::size_t i, Workspace& w) {
-    collide_into(a, pose_a, b, poses_b[i], request, w.memory().context.query, answers[i]);
+    collide_into(a, pose_a, b, poses_b[i], request, w.memory().of_collision(), answers[i]);
   });
 }
 
@@ -77,7 +89,7 @@ void Batch::collide(std::span<const PosedPair> pairs, const CollideRequest& requ
   answers.resize(pairs.size());
   work_->for_each(pairs, [&](std::size_t i, Workspace& w) {
     const PosedPair& p = pairs[i];
-    collide_into(*p.a, p.pose_a, *p.b, p.pose_b, request, w.memory().context.query, answers[i]);
+    collide_into(*p.a, p.pose_a, *p.b, p.pose_b, request, w.memory().of_collision(), answers[i]);
   });
 }
 
@@ -85,7 +97,7 @@ void Batch::distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::
                      const DistanceRequest& request, DistanceAnswers& answers) {
   answers.resize(poses_b.size());
   work_->for_each(poses_b.size(), [&](std::size_t i, Workspace& w) {
-    answers[i] = lrb::distance(a, pose_a, b, poses_b[i], request, w);
+    distance_into(a, pose_a, b, poses_b[i], request, w, answers[i]);
   });
 }
 
@@ -94,7 +106,7 @@ void Batch::distance(std::span<const PosedPair> pairs, const DistanceRequest& re
   answers.resize(pairs.size());
   work_->for_each(pairs, [&](std::size_t i, Workspace& w) {
     const PosedPair& p = pairs[i];
-    answers[i] = lrb::distance(*p.a, p.pose_a, *p.b, p.pose_b, request, w);
+    distance_into(*p.a, p.pose_a, *p.b, p.pose_b, request, w, answers[i]);
   });
 }
 
@@ -136,27 +148,70 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
     clear(*answer);
   else
     answer = CollideResult{};
-  NullProbe probe;
-  collide_into(a, pose_a, b, pose_b, request, context, probe, *answer);
+  collide_watched(a, pose_a, b, pose_b, request, context, nullptr, *answer);
 } catch (const InputError& e) {
   answer = Refusal{e.what()};
 }
 
+void distance_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                   const DistanceRequest& request, Workspace& workspace, Expected<DistanceResult>& answer) {
+  const Expected<DistanceResult&> found = distance(a, pose_a, b, pose_b, request, workspace);
+  if (found)
+    answer = *found;
+  else
+    answer = found.error();
+}
+
 Expected<CollideResult&> collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                                 const CollideRequest& request, Workspace& workspace) try {
+                                 const CollideRequest& request, Workspace& workspace,
+                                 CollideProbe* probe) try {
   Workspace::Memory& memory = workspace.memory();
   // Emptied, not replaced: it keeps its memory from the last query.
-  clear(memory.result);
-  NullProbe probe;
-  collide_into(a, pose_a, b, pose_b, request, memory.context.query, probe, memory.result);
-  return memory.result;
+  clear(memory.collision);
+  collide_watched(a, pose_a, b, pose_b, request, memory.of_collision(), probe, memory.collision);
+  return memory.collision;
 } catch (const InputError& e) {
   return Refusal{e.what()};
 }
 
-Expected<DistanceResult> distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                                  const DistanceRequest& request, Workspace& workspace) try {
-  return distance(a, pose_a, b, pose_b, request, workspace.memory().context);
+Expected<CollideResult&> describe_contact(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                                          const Pose& pose_b, const CollideRequest& request,
+                                          Workspace& workspace, CollideResult& result) try {
+  check_query(a, pose_a, b, pose_b);
+  QueryContext& context = workspace.memory().of_collision();
+  context.body[0].begin(a, pose_a, request.wrapper);
+  context.body[1].begin(b, pose_b, request.wrapper);
+  describe_contact(context, request, result);
+  return result;
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+Expected<DistanceResult&> distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                                   const DistanceRequest& request, Workspace& workspace,
+                                   BoundsProbe* probe) try {
+  Workspace::Memory& memory = workspace.memory();
+  memory.distance = distance(a, pose_a, b, pose_b, request, memory.of_distance(), nullptr, probe);
+  return memory.distance;
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+Expected<ClashResult&> clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                             const ClashRequest& request, Workspace& workspace, ClashProbe* probe) try {
+  Workspace::Memory& memory = workspace.memory();
+  memory.clash = clash(a, pose_a, b, pose_b, request, memory.of_distance(), probe);
+  return memory.clash;
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+Expected<FirstContactResult&> first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
+                                            const Motion& motion_b, const FirstContactRequest& request,
+                                            Workspace& workspace, FirstContactProbe* probe) try {
+  Workspace::Memory& memory = workspace.memory();
+  memory.contact = first_contact(a, motion_a, b, motion_b, request, memory.context, probe);
+  return memory.contact;
 } catch (const InputError& e) {
   return Refusal{e.what()};
 }

@@ -61,6 +61,9 @@ unsigned threads_of(std::size_t asked);
 void run_batch(std::size_t n, unsigned threads,
                const std::function<void(std::size_t i, unsigned worker)>& work);
 
+/// Returns the memory that single queries of the calling thread reuse.
+Workspace& own_workspace();
+
 /// Throws what signal handlers raised, such as KeyboardInterrupt. Takes the lock of Python.
 void check_signals();
 

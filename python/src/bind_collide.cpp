@@ -1,10 +1,10 @@
 #include <mutex>
 
-#include "engine/collide/collide_into.hpp"
 #include "python/src/answers.hpp"
 #include "python/src/bind.hpp"
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/parallel.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::python {
 namespace {
@@ -92,25 +92,19 @@ void bind_coherent(py::module_& m) {
 
 }  // namespace lrb::python
 
-namespace lrb {
-/// The engine's own, so that queries from Python run the code that those from C++ do.
-extern template CollideResult collide<NullProbe>(const LrbRep&, const Pose&, const LrbRep&, const Pose&,
-                                                 const CollideRequest&, QueryContext&, NullProbe&);
-}  // namespace lrb
-
 namespace lrb::python {
-namespace {
 
-CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                  const CollideRequest& request, QueryContext& context) {
-  NullProbe probe;
-  return lrb::collide(a, pose_a, b, pose_b, request, context, probe);
+Workspace& own_workspace() {
+  thread_local Workspace workspace;
+  return workspace;
 }
 
-/// Returns the memory of queries one after another on this thread.
-QueryContext& own_context() {
-  thread_local QueryContext context;
-  return context;
+namespace {
+
+/// Returns the answer to a query, with memory of its own. Throws InputError if it is refused.
+CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const CollideRequest& request, Workspace& workspace) {
+  return std::move(lrb::collide(a, pose_a, b, pose_b, request, workspace).value());
 }
 
 py::object collide_one(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
@@ -118,7 +112,7 @@ py::object collide_one(const Body& a, const Pose& pose_a, const Body& b, const P
   auto result = std::make_shared<CollideResult>();
   {
     const py::gil_scoped_release unlocked;
-    *result = ask(a.rep(), pose_a, b.rep(), pose_b, request, own_context());
+    *result = ask(a.rep(), pose_a, b.rep(), pose_b, request, own_workspace());
   }
   return py::cast(Answer{std::move(result), a.shared(), b.shared()});
 }
@@ -126,9 +120,9 @@ py::object collide_one(const Body& a, const Pose& pose_a, const Body& b, const P
 py::object collide_many(const Body& a, const Pose& pose_a, const Body& b, const std::vector<Pose>& poses_b,
                         const CollideRequest& request, unsigned threads) {
   auto results = std::make_shared<std::vector<CollideResult>>(poses_b.size());
-  std::vector<QueryContext> contexts(threads);
+  std::vector<Workspace> workspaces(threads);
   run_batch(poses_b.size(), threads, [&](std::size_t i, unsigned worker) {
-    (*results)[i] = ask(a.rep(), pose_a, b.rep(), poses_b[i], request, contexts[worker]);
+    (*results)[i] = ask(a.rep(), pose_a, b.rep(), poses_b[i], request, workspaces[worker]);
   });
   return py::cast(Answers{std::move(results), a.shared(), b.shared(), {}});
 }
@@ -202,10 +196,10 @@ void collide_alone(py::handle a, py::handle b, py::handle given, unsigned thread
   const std::vector<Pose> poses_b = poses(given, "poses_b").to_vector();
   const py::gil_scoped_release unlocked;
   std::vector<CollideResult> results(poses_b.size());
-  std::vector<QueryContext> contexts(threads);
+  std::vector<Workspace> workspaces(threads);
   Workers workers(threads);
   workers.for_each(poses_b.size(), [&](std::size_t i, unsigned worker) {
-    results[i] = ask(rep_a, {}, rep_b, poses_b[i], {}, contexts[worker]);
+    results[i] = ask(rep_a, {}, rep_b, poses_b[i], {}, workspaces[worker]);
   });
 }
 
@@ -257,11 +251,11 @@ such lists.
 std::vector<CollideResult> answers_of(std::span<const PosedPair> pairs, const CollideRequest& request,
                                       unsigned threads) {
   std::vector<CollideResult> results(pairs.size());
-  std::vector<QueryContext> contexts(threads);
+  std::vector<Workspace> workspaces(threads);
   const std::vector<std::size_t> order = order_by_bodies(pairs);
   run_batch(pairs.size(), threads, [&](std::size_t k, unsigned worker) {
     const PosedPair& p = pairs[order[k]];
-    results[order[k]] = ask(*p.a, p.pose_a, *p.b, p.pose_b, request, contexts[worker]);
+    results[order[k]] = ask(*p.a, p.pose_a, *p.b, p.pose_b, request, workspaces[worker]);
   });
   return results;
 }

@@ -1,8 +1,8 @@
-#include "engine/distance/distance_context.hpp"
 #include "python/src/answers.hpp"
 #include "python/src/bind.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/first_contact.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::python {
 namespace {
@@ -20,8 +20,10 @@ py::object clash(py::handle a, py::handle b, py::handle poses_b, py::handle pose
   const std::vector<Pose> each = at.to_vector();
   std::vector<ClashResult> results(each.size());
   const unsigned n = at.one ? 1 : threads_of(count(threads, "threads"));
-  run_batch(each.size(), n, [&](std::size_t i, unsigned) {
-    results[i] = lrb::clash(body_a.rep(), at_a, body_b.rep(), each[i], request);
+  std::vector<Workspace> workspaces(n);
+  run_batch(each.size(), n, [&](std::size_t i, unsigned worker) {
+    results[i] =
+        std::move(lrb::clash(body_a.rep(), at_a, body_b.rep(), each[i], request, workspaces[worker]).value());
   });
   if (at.one) return py::cast(std::move(results[0]));
   py::list out;
@@ -114,11 +116,6 @@ struct Distances {
   Distance at(std::size_t i) const { return {Found(all, &(*all)[i])}; }
 };
 
-DistanceContext& own_context() {
-  thread_local DistanceContext context;
-  return context;
-}
-
 py::object distance(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle within,
                     py::handle tolerance, py::handle relative_tolerance, py::handle max_steps,
                     py::handle relation, py::handle threads) {
@@ -135,15 +132,16 @@ py::object distance(py::handle a, py::handle b, py::handle poses_b, py::handle p
     auto result = std::make_shared<DistanceResult>();
     {
       const py::gil_scoped_release unlocked;
-      *result = lrb::distance(body_a.rep(), at_a, body_b.rep(), at.first, request, own_context());
+      *result = lrb::distance(body_a.rep(), at_a, body_b.rep(), at.first, request, own_workspace()).value();
     }
     return py::cast(Distance{std::move(result)});
   }
   const unsigned n = threads_of(count(threads, "threads"));
   auto results = std::make_shared<std::vector<DistanceResult>>(at.many.size());
-  std::vector<DistanceContext> contexts(n);
+  std::vector<Workspace> workspaces(n);
   run_batch(at.many.size(), n, [&](std::size_t i, unsigned worker) {
-    (*results)[i] = lrb::distance(body_a.rep(), at_a, body_b.rep(), at.many[i], request, contexts[worker]);
+    (*results)[i] =
+        lrb::distance(body_a.rep(), at_a, body_b.rep(), at.many[i], request, workspaces[worker]).value();
   });
   return py::cast(Distances{std::move(results)});
 }
@@ -350,8 +348,11 @@ py::object first_contact(py::handle a, py::handle b, py::handle motion_b, py::ha
   auto results = std::make_shared<std::vector<FirstContactResult>>(of_b.all.size());
   const unsigned n = of_b.one ? 1 : threads_of(count(threads, "threads"));
   // Alone, too, because it can take a while: Ctrl-C ends the wait for those that have not begun.
-  run_batch(of_b.all.size(), n, [&](std::size_t i, unsigned) {
-    (*results)[i] = lrb::first_contact(body_a.rep(), of_a.all[0], body_b.rep(), of_b.all[i], request);
+  std::vector<Workspace> workspaces(n);
+  run_batch(of_b.all.size(), n, [&](std::size_t i, unsigned worker) {
+    (*results)[i] = std::move(
+        lrb::first_contact(body_a.rep(), of_a.all[0], body_b.rep(), of_b.all[i], request, workspaces[worker])
+            .value());
   });
   const FirstContacts found{std::move(results)};
   return of_b.one ? py::cast(found.at(0)) : py::cast(found);

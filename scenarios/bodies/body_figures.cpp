@@ -7,15 +7,15 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/construct/convex_hull.hpp"
 #include "engine/exact/predicates.hpp"
+#include <lrbscope/build.hpp>
 #include <lrbscope/validate.hpp>
 #include <lrbscope/wrapper.hpp>
 
 namespace lrb::bodies {
 
 double hull_volume(std::span<const Eigen::Vector3d> points) {
-  const std::vector<std::array<std::uint32_t, 3>> hull = construct::convex_hull(points);
+  const std::vector<std::array<std::uint32_t, 3>> hull = convex_hull(points);
   if (hull.empty()) return 0;
   const Eigen::Vector3d o = points[hull[0][0]];
   double six = 0;

@@ -17,7 +17,7 @@ namespace lrb::bodies {
 nlohmann::ordered_json body_figures(const LrbRep& rep);
 
 /// Returns the volume of the convex hull of points; 0 if all lie in one plane. The hull is exact
-/// (construct::convex_hull), the volume rounded.
+/// (lrb::convex_hull()), the volume rounded.
 double hull_volume(std::span<const Eigen::Vector3d> points);
 
 /// Returns the area of the convex hull of points in the plane z = 0.

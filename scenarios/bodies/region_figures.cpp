@@ -9,9 +9,9 @@
 #include <Eigen/Geometry>
 
 #include "engine/core/geometry.hpp"
-#include "engine/lrb/thickness.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include <lrbscope/validate.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::bodies {
 namespace {

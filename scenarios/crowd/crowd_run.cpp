@@ -4,8 +4,6 @@
 #include <chrono>
 #include <memory>
 
-#include "engine/collide/collide_into.hpp"
-#include "engine/collide/query_context.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/record/moments.hpp"
 #include <lrbscope/error.hpp>
@@ -43,7 +41,7 @@ class Player {
       : crowd_(crowd),
         run_(run),
         workers_(run.threads),
-        contexts_(workers_.count()),
+        workspaces_(workers_.count()),
         scene_(run.threads),
         began_(Clock::now()) {
     std::vector<Body> kinds;  // the run has the LRB-reps, and outlives the player
@@ -101,14 +99,14 @@ class Player {
 
   CollideResult ask(const BodyPair& pair, const PosedPair& question, std::uint32_t thread,
                     CrowdQuery& query) {
-    NullProbe probe;
     query.bodies = pair;
     query.thread = thread;
     query.begin_ns = now();
     CollideResult r;
     try {
-      r = collide(*question.a, question.pose_a, *question.b, question.pose_b, crowd_.request,
-                  contexts_[thread], probe);
+      r = std::move(collide(*question.a, question.pose_a, *question.b, question.pose_b, crowd_.request,
+                            workspaces_[thread])
+                        .value());
     } catch (const InputError& e) {
       throw InputError("crowd " + crowd_.name + ", " + run_.names[pair.i] + " (A) and " + run_.names[pair.j] +
                        " (B): " + e.what());
@@ -145,7 +143,7 @@ class Player {
   const spec::Crowd& crowd_;
   CrowdRun& run_;
   Workers workers_;
-  std::vector<QueryContext> contexts_;  ///< one for each thread
+  std::vector<Workspace> workspaces_;  ///< one for each thread
   Scene scene_;
   std::vector<BodyKey> keys_;  ///< by body, ascending
   Clock::time_point began_;

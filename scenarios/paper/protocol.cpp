@@ -5,8 +5,6 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/collide/collide_into.hpp"
-#include "engine/collide/query_context.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/core/hash.hpp>
 
@@ -25,6 +23,12 @@ RecursionCount count_of(const CollideResult& result, const std::vector<SimplexPa
   return n;
 }
 
+/// Returns the answer to a query, with memory of its own.
+CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& x, const Pose& pose_x,
+                  const CollideRequest& request, Workspace& workspace) {
+  return std::move(collide(a, pose_a, x, pose_x, request, workspace).value());
+}
+
 template <class Query>
 CollideResult timed(const Query& query, std::uint64_t& nanoseconds) {
   const auto begin = std::chrono::steady_clock::now();
@@ -35,17 +39,16 @@ CollideResult timed(const Query& query, std::uint64_t& nanoseconds) {
 }
 
 ContactStep count_step(const LrbRep& a, const Pose& pose_a, const LrbRep& x, const Pose& pose_x,
-                       const CollideResult& complete, std::uint64_t nanoseconds, QueryContext& context) {
+                       const CollideResult& complete, std::uint64_t nanoseconds, Workspace& workspace) {
   ContactStep step;
   step.relation = complete.relation;
-  NullProbe probe;
   for (std::size_t i = 0; i < kRecursions.size(); ++i) {
     CollideRequest request;
     request.recursion = kRecursions[i];
     if (kRecursions[i] != Recursion::complete) {
       std::uint64_t taken = 0;
-      const auto ask = [&] { return collide(a, pose_a, x, pose_x, request, context, probe); };
-      step.counts[i] = count_of(timed(ask, taken), complete.pairs);
+      const CollideResult found = timed([&] { return ask(a, pose_a, x, pose_x, request, workspace); }, taken);
+      step.counts[i] = count_of(found, complete.pairs);
       step.counts[i].nanoseconds = taken;
     } else {
       step.counts[i] = count_of(complete, complete.pairs);
@@ -69,7 +72,7 @@ LrbRep scaled(const LrbRep& rep, double by) {
 
 std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const std::string& object,
                                        std::uint32_t collision, const PaperProtocol& protocol,
-                                       QueryContext& context) {
+                                       Workspace& workspace) {
   Fnv64 seed;
   seed.add_value(protocol.seed);
   seed.add_bytes(object.data(), object.size());
@@ -85,18 +88,16 @@ std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const s
   const double start = 0.5 * (unit + box_x.diagonal().norm());
 
   std::vector<ContactStep> steps;
-  NullProbe probe;
   std::uint32_t since_contact = 0;
   bool met = false;
   for (std::uint32_t i = 0; i * protocol.step * unit < 2 * start && since_contact <= protocol.steps_after;
        ++i) {
     pose_x.t = (start - i * protocol.step * unit) * from - centre_x;
     std::uint64_t nanoseconds = 0;
-    const CollideResult result =
-        timed([&] { return collide(a, pose_a, x, pose_x, {}, context, probe); }, nanoseconds);
+    const CollideResult result = timed([&] { return ask(a, pose_a, x, pose_x, {}, workspace); }, nanoseconds);
     met |= !result.pairs.empty();
     if (!result.pairs.empty()) {
-      ContactStep step = count_step(a, pose_a, x, pose_x, result, nanoseconds, context);
+      ContactStep step = count_step(a, pose_a, x, pose_x, result, nanoseconds, workspace);
       step.object = object;
       step.collision = collision;
       step.step = since_contact;

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/collide/query_context.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::paper {
 
@@ -56,10 +56,10 @@ struct ContactStep {
 };
 
 /// Returns the counted steps of one collision. The random numbers depend only on protocol.seed, the object's
-/// name and the collision's number. Reuses `context`.
+/// name and the collision's number. Reuses the memory of `workspace`.
 std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const std::string& object,
                                        std::uint32_t collision, const PaperProtocol& protocol,
-                                       QueryContext& context);
+                                       Workspace& workspace);
 
 /// Returns the body with its coordinates multiplied.
 LrbRep scaled(const LrbRep& rep, double by);

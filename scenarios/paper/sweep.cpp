@@ -9,8 +9,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/collide/collide_into.hpp"
-#include "engine/collide/query_context.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/paper/experiment.hpp"
 #include "trace/json_read.hpp"
@@ -19,6 +17,7 @@
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/trace/recorder.hpp>
 #include <lrbscope/trace/trace.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::paper {
 namespace {
@@ -51,10 +50,10 @@ std::array<std::uint32_t, 2> easiest_and_hardest(std::span<const ContactStep> st
 
 CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProtocol& protocol,
                  std::span<const ContactStep> records) {
-  QueryContext context;
+  Workspace workspace;
   CloseUp out;
   out.collision = collision;
-  out.steps = run_collision(pair.a.rep, pair.x.rep, pair.x.name, collision, protocol, context);
+  out.steps = run_collision(pair.a.rep, pair.x.rep, pair.x.name, collision, protocol, workspace);
   if (!same_counts(records, out, pair.x.name))
     throw InputError("collision " + std::to_string(collision) + " of " + pair.a.name + " with " +
                      pair.x.name +
@@ -66,7 +65,7 @@ CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProt
   for (const ContactStep& s : out.steps) {
     recorder.begin_step(s.step, s.pose_a, s.pose_x);
     recorder.end_step(
-        collide(pair.a.rep, s.pose_a, pair.x.rep, s.pose_x, settings.request, context, recorder));
+        collide(pair.a.rep, s.pose_a, pair.x.rep, s.pose_x, settings.request, workspace, &recorder).value());
     out.comparisons += s.counts[kPaper].comparisons;
   }
   out.trace = recorder.take();
@@ -179,13 +178,13 @@ std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const S
 
   std::vector<std::vector<ContactStep>> found(tasks.size());
   Workers workers(options.jobs);
-  std::vector<QueryContext> contexts(workers.count());
+  std::vector<Workspace> workspaces(workers.count());
   std::mutex one_at_a_time;
   std::uint64_t done = 0;
   workers.for_each(tasks.size(), [&](std::size_t i, unsigned worker) {
     const PaperObject& x = objects[tasks[i].first];
     found[i] = run_collision(objects[0].rep, x.rep, x.draws.empty() ? x.name : x.draws, tasks[i].second,
-                             options.protocol, contexts[worker]);
+                             options.protocol, workspaces[worker]);
     for (ContactStep& s : found[i]) s.object = x.name;
     const std::lock_guard lock(one_at_a_time);
     if (progress) progress(++done, tasks.size());

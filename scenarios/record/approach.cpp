@@ -6,9 +6,9 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/collide/collide_into.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/core/strings.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::run {
 namespace {
@@ -67,10 +67,9 @@ void find_step(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Steps
                Approach& out) {
   CollideRequest request;
   request.mode = Mode::first_pair;
-  QueryContext context;
-  NullProbe probe;
+  Workspace workspace;
   for (std::uint32_t step = from; step <= steps.count && !out.met; ++step) {
-    const Relation r = collide(a, pose_a, b, steps.pose(step), request, context, probe).relation;
+    const Relation r = collide(a, pose_a, b, steps.pose(step), request, workspace).value().relation;
     if (r == Relation::separate || r == Relation::undefined) continue;
     out.met = true;
     const std::uint32_t first = step - std::min(step, steps.motion.before);

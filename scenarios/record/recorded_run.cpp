@@ -8,7 +8,6 @@
 #include <sstream>
 #include <system_error>
 
-#include "engine/collide/collide_into.hpp"
 #include "scenarios/record/approach.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/coherent.hpp>
@@ -20,6 +19,7 @@
 #include <lrbscope/trace/replay.hpp>
 #include <lrbscope/trace/trace_json.hpp>
 #include <lrbscope/trace/work.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::run {
 namespace {
@@ -188,8 +188,9 @@ class StepQueries {
   CollideResult ask(std::uint32_t step, const Pose& pose_b, trace::Recorder& recorder) {
     const Pose& pose_a = s_.bodies[0].pose;
     try {
-      CollideResult result = coherent_ ? coherent_->collide(pose_a, pose_b, recorder)
-                                       : collide(a_, pose_a, b_, pose_b, s_.request, context_, recorder);
+      CollideResult result =
+          coherent_ ? coherent_->collide(pose_a, pose_b, recorder)
+                    : std::move(collide(a_, pose_a, b_, pose_b, s_.request, workspace_, &recorder).value());
       ask_more(pose_a, pose_b, recorder);
       return result;
     } catch (const InputError& e) {
@@ -214,7 +215,7 @@ class StepQueries {
   const spec::Scenario& s_;
   const LrbRep &a_, &b_;
   std::optional<CoherentQuery> coherent_;
-  QueryContext context_;
+  Workspace workspace_;
 };
 
 void record_collision(const spec::Scenario& s, Recording& r, const ProgressReport& progress) {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <numbers>
 
-#include "engine/collide/coarse_query.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "trace/json_read.hpp"
+#include <lrbscope/collide.hpp>
 #include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/json_write.hpp>
@@ -166,7 +166,7 @@ CollideRequest read_query(const io::JsonNode& node, StepQuestions* more) {
   else if (r.contacts && r.mode != Mode::all_pairs)
     node.at("contacts").fail("contacts need \"mode\": \"all\"");
   try {
-    if (r.is_coarse()) check_coarse_request(r);
+    check_request(r);
   } catch (const InputError& e) {
     node.fail(e.what());
   }

@@ -19,7 +19,6 @@
 #include <unistd.h>
 
 #include "engine/construct/closing.hpp"
-#include "engine/construct/convex_hull.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/resolutions.hpp"
@@ -37,7 +36,7 @@ using lrb::Mesh;
 double hull_volume(const Mesh& mesh) {
   Mesh hull;
   hull.vertices = mesh.vertices;
-  for (const auto& t : lrb::construct::convex_hull(mesh.vertices))
+  for (const auto& t : lrb::convex_hull(mesh.vertices))
     hull.add_face(std::array{lrb::VertexId(t[0]), lrb::VertexId(t[1]), lrb::VertexId(t[2])});
   return lrb::construct::volume_of(hull);
 }

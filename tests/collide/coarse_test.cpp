@@ -7,7 +7,6 @@
 
 #include "engine/collide/collide_into.hpp"
 #include "engine/exact/locate.hpp"
-#include "engine/lrb/thickness.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/affine_maps.hpp"
 #include "tests/support/coarse_checks.hpp"
@@ -17,6 +16,7 @@
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
+#include <lrbscope/wrapper.hpp>
 
 using namespace lrb;
 using shapes::RandomEngine;

@@ -5,16 +5,14 @@
 #include <doctest/doctest.h>
 
 #include "engine/construct/closing.hpp"
-#include "engine/construct/convex_hull.hpp"
-#include "engine/lrb/thickness.hpp"
 #include "tests/construct/build_checks.hpp"
 #include "tests/support/shared_meshes.hpp"
 #include <lrbscope/mesh.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::test {
 namespace {
 
-using construct::convex_hull;
 using construct::volume_of;
 
 /// Faces of the wrapper that keeps closed what is proved to be off by no more than a share of the largest

@@ -1,5 +1,4 @@
 // What is proved of how far lids are off the body: against dense sampling, and against exact distances.
-#include "engine/lrb/thickness.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include "tests/support/simplex_distance.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/mesh.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::test {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/lrb/thickness.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/faulty_meshes.hpp"
 #include "tests/support/lrb_shapes.hpp"

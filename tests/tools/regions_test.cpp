@@ -7,7 +7,6 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/lrb/thickness.hpp"
 #include "render/pictures/body_picture.hpp"
 #include "scenarios/bodies/region_figures.hpp"
 #include "scenarios/bodies/shapes.hpp"
@@ -17,6 +16,7 @@
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/render/image.hpp>
 #include <lrbscope/validate.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::test {
 

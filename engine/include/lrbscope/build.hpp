@@ -1,9 +1,14 @@
 #pragma once
-/// Builds an LRB-rep from a mesh.
+/// Builds an LRB-rep from a mesh; convex hulls.
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include <lrbscope/enum_words.hpp>
 #include <lrbscope/ids.hpp>
@@ -165,5 +170,18 @@ LrbRep build_lrb(const CheckedMesh& mesh, const BuildOptions& options = {});
 
 /// Checks the mesh first, then does the same.
 LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options = {});
+
+// Convex hulls, for bodies of one's own and to compare wrappers with.
+
+/// Returns the convex hull's triangles, counter-clockwise seen from outside, as indices of points; none if
+/// all points lie in one plane. Exact, and for every input the result of adding the points in order, each in
+/// place of the triangles that it lies strictly in front of: points on a triangle's plane count as behind it.
+/// The triangles are listed in the order in which they arise that way. Coordinates must be finite. Takes
+/// about n log n time, however many points are on the hull (Barber, Dobkin and Huhdanpaa, "The Quickhull
+/// Algorithm for Convex Hulls", 1996).
+std::vector<std::array<std::uint32_t, 3>> convex_hull(std::span<const Eigen::Vector3d> points);
+
+/// Returns the same hull as a mesh, with only the vertices that it needs.
+Mesh convex_hull_mesh(std::span<const Eigen::Vector3d> points);
 
 }  // namespace lrb

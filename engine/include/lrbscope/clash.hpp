@@ -130,6 +130,10 @@ struct ClashResult {
 ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const ClashRequest& request = {});
 
+/// Throws InputError for a request that clash() rejects, with bodies of the dimension of `a`: a clearance
+/// that is negative or not finite, a direction without length, bodies in the plane.
+void check_request(const LrbRep& a, const ClashRequest& request);
+
 // Watching a clash query, from outside the engine: derive from ClashProbe and give it to clash(). The answer
 // is the same as without.
 

@@ -211,6 +211,12 @@ std::uint64_t fingerprint(const std::vector<SimplexPair>& pairs);
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request = {});
 
+/// Throw InputError where collide() does before it begins: for bodies and poses that cannot be queried, and
+/// for a tolerance or limit that is not finite or is combined with a request that must be exact. Programs
+/// call these to reject input before the first of many queries.
+void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
+void check_request(const CollideRequest& request);
+
 /// Tests every pair of real simplices exactly: the slow answer that the fast one is compared with. It shares
 /// the predicates and the definition of world coordinates with the query, and nothing else: no tree, no
 /// boxes. Throws InputError beyond kMostPairs.

@@ -93,6 +93,9 @@ struct DistanceResult {
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                         const DistanceRequest& request = {});
 
+/// Throws InputError for a request that distance() rejects: a number that is negative or not finite.
+void check_request(const DistanceRequest& request);
+
 /// Returns the distances for some poses of B, in their order; the same for any number of threads (0: all
 /// cores).
 std::vector<DistanceResult> distances(const LrbRep& a, const Pose& pose_a, const LrbRep& b,

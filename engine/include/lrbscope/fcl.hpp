@@ -267,7 +267,7 @@ S distance(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transform3<S>& tf
   lrb::DistanceRequest query;
   query.relation = false;
   const Body body_a = known_bodies().of(o1, a), body_b = known_bodies().of(o2, b);
-  const Expected<lrb::DistanceResult> answer =
+  const Expected<lrb::DistanceResult&> answer =
       lrb::distance(body_a, fcl::pose_of<S>(tf1), body_b, fcl::pose_of<S>(tf2), query, workspace());
   const lrb::DistanceResult& found = answer.value();
   const auto least = static_cast<S>(found.upper);

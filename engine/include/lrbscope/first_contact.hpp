@@ -132,6 +132,9 @@ struct FirstContactResult {
 FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                  const Motion& motion_b, const FirstContactRequest& request = {});
 
+/// Throws InputError for a request that first_contact() rejects: a tolerance that is not in (0, 1].
+void check_request(const FirstContactRequest& request);
+
 /// Returns the first contacts for some motions of B, in their order; the same for any number of threads (0:
 /// all cores).
 std::vector<FirstContactResult> first_contacts(const LrbRep& a, const Motion& motion_a, const LrbRep& b,

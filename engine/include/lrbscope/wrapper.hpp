@@ -93,6 +93,16 @@ class Wrapper {
   std::vector<RegionId> order_;  ///< the excluded regions, as they were refined
 };
 
+/// Returns the thickness of each region: an upper bound on the distance from any point of its lids to the
+/// nearest real face, in the mesh's unit. Rounded upward. The search ends a hundredth above the largest
+/// distance that it came across, or after a limit of steps, which makes the bound larger. Infinite for a
+/// region without lids, which nothing hides. Says nothing of points inside the region: under a lid over the
+/// neck of a bottle they may be further off.
+///
+/// The one-sided Hausdorff distance from the lids to the set of all real faces, by branch and bound. Takes
+/// `threads` threads (0: as many as the machine runs at once); the result does not depend on them.
+std::vector<double> region_thickness(const LrbRep& rep, unsigned threads = 1);
+
 // Levels of a body: wrappers that include every region no thicker than a tolerance, ready to be queried like
 // a body.
 

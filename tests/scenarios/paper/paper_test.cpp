@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/collide/query_context.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/paper/series_report.hpp"
 #include "scenarios/paper/tables.hpp"
@@ -107,8 +106,8 @@ TEST_CASE("the paper's tables: averages, and the paper's own columns") {
 TEST_CASE("the paper's experiment: counts that must not change unnoticed") {
   const LrbRep a = generators::fractal_body(generators::paper_objects()[0]),
                e = generators::fractal_body(generators::paper_objects()[4]);
-  QueryContext context;
-  const auto steps = paper::run_collision(a, e, "E", 0, {}, context);
+  Workspace workspace;
+  const auto steps = paper::run_collision(a, e, "E", 0, {}, workspace);
   REQUIRE(steps.size() == 6);
   CHECK(steps[5].counts[0].comparisons == 879);
   CHECK(steps[5].counts[1].comparisons == 133);

@@ -4,7 +4,7 @@
 ///   Recorder recorder(a, b, settings);
 ///   for each time step:
 ///     recorder.begin_step(i, pose_a, pose_b);
-///     recorder.end_step(collide(a, pose_a, b, pose_b, request, context, recorder));
+///     recorder.end_step(collide(a, pose_a, b, pose_b, request, workspace, &recorder).value());
 ///   Trace trace = recorder.take();
 ///
 /// An event costs some nanoseconds on the event clock (tests/bench/trace_bench.cpp measures it); the wall
