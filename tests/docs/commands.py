@@ -21,7 +21,7 @@ NOT_RUN = [
         r"^(\./run|\./check|cmake |ctest |export PYTHONPATH|\(cd build/release && cpack\)|apt-get )",
         "builds; tests/bare, ./check",
     ),
-    ("", r"^(build/|tests/bench/)", "programs of tests and benchmarks, named by their tests"),
+    ("", r"^(build/|tests/guard/)", "programs of tests and benchmarks, named by their tests"),
     ("", r"^lrbscope (stability|bench|chart)\b", "measures for minutes; measure_tests, stability_tests"),
     ("", r"^lrbscope (paper|crowd)$", "takes minutes at its full size; cli tests have smaller ones"),
     (

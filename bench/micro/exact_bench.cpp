@@ -1,5 +1,4 @@
-// Exact tests by kind of pair; an iteration is 1000 pairs, so that Time in ns is picoseconds per pair. Build
-// with -DLRB_BUILD_BENCHMARKS=ON, run build/tests/exact_bench.
+// Exact tests by kind of pair; an iteration is 1000 pairs, so that Time in ns is picoseconds per pair.
 
 #include <array>
 #include <cmath>
@@ -9,16 +8,22 @@
 #include <benchmark/benchmark.h>
 
 #include "engine/exact/predicates.hpp"
-#include "tests/support/random_simplices.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/contact.hpp>
 
 using namespace lrb;
-using test::SimplexPair;
 
 namespace {
 
 using Vec = std::array<double, 3>;
 using Matrix = std::array<Vec, 3>;
+
+/// Two triangles.
+struct SimplexPair {
+  std::array<Vec, 6> p{};
+  std::array<const double*, 3> a() const { return {p[0].data(), p[1].data(), p[2].data()}; }
+  std::array<const double*, 3> b() const { return {p[3].data(), p[4].data(), p[5].data()}; }
+};
 
 /// A rotation that leaves no coordinate round.
 Vec rotated(const Vec& p) {
@@ -48,9 +53,10 @@ enum class Case {
   flat_corner_rotated
 };
 
-SimplexPair make(test::Rng& rng, Case kind) {
+SimplexPair make(shapes::RandomEngine& random, Case kind) {
   SimplexPair s;
-  test::fill_real(rng, s);
+  for (Vec& p : s.p)
+    for (double& x : p) x = shapes::uniform(random);
   const bool flat = kind == Case::flat || kind == Case::flat_rotated || kind == Case::flat_corner_rotated;
   if (flat) {
     for (auto& p : s.p) p[2] = 0.25;
@@ -72,9 +78,9 @@ SimplexPair make(test::Rng& rng, Case kind) {
 }
 
 void meet_triangles(benchmark::State& state, Case kind) {
-  test::Rng rng(5);
+  shapes::RandomEngine random(5);
   std::vector<SimplexPair> pairs(1000);
-  for (auto& s : pairs) s = make(rng, kind);
+  for (auto& s : pairs) s = make(random, kind);
   const auto before = exact::exact_fallbacks();
   std::uint64_t calls = 0, meets = 0;
   for (auto _ : state) {
@@ -90,9 +96,9 @@ void meet_triangles(benchmark::State& state, Case kind) {
 }
 
 void only_in_shared(benchmark::State& state, Case kind, std::array<VertexId, 3> ib) {
-  test::Rng rng(6);
+  shapes::RandomEngine random(6);
   std::vector<SimplexPair> pairs(1000);
-  for (auto& s : pairs) s = make(rng, kind);
+  for (auto& s : pairs) s = make(random, kind);
   const VertexId ia[3] = {0, 1, 2};
   std::uint64_t calls = 0, clean = 0;
   for (auto _ : state) {

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Counts the instructions of a few queries (callgrind) and compares them with tests/bench/guard.txt: a change that makes
+# Counts the instructions of a few queries (callgrind) and compares them with tests/guard/guard.txt: a change that makes
 # a query do more work shows, whatever else the machine is doing. Counts depend on the compiler, its flags and on what
 # the processor can do (AVX2), each of which has lines of its own.
-#   tests/bench/guard.sh [BUILD] [--tolerance PERCENT] [--approve]      BUILD: a build folder [build/release]
+#   tests/guard/guard.sh [BUILD] [--tolerance PERCENT] [--approve]      BUILD: a build folder [build/release]
 # Exit codes: 0 within the tolerance (or approved), 1 more instructions than it allows, 2 bad usage, 3 cannot count.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -18,7 +18,7 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
-program=$build/tests/bench/query_guard
+program=$build/tests/guard/query_guard
 [ -x "$program" ] || {
   echo "guard: $program is not there: install valgrind, configure with -DLRB_BUILD_BENCHMARKS=ON, build query_guard" >&2
   exit 3

@@ -1,4 +1,4 @@
-/// What recording and writing cost, per event. Run: build/tests/bench/trace_bench --benchmark_repetitions=5
+/// What recording and writing cost, per event.
 
 #include <algorithm>
 #include <filesystem>
@@ -8,11 +8,10 @@
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <unistd.h>
 
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/folder.hpp"
-#include "tests/support/lrb_shapes.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/trace/recorder.hpp>
 #include <lrbscope/trace/replay.hpp>
@@ -22,35 +21,6 @@ namespace {
 
 using namespace lrb;
 using namespace lrb::trace;
-
-/// A body of `notches` notched plates side by side: as many regions as a real one, so that look-ups miss
-/// caches as they do there.
-LrbRep big_body(std::uint32_t notches) {
-  const LrbData one = toy::notched_plate();
-  LrbData all;
-  all.dim = 2;
-  all.name = "many plates";
-  all.closed = true;
-  for (std::uint32_t n = 0; n < notches; ++n)
-    for (const auto& v : one.vertices) all.vertices.push_back(v + Eigen::Vector3d(10.0 * n, 0, 0));
-  const auto add = [&](FaceId from, FaceId to) {
-    const auto shifted = [](CellId cell, std::uint32_t n) {
-      return is_region(cell) ? CellId(cell + 3 * n) : cell;
-    };
-    for (std::uint32_t n = 0; n < notches; ++n)
-      for (FaceId f = from; f < to; ++f) {
-        const auto corners = one.face(f);
-        const std::size_t offset = one.vertices.size() * n;
-        toy::add_face(all, {VertexId(corners[0] + offset), VertexId(corners[1] + offset)},
-                      shifted(one.inner_cell[f], n), shifted(one.outer_cell[f], n));
-      }
-  };
-  add(0, FaceId(one.real_face_count));
-  all.real_face_count = one.real_face_count * notches;
-  add(FaceId(one.real_face_count), FaceId(one.face_count()));
-  for (std::uint32_t n = 0; n < notches; ++n) all.region_layer.insert(all.region_layer.end(), {0, 1, 2});
-  return LrbRep(std::move(all));
-}
 
 /// A call of the probe.
 struct Call {
@@ -63,7 +33,7 @@ struct Call {
 constexpr std::size_t kEvents = 200'000;
 
 const LrbRep& body() {
-  static const LrbRep rep = big_body(2000);  // 26,000 faces, 6,000 regions
+  static const LrbRep rep = build_lrb(shapes::bumpy_sphere(6, 7, 0.3));  // look-ups miss caches, as in use
   return rep;
 }
 
@@ -207,11 +177,12 @@ BENCHMARK(write_json)->ArgName("wall")->Arg(0)->Arg(1)->Unit(benchmark::kMillise
 
 void save_file(benchmark::State& state) {
   const Trace trace = recorded(Clock::event);
-  const test::Folder folder;
-  const auto path = folder.path / (state.range(0) ? "lrb_bench.json.gz" : "lrb_bench.json");
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("trace_bench." + std::to_string(getpid()) + (state.range(0) ? ".json.gz" : ".json"));
   for (auto _ : state) save_trace(trace, path.string());
   report(state);
   state.counters["bytes_per_event"] = static_cast<double>(std::filesystem::file_size(path)) / kEvents;
+  std::filesystem::remove(path);
 }
 BENCHMARK(save_file)->ArgName("gz")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
