@@ -19,15 +19,15 @@ NOT_RUN = [
     (
         "",
         r"^(\./run|\./check|cmake |ctest |export PYTHONPATH|\(cd build/release && cpack\)|apt-get )",
-        "builds; tests/bare, ./check",
+        "builds; tests/fresh_install, ./check",
     ),
     ("", r"^(build/|tests/guard/)", "programs of tests and benchmarks, named by their tests"),
     ("", r"^lrbscope (stability|bench|chart)\b", "measures for minutes; measure_tests, stability_tests"),
     ("", r"^lrbscope (paper|crowd)$", "takes minutes at its full size; cli tests have smaller ones"),
     (
         "docs/paper.md",
-        r"^(lrbscope paper|mpirun)",
-        "takes minutes; tests/spread runs it in parts, spec and paper tests its experiments",
+        r"^(lrbscope paper|seq 0 3)",
+        "takes minutes; tests/shards runs it in parts, spec and paper tests its experiments",
     ),
     ("", r"^lrbscope xray\b", "needs another engine; xray_tests"),
     ("docs/meshes.md", r"\b(twin|cow)2?\.(obj|lrb)", "tests/docs/bodies.sh, with what they say"),

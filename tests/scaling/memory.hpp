@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace lrb::cliffs {
+namespace lrb::scaling {
 
 /// The most that has been held since it was made, beyond what was held then. One at a time.
 class PeakMemory {
@@ -15,4 +15,4 @@ class PeakMemory {
   std::size_t before_;
 };
 
-}  // namespace lrb::cliffs
+}  // namespace lrb::scaling

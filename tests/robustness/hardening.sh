@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tests/faults/hardening.sh PROGRAM: is what LRB_HARDEN asks for in the program?
+# tests/robustness/hardening.sh PROGRAM: is what LRB_HARDEN asks for in the program?
 set -u
 failed=0
 # want WHAT PATTERN TEXT: the text has the pattern

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tests/faults/faults.sh LRBSCOPE [unlimited]: what the program does when the machine fails it or somebody stops it. Nothing
+# tests/robustness/robustness.sh LRBSCOPE [unlimited]: what the program does when the machine fails it or somebody stops it. Nothing
 # half-written may ever be seen under a final name, nothing temporary may stay, and the message is one line.
 # "unlimited" leaves out what sets a limit on memory, below which ASan's shadow of it would not fit.
 set -u

@@ -1,4 +1,4 @@
-#include "tests/cliffs/memory.hpp"
+#include "tests/scaling/memory.hpp"
 
 #include <atomic>
 #include <cstdlib>
@@ -45,7 +45,7 @@ void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
   give_back(p);
 }
 
-namespace lrb::cliffs {
+namespace lrb::scaling {
 
 PeakMemory::PeakMemory() : before_(held) {
   most = before_;
@@ -55,4 +55,4 @@ std::size_t PeakMemory::bytes() const {
   return most - before_;
 }
 
-}  // namespace lrb::cliffs
+}  // namespace lrb::scaling

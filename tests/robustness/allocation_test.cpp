@@ -11,8 +11,8 @@
 
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/faults/failing_new.hpp"
 #include "tests/mesh/io/encode.hpp"
+#include "tests/robustness/failing_new.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include <lrbscope/build.hpp>

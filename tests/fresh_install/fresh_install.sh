@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tests/bare/bare.sh [--suite S] [--commit C] [--until STEP] [--minutes M] [--no-cache] [--keep]: proves the README's two
+# tests/fresh_install/fresh_install.sh [--suite S] [--commit C] [--until STEP] [--minutes M] [--no-cache] [--keep]: proves the README's two
 # commands on a bare Debian: bookworm (12, the default of S) or trixie (13). Makes a root with debootstrap, from the package
 # sources of this machine, clones commit C (HEAD) into it, and runs ./run and ./check there as root would type them, in a clean
 # environment; then again as a user without root; then the rest of ./check --full, in the end with the engines of others
@@ -18,7 +18,7 @@ repository=$(cd "$here/../.." && pwd)
 home=/root/lrbscope # the clone, inside the root
 
 usage() { sed -n '2,13s/^# //p' "$script" >&2 && exit 2; }
-refuse() { echo "bare.sh: $1" >&2 && exit 3; }
+refuse() { echo "fresh_install.sh: $1" >&2 && exit 3; }
 
 # ---- the package sources of this machine
 
@@ -83,14 +83,14 @@ make_root() {
 mount_parts() {
   local root=$1 device
   if [ "$mounts" = 0 ]; then
-    echo "bare.sh: this machine lets nobody mount: the root has no /proc, and only packages are kept between runs"
+    echo "fresh_install.sh: this machine lets nobody mount: the root has no /proc, and only packages are kept between runs"
   fi
   try mount -t proc proc "$root/proc" || true
   try mount -t tmpfs -o mode=1777 tmpfs "$root/dev/shm" || true
   for device in null zero full random urandom tty; do # where debootstrap may not make devices
     [ -c "$root/dev/$device" ] || { touch "$root/dev/$device" && try mount --bind "/dev/$device" "$root/dev/$device"; }
   done
-  [ -c "$root/dev/null" ] || { echo "bare.sh: no /dev/null can be made in the root" >&2 && return 1; }
+  [ -c "$root/dev/null" ] || { echo "fresh_install.sh: no /dev/null can be made in the root" >&2 && return 1; }
   if [ "$cached" = 1 ]; then
     mkdir -p "$cache/debs" "$objects" "$root/var/cache/ccache" "$cache/tidy" "$root/root/.cache/lrbscope-tidy"
     try mount --bind "$cache/tidy" "$root/root/.cache/lrbscope-tidy" || true
@@ -132,7 +132,7 @@ step() {
   if [ "$code" = 124 ] && [ ${#limit[@]} -gt 0 ]; then
     left_out+=("$name")
   elif [ "$code" != 0 ]; then
-    echo "bare.sh: $name FAILED"
+    echo "fresh_install.sh: $name FAILED"
     failed+=("$name")
     case $name in root | clone | stranger | run | check) finish ;; esac # the others do not need each other
   fi
@@ -161,7 +161,7 @@ finish() {
     fi
   done
   if [ ${#failed[@]} -gt 0 ]; then
-    echo "bare.sh: ${failed[*]} FAILED at $(git -C "$repository" log -1 --format='%h %s' "$commit")"
+    echo "fresh_install.sh: ${failed[*]} FAILED at $(git -C "$repository" log -1 --format='%h %s' "$commit")"
     [ "${failed[0]}" != root ] || exit 3
     exit 1
   fi
@@ -212,7 +212,7 @@ step_check() {
   [ "$suite" != bookworm ] || inside bash -c 'command -v clang-format-14'
 }
 # The tests that write files and start programs.
-user_tests='^(mesh_tests|lrb_tests|trace_tests|render_tests|scenarios_tests|crowd_tests|golden_tests|stability.*|measure_tests|package|faults)$'
+user_tests='^(mesh_tests|lrb_tests|trace_tests|render_tests|scenarios_tests|crowd_tests|golden_tests|stability.*|measure_tests|package|robustness)$'
 # Without root, with the packages: the same clone, given away, so that only what depends on the user is done again.
 step_user() {
   chmod a+x "$root/root"
@@ -291,7 +291,7 @@ if [ "${1:-}" != --inside ]; then
   [[ $minutes =~ ^[0-9]+$ ]] || usage
   [ "$(id -u)" = 0 ] || refuse "needs root, to make a root of its own"
   command -v debootstrap >/dev/null || refuse "needs debootstrap (apt-get install debootstrap)"
-  commit=$(git -C "$repository" rev-parse --verify -q "$commit^{commit}") || { echo "bare.sh: no such commit" >&2 && exit 2; }
+  commit=$(git -C "$repository" rev-parse --verify -q "$commit^{commit}") || { echo "fresh_install.sh: no such commit" >&2 && exit 2; }
   cache=${XDG_CACHE_HOME:-$HOME/.cache}/lrbscope-bare/$suite
   mkdir -p "$cache"
   for old in "$cache"/work-*; do # of runs that were killed

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# readers.sh LRBSCOPE: exports a run and has programs of others open the files: readers.py reads VTP, PLY and GLB as their
+# interop.sh LRBSCOPE: exports a run and has programs of others open the files: interop.py reads VTP, PLY and GLB as their
 # specifications say, with nothing of ours, and VTK (Debian's python3-vtk9) all of them where it is; assimp (assimp-utils) PLY,
 # OBJ and GLB; Khronos' validator (npm's gltf-validator) GLB; speedscope (npm's, in Chromium) the trace. All must find the same
 # faces and numbers. Says which were not there. Skipped (77) without python3. LRB_NODE_MODULES: where npm's packages are
@@ -9,7 +9,7 @@ lrbscope=$(realpath "$1")
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 python=/usr/bin/python3 # Debian's own, which has Debian's modules
 [ -x "$python" ] || python=$(command -v python3 || true)
-[ -n "$python" ] || { echo "readers.sh: skipped: no python3 here" && exit 77; }
+[ -n "$python" ] || { echo "interop.sh: skipped: no python3 here" && exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -19,10 +19,10 @@ for name in run.vtp run.ply run.glb run.obj; do "$lrbscope" --quiet export run -
 for name in text.vtp text.ply; do "$lrbscope" --quiet export run --ascii -o "$name" >/dev/null; done
 "$lrbscope" --quiet export run --what body,wrapper,contacts --regions --colour-by face_tests -o regions.glb >/dev/null
 
-"$python" "$here/readers.py" run/trace.json run.vtp text.vtp run.ply text.ply run.glb run.obj regions.glb
+"$python" "$here/interop.py" run/trace.json run.vtp text.vtp run.ply text.ply run.glb run.obj regions.glb
 
 if command -v assimp >/dev/null; then
-  faces=$("$python" "$here/readers.py" --count run.vtp) # polygons and, as assimp counts them, segments of lines
+  faces=$("$python" "$here/interop.py" --count run.vtp) # polygons and, as assimp counts them, segments of lines
   for name in run.ply:polygons run.obj:all run.glb:all; do
     found=$(assimp info "${name%:*}" | awk '$1 == "Faces:" { print $2 }')
     wanted=$(awk -v w="${name#*:}" '{ print w == "all" ? $1 + $2 : $1 }' <<<"$faces")

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace lrb::cliffs {
+namespace lrb::scaling {
 
 using Sizes = std::vector<std::uint32_t>;
 
@@ -39,4 +39,4 @@ struct Family {
 /// Adds a family to those that the command measures. Returns true, so that a variable can be set to it.
 bool add(Family family);
 
-}  // namespace lrb::cliffs
+}  // namespace lrb::scaling

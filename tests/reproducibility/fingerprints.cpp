@@ -1,6 +1,6 @@
 // fingerprints [THREADS]: hashes of what the engine answers, one to a line: bodies, .lrb files, queries of
-// every class of the torture suite, traces. repeat.sh compares what it prints over compilers, optimisation
-// and threads.
+// every class of the torture suite, traces. reproducibility.sh compares what it prints over compilers,
+// optimisation and threads.
 
 #include <atomic>
 #include <cstdio>

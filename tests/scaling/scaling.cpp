@@ -1,10 +1,10 @@
 // Measures how CPU time and memory grow with the size of the input (and of the answer), family by family, as
 // fitted powers, and exits with 1 if one grows faster than it may:
-//   cliffs [--share] [--only TEXT]...
+//   scaling [--share] [--only TEXT]...
 // --share: the small sizes alone, and 0.35 more allowed for a busy machine, as the test suite runs it.
 // --only: families whose line has this text.
 
-#include "tests/cliffs/cliffs.hpp"
+#include "tests/scaling/scaling.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "scenarios/paper/series.hpp"
-#include "tests/cliffs/memory.hpp"
+#include "tests/scaling/memory.hpp"
 
-namespace lrb::cliffs {
+namespace lrb::scaling {
 namespace {
 
 std::vector<Family>& families() {
@@ -111,7 +111,7 @@ int run_all(int argc, char** argv) {
     } else if (std::strcmp(argv[i], "--only") == 0 && i + 1 < argc) {
       only.emplace_back(argv[++i]);
     } else {
-      std::fprintf(stderr, "usage: cliffs [--share] [--only TEXT]...\n");
+      std::fprintf(stderr, "usage: scaling [--share] [--only TEXT]...\n");
       return 2;
     }
   }
@@ -131,7 +131,7 @@ int run_all(int argc, char** argv) {
     ++measured;
   }
   if (measured == 0) {
-    std::fprintf(stderr, "cliffs: no family has this text in its name\n");
+    std::fprintf(stderr, "scaling: no family has this text in its name\n");
     return 2;
   }
   return ok ? 0 : 1;
@@ -144,13 +144,13 @@ bool add(Family family) {
   return true;
 }
 
-}  // namespace lrb::cliffs
+}  // namespace lrb::scaling
 
 int main(int argc, char** argv) {
   try {
-    return lrb::cliffs::run_all(argc, argv);
+    return lrb::scaling::run_all(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "cliffs: %s\n", error.what());
+    std::fprintf(stderr, "scaling: %s\n", error.what());
     return 2;
   }
 }

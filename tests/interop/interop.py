@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""readers.py TRACE VTP VTP PLY PLY GLB OBJ GLB: reads exported files with nothing of lrbscope's and compares them: the same
+"""interop.py TRACE VTP VTP PLY PLY GLB OBJ GLB: reads exported files with nothing of lrbscope's and compares them: the same
 points, faces and numbers everywhere, and the contacts of the trace. --count VTP: prints its polygons and segments."""
 import base64
 import json
@@ -13,7 +13,7 @@ PLY_TYPES = {"uchar": "B", "int": "i", "float": "f", "double": "d"}
 
 def need(condition, message):
     if not condition:
-        sys.exit("readers.py: " + message)
+        sys.exit("interop.py: " + message)
 
 
 def vtp_array(element):

@@ -3,13 +3,13 @@
 #include <memory>
 
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/cliffs/cliffs.hpp"
+#include "tests/scaling/scaling.hpp"
 #include "tests/support/hard_bodies.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/validate.hpp>
 
-namespace lrb::cliffs {
+namespace lrb::scaling {
 namespace {
 
 using namespace hard;
@@ -82,4 +82,4 @@ const bool meshes_added =
     add_all("pieces", {3, 6, 12, 24}, {48, 96}, pieces) && add_all("tiles", {16, 32, 64}, {128}, tiles);
 
 }  // namespace
-}  // namespace lrb::cliffs
+}  // namespace lrb::scaling

@@ -8,12 +8,12 @@
 
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/cliffs/cliffs.hpp"
+#include "tests/scaling/scaling.hpp"
 #include "tests/support/hard_bodies.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/mesh_check.hpp>
 
-namespace lrb::cliffs {
+namespace lrb::scaling {
 namespace {
 
 using namespace hard;
@@ -96,4 +96,4 @@ const bool queries_added =
     add_answer("drum, through its side", kShare, kMore, drum, Pose::translation({0.5, 0, 0.5}));
 
 }  // namespace
-}  // namespace lrb::cliffs
+}  // namespace lrb::scaling

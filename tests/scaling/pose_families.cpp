@@ -8,10 +8,10 @@
 
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/cliffs/cliffs.hpp"
+#include "tests/scaling/scaling.hpp"
 #include <lrbscope/collide.hpp>
 
-namespace lrb::cliffs {
+namespace lrb::scaling {
 namespace {
 
 /// The pose that puts the maps of two balls of radius 1 across each other.
@@ -69,4 +69,4 @@ const bool poses_added[] = {
 };
 
 }  // namespace
-}  // namespace lrb::cliffs
+}  // namespace lrb::scaling

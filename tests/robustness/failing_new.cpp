@@ -1,4 +1,4 @@
-#include "tests/faults/failing_new.hpp"
+#include "tests/robustness/failing_new.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# tests/repeat/repeat.sh: are answers the same to the last bit? Builds engine, traces and generators with gcc and with
-# clang at -O0, -O2 and -O3, runs tests/repeat/fingerprints.cpp with all instruction sets and on 1 and 2 threads, and
+# tests/reproducibility/reproducibility.sh: are answers the same to the last bit? Builds engine, traces and generators with gcc and with
+# clang at -O0, -O2 and -O3, runs tests/reproducibility/fingerprints.cpp with all instruction sets and on 1 and 2 threads, and
 # prints a table; exits 1 if a line of output differs from that of the first run. COMPILERS and LEVELS may name fewer.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -19,7 +19,7 @@ for compiler in ${COMPILERS:-g++ clang++}; do
     for vectors in best avx2 baseline; do
       for threads in 1 2; do
         out=$build-$vectors-$threads.txt
-        LRB_SIMD=$vectors "$build/tests/repeat/fingerprints" "$threads" >"$out"
+        LRB_SIMD=$vectors "$build/tests/reproducibility/fingerprints" "$threads" >"$out"
         [ -n "$first" ] || first=$out
         answer=same
         cmp -s "$first" "$out" || { answer="DIFFERS from $first" && differ=1; }
