@@ -121,7 +121,7 @@ struct TreeKernel {
 /// Traverses until no pair waits, fewer than 64 places are left in `out`, or most_node_pairs are
 /// reached. Uses the newest instruction set that the processor has; the environment variable LRB_SIMD, read
 /// at the first call, limits it to AVX2 ("avx2") or to what every processor has ("baseline"). The outcome is
-/// the same, counters included (tests/repeat/repeat.sh).
+/// the same, counters included (tests/reproducibility/reproducibility.sh).
 void run_tree_kernel(TreeKernel& k);
 
 }  // namespace lrb

@@ -196,11 +196,8 @@ TEST_CASE("the error bound is at most three times what pairs are off, in the mid
   CHECK(median(all) <= 3);
 }
 
-TEST_CASE("the error bound of real models is at most three times what pairs are off, too") {
-  if (test::shared_meshes().empty()) {
-    MESSAGE("no real models: set LRB_MESHES to their folder");
-    return;
-  }
+TEST_CASE("the error bound of real models is at most three times what pairs are off, too" *
+          doctest::test_suite("shared meshes")) {
   RandomEngine random(47);
   for (const char* name : {"spot.obj", "rocker-arm.obj"}) {
     CAPTURE(name);

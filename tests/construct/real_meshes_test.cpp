@@ -39,12 +39,9 @@ struct Target {
   std::uint32_t faces[3];  ///< at most, within 0.005, 0.01 and 0.02 of the largest side of the box
 };
 
-TEST_CASE("real models meet the targets: faces, outer faces, volume, embedding, wrappers that fit") {
+TEST_CASE("real models meet the targets: faces, outer faces, volume, embedding, wrappers that fit" *
+          doctest::test_suite("shared meshes")) {
   const auto folder = shared_meshes();
-  if (folder.empty()) {
-    MESSAGE("skipped: no shared meshes (set LRB_MESHES to their directory)");
-    return;
-  }
   for (const Target& target : {Target{"spot", {4400, 1700, 820}}, Target{"homer", {2700, 1280, 615}},
                                Target{"fandisk", {410, 240, 225}}, Target{"cheburashka", {2840, 1400, 710}},
                                Target{"rocker-arm", {2220, 980, 470}}}) {

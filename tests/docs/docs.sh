@@ -39,7 +39,6 @@ runner() { # LANGUAGE: prints the file of the test
     sh) echo tests/docs/commands.py ;;
     tex) echo tests/docs/figures.sh ;;
     text) echo tests/docs/goldens.sh ;; # what commands print
-    console) echo tests/recipes ;; # functions of other package managers, called one by one
     *) return 1 ;;
   esac
 }

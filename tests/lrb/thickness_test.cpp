@@ -319,12 +319,8 @@ TEST_CASE("any number of threads proves the same") {
   for (const unsigned threads : {2U, 5U}) CHECK(region_thickness(rep, threads) == one);
 }
 
-TEST_CASE("real models: the bound is true and tight") {
+TEST_CASE("real models: the bound is true and tight" * doctest::test_suite("shared meshes")) {
   const auto folder = shared_meshes();
-  if (folder.empty()) {
-    MESSAGE("skipped: no shared meshes (set LRB_MESHES to their directory)");
-    return;
-  }
   for (const char* name : {"spot", "homer", "fandisk", "cheburashka", "rocker-arm"}) {
     CAPTURE(name);
     check_bounds(build_lrb(read_mesh((folder / (std::string(name) + ".obj")).string())), 8);

@@ -476,12 +476,9 @@ std::vector<Spoiled> spoil(const Mesh& m, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("real models, spoiled: no crash, exact pairs, built or refused in one line") {
+TEST_CASE("real models, spoiled: no crash, exact pairs, built or refused in one line" *
+          doctest::test_suite("shared meshes")) {
   const auto meshes = shared_meshes();
-  if (meshes.empty()) {
-    MESSAGE("skipped: no real models (set LRB_MESHES to their directory)");
-    return;
-  }
   const Mesh speck = icosphere(0, 1);
   for (const char* name : {"spot", "cheburashka"}) {
     const Mesh model = read_mesh((meshes / (std::string(name) + ".obj")).string());

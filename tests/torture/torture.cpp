@@ -9,6 +9,19 @@
 //   torture --coarse 1000000 --jobs 2
 // a hundred thousand motions:
 //   torture --sweeps 100000 --jobs 2
+//
+// Columns. contact, inside: poses in which surfaces meet, in which one body contains the other. regions:
+// bodies that the builder made first, which must not change the answer. false-, false+: pairs missed, pairs
+// too many. lists: duplicates, wrong order, touch for cross, or contradictions with first_pair, B against A
+// or contacts. relation: wrong relations or interiors_overlap. undecided: interiors_overlap unknown although
+// the case has an answer. refusals: world coordinates beyond 1.8e308. crashes: crashes, hangs and other
+// refusals. rational, CGAL, parity: pairs and relations given to these oracles. misses: contacts of the exact
+// query before t0; no contact: pairs at t1 that do not meet; wide: intervals wider than requested that are
+// not marked as grazing.
+//
+// interiors_overlap is a statement about bodies as rounded to world coordinates: a crossing gives "yes" only
+// where that is proven, and a body that rounding has made flat gives "unknown". A face that is not convex is
+// the fan of triangles from its first corner, and inside is the parity of these.
 
 #include <algorithm>
 #include <chrono>

@@ -6,12 +6,8 @@
 
 namespace lrb::test {
 
-TEST_CASE("real meshes are closed, manifold and clean") {
+TEST_CASE("real meshes are closed, manifold and clean" * doctest::test_suite("shared meshes")) {
   const auto directory = shared_meshes();
-  if (directory.empty()) {
-    MESSAGE("skipped: no shared meshes (set LRB_MESHES to their directory)");
-    return;
-  }
   struct Expected {
     const char* name;
     std::size_t vertices, faces;

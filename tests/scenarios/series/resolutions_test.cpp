@@ -117,12 +117,8 @@ TEST_CASE("resolutions: half of the faces each time; what cannot be built is ref
   CHECK_THROWS_AS(resolutions::resolutions(shapes::circle(12), {}), InputError);
 }
 
-TEST_CASE("resolutions of real meshes") {
+TEST_CASE("resolutions of real meshes" * doctest::test_suite("shared meshes")) {
   const auto folder = test::shared_meshes();
-  if (folder.empty()) {
-    MESSAGE("skipped: no shared meshes (set LRB_MESHES)");
-    return;
-  }
   for (const auto& [name, genus] : {std::pair{"rocker-arm.obj", 1}, std::pair{"fandisk.obj", 0}}) {
     const Mesh mesh = read_mesh((folder / name).string());
     for (const Mesh& m : resolutions::resolutions(mesh, {})) {

@@ -7,7 +7,7 @@
 ///     recorder.end_step(collide(a, pose_a, b, pose_b, request, workspace, &recorder).value());
 ///   Trace trace = recorder.take();
 ///
-/// An event costs some nanoseconds on the event clock (tests/bench/trace_bench.cpp measures it); the wall
+/// An event costs some nanoseconds on the event clock (bench/micro/trace_bench.cpp measures it); the wall
 /// clock adds the time of reading steady_clock.
 
 #include <algorithm>

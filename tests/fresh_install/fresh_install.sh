@@ -1,0 +1,327 @@
+#!/usr/bin/env bash
+# tests/fresh_install/fresh_install.sh [--suite S] [--commit C] [--until STEP] [--minutes M] [--no-cache] [--keep]: proves the README's two
+# commands on a bare Debian: bookworm (12, the default of S) or trixie (13). Makes a root with debootstrap, from the package
+# sources of this machine, clones commit C (HEAD) into it, and runs ./run and ./check there as root would type them, in a clean
+# environment; then again as a user without root; then the rest of ./check --full, in the end with the engines of others
+# installed. Debian packages are made there, and installed in another bare root, where the program runs and a stranger's project
+# is built. Prints how long every step took.
+# Steps: root clone stranger run check user api browser again peers python debs site sanitizers clang fuzz tidy; --until ends after one of them.
+# --minutes: steps after `user` end when M minutes are over, and the table says which were left out.
+# Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare/S: the bare root and downloaded packages; and this machine's
+# compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
+# Exits with 1 if a step failed, 2 for words that it does not know, 3 where it may not run or can make no root.
+# Needs root and debootstrap. Everything runs in a mount namespace of its own, so that no mount can stay behind.
+set -euo pipefail
+script=$(readlink -f "${BASH_SOURCE[0]}")
+here=$(dirname "$script")
+repository=$(cd "$here/../.." && pwd)
+home=/root/lrbscope # the clone, inside the root
+
+usage() { sed -n '2,13s/^# //p' "$script" >&2 && exit 2; }
+refuse() { echo "fresh_install.sh: $1" >&2 && exit 3; }
+
+# ---- the package sources of this machine
+
+# Prints this machine's sources of Debian's own packages, one "URI RELEASE" a line; Debian's servers where it has none. On a
+# machine with another release of Debian, the sources of the suite have the same addresses.
+debian_sources() {
+  local release found
+  for release in "$suite" "$(. /etc/os-release && echo "${VERSION_CODENAME:-none}")"; do
+    found=$(apt-get indextargets --format '$(REPO_URI)|$(RELEASE)|$(COMPONENT)|$(ORIGIN)' 'Created-By: Packages' 2>/dev/null |
+      awk -F'|' -v r="$release" -v s="$suite" '($2 == r || $2 == r "-updates" || $2 == r "-security") && $3 == "main" &&
+                               ($4 == "" || $4 == "Debian" || $4 ~ /^\$/) { sub(r, s, $2); print $1, $2 }' | sort -u || true)
+    ! grep -q " $suite$" <<<"$found" || break
+    found="http://deb.debian.org/debian $suite
+http://deb.debian.org/debian $suite-updates
+http://deb.debian.org/debian-security $suite-security"
+  done
+  echo "$found"
+}
+
+# Prints how this machine reaches them: apt's proxies, certificates and retries.
+apt_transport() {
+  apt-config dump 2>/dev/null | grep -iE '^Acquire::(https?|Retries)\b' || true
+  if [ -n "${http_proxy:-}" ]; then echo "Acquire::http::Proxy \"$http_proxy\";"; fi
+  if [ -n "${https_proxy:-}" ]; then echo "Acquire::https::Proxy \"$https_proxy\";"; fi
+}
+
+# ---- a root
+
+# Makes the bare root $1: from the cache, or with debootstrap.
+make_root() {
+  local root=$1 sources key tar mirror keep=()
+  sources=$(debian_sources)
+  mirror=$(awk -v s="$suite" '$2 == s { print $1; exit }' <<<"$sources")
+  key=$({ echo "$sources"; declare -f make_root; date +%Y-%m; } | sha256sum | cut -c1-16)
+  tar=$cache/root-$key.tar
+  mkdir -p "$root"
+  if [ "$cached" = 1 ] && [ -f "$tar" ]; then
+    tar -C "$root" --numeric-owner -xpf "$tar"
+  else
+    mkdir -p "$cache/debs"
+    [ "$cached" = 0 ] || keep+=(--cache-dir="$cache/debs")
+    debootstrap --variant=minbase --include=ca-certificates,git "${keep[@]}" "$suite" "$root" "$mirror" >"$work/debootstrap.log" 2>&1 ||
+      { tail -20 "$work/debootstrap.log"; return 1; }
+    # As in an image of Debian's: no package lists, no packages.
+    rm -rf "$root"/var/lib/apt/lists/* "$root"/var/cache/apt/archives/*.deb "$root/etc/apt/sources.list"
+    awk '{ print "deb", $1, $2, "main" }' <<<"$sources" >"$root/etc/apt/sources.list.d/debian.list"
+    rm -f "$root/etc/resolv.conf" "$root/etc/hosts" # debootstrap copies this machine's
+    if [ "$cached" = 1 ]; then
+      rm -f "$cache"/root-*.tar
+      tar -C "$root" --numeric-owner --one-file-system -cpf "$tar.$$" . && mv "$tar.$$" "$tar"
+    fi
+  fi
+  # What belongs to this machine and not to the cached root.
+  cp -L /etc/resolv.conf /etc/hosts "$root/etc/" 2>/dev/null || true
+  apt_transport >"$root/etc/apt/apt.conf.d/90machine"
+  if [ "$cached" = 1 ]; then
+    echo 'Binary::apt::APT::Keep-Downloaded-Packages "true"; APT::Keep-Downloaded-Packages "true";' >"$root/etc/apt/apt.conf.d/91keep"
+  fi
+}
+
+# Mounts what programs expect beside files: processes, shared memory, and the caches. Says what cannot be had.
+mount_parts() {
+  local root=$1 device
+  if [ "$mounts" = 0 ]; then
+    echo "fresh_install.sh: this machine lets nobody mount: the root has no /proc, and only packages are kept between runs"
+  fi
+  try mount -t proc proc "$root/proc" || true
+  try mount -t tmpfs -o mode=1777 tmpfs "$root/dev/shm" || true
+  for device in null zero full random urandom tty; do # where debootstrap may not make devices
+    [ -c "$root/dev/$device" ] || { touch "$root/dev/$device" && try mount --bind "/dev/$device" "$root/dev/$device"; }
+  done
+  [ -c "$root/dev/null" ] || { echo "fresh_install.sh: no /dev/null can be made in the root" >&2 && return 1; }
+  if [ "$cached" = 1 ]; then
+    mkdir -p "$cache/debs" "$objects" "$root/var/cache/ccache" "$cache/tidy" "$root/root/.cache/lrbscope-tidy"
+    try mount --bind "$cache/tidy" "$root/root/.cache/lrbscope-tidy" || true
+    try mount --bind "$cache/debs" "$root/var/cache/apt/archives" || cp "$cache"/debs/*.deb "$root/var/cache/apt/archives/" 2>/dev/null || true
+    try mount --bind "$objects" "$root/var/cache/ccache" || true
+  fi
+}
+try() { [ "$mounts" = 1 ] && "$@"; }
+
+# Runs words in the root, as root would in a shell of its own; with the compiler cache if there is one.
+inside() { as root /root "$@"; }
+limit=() # timeout and its words, in steps that may be cut short
+# as USER HOME WORD...
+as() {
+  local user=$1 home_of=$2 clean=(TERM=dumb PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin)
+  shift 2
+  if [ "$user" = root ] && [ -x "$root/usr/bin/ccache" ]; then
+    clean+=(CCACHE_DIR=/var/cache/ccache "CCACHE_BASEDIR=$home")
+  fi
+  "${limit[@]}" env -i HOME="$home_of" USER="$user" LOGNAME="$user" "${clean[@]}" chroot --userspec="$user" "$root" \
+    /bin/bash -c 'cd "$1" && shift && exec "$@"' bash "$home" "$@" </dev/null
+}
+
+# ---- steps
+
+all=(root clone stranger run check user api browser again peers python debs site sanitizers clang fuzz tidy)
+names=() seconds=() busy=() failed=() left_out=()
+# step NAME FUNCTION: runs it, with its output, and notes how long it took and whether it failed. Ends here if it was the
+# last wanted.
+step() {
+  local name=$1 code TIMEFORMAT='%R %U %S'
+  echo "== bare: $name"
+  set +e # a function that is asked whether it failed would not stop at its first failure
+  { time { (set -e && "$2") 2>&1 | tee "$work/$name.log"; code=${PIPESTATUS[0]}; }; } 2>"$work/$name.time"
+  set -e
+  names+=("$name")
+  seconds+=("$(awk '{ printf "%.0f", $1 }' "$work/$name.time")")
+  busy+=("$(awk '{ printf "%.0f", $2 + $3 }' "$work/$name.time")")
+  if [ "$code" = 124 ] && [ ${#limit[@]} -gt 0 ]; then
+    left_out+=("$name")
+  elif [ "$code" != 0 ]; then
+    echo "fresh_install.sh: $name FAILED"
+    failed+=("$name")
+    case $name in root | clone | stranger | run | check) finish ;; esac # the others do not need each other
+  fi
+  [ "$name" != "$until" ] || finish
+}
+table() {
+  local i all=0 all_busy=0
+  printf '\n%-12s %8s %18s\n' step seconds 'processor seconds'
+  for i in "${!names[@]}"; do
+    printf '%-12s %8d %18d\n' "${names[i]}" "${seconds[i]}" "${busy[i]}"
+    all=$((all + seconds[i])) all_busy=$((all_busy + busy[i]))
+  done
+  printf '%-12s %8d %18d\n' all $all $all_busy
+  [ ${#left_out[@]} = 0 ] || echo "no time was left for, or to end: ${left_out[*]}"
+  echo "$suite, on $(nproc) processors, load $(cut -d' ' -f1-3 /proc/loadavg), caches $([ "$cached" = 1 ] && echo kept || echo off)"
+}
+finish() {
+  table
+  if [ "$cached" = 1 ] && [ "$mounts" = 0 ]; then cp -n "$root"/var/cache/apt/archives/*.deb "$cache/debs/" 2>/dev/null || true; fi
+  # The closing lines of every ctest, the main one last.
+  local name
+  for name in user sanitizers clang again python peers check; do
+    if [ -f "$work/$name.log" ] && grep -q 'tests passed' "$work/$name.log"; then
+      printf '\n%s:\n' "$name"
+      grep -E '% tests passed|^Total Test time' "$work/$name.log"
+    fi
+  done
+  if [ ${#failed[@]} -gt 0 ]; then
+    echo "fresh_install.sh: ${failed[*]} FAILED at $(git -C "$repository" log -1 --format='%h %s' "$commit")"
+    [ "${failed[0]}" != root ] || exit 3
+    exit 1
+  fi
+  exit 0
+}
+
+step_root() { make_root "$root" && mount_parts "$root"; }
+step_clone() {
+  # Pushed into the root, so that the clone is one of an ordinary repository and this one stays unseen.
+  git init -q --bare "$root/srv/lrbscope.git"
+  git -C "$root/srv/lrbscope.git" config receive.shallowUpdate true
+  git -C "$repository" push -q "$root/srv/lrbscope.git" "$commit:refs/heads/main"
+  git -C "$root/srv/lrbscope.git" symbolic-ref HEAD refs/heads/main
+  chown -R root: "$root/srv/lrbscope.git"
+  home=/root inside git clone -q /srv/lrbscope.git lrbscope
+  mkdir -p "$root/home/stranger"
+  cp -a "$root$home" "$root/home/stranger/lrbscope"
+  chown -R 1000:1000 "$root/home/stranger"
+}
+# Without root, and without packages: says which, and that root must install them.
+step_stranger() {
+  local command code said
+  for command in ./run ./check; do
+    code=0
+    said=$(home=/home/stranger/lrbscope as 1000:1000 /home/stranger "$command" 2>&1) || code=$?
+    echo "$said"
+    [ $code = 3 ] && grep -q 'apt-get install .*libeigen3-dev' <<<"$said" ||
+      { echo "$command of a user without packages: exit code $code, where 3 and what to install was expected"; return 1; }
+  done
+}
+step_run() {
+  [ "$cached" = 0 ] || add_compiler_cache
+  inside ./run
+  local picture
+  for picture in out/collision/index.html out/figure2/montage.png; do
+    [ -s "$root$home/$picture" ] || { echo "./run made no $picture"; return 1; }
+  done
+}
+add_compiler_cache() {
+  [ "$mounts" = 1 ] || return 0
+  inside bash -c 'apt-get update -q && apt-get install -y -q --no-install-recommends ccache' >"$work/ccache.log" 2>&1 ||
+    { cat "$work/ccache.log"; return 1; }
+  rm -rf "$root"/var/lib/apt/lists/* # a bare machine has none
+}
+step_check() {
+  inside ./check
+  # Nothing may be skipped where the formatter can be had.
+  [ "$suite" != bookworm ] || inside bash -c 'command -v clang-format-14'
+}
+# The tests that write files and start programs.
+user_tests='^(mesh_tests|lrb_tests|trace_tests|render_tests|scenarios_tests|crowd_tests|golden_tests|stability.*|measure_tests|package|robustness)$'
+# Without root, with the packages: the same clone, given away, so that only what depends on the user is done again.
+step_user() {
+  chmod a+x "$root/root"
+  chown -R 1000:1000 "$root$home"
+  local code=0
+  { as 1000:1000 /home/stranger ./run && as 1000:1000 /home/stranger ./check format &&
+    as 1000:1000 /home/stranger ctest --preset release -j "$(nproc)" -R "$user_tests"; } || code=$?
+  chown -R 0:0 "$root$home"
+  return $code
+}
+# The packages of the clone, in a root that has nothing of it.
+step_debs() {
+  inside ./check debs
+  local made=$root$home/build/release/debs root=$work/fresh home=/root
+  make_root "$root" && mount_parts "$root"
+  cp "$made"/*.deb "$root/root/"
+  inside bash -c 'apt-get update -q && apt-get install -y -q --no-install-recommends ./lrbscope_*.deb'
+  inside lrbscope --version
+  inside lrbscope --quiet run collision -o out
+  [ -s "$root/root/out/index.html" ] || { echo "the installed program made no page" && return 1; }
+  [ -s "$root/usr/share/man/man1/lrbscope-run.1.gz" ] || { echo "there is no manual page" && return 1; }
+  cp -r "$(dirname "$script")/stranger" "$root/root/stranger"
+  inside bash -c 'apt-get install -y -q --no-install-recommends cmake make g++ ./liblrbscope*.deb'
+  inside bash -c 'lrbscope --quiet export collision --what body --of a -o a.ply'
+  inside bash -c 'lrbscope --quiet export collision --what body --of b -o b.ply'
+  inside bash -c 'cmake -S stranger -B built && cmake --build built && built/stranger a.ply b.ply'
+  if compgen -G "$made/python3-lrbscope_*.deb" >/dev/null; then
+    inside bash -c 'apt-get install -y -q --no-install-recommends ./python3-lrbscope_*.deb'
+    inside python3 stranger/contact.py a.ply b.ply contact.png
+    [ -s "$root/root/contact.png" ] || { echo "Python drew no picture" && return 1; }
+  fi
+}
+step_api() { inside ./check api; }
+step_browser() { inside ./check browser; }
+step_again() { inside ./check again; }
+step_python() { inside ./check python; }
+step_site() { inside ./check site; }
+step_peers() { inside ./check peers; }
+step_clang() { inside ./check clang; }
+step_sanitizers() { inside ./check sanitizers; }
+step_fuzz() { inside ./check fuzz; }
+step_tidy() { inside ./check tidy; }
+
+all_steps() {
+  local name left needed=1
+  for name in "${all[@]}"; do
+    if [ $needed = 0 ] && [ "$minutes" -gt 0 ]; then
+      left=$((60 * minutes - SECONDS))
+      if [ $left -lt 10 ]; then left_out+=("$name") && continue; fi
+      limit=(timeout --kill-after=5 "$left")
+    fi
+    step "$name" "step_$name"
+    [ "$name" != user ] || needed=0
+  done
+  finish
+}
+
+# ---- from here on: this machine
+
+suite=bookworm commit=HEAD until=tidy minutes=0 cached=1 keep=0
+if [ "${1:-}" != --inside ]; then
+  while [ $# -gt 0 ]; do
+    case "$1" in
+      --suite) suite=${2:?bookworm or trixie} && shift ;;
+      --commit) commit=${2:?a commit} && shift ;;
+      --until) until=${2:?a step} && shift ;;
+      --minutes) minutes=${2:?a number of minutes} && shift ;;
+      --no-cache) cached=0 ;;
+      --keep) keep=1 ;;
+      *) usage ;;
+    esac
+    shift
+  done
+  case $suite in bookworm | trixie) ;; *) usage ;; esac
+  case " ${all[*]} " in *" $until "*) ;; *) usage ;; esac
+  [[ $minutes =~ ^[0-9]+$ ]] || usage
+  [ "$(id -u)" = 0 ] || refuse "needs root, to make a root of its own"
+  command -v debootstrap >/dev/null || refuse "needs debootstrap (apt-get install debootstrap)"
+  commit=$(git -C "$repository" rev-parse --verify -q "$commit^{commit}") || { echo "fresh_install.sh: no such commit" >&2 && exit 2; }
+  cache=${XDG_CACHE_HOME:-$HOME/.cache}/lrbscope-bare/$suite
+  mkdir -p "$cache"
+  for old in "$cache"/work-*; do # of runs that were killed
+    [ ! -d "$old" ] || [ -d "/proc/${old##*-}" ] || rm -rf --one-file-system "$old"
+  done
+  work=$cache/work-$$
+  mkdir "$work"
+  child=""
+  clean_up() {
+    if [ -n "$child" ]; then kill -KILL "$child" 2>/dev/null || true; wait "$child" 2>/dev/null || true; fi
+    if [ "$keep" = 1 ]; then echo "kept: $work/root"; else rm -rf --one-file-system "$work"; fi
+  }
+  trap clean_up EXIT
+  trap 'exit 130' INT TERM HUP
+  # Mounts and processes end with the namespace, however this script ends.
+  apart=(unshare --mount --propagation private --pid --fork --kill-child)
+  mounts=1
+  chroot / true 2>/dev/null || refuse "may not change the root here"
+  if ! "${apart[@]}" sh -c 'mount -t tmpfs tmpfs "$1"' sh "$work" 2>/dev/null; then apart=() mounts=0; fi
+  if [ $mounts = 0 ]; then
+    mknod "$work/null" c 1 3 2>/dev/null && : >"$work/null" || refuse "may neither mount nor make devices here"
+  fi
+  "${apart[@]}" bash "$script" --inside "$commit" "$until" "$minutes" "$cached" "$mounts" "$cache" "$work" "$suite" &
+  child=$!
+  code=0
+  wait "$child" || code=$?
+  child=""
+  exit $code
+fi
+commit=$2 until=$3 minutes=$4 cached=$5 mounts=$6 cache=$7 work=$8 suite=$9
+objects=${CCACHE_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/ccache} # this machine's: an object is what it is wherever it was made
+root=$work/root
+all_steps

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# interop.sh LRBSCOPE: exports a run and has programs of others open the files: interop.py reads VTP, PLY and GLB as their
+# specifications say, with nothing of ours, and VTK (Debian's python3-vtk9) all of them where it is; assimp (assimp-utils) PLY,
+# OBJ and GLB; Khronos' validator (npm's gltf-validator) GLB; speedscope (npm's, in Chromium) the trace. All must find the same
+# faces and numbers. Says which were not there. Skipped (77) without python3. LRB_NODE_MODULES: where npm's packages are
+# installed, if node does not find them.
+set -euo pipefail
+lrbscope=$(realpath "$1")
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+python=/usr/bin/python3 # Debian's own, which has Debian's modules
+[ -x "$python" ] || python=$(command -v python3 || true)
+[ -n "$python" ] || { echo "interop.sh: skipped: no python3 here" && exit 77; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+"$lrbscope" --quiet run stick_through_wall -o run >/dev/null
+for name in run.vtp run.ply run.glb run.obj; do "$lrbscope" --quiet export run -o "$name" >/dev/null; done
+for name in text.vtp text.ply; do "$lrbscope" --quiet export run --ascii -o "$name" >/dev/null; done
+"$lrbscope" --quiet export run --what body,wrapper,contacts --regions --colour-by face_tests -o regions.glb >/dev/null
+
+"$python" "$here/interop.py" run/trace.json run.vtp text.vtp run.ply text.ply run.glb run.obj regions.glb
+
+if command -v assimp >/dev/null; then
+  faces=$("$python" "$here/interop.py" --count run.vtp) # polygons and, as assimp counts them, segments of lines
+  for name in run.ply:polygons run.obj:all run.glb:all; do
+    found=$(assimp info "${name%:*}" | awk '$1 == "Faces:" { print $2 }')
+    wanted=$(awk -v w="${name#*:}" '{ print w == "all" ? $1 + $2 : $1 }' <<<"$faces")
+    [ "$found" = "$wanted" ] || { echo "assimp finds $found faces in ${name%:*}, not $wanted" && exit 1; }
+  done
+  echo "assimp: the same faces in PLY, OBJ and GLB"
+else
+  echo "assimp is not here (Debian's assimp-utils): not asked"
+fi
+
+export NODE_PATH=${LRB_NODE_MODULES:-$(npm root -g 2>/dev/null || true)}
+if command -v node >/dev/null && node -e 'require.resolve("gltf-validator")' 2>/dev/null; then
+  node "$here/validate.js" run.glb regions.glb
+else
+  echo "gltf-validator is not here (npm install gltf-validator): not asked"
+fi
+
+status=0
+"$here/speedscope.sh" run/trace.json 'lrbscope: stick_through_wall (pid 1), time steps (tid 1)' || status=$?
+[ $status = 0 ] || [ $status = 77 ] || exit 1

@@ -1,0 +1,157 @@
+// fingerprints [THREADS]: hashes of what the engine answers, one to a line: bodies, .lrb files, queries of
+// every class of the torture suite, traces. reproducibility.sh compares what it prints over compilers,
+// optimisation and threads.
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bench/cases/families.hpp"
+#include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/generators.hpp"
+#include <lrbscope/build.hpp>
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/core/hash.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/trace/recorder.hpp>
+#include <lrbscope/trace/trace_json.hpp>
+
+using namespace lrb;
+
+namespace {
+
+constexpr int kDials = 11;        // of each class, from benign to degenerate
+constexpr int kCasesPerDial = 8;  // of each class
+constexpr int kPosesPerPair = 3;  // of two generated bodies
+
+void print(const std::string& what, std::uint64_t hash) {
+  std::printf("%016llx %s\n", static_cast<unsigned long long>(hash), what.c_str());
+}
+
+std::uint64_t hash_of_bytes(const std::string& bytes) {
+  Fnv64 h;
+  h.add_bytes(bytes.data(), bytes.size());
+  return h.value();
+}
+
+void add_vector(Fnv64& h, const Eigen::Vector3d& x) {
+  for (int k = 0; k < 3; ++k) h.add_value(x[k]);
+}
+
+/// All that a query answers, to the last bit; no padding between members.
+void add_answer(Fnv64& h, const CollideResult& r) {
+  h.add_value(r.relation);
+  h.add_value(r.interiors_overlap);
+  h.add_array(r.pairs);
+  h.add_array(r.meets);
+  for (const auto& opened : r.opened) h.add_array(opened);
+  const Counters& c = r.counters;
+  for (const std::uint64_t n : {c.face_tests, c.real_tests, c.exact_fallbacks, c.node_pairs, c.box_tests,
+                                c.prefilter_tests, c.refinements, c.regions_opened})
+    h.add_value(n);
+  h.add_array(c.face_tests_by_level);
+  for (const ContactRegion& region : r.regions) {
+    h.add_array(region.pairs);
+    for (const ContactLoop& loop : region.loops)
+      for (const Eigen::Vector3d& x : loop.points) add_vector(h, x);
+    for (const double x : {region.length, region.area, region.depth_estimate}) h.add_value(x);
+    add_vector(h, region.centroid);
+    add_vector(h, region.normal);
+  }
+}
+
+/// Complete with contacts, then both of the paper's recursions.
+std::uint64_t ask(const cases::Case& c, QueryContext& context) {
+  Fnv64 h;
+  NullProbe probe;
+  for (const Recursion recursion : {Recursion::complete, Recursion::paper, Recursion::paper_strict}) {
+    CollideRequest request;
+    request.recursion = recursion;
+    request.contacts = request.interiors_overlap = recursion == Recursion::complete;
+    try {
+      add_answer(h, collide(*c.a, c.pose_a, *c.b, c.pose_b, request, context, probe));
+    } catch (const InputError& e) {  // refused: the same words everywhere
+      h.add_value(hash_of_bytes(e.what()));
+    }
+  }
+  return h.value();
+}
+
+/// All cases at once, each thread with a context of its own; bodies are shared.
+std::uint64_t ask_all(const std::vector<cases::Case>& cases, unsigned threads) {
+  std::vector<std::uint64_t> answers(cases.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    QueryContext context;
+    for (std::size_t i = next++; i < cases.size(); i = next++) answers[i] = ask(cases[i], context);
+  };
+  std::vector<std::thread> others;
+  for (unsigned t = 1; t < threads; ++t) others.emplace_back(work);
+  work();
+  for (std::thread& t : others) t.join();
+  Fnv64 h;
+  h.add_array(answers);
+  return h.value();
+}
+
+std::vector<cases::Body> generated_bodies() {
+  const std::string file = std::filesystem::temp_directory_path() / ("lrb-" + std::to_string(std::rand()));
+  std::vector<cases::Body> bodies;
+  for (const generators::Generator& g : generators::generators()) {
+    bodies.push_back(std::make_shared<const LrbRep>(build_lrb(generators::generate(g.name))));
+    print(std::string("body ") + g.name, bodies.back()->hash());
+    save_lrb(*bodies.back(), file);
+    print(std::string(".lrb ") + g.name, hash_of_bytes(read_file(file)));
+  }
+  std::filesystem::remove(file);
+  return bodies;
+}
+
+/// Every two generated bodies of one dimension, in contact or nearly so.
+std::vector<cases::Case> cases_of(const std::vector<cases::Body>& bodies) {
+  cases::RandomEngine random(1);
+  std::vector<cases::Case> cases;
+  for (const cases::Body& a : bodies)
+    for (const cases::Body& b : bodies)
+      for (int i = 0; i < kPosesPerPair && a->dim() == b->dim(); ++i)
+        cases.push_back({a, b, Pose{}, shapes::random_pose(random, *a, *b, 0.1 * i), {}, {}});
+  return cases;
+}
+
+std::vector<cases::Case> cases_of(const cases::Family& family) {
+  cases::RandomEngine random(1);
+  std::vector<cases::Case> cases;
+  for (int dial = 0; dial < kDials; ++dial)
+    for (int i = 0; i < kCasesPerDial; ++i)
+      cases.push_back(family.make(random, static_cast<double>(dial) / (kDials - 1)));
+  return cases;
+}
+
+void print_trace(const cases::Case& c, Recursion recursion) {
+  trace::RecorderSettings settings;
+  settings.scenario = "repeat";
+  settings.request.recursion = recursion;
+  trace::Recorder recorder(*c.a, *c.b, settings);
+  QueryContext context;
+  recorder.begin_step(0, c.pose_a, c.pose_b);
+  recorder.end_step(collide(*c.a, c.pose_a, *c.b, c.pose_b, settings.request, context, recorder));
+  print(std::string("trace ") + to_string(recursion), hash_of_bytes(trace::trace_to_json(recorder.take())));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const unsigned threads = argc > 1 ? static_cast<unsigned>(std::atoi(argv[1])) : 1;
+  const auto bodies = generated_bodies();
+  const auto pairs = cases_of(bodies);
+  print("generated bodies", ask_all(pairs, threads));
+  for (const cases::Family& family : cases::all_families())
+    print(std::string("class ") + family.name, ask_all(cases_of(family), threads));
+  for (const Recursion recursion : {Recursion::complete, Recursion::paper})
+    print_trace(pairs.front(), recursion);
+}
