@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "bench/speed/chart_page.hpp"
+#include "bench/speed/make_sets.hpp"
 #include "bench/speed/peer_table.hpp"
-#include "bench/speed/scenes.hpp"
 #include "bench/speed/survey.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/gnuplot.hpp"

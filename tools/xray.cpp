@@ -3,7 +3,6 @@
 
 #include "bench/rivals/triangles.hpp"
 #include "bench/xray/foreign_walk.hpp"
-#include "bench/xray/xray_report.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/io/poses.hpp"
 #include "tools/commands.hpp"

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "bench/levels/free_simplification.hpp"
 #include "bench/levels/level_pictures.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/report/document.hpp"
@@ -13,6 +13,17 @@
 #include <lrbscope/render/camera.hpp>
 
 namespace lrb::levels {
+
+/// A simplification that need not enclose the body, as far as CGAL measures it.
+struct FreeMesh {
+  std::uint32_t faces;
+  double to_body, from_body;  ///< largest distance of its points from the body, and the reverse; mesh's unit
+};
+
+/// Simplifies the real faces to about these numbers of faces (descending), by the program lrbscope-simplify,
+/// which is there where CGAL was when this was built. Returns nothing without it, for a 2D body, or if CGAL
+/// does not take the mesh.
+std::vector<FreeMesh> simplify_freely(const LrbRep& rep, std::span<const std::uint32_t> face_counts);
 
 /// How many faces it takes to be off by no more than a distance.
 struct LevelCurve {

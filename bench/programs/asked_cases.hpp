@@ -7,11 +7,13 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "bench/rivals/method.hpp"
 #include "bench/stability/judge.hpp"
 #include "bench/stability/outcome_grid.hpp"
 
@@ -76,5 +78,14 @@ int run_worker(Work work) {
     return kBadInput;
   }
 }
+
+// Methods that misbehave, to test what becomes of them. The list has them only if the environment has
+// LRBSCOPE_FAKE_METHODS.
+
+/// Returns the fake methods. All answer rightly where there is no contact. Where there is, "fake-crash"
+/// aborts, "fake-hang" never returns, "fake-refuse" refuses, "fake-throw" throws, and "fake-miss" forgets the
+/// first pair. "fake-absent" is absent. Returns none if "ours", which they pretend to be, is not among the
+/// program's methods.
+std::vector<methods::MethodEntry> fake_methods(const std::vector<methods::MethodEntry>& methods);
 
 }  // namespace lrb::worker_programs

@@ -22,7 +22,6 @@
 #include <CLI/CLI.hpp>
 
 #include "bench/programs/asked_cases.hpp"
-#include "bench/programs/fake_methods.hpp"
 #include "bench/rivals/method.hpp"
 #include "bench/speed/bench_runner.hpp"
 #include "bench/stability/outcome_grid.hpp"

@@ -105,8 +105,6 @@ endfunction()
 
 add_library(lrb_asked_cases STATIC programs/asked_cases.cpp)
 target_link_libraries(lrb_asked_cases PUBLIC lrb::stability CLI11::CLI11 lrb_options)
-add_library(lrb_worker_programs STATIC programs/fake_methods.cpp)
-target_link_libraries(lrb_worker_programs PUBLIC lrb_asked_cases lrb::speed)
 
 get_property(LRB_WORKER_PROGRAMS GLOBAL PROPERTY lrb_worker_programs)
 list(APPEND LRB_WORKER_PROGRAMS lrbscope-methods)
@@ -114,7 +112,7 @@ list(REMOVE_DUPLICATES LRB_WORKER_PROGRAMS)
 foreach(program IN LISTS LRB_WORKER_PROGRAMS)
   get_property(names GLOBAL PROPERTY lrb_peers_of_${program})
   add_executable(${program} programs/methods.cpp)
-  target_link_libraries(${program} PRIVATE lrb_worker_programs)
+  target_link_libraries(${program} PRIVATE lrb_asked_cases lrb::speed)
   lrb_register_methods(${program} ${names})
 endforeach()
 

@@ -3,12 +3,16 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/speed/data_set.hpp"
+#include "bench/speed/metrics.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include "scenarios/record/recorded_run.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/workspace.hpp>
@@ -77,5 +81,17 @@ struct SetOptions {
 /// made from the same bodies and options. Throws InputError if a body cannot be an LRB-rep, and as
 /// find_numbers() does.
 DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder);
+
+// Makes what a point of a chart leads to: a question as a scenario, run, with trace, pictures and page.
+
+/// The name of a data set and a class of poses.
+using SceneKey = std::pair<std::string, PoseClass>;
+
+/// Chooses for each data set and class of poses the question that most methods answer worst. Writes
+/// folder/scenes/SET-CLASS.scenario.json and its run, folder/scenes/SET-CLASS/; keeps those that are there.
+/// Returns their pages, relative to the folder.
+std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
+                                             const std::vector<Point>& points, const std::string& folder,
+                                             const run::ProgressReport& progress);
 
 }  // namespace lrb::bench

@@ -59,4 +59,21 @@ struct WrongPairs {
 /// Compares the pairs of a step with the exact ones, which must be ascending.
 WrongPairs wrong_pairs(const ForeignStep& step, const std::vector<SimplexPair>& exact);
 
+// Writes a page with what two engines did for the same bodies at the same poses.
+
+/// Two recordings of the same bodies and steps.
+struct Xray {
+  const spec::Scenario& scenario;
+  const ForeignWalk& walk;
+  const run::Recording &theirs, &ours;
+  std::string method;   ///< name of the other engine's folder
+  std::string command;  ///< that was given
+  std::string why;      ///< the command that explains a pair, but for --pose and --pair
+};
+
+/// Writes folder/index.html with folder/heat.png, and each run with its own page, trace and frames in a
+/// folder beneath. Returns notes for people.
+std::vector<std::string> write_xray(const Xray& xray, const std::string& folder,
+                                    const run::ProgressReport& progress);
+
 }  // namespace lrb::xray

@@ -13,7 +13,6 @@
 #include <span>
 #include <vector>
 
-#include "engine/clash/surface_pieces.hpp"
 #include "engine/collide/interiors.hpp"
 #include "engine/collide/relation.hpp"
 #include "engine/core/tolerances.hpp"

@@ -4,20 +4,77 @@
 /// 3. Measure the pairs that are left, in double and, where needed, in integers.
 /// 4. Complete the answer: closest points and relation of the bodies.
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "engine/collide/collide_into.hpp"
+#include "engine/core/geometry.hpp"
+#include "engine/core/tolerances.hpp"
 #include "engine/distance/distance_context.hpp"
 #include "engine/distance/far_pairs.hpp"
-#include "engine/distance/world_walk.hpp"
+#include "engine/distance/nearest_pairs.hpp"
 #include "engine/tree/kernel_setup.hpp"
 #include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/parallel.hpp>
 
 namespace lrb {
+
+// The traversal of two trees for a distance, in double: for poses that are not rotations, and for distant
+// bodies. Slower than the float kernel.
+
+/// Traverses the trees of the bodies of `ctx` and measures the pairs of simplices that may be the closest.
+class WorldWalk {
+ public:
+  WorldWalk(QueryContext& ctx, NearestPairs& found);
+
+  /// Returns true if it was completed, or the request is answered; false after `max_steps` steps (0: no
+  /// limit). teller: null, or notified of bounds.
+  bool run(std::uint64_t max_steps, BoundsTeller* teller);
+  /// Returns a bound on the distances of all pairs that have not been measured.
+  double rest() const;
+  std::uint64_t steps() const { return steps_; }
+  std::uint64_t box_tests() const { return box_tests_; }
+
+ private:
+  using Vector3d = Eigen::Vector3d;
+  using Matrix3d = Eigen::Matrix3d;
+
+  /// A box along the walk's axes.
+  struct Box {
+    Vector3d centre, half;
+  };
+  struct Waiting {
+    double bound;
+    std::uint32_t a, b;
+  };
+  struct Body {
+    const ObbTree* tree;
+    Matrix3d map;     ///< from the tree's units to the walk's axes
+    Vector3d origin;  ///< on the walk's axes
+    double margin;    ///< errors of coordinates
+    double turn;      ///< a bound on what the map does to lengths
+  };
+
+  Body body_of(const QueryBody& body, int exponent) const;
+  void boxes_of(const Body& body, const TreeNode& node, std::vector<Box>& out) const;
+  static double gap_between(const Box& a, const Box& b);
+  void open(const Waiting& pair);
+  void see(const Waiting& parent, std::uint32_t a, std::uint32_t b, double bound, bool leaves);
+
+  NearestPairs& found_;
+  int exponent_;   ///< a unit of the walk is 2^exponent_
+  Matrix3d axes_;  ///< rows: the walk's axes in the world
+  Body body_[2];
+  std::vector<Waiting> waiting_;
+  std::vector<Box> boxes_[2];
+  double dropped_ = std::numeric_limits<double>::infinity();  ///< the least bound of what was dropped
+  std::uint64_t steps_ = 0, box_tests_ = 0;
+};
 
 // Distances along a motion. Kept from the previous step:
 // - The pair of simplices that was closest. Measured at the new poses, it gives an upper bound and the
@@ -181,6 +238,206 @@ std::vector<DistanceResult> distances(const LrbRep& a, const Pose& pose_a, const
     results[i] = distance(a, pose_a, b, poses_b[i], request, contexts[worker]);
   });
   return results;
+}
+
+// Best-first traversal in double, for maps that are not rotations and for distant bodies. Steps:
+// 1. Choose axes, orthonormal in the world, of which the first points from one body to the other: in that
+//    direction the near sides of distant bodies differ most from their far sides.
+// 2. Enclose the boxes of a node in boxes along these axes. The distance of two such boxes is the root of
+//    the sum of the squares of the positive gaps.
+// 3. Expand the pair of nodes with the least bound, drop the pairs of children that are too far, and measure
+//    the pairs of simplices at the leaves.
+//
+// Errors, with u = 2^-53 and S the size of a body's world coordinates. World coordinates are rounded by 4 u
+// S each, so that they are off by 7 u S along any axis. The map to the chosen axes, and origins there, are
+// off by 30 u S. The axes are orthonormal to 8 u. 4 kWorldRounding S is 128 u S. The nodes' own axes are
+// orthonormal to kFrameDefect: as in relation.cpp, kKernelRounding times the size of the node covers that.
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Covers the rounding of the axes, 10 u, of squares and of a root, 4 u; u = 2^-53.
+constexpr double kRootDown = 1 - 0x1p-48;
+
+int exponent_above(double x) {
+  return std::isfinite(x) ? (x > 0 ? std::ilogb(x) + 1 : -1022) : 1024;
+}
+
+template <class Matrix>
+Matrix scaled(const Matrix& x, int exponent) {
+  return x.unaryExpr([exponent](double c) { return std::ldexp(c, exponent); });
+}
+
+/// Returns x 2^exponent, rounded down.
+double scaled_down(double x, int exponent) {
+  // ldexp() rounds only near underflow; there one step down makes up for it. Overflow becomes the largest
+  // double.
+  constexpr double kSmall = 0x1p-1000;
+  const double y = std::min(std::ldexp(x, exponent), std::numeric_limits<double>::max());
+  return y < kSmall ? std::max(0.0, std::nextafter(y, 0.0)) : y;
+}
+
+/// Returns axes of which the first points along `way`; the world's axes if it has no direction.
+Matrix3d axes_along(const Vector3d& way) {
+  const double length = way.stableNorm();
+  if (!(length > 0) || !std::isfinite(length)) return Matrix3d::Identity();
+  // Householder reflection that maps the x axis to `way`. It is symmetric, so its first row is `way`.
+  const Vector3d mirror = Vector3d::UnitX() - way / length;
+  constexpr double kNearlyX = 1e-6;
+  // Almost along x: the mirror's normal would consist of rounding errors, and the world's axes do as well.
+  if (mirror.squaredNorm() < kNearlyX) return Matrix3d::Identity();
+  return Matrix3d::Identity() - 2 / mirror.squaredNorm() * mirror * mirror.transpose();
+}
+
+}  // namespace
+
+WorldWalk::WorldWalk(QueryContext& ctx, NearestPairs& found) : found_(found), axes_(Matrix3d::Identity()) {
+  const auto size_of = [](const QueryBody& body) { return world_size(body.world.pose(), body.tree()); };
+  // The unit is a power of two above all coordinates: scaling is exact, and squares cannot overflow.
+  exponent_ = exponent_above(std::max(size_of(ctx.body[0]), size_of(ctx.body[1])));
+  // The axes are still the world's here, so this returns the position of a body's root in the world.
+  const auto middle_of = [&](const QueryBody& body) -> Vector3d {
+    const Body b = body_of(body, exponent_);
+    const double* at = b.tree->nodes()[0].origin;
+    return b.map * Vector3d(at[0], at[1], at[2]) + b.origin;
+  };
+  axes_ = axes_along(middle_of(ctx.body[1]) - middle_of(ctx.body[0]));
+  // Both maps again, to the axes just chosen.
+  for (int side = 0; side < 2; ++side) body_[side] = body_of(ctx.body[side], exponent_);
+  waiting_.push_back({0, 0, 0});
+}
+
+WorldWalk::Body WorldWalk::body_of(const QueryBody& body, int exponent) const {
+  const Pose& pose = body.world.pose();
+  const int unit = std::ilogb(body.tree().unit());
+  Body out;
+  out.tree = &body.tree();
+  // The tree's unit is a power of two, too: one exact scaling does for both.
+  out.map = axes_ * scaled(pose.r, unit - exponent);
+  out.origin = axes_ * scaled(pose.t, -exponent);
+  out.margin = 4 * kWorldRounding * std::ldexp(world_size(pose, body.tree()) + kWorldUnderflow, -exponent);
+  out.turn = std::ldexp(stretch(pose), unit - exponent);
+  return out;
+}
+
+void WorldWalk::boxes_of(const Body& body, const TreeNode& node, std::vector<Box>& out) const {
+  Matrix3d frame;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) frame(j, i) = node.frame[i][j];
+  // An oriented box fits into half extents |R| h along the chosen axes.
+  const Matrix3d axes = body.map * frame, sizes = axes.cwiseAbs();
+  const Vector3d origin = body.map * Vector3d(node.origin[0], node.origin[1], node.origin[2]) + body.origin;
+  // Rounding of coordinates, and the defect of the node's axes.
+  const double grow = body.margin + kKernelRounding * body.turn * static_cast<double>(node.radius);
+  out.clear();
+  for (std::uint32_t k = 0; k < node.count; ++k) {
+    Vector3d centre, half;
+    // Decode the quantised box on the node's axes.
+    for (int i = 0; i < 3; ++i) {
+      const double base = node.base[i], scale = node.scale[i];
+      centre[i] = base + scale * 0.5 * (node.lo[i][k] + node.hi[i][k]);
+      half[i] = scale * 0.5 * (node.hi[i][k] - node.lo[i][k]);
+    }
+    out.push_back({origin + axes * centre, sizes * half + Vector3d::Constant(grow)});
+  }
+}
+
+/// Returns a lower bound on the distance of two boxes; 0 if anything is NaN.
+double WorldWalk::gap_between(const Box& a, const Box& b) {
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Positive gaps only: overlapping projections add nothing.
+    const double gap = std::abs(a.centre[axis] - b.centre[axis]) - (a.half[axis] + b.half[axis]);
+    if (gap > 0) sum += gap * gap;
+  }
+  return sum > 0 ? std::sqrt(sum) * kRootDown : 0;
+}
+
+void WorldWalk::see(const Waiting& parent, std::uint32_t a, std::uint32_t b, double bound, bool leaves) {
+  // Children lie in their parents, so the parents' bound holds, too.
+  bound = std::max(bound, parent.bound);
+  if (bound > 0 && bound >= std::ldexp(found_.dropped_from(), -exponent_)) {
+    // The nearest dropped pair bounds all of them from below.
+    dropped_ = std::min(dropped_, bound);
+    return;
+  }
+  if (leaves) {
+    const SimplexId of_a = body_[0].tree->blocks()[body_[0].tree->nodes()[parent.a].first].simplex[a];
+    const SimplexId of_b = body_[1].tree->blocks()[body_[1].tree->nodes()[parent.b].first].simplex[b];
+    // If contact is not excluded, the exact query decides about the surfaces as a whole.
+    if (!found_.measure(of_a, of_b, scaled_down(bound, exponent_))) found_.surfaces_meet();
+    return;
+  }
+  // A binary min-heap.
+  waiting_.push_back({bound, a, b});
+  std::push_heap(waiting_.begin(), waiting_.end(),
+                 [](const Waiting& x, const Waiting& y) { return x.bound > y.bound; });
+}
+
+void WorldWalk::open(const Waiting& pair) {
+  const TreeNode &a = body_[0].tree->nodes()[pair.a], &b = body_[1].tree->nodes()[pair.b];
+  const auto size = [&](int side, const TreeNode& n) { return n.radius * body_[side].turn; };
+  const bool leaves = a.is_leaf && b.is_leaf;
+  // Expand both nodes, but not one that is a leaf or much smaller than the other.
+  const bool open_a = leaves || (!a.is_leaf && (b.is_leaf || size(1, b) <= kMuchLarger * size(0, a)));
+  const bool open_b = leaves || (!b.is_leaf && (a.is_leaf || size(0, a) <= kMuchLarger * size(1, b)));
+  boxes_of(body_[0], a, boxes_[0]);
+  boxes_of(body_[1], b, boxes_[1]);
+  box_tests_ += (open_a ? a.count : 1) * (open_b ? b.count : 1);
+  // A node that is not expanded is represented by the box around its boxes.
+  const auto whole = [](const std::vector<Box>& boxes) {
+    Vector3d low = Vector3d::Constant(kInfinity), high = -low;
+    for (const Box& box : boxes)
+      low = low.cwiseMin(box.centre - box.half), high = high.cwiseMax(box.centre + box.half);
+    return Box{0.5 * (low + high), 0.5 * (high - low)};
+  };
+  if (!open_a) boxes_[0] = {whole(boxes_[0])};
+  if (!open_b) boxes_[1] = {whole(boxes_[1])};
+  // Every pair of boxes; at leaves these are boxes of simplices.
+  for (std::uint32_t i = 0; i < boxes_[0].size(); ++i)
+    for (std::uint32_t j = 0; j < boxes_[1].size(); ++j) {
+      const double bound = gap_between(boxes_[0][i], boxes_[1][j]);
+      if (leaves)
+        see(pair, i, j, bound, true);
+      else
+        see(pair, open_a ? a.first + i : pair.a, open_b ? b.first + j : pair.b, bound, false);
+    }
+}
+
+bool WorldWalk::run(std::uint64_t max_steps, BoundsTeller* teller) {
+  std::uint64_t look = 1;
+  const auto later = [](const Waiting& x, const Waiting& y) { return x.bound > y.bound; };
+  while (!waiting_.empty()) {
+    const double bound = waiting_.front().bound;
+    // The least bound of all is too large: so are the others.
+    if (bound > 0 && bound >= std::ldexp(found_.dropped_from(), -exponent_)) return true;
+    // The request is answered already.
+    if (found_.is_near_enough() || found_.known_to_meet()) return true;
+    if (max_steps > 0 && steps_ >= max_steps) return false;
+    ++steps_;
+    std::pop_heap(waiting_.begin(), waiting_.end(), later);
+    const Waiting pair = waiting_.back();
+    waiting_.pop_back();
+    open(pair);
+    // Coordinates of very distant bodies have hardly a digit left for their shapes: allow a wider interval.
+    const double upper = found_.upper();
+    if (upper < kInfinity) found_.allow_width(upper > kVeryFar * found_.size() ? kFarWidth * upper : 0);
+    if (teller != nullptr && steps_ >= look) {
+      // Each report looks at all measured pairs, so they become rarer as the work grows.
+      teller->tell(steps_, found_.lower(rest()), upper);
+      look = BoundsTeller::next_look(steps_);
+    }
+  }
+  return true;
+}
+
+double WorldWalk::rest() const {
+  // What was not measured was dropped or is under a waiting pair, of which the first is the nearest.
+  double least = dropped_;
+  if (!waiting_.empty()) least = std::min(least, waiting_.front().bound);
+  return least < kInfinity ? scaled_down(least, exponent_) : kInfinity;
 }
 
 }  // namespace lrb

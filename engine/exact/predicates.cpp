@@ -7,9 +7,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "engine/exact/expansion.hpp"
-#include "engine/exact/fixed_point.hpp"
 #include "engine/exact/plane_side.hpp"
-#include "engine/exact/predicates.hpp"
 #include <lrbscope/contact.hpp>
 
 namespace lrb::exact {

@@ -5,14 +5,175 @@
 
 #include "engine/tree/kernel_setup.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
 
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
 #include "engine/core/tolerances.hpp"
-#include "engine/tree/affine_pose.hpp"
 
 namespace lrb {
+
+// Sets up the tree kernel for any affine maps. affine_pose.hpp derives the method and its error bounds.
+// 1. Write each map as a power of two times a matrix with entries up to 1.
+// 2. Invert the matrix, or a version with raised singular values if it is nearly singular.
+// 3. Choose the query's unit, and express both bodies on the axes of each, and in the world, in that unit.
+// 4. Bound the rounding of world coordinates, and carry the bound over to each set of axes.
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// The exponent of a map of everything to one point: less than any other, and sums of such exponents do not
+/// overflow.
+constexpr int kNoExponent = -100000;
+
+/// A bound on coordinates in a tree's units. It is 1, except for bodies near the end of the range of doubles.
+constexpr double kMostUnits = 2;
+
+/// Returns an exponent with x < 2^exponent; that power is at most twice as large as needed.
+int exponent_of(double x) {
+  int exponent = 0;
+  std::frexp(x, &exponent);
+  return x == 0 ? kNoExponent : exponent;
+}
+
+/// Returns 2^exponent x; mostly by a product, which is faster.
+template <class Matrix>
+Matrix scaled(const Matrix& x, int exponent) {
+  // Beyond that, 2^exponent itself may overflow or underflow although the products do not.
+  if (std::abs(exponent) <= 1000) return x * std::ldexp(1.0, exponent);
+  return x.unaryExpr([exponent](double c) { return std::ldexp(c, exponent); });
+}
+
+/// Returns the part of a map that acts on a body in 2D, where z = 0. The third axis stays in place.
+Matrix3d map_in_plane(Matrix3d r) {
+  r(2, 2) = r.topLeftCorner<2, 2>().cwiseAbs().maxCoeff();
+  return r;
+}
+
+/// Returns a bound on the Euclidean norm, at most sqrt 3 times that.
+double norm_of(const Matrix3d& m) {
+  return m.norm() * (1 + kWrapperMargin);
+}
+
+Matrix3d raised_inverse(const Matrix3d& r) {
+  // A regularised pseudo-inverse: R = U S V^T becomes V S'^-1 U^T with S' bounded from below.
+  const Eigen::JacobiSVD<Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vector3d& values = svd.singularValues();
+  // The map to a point, or NaN: any G is valid (see the header), so take the identity.
+  if (!(values[0] > 0)) return Matrix3d::Identity();
+  const Vector3d raised = values.cwiseMax(kFlatness * values[0]);
+  return svd.matrixV() * raised.cwiseInverse().asDiagonal() * svd.matrixU().transpose();
+}
+
+/// Returns the exponent of the query's unit: that of the larger body in the world, or more if the bodies are
+/// so far apart that floats would overflow.
+int query_exponent(const AffineMap& a, const Pose& pose_a, const AffineMap& b, const Pose& pose_b) {
+  // Halves, so that the difference cannot overflow. Floats have room for distances of 2^kFarOff units.
+  constexpr int kFarOff = 60, kLeast = -1022;
+  const double apart = (pose_b.t / 2 - pose_a.t / 2).cwiseAbs().maxCoeff();
+  return std::max({a.exponent, b.exponent, exponent_of(apart) - kFarOff, kLeast});
+}
+
+float rounded_up(double x) {
+  return static_cast<float>(x) * kFloatUp + kKernelTiny;
+}
+
+void put(const Matrix3d& m, double size, KernelMap& to) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      to.columns[j][i] = m(i, j);
+      to.rows[i][j] = static_cast<float>(m(i, j));
+    }
+  to.size = rounded_up(size);
+}
+
+void put(const Vector3d& x, double (&to)[4]) {
+  for (int i = 0; i < 3; ++i) to[i] = x[i];
+}
+
+/// Returns a bound on every coordinate that the map gives for coordinates up to 1, and on every term of it.
+double row_size(const Matrix3d& r) {
+  return r.cwiseAbs().rowwise().sum().maxCoeff();
+}
+
+}  // namespace
+
+AffineMap::AffineMap(const Pose& pose, const ObbTree& tree, int dim)
+    : r(dim == 2 ? map_in_plane(pose.r) : pose.r) {
+  // Step 1: normalise by the largest entry. The power of two moves to the exponent, together with the tree's
+  // unit.
+  const int e = exponent_of(r.cwiseAbs().maxCoeff());
+  exponent = e == kNoExponent ? e : e + std::ilogb(tree.unit());
+  if (e != kNoExponent) r = scaled(r, -e);
+  // Step 2: size * back_size is the condition number in the Euclidean (Frobenius) norm.
+  size = norm_of(r);
+  back = r.inverse();
+  back_size = norm_of(back);
+  flat = !(back_size * size * kFlatness <= 1);  // also where it is not a number
+  // Nearly singular: use the regularised inverse, under which the own map is not the identity.
+  if (flat) {
+    back = raised_inverse(r);
+    back_size = norm_of(back);
+    own = back * r;
+    defect = 0;
+  } else {
+    own = Matrix3d::Identity();
+    // The residual of the inverse, as a norm. It is added to the slack below.
+    defect = (back * r - own).norm();
+  }
+}
+
+TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b,
+                                int dim, AffineTerms& terms) {
+  // Steps 1 and 2 for both bodies, and step 3: the unit.
+  const AffineMap maps[2] = {AffineMap(pose_a, a, dim), AffineMap(pose_b, b, dim)};
+  const int exponent = query_exponent(maps[0], pose_a, maps[1], pose_b);
+  TreeKernel k{};
+  k.most_node_pairs = kNoLimit;
+  terms = {};
+  terms.exponent = exponent;
+  k.affine = &terms;
+  k.nodes_a = a.nodes().data();
+  k.nodes_b = b.nodes().data();
+  k.blocks_a = a.blocks().data();
+  k.blocks_b = b.blocks().data();
+  // Powers of two at most 1: scaling a tree's coordinates to the query's unit is exact, but for underflow.
+  k.ratio_a = std::ldexp(1.0F, maps[0].exponent - exponent);
+  k.ratio_b = std::ldexp(1.0F, maps[1].exponent - exponent);
+  const float ratios[2] = {k.ratio_a, k.ratio_b};
+  const Vector3d t[2] = {scaled(pose_a.t, -exponent), scaled(pose_b.t, -exponent)}, between = t[1] - t[0];
+  // Step 4: the rounding of world coordinates, relative to the sum of the largest terms of both bodies.
+  double size = std::ldexp(kWorldUnderflow, -exponent);  // a bound on every term of a world coordinate
+  for (int side = 0; side < 2; ++side)
+    size += row_size(maps[side].r) * kMostUnits * ratios[side] + t[side].cwiseAbs().maxCoeff();
+  const double rounding = kWorldRounding * size;
+  // For each body: both bodies' maps on its axes, and the slack there.
+  for (int side = 0; side < 2; ++side) {
+    const AffineMap &self = maps[side], &other = maps[1 - side];
+    AffineTerms::Axes& axes = terms.axes[side];
+    const Matrix3d other_map = self.back * other.r;
+    const Vector3d origin = self.back * (side == 0 ? between : -between);
+    put(other_map, norm_of(other_map), axes.other);
+    put(origin, axes.origin);
+    axes.flat = self.flat;
+    put(self.own, self.flat ? norm_of(self.own) : 1, axes.own);
+    // Own map off the identity, plus the world's rounding stretched by G.
+    const double off = self.defect * kMostUnits * ratios[side];
+    axes.slack = rounded_up(kPoseSafety * (off + self.back_size * rounding));
+    put(self.r, self.size, terms.world[side]);
+    // Only for choosing which node to descend, so rounding does not matter.
+    terms.span[side] = static_cast<float>(self.size) * ratios[side];
+  }
+  put(between, terms.between);
+  terms.world_slack = rounded_up(kPoseSafety * rounding);
+  return k;
+}
 
 InstructionSet best_instruction_set() {
 #if defined(__x86_64__)

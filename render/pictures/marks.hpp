@@ -2,6 +2,8 @@
 /// Draws what a distance or a clash found: the way between the nearest points, and the way out of an overlap.
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +15,7 @@
 #include <lrbscope/contact.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/obb_tree.hpp>
 #include <lrbscope/pose.hpp>
 #include <lrbscope/render/draw_list.hpp>
 #include <lrbscope/render/scene.hpp>
@@ -87,5 +90,25 @@ struct WrongPair {
 /// Draws the faces of pairs that another engine got wrong.
 void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const LrbRep& a,
                      const Pose& pose_a, const LrbRep& b, const Pose& pose_b, render::Rgba halo);
+
+// The boxes of a tree's nodes, for looking at.
+
+struct TreeBox {
+  std::uint32_t node = 0;   ///< index into ObbTree::nodes()
+  std::uint32_t depth = 0;  ///< 0: the root
+  Eigen::Vector3d centre;   ///< body frame
+  Eigen::Matrix3d half;     ///< columns: from the centre to the middles of three sides
+};
+
+/// Returns the boxes of all nodes down to the greatest depth at which they are no more than `most`, by depth.
+std::vector<TreeBox> tree_boxes(const ObbTree& tree, std::size_t most);
+
+/// Returns how many nodes there are at each depth, from the root's on.
+std::vector<std::uint32_t> nodes_by_depth(const ObbTree& tree);
+
+/// Returns the boxes of nodes below a depth that lie on the ways from the root to some simplices, in the
+/// order of these, no more than `most`.
+std::vector<TreeBox> boxes_on_ways(const ObbTree& tree, std::uint32_t below, const std::vector<SimplexId>& to,
+                                   std::size_t most);
 
 }  // namespace lrb::run

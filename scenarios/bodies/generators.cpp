@@ -4,7 +4,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "scenarios/bodies/generators.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/error.hpp>
 

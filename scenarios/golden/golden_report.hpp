@@ -6,8 +6,11 @@
 #include <vector>
 
 #include "scenarios/golden/check.hpp"
+#include "scenarios/golden/golden.hpp"
+#include "scenarios/golden/golden_run.hpp"
 #include "scenarios/report/assets.hpp"
 #include "scenarios/report/document.hpp"
+#include <lrbscope/trace/divergence.hpp>
 
 namespace lrb::golden {
 
@@ -51,5 +54,16 @@ std::string result_text(const GoldenResult& result);
 /// Returns a test suite with a case for each golden. A golden that could not be tested is an error; one that
 /// differs is a failure, with the lines that tell people about it.
 std::string junit_xml(const std::vector<GoldenResult>& results);
+
+/// The two runs where they begin to differ: at the first event that differs, or at the end of the step that
+/// does; the whole and a close-up, through the same cameras.
+struct DivergencePictures {
+  render::Image expected, actual;  ///< empty if there is nothing to draw
+  std::string expected_caption, actual_caption;
+  std::string note;  ///< why there is nothing to draw
+};
+
+DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
+                                   const trace::Divergence& divergence);
 
 }  // namespace lrb::golden

@@ -10,7 +10,6 @@
 #include "render/page_palette.hpp"
 #include "render/pictures/marks.hpp"
 #include "render/pictures/panel.hpp"
-#include "render/pictures/tree_boxes.hpp"
 #include "scenarios/frames/chosen_view.hpp"
 #include "scenarios/frames/frame_state.hpp"
 #include "scenarios/frames/pass_words.hpp"

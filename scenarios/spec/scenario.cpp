@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <numbers>
 
-#include "scenarios/spec/scenario.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/core/hash.hpp>

@@ -5,7 +5,6 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/exact/fixed_point.hpp"
 #include "engine/exact/predicates.hpp"
 #include "tests/support/hull_oracle.hpp"
 #include "tests/support/random_simplices.hpp"

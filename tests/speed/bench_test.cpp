@@ -11,7 +11,6 @@
 #include "bench/speed/metrics.hpp"
 #include "bench/speed/peer_table.hpp"
 #include "bench/speed/record.hpp"
-#include "bench/speed/region_error.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/build.hpp>

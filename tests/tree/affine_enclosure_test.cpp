@@ -7,7 +7,7 @@
 
 #include "bench/cases/families.hpp"
 #include "engine/collide/tree_query.hpp"
-#include "engine/tree/affine_pose.hpp"
+#include "engine/tree/kernel_setup.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/affine_maps.hpp"
 

@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 
-#include "engine/mesh/io/formats.hpp"
 #include "engine/mesh/io/scan.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>

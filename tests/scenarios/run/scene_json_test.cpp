@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "render/pictures/tree_boxes.hpp"
+#include "render/pictures/marks.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include <lrbscope/trace/trace.hpp>
