@@ -2,40 +2,28 @@
 #include <string>
 
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
 
-#include "scenarios/bodies/shapes.hpp"
-#include "tests/support/folder.hpp"
-#include "tests/support/json_lines.hpp"
-#include <lrbscope/mesh.hpp>
+#include "tests/support/command.hpp"
 
 namespace lrb::test {
 namespace {
 
 using Json = nlohmann::json;
 
-struct ClashingBoxes {
-  Folder folder;
-  ClashingBoxes() {
-    write_mesh(shapes::box(), folder / "a.obj");
+struct ClashingBoxes : Command {
+  ClashingBoxes() : Command({"--quiet", "clash", "cube.obj", "b.obj", "--poses", "poses.txt"}) {
     write_mesh(shapes::box({-1, 0.25, 0.25}, {0, 0.5, 0.5}), folder / "b.obj");
     // 0.25 into a side; touching it; 0.5 away; through
     folder.write("poses.txt",
                  "1 0 0 0.25  0 1 0 0  0 0 1 0\n1 0 0 0  0 1 0 0  0 0 1 0\n1 0 0 -0.5  0 1 0 0  0 0 1 0\n"
                  "3 0 0 2  0 1 0 0  0 0 1 0\n");
-    folder.write("plane.obj", "v 0 0\nv 1 0\nv 0 1\nl 1 2\nl 2 3\nl 3 1\n");
-  }
-  std::vector<std::string> arguments(std::vector<std::string> more) const {
-    std::vector<std::string> args = {"--quiet", "clash", "a.obj", "b.obj", "--poses", "poses.txt"};
-    args.insert(args.end(), more.begin(), more.end());
-    return args;
+    folder.write("plane.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nl 2 3\nl 3 1\n");
   }
 };
 
 TEST_CASE("clash: a line for each pose, and a table") {
   const ClashingBoxes boxes;
-  const std::vector<Json> lines =
-      lines_of(boxes.folder, boxes.arguments({"--clearance", "0.5", "--along", "-1,0,0"}));
+  const std::vector<Json> lines = boxes.lines({"--clearance", "0.5", "--along", "-1,0,0"});
   REQUIRE(lines.size() == 4);
   const char* kinds[] = {"protrudes", "touching_face", "within_clearance", "cuts_through"};
   const double depths[] = {0.25, 0, 0, 0.5}, volumes[] = {0.015625, 0, 0, 0.0625}, ways[] = {0.25, 0, 0, 2};
@@ -54,7 +42,7 @@ TEST_CASE("clash: a line for each pose, and a table") {
     CHECK(lines[i].contains("pieces_a") == (i != 2));
   }
   CHECK(lines[0]["translation"][0].get<double>() == doctest::Approx(-0.25));
-  const Outcome table = run(boxes.folder, boxes.arguments({"--table"}));
+  const Outcome table = boxes.run({"--table"});
   REQUIRE(table.code == 0);
   CHECK(table.out.find("pose") == 0);
   CHECK(table.out.find("touching_face") != std::string::npos);
@@ -70,7 +58,7 @@ TEST_CASE("B2: clash says why a kind is undecided, of a mesh and of its .lrb ali
   std::vector<Json> first;
   for (const char* const b : {"b.obj", "b.lrb"}) {
     const std::vector<Json> lines =
-        lines_of(boxes.folder, {"--quiet", "clash", "a.obj", b, "--poses", "poses.txt"});
+        lines_of(boxes.folder, {"--quiet", "clash", "cube.obj", b, "--poses", "poses.txt"});
     REQUIRE(lines.size() == 2);
     CHECK(lines[0]["kind"] == "undecided");
     CHECK(lines[0]["reason"] == "B intersects itself");
@@ -82,23 +70,24 @@ TEST_CASE("B2: clash says why a kind is undecided, of a mesh and of its .lrb ali
     if (first.empty()) first = lines;
     CHECK(lines == first);
     const std::vector<Json> asked =
-        lines_of(boxes.folder, {"--quiet", "query", "a.obj", b, "--poses", "poses.txt", "--kind"});
+        lines_of(boxes.folder, {"--quiet", "query", "cube.obj", b, "--poses", "poses.txt", "--kind"});
     CHECK(asked[0]["kind"] == "undecided");
     CHECK(asked[0]["reason"] == "B intersects itself");
   }
-  const Outcome table = run(boxes.folder, boxes.arguments({"--table"}));
+  const Outcome table = boxes.run({"--table"});
   CHECK(table.out.find("undecided: B intersects itself") != std::string::npos);
 }
 
 TEST_CASE("clash: what cannot be asked is refused in one line") {
-  const ClashingBoxes boxes;
-  check_refused(boxes.folder, boxes.arguments({"--clearance", "-1"}));
-  check_refused(boxes.folder, boxes.arguments({"--clearance", "nan"}));
-  check_refused(boxes.folder, boxes.arguments({"--along", "0,0,0"}));
-  check_refused(boxes.folder, boxes.arguments({"--along", "1,2"}));
-  check_refused(boxes.folder, boxes.arguments({"--along", "nan,0,0"}));
-  check_refused(boxes.folder, {"clash", "a.obj", "none.obj", "--poses", "poses.txt"});
-  check_refused(boxes.folder, {"clash", "plane.obj", "plane.obj", "--poses", "poses.txt"});
+  ClashingBoxes boxes;
+  boxes.check_refusals({{{"--clearance", "-1"}, "clearance is -1"},
+                        {{"--clearance", "nan"}, "clearance is nan"},
+                        {{"--along", "0,0,0"}, "direction has no length"},
+                        {{"--along", "1,2"}, "--along"},
+                        {{"--along", "nan,0,0"}, "direction has no length"}});
+  boxes.words = {"clash", "--poses", "poses.txt"};
+  boxes.check_refusals(
+      {{{"cube.obj", "none.obj"}, "none.obj"}, {{"plane.obj", "plane.obj"}, "these are in the plane"}});
 }
 
 }  // namespace

@@ -2,42 +2,26 @@
 #include <string>
 
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
 
-#include "scenarios/bodies/shapes.hpp"
-#include "tests/support/folder.hpp"
-#include "tests/support/json_lines.hpp"
-#include <lrbscope/mesh.hpp>
+#include "tests/support/command.hpp"
 
 namespace lrb::test {
 namespace {
 
 using Json = nlohmann::json;
 
-struct Boxes {
-  Folder folder;
-  Boxes() {
-    folder.write("cube.obj", kCube);
-    write_mesh(shapes::box({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}), folder / "small.obj");
+struct Boxes : Command {
+  Boxes() : Command({"--quiet", "distance", "cube.obj", "small.obj", "--poses", "poses.txt"}) {
     // 2 away along x; held; touching; past a corner by 3 and 4 in y and z
     folder.write("poses.txt",
                  "1 0 0 2.75  0 1 0 0  0 0 1 0\n1 0 0 0  0 1 0 0  0 0 1 0\n"
                  "1 0 0 0.75  0 1 0 0  0 0 1 0\n1 0 0 0  0 1 0 3.75  0 0 1 4.75\n");
   }
-  std::vector<std::string> arguments(std::vector<std::string> more) const {
-    std::vector<std::string> args = {"--quiet", "distance", "cube.obj", "small.obj", "--poses", "poses.txt"};
-    args.insert(args.end(), more.begin(), more.end());
-    return args;
-  }
-  std::vector<Json> lines(std::vector<std::string> more = {}) const {
-    std::vector<Json> out = lines_of(folder, arguments(std::move(more)));
-    REQUIRE(out.size() == 4);
-    return out;
-  }
 };
 
 TEST_CASE("distance: intervals, points, and what differs for solids") {
   const auto lines = Boxes().lines();
+  REQUIRE(lines.size() == 4);
   const double expected[] = {2, 0.25, 0, 5};
   for (std::size_t i = 0; i < 4; ++i) {
     CAPTURE(i);
@@ -81,17 +65,17 @@ TEST_CASE("distance: within, tolerance, budget, features and times") {
 }
 
 TEST_CASE("distance: what cannot be asked is refused in one line") {
-  const Boxes boxes;
-  check_refused(boxes.folder, boxes.arguments({"--within", "-1"}));
-  check_refused(boxes.folder, boxes.arguments({"--within", "nan"}));
-  check_refused(boxes.folder, boxes.arguments({"--tolerance", "-1e-9"}));
-  check_refused(boxes.folder, boxes.arguments({"--budget", "0"}));
-  check_refused(boxes.folder, {"distance", "cube.obj", "none.obj", "--poses", "poses.txt"});
+  Boxes boxes;
+  boxes.check_refusals({{{"--within", "-1"}, "`within` is -1"},
+                        {{"--within", "nan"}, "`within` is nan"},
+                        {{"--tolerance", "-1e-9"}, "`tolerance`"},
+                        {{"--budget", "0"}, "--budget"}});
+  boxes.words = {"distance", "cube.obj"};
   boxes.folder.write("bad.txt", "1 0 0\n");
-  check_refused(boxes.folder, {"distance", "cube.obj", "small.obj", "--poses", "bad.txt"});
   boxes.folder.write("far.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1e308 1e308 1e308 1e308 0 1 0 0 0 0 1 0\n");
-  CHECK(check_refused(boxes.folder, {"distance", "cube.obj", "small.obj", "--poses", "far.txt"})
-            .err.find("far.txt:2") != std::string::npos);
+  boxes.check_refusals({{{"none.obj", "--poses", "poses.txt"}, "none.obj"},
+                        {{"small.obj", "--poses", "bad.txt"}, "bad.txt:1"},
+                        {{"small.obj", "--poses", "far.txt"}, "far.txt:2"}});
 }
 
 }  // namespace

@@ -2,13 +2,9 @@
 #include <string>
 
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
 
-#include "scenarios/bodies/shapes.hpp"
 #include "scenarios/report/gnuplot.hpp"
-#include "tests/support/folder.hpp"
-#include "tests/support/json_lines.hpp"
-#include <lrbscope/mesh.hpp>
+#include "tests/support/command.hpp"
 
 namespace lrb::test {
 namespace {
@@ -16,17 +12,20 @@ namespace {
 using Json = nlohmann::json;
 
 /// A cube and a smaller one: 2 away, in a corner of the cube, held, and touching it with a face.
-struct TwoCubes {
-  Folder folder;
-  TwoCubes() {
-    folder.write("cube.obj", kCube);
-    write_mesh(shapes::box({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}), folder / "small.obj");
+struct TwoCubes : Command {
+  TwoCubes() : Command({"-q"}) {
     write_mesh(shapes::star(5), folder / "star.obj");
     folder.write("poses.txt",
                  "1 0 0 2.75  0 1 0 0  0 0 1 0\n1 0 0 0.6  0 1 0 0.6  0 0 1 0.6\n"
                  "1 0 0 0  0 1 0 0  0 0 1 0\n1 0 0 0.75  0 1 0 0  0 0 1 0\n");
     folder.write("beside.txt", "1 0 0 3  0 1 0 0  0 0 1 0\n");
     folder.write("motions.txt", "1 0 0 2.75 0 1 0 0 0 0 1 0   1 0 0 -2 0 1 0 0 0 0 1 0\n");
+  }
+  std::vector<Json> ask(const std::string& command, std::vector<std::string> more = {}) const {
+    const bool moves = command == "sweep";
+    more.insert(more.begin(), {command, "cube.obj", "small.obj", moves ? "--motions" : "--poses",
+                               moves ? "motions.txt" : "poses.txt"});
+    return lines(more);
   }
   bool has_png(const std::string& name) const {
     const std::string bytes = slurp(folder / name);
@@ -36,11 +35,9 @@ struct TwoCubes {
 
 TEST_CASE("draw: a picture for each answer, numbered where there are several") {
   const TwoCubes c;
-  lines_of(c.folder,
-           {"-q", "distance", "cube.obj", "small.obj", "--poses", "poses.txt", "--draw", "gap.png"});
-  lines_of(c.folder, {"-q", "clash", "cube.obj", "small.obj", "--poses", "poses.txt", "--draw", "clash.png"});
-  lines_of(c.folder,
-           {"-q", "sweep", "cube.obj", "small.obj", "--motions", "motions.txt", "--draw", "met.png"});
+  c.ask("distance", {"--draw", "gap.png"});
+  c.ask("clash", {"--draw", "clash.png"});
+  c.ask("sweep", {"--draw", "met.png"});
   for (const char* name : {"gap-0.png", "gap-1.png", "gap-2.png", "gap-3.png", "clash-0.png", "clash-1.png",
                            "clash-2.png", "clash-3.png", "met.png"}) {
     CAPTURE(std::string(name));
@@ -50,71 +47,57 @@ TEST_CASE("draw: a picture for each answer, numbered where there are several") {
 
 TEST_CASE("draw: bodies in the plane too") {
   const TwoCubes c;
-  lines_of(c.folder,
-           {"-q", "distance", "star.obj", "star.obj", "--poses", "beside.txt", "--draw", "gap.png"});
+  c.lines({"distance", "star.obj", "star.obj", "--poses", "beside.txt", "--draw", "gap.png"});
   c.folder.write("way.txt", "1 0 0 4 0 1 0 0.3 0 0 1 0   1 0 0 -4 0 1 0 0.3 0 0 1 0\n");
-  lines_of(c.folder, {"-q", "sweep", "star.obj", "star.obj", "--motions", "way.txt", "--draw", "met.png"});
+  c.lines({"sweep", "star.obj", "star.obj", "--motions", "way.txt", "--draw", "met.png"});
   CHECK(c.has_png("gap.png"));
   CHECK(c.has_png("met.png"));
 }
 
 TEST_CASE("draw: of the size that was asked for, and no picture of another") {
   const TwoCubes c;
-  const std::vector<std::string> ask = {"-q",      "distance",   "star.obj", "star.obj",
-                                        "--poses", "beside.txt", "--draw"};
-  std::vector<std::string> small = ask, wrong = ask;
-  small.insert(small.end(), {"small.png", "--size", "640x400", "--up", "y"});
-  wrong.insert(wrong.end(), {"wrong.png", "--size", "640"});
-  lines_of(c.folder, small);
+  c.lines({"distance", "star.obj", "star.obj", "--poses", "beside.txt", "--draw", "small.png", "--size",
+           "640x400", "--up", "y"});
   const std::string bytes = slurp(c.folder / "small.png");
   CHECK(bytes.substr(16, 8) == std::string("\0\0\x02\x80\0\0\x01\x90", 8));  // 640, 400: the header's size
-  CHECK(check_refused(c.folder, wrong).err.find("--size: expected WIDTHxHEIGHT") != std::string::npos);
+  c.check_refusals(
+      {{{"distance", "star.obj", "star.obj", "--poses", "beside.txt", "--draw", "no.png", "--size", "640"},
+        "--size: expected WIDTHxHEIGHT"}});
 }
 
 TEST_CASE("course: how bounds tightened, in the line") {
   const TwoCubes c;
-  const auto gaps =
-      lines_of(c.folder, {"-q", "distance", "cube.obj", "small.obj", "--poses", "poses.txt", "--course"});
+  const auto gaps = c.ask("distance", {"--course"});
   REQUIRE(gaps.size() == 4);
   const Json& last = gaps[0]["course"].back();
   CHECK(last[1] == gaps[0]["lower"]);
   CHECK(last[2] == gaps[0]["upper"]);
-  const auto clashes =
-      lines_of(c.folder, {"-q", "clash", "cube.obj", "small.obj", "--poses", "poses.txt", "--course"});
+  const auto clashes = c.ask("clash", {"--course"});
   CHECK(clashes[1]["course"].back()[1] == clashes[1]["depth"][0]);
   CHECK(clashes[1]["course"].back()[2] == clashes[1]["depth"][1]);
-  const auto met =
-      lines_of(c.folder, {"-q", "sweep", "cube.obj", "small.obj", "--motions", "motions.txt", "--course"});
+  const auto met = c.ask("sweep", {"--course"});
   CHECK(met[0]["course"].front()[3].get<double>() == doctest::Approx(2).epsilon(0.01));
   CHECK(met[0]["course"].back()[2] == met[0]["t1"]);
 }
 
 TEST_CASE("chart: of the bounds, by gnuplot" * doctest::skip(!report::has_gnuplot())) {
   const TwoCubes c;
-  lines_of(c.folder,
-           {"-q", "distance", "cube.obj", "small.obj", "--poses", "poses.txt", "--chart", "gap.svg"});
-  lines_of(c.folder,
-           {"-q", "sweep", "cube.obj", "small.obj", "--motions", "motions.txt", "--chart", "met.svg"});
+  c.ask("distance", {"--chart", "gap.svg"});
+  c.ask("sweep", {"--chart", "met.svg"});
   CHECK(slurp(c.folder / "gap-0.svg").find("distance at least") != std::string::npos);
   CHECK(slurp(c.folder / "met.svg").find("no contact before this t") != std::string::npos);
 }
 
 TEST_CASE("chart: of another kind is refused before anything is printed") {
   const TwoCubes c;
-  const Outcome o = check_refused(
-      c.folder, {"-q", "distance", "cube.obj", "small.obj", "--poses", "poses.txt", "--chart", "gap.txt"});
-  CHECK(o.err.find("charts are written as .svg, .png or .pdf") != std::string::npos);
+  c.check_refusals({{{"distance", "cube.obj", "small.obj", "--poses", "poses.txt", "--chart", "gap.txt"},
+                     "charts are written as .svg, .png or .pdf"}});
 }
 
 TEST_CASE("query: the kind of contact and the distance, as clash and distance say them") {
   const TwoCubes c;
-  const std::vector<std::string> bodies = {"cube.obj", "small.obj", "--poses", "poses.txt"};
-  const auto ask = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), bodies.begin(), bodies.end());
-    return lines_of(c.folder, arguments);
-  };
-  const auto lines = ask({"-q", "query", "--kind", "--distance"}), plain = ask({"-q", "query"});
-  const auto clashes = ask({"-q", "clash"}), gaps = ask({"-q", "distance"});
+  const auto lines = c.ask("query", {"--kind", "--distance"}), plain = c.ask("query");
+  const auto clashes = c.ask("clash"), gaps = c.ask("distance");
   for (std::size_t i = 0; i < 4; ++i) {
     CAPTURE(i);
     CHECK(lines[i]["kind"] == clashes[i]["kind"]);
@@ -126,8 +109,7 @@ TEST_CASE("query: the kind of contact and the distance, as clash and distance sa
   CHECK(lines[1]["kind"] == "protrudes");
   CHECK(lines[2]["kind"] == "b_inside_a");
   CHECK(lines[3]["kind"] == "touching_face");
-  const Outcome flat =
-      run(c.folder, {"-q", "query", "star.obj", "star.obj", "--poses", "beside.txt", "--kind"});
+  const Outcome flat = c.run({"query", "star.obj", "star.obj", "--poses", "beside.txt", "--kind"});
   CHECK(flat.code == 2);
   CHECK(flat.err.find("bodies in space") != std::string::npos);
 }

@@ -4,8 +4,8 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/io/poses.hpp"
+#include "tests/support/command.hpp"
 #include "tests/support/folder.hpp"
-#include "tests/support/program.hpp"
 #include <lrbscope/mesh.hpp>
 
 namespace lrb::test {
@@ -56,28 +56,23 @@ TEST_CASE("export: poses of a run, and from one form to another") {
 }
 
 TEST_CASE("export: what cannot be is refused, and nothing is written") {
-  const Folder folder;
-  folder.write("cube.obj", kCube);
-  folder.write("p.csv", "1,2\n");
-  const auto refused = [&](std::vector<std::string> words, const char* what) {
-    words.insert(words.begin(), {"-q", "export"});
-    const Outcome o = check_refused(folder, words);
-    CHECK_MESSAGE(o.err.find(what) != std::string::npos, o.err);
-  };
-  refused({"cube.obj", "-o", "cube.stl"}, "expected a name that ends in .ply, .vtp, .glb or .obj");
-  refused({"cube.obj", "-o", "cube.obj2", "--ascii"}, ".ply, .vtp, .glb or .obj");
-  refused({"cube.obj", "-o", "c.glb", "--ascii"}, "--ascii: is for .ply and .vtp");
-  refused({"cube.obj", "-o", "c.ply", "--regions"}, "--regions: is for .glb and .obj");
-  refused({"cube.obj", "-o", "c.ply", "--step", "1"}, "--step: is for runs");
-  refused({"cube.obj", "-o", "c.ply", "--what", "contacts"}, "--what contacts: is for runs");
-  refused({"cube.obj", "-o", "c.ply", "--colour-by", "hits"}, "counts are for runs");
-  refused({"cube.obj", "-o", "c.ply", "--faces", "2"}, "the outermost wrapper has");
-  refused({"cube.obj", "-o", "c.ply", "--what", "boddy"}, "boddy");
-  refused({"no_such_thing", "-o", "c.ply"}, "no_such_thing");
-  refused({"islands", "-o", "c.ply", "--step", "999"}, "the trace holds no such step");
-  refused({"islands", "-o", "c.ply", "--event", "99999999"}, "events, numbered from 0");
-  refused({"islands", "-o", "c.ply", "--faces", "50"}, "are for a body alone");
-  refused({"p.csv", "-o", "p.json", "--what", "poses"}, "p.csv:1: expected 12 numbers");
+  const Command command({"-q", "export"});
+  command.folder.write("p.csv", "1,2\n");
+  command.check_refusals(
+      {{{"cube.obj", "-o", "cube.stl"}, "expected a name that ends in .ply, .vtp, .glb or .obj"},
+       {{"cube.obj", "-o", "cube.obj2", "--ascii"}, ".ply, .vtp, .glb or .obj"},
+       {{"cube.obj", "-o", "c.glb", "--ascii"}, "--ascii: is for .ply and .vtp"},
+       {{"cube.obj", "-o", "c.ply", "--regions"}, "--regions: is for .glb and .obj"},
+       {{"cube.obj", "-o", "c.ply", "--step", "1"}, "--step: is for runs"},
+       {{"cube.obj", "-o", "c.ply", "--what", "contacts"}, "--what contacts: is for runs"},
+       {{"cube.obj", "-o", "c.ply", "--colour-by", "hits"}, "counts are for runs"},
+       {{"cube.obj", "-o", "c.ply", "--faces", "2"}, "the outermost wrapper has"},
+       {{"cube.obj", "-o", "c.ply", "--what", "boddy"}, "boddy"},
+       {{"no_such_thing", "-o", "c.ply"}, "no_such_thing"},
+       {{"islands", "-o", "c.ply", "--step", "999"}, "the trace holds no such step"},
+       {{"islands", "-o", "c.ply", "--event", "99999999"}, "events, numbered from 0"},
+       {{"islands", "-o", "c.ply", "--faces", "50"}, "are for a body alone"},
+       {{"p.csv", "-o", "p.json", "--what", "poses"}, "p.csv:1: expected 12 numbers"}});
 }
 
 }  // namespace

@@ -2,23 +2,16 @@
 #include <string>
 
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
 
-#include "scenarios/bodies/shapes.hpp"
-#include "tests/support/folder.hpp"
-#include "tests/support/json_lines.hpp"
-#include <lrbscope/mesh.hpp>
+#include "tests/support/command.hpp"
 
 namespace lrb::test {
 namespace {
 
 using Json = nlohmann::json;
 
-struct MovingBoxes {
-  Folder folder;
-  MovingBoxes() {
-    folder.write("cube.obj", kCube);
-    write_mesh(shapes::box({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}), folder / "small.obj");
+struct MovingBoxes : Command {
+  MovingBoxes() : Command({"--quiet", "sweep", "cube.obj", "small.obj", "--motions", "motions.txt"}) {
     // From 2.75 to -1.25 along x, into the face x = 1 after 2 of 4; past it; out of it, from inside; from
     // contact on; turning by a quarter meanwhile; as near its upper face as rounding.
     folder.write(
@@ -31,20 +24,11 @@ struct MovingBoxes {
         "1 0 0 2 0 1 0 0 0 0 1 0  0 -1 0 0 1 0 0 0 0 0 1 0\n"
         "1 0 0 2.75  0 1 0 0  0 0 1 0.7500000000000002   1 0 0 -1.25  0 1 0 0  0 0 1 0.7500000000000002\n");
   }
-  std::vector<std::string> arguments(std::vector<std::string> more) const {
-    std::vector<std::string> args = {"--quiet", "sweep", "cube.obj", "small.obj", "--motions", "motions.txt"};
-    args.insert(args.end(), more.begin(), more.end());
-    return args;
-  }
-  std::vector<Json> lines(std::vector<std::string> more = {}) const {
-    std::vector<Json> out = lines_of(folder, arguments(std::move(more)));
-    REQUIRE(out.size() == 6);
-    return out;
-  }
 };
 
 TEST_CASE("sweep: contact, none, from inside, at the start, turning, grazing") {
   const auto lines = MovingBoxes().lines();
+  REQUIRE(lines.size() == 6);
   for (std::size_t i = 0; i < 6; ++i) CHECK(lines[i]["motion"] == i);
   CHECK(lines[0]["contact"] == true);
   CHECK(lines[0]["t0"].get<double>() <= 0.5);
@@ -86,24 +70,23 @@ TEST_CASE("sweep: tolerance, budget, features, history and times") {
 }
 
 TEST_CASE("sweep: what cannot be asked is refused in one line") {
-  const MovingBoxes boxes;
+  MovingBoxes boxes;
   for (const char* tolerance : {"0", "-1", "2", "nan"})
-    check_refused(boxes.folder, boxes.arguments({"--tolerance", tolerance}));
-  check_refused(boxes.folder, boxes.arguments({"--budget", "0"}));
-  check_refused(boxes.folder, {"sweep", "cube.obj", "none.obj", "--motions", "motions.txt"});
+    boxes.check_refusals({{{"--tolerance", tolerance}, "the tolerance of a first contact"}});
+  boxes.check_refusals({{{"--budget", "0"}, "--budget"}});
+  boxes.words = {"sweep", "cube.obj"};
+  boxes.check_refusals({{{"none.obj", "--motions", "motions.txt"}, "none.obj"}});
   const std::string good = "1 0 0 3 0 1 0 0 0 0 1 0  1 0 0 0 0 1 0 0 0 0 1 0\n";
-  const auto refused = [&](const std::string& text, const char* said) {
+  const std::string start = good + "1 0 0 3 0 1 0 0 0 0 1 0";
+  const std::pair<std::string, std::string> bad[] = {{start + "\n", "bad.txt:2: expected 24 numbers"},
+                                                     {"# none\n", "bad.txt: no motions"},
+                                                     {start + "  1 0 0 nan 0 1 0 0 0 0 1 0\n", "bad.txt:2: "},
+                                                     {start + "  2 0 0 0 0 2 0 0 0 0 2 0\n", "bad.txt:2: "},
+                                                     {start + "  -1 0 0 0 0 1 0 0 0 0 1 0\n", "bad.txt:2: "}};
+  for (const auto& [text, says] : bad) {
     boxes.folder.write("bad.txt", text);
-    const std::string err =
-        check_refused(boxes.folder, {"sweep", "cube.obj", "small.obj", "--motions", "bad.txt"}).err;
-    CAPTURE(err);
-    CHECK(err.find(said) != std::string::npos);
-  };
-  refused(good + "1 0 0 3 0 1 0 0 0 0 1 0\n", "bad.txt:2: expected 24 numbers");
-  refused("# none\n", "bad.txt: no motions");
-  refused(good + "1 0 0 3 0 1 0 0 0 0 1 0  1 0 0 nan 0 1 0 0 0 0 1 0\n", "bad.txt:2: ");
-  refused(good + "1 0 0 3 0 1 0 0 0 0 1 0  2 0 0 0 0 2 0 0 0 0 2 0\n", "bad.txt:2: ");
-  refused(good + "1 0 0 3 0 1 0 0 0 0 1 0  -1 0 0 0 0 1 0 0 0 0 1 0\n", "bad.txt:2: ");
+    boxes.check_refusals({{{"small.obj", "--motions", "bad.txt"}, says}});
+  }
 }
 
 }  // namespace

@@ -2,28 +2,18 @@
 #include <string>
 
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
 
-#include "scenarios/bodies/shapes.hpp"
-#include "tests/support/folder.hpp"
-#include "tests/support/program.hpp"
-#include <lrbscope/mesh.hpp>
+#include "tests/support/command.hpp"
 #include <lrbscope/render/image.hpp>
 
 namespace lrb::test {
 namespace {
 
-struct Bodies {
-  Folder folder;
-  Bodies() {
+struct Bodies : Command {
+  Bodies() : Command({"--quiet", "why", "ball.obj", "ring.obj", "--poses", "poses.txt"}) {
     write_mesh(shapes::icosphere(2), folder / "ball.obj");
     write_mesh(shapes::torus(16, 8), folder / "ring.obj");
     folder.write("poses.txt", "1 0 0 0.9  0 1 0 0  0 0 1 0.1\n1 0 0 9  0 1 0 0  0 0 1 0\n");
-  }
-  Outcome why(std::vector<std::string> more) const {
-    std::vector<std::string> args = {"--quiet", "why", "ball.obj", "ring.obj", "--poses", "poses.txt"};
-    args.insert(args.end(), more.begin(), more.end());
-    return run(folder, args);
   }
 };
 
@@ -35,7 +25,7 @@ TEST_CASE("why: a pair of the answer, as JSON, as text and as a picture") {
   REQUIRE(!list.empty());
   const std::string pair =
       std::to_string(list[0][0].get<int>()) + "," + std::to_string(list[0][1].get<int>());
-  const Outcome json = bodies.why({"--pair", pair, "--json", "-o", "pictures/pair.png"});
+  const Outcome json = bodies.run({"--pair", pair, "--json", "-o", "pictures/pair.png"});
   CHECK(json.code == 0);
   const auto j = nlohmann::json::parse(json.out);
   CHECK(j["pair"] == list[0]);
@@ -43,26 +33,26 @@ TEST_CASE("why: a pair of the answer, as JSON, as text and as a picture") {
   CHECK(j["nodes"][0]["a"] == 0);
   CHECK(j["contact"]["points"].size() > 0);
   CHECK(render::read_png(bodies.folder / "pictures/pair.png").image.width() == 1200);
-  const Outcome text = bodies.why({"--pair", pair});
+  const Outcome text = bodies.run({"--pair", pair});
   CHECK(text.out.find("decided by") != std::string::npos);
   CHECK(text.out.find("contact: segment") != std::string::npos);
 }
 
 TEST_CASE("why: bodies that are apart") {
   const Bodies bodies;
-  const Outcome text = bodies.why({"--pose", "1"});
+  const Outcome text = bodies.run({"--pose", "1"});
   CHECK(text.code == 0);
   CHECK(text.out.rfind("separate, 0 pairs\nboxes round the bodies: gap >= ", 0) == 0);
   CHECK(text.out.find("prove it too") != std::string::npos);
-  const auto j = nlohmann::json::parse(bodies.why({"--pose", "1", "--json"}).out);
+  const auto j = nlohmann::json::parse(bodies.run({"--pose", "1", "--json"}).out);
   CHECK(j["roots"]["gap"] > 5);
   CHECK(j["separation"]["refined"] == nlohmann::json({0, 0}));
   const auto pair =
-      nlohmann::json::parse(bodies.why({"--pose", "1", "--pair", "0,0", "--json", "-o", "apart.png"}).out);
+      nlohmann::json::parse(bodies.run({"--pose", "1", "--pair", "0,0", "--json", "-o", "apart.png"}).out);
   CHECK(pair["meet"] == "disjoint");
   CHECK(pair["decided_by"] == "node_boxes");
   CHECK(pair["distance"] > 5);
-  const std::string far = bodies.why({"--pose", "1", "--pair", "0,0"}).out;
+  const std::string far = bodies.run({"--pose", "1", "--pair", "0,0"}).out;
   CHECK(far.find("\ndistance ") != std::string::npos);
   CHECK(far.find("units in the last place") == std::string::npos);
   CHECK(render::read_png(bodies.folder / "apart.png").image.width() == 1200);
@@ -87,9 +77,9 @@ TEST_CASE(
 
 TEST_CASE("why: what parts bodies that are apart") {
   const Bodies bodies;
-  CHECK(bodies.why({"--pose", "1", "-o", "plane.png"})
+  CHECK(bodies.run({"--pose", "1", "-o", "plane.png"})
             .out.find("has all of A on one side and all of B on the other, gap >= ") != std::string::npos);
-  const auto j = nlohmann::json::parse(bodies.why({"--pose", "1", "--json"}).out);
+  const auto j = nlohmann::json::parse(bodies.run({"--pose", "1", "--json"}).out);
   CHECK(j["plane"]["gap"] > 5);
   // Beside the whole is a close-up that looks along the plane: a line in the middle of the gap.
   const render::Image picture = render::read_png(bodies.folder / "plane.png").image;
@@ -109,7 +99,7 @@ TEST_CASE("why: what parts bodies that are apart") {
 }
 
 TEST_CASE("why: a step of a run, by the run's folder or its trace") {
-  const Bodies bodies;
+  Bodies bodies;
   REQUIRE(run(bodies.folder, {"--quiet", "collide", "ball.obj", "ring.obj", "--poses", "poses.txt", "-o",
                               "out", "--most", "1"})
               .code == 0);
@@ -119,41 +109,29 @@ TEST_CASE("why: a step of a run, by the run's folder or its trace") {
   };
   for (const char* place : {"out", "out/trace.json"}) {
     CHECK(why({"--run", place, "--step", "0", "--pair", "3,4", "--json"}).out ==
-          bodies.why({"--pair", "3,4", "--json"}).out);
-    CHECK(why({"--run", place, "--json"}).out == bodies.why({"--pose", "1", "--json"}).out);  // the last step
+          bodies.run({"--pair", "3,4", "--json"}).out);
+    CHECK(why({"--run", place, "--json"}).out == bodies.run({"--pose", "1", "--json"}).out);  // the last step
   }
-  const auto refused = [&](const std::vector<std::string>& more, const std::string& what) {
-    const Outcome o = why(more);
-    CHECK(o.code == 2);
-    CHECK(o.error_lines() == 1);
-    CAPTURE(o.err);
-    CHECK(o.err.find(what) != std::string::npos);
-  };
-  refused({"--run", "out", "--step", "2"}, "has no step 2; its steps go from 0 to 1");
-  refused({"--run", "nowhere"}, "nowhere");
-  refused({"--run", "out", "ball.obj", "ring.obj"}, "--run");
-  refused({"--step", "1"}, "--run");
-  refused({"ball.obj"}, "expected two bodies, A and B, or --run");
+  bodies.words = {"--quiet", "why"};
+  bodies.check_refusals({{{"--run", "out", "--step", "2"}, "has no step 2; its steps go from 0 to 1"},
+                         {{"--run", "nowhere"}, "nowhere"},
+                         {{"--run", "out", "ball.obj", "ring.obj"}, "--run"},
+                         {{"--step", "1"}, "--run"},
+                         {{"ball.obj"}, "expected two bodies, A and B, or --run"}});
   std::filesystem::copy_file(bodies.folder / "out/b.lrb", bodies.folder / "out/a.lrb",
                              std::filesystem::copy_options::overwrite_existing);
-  refused({"--run", "out"}, "the body beside it is not the one that was recorded as A");
+  bodies.check_refusals({{{"--run", "out"}, "the body beside it is not the one that was recorded as A"}});
 }
 
 TEST_CASE("why: bad input is refused in one line, and nothing is written") {
-  const Bodies bodies;
-  const auto refused = [&](std::vector<std::string> more, const std::string& what) {
-    more.insert(more.end(), {"-o", "no.png"});
-    const Outcome o = bodies.why(more);
-    CHECK(o.code == 2);
-    CHECK(o.err.find(what) != std::string::npos);
-    CHECK(o.out.empty());
-    CHECK_FALSE(std::filesystem::exists(bodies.folder.path / "no.png"));
-  };
-  refused({"--pair", "0,99999"}, "no simplex 99999 of B: there are ");
-  refused({"--pair", "0,0", "--pose", "2"}, "has 2 poses, numbered from 0; there is no pose 2");
-  refused({}, "-o: the bodies meet");
-  refused({"--pair", "0"}, "--pair");
-  refused({"--pair", "-1,0"}, "--pair");
+  Bodies bodies;
+  bodies.words = bodies.with({"-o", "no.png"});
+  bodies.check_refusals(
+      {{{"--pair", "0,99999"}, "no simplex 99999 of B: there are "},
+       {{"--pair", "0,0", "--pose", "2"}, "has 2 poses, numbered from 0; there is no pose 2"},
+       {{}, "-o: the bodies meet"},
+       {{"--pair", "0"}, "--pair"},
+       {{"--pair", "-1,0"}, "--pair"}});
 }
 
 }  // namespace
