@@ -20,7 +20,6 @@
 using namespace lrb;
 using namespace lrb::bench;
 using lrb::test::Folder;
-using lrb::test::run;
 using lrb::test::slurp;
 
 namespace {
@@ -311,22 +310,22 @@ TEST_CASE("the commands: records, table, charts; what is there is not asked agai
   const Folder folder;
   const std::vector<std::string> bench = {"bench", "--faces",  "320",           "--poses", "1", "--method",
                                           "ours",  "--method", "ours-floating", "-o",      "b"};
-  const auto first = run(folder, bench);
+  const auto first = test::run(folder, bench);
   CHECK(first.code == 0);
   CHECK(first.out.find("ours-floating") != std::string::npos);
   const std::string records = slurp(folder / "b/records.jsonl");
   CHECK(std::count(records.begin(), records.end(), '\n') == 3 * 5 * 2);
-  CHECK(run(folder, bench).code == 0);
+  CHECK(test::run(folder, bench).code == 0);
   CHECK(slurp(folder / "b/records.jsonl") == records);
 
-  const auto chart = run(folder, {"chart", "--faces", "320", "--poses", "1", "--method", "ours", "--method",
-                                  "spheres", "--no-scenes", "-o", "c"});
+  const auto chart = test::run(folder, {"chart", "--faces", "320", "--poses", "1", "--method", "ours",
+                                        "--method", "spheres", "--no-scenes", "-o", "c"});
   CHECK(chart.code == 0);
   CHECK(slurp(folder / "c/index.html").find("sphere tree") != std::string::npos);
   const std::string points = slurp(folder / "c/points.jsonl");
   CHECK(std::count(points.begin(), points.end(), '\n') == 3 * 5 * 7);
-  CHECK(run(folder, {"chart", "draw", "-o", "nothing"}).code == 2);
-  CHECK(run(folder, {"bench", "--method", "nobody", "-o", "b"}).code == 2);
+  CHECK(test::run(folder, {"chart", "draw", "-o", "nothing"}).code == 2);
+  CHECK(test::run(folder, {"bench", "--method", "nobody", "-o", "b"}).code == 2);
 }
 
 TEST_CASE("numbers are judged by how far they are off what is known, in diagonals or parts of the motion") {
@@ -387,7 +386,7 @@ TEST_CASE("chart --quantity: the right answers, records, points and a page for e
   const auto chart = [&](const std::string& quantity, std::vector<std::string> more = {}) {
     std::vector<std::string> words = {"chart", "--quantity", quantity, "--faces", "80", "--poses", "1"};
     words.insert(words.end(), more.begin(), more.end());
-    return run(folder, words);
+    return test::run(folder, words);
   };
   const auto lines = [&](const std::string& file) {
     const std::string text = slurp(folder / file);
