@@ -1,6 +1,3 @@
-/// For builds with the leak sanitizer: Mesa keeps about a kilobyte per process for good, which is not ours to
-/// free.
-
 #include "render/gl.hpp"
 
 #include <algorithm>
@@ -58,6 +55,8 @@ GlProgram make_program(const Gl& gl, const std::string& name, const std::string&
 
 }  // namespace lrb::render
 
+// For builds with the leak sanitizer: Mesa keeps about a kilobyte per process for good, which is not ours to
+// free.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define LRB_LEAK_SANITIZER 1
@@ -78,10 +77,6 @@ extern "C" const char* __lsan_default_options() {
 #endif
 
 namespace lrb::render {
-/// Stands for this file where it must be linked.
-void suppress_mesa_leaks() {}
-
-void suppress_mesa_leaks();
 
 /// The pixels that OSMesa is given to draw into. We draw into framebuffer objects instead, whose pixels do
 /// not depend on the number of threads; these only serve to make the context current.
@@ -154,7 +149,6 @@ Offscreen::Offscreen() {
     if (f.level == Finding::Level::error) throw EnvironmentError(f.what + ": " + f.detail);
   }
   require_address_space();
-  suppress_mesa_leaks();
   context_ = std::make_unique<Context>();
   make_current();
 #define LRB_GL(TYPE, Name)                                                          \

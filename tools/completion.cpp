@@ -1,4 +1,4 @@
-/// Scripts by which shells complete the words of a program.
+/// What is made of the program's own words: completions of shells, and manual pages.
 
 #include <algorithm>
 #include <array>
@@ -19,9 +19,9 @@
 #include <lrbscope/trace/trace.hpp>
 
 namespace lrb::words {
+namespace {
 
-// The commands and options of a program as data, taken from the definitions by which it parses them: for
-// manual pages and for the completions of shells.
+// The commands and options of a program as data, taken from the definitions by which it parses them.
 
 /// What completes a value.
 enum class Value : std::uint8_t { none, choice, file, folder, scenario, crowd, experiment };
@@ -45,8 +45,75 @@ struct Command {
   std::vector<Command> commands;
 };
 
+/// Returns the words of a type such as "png|svg" or "answers,events"; none for another type.
+std::vector<std::string> choices_of(const std::string& type) {
+  std::vector<std::string> out(1);
+  for (const char c : type) {
+    if (c == '|' || c == ',')
+      out.emplace_back();
+    else if (std::islower(static_cast<unsigned char>(c)) != 0 ||
+             std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '_')
+      out.back() += c;
+    else
+      return {};
+  }
+  const bool whole = std::none_of(out.begin(), out.end(), [](const std::string& w) { return w.empty(); });
+  return whole && out.size() > 1 ? out : std::vector<std::string>();
+}
+
+/// Returns what completes a value, by the names that commands give to values.
+Value value_of(const std::string& type, const std::string& name, bool positional) {
+  const std::string word = type.substr(0, type.find_first_of(":= "));
+  if (!choices_of(word).empty()) return Value::choice;
+  if (positional && (name == "SCENARIO" || name == "SOURCE" || name == "INPUT")) return Value::scenario;
+  if (positional && name == "CROWD") return Value::crowd;
+  if (word == "NAME|FILE") return Value::experiment;
+  if (word == "DIR" || word == "FOLDER") return Value::folder;
+  const bool names_file = word.find("FILE") != std::string::npos || word.find('.') != std::string::npos ||
+                          word == "PNG" || word.find("PATH") != std::string::npos;
+  // A text that says no more is a file in this program.
+  return names_file || word == "TEXT" ? Value::file : Value::none;
+}
+
+Option option_of(const CLI::Option& o) {
+  Option out;
+  out.positional = o.get_positional() && o.get_lnames().empty() && o.get_snames().empty();
+  for (const std::string& name : o.get_snames()) out.names.push_back("-" + name);
+  for (const std::string& name : o.get_lnames()) out.names.push_back("--" + name);
+  if (out.positional) out.names = {o.get_name(true, false)};
+  out.help = o.get_description();
+  out.required = o.get_required();
+  if (o.get_items_expected_max() == 0) return out;
+  out.type = o.get_type_name();
+  out.fallback = o.get_default_str();
+  out.many = o.get_items_expected_max() > 1;
+  out.value = value_of(out.type, out.names.front(), out.positional);
+  out.choices = choices_of(out.type.substr(0, out.type.find_first_of(":= ")));
+  return out;
+}
+
 /// Returns the words of a program or command, without what it hides.
-Command words_of(const CLI::App& app);
+Command words_of(const CLI::App& app) {
+  Command out;
+  out.name = app.get_name();
+  out.purpose = app.get_description();
+  for (const CLI::Option* option :
+       app.get_options([](const CLI::Option* o) { return !o->get_group().empty(); }))
+    out.options.push_back(option_of(*option));
+  for (const CLI::App* command :
+       app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
+    out.commands.push_back(words_of(*command));
+  return out;
+}
+
+/// Returns the words with a blank between them.
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
+  return out;
+}
+
+// Scripts of shells.
 
 /// Names that stand in the place of files.
 struct ShippedNames {
@@ -54,97 +121,19 @@ struct ShippedNames {
   const std::vector<std::string>& of(Value value) const;  ///< none for values that are no such names
 };
 
-/// Return the script of a shell.
-std::string bash_completion(const Command& program, const ShippedNames& names);
-std::string zsh_completion(const Command& program, const ShippedNames& names);
-std::string fish_completion(const Command& program, const ShippedNames& names);
-
-/// Returns the words with a blank between them.
-std::string joined(const std::vector<std::string>& words);
-
-/// Returns the manual page (roff, section 1) of a program: its commands, its options, exit codes and
-/// environment.
-std::string program_page(const Command& program, const std::string& version);
-
-/// Returns that of one of its commands, with the options of the commands below it.
-std::string command_page(const Command& program, const Command& command, const std::string& version);
-
-}  // namespace lrb::words
-
-namespace lrb::cli {
-
-// What is made of the program's own words: completions of shells, and manual pages.
-
-namespace {
-
-struct CompletionOptions {
-  std::string shell, file;
-};
-
-int print_completion(const CLI::App& root, const CompletionOptions& o) {
-  const words::Command all = words::words_of(root);
-  const words::ShippedNames names = {spec::shipped_names(spec::kScenarioEnding),
-                                     spec::shipped_names(spec::kCrowdEnding),
-                                     spec::shipped_names(spec::kExperimentEnding)};
-  const std::string script = o.shell == "bash"  ? words::bash_completion(all, names)
-                             : o.shell == "zsh" ? words::zsh_completion(all, names)
-                                                : words::fish_completion(all, names);
-  if (!o.file.empty()) io::write_text(o.file, script);
-  print(o.file.empty() ? script : o.file + "\n");
-  return kOk;
-}
-
-struct ManualOptions {
-  std::string command, folder;
-};
-
-int print_manual(const CLI::App& root, const ManualOptions& o) {
-  const words::Command all = words::words_of(root);
-  const std::string version = trace::lrbscope_version();
-  bool known = o.command.empty();
-  std::string page = known ? words::program_page(all, version) : std::string();
-  if (!o.folder.empty()) io::write_text(o.folder + "/lrbscope.1", words::program_page(all, version));
-  for (const words::Command& c : all.commands) {
-    const std::string text = words::command_page(all, c, version);
-    if (c.name == o.command) page = text;
-    known |= c.name == o.command;
-    if (!o.folder.empty()) io::write_text(o.folder + "/lrbscope-" + c.name + ".1", text);
+const std::vector<std::string>& ShippedNames::of(Value value) const {
+  static const std::vector<std::string> kNone;
+  switch (value) {
+    case Value::scenario:
+      return scenarios;
+    case Value::crowd:
+      return crowds;
+    case Value::experiment:
+      return experiments;
+    default:
+      return kNone;
   }
-  if (!known)
-    throw InputError("manual: there is no command " + printable_name(o.command) + "; see lrbscope --help");
-  print(o.folder.empty() ? page : o.folder + "\n");
-  return kOk;
 }
-
-}  // namespace
-
-Command add_completion(CLI::App& root, const Globals&) {
-  CLI::App* app =
-      root.add_subcommand("completion", "Print the script by which a shell completes lrbscope's words");
-  const auto o = std::make_shared<CompletionOptions>();
-  app->add_option("SHELL", o->shell, "bash, zsh or fish")
-      ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""))
-      ->type_name("bash|zsh|fish");
-  app->add_option("-o,--output", o->file, "Write it to this file")->type_name("FILE");
-  return {app, [&root, o] { return print_completion(root, *o); }};
-}
-
-Command add_manual(CLI::App& root, const Globals&) {
-  CLI::App* app = root.add_subcommand("manual", "Print a manual page, for man -l -");
-  const auto o = std::make_shared<ManualOptions>();
-  auto* command =
-      app->add_option("COMMAND", o->command, "Of this command [of the program]")->type_name("COMMAND");
-  app->add_option("-o,--output", o->folder, "Write all pages to this folder")
-      ->excludes(command)
-      ->type_name("DIR");
-  return {app, [&root, o] { return print_manual(root, *o); }};
-}
-
-}  // namespace lrb::cli
-
-namespace lrb::words {
-namespace {
 
 /// What the script does with the tables before it. COMP_WORDS has "=" as a word of its own.
 constexpr const char* kDriver = R"sh(
@@ -249,28 +238,6 @@ std::string table(const char* name, const char* what, const std::string& lines) 
   return std::string("_lrbscope_") + name + "() {\n  case \"" + what + "\" in\n" + lines + "  esac\n}\n";
 }
 
-}  // namespace
-
-const std::vector<std::string>& ShippedNames::of(Value value) const {
-  static const std::vector<std::string> kNone;
-  switch (value) {
-    case Value::scenario:
-      return scenarios;
-    case Value::crowd:
-      return crowds;
-    case Value::experiment:
-      return experiments;
-    default:
-      return kNone;
-  }
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
-  return out;
-}
-
 std::string bash_completion(const Command& program, const ShippedNames& names) {
   Tables t;
   fill_tables(program, "", program, names, t);
@@ -278,8 +245,6 @@ std::string bash_completion(const Command& program, const ShippedNames& names) {
          table("commands", "$1", t.commands) + table("options", "$1", t.options) +
          table("value", "$1 $2", t.values) + table("argument", "$1", t.arguments) + (kDriver + 1);
 }
-
-namespace {
 
 std::string fish_quoted(const std::string& text) {
   std::string out = "'";
@@ -333,8 +298,6 @@ void write_fish(const Command& c, const std::string& condition, const ShippedNam
   }
 }
 
-}  // namespace
-
 std::string fish_completion(const Command& program, const ShippedNames& names) {
   std::string out =
       "# Completion of lrbscope for fish, written by `lrbscope completion fish`.\ncomplete -c lrbscope -f\n";
@@ -342,7 +305,86 @@ std::string fish_completion(const Command& program, const ShippedNames& names) {
   return out;
 }
 
-namespace {
+/// Returns text in single quotes, with what _arguments takes for its own escaped.
+std::string zsh_quoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) {
+    if (c == '\'')
+      out += "'\\''";
+    else if (c == '[' || c == ']' || c == ':' || c == '\\')
+      out += std::string("\\") + c;
+    else
+      out += c;
+  }
+  return out + "'";
+}
+
+std::string zsh_action(const Option& o, const ShippedNames& names) {
+  switch (o.value) {
+    case Value::none:
+      return ": ";
+    case Value::choice:
+      return o.many ? ":_values -s , value " + joined(o.choices) : ":(" + joined(o.choices) + ")";
+    case Value::folder:
+      return ":_files -/";
+    default: {
+      const std::vector<std::string>& known = names.of(o.value);
+      if (known.empty()) return ":_files";
+      return ":{ compadd -- " + joined(known) + "; _files }";
+    }
+  }
+}
+
+std::string argument_lines(const Command& c, const ShippedNames& names) {
+  std::string out;
+  std::size_t place = 0;
+  for (const Option& o : c.options) {
+    if (o.positional) {
+      out += " \\\n    '" + (o.many ? std::string("*") : std::to_string(++place)) + ":" + o.names.front() +
+             zsh_action(o, names) + "'";
+      continue;
+    }
+    const std::string all = joined(o.names);
+    for (const std::string& name : o.names) {
+      out += " \\\n    '(" + all + ")'" + name + zsh_quoted("\x01" + o.help);
+      const std::size_t help = out.rfind('\x01');
+      out.replace(help, 1, "[");
+      out.insert(out.size() - 1, "]" + (o.flag() ? "" : ":value" + zsh_action(o, names)));
+    }
+  }
+  return out;
+}
+
+/// Writes the function of a command, after those of the commands below it.
+void write_zsh(const Command& c, const std::string& function, const ShippedNames& names, std::string& out) {
+  for (const Command& below : c.commands) write_zsh(below, function + "_" + below.name, names, out);
+  out += function + "() {\n";
+  if (c.commands.empty()) {
+    out += "  _arguments -s" + argument_lines(c, names) + "\n}\n";
+    return;
+  }
+  out += "  local context state state_descr line\n  typeset -A opt_args\n  _arguments -C" +
+         argument_lines(c, names) +
+         " \\\n    '1:command:->command' '*::argument:->argument'\n  case $state in\n    command)\n"
+         "      local -a commands=(\n";
+  for (const Command& below : c.commands)
+    out += "        " + zsh_quoted(below.name + "\x02" + below.purpose) + "\n";
+  for (std::size_t at = out.find('\x02'); at != std::string::npos; at = out.find('\x02')) out[at] = ':';
+  out += "      )\n      _describe command commands\n      ;;\n    argument)\n      case $line[1] in\n";
+  for (const Command& below : c.commands)
+    out += "        " + below.name + ") " + function + "_" + below.name + " ;;\n";
+  out += "      esac\n      ;;\n  esac\n}\n";
+}
+
+std::string zsh_completion(const Command& program, const ShippedNames& names) {
+  std::string out =
+      "#compdef lrbscope\n# Completion of lrbscope for zsh, written by `lrbscope completion zsh`.\n";
+  write_zsh(program, "_lrbscope", names, out);
+  return out +
+         "if [ \"$funcstack[1]\" = _lrbscope ]; then _lrbscope \"$@\"; else compdef _lrbscope lrbscope; fi\n";
+}
+
+// Manual pages.
 
 /// Returns text as roff shows it: a hyphen can be copied, and no line is a request.
 std::string roff(const std::string& text) {
@@ -435,8 +477,8 @@ constexpr std::array kVariables = {
     Variable{"LRBSCOPE_METHODS", "The folder with the worker programs of other engines."},
     Variable{"NO_COLOR", "If set, progress is drawn without colours."}};
 
-}  // namespace
-
+/// Returns the manual page (roff, section 1) of a program: its commands, its options, exit codes and
+/// environment.
 std::string program_page(const Command& program, const std::string& version) {
   std::string out = heading(program.name, version);
   out += ".SH NAME\n" + roff(program.name) + " \\- " + roff(title_of(program.purpose)) + "\n";
@@ -463,6 +505,7 @@ std::string program_page(const Command& program, const std::string& version) {
   return out;
 }
 
+/// Returns that of one of its commands, with the options of the commands below it.
 std::string command_page(const Command& program, const Command& command, const std::string& version) {
   const std::string name = program.name + "-" + command.name, call = program.name + " " + command.name;
   std::string out = heading(name, version);
@@ -479,151 +522,75 @@ std::string command_page(const Command& program, const Command& command, const s
   return out + ".SH \"SEE ALSO\"\n.BR " + roff(program.name) + " (1)\n";
 }
 
-namespace {
-
-/// Returns the words of a type such as "png|svg" or "answers,events"; none for another type.
-std::vector<std::string> choices_of(const std::string& type) {
-  std::vector<std::string> out(1);
-  for (const char c : type) {
-    if (c == '|' || c == ',')
-      out.emplace_back();
-    else if (std::islower(static_cast<unsigned char>(c)) != 0 ||
-             std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '_')
-      out.back() += c;
-    else
-      return {};
-  }
-  const bool whole = std::none_of(out.begin(), out.end(), [](const std::string& w) { return w.empty(); });
-  return whole && out.size() > 1 ? out : std::vector<std::string>();
-}
-
-/// Returns what completes a value, by the names that commands give to values.
-Value value_of(const std::string& type, const std::string& name, bool positional) {
-  const std::string word = type.substr(0, type.find_first_of(":= "));
-  if (!choices_of(word).empty()) return Value::choice;
-  if (positional && (name == "SCENARIO" || name == "SOURCE" || name == "INPUT")) return Value::scenario;
-  if (positional && name == "CROWD") return Value::crowd;
-  if (word == "NAME|FILE") return Value::experiment;
-  if (word == "DIR" || word == "FOLDER") return Value::folder;
-  const bool names_file = word.find("FILE") != std::string::npos || word.find('.') != std::string::npos ||
-                          word == "PNG" || word.find("PATH") != std::string::npos;
-  // A text that says no more is a file in this program.
-  return names_file || word == "TEXT" ? Value::file : Value::none;
-}
-
-Option option_of(const CLI::Option& o) {
-  Option out;
-  out.positional = o.get_positional() && o.get_lnames().empty() && o.get_snames().empty();
-  for (const std::string& name : o.get_snames()) out.names.push_back("-" + name);
-  for (const std::string& name : o.get_lnames()) out.names.push_back("--" + name);
-  if (out.positional) out.names = {o.get_name(true, false)};
-  out.help = o.get_description();
-  out.required = o.get_required();
-  if (o.get_items_expected_max() == 0) return out;
-  out.type = o.get_type_name();
-  out.fallback = o.get_default_str();
-  out.many = o.get_items_expected_max() > 1;
-  out.value = value_of(out.type, out.names.front(), out.positional);
-  out.choices = choices_of(out.type.substr(0, out.type.find_first_of(":= ")));
-  return out;
-}
-
 }  // namespace
-
-Command words_of(const CLI::App& app) {
-  Command out;
-  out.name = app.get_name();
-  out.purpose = app.get_description();
-  for (const CLI::Option* option :
-       app.get_options([](const CLI::Option* o) { return !o->get_group().empty(); }))
-    out.options.push_back(option_of(*option));
-  for (const CLI::App* command :
-       app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
-    out.commands.push_back(words_of(*command));
-  return out;
-}
-
-namespace {
-
-/// Returns text in single quotes, with what _arguments takes for its own escaped.
-std::string zsh_quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) {
-    if (c == '\'')
-      out += "'\\''";
-    else if (c == '[' || c == ']' || c == ':' || c == '\\')
-      out += std::string("\\") + c;
-    else
-      out += c;
-  }
-  return out + "'";
-}
-
-std::string zsh_action(const Option& o, const ShippedNames& names) {
-  switch (o.value) {
-    case Value::none:
-      return ": ";
-    case Value::choice:
-      return o.many ? ":_values -s , value " + joined(o.choices) : ":(" + joined(o.choices) + ")";
-    case Value::folder:
-      return ":_files -/";
-    default: {
-      const std::vector<std::string>& known = names.of(o.value);
-      if (known.empty()) return ":_files";
-      return ":{ compadd -- " + joined(known) + "; _files }";
-    }
-  }
-}
-
-std::string argument_lines(const Command& c, const ShippedNames& names) {
-  std::string out;
-  std::size_t place = 0;
-  for (const Option& o : c.options) {
-    if (o.positional) {
-      out += " \\\n    '" + (o.many ? std::string("*") : std::to_string(++place)) + ":" + o.names.front() +
-             zsh_action(o, names) + "'";
-      continue;
-    }
-    const std::string all = joined(o.names);
-    for (const std::string& name : o.names) {
-      out += " \\\n    '(" + all + ")'" + name + zsh_quoted("\x01" + o.help);
-      const std::size_t help = out.rfind('\x01');
-      out.replace(help, 1, "[");
-      out.insert(out.size() - 1, "]" + (o.flag() ? "" : ":value" + zsh_action(o, names)));
-    }
-  }
-  return out;
-}
-
-/// Writes the function of a command, after those of the commands below it.
-void write_zsh(const Command& c, const std::string& function, const ShippedNames& names, std::string& out) {
-  for (const Command& below : c.commands) write_zsh(below, function + "_" + below.name, names, out);
-  out += function + "() {\n";
-  if (c.commands.empty()) {
-    out += "  _arguments -s" + argument_lines(c, names) + "\n}\n";
-    return;
-  }
-  out += "  local context state state_descr line\n  typeset -A opt_args\n  _arguments -C" +
-         argument_lines(c, names) +
-         " \\\n    '1:command:->command' '*::argument:->argument'\n  case $state in\n    command)\n"
-         "      local -a commands=(\n";
-  for (const Command& below : c.commands)
-    out += "        " + zsh_quoted(below.name + "\x02" + below.purpose) + "\n";
-  for (std::size_t at = out.find('\x02'); at != std::string::npos; at = out.find('\x02')) out[at] = ':';
-  out += "      )\n      _describe command commands\n      ;;\n    argument)\n      case $line[1] in\n";
-  for (const Command& below : c.commands)
-    out += "        " + below.name + ") " + function + "_" + below.name + " ;;\n";
-  out += "      esac\n      ;;\n  esac\n}\n";
-}
-
-}  // namespace
-
-std::string zsh_completion(const Command& program, const ShippedNames& names) {
-  std::string out =
-      "#compdef lrbscope\n# Completion of lrbscope for zsh, written by `lrbscope completion zsh`.\n";
-  write_zsh(program, "_lrbscope", names, out);
-  return out +
-         "if [ \"$funcstack[1]\" = _lrbscope ]; then _lrbscope \"$@\"; else compdef _lrbscope lrbscope; fi\n";
-}
-
 }  // namespace lrb::words
+
+namespace lrb::cli {
+
+namespace {
+
+struct CompletionOptions {
+  std::string shell, file;
+};
+
+int print_completion(const CLI::App& root, const CompletionOptions& o) {
+  const words::Command all = words::words_of(root);
+  const words::ShippedNames names = {spec::shipped_names(spec::kScenarioEnding),
+                                     spec::shipped_names(spec::kCrowdEnding),
+                                     spec::shipped_names(spec::kExperimentEnding)};
+  const std::string script = o.shell == "bash"  ? words::bash_completion(all, names)
+                             : o.shell == "zsh" ? words::zsh_completion(all, names)
+                                                : words::fish_completion(all, names);
+  if (!o.file.empty()) io::write_text(o.file, script);
+  print(o.file.empty() ? script : o.file + "\n");
+  return kOk;
+}
+
+struct ManualOptions {
+  std::string command, folder;
+};
+
+int print_manual(const CLI::App& root, const ManualOptions& o) {
+  const words::Command all = words::words_of(root);
+  const std::string version = trace::lrbscope_version();
+  bool known = o.command.empty();
+  std::string page = known ? words::program_page(all, version) : std::string();
+  if (!o.folder.empty()) io::write_text(o.folder + "/lrbscope.1", words::program_page(all, version));
+  for (const words::Command& c : all.commands) {
+    const std::string text = words::command_page(all, c, version);
+    if (c.name == o.command) page = text;
+    known |= c.name == o.command;
+    if (!o.folder.empty()) io::write_text(o.folder + "/lrbscope-" + c.name + ".1", text);
+  }
+  if (!known)
+    throw InputError("manual: there is no command " + printable_name(o.command) + "; see lrbscope --help");
+  print(o.folder.empty() ? page : o.folder + "\n");
+  return kOk;
+}
+
+}  // namespace
+
+Command add_completion(CLI::App& root, const Globals&) {
+  CLI::App* app =
+      root.add_subcommand("completion", "Print the script by which a shell completes lrbscope's words");
+  const auto o = std::make_shared<CompletionOptions>();
+  app->add_option("SHELL", o->shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""))
+      ->type_name("bash|zsh|fish");
+  app->add_option("-o,--output", o->file, "Write it to this file")->type_name("FILE");
+  return {app, [&root, o] { return print_completion(root, *o); }};
+}
+
+Command add_manual(CLI::App& root, const Globals&) {
+  CLI::App* app = root.add_subcommand("manual", "Print a manual page, for man -l -");
+  const auto o = std::make_shared<ManualOptions>();
+  auto* command =
+      app->add_option("COMMAND", o->command, "Of this command [of the program]")->type_name("COMMAND");
+  app->add_option("-o,--output", o->folder, "Write all pages to this folder")
+      ->excludes(command)
+      ->type_name("DIR");
+  return {app, [&root, o] { return print_manual(root, *o); }};
+}
+
+}  // namespace lrb::cli

@@ -30,9 +30,6 @@
 #include <lrbscope/error.hpp>
 
 namespace lrb::worker_programs {
-
-int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries);
-
 namespace {
 
 using nlohmann::ordered_json;
@@ -79,8 +76,6 @@ void work(const WorkerOptions& o, const std::vector<methods::MethodEntry>& entri
   for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k) out.say(dump(to_json(runner.ask(k))));
 }
 
-}  // namespace
-
 int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries) {
   if (std::getenv("LRBSCOPE_FAKE_METHODS") != nullptr)
     for (methods::MethodEntry& fake : fake_methods(entries)) entries.push_back(std::move(fake));
@@ -94,6 +89,7 @@ int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries
   return run_worker([&](Lines& out) { work(o, entries, out); });
 }
 
+}  // namespace
 }  // namespace lrb::worker_programs
 
 // The main() of every worker program: what differs is which methods it is linked with

@@ -1,4 +1,5 @@
-/// Puts a data set's questions to methods that answer with a number, and measures the time.
+/// lrbscope-quantities: a worker as in methods.cpp, for methods that answer with a number. --quantity Q
+/// says with which one, or the data set of --questions does; without --method it prints the right answers.
 
 #include <algorithm>
 #include <optional>
@@ -14,16 +15,6 @@
 #include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::worker_programs {
-
-/// Puts a question to a method at a setting of its knob. A refusal is an outcome, too. Throws InputError if
-/// there is no such question.
-bench::Record bench_record(const stability::NumberMethod& method, std::optional<double> setting,
-                           const bench::DataSet& set, std::uint64_t question);
-
-/// Returns what a method says at its finest setting, as {"least": .., "most": ..}, or {"refusal": "why"}.
-nlohmann::ordered_json known_number(const stability::NumberMethod& method, const bench::DataSet& set,
-                                    std::uint64_t question);
-
 namespace {
 
 using bench::DataSet, bench::Question;
@@ -48,8 +39,8 @@ bool says_contact(methods::Quantity quantity, const NumberAnswer& answer) {
   return quantity == methods::Quantity::depth ? answer.upper > 0 : answer.upper <= 0;
 }
 
-}  // namespace
-
+/// Puts a question to a method at a setting of its knob. A refusal is an outcome, too. Throws InputError if
+/// there is no such question.
 bench::Record bench_record(const NumberMethod& method, std::optional<double> setting, const DataSet& set,
                            std::uint64_t question) {
   const Question& q = question_of(set, question);
@@ -73,6 +64,7 @@ bench::Record bench_record(const NumberMethod& method, std::optional<double> set
   return r;
 }
 
+/// Returns what a method says at its finest setting, as {"least": .., "most": ..}, or {"refusal": "why"}.
 nlohmann::ordered_json known_number(const NumberMethod& method, const DataSet& set, std::uint64_t question) {
   const std::vector<double>& settings = method.info.settings;
   const Question& q = question_of(set, question);
@@ -84,11 +76,6 @@ nlohmann::ordered_json known_number(const NumberMethod& method, const DataSet& s
     return {{"refusal", e.what()}};
   }
 }
-
-// lrbscope-quantities: a worker as in methods.cpp, for methods that answer with a number. --quantity Q
-// says with which one, or the data set of --questions does; without --method it prints the right answers.
-
-namespace {
 
 using namespace lrb::stability;
 

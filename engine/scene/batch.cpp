@@ -25,11 +25,90 @@ struct Workspace::Memory {
   QueryContext& of_collision() { return context.distance.query; }
 };
 
+Workspace::Workspace() : memory_(std::make_unique<Memory>()) {}
+Workspace::~Workspace() = default;
+Workspace::Workspace(Workspace&&) noexcept = default;
+Workspace& Workspace::operator=(Workspace&&) noexcept = default;
+
+Expected<CollideResult&> collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                                 const CollideRequest& request, Workspace& workspace,
+                                 CollideProbe* probe) try {
+  Workspace::Memory& memory = workspace.memory();
+  // Emptied, not replaced: it keeps its memory from the last query.
+  clear(memory.collision);
+  collide_watched(a, pose_a, b, pose_b, request, memory.of_collision(), probe, memory.collision);
+  return memory.collision;
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+Expected<CollideResult&> describe_contact(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                                          const Pose& pose_b, const CollideRequest& request,
+                                          Workspace& workspace, CollideResult& result) try {
+  check_query(a, pose_a, b, pose_b);
+  QueryContext& context = workspace.memory().of_collision();
+  context.body[0].begin(a, pose_a, request.wrapper);
+  context.body[1].begin(b, pose_b, request.wrapper);
+  describe_contact(context, request, result);
+  return result;
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+Expected<DistanceResult&> distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                                   const DistanceRequest& request, Workspace& workspace,
+                                   BoundsProbe* probe) try {
+  Workspace::Memory& memory = workspace.memory();
+  memory.distance = distance(a, pose_a, b, pose_b, request, memory.of_distance(), nullptr, probe);
+  return memory.distance;
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+Expected<ClashResult&> clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                             const ClashRequest& request, Workspace& workspace, ClashProbe* probe) try {
+  Workspace::Memory& memory = workspace.memory();
+  memory.clash = clash(a, pose_a, b, pose_b, request, memory.of_distance(), probe);
+  return memory.clash;
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+Expected<FirstContactResult&> first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
+                                            const Motion& motion_b, const FirstContactRequest& request,
+                                            Workspace& workspace, FirstContactProbe* probe) try {
+  Workspace::Memory& memory = workspace.memory();
+  memory.contact = first_contact(a, motion_a, b, motion_b, request, memory.context, probe);
+  return memory.contact;
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+namespace {
+
 /// Answer into `answer`; collide_into() reuses its memory.
 void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                  const CollideRequest& request, QueryContext& context, Expected<CollideResult>& answer);
+                  const CollideRequest& request, QueryContext& context, Expected<CollideResult>& answer) try {
+  // An earlier answer keeps the memory of its vectors.
+  if (answer)
+    clear(*answer);
+  else
+    answer = CollideResult{};
+  collide_watched(a, pose_a, b, pose_b, request, context, nullptr, *answer);
+} catch (const InputError& e) {
+  answer = Refusal{e.what()};
+}
+
 void distance_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                   const DistanceRequest& request, Workspace& workspace, Expected<DistanceResult>& answer);
+                   const DistanceRequest& request, Workspace& workspace, Expected<DistanceResult>& answer) {
+  const Expected<DistanceResult&> found = distance(a, pose_a, b, pose_b, request, workspace);
+  if (found)
+    answer = *found;
+  else
+    answer = found.error();
+}
+
+}  // namespace
 
 std::vector<std::size_t> order_by_bodies(std::span<const PosedPair> pairs) {
   std::vector<std::size_t> order(pairs.size());
@@ -134,86 +213,6 @@ DistanceAnswers distance(std::span<const PosedPair> pairs, const DistanceRequest
   DistanceAnswers answers;
   Batch(threads).distance(pairs, request, answers);
   return answers;
-}
-
-Workspace::Workspace() : memory_(std::make_unique<Memory>()) {}
-Workspace::~Workspace() = default;
-Workspace::Workspace(Workspace&&) noexcept = default;
-Workspace& Workspace::operator=(Workspace&&) noexcept = default;
-
-void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                  const CollideRequest& request, QueryContext& context, Expected<CollideResult>& answer) try {
-  // An earlier answer keeps the memory of its vectors.
-  if (answer)
-    clear(*answer);
-  else
-    answer = CollideResult{};
-  collide_watched(a, pose_a, b, pose_b, request, context, nullptr, *answer);
-} catch (const InputError& e) {
-  answer = Refusal{e.what()};
-}
-
-void distance_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                   const DistanceRequest& request, Workspace& workspace, Expected<DistanceResult>& answer) {
-  const Expected<DistanceResult&> found = distance(a, pose_a, b, pose_b, request, workspace);
-  if (found)
-    answer = *found;
-  else
-    answer = found.error();
-}
-
-Expected<CollideResult&> collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                                 const CollideRequest& request, Workspace& workspace,
-                                 CollideProbe* probe) try {
-  Workspace::Memory& memory = workspace.memory();
-  // Emptied, not replaced: it keeps its memory from the last query.
-  clear(memory.collision);
-  collide_watched(a, pose_a, b, pose_b, request, memory.of_collision(), probe, memory.collision);
-  return memory.collision;
-} catch (const InputError& e) {
-  return Refusal{e.what()};
-}
-
-Expected<CollideResult&> describe_contact(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
-                                          const Pose& pose_b, const CollideRequest& request,
-                                          Workspace& workspace, CollideResult& result) try {
-  check_query(a, pose_a, b, pose_b);
-  QueryContext& context = workspace.memory().of_collision();
-  context.body[0].begin(a, pose_a, request.wrapper);
-  context.body[1].begin(b, pose_b, request.wrapper);
-  describe_contact(context, request, result);
-  return result;
-} catch (const InputError& e) {
-  return Refusal{e.what()};
-}
-
-Expected<DistanceResult&> distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                                   const DistanceRequest& request, Workspace& workspace,
-                                   BoundsProbe* probe) try {
-  Workspace::Memory& memory = workspace.memory();
-  memory.distance = distance(a, pose_a, b, pose_b, request, memory.of_distance(), nullptr, probe);
-  return memory.distance;
-} catch (const InputError& e) {
-  return Refusal{e.what()};
-}
-
-Expected<ClashResult&> clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                             const ClashRequest& request, Workspace& workspace, ClashProbe* probe) try {
-  Workspace::Memory& memory = workspace.memory();
-  memory.clash = clash(a, pose_a, b, pose_b, request, memory.of_distance(), probe);
-  return memory.clash;
-} catch (const InputError& e) {
-  return Refusal{e.what()};
-}
-
-Expected<FirstContactResult&> first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
-                                            const Motion& motion_b, const FirstContactRequest& request,
-                                            Workspace& workspace, FirstContactProbe* probe) try {
-  Workspace::Memory& memory = workspace.memory();
-  memory.contact = first_contact(a, motion_a, b, motion_b, request, memory.context, probe);
-  return memory.contact;
-} catch (const InputError& e) {
-  return Refusal{e.what()};
 }
 
 }  // namespace lrb

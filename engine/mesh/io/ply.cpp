@@ -15,13 +15,17 @@
 #include <lrbscope/error.hpp>
 
 namespace lrb {
+namespace {
 
 // The header of a PLY file, which says what its data consists of.
 
 enum class PlyFormat : std::uint8_t { ascii, binary_little_endian, binary_big_endian };
 enum class PlyType : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
 
-std::size_t size_of(PlyType type);
+constexpr std::size_t size_of(PlyType type) {
+  constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
+  return kSizes[static_cast<std::size_t>(type)];
+}
 constexpr bool is_integer(PlyType type) {
   return type < PlyType::f32;
 }
@@ -45,9 +49,6 @@ struct PlyHeader {
   std::size_t data_offset = 0;  ///< number of bytes before the data
   std::uint64_t data_line = 0;  ///< line on which the data begins
 };
-
-/// Reads the header. Throws InputError naming the line.
-PlyHeader read_ply_header(std::string_view bytes, std::string_view name);
 
 // The data of a PLY file as a stream of values, from text or from bytes: two classes with the same
 // functions.
@@ -191,8 +192,6 @@ class PlyBytes {
   std::uint64_t index_ = 0;
 };
 
-namespace {
-
 /// The types, under both generations of names.
 constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{
     {"char", PlyType::i8},
@@ -213,6 +212,7 @@ constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{
     {"float64", PlyType::f64},
 }};
 
+/// Reads the header. Throws InputError naming the line.
 class PlyHeaderReader {
  public:
   PlyHeaderReader(std::string_view bytes, std::string_view name) : bytes_(bytes), text_(bytes, name, {}) {}
@@ -345,19 +345,6 @@ class PlyHeaderReader {
   PlyHeader header_;
   bool has_format_ = false;
 };
-
-}  // namespace
-
-std::size_t size_of(PlyType type) {
-  static constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes[static_cast<std::size_t>(type)];
-}
-
-PlyHeader read_ply_header(std::string_view bytes, std::string_view name) {
-  return PlyHeaderReader(bytes, name).read();
-}
-
-namespace {
 
 const PlyElement* find_element(const PlyHeader& header, std::string_view name) {
   const auto& all = header.elements;
@@ -501,7 +488,7 @@ class PlyReader {
 }  // namespace
 
 Mesh read_ply(std::string_view bytes, std::string_view name) {
-  const PlyHeader header = read_ply_header(bytes, name);
+  const PlyHeader header = PlyHeaderReader(bytes, name).read();
   if (header.format == PlyFormat::ascii) {
     refuse_nul(bytes, name);
     const PlyText text(bytes.substr(header.data_offset), name, header.data_line);
