@@ -1,5 +1,6 @@
 # lrb_kernel(TARGET NAME FILE): compiles the kernel FILE, an .inl, once for each set of instructions; the newest that the processor
-# has is chosen at run time. Each compilation gives its function a name of its own: LRB_TREE_KERNEL_NAME is run_NAME_SET.
+# has is chosen at run time. Each compilation gives its function a name of its own, run_NAME_SET, by a macro: LRB_TREE_KERNEL_NAME of
+# tree_kernel.
 function(lrb_kernel target name file)
   set(sets baseline)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")

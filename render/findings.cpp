@@ -143,7 +143,6 @@ std::vector<Vector3d> cut(const Mesh& mesh, FaceId f, FaceId g) {
 
 namespace {
 
-using Eigen::Vector3d;
 using Mark = LegendItem::Mark;
 
 /// An unused vertex farther from the faces than this many times their size is left out of the picture.

@@ -1,5 +1,6 @@
 #include "render/page_palette.hpp"
 
+#include <cstdio>
 #include <vector>
 
 namespace lrb::render {
@@ -15,13 +16,9 @@ Colours operator+(Colours colours, std::span<const PageColour> more) {
 }  // namespace
 
 std::string css(Rgba c) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string out = "#";
-  for (const std::uint8_t byte : {c.r, c.g, c.b}) {
-    out += kDigits[byte >> 4];
-    out += kDigits[byte & 15];
-  }
-  return out;
+  std::array<char, 8> hex{};
+  std::snprintf(hex.data(), hex.size(), "#%02x%02x%02x", c.r, c.g, c.b);
+  return hex.data();
 }
 
 std::string root_css(std::span<const PageColour> colours) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "render/canvas.hpp"
+#include "render/page_palette.hpp"
 #include "render/paint_list.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/image.hpp>
@@ -68,9 +69,7 @@ std::string attribute(const std::string& name, const std::string& value) {
 }
 
 std::string paint(const std::string& what, Rgba c) {
-  std::array<char, 8> hex{};
-  std::snprintf(hex.data(), hex.size(), "#%02x%02x%02x", c.r, c.g, c.b);
-  std::string out = attribute(what, hex.data());
+  std::string out = attribute(what, css(c));
   if (c.a < 255) out += attribute(what + "-opacity", number(c.a / 255.0));
   return out;
 }

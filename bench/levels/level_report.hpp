@@ -25,7 +25,7 @@ struct FreeMesh {
 /// does not take the mesh.
 std::vector<FreeMesh> simplify_freely(const LrbRep& rep, std::span<const std::uint32_t> face_counts);
 
-/// How many faces it takes to be off by no more than a distance.
+/// The number of faces that a body needs for each maximum deviation.
 struct LevelCurve {
   double size;                               ///< largest side of the body's box
   std::uint32_t real_faces;                  ///< of the body

@@ -59,7 +59,6 @@ Asked asked(const cases::Case& c) {
 namespace {
 
 using Eigen::AlignedBox3d;
-using Eigen::Vector3d;
 using oracle::Rational;
 using oracle::RationalPoint;
 using oracle::RationalPoints;

@@ -8,6 +8,7 @@
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/assets.hpp"
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
 
@@ -71,15 +72,8 @@ std::string plain(const std::string& text) {
   return out;
 }
 
-/// Returns a name without underscores, for people.
-std::string plain_words(std::string_view name) {
-  std::string out(name);
-  std::replace(out.begin(), out.end(), '_', ' ');
-  return out;
-}
-
 std::string words(Outcome o) {
-  return plain_words(name_of(o));
+  return io::in_words(name_of(o));
 }
 
 report::PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m,
@@ -252,7 +246,7 @@ report::Page stability_page(const Grid& whole, const std::string& folder, const 
   report::Page page;
   page.title = grid.quantity == Quantity::pairs
                    ? "Where collision methods fail"
-                   : "Where methods fail: " + plain_words(name_of(grid.quantity));
+                   : "Where methods fail: " + io::in_words(name_of(grid.quantity));
   page.texts = grid.quantity == Quantity::pairs ? texts() : texts_of_numbers(grid.quantity);
   page.numbers = {
       {"Families", render::group_digits(grid.families.size()),

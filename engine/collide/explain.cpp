@@ -133,7 +133,6 @@ void compare_boxes(const WorldBox& a, const WorldBox& b, BoxPair& out) {
 namespace {
 
 using namespace explain;
-using Eigen::Vector3d;
 
 /// Locations of simplices in a tree.
 struct Places {

@@ -9,7 +9,7 @@
 /// uses neither the nesting of regions nor embedding: a poor LRB-rep can cost time, never a contact.
 ///
 /// What "proved apart" has to cover is in set_up_kernel() for rotations (of whole nodes in kernel_whole.inl),
-/// in affine_pose.hpp for all other maps.
+/// in kernel_setup.hpp for all other maps.
 
 #include <algorithm>
 #include <bit>

@@ -85,7 +85,7 @@ void fit_hulls(double size, std::uint32_t least, Faces faces, Pass pass) {
 // It works on the *current hull*, at first the mesh itself. In each pass the hull is covered with patches,
 // disks of a few dozen triangles (patch_grow.hpp); each is simplified outward into a cap on the same ring
 // (patch_cap.hpp); the space between is a region, its floor the patch and its lids the cap
-// (region_split.hpp); the caps become part of the hull of the next pass. A cap stands only if it is proved,
+// (hull_update.hpp); the caps become part of the hull of the next pass. A cap stands only if it is proved,
 // exactly, to meet nothing else (embed_check.hpp): then the new hull is embedded again and encloses the old
 // one, and so all faces of the complex meet only in what they share. When passes no longer help, each
 // component of the hull is simplified as a whole, and at last one wrapper of few faces is put around all of

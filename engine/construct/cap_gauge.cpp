@@ -176,8 +176,6 @@ bool CapGauge::measure_again(CapSurface& cap) const {
 // Distance of points from the floor of a patch, plus the floor's own deviation: an upper estimate of the
 // deviation of a cap. Bounding balls and planes cull triangles before the exact closest point is computed.
 
-using Eigen::Vector3d;
-
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();

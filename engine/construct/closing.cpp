@@ -348,8 +348,6 @@ Mesh simplify_polytope(const Mesh& convex, std::uint32_t max_faces, double depth
 
 namespace {
 
-using Vector3 = Eigen::Vector3d;
-
 /// Returns a number from 0 to 1, the same sequence on every machine.
 double fraction(Random& random) {
   return static_cast<double>(random.below(1u << 16)) * 0x1p-16;

@@ -68,6 +68,10 @@ inline constexpr float kFloatUp = 1 + 0x1p-20f;
 /// Added to bounds so that float underflow (an absolute error of 2^-149 per operation) cannot decide
 /// anything.
 inline constexpr float kKernelTiny = 0x1p-120f;
+/// Returns a size as a float that is no smaller.
+inline float rounded_up(double x) {
+  return static_cast<float>(x) * kFloatUp + kKernelTiny;
+}
 
 /// Bound on the rounding of world coordinates and of the relative pose, relative to the largest term that
 /// occurs: 4 u for each body's coordinates and 16 u for the relative pose, u = 2^-53.

@@ -3,7 +3,7 @@
 /// arithmetic. Every error is bounded, so that a pair of simplices is dropped only if it is proven not to be
 /// closer than the best pair found.
 ///
-/// Contains only plain structures: this header is compiled once per instruction set (distance_kernel_*.cpp).
+/// Contains only plain structures: this header is compiled once per instruction set (cmake/kernels.cmake).
 
 #include <algorithm>
 #include <cstdint>
@@ -102,9 +102,6 @@ void run_distance_kernel(DistanceKernel& k);
 
 /// Returns a number of the kernel's, such as a length in query units, as a float that is not less, or not
 /// more and at least 0.
-inline float rounded_up(double x) {
-  return static_cast<float>(x) * kFloatUp + kKernelTiny;
-}
 inline float rounded_down(double x) {
   return std::max(0.0F, static_cast<float>(x) * (2 - kFloatUp) - kKernelTiny);
 }

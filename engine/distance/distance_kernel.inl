@@ -1,4 +1,4 @@
-// Compiled once per instruction set by distance_kernel_*.cpp, which define LRB_DISTANCE_KERNEL_NAME. See
+// Compiled once per instruction set by cmake/kernels.cmake, which defines LRB_DISTANCE_KERNEL_NAME. See
 // tree_kernel.inl.
 //
 // Distance of two OBB trees by best-first traversal (sources: distance.hpp). Steps:
@@ -71,14 +71,6 @@ inline bool direction_of(const TreeNode& n, const float* way, float* direction) 
   for (int i = 0; i < 3; ++i)
     direction[i] = (n.frame[0][i] * way[0] + n.frame[1][i] * way[1] + n.frame[2][i] * way[2]) / length;
   return true;
-}
-
-inline float largest_of(Float8 x) {
-  // Horizontal maximum: exchange halves, then pairs, then neighbours. Every lane ends with the maximum.
-  x = larger(x, __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3));
-  x = larger(x, __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5));
-  x = larger(x, __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6));
-  return x[0];
 }
 
 /// Pruning thresholds: box bounds above `square` and bounds of triangles above `length` are dropped.

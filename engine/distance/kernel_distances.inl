@@ -6,15 +6,6 @@
 namespace lrb {
 namespace {
 
-inline Float8 root8(Float8 x) {
-#if defined(__AVX__)
-  return reinterpret_cast<Float8>(_mm256_sqrt_ps(reinterpret_cast<__m256>(x)));
-#else
-  for (int k = 0; k < 8; ++k) x[k] = __builtin_sqrtf(x[k]);
-  return x;
-#endif
-}
-
 inline Float8 smaller(Float8 x, Float8 y) {
   return select(greater(x, y), y, x);
 }

@@ -27,7 +27,7 @@ bool collinear3d(const double* a, const double* b, const double* c) {
 
 // Exact signs of orient2d and orient3d, for points on which the floating-point filter cannot decide.
 // 0. Return 0 for coincident points and axis-aligned planes, without arithmetic.
-// 1. 64-bit fixed point (fixed_point.hpp), if the coordinates on each axis span fewer than 62 bits.
+// 1. 64-bit fixed point (expansion.hpp), if the coordinates on each axis span fewer than 62 bits.
 // 2. Floating-point expansions (Shewchuk 1997), if no product can overflow or underflow.
 // 3. Long integers, for all finite doubles.
 // Steps 1 and 3 scale each axis by its own power of two, which changes no sign of a determinant.

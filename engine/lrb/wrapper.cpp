@@ -170,7 +170,7 @@ class Boundaries {
   /// Returns the faces at each of some descending tolerances.
   std::vector<std::vector<FaceId>> faces(std::span<const double> tolerances) const {
     std::vector<std::vector<FaceId>> out(tolerances.size());
-    const auto count_from = [&](double x) {  // how many are x or more
+    const auto count_from = [&](double x) {  // number of values that are at least x
       return std::partition_point(tolerances.begin(), tolerances.end(), [&](double t) { return t >= x; }) -
              tolerances.begin();
     };

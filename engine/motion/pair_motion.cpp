@@ -241,7 +241,6 @@ bool PairMotion::has_passed(const PairMotion& before, const Vector3d& n, double 
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 /// Largest angle, in radians, by which B may turn from the middle of a span for its turning to be followed
 /// straight.

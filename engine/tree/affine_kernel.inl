@@ -1,5 +1,5 @@
 #pragma once
-// Compiled once per instruction set by affine_kernel_*.cpp, which define LRB_AFFINE_KERNEL_NAME. Separate
+// Compiled once per instruction set by cmake/kernels.cmake, which defines LRB_AFFINE_KERNEL_NAME. Separate
 // from the tree kernel, because that one's speed depends on what the compiler inlines into its one loop. See
 // tree_kernel.inl.
 
@@ -9,7 +9,7 @@
 namespace lrb {
 
 // Part of affine_kernel.inl: the relative position of two nodes under maps that are not rotations, their
-// boxes, and their triangles. affine_pose.hpp explains the maps.
+// boxes, and their triangles. kernel_setup.hpp explains the maps.
 
 namespace {
 

@@ -227,10 +227,6 @@ void FittedCuts::part(const Cut& cut) {
 
 namespace {
 
-using Box = Eigen::AlignedBox3d;
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 /// Returns true if the rows are as orthonormal as kKernelRounding assumes; false for NaN.
 bool is_orthonormal(const Matrix3d& axes) {
   return rotation_defect(axes.transpose()) <= kFrameDefect;

@@ -114,6 +114,23 @@ inline Float8 larger(Float8 x, Float8 y) {
 #endif
 }
 
+inline float largest_of(Float8 x) {
+  // Horizontal maximum: exchange halves, then pairs, then neighbours. Every lane ends with the maximum.
+  x = larger(x, __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3));
+  x = larger(x, __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5));
+  x = larger(x, __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6));
+  return x[0];
+}
+
+inline Float8 root8(Float8 x) {
+#if defined(__AVX__)
+  return reinterpret_cast<Float8>(_mm256_sqrt_ps(reinterpret_cast<__m256>(x)));
+#else
+  for (int k = 0; k < 8; ++k) x[k] = __builtin_sqrtf(x[k]);
+  return x;
+#endif
+}
+
 inline Int8 bytes_to_int(const std::uint8_t* q) {
 #if defined(__AVX2__)
   return reinterpret_cast<Int8>(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(q))));

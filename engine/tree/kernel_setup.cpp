@@ -1,7 +1,7 @@
 // Sets up the dual traversal: one relative pose, and a bound on all errors that come with it.
 // 1. Compute B's pose relative to A, and how far the matrices are from rotations.
 // 2. Nearly rotations: the rigid kernel, with the bounds derived at kernel_of().
-// 3. Anything else, or bodies so far apart that floats could overflow: the affine kernel (affine_pose.hpp).
+// 3. Anything else, or bodies so far apart that floats could overflow: the affine kernel (kernel_setup.hpp).
 
 #include "engine/tree/kernel_setup.hpp"
 
@@ -17,7 +17,7 @@
 
 namespace lrb {
 
-// Sets up the tree kernel for any affine maps. affine_pose.hpp derives the method and its error bounds.
+// Sets up the tree kernel for any affine maps. kernel_setup.hpp derives the method and its error bounds.
 // 1. Write each map as a power of two times a matrix with entries up to 1.
 // 2. Invert the matrix, or a version with raised singular values if it is nearly singular.
 // 3. Choose the query's unit, and express both bodies on the axes of each, and in the world, in that unit.
@@ -78,10 +78,6 @@ int query_exponent(const AffineMap& a, const Pose& pose_a, const AffineMap& b, c
   constexpr int kFarOff = 60, kLeast = -1022;
   const double apart = (pose_b.t / 2 - pose_a.t / 2).cwiseAbs().maxCoeff();
   return std::max({a.exponent, b.exponent, exponent_of(apart) - kFarOff, kLeast});
-}
-
-float rounded_up(double x) {
-  return static_cast<float>(x) * kFloatUp + kKernelTiny;
 }
 
 void put(const Matrix3d& m, double size, KernelMap& to) {
@@ -248,7 +244,7 @@ struct RelativeTurn {
 /// 2^-53), m, t and the offsets between nodes by another 16 u of the same sizes. The factor kPoseSafety
 /// covers the change from the largest coordinate to the Euclidean length (sqrt 3), and from a distance to an
 /// extent (2). The bounds hold for any matrix, but for one that is far from a rotation they are so large that
-/// little is culled; affine_pose.hpp has other bounds for those. Overflow makes bounds infinite or not a
+/// little is culled; kernel_setup.hpp has other bounds for those. Overflow makes bounds infinite or not a
 /// number: then nothing is culled.
 TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pose_a, const ObbTree& b,
                      const Pose& pose_b) {

@@ -2,7 +2,7 @@
 /// The pair kernel: tells for given pairs of triangles, eight at a time, in float arithmetic whose every
 /// error is bounded, which of them certainly cross or are disjoint, and how far apart they certainly are.
 ///
-/// Contains only plain structures: this header is compiled once per instruction set (pair_kernel_*.cpp).
+/// Contains only plain structures: this header is compiled once per instruction set (cmake/kernels.cmake).
 
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-// Compiled once per instruction set by pair_kernel_*.cpp, which define LRB_PAIR_KERNEL_NAME. Separate from
+// Compiled once per instruction set by cmake/kernels.cmake, which defines LRB_PAIR_KERNEL_NAME. Separate from
 // the tree kernel, because that one's speed depends on what the compiler inlines into its one loop.
 
 #include "engine/tree/kernel_triangles.inl"
@@ -7,25 +7,8 @@
 namespace lrb {
 namespace {
 
-inline Float8 root8(Float8 x) {
-#if defined(__AVX__)
-  return reinterpret_cast<Float8>(_mm256_sqrt_ps(reinterpret_cast<__m256>(x)));
-#else
-  for (int k = 0; k < 8; ++k) x[k] = __builtin_sqrtf(x[k]);
-  return x;
-#endif
-}
-
 inline Float8 smaller(Float8 x, Float8 y) {
   return select(greater(x, y), y, x);
-}
-
-inline float largest_of(Float8 x) {
-  // Horizontal maximum in three steps: halves, quarters, neighbours.
-  x = larger(x, __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3));
-  x = larger(x, __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5));
-  x = larger(x, __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6));
-  return x[0];
 }
 
 /// Eight simplices of a table, lane by lane.

@@ -2,7 +2,7 @@
 /// The inner loop of the complete query: the dual traversal of two OBB trees, in eight-wide float arithmetic
 /// whose every error is bounded, so that it drops a pair of simplices only if they cannot meet.
 ///
-/// Contains only plain structures: this header is compiled once per instruction set (tree_kernel_*.cpp).
+/// Contains only plain structures: this header is compiled once per instruction set (cmake/kernels.cmake).
 
 #include <cstdint>
 #include <functional>
@@ -54,7 +54,7 @@ struct KernelMap {
   float size;  ///< >= the Euclidean norm
 };
 
-/// The maps of two bodies that are not nearly rotations; affine_pose.hpp explains them. Each pair of entries
+/// The maps of two bodies that are not nearly rotations; kernel_setup.hpp explains them. Each pair of entries
 /// is for A and B.
 struct AffineTerms {
   struct Axes {

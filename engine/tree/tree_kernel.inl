@@ -1,6 +1,6 @@
-// Compiled once per instruction set by tree_kernel_*.cpp, which define LRB_TREE_KERNEL_NAME. Only plain loops
-// over plain arrays here: an inline function of a library, compiled for a newer processor, could be picked by
-// the linker for all.
+// Compiled once per instruction set by cmake/kernels.cmake, which defines LRB_TREE_KERNEL_NAME. Only plain
+// loops over plain arrays here: an inline function of a library, compiled for a newer processor, could be
+// picked by the linker for all.
 //
 // The floating-point operations are the same for every instruction set and are not contracted, so that
 // counters and traces do not depend on the processor.

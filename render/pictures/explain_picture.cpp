@@ -171,8 +171,6 @@ std::optional<Square> parting_square(const WalkExplanation& walk, const LrbRep& 
 
 namespace {
 
-using Eigen::Vector3d;
-
 constexpr int kPartingWidth = 1600, kPartingHeight = 900;
 constexpr float kLine = 1.5F, kStrip = 3;
 

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "render/pictures/panel.hpp"
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/explain.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/render/style.hpp>
@@ -83,8 +84,6 @@ void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, c
 
 namespace {
 
-using Eigen::Vector3d;
-
 constexpr float kWayWidth = 4, kTextOff = 20, kTextHeight = 19;
 
 void write_beside(render::DrawList& list, const Vector3d& x, float below, const std::string& text,
@@ -132,11 +131,8 @@ std::string kind_words(ClashKind kind) {
       return "A pierces B";
     case ClashKind::cuts_through:
       return "A cuts through B";
-    default: {
-      std::string out = to_string(kind);
-      std::replace(out.begin(), out.end(), '_', ' ');
-      return out;
-    }
+    default:
+      return io::in_words(name_of(kind));
   }
 }
 

@@ -50,9 +50,9 @@ std::vector<std::size_t> evenly(std::size_t count, std::size_t wanted);
 
 /// What the cameras of a whole sequence have to show, so that the picture stands still while the bodies move.
 struct Framing {
-  std::vector<Eigen::Vector3d> points;    ///< of both bodies, in all steps shown
-  std::vector<Eigen::Vector3d> contacts;  ///< of all contact regions, or of the faces of coarse answers; if
-                                          ///< there are none, contact views show the whole
+  std::vector<Eigen::Vector3d> points;  ///< of both bodies, in all steps shown
+  /// Corners of all contact regions, or of the faces of coarse answers. Empty: contact views show the whole.
+  std::vector<Eigen::Vector3d> contacts;
   int dim = 3;
 };
 

@@ -45,7 +45,7 @@ class Quadric {
   }
   friend Quadric operator+(Quadric p, const Quadric& q) { return p += q; }
 
-  double weight() const { return weight_; }  ///< of all planes together
+  double weight() const { return weight_; }  ///< sum over all planes
   double at(const Eigen::Vector3d& p) const { return p.dot(times(p)) - 2 * b_.dot(p) + c_; }
 
   /// Returns the point where at(x) + pull |x - m|^2 is least; pull > 0.

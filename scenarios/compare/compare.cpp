@@ -122,8 +122,6 @@ render::Image draw_bodies(const Runs& runs, const run::ProgressReport& progress)
 
 namespace {
 
-using render::group_digits;
-
 constexpr const char* kPicture = "compare.png";
 constexpr std::size_t kMostSteps = 200;
 

@@ -15,6 +15,7 @@
 #include "trace/trace_json_parts.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/hash.hpp>
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/trace/json_write.hpp>
@@ -106,12 +107,6 @@ std::vector<report::PageChart> charts(const CrowdRun& run) {
   return out;
 }
 
-std::string words(Relation r) {
-  std::string out = to_string(r);
-  std::replace(out.begin(), out.end(), '_', ' ');
-  return out;
-}
-
 report::PageTable last_queries(const spec::Crowd& crowd, const CrowdRun& run) {
   constexpr std::size_t kMostRows = 200;
   report::PageTable t;
@@ -128,7 +123,7 @@ report::PageTable last_queries(const spec::Crowd& crowd, const CrowdRun& run) {
       continue;
     }
     const trace::StepResult& r = q.result;
-    t.rows.push_back({run.names[q.bodies.i], run.names[q.bodies.j], words(r.relation),
+    t.rows.push_back({run.names[q.bodies.i], run.names[q.bodies.j], io::in_words(name_of(r.relation)),
                       render::group_digits(r.pair_count), render::group_digits(q.contact_regions),
                       render::group_digits(r.counters.face_tests),
                       render::group_digits(r.counters.refinements), trace::to_hex(r.fingerprint)});

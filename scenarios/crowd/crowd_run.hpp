@@ -40,7 +40,7 @@ class CrowdMotion {
     Pose own;     ///< of its kind, applied first
   };
   std::vector<std::uint32_t> kinds_;  ///< the kind of each body
-  std::vector<Mover> movers_;         ///< of each body; empty where poses were recorded
+  std::vector<Mover> movers_;         ///< one for each body; empty if poses were recorded
   std::vector<std::vector<Pose>> recorded_;
 };
 

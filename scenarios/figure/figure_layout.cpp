@@ -252,8 +252,6 @@ FigureLayout lay_out(const std::vector<Block>& blocks, const std::vector<render:
 
 namespace {
 
-using Eigen::AlignedBox2d;
-using Eigen::Vector2d;
 using Mark = render::LegendItem::Mark;
 namespace palette = render::palette;
 

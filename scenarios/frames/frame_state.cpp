@@ -8,6 +8,7 @@
 #include "render/pictures/marks.hpp"
 #include "scenarios/frames/face_colours.hpp"
 #include "scenarios/record/moments.hpp"
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/render/style.hpp>
 #include <lrbscope/trace/trace.hpp>
 
@@ -165,8 +166,7 @@ render::SceneOptions FrameState::scene_options(const SceneParts& parts) const {
       break;
     default:
       options.colour_by = render::ColourBy::value;
-      options.value_name = std::string(name_of(spec_.colour_by));
-      std::replace(options.value_name.begin(), options.value_name.end(), '_', ' ');
+      options.value_name = io::in_words(name_of(spec_.colour_by));
       if (spec_.colour_per != render::FrameSpec::ColourPer::face)
         options.value_name += " in the " + std::string(name_of(spec_.colour_per));
       else if (spec_.colour_by == render::FrameSpec::ColourBy::box_tests)

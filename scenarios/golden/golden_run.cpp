@@ -44,12 +44,6 @@ requires std::is_enum_v<Enum> std::string words(Enum value) {
   return std::string(name_of(value));
 }
 
-std::string name_in_words(std::string_view name) {
-  std::string out(name);
-  std::replace(out.begin(), out.end(), '_', ' ');
-  return out;
-}
-
 /// Compares the fields of two records, and those of their counters.
 template <class Record>
 void compare(const Record& x, const Record& y, Effect like, std::vector<Effect>& out) {
@@ -62,7 +56,7 @@ void compare(const Record& x, const Record& y, Effect like, std::vector<Effect>&
       work.kind = Effect::Kind::work;
       compare(expected, found, work, counters);
     } else {
-      like.what = name_in_words(field.name);
+      like.what = io::in_words(field.name);
       like.expected = words(expected);
       like.found = words(found);
       if constexpr (std::is_same_v<decltype(expected), const std::uint64_t&>)

@@ -10,6 +10,7 @@
 #include "scenarios/run/run_charts.hpp"
 #include "scenarios/run/run_tables.hpp"
 #include "scenarios/run/scene_json.hpp"
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/trace/counters.hpp>
 #include <lrbscope/trace/json_write.hpp>
@@ -21,12 +22,6 @@ namespace {
 std::string vector_text(const Eigen::Vector3d& v) {
   return "(" + render::short_number(v.x()) + ", " + render::short_number(v.y()) + ", " +
          render::short_number(v.z()) + ")";
-}
-
-std::string words(Relation r) {
-  std::string out = to_string(r);
-  std::replace(out.begin(), out.end(), '_', ' ');
-  return out;
 }
 
 /// Returns the step with the most to say: the last one.
@@ -80,7 +75,7 @@ std::vector<report::PageNumber> collision_numbers(const RecordedRun& p, const tr
     each += (each.empty() ? "" : " + ") + render::group_digits(rep->real_face_count());
   }
   std::vector<report::PageNumber> out = {
-      {"Relation", words(r.relation), at},
+      {"Relation", io::in_words(name_of(r.relation)), at},
       {"Pairs of faces that meet", render::group_digits(r.pair_count), at}};
   const std::string open = sides_of(p, [](const LrbRep& rep) { return !rep.closed(); });
   if (r.relation == Relation::undefined && !open.empty())
@@ -225,8 +220,8 @@ report::PageTable steps_table(const trace::Trace& trace) {
   if (has_clash) t.columns.insert(t.columns.end(), {"kind of contact", "depth"});
   for (const trace::Step& s : trace.steps) {
     t.rows.push_back(
-        {std::to_string(s.index), words(s.result.relation), render::group_digits(s.result.pair_count),
-         render::group_digits(s.result.counters.face_tests),
+        {std::to_string(s.index), io::in_words(name_of(s.result.relation)),
+         render::group_digits(s.result.pair_count), render::group_digits(s.result.counters.face_tests),
          render::group_digits(s.result.counters.refinements), trace::to_hex(s.result.fingerprint)});
     std::vector<std::string>& row = t.rows.back();
     if (request.is_coarse())
@@ -266,7 +261,7 @@ void add_answer(report::Page& page, const RecordedRun& p, const ReportText& text
   page.command = text.command;
   const bool two = p.reps.size() == 2;
   if (const trace::Step* step = last_step(*p.trace); two && step != nullptr) {
-    page.verdict = words(step->result.relation);
+    page.verdict = io::in_words(name_of(step->result.relation));
     page.numbers = collision_numbers(p, *step);
   } else if (!two) {
     page.numbers = wrapper_numbers(*p.reps[0]);

@@ -9,6 +9,7 @@
 #include "render/pictures/panel.hpp"
 #include "scenarios/frames/chosen_view.hpp"
 #include "scenarios/frames/face_colours.hpp"
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/obb_tree.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/trace/counters.hpp>
@@ -152,7 +153,6 @@ std::vector<report::PageTable> group_tables(const RecordedRun& run) {
 
 namespace {
 
-using render::group_digits;
 using render::short_number;
 
 std::string percent(double share) {
@@ -170,10 +170,9 @@ report::PageTable share_table(const trace::Trace& trace) {
   for (const trace::WorkShare& s : shares) all += s.seconds;
   for (const trace::WorkShare& s : shares) {
     if (s.events == 0) continue;
-    std::string name(s.name);
-    std::replace(name.begin(), name.end(), '_', ' ');
-    t.rows.push_back({name, group_digits(s.events), s.box_tests > 0 ? group_digits(s.box_tests) : "",
-                      group_digits(s.count), std::string(s.what)});
+    t.rows.push_back({io::in_words(s.name), group_digits(s.events),
+                      s.box_tests > 0 ? group_digits(s.box_tests) : "", group_digits(s.count),
+                      std::string(s.what)});
     if (timed)
       t.rows.back().insert(t.rows.back().end(), {short_number(1e6 * s.seconds), percent(s.seconds / all)});
   }

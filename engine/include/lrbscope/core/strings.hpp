@@ -2,6 +2,7 @@
 /// Writes numbers as text, the same in any locale.
 
 #include <string>
+#include <string_view>
 
 namespace lrb::io {
 
@@ -17,6 +18,9 @@ std::string fixed_text(double x, int decimals = 6);
 
 /// Returns the shortest text that reads back as the same number.
 std::string exact_text(double x);
+
+/// Returns a name in snake_case as words: "a_inside_b" as "a inside b".
+std::string in_words(std::string_view name);
 
 /// Quotes a word, if need be, so that it can stand in a shell's command line.
 std::string shell_word(const std::string& word);

@@ -143,7 +143,7 @@ struct TextStyle {
 struct TextSize {
   int width = 0;   ///< width that the line takes, in pixels, rounded up
   int height = 0;  ///< ascent to descent, rounded up: the same for every text of a style
-  int ascent = 0;  ///< of these, above the base line
+  int ascent = 0;  ///< pixels of the height above the base line
 };
 
 /// A font in its two weights. Reads the files once; is const and can be shared between threads.
