@@ -367,13 +367,14 @@ DepthFinder::Depth DepthFinder::depth() {
     lower = raise_lower(lower, best, best_n);
   }
   out.length.lower = bodies_.frame.length_to_world(lower);
-  if (!(best < kInfinity)) return out;
   // Step 5: prove the best translation, or else that of the convex hulls, which depends on no sampling.
-  std::optional<PartingMove> move = parting_.prove(best_n, best);
-  if (!move) move = parting_.prove(hulls.direction(), hulls.depth_upper());
-  if (!move) return out;
-  out.translation = move->translation;
-  out.length.upper = move->length;
+  std::optional<PartingMove> move;
+  if (best < kInfinity) move = parting_.prove(best_n, best);
+  if (best < kInfinity && !move) move = parting_.prove(hulls.direction(), hulls.depth_upper());
+  if (move) {
+    out.translation = move->translation;
+    out.length.upper = move->length;
+  }
   // The answer's bounds, even if the unproven ones reported before were narrower.
   if (teller_ != nullptr) teller_->settle(parting_.asked() + grown_, out.length.lower, out.length.upper);
   return out;

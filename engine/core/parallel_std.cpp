@@ -80,10 +80,22 @@ Workers::~Workers() = default;
 void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsigned)>& work) {
   const std::vector<unsigned> helpers =
       pool_ && n > 1 ? pool_->take(std::min<std::size_t>(n, count_) - 1) : std::vector<unsigned>{};
-  // Each worker fetches the next index until none is left.
-  std::atomic<std::size_t> next{0};
+  // Each worker fetches the next index until none is left. Calls above the lowest index that has failed are
+  // skipped. Those below it were fetched before, so the exception of the lowest index is always found.
+  std::atomic<std::size_t> next{0}, failed{n};
+  std::exception_ptr failure;
+  std::mutex one_at_a_time;
   const auto take_part = [&](unsigned worker) {
-    for (std::size_t i = next++; i < n; i = next++) work(i, worker);
+    for (std::size_t i = next++; i < failed; i = next++) {
+      try {
+        work(i, worker);
+      } catch (...) {
+        const std::lock_guard lock(one_at_a_time);
+        if (i > failed) continue;
+        failed = i;
+        failure = std::current_exception();
+      }
+    }
   };
   const auto give_back = [&] {
     if (pool_) pool_->give_back(helpers);
@@ -95,6 +107,7 @@ void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsi
     throw;
   }
   give_back();
+  if (failure) std::rethrow_exception(failure);
 }
 
 void Workers::both(const std::function<void()>& one, const std::function<void()>& other) {
