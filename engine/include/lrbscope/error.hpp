@@ -58,14 +58,14 @@ class [[nodiscard]] Expected {
   Value* operator->() requires(!std::is_reference_v<T>) { return &**this; }
   const Value* operator->() const requires(!std::is_reference_v<T>) { return &**this; }
   // A reference refers to the same object, const or temporary as the Expected may be.
-  Value& operator*() const requires std::is_reference_v<T> { return *std::get_if<0>(&kept_); }
+  Value& operator*() const& requires std::is_reference_v<T> { return *std::get_if<0>(&kept_); }
   Value* operator->() const requires std::is_reference_v<T> { return &**this; }
 
   /// Return the T. Throw the reason as an InputError if there is none.
   Value& value() & requires(!std::is_reference_v<T>) { return check(), **this; }
   const Value& value() const& requires(!std::is_reference_v<T>) { return check(), **this; }
   Value&& value() && requires(!std::is_reference_v<T>) { return check(), std::move(**this); }
-  Value& value() const requires std::is_reference_v<T> { return check(), **this; }
+  Value& value() const& requires std::is_reference_v<T> { return check(), **this; }
 
   /// Returns why there is none. There must not be one.
   const Refusal& error() const { return *std::get_if<1>(&kept_); }
