@@ -68,8 +68,7 @@ inline std::uint64_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
   const auto in_mask_b = static_cast<unsigned>(__builtin_popcount(mask_b));
   std::uint64_t all = 0;
   // The only row so far, if it has one pair: its gap is needed only if there is another row
-  int alone =
-      -1;  // the only row so far, if it has one pair: its gap is not needed unless there is another row
+  int alone = -1;
   for (std::uint32_t todo = mask_a; todo != 0; todo &= todo - 1) {
     const int i = __builtin_ctz(todo);
     const Row row = row_of(own_a, at, i);
