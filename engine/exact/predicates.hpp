@@ -50,8 +50,9 @@ inline int orient_axes(const double* a, const double* b, const double* c, int x,
 /// Returns the sign (-1, 0, +1) of the area of the 2D triangle a, b, c: +1 if counter-clockwise.
 int orient2d(const double* a, const double* b, const double* c);
 
-/// Returns the sign of det[b - a; c - a; d - a]: +1 if d is on the side of plane (a, b, c) that the normal (b
-/// - a) x (c - a) points to (a, b, c appear counter-clockwise from d); 0 if coplanar.
+/// Returns the sign of det[b - a; c - a; d - a]: +1 if d is on the side of plane (a, b, c) that the normal of
+/// the triangle points to, so that a, b, c appear counter-clockwise from d; 0 if coplanar. The normal is
+/// (b - a) x (c - a).
 int orient3d(const double* a, const double* b, const double* c, const double* d);
 
 /// Returns true if a, b, c are collinear (or coincide), in 3D.

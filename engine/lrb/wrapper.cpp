@@ -219,7 +219,7 @@ std::vector<double> choose_bounds(const LrbRep& rep, std::span<const double> nee
   // Go from the coarsest candidate to finer ones, and choose one before the face count grows beyond the step.
   std::vector<std::size_t> chosen;
   const auto choose = [&](std::size_t i) {
-    // finer without more faces
+    // Drop coarser levels that have no fewer faces.
     while (!chosen.empty() && faces[chosen.back()] >= faces[i]) chosen.pop_back();
     chosen.push_back(i);
   };

@@ -118,8 +118,8 @@ struct ClashResult {
   /// is proven to share no interior point with A.
   Eigen::Vector3d translation{0, 0, 0};
   /// For ClashRequest::along: how far B has to move in that direction until the interiors are disjoint for
-  /// the first time. They overlap for all shorter moves below the lower end, and are disjoint at the upper
-  /// end.
+  /// the first time. They overlap after every move shorter than the lower end, and are disjoint after a move
+  /// by the upper end.
   std::optional<ProvedInterval> along;
   /// The volume of the intersection of the solids, world units cubed. nullopt for bodies that are not closed
   /// or intersect themselves, unless they are apart.

@@ -92,8 +92,8 @@ struct CollideRequest {
   /// For separate bodies: compute CollideResult::separation. Takes longer than the query and is not subject
   /// to limits.
   bool separation = false;
-  /// Maximum number of pairs; a query that finds more throws InputError. (Two bodies of n faces have up to n
-  /// * n pairs.) 0: kMostPairs, or kMostPairsWithContacts with contacts. The paper's recursions count a pair
+  /// Maximum number of pairs; a query that finds more throws InputError. (Two bodies of n faces have up to
+  /// n^2 pairs.) 0: kMostPairs, or kMostPairsWithContacts with contacts. The paper's recursions count a pair
   /// each time they find it.
   std::uint64_t max_pairs = 0;
 
@@ -110,9 +110,9 @@ struct CollideRequest {
 enum class Relation : std::uint8_t {
   separate,  ///< no common point
   crossing,  ///< at least two faces cross in their interiors
-  /// surfaces intersect, but no two faces cross. The interiors may still overlap: two equal cubes, one
+  /// Surfaces intersect, but no two faces cross. The interiors may still overlap: two equal cubes, one
   /// shifted along an edge, overlap with flush sides, and no face crosses another.
-  /// CollideResult::interiors_overlap decides it, if requested
+  /// CollideResult::interiors_overlap decides it, if requested.
   touching,
   a_inside_b,  ///< no surface contact; B contains A
   b_inside_a,

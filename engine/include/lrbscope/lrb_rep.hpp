@@ -76,8 +76,8 @@ class LrbRep {
 
   int dim() const { return d_.dim; }
   bool closed() const { return d_.closed; }
-  /// Returns the stored flag. It is determined when regions are built and may be unset for a body without
-  /// regions; overlaps_itself() is always right.
+  /// Returns LrbData::self_intersecting, which is determined when regions are built. It may be unset for a
+  /// body without regions: use overlaps_itself() for those.
   bool self_intersecting() const { return d_.self_intersecting; }
   /// Returns true if two real faces cross, or overlap in one plane with the same orientation (find_overlaps()
   /// in engine/mesh/self_intersections.hpp). For a body without regions the first call computes it, and
@@ -200,7 +200,7 @@ inline constexpr std::uint32_t kLrbFileVersion = 3;
 /// Writes an LRB-rep to a binary file (`.lrb`), little-endian: magic, version, the arrays of LrbData, each
 /// preceded by its length, their hash, the OBB tree, the levels of detail if they exist
 /// (LrbRep::has_levels()), and a checksum of all preceding bytes (lrb_checksum()). Version 2 had no levels.
-/// Version 1 had no levels, hash or tree, and FNV-1a as its checksum. The write is atomic. Throws
+/// Version 1 had no levels, hash or tree, and used FNV-1a as its checksum. The write is atomic. Throws
 /// EnvironmentError or InputError as AtomicFile does.
 void save_lrb(const LrbRep& rep, const std::string& path);
 

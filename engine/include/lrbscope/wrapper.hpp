@@ -147,7 +147,7 @@ class WrapperLevels {
   /// Returns the coarsest level whose deviation is at most `tolerance` (mesh units), or null if only the body
   /// itself is within it.
   const WrapperLevel* within(double tolerance) const;
-  /// coarsest first: bounds decrease, face counts increase
+  /// Returns the levels, coarsest first: bounds decrease, face counts increase.
   std::span<const WrapperLevel> all() const { return levels_; }
   /// Returns, for each region (|R|), the tolerance from which on it is included: the largest thickness of the
   /// region and of all regions that it hides; infinite if it is never included. Empty for a body without

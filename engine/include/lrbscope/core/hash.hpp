@@ -32,8 +32,8 @@ class Fnv64 {
 };
 
 /// Returns a checksum computed at memory bandwidth: eight interleaved FNV-1a sums of 64-bit words, then
-/// FNV-1a over these sums and the remaining bytes. Any change confined to one eight-byte word changes the
-/// result.
+/// FNV-1a over these sums and the remaining bytes. A change within one of these words always changes
+/// the sum that contains it.
 inline std::uint64_t fnv64_of_words(const void* data, std::size_t size) {
   constexpr std::size_t kLanes = 8, kWord = sizeof(std::uint64_t);
   const auto* bytes = static_cast<const unsigned char*>(data);
