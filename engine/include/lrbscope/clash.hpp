@@ -28,10 +28,11 @@ enum class ClashKind : std::uint8_t {
   touching_point,    ///< disjoint interiors; surfaces intersect in points only
   touching_edge,     ///< disjoint interiors; surfaces intersect along lines, in no area
   touching_face,     ///< disjoint interiors; surfaces intersect in an area
-  protrudes,  ///< interiors overlap, and neither solid separates the other: each component of either surface
-              ///< has at most one piece outside the other solid
-  pierces,    ///< A passes through B: B separates A into pieces outside B, and A does not separate B
-  cuts_through,  ///< A separates B: a component of B's surface has two or more pieces outside A
+  protrudes,  ///< interiors overlap, and neither surface is divided: each of its components has at most one
+              ///< piece outside the other solid
+  pierces,  ///< A passes through B: a component of A's surface has two or more pieces outside B, none of B's
+            ///< has two outside A
+  cuts_through,  ///< A divides B: a component of B's surface has two or more pieces outside A
   a_inside_b,    ///< B contains A entirely; surfaces may touch
   b_inside_a,
   equal,      ///< the same solid
@@ -62,7 +63,7 @@ enum class ClashReason : std::uint8_t {
   a_overlaps,  ///< LrbRep::overlaps_itself() is true, so that the faces bound no unique solid
   b_overlaps,
   flat_face,       ///< a face that intersects the other body has no area in the world, due to rounding
-  many_cells,      ///< a face is cut into more cells than kInteriorCellsPerFace, or into inconsistent ones
+  many_cells,      ///< a face has more cells than kInteriorCellsPerFace, or they do not match along an edge
   faces_coincide,  ///< faces coincide, and no point beside them was proven to be inside both
 };
 constexpr auto words_of(ClashReason) {
@@ -122,7 +123,7 @@ struct ClashResult {
   /// by the upper end.
   std::optional<ProvedInterval> along;
   /// The volume of the intersection of the solids, world units cubed. nullopt for bodies that are not closed
-  /// or intersect themselves, unless they are apart.
+  /// or intersect themselves, unless they are disjoint.
   std::optional<ProvedInterval> volume;
 };
 

@@ -52,8 +52,8 @@ struct Feature {
 
 /// A corner of the intersection of two simplices.
 struct ContactCorner {
-  /// World frame. A corner of either simplex is copied. Each coordinate of any other point is within 1e-13 of
-  /// the extent of the cut edge, plus two roundings, of the exact point.
+  /// World frame. A corner of either simplex is copied. Any other point deviates from the exact one, in each
+  /// coordinate, by at most 1e-13 of the extent of the cut edge plus two roundings.
   Eigen::Vector3d x{0, 0, 0};
   Feature on_a, on_b;  ///< location of the point on each simplex; exact
 };

@@ -110,9 +110,9 @@ Expected<CollideResult&> collide(const LrbRep& a, const Pose& pose_a, const LrbR
                                  const CollideRequest& request, Workspace& workspace,
                                  CollideProbe* probe = nullptr);
 
-/// Adds to a result of collide() the parts that only `request` asks for: `contacts` (with their regions) and
-/// `interiors_overlap`. The result is the same as if collide() had been called with `request`, except for its
-/// counters. For programs that decide from the pairs whether the rest is worth computing.
+/// Adds the parts that `request` requires to a result of collide() without them: `contacts` (with their
+/// regions) and `interiors_overlap`. The result is the same as if collide() had been called with `request`,
+/// except for its counters. For programs that decide from the pairs whether the rest is worth computing.
 ///
 /// `result`: all pairs of these bodies at these poses, found with Recursion::complete and without tolerance
 /// or limits, and without these parts. Returns it, or an error for bodies and poses that collide() rejects.
