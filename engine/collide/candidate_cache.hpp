@@ -64,8 +64,7 @@ class CachePolicy {
  private:
   struct Aim {
     double steps = kFirstSteps;
-    double cost =
-        0;  ///< recent cost of a query with such caches, relative to a query from scratch; 0: unknown
+    double cost = 0;  ///< recent cost per query, relative to a query from scratch; 0: unknown
     /// The next cache is for more steps while that makes queries faster; else for fewer.
     bool is_growing = true;
   };

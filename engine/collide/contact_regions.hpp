@@ -20,10 +20,9 @@ struct ContactGraph {
     std::uint32_t pair;                 ///< index into CollideResult::pairs
     std::vector<std::uint32_t> points;  ///< 1: point, 2: segment, 3 or more: polygon
   };
-  std::vector<Eigen::Vector3d> points;  ///< world frame
-  std::vector<Piece> pieces;            ///< one per pair
-  std::vector<std::array<std::uint32_t, 2>>
-      curves;  ///< segments that are no side of a polygon; each occurs once
+  std::vector<Eigen::Vector3d> points;                 ///< world frame
+  std::vector<Piece> pieces;                           ///< one per pair
+  std::vector<std::array<std::uint32_t, 2>> curves;    ///< segments that are no side of a polygon, once each
   std::vector<std::array<std::uint32_t, 2>> outlines;  ///< sides of an odd number of polygons
   std::vector<std::uint32_t> component;                ///< (|points|) label of the connected component
   std::uint32_t component_count = 0;

@@ -237,8 +237,8 @@ class Way {
   /// pair of the path.
   std::array<bool, 2> moves_to(const Stepper::Outcome& outcome) {
     goes_on_ = false;
-    std::optional<std::array<bool, 2>>
-        kind;  // the same for all pairs of children: they descend the same nodes
+    // Equal for all pairs of children, which descend the same nodes.
+    std::optional<std::array<bool, 2>> kind;
     for (const NodePair& c : outcome.children) {
       // Where a node differs from the current one, its tree was descended.
       kind = {c.a != node(0), c.b != node(1)};

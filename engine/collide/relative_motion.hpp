@@ -33,10 +33,9 @@ struct Sweep {
   RelativePose middle;
   Eigen::Matrix3d dm = Eigen::Matrix3d::Zero();
   Eigen::Vector3d dt = Eigen::Vector3d::Zero();
-  double turn = 0;  ///< upper bound on |dm|
-  double length =
-      0;  ///< upper bound on the displacement of any point of B from the middle to an end; 0: a fixed pose
-  double width = 0;  ///< allowed deviation of B from the straight path
+  double turn = 0;    ///< upper bound on |dm|
+  double length = 0;  ///< upper bound on the displacement of any point of B to an end; 0: a fixed pose
+  double width = 0;   ///< allowed deviation of B from the straight path
 };
 
 /// Position of B in a sweep: displaced from the middle by `at` times (dm x + dt), with a deviation of at most

@@ -112,8 +112,7 @@ class NodeWatch {
   }
 
   Probe& probe_;
-  std::unordered_map<std::uint64_t, std::uint32_t>&
-      parents_;  ///< for each pair on the stack: see take_parent()
+  std::unordered_map<std::uint64_t, std::uint32_t>& parents_;  ///< of waiting pairs: see take_parent()
   std::vector<PartedPair>& parted_;
   std::vector<NodePair>& parted_nodes_;
   bool all_;
