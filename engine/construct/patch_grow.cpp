@@ -70,9 +70,9 @@ bool PatchGrower::grow(Corner seed, Patch& patch) {
   return true;
 }
 
-/// Adds the polygons at v that are not in the patch yet, if the patch remains a disk. It does exactly if its
-/// Euler characteristic stays what it is (or, from nothing, becomes 1): the new triangles are connected round
-/// v and share an edge with the patch.
+/// Adds the polygons at v that are not in the patch yet, if the patch remains a disk. The new triangles are
+/// connected around v and share an edge with the patch, so it remains a disk if and only if its Euler
+/// characteristic is unchanged (or, for the first star, becomes 1).
 bool PatchGrower::add_star(Corner v, Patch& patch) {
   // Mark first and undo on failure: the Euler characteristic is counted with the new triangles in place.
   const bool free = mark_star(v);

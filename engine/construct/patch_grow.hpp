@@ -1,5 +1,5 @@
 #pragma once
-/// Patches: disks of the hull's triangles, which a pass covers with caps.
+/// Patches: disks of the front's triangles, which a pass covers with caps.
 
 #include <cstdint>
 #include <vector>
@@ -60,7 +60,7 @@ class PatchGrower {
   GrowLimits limits_;
   std::vector<bool> taken_;                 ///< (slots)
   std::vector<std::uint32_t> slot_stamp_;   ///< == stamp_: in the patch that is growing
-  std::vector<std::uint32_t> point_stamp_;  ///< the same for vertices
+  std::vector<std::uint32_t> point_stamp_;  ///< == stamp_: a vertex of the patch that is growing
   std::vector<std::uint32_t> inside_;       ///< number of the patch's triangles at a vertex, if it is stamped
   std::vector<std::uint32_t> refused_;      ///< == stamp_: the vertex's star cannot be added
   std::uint32_t stamp_ = 0;

@@ -1,6 +1,6 @@
 // A pass in batches: grow disjoint patches in order, make their caps in parallel, apply them in order. A cap
-// is made again if an earlier one of its batch changed space that its proof depended on, so the result is
-// that of the serial algorithm.
+// is made again if an earlier one of its batch changed space that its proof depends on, so the result is
+// identical to the serial algorithm.
 
 #include "engine/construct/patch_pass.hpp"
 
@@ -24,11 +24,11 @@ constexpr std::size_t kBatchPerThread = 32;
 /// See PatchCap::Limits::depth; where caps are to fit.
 constexpr double kFittingDepth = 10;
 
-/// Where no cap was found, none is tried before it may be this many times as far off, at least. Smaller: more
-/// time, most of it in vain.
+/// Where no cap was found, the next attempt is made at a deviation limit larger by at least this factor.
+/// Smaller: more time, mostly without effect.
 constexpr double kPatience = 1.2;
-/// A pass of caps that fit ends when after this many patches fewer than one in kLeastCaps got a cap: the
-/// distance is too small for most of the hull.
+/// A pass of fitting caps ends when fewer than one in kLeastCaps of this many patches got a cap: the
+/// deviation limit is too small for most of the front.
 constexpr std::size_t kTries = 32, kLeastCaps = 24;
 
 }  // namespace
@@ -162,8 +162,8 @@ void PatchPass::find_cap(Job& job, const CapGoal& goal, Bench& bench) const {
     job.tried[job.tries - 1].off = std::min(goal.off, off_of(bench.cap));
 }
 
-/// Simplifies the patch into a cap that is worth a region. Intersections with the hull are checked after each
-/// collapse if `careful`, otherwise not at all.
+/// Simplifies the patch into a cap that is worth a region. Intersections with the front are checked after
+/// each collapse if `careful`, otherwise not at all.
 CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& bench, bool careful) const {
   CapSurface& cap = bench.cap;
   cap.load(hull_, patch, static_cast<VertexId>(complex_.vertices().size()));
@@ -188,7 +188,7 @@ CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& b
   return CapVerdict::stands;
 }
 
-/// Returns how far the cap's new triangles stand off the body, as it was measured: an estimate.
+/// Returns the measured maximum deviation of the cap's new triangles from the body: an estimate.
 double PatchPass::off_of(const CapSurface& cap) {
   double most = 0;
   for (const CapSurface::Face& f : cap.faces())
@@ -205,10 +205,10 @@ void PatchPass::tell(const Job& job) const {
   for (std::size_t i = 0; i < job.tries; ++i) probe_->cap(job.tried[i]);
 }
 
-/// Returns how many times as far off a cap must be allowed to be before there may be one where there is none
-/// now. The faces that are needed fall about in proportion to the distance, so that is by how much those of
-/// the cap that was not worth it are too many. (Trying at each distance takes a third more time for the same
-/// hulls.)
+/// Returns the factor by which the deviation limit must grow before a cap may be found where none is now. The
+/// number of faces needed is about inversely proportional to the deviation, so the factor is the ratio of the
+/// rejected cap's faces to the number that would be worth it. (An attempt at each limit takes a third more
+/// time for the same fronts.)
 double PatchPass::patience(const Patch& patch, const CapSurface& cap, double worth) {
   return std::max(kPatience, cap.alive_faces() / (worth * static_cast<double>(patch.slots.size())));
 }
