@@ -31,8 +31,8 @@ struct ContactGraph {
 /// Builds the graph from result.pairs and result.contacts.
 ContactGraph contact_graph(const QueryContext& context, const CollideResult& result);
 
-/// Chains edges between numbered points into loops. A loop is closed if each of its points has two edges;
-/// otherwise it is an open chain between ends or branch points. Every edge is used once.
+/// Chains edges between numbered points into loops: closed ones if all of their points have two edges,
+/// otherwise open chains between ends or branch points. Uses every edge once.
 std::vector<ContactLoop> chain_edges(std::span<const std::array<std::uint32_t, 2>> edges,
                                      const std::vector<Eigen::Vector3d>& points);
 

@@ -113,9 +113,9 @@ class FaceCutters {
 /// and no are exact.
 ///
 /// Claim: the interiors overlap if and only if the surface of one body has a point strictly inside the other,
-/// or the surfaces coincide somewhere with the same orientation. (If neither is true, each component of one
-/// interior is entirely inside or outside the other body; if it is inside, so is its boundary, except where
-/// surfaces coincide.) This leaves three cases:
+/// or the surfaces coincide somewhere with the same orientation. (Proof: otherwise each component of one
+/// interior is entirely inside or outside the other body. If one were inside, so would be its boundary,
+/// except where surfaces coincide with the same orientation: a contradiction.) This leaves three cases:
 /// - Coplanar pairs whose intersection has area: the same direction means yes.
 /// - A face in no pair is entirely on one side, and so is a connected patch of such faces: one vertex
 ///   decides.

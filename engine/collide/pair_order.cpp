@@ -27,8 +27,8 @@ constexpr unsigned kMeetBits = 1;
 /// because few pairs share a simplex of A. Larger answers have longer groups: the 266,180 pairs of identical
 /// poses, about 13 for each simplex, are sorted faster by all digits.
 constexpr std::size_t kFewPairs = 4096;
-/// Upper limit on the average number of pairs with the same simplex of A for that, over all numbers that A's
-/// digits can represent.
+/// That is done only if at most this many pairs share a number of A's digits, on average over all numbers
+/// that these digits can represent.
 constexpr std::size_t kAlikeOnAverage = 8;
 /// Longest group with the same simplex of A that is sorted by insertion rather than by std::sort.
 constexpr std::ptrdiff_t kFewAlike = 16;

@@ -6,7 +6,7 @@
 /// moves by at most |dm c + dt| + |dm| R, where c and R are the centre and the radius of B; turn_bound()
 /// bounds |dm|.
 ///
-/// A part of a motion does not connect two rotations; there |dm| is bounded by the Frobenius norm.
+/// For a part of a motion, dm is not a difference of two rotations: its Frobenius norm bounds |dm| instead.
 ///
 /// Points that are equal in the world may differ by on_a of set_up_kernel() on A's axes. rounding() bounds
 /// this, the rounding of world coordinates and the rounding of everything computed here (see
