@@ -26,7 +26,7 @@ class CapSurface {
     /// The face across the edge v[i], v[i + 1]; at the ring: -1 - (index of the ring edge).
     std::array<int, 3> across;
     Plane plane;
-    int kept;  ///< the patch's triangle (index into Patch::slots) that this is unchanged, else -1
+    int kept;  ///< index into Patch::slots if this is still that triangle, else -1
     bool alive;
     double extra;         ///< see HullMesh::Triangle
     std::uint32_t since;  ///< version of the surface at which it was created
@@ -43,7 +43,7 @@ class CapSurface {
     int u = -1, v = -1;
     std::vector<int> faces;
     std::vector<Rim> rim;  ///< in order; an open chain from v back to v if v is on the ring
-    /// Open chain: what is across the edges v, rim.front().a and rim.back().b, v.
+    /// Open chain: the triangles or ring edges across the edges v, rim.front().a and rim.back().b, v.
     int across_first = -1, across_last = -1;
     /// The creation version of the newest of its triangles, and of those across the rim.
     std::uint32_t since = 0;

@@ -100,7 +100,7 @@ CapVerdict EmbedCheck::judge_cap(const Patch& patch, const CapSurface& cap) {
   // Steps 3 and 4. The patch comes first in the list, so that the verdict can identify the obstacle.
   add_patch(patch);
   const std::size_t of_patch = obstacles_.size();
-  if (component_boxes_.size() > 1)  // another component may be in between, under the cap without touching it
+  if (component_boxes_.size() > 1)  // another component may be under the cap
     for (const CheckedTriangle& t : obstacles_) box.extend(t.box);
   // For a body of one component, the box of the new triangles suffices.
   gather_hull(patch, cap, box);

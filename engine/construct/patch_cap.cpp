@@ -7,8 +7,9 @@
 // 3. Collapse the edge, and propose the edges around the new vertex. Repeat until no collapse is accepted.
 //
 // A collapse is rejected in find_star(), if the result would not be a surface; in measure_star(), for its
-// position, deviation, added volume or shape; or in confirm(), by the exact tests. A rejection is recorded in
-// the surface and remains valid until the star or its neighbours change.
+// position, deviation, added volume or shape; or in confirm(), for its deviation in between or by an exact
+// test. A rejection, unless by EmbedCheck, is recorded in the surface and remains valid until the star or its
+// neighbours change.
 
 #include "engine/construct/patch_cap.hpp"
 

@@ -18,17 +18,17 @@ namespace {
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// Patches of a batch per thread. Longer batches would seldom come about before two of their patches touch.
+/// Patches per batch and thread. Batches rarely get longer before two of their patches touch.
 constexpr std::size_t kBatchPerThread = 32;
 
-/// See PatchCap::Limits::depth; where caps are to fit.
+/// See PatchCap::Limits::depth; for fitting caps.
 constexpr double kFittingDepth = 10;
 
 /// Where no cap was found, the next attempt is made at a deviation limit larger by at least this factor.
 /// Smaller: more time, mostly without effect.
 constexpr double kPatience = 1.2;
-/// A pass of fitting caps ends when fewer than one in kLeastCaps of this many patches got a cap: the
-/// deviation limit is too small for most of the front.
+/// A pass of fitting caps ends when, after at least kTries patches, fewer than one in kLeastCaps got a cap:
+/// the deviation limit is too small for most of the front.
 constexpr std::size_t kTries = 32, kLeastCaps = 24;
 
 }  // namespace
@@ -43,7 +43,7 @@ PatchPass::PatchPass(HullMesh& hull, AabbTree& tree, ComplexBuilder& complex, co
   jobs_.resize(workers.count() == 1 ? 1 : kBatchPerThread * workers.count());
 }
 
-/// Takes the faces that no patch may have. Returns how many there are.
+/// Excludes the faces that no patch may contain. Returns their number.
 std::uint32_t PatchPass::bar_faces(PatchGrower& grower) const {
   std::uint32_t barred = 0;
   for (Slot s = 0; s < hull_.slot_count(); ++s) {
@@ -56,7 +56,7 @@ std::uint32_t PatchPass::bar_faces(PatchGrower& grower) const {
   return barred;
 }
 
-/// Returns the vertices in use at which a cap may be found, in random order, and counts those that wait.
+/// Returns the used vertices at which a cap may be found, in random order, and counts those that wait.
 std::vector<Corner> PatchPass::find_seeds(double off, Random& random, std::uint32_t& waiting) const {
   std::vector<Corner> seeds;
   for (Corner v = 0; v < hull_.point_count(); ++v) {
@@ -140,8 +140,8 @@ void PatchPass::make_cap(Job& job, const CapGoal& goal, Bench& bench) const {
   if (job.has_cap) job.sheet = make_sheet(hull_, job.patch, bench.cap);
 }
 
-/// Finds a cap, at first without looking at anything but the patch itself; if that cap turns out to hit
-/// something, tries again with a proof for each collapse.
+/// Finds a cap, at first with a single proof for the finished cap. If that fails because of an intersection,
+/// tries again with a proof for each collapse.
 void PatchPass::find_cap(Job& job, const CapGoal& goal, Bench& bench) const {
   job.has_cap = false;
   job.tries = 0;

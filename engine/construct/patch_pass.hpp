@@ -45,7 +45,7 @@ class PatchPass {
   PassEnd run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t layer, Random& random);
 
  private:
-  /// The memory that one worker needs to make caps.
+  /// The buffers that one worker needs to make caps.
   struct Bench {
     Bench(const HullMesh& hull, const AabbTree& tree, const BodyBounds& bounds,
           const std::vector<Eigen::AlignedBox3d>& component_boxes)
@@ -59,12 +59,12 @@ class PatchPass {
   };
   struct Job {
     Patch patch;
-    std::uint32_t no_patch = 0;  ///< vertices before this one's at which no patch could be grown
+    std::uint32_t no_patch = 0;  ///< earlier vertices at which no patch could be grown
     std::array<TriedCap, 2> tried;
     std::size_t tries = 0;
     bool has_cap = false;
-    double next_off = 0;       ///< if not: the limit at which one is to be tried again
-    Sheet sheet;               ///< the cap, if there is one
+    double next_off = 0;       ///< if not: deviation limit of the next attempt
+    Sheet sheet;               ///< the cap, if has_cap
     Eigen::AlignedBox3d seen;  ///< space in which the front was read
   };
 
