@@ -86,7 +86,7 @@ class PassCounter {
 
   std::uint16_t layer() const { return static_cast<std::uint16_t>(pass_); }
 
-  /// Reports the begin of a pass.
+  /// Reports the start of a pass.
   void tell_begin(BuildStage stage, std::uint32_t hull_faces, double most_off = 0) const {
     if (options_.probe) options_.probe->pass({stage, pass_, hull_faces, most_off});
   }

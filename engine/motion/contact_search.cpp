@@ -5,7 +5,7 @@
 ///    there are too many, halve the interval.
 /// 2. Advance each pair while a slab is proven to separate it. The bodies are separate up to the least time
 ///    reached.
-/// 3. Where pairs stop, query the bodies exactly slightly later. If they intersect, that is the contact.
+/// 3. Where pairs stop, run the exact query slightly later. If bodies intersect then, that is the contact.
 /// 4. Else advance by shorter steps, sample more densely, or prove by continuity that a pair has passed.
 /// 5. Else lengthen the interval until the bodies are proven to stay separate again. The time before that is
 ///    reported as ambiguous (`doubtful`).
@@ -161,7 +161,7 @@ void FirstContactSearch::search_by_distance(double end) {
   }
 }
 
-/// Advances a pair from the states at the interval's begin while it is proven separate and steps are at least
+/// Advances a pair from the states at the interval's start while it is proven separate and steps are at least
 /// `least`. Returns the time reached.
 double FirstContactSearch::advance(SimplexPair pair, const PieceState& at_a, const PieceState& at_b,
                                    TimeSpan span, double least) {
@@ -223,10 +223,10 @@ double FirstContactSearch::look_closer(double t, double end) {
   return look_further(until, end);
 }
 
-/// Runs the exact query at a few times right after the interval's begin. Returns true, and records the
+/// Runs the exact query at a few times right after the interval's start. Returns true, and records the
 /// contact, if one is found, as for bodies that pass each other in less than the tolerance.
 bool FirstContactSearch::meets_right_after(TimeSpan span) {
-  // Sample far more densely than the tolerance, and increasingly towards the begin.
+  // Sample far more densely than the tolerance, and increasingly towards the start.
   for (const double share : {0x1p-24, 0x1p-16, 0x1p-8}) {
     const double t = std::max(span.begin + share * step_tolerance(), std::nextafter(span.begin, 2));
     if (t >= span.end) return false;
@@ -363,7 +363,7 @@ bool FirstContactSearch::found_between(TimeSpan span) {
 void FirstContactSearch::contact_at_last(TimeSpan span, SimplexPair pair) {
   double none = span.begin;
   tell(span.begin, span.end);
-  // Contact need not be monotone in t, so the begin of the interval remains t0.
+  // Contact need not be monotone in t, so the start of the interval remains t0.
   while (span.end - none > tolerance_ / 2 && !is_spent()) {
     const double middle = none + (span.end - none) / 2;
     if (!(middle > none && middle < span.end)) break;

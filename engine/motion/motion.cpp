@@ -135,7 +135,7 @@ Motion Motion::key_frames(std::span<const KeyFrame> frames) {
 }
 
 PieceState state_of(const Motion::Piece& piece, double t) {
-  // s is 0 at the begin of the piece and 1 at its end.
+  // s is 0 at the start of the piece and 1 at its end.
   const Real s = (static_cast<Real>(t) - static_cast<Real>(piece.begin)) /
                  (static_cast<Real>(piece.end) - static_cast<Real>(piece.begin));
   const Vector from = piece.from.cast<Real>(), to = piece.to.cast<Real>();

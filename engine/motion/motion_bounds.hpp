@@ -30,7 +30,7 @@ struct PieceState {
   Eigen::Matrix3d turned;  ///< r exp(s [turn])
 };
 
-/// Returns the state of a piece at a t between its begin and its end.
+/// Returns the state of a piece at a t between its start and its end.
 PieceState state_of(const Motion::Piece& piece, double t);
 
 /// Covers a dozen roundings of non-negative numbers.
