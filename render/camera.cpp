@@ -92,8 +92,8 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
   if (!(options.view.from.squaredNorm() > 0)) throw InputError("a camera's direction must not be zero");
   // Step 1: the direction is given, so only a translation is unknown. Work in the camera's axes.
   const Matrix3d axes = axes_of(-options.view.from, options.view.up);
-  Vector3d origin =
-      Vector3d::Zero();  // points are relative to their centroid, for precision far from the origin
+  // Points are relative to their centroid, for precision far from the origin.
+  Vector3d origin = Vector3d::Zero();
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : points) box.extend(p);
   origin = box.center();

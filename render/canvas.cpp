@@ -132,8 +132,8 @@ class CairoCanvas : public Canvas {
     cairo_translate(c_, place.min().x(), place.min().y());
     cairo_scale(c_, place.sizes().x() / image.width(), place.sizes().y() / image.height());
     cairo_set_source_surface(c_, surface.get(), 0, 0);
-    cairo_pattern_set_filter(cairo_get_source(c_),
-                             CAIRO_FILTER_NEAREST);  // keep the picture's pixels, without interpolation
+    // Keep the picture's pixels, without interpolation.
+    cairo_pattern_set_filter(cairo_get_source(c_), CAIRO_FILTER_NEAREST);
     cairo_paint(c_);
     cairo_restore(c_);
   }

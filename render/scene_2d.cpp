@@ -122,8 +122,8 @@ class Scene2dBuilder {
       }
     }
     add_lines(inside, style_.pale(body_, 0.15), 1.1F, 0);
-    if (!c_.building())
-      add_lines(gone, style_.pale(body_, 0.45), 1, 5);  // in a construction these regions do not exist yet
+    // In a construction these regions do not exist yet.
+    if (!c_.building()) add_lines(gone, style_.pale(body_, 0.45), 1, 5);
     if (!gone.empty() && !c_.building())
       c_.add_key(Mark::dashed, style_.pale(body_, 0.45), c_.name() + ", refined away");
   }

@@ -31,8 +31,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
-  constexpr std::size_t kLongestWord =
-      64;  // longer words are not typing errors; bounds the quadratic table above
+  // Longer words are not typing errors; bounds the quadratic table above.
+  constexpr std::size_t kLongestWord = 64;
   if (word.size() > kLongestWord) return {};
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;

@@ -29,8 +29,8 @@ double largest_distance(const Mesh& from, const Mesh& to) {
 }
 
 void simplify(Mesh& mesh, std::size_t faces) {
-  const simplification::Count_stop_predicate<Mesh> stop(faces * 3 / 2 +
-                                                        1);  // stops when fewer edges are left
+  // Stops when fewer edges are left.
+  const simplification::Count_stop_predicate<Mesh> stop(faces * 3 / 2 + 1);
   const simplification::GarlandHeckbert_policies<Mesh, Kernel> quadrics(mesh);
   simplification::edge_collapse(
       mesh, stop, CGAL::parameters::get_cost(quadrics.get_cost()).get_placement(quadrics.get_placement()));

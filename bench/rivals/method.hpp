@@ -132,8 +132,8 @@ struct MethodAnswer {
   /// Proven bound: for any point of the answer, the sum of the distances to both bodies; world units.
   /// nullopt: not proven.
   std::optional<double> error_bound;
-  std::vector<Eigen::Vector3d>
-      points;  ///< world frame, if it reports the location of the contact but not the intersecting faces
+  /// World frame; if it reports the location of the contact but not the intersecting faces.
+  std::vector<Eigen::Vector3d> points;
 };
 
 /// A method. Not thread-safe.

@@ -36,8 +36,8 @@ constexpr double kUneven = 2.5;
 
 struct Polygon {
   std::vector<VertexId> corners;  ///< counter-clockwise seen from outside
-  std::vector<double>
-      room;  ///< angle between the face and the part of the solid available to it, at edge (i, i + 1)
+  /// Angle between the face and the part of the solid available to it, at edge (i, i + 1).
+  std::vector<double> room;
   CellId inner = kSolid, outer = kOutside;
   int level = 0;
 };

@@ -303,8 +303,8 @@ class StarSurface {
 
   /// Returns a vertex on an edge shared by faces, identified by its rounded position on the icosahedron.
   VertexId vertex(const Eigen::Vector3d& on_icosahedron) {
-    constexpr double kGrid =
-        1 << 24;  // far finer than the distance of two vertices, far coarser than rounding
+    // Far finer than the distance of two vertices, far coarser than rounding.
+    constexpr double kGrid = 1 << 24;
     const auto key = [&](int i) { return std::llround(on_icosahedron[i] * kGrid); };
     const auto [it, is_new] =
         ids_.try_emplace({key(0), key(1), key(2)}, static_cast<VertexId>(mesh_.vertices.size()));

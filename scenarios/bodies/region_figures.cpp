@@ -121,9 +121,8 @@ std::string why_loose(const LrbRep& rep) {
 
 /// Names the region that refines a large part of the body at once; empty if there is none.
 std::string crowded_region(const LrbRep& rep) {
-  constexpr std::size_t kFew = 200,
-                        kPart =
-                            10;  // minimum number of faces, and minimum share of the real faces (1 / kPart)
+  // At least kFew faces, and 1 / kPart of the real faces.
+  constexpr std::size_t kFew = 200, kPart = 10;
   RegionId worst(0);
   for (RegionId r = 0; r < rep.region_count(); ++r)
     if (rep.floor(r).size() > rep.floor(worst).size()) worst = r;

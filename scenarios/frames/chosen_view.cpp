@@ -13,8 +13,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kWidth = 240, kHeight = 180;  ///< of the pictures used to count hidden points
-constexpr double kNearness =
-    0.15;  ///< weight of closeness to `like`, relative to the visible share of the contacts
+/// Weight of closeness to `like`, relative to the visible share of the contacts.
+constexpr double kNearness = 0.15;
 
 /// Returns the last step with contacts, or the number of steps if there is none.
 std::size_t last_contact(const RecordedRun& recorded) {

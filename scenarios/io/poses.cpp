@@ -43,8 +43,8 @@ std::string shown(std::string_view word) {
 
 /// wanted: the expected content of each line, for the message.
 double number(std::string_view word, const std::string& where, const std::string& wanted) {
-  const std::string_view digits =
-      word.substr(word[0] == '+' ? 1 : 0);  // from_chars does not accept a plus sign
+  // from_chars does not accept a plus sign.
+  const std::string_view digits = word.substr(word[0] == '+' ? 1 : 0);
   double x = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
   if (error == std::errc::result_out_of_range)
@@ -424,8 +424,8 @@ std::string row_text(const Pose& pose, std::string_view between, bool json) {
   for (const double x : rows_of(pose)) {
     if (!out.empty()) out += between;
     out += exact_text(x);
-    if (json && x == 0 && std::signbit(x))
-      out += ".0";  // "-0" would be parsed as an integer, and lose its sign
+    // "-0" would be parsed as an integer, and lose its sign.
+    if (json && x == 0 && std::signbit(x)) out += ".0";
   }
   return out;
 }

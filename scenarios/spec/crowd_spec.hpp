@@ -32,8 +32,8 @@ struct Crowd {
   std::vector<CrowdKind> kinds;
   Eigen::Vector3d room{1, 1, 1};  ///< side lengths of the box, centred at 0. In 2D only x and y are used
   Arrangement arrangement = Arrangement::grid;
-  std::array<double, 2> speed{0,
-                              0};    ///< minimum and maximum distance that a body moves in a step; mesh units
+  /// Minimum and maximum distance that a body moves in a step; mesh units.
+  std::array<double, 2> speed{0, 0};
   std::array<double, 2> spin{0, 0};  ///< minimum and maximum angle in degrees that a body rotates in a step
   std::uint32_t steps = 1;
   CollideRequest request;

@@ -56,10 +56,10 @@ struct Motion {
   };
   Kind kind = Kind::poses;
   std::vector<Pose> poses;  ///< poses: one for each step, applied to B unchanged
-  std::vector<Keyframe>
-      keyframes;  ///< keyframes: positions interpolated linearly, rotations along the shortest arc
-  Eigen::Vector3d from{0, 0,
-                       0};  ///< sweep: position of B; approach: initial position of B, relative to the target
+  /// Keyframes: positions interpolated linearly, rotations along the shortest arc.
+  std::vector<Keyframe> keyframes;
+  /// Sweep: position of B; approach: initial position of B, relative to the target.
+  Eigen::Vector3d from{0, 0, 0};
   Eigen::Vector3d to{0, 0, 0};      ///< sweep
   Eigen::Vector3d target{0, 0, 0};  ///< approach: the point that B's origin moves towards
   Eigen::Vector3d axis{0, 0, 1};    ///< sweep, approach, spin: rotation axis of B

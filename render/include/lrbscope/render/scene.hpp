@@ -122,8 +122,8 @@ struct SceneOptions {
   double explode = 0;      ///< included regions move outward by this share of their distance from the body's
                            ///< centre; 0: not moved
   bool real_edges = true;
-  bool contact_rims =
-      false;        ///< 3D: faces in contact get a border that is visible through faces in front of it
+  /// 3D: faces in contact get a border that is visible through faces in front of it.
+  bool contact_rims = false;
   float scale = 1;  ///< factor of line widths and points: for large pictures and print
   StyleName style = StyleName::screen;
 };

@@ -11,8 +11,8 @@ namespace lrb::trace {
 
 struct Divergence {
   std::optional<EventId> event;  ///< first event that differs or that only one run has
-  std::optional<std::size_t>
-      step;                      ///< index into Trace::steps; nullopt: the runs differ before the first step
+  /// Index into Trace::steps; nullopt: the runs differ before the first step.
+  std::optional<std::size_t> step;
   std::string what;              ///< the field, e.g. "meet" or "body B: hash"
   std::string expected, actual;  ///< its values as text
 

@@ -51,8 +51,8 @@ struct RecorderSettings {
   std::uint32_t event_cap =
       1'000'000;  ///< events beyond this number are counted but not stored (at most kMaxId)
   EventLevel level = EventLevel::faces;
-  std::string
-      engine;  ///< name of another engine whose traversal is recorded over its own trees; empty: lrbscope
+  /// Name of another engine whose traversal is recorded over its own trees; empty: lrbscope.
+  std::string engine;
   bool coherent = false;  ///< each step continues from the previous one
 };
 

@@ -120,8 +120,8 @@ struct Step {
 struct FaceTest {
   SimplexId a{}, b{};
   exact::Meet meet = exact::Meet::disjoint;
-  std::uint16_t depth_a = 0,
-                depth_b = 0;  ///< number of regions between a face and the outside; saturates at 65535
+  /// Number of regions between a face and the outside; saturates at 65535.
+  std::uint16_t depth_a = 0, depth_b = 0;
   TestedBy tested_by = TestedBy::untold;
 };
 /// Refine, coarsen, region.

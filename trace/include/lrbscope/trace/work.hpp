@@ -87,8 +87,8 @@ std::vector<double> box_tests_by_face(const LrbRep& rep, const TreeShape& tree, 
 /// The nodes of one depth of a body's tree, and the visits expected by the surface area heuristic.
 struct DepthWork {
   std::uint32_t nodes = 0;
-  double expected =
-      0;  ///< sum of the nodes' areas / the root's: expected number of them hit by a random line
+  /// Sum of the nodes' areas / the root's: expected number of them hit by a random line.
+  double expected = 0;
   std::uint32_t nodes_visited = 0;  ///< distinct nodes
   std::uint64_t visits = 0, ended = 0, box_tests = 0;
 };
