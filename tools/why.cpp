@@ -28,7 +28,7 @@ struct WhyOptions {
   bool json = false;
 };
 
-/// Two bodies, and where they stand.
+/// Two bodies and their poses.
 struct Scene {
   const LrbRep& a;
   const LrbRep& b;

@@ -12,10 +12,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kWidth = 240, kHeight = 180;  ///< of the pictures in which what is hidden is counted
-constexpr double kNearness = 0.15;          ///< of `like`, against all of the contacts
+constexpr int kWidth = 240, kHeight = 180;  ///< of the pictures used to count hidden points
+/// Weight of closeness to `like`, relative to the visible share of the contacts.
+constexpr double kNearness = 0.15;
 
-/// Returns the last step with contacts; the number of steps if there is none.
+/// Returns the last step with contacts, or the number of steps if there is none.
 std::size_t last_contact(const RecordedRun& recorded) {
   if (recorded.results == nullptr) return recorded.trace->steps.size();
   for (std::size_t i = recorded.results->size(); i-- > 0;)
@@ -39,7 +40,7 @@ std::vector<Vector3d> points_at(const RecordedRun& recorded, std::size_t step) {
 double seen_share(const std::vector<Vector3d>& points, const render::Projection& projection,
                   const render::DepthImage& depths) {
   constexpr double kLift =
-      2.0 / kHeight;  // a curve lies on faces: it is seen if it lies two pixels' width behind them
+      2.0 / kHeight;  // a curve lies on faces: it counts as visible up to two pixels behind them
   std::size_t seen = 0;
   for (const Vector3d& p : points) {
     const Vector3d at = projection.to_screen(projection.to_eye(p));
@@ -50,7 +51,7 @@ double seen_share(const std::vector<Vector3d>& points, const render::Projection&
   return static_cast<double>(seen) / static_cast<double>(points.size());
 }
 
-/// Returns directions all round, at two heights.
+/// Returns directions all around, at two heights.
 std::vector<Vector3d> directions(const Vector3d& up) {
   constexpr int kTurns = 16;
   const Vector3d u = up.normalized(), side = u.unitOrthogonal(), third = u.cross(side);
@@ -63,11 +64,11 @@ std::vector<Vector3d> directions(const Vector3d& up) {
   return out;
 }
 
-/// Returns true if a close-up of the contacts would show hardly less than both bodies.
+/// Returns true if a close-up of the contacts would show almost as much as a view of both bodies.
 bool close_up_is_whole(const RecordedRun& recorded, const render::FrameSpec::View& close_up) {
   const std::size_t step = last_contact(recorded);
   if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return false;
-  constexpr double kCloser = 1.8;  // a close-up is to show things so many times as large
+  constexpr double kCloser = 1.8;  // minimum magnification of a close-up
   Framing framing;
   framing.points = points_at(recorded, step);
   for (const CollideResult& result : *recorded.results)

@@ -1,5 +1,5 @@
 #pragma once
-/// Chooses where to look from, when nobody says.
+/// Chooses the default view direction.
 
 #include <Eigen/Geometry>
 
@@ -8,14 +8,14 @@
 
 namespace lrb::run {
 
-/// Returns the direction, of many all round and from above, from which the bodies hide least of the contacts
-/// of the last step that has any; where several hide about as little, the one nearest to `like`. Returns
-/// `like` if there is no contact.
+/// Returns the direction, of many all around and from above, from which the bodies hide least of the contacts
+/// of the last step with contacts; of similar ones, the one closest to `like`. Returns `like` if there is no
+/// contact.
 Eigen::Vector3d least_hidden(const RecordedRun& recorded, const Eigen::Vector3d& up,
                              const Eigen::Vector3d& like);
 
-/// Shows both bodies wholly in close-ups of the contacts that would be hardly closer, and so cut off parts of
-/// them for nothing.
+/// Shows both bodies completely in close-ups of the contacts that would magnify little and only cut off
+/// parts.
 void widen_close_ups(const RecordedRun& recorded, std::vector<render::FrameSpec::View>& views);
 
 }  // namespace lrb::run

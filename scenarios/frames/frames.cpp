@@ -20,8 +20,8 @@
 namespace lrb::run {
 namespace {
 
-/// The texts of all frames. They are laid out first, because they decide how much room the pictures get,
-/// which is the same in every frame.
+/// The texts of all frames. They are laid out first, because they determine the size of the pictures, which
+/// is the same in every frame.
 struct Script {
   std::vector<render::Overlay> overlays;
   render::PixelRect picture;
@@ -95,7 +95,7 @@ class Painter {
     return out;
   }
 
-  /// Writes files called `name`.svg, or `name`_1.svg and so on.
+  /// Writes files named `name`.svg, or `name`_1.svg and so on.
   void write_svg(const FrameState& state, double progress, const std::string& name,
                  const std::string& title) const {
     const std::vector<std::string> all = svgs(state, progress, title);
@@ -117,7 +117,7 @@ class Painter {
   render::Image picture_;
 };
 
-/// What all frames of a run have in common. There must be at least one event.
+/// Data common to all frames of a run. There must be at least one event.
 struct FrameJob {
   const render::FrameSpec& spec;
   std::vector<trace::EventId> events;
@@ -133,11 +133,11 @@ struct FrameJob {
         script(write_script(state, events, p.title, s)),
         painter(s, script.picture, std::move(framing)) {}
 
-  /// Returns the share of the sequence that has passed at frame i, for orbits.
+  /// Returns the elapsed share of the sequence at frame i, for orbits.
   double passed(std::size_t i) const {
     return events.size() > 1 ? static_cast<double>(i) / static_cast<double>(events.size() - 1) : 0;
   }
-  /// Draws frame i; `state` must stand at its event.
+  /// Draws frame i; `state` must be at its event.
   render::Image frame(std::size_t i) {
     const render::Rgba back = paper_of(spec).value_or(render::kTransparent);
     return render::compose_frame(painter.paint(state, passed(i)), script.picture, script.overlays[i],
@@ -149,10 +149,10 @@ Framing framing_of(const RecordedRun& p, const render::FrameSpec& spec) {
   return frame_sequence(p.reps, *p.trace, results_of(p), spec);
 }
 
-/// The panels of a montage, gathered while the frames are drawn.
+/// The panels of a montage, collected while the frames are drawn.
 struct Montage {
   std::vector<render::Panel> panels;
-  std::vector<std::string> svgs;  ///< of panels with one view; else none
+  std::vector<std::string> svgs;  ///< for panels with one view; else empty
 
   std::vector<std::string> write(const RecordedRun& p, const render::FrameSpec& spec,
                                  const std::string& folder, const render::PngOptions& png,
@@ -179,7 +179,7 @@ struct Montage {
   }
 
  private:
-  /// Returns the caption that a paper prints under the figure.
+  /// Returns the caption to be printed under the figure.
   std::string caption(std::string text) const {
     for (std::size_t i = 0; i < panels.size(); ++i)
       text += (i == 0 ? " " : "; ") + (panels.size() > 1 ? render::panel_letter(i) + " " : "") +
@@ -188,7 +188,7 @@ struct Montage {
   }
 };
 
-/// Throws InputError for colours or boxes that come from a walk of trees, where none is recorded.
+/// Throws InputError for colours or boxes that need a recorded tree traversal if there is none.
 void check_colours(const RecordedRun& recorded, const render::FrameSpec& spec) {
   if (render::needed_level(spec) == EventLevel::faces) return;
   const std::string what = render::needed_level(spec.colour_by) == EventLevel::faces

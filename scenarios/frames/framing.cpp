@@ -9,7 +9,7 @@
 namespace lrb::run {
 namespace {
 
-/// Returns some of many points that span nearly the same: the extreme ones in a few dozen directions.
+/// Returns a subset of points with almost the same extent: the extreme ones in a few dozen directions.
 std::vector<Eigen::Vector3d> extremes(const std::vector<Eigen::Vector3d>& points) {
   constexpr int kTurns = 24, kRows = 7;
   std::vector<Eigen::Vector3d> out;
@@ -27,7 +27,7 @@ std::vector<Eigen::Vector3d> extremes(const std::vector<Eigen::Vector3d>& points
   return out;
 }
 
-/// Adds the corners of all faces that meet: for coarse answers, which have no contact regions.
+/// Adds the corners of all intersecting faces: for coarse answers, which have no contact regions.
 void add_contacts(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
                   std::vector<Eigen::Vector3d>& points) {
   for (std::size_t step = 0; step < trace.steps.size(); ++step)
@@ -40,8 +40,8 @@ void add_contacts(const std::vector<const LrbRep*>& reps, const trace::Trace& tr
     }
 }
 
-/// Returns what a body shows: all its wrappers, with regions moved apart where they are; or the isolated
-/// regions, with some room round them where the rest is there too.
+/// Returns the points that a body shows: all its wrappers, with displaced regions if exploded; or the
+/// isolated regions, with a margin around them if the rest is shown as well.
 std::vector<Eigen::Vector3d> shown_points(const LrbRep& rep, const std::vector<RegionId>& isolated,
                                           bool alone, const render::FrameSpec& spec) {
   std::vector<Eigen::Vector3d> out;

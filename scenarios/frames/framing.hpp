@@ -9,8 +9,8 @@
 
 namespace lrb::run {
 
-/// Collects what a sequence shows. Where `spec` isolates regions, that is these regions, with some room
-/// round them if the rest is there as a ghost; where it explodes bodies, regions as they are moved.
+/// Collects the points that a sequence shows. If `spec` isolates regions, these regions, with a margin if the
+/// rest is shown as a ghost; if it explodes bodies, the displaced regions.
 Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
                        const std::vector<CollideResult>& results, const render::FrameSpec& spec);
 
