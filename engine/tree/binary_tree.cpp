@@ -22,6 +22,27 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
+/// A box that grows. The fourth coordinate is 0: it fills a vector register.
+struct GrowingBox {
+  Eigen::Array4d low = Eigen::Array4d::Constant(kInfinity), high = -low;
+
+  GrowingBox() = default;
+  explicit GrowingBox(const Box& b)
+      : low(b.min().x(), b.min().y(), b.min().z(), 0), high(b.max().x(), b.max().y(), b.max().z(), 0) {}
+  void extend(const Eigen::Vector3d& x) {
+    const Eigen::Array4d y(x.x(), x.y(), x.z(), 0);
+    low = low.min(y);
+    high = high.max(y);
+  }
+  void extend(const GrowingBox& box) {
+    low = low.min(box.low);
+    high = high.max(box.high);
+  }
+  double cost() const {
+    return box_cost(Box(Eigen::Vector3d(low.head<3>()), Eigen::Vector3d(high.head<3>())));
+  }
+};
+
 class BinaryBuilder {
  public:
   BinaryBuilder(Soup& soup, Workers& workers, Splits splits)
@@ -64,7 +85,7 @@ class BinaryBuilder {
   void build_fitted(std::uint32_t self, std::uint32_t begin, std::uint32_t end, double cost, FittedCuts& cuts,
                     std::uint32_t first) {
     if (end - begin <= kTreeWidth) {
-      nodes_[self] = {begin, end, kNull, kNull, {}, cost};
+      nodes_[self] = {begin, end, kNull, kNull, {}, {}, cost};
       return;
     }
     // The halves' costs were computed to choose the cut, and are stored in the children.
@@ -81,7 +102,7 @@ class BinaryBuilder {
                                                std::uint32_t end, double cost) {
     // Preorder: the left subtree follows its parent, and its size follows from the number of its leaves.
     const std::uint32_t left = self + 1, right = left + nodes_for(middle - begin);
-    nodes_[self] = {begin, end, left, right, {}, cost};
+    nodes_[self] = {begin, end, left, right, {}, {}, cost};
     return {left, right};
   }
 
@@ -89,10 +110,16 @@ class BinaryBuilder {
   void measure() {
     // Children come after parents, so reverse order visits children first.
     for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
-      if (node->is_leaf())
-        for (const std::uint32_t s : soup_.listed(node->begin, node->end)) node->box.extend(soup_.box[s]);
-      else
+      if (node->is_leaf()) {
+        for (const std::uint32_t s : soup_.listed(node->begin, node->end)) {
+          node->box.extend(soup_.box[s]);
+          node->spread += soup_.spread[s];
+        }
+      } else {
         node->box = nodes_[node->left].box.merged(nodes_[node->right].box);
+        node->spread = nodes_[node->left].spread;
+        node->spread += nodes_[node->right].spread;
+      }
       if (!is_fitted(node->end - node->begin)) node->cost = box_cost(node->box);
     }
   }
@@ -106,18 +133,55 @@ class BinaryBuilder {
 
   std::uint32_t split(std::uint32_t begin, std::uint32_t end) {
     const Split best = splits_.all_cuts ? best_of_all(begin, end) : best_binned(begin, end);
-    const auto first = soup_.order.begin() + begin;
-    // A partition in linear time: the order inside the halves does not matter.
-    std::nth_element(first, first + best.left, first + (end - begin), soup_.order_on(best.axis));
+    // A stable partition in linear time. The simplices of each half stay in the order of the mesh, in which
+    // neighbours mostly are neighbours in memory.
+    std::vector<std::uint32_t> listed(soup_.order.begin() + begin, soup_.order.begin() + end), right;
+    const auto before = soup_.order_on(best.axis);
+    std::nth_element(listed.begin(), listed.begin() + best.left, listed.end(), before);
+    const std::uint32_t pivot = listed[best.left];
+    right.reserve(end - begin - best.left);
+    auto to = soup_.order.begin() + begin;
+    for (const std::uint32_t s : std::vector(to, soup_.order.begin() + end))
+      if (before(s, pivot))
+        *to++ = s;
+      else
+        right.push_back(s);
+    std::copy(right.begin(), right.end(), to);
     return begin + best.left;
   }
 
+  /// The boxes and numbers of the simplices in each bin of an axis.
+  struct Bins {
+    double from = 0, per_unit = 0;  ///< where the first bin begins, and bins in a unit of length
+    std::array<GrowingBox, kBins> box;
+    std::array<std::uint32_t, kBins> count{};
+  };
+
   Split best_binned(std::uint32_t begin, std::uint32_t end) const {
-    Box centres;
+    GrowingBox centres;
     // Bins divide the range of centres, not of boxes, so that every bin is on one side of each cut.
     for (std::uint32_t i = begin; i < end; ++i) centres.extend(soup_.centre[soup_.order[i]]);
+    std::array<Bins, 3> bins;
+    for (int axis = 0; axis < 3; ++axis) {
+      bins[axis].from = centres.low[axis];
+      bins[axis].per_unit = kBins / (centres.high[axis] - centres.low[axis]);
+      // The centres (nearly) coincide on this axis: no cut across it.
+      if (!std::isfinite(bins[axis].per_unit)) bins[axis].per_unit = 0;
+    }
+    // Pass 1: the box and number of simplices of each bin, on all axes.
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const std::uint32_t s = soup_.order[i];
+      const GrowingBox box(soup_.box[s]);
+      for (int axis = 0; axis < 3; ++axis) {
+        Bins& of = bins[axis];
+        const int b = std::min(kBins - 1, static_cast<int>((soup_.centre[s][axis] - of.from) * of.per_unit));
+        of.box[b].extend(box);
+        ++of.count[b];
+      }
+    }
     Split best;
-    for (int axis = 0; axis < 3; ++axis) try_axis(begin, end, centres, axis, best.cost, best.axis, best.left);
+    for (int axis = 0; axis < 3; ++axis)
+      if (bins[axis].per_unit > 0) try_axis(bins[axis], end - begin, axis, best);
     const std::uint32_t n = end - begin;
     // Round the cut to a multiple of kTreeWidth, so that all leaves except the last are full. Keep both
     // halves nonempty.
@@ -153,43 +217,26 @@ class BinaryBuilder {
     return best;
   }
 
-  void try_axis(std::uint32_t begin, std::uint32_t end, const Box& centres, int axis, double& best_cost,
-                int& best_axis, std::uint32_t& best_left) const {
-    const double from = centres.min()[axis], width = centres.sizes()[axis];
-    const double bins = kBins / width;  // per unit of length
-    // The centres (nearly) coincide on this axis: no cut across it.
-    if (!std::isfinite(bins)) return;
-    std::array<Box, kBins> bin_box;
-    std::array<std::uint32_t, kBins> bin_count{};
-    // Pass 1: the box and number of simplices of each bin.
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const std::uint32_t s = soup_.order[i];
-      const int b = std::min(kBins - 1, static_cast<int>((soup_.centre[s][axis] - from) * bins));
-      bin_box[b].extend(soup_.box[s]);
-      ++bin_count[b];
-    }
+  /// Replaces `best` if a cut between two bins of an axis costs less.
+  static void try_axis(const Bins& bins, std::uint32_t count, int axis, Split& best) {
     // Pass 2, from the right: the cost of everything right of each boundary.
     std::array<double, kBins> right_cost{};
-    Box right;
+    GrowingBox right;
     std::uint32_t right_count = 0;
     for (int b = kBins - 1; b > 0; --b) {
-      right.extend(bin_box[b]);
-      right_count += bin_count[b];
-      right_cost[b] = right_count ? box_cost(right) * leaves_for(right_count) : 0;
+      right.extend(bins.box[b]);
+      right_count += bins.count[b];
+      right_cost[b] = right_count ? right.cost() * leaves_for(right_count) : 0;
     }
     // Pass 3, from the left: the cost of each cut, as box cost times number of leaves.
-    Box left;
+    GrowingBox left;
     std::uint32_t left_count = 0;
     for (int b = 1; b < kBins; ++b) {
-      left.extend(bin_box[b - 1]);
-      left_count += bin_count[b - 1];
-      if (left_count == 0 || left_count == end - begin) continue;
-      const double cost = box_cost(left) * leaves_for(left_count) + right_cost[b];
-      if (cost < best_cost) {
-        best_cost = cost;
-        best_axis = axis;
-        best_left = left_count;
-      }
+      left.extend(bins.box[b - 1]);
+      left_count += bins.count[b - 1];
+      if (left_count == 0 || left_count == count) continue;
+      const double cost = left.cost() * leaves_for(left_count) + right_cost[b];
+      if (cost < best.cost) best = {cost, axis, left_count};
     }
   }
 

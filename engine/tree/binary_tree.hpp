@@ -19,6 +19,7 @@ struct BinaryNode {
   std::uint32_t begin, end;  ///< range in Soup::order
   std::uint32_t left = kNull, right = kNull;
   Eigen::AlignedBox3d box;  ///< on the coordinate axes
+  Spread spread{};          ///< sum of the moments of its simplices, as in Soup
   double cost = 0;          ///< box_cost() of the tight box, or of `box` for ranges that are not fitted
   bool is_leaf() const { return left == kNull; }
 };

@@ -10,8 +10,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
@@ -54,6 +56,45 @@ std::uint32_t number_at(std::uint64_t place) {
   return static_cast<std::uint32_t>(place);
 }
 
+/// Sorts keys that are listed by ascending number. Radix sort, 11 bits of the position at a time; `buffer` is
+/// overwritten.
+void sort_places(std::vector<std::uint64_t>& places, std::vector<std::uint64_t>& buffer) {
+  constexpr std::size_t kFew = 256;  // clearing the counters would take longer
+  if (places.size() <= kFew) {
+    std::sort(places.begin(), places.end());
+    return;
+  }
+  constexpr int kBits = 11, kRounds = 3;
+  constexpr std::uint64_t kMask = (1u << kBits) - 1;
+  std::array<std::array<std::uint32_t, kMask + 1>, kRounds> begin{};
+  for (const std::uint64_t place : places)
+    for (int round = 0; round < kRounds; ++round) ++begin[round][place >> (32 + kBits * round) & kMask];
+  buffer.resize(places.size());
+  for (int round = 0; round < kRounds; ++round) {
+    std::uint32_t sum = 0;
+    for (std::uint32_t& count : begin[round]) sum += std::exchange(count, sum);
+    // Stable, so that equal positions stay in the order of their numbers.
+    for (const std::uint64_t place : places)
+      buffer[begin[round][place >> (32 + kBits * round) & kMask]++] = place;
+    places.swap(buffer);
+  }
+}
+
+/// A box in float that grows.
+struct FloatBox {
+  Eigen::Array4f low = Eigen::Array4f::Constant(std::numeric_limits<float>::infinity()), high = -low;
+
+  void extend(const Eigen::Array4f& x) {
+    low = low.min(x);
+    high = high.max(x);
+  }
+  /// Returns box_cost() of the box at another scale.
+  double cost(double scale) const {
+    const Eigen::Array3d e = (high - low).head<3>().cast<double>() * scale;
+    return e[0] * e[1] + e[1] * e[2] + e[2] * e[0] + kLengthCost * (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+  }
+};
+
 /// Returns the cost of a cut with these numbers of simplices on its left and right.
 float sum_of_costs(const FittedCuts::Halves& halves, std::uint32_t left, std::uint32_t right) {
   return static_cast<float>(halves.left_cost * leaves_for(left) + halves.right_cost * leaves_for(right));
@@ -70,42 +111,39 @@ FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplice
   // Number the simplices independently of earlier splits, so that ties are broken consistently.
   std::sort(simplices_.begin(), simplices_.end());
   const std::size_t n = simplices_.size();
-  // The only sorts along coordinate axes; cuts preserve these orders.
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<std::uint32_t>& order = coordinate_[axis];
-    order.resize(n);
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::sort(order, soup.order_on(axis), [&](std::uint32_t i) { return simplices_[i]; });
-  }
-  is_left_.resize(n);
-  spread_.resize(n);
   size_ = static_cast<std::uint32_t>(n);
-  measure();
-  whole_cost_ = fitted_box_cost(along(0));
+  coordinate_[0].resize(n);
+  std::iota(coordinate_[0].begin(), coordinate_[0].end(), 0u);
+  spread_.reserve(n);
+  for (const std::uint32_t s : simplices_) spread_.push_back(soup_.spread[s]);
+  local_.resize(n);
+  is_left_.resize(n);
+  localise();
+  // The only sorts along coordinate axes; cuts preserve these orders. Axis 0 comes last because along(0) is
+  // read by all three.
+  for (int axis = 2; axis >= 0; --axis) order_along(Vector3d::Unit(axis), coordinate_[axis]);
+  whole_cost_ = fitted_box_cost(along(0), sum());
 }
 
 FittedCuts::Halves FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
   // Step 1: the moments of the range.
   begin_ = begin;
   size_ = end - begin;
-  const auto sum = [&] {
-    Spread all;
-    for (const std::uint32_t i : along(0)) all += spread_[i];
-    return all;
-  };
   all_ = sum();
   // The range has become small compared with the one used for measuring: use a closer origin and scale.
   if (all_.variance() < kMeasureAgain) {
+    localise();
     measure();
     all_ = sum();
   }
   // Eigenvalues ascend, so column 2 is the longest axis.
   if (effort_.principal > 0) {
-    const Matrix3d axes = eigenvectors_of_symmetric(all_.covariance());
-    for (int k = 0; k < effort_.principal; ++k) order_along_principal(k, axes.col(2 - k));
+    const Matrix3d axes = principal_axes(all_);
+    for (int k = 0; k < effort_.principal; ++k) order_along(axes.col(2 - k), principal_[k]);
   }
   // Step 2: rank all cuts.
   cuts_.clear();
+  left_spread_.clear();
   for (int way = 0; way < 3 + effort_.principal; ++way) rank(way);
   constexpr std::size_t kPerCut = 128;  // ranks are less reliable for more simplices
   // Step 3: measure the best ranked ones, in order of rank.
@@ -140,28 +178,44 @@ std::span<const std::uint32_t> FittedCuts::along(int way) const {
   return way < 3 ? std::span(coordinate_[way]).subspan(begin_, size_) : principal_[way - 3];
 }
 
-/// Measures the moments of the simplices of the range.
-void FittedCuts::measure() {
-  // Moments are relative to the centre of the range and scaled by its diagonal, which limits cancellation.
-  Box bounds;
-  for (const std::uint32_t i : along(0)) bounds.extend(soup_.box[simplices_[i]]);
-  const Vector3d origin = bounds.center();
-  double scale = 1 / bounds.sizes().norm();
-  if (!std::isfinite(scale)) scale = 1;
-  for (const std::uint32_t i : along(0)) spread_[i] = Spread(soup_.corners[simplices_[i]], origin, scale);
+Spread FittedCuts::sum() const {
+  Spread all;
+  for (const std::uint32_t i : along(0)) all += spread_[i];
+  return all;
 }
 
-/// Orders the range along its k-th principal axis.
-void FittedCuts::order_along_principal(int k, const Vector3d& direction) {
-  const Vector3d& near = soup_.centre[simplices_[along(0)[size_ / 2]]];  // keys are rounded to float
-  places_.clear();
-  for (const std::uint32_t i : along(0)) {
-    const Vector3d seen = soup_.centre[simplices_[i]] - near;
-    places_.push_back(place_at(static_cast<float>(direction.dot(seen)), i));
+/// Converts the corners of the range's simplices to float, relative to the centre of the range and scaled by
+/// its diagonal, so that floats are precise enough.
+void FittedCuts::localise() {
+  Box bounds;
+  for (const std::uint32_t i : along(0)) bounds.extend(soup_.box[simplices_[i]]);
+  origin_ = bounds.center();
+  scale_ = 1 / bounds.sizes().norm();
+  if (!std::isfinite(scale_)) scale_ = 1;
+  for (const std::uint32_t i : along(0))
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d x = scale_ * (soup_.corners[simplices_[i]][k] - origin_);
+      local_[i][k] = {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]), 0.0f};
+    }
+}
+
+/// Measures the moments of the simplices of the range relative to the same centre and scale, which limits
+/// cancellation.
+void FittedCuts::measure() {
+  for (const std::uint32_t i : along(0)) spread_[i] = Spread(soup_.corners[simplices_[i]], origin_, scale_);
+}
+
+/// Orders the range along a direction by the centres of boxes, rounded to float. Ties: by number.
+void FittedCuts::order_along(const Vector3d& direction, std::vector<std::uint32_t>& order) {
+  places_.resize(size_);
+  for (std::uint32_t k = 0; k < size_; ++k) {
+    const std::uint32_t i = along(0)[k];
+    const Vector3d seen = soup_.centre[simplices_[i]] - origin_;
+    places_[k] = place_at(static_cast<float>(scale_ * direction.dot(seen)), i);
   }
-  std::sort(places_.begin(), places_.end());
-  principal_[k].clear();
-  for (const std::uint64_t place : places_) principal_[k].push_back(number_at(place));
+  sort_places(places_, sorted_);
+  order.resize(size_);
+  for (std::uint32_t k = 0; k < size_; ++k) order[k] = number_at(places_[k]);
 }
 
 /// Adds all cuts across one direction, with their estimated costs.
@@ -175,33 +229,39 @@ void FittedCuts::rank(int way) {
     const std::uint32_t right = size_ - i;
     const double cost = ranked_cost(left) * leaves_for(i) + ranked_cost(all_ - left) * leaves_for(right);
     cuts_.push_back({static_cast<float>(cost), larger_side(i, size_), way, i});
+    left_spread_.push_back(left);
   }
 }
 
 /// Returns the costs of the halves of a cut. The right cost is infinite if the left one alone exceeds `most`.
 FittedCuts::Halves FittedCuts::measured(const Cut& cut, float most) const {
   const std::span<const std::uint32_t> order = along(cut.way);
-  Halves halves{0, fitted_box_cost(order.first(cut.left)), 0};
+  // rank() adds the same number of cuts for every direction, in order.
+  const std::uint32_t cuts = (size_ - 1) / kTreeWidth;
+  const Spread& left = left_spread_[static_cast<std::size_t>(cut.way) * cuts + cut.left / kTreeWidth - 1];
+  Halves halves{0, fitted_box_cost(order.first(cut.left), left), 0};
   // Stop early: costs only add up, so the cut cannot win.
   const bool too_much = sum_of_costs(halves, cut.left, 0) > most;
-  halves.right_cost = too_much ? kInfinity : fitted_box_cost(order.subspan(cut.left));
+  halves.right_cost = too_much ? kInfinity : fitted_box_cost(order.subspan(cut.left), all_ - left);
   return halves;
 }
 
 /// Returns the cost of the tight box of some simplices.
-double FittedCuts::fitted_box_cost(std::span<const std::uint32_t> some) const {
-  Spread spread;
-  // The candidates of fit_frame(): the coordinate axes and the principal axes.
-  Box straight, turned;
-  for (const std::uint32_t i : some) {
-    spread += spread_[i];
-    straight.extend(soup_.box[simplices_[i]]);
-  }
-  const Matrix3d axes = eigenvectors_of_symmetric(spread.covariance()).transpose();
-  const Vector3d& near = soup_.centre[simplices_[some.front()]];
+double FittedCuts::fitted_box_cost(std::span<const std::uint32_t> some, const Spread& spread) const {
+  // The candidates for a node's frame: the coordinate axes and the principal axes. The rotation maps x to the
+  // sum of x[k] * column[k].
+  const Matrix3d axes = principal_axes(spread);
+  Eigen::Array4f column[3];
+  for (int k = 0; k < 3; ++k)
+    column[k] = {static_cast<float>(axes(k, 0)), static_cast<float>(axes(k, 1)),
+                 static_cast<float>(axes(k, 2)), 0.0f};
+  FloatBox straight, turned;
   for (const std::uint32_t i : some)
-    for (const Vector3d& x : soup_.corners[simplices_[i]]) turned.extend(axes * (x - near));
-  return std::min(box_cost(straight), box_cost(turned));
+    for (const Eigen::Array4f& x : local_[i]) {
+      straight.extend(x);
+      turned.extend(x[0] * column[0] + x[1] * column[1] + x[2] * column[2]);
+    }
+  return std::min(straight.cost(1 / scale_), turned.cost(1 / scale_));
 }
 
 /// Cuts the range: partitions the order along each axis into left and right, stably.
@@ -235,30 +295,35 @@ bool is_orthonormal(const Matrix3d& axes) {
 
 Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, double unit)
     : simplices(simplices_) {
-  // The unit is a power of two: 2^(exponent - 1).
+  // The unit is a power of two: 2^(exponent - 1). Two factors, as its inverse may be out of range.
   int exponent = 0;
   std::frexp(unit, &exponent);
-  const auto to_units = [e = 1 - exponent](const Vector3d& x) -> Vector3d {
-    return {std::ldexp(x.x(), e), std::ldexp(x.y(), e), std::ldexp(x.z(), e)};
-  };
+  const double once = std::ldexp(1.0, (1 - exponent) / 2),
+               again = std::ldexp(1.0, 1 - exponent - (1 - exponent) / 2);
   const auto n = static_cast<std::uint32_t>(simplices.size());
   corners.resize(n);
   box.resize(n);
   centre.resize(n);
   order.resize(n);
   std::iota(order.begin(), order.end(), 0u);
+  Box bounds;
   for (std::uint32_t s = 0; s < n; ++s) {
     VertexId v[3];
     body.simplex(simplices[s], v);
     // A segment is a triangle whose last two corners coincide.
     if (body.dim == 2) v[2] = v[1];
     for (int k = 0; k < 3; ++k) {
-      corners[s][k] = to_units(body.vertices[v[k]]);
+      corners[s][k] = body.vertices[v[k]] * once * again;
       box[s].extend(corners[s][k]);
     }
     // The centre of the box, not the centroid: cuts are evaluated by boxes.
     centre[s] = 0.5 * (box[s].min() + box[s].max());
+    bounds.extend(box[s]);
   }
+  double scale = 1 / bounds.sizes().norm();
+  if (!std::isfinite(scale)) scale = 1;
+  spread.reserve(n);
+  for (std::uint32_t s = 0; s < n; ++s) spread.emplace_back(corners[s], bounds.center(), scale);
 }
 
 Spread::Spread(const std::array<Vector3d, 3>& corners, const Vector3d& origin, double scale) {
@@ -288,26 +353,76 @@ Matrix3d Spread::covariance() const {
   return c;
 }
 
-Box box_in_frame(const Soup& soup, std::span<const std::uint32_t> which, const Frame& frame) {
-  Box box;
-  for (const std::uint32_t s : which)
-    for (const Vector3d& x : soup.corners[s]) box.extend(frame.axes * (x - frame.origin));
-  return box;
+Matrix3d principal_axes(const Spread& spread) {
+  // Jacobi's method, cyclic: each rotation removes one product, and a few rounds remove all.
+  Matrix3d c = spread.covariance(), axes = Matrix3d::Identity();
+  constexpr int kRounds = 6;
+  for (int round = 0; round < kRounds; ++round) {
+    const double off = c(0, 1) * c(0, 1) + c(0, 2) * c(0, 2) + c(1, 2) * c(1, 2);
+    const double on = c(0, 0) * c(0, 0) + c(1, 1) * c(1, 1) + c(2, 2) * c(2, 2);
+    constexpr double kNone = 0x1p-44;  // of squares: the axes are exact to about 2^-22, as floats are
+    if (!(off > kNone * on)) break;
+    for (int k = 0; k < 3; ++k) {
+      const int p = k == 2 ? 1 : 0, q = k == 0 ? 1 : 2, r = 3 - p - q;
+      if (c(p, q) == 0) continue;
+      // The smaller of the two angles that make c(p, q) zero, by its tangent.
+      const double half = (c(q, q) - c(p, p)) / (2 * c(p, q));
+      const double tangent = (half < 0 ? -1 : 1) / (std::abs(half) + std::sqrt(half * half + 1));
+      const double cosine = 1 / std::sqrt(tangent * tangent + 1), sine = tangent * cosine;
+      c(p, p) -= tangent * c(p, q);
+      c(q, q) += tangent * c(p, q);
+      c(p, q) = 0;
+      const auto turn = [&](double& x, double& y) {
+        const double before = x;
+        x = cosine * before - sine * y;
+        y = sine * before + cosine * y;
+      };
+      turn(c(std::min(p, r), std::max(p, r)), c(std::min(q, r), std::max(q, r)));
+      for (int i = 0; i < 3; ++i) turn(axes(i, p), axes(i, q));
+    }
+  }
+  // Shortest first.
+  for (const auto& [i, j] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{0, 1}})
+    if (c(j, j) < c(i, i)) {
+      std::swap(c(i, i), c(j, j));
+      axes.col(i).swap(axes.col(j));
+    }
+  return axes;
 }
 
-Frame fit_frame(const Soup& soup, std::span<const std::uint32_t> which, const Box& bounds) {
-  // Without extent there are no principal axes: 1 / 0 is not finite.
+Box box_in_frame(const Soup& soup, std::span<const std::uint32_t> which, const Frame& frame) {
+  // Coordinates side by side, for vector instructions; the fourth is 0.
+  Eigen::Array4d column[3], low = Eigen::Array4d::Constant(kInfinity), high = -low;
+  for (int k = 0; k < 3; ++k) column[k] = {frame.axes(0, k), frame.axes(1, k), frame.axes(2, k), 0.0};
+  for (const std::uint32_t s : which)
+    for (const Vector3d& x : soup.corners[s]) {
+      const Eigen::Array4d y = (x[0] - frame.origin[0]) * column[0] + (x[1] - frame.origin[1]) * column[1] +
+                               (x[2] - frame.origin[2]) * column[2];
+      low = low.min(y);
+      high = high.max(y);
+    }
+  return {Vector3d(low.head<3>()), Vector3d(high.head<3>())};
+}
+
+Frame principal_frame(const Soup& soup, std::span<const std::uint32_t> which, const Spread& spread,
+                      const Box& bounds) {
   const Frame straight{Matrix3d::Identity(), 0.5 * (bounds.min() + bounds.max())};
+  // Without extent there are no principal axes: 1 / 0 is not finite.
   const double scale = 1 / bounds.sizes().norm();
   if (!std::isfinite(scale)) return straight;
-  Spread spread;
-  for (const std::uint32_t s : which) spread += Spread(soup.corners[s], straight.origin, scale);
-  const Matrix3d axes = eigenvectors_of_symmetric(spread.covariance()).transpose();
-  // Round the axes to float before measuring. If rounding violates orthonormality, use the coordinate axes.
+  Matrix3d axes;
+  if (spread.variance() < kMeasureAgain) {
+    // Small beside the body: measured with a closer origin and scale.
+    Spread again;
+    for (const std::uint32_t s : which) again += Spread(soup.corners[s], straight.origin, scale);
+    axes = principal_axes(again).transpose();
+  } else {
+    axes = principal_axes(spread).transpose();
+  }
+  // Round the axes to float before measuring. If rounding spoils orthonormality, fall back to the coordinate
+  // axes.
   const Frame principal{axes.cast<float>().cast<double>(), straight.origin};
-  if (!principal.axes.allFinite() || !is_orthonormal(principal.axes)) return straight;
-  // Principal axes are not always best (those of a cube are arbitrary). Use the smaller box.
-  return half_area(box_in_frame(soup, which, principal)) < half_area(bounds) ? principal : straight;
+  return principal.axes.allFinite() && is_orthonormal(principal.axes) ? principal : straight;
 }
 
 }  // namespace lrb

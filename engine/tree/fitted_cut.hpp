@@ -19,12 +19,46 @@ namespace lrb {
 
 // The simplices of a tree, and their tight boxes.
 
+/// Moments of the points of simplices: the integrals of 1, of the point, and of its outer product. A simplex
+/// has a weight of twice its area plus a small constant, so that segments and points count.
+struct Spread {
+  double weight = 0;
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();   ///< xx, yy, zz
+  Eigen::Vector3d products = Eigen::Vector3d::Zero();  ///< yz, zx, xy
+
+  Spread() = default;
+  /// Measures one simplex relative to `origin`, with lengths scaled by `scale`.
+  Spread(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Vector3d& origin, double scale);
+
+  void operator+=(const Spread& more) {
+    weight += more.weight;
+    first += more.first;
+    squares += more.squares;
+    products += more.products;
+  }
+  Spread operator-(const Spread& part) const {
+    Spread rest = *this;
+    rest.weight -= part.weight;
+    rest.first -= part.first;
+    rest.squares -= part.squares;
+    rest.products -= part.products;
+    return rest;
+  }
+
+  /// Returns the covariance of the points.
+  Eigen::Matrix3d covariance() const;
+  /// Returns the mean squared distance of the points from their mean.
+  double variance() const { return squares.sum() / weight - (first / weight).squaredNorm(); }
+};
+
 /// Simplices in the tree's units, in the given order.
 struct Soup {
   std::span<const SimplexId> simplices;
   std::vector<std::array<Eigen::Vector3d, 3>> corners;
   std::vector<Eigen::AlignedBox3d> box;
   std::vector<Eigen::Vector3d> centre;  ///< of the box
+  std::vector<Spread> spread;           ///< relative to the centre of all simplices, scaled by their diagonal
   std::vector<std::uint32_t> order;     ///< the simplices in the order of the tree's leaves
 
   Soup(const SimplexView& body, std::span<const SimplexId> simplices, double unit);
@@ -61,46 +95,18 @@ struct Frame {
   Eigen::Vector3d origin;
 };
 
-/// Moments of the points of simplices: the integrals of 1, of the point, and of its outer product. A simplex
-/// has a weight of twice its area plus a small constant, so that segments and points count.
-struct Spread {
-  double weight = 0;
-  Eigen::Vector3d first = Eigen::Vector3d::Zero();
-  Eigen::Vector3d squares = Eigen::Vector3d::Zero();   ///< xx, yy, zz
-  Eigen::Vector3d products = Eigen::Vector3d::Zero();  ///< yz, zx, xy
-
-  Spread() = default;
-  /// Measures one simplex relative to `origin`, with lengths scaled by `scale`.
-  Spread(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Vector3d& origin, double scale);
-
-  void operator+=(const Spread& more) {
-    weight += more.weight;
-    first += more.first;
-    squares += more.squares;
-    products += more.products;
-  }
-  Spread operator-(const Spread& part) const {
-    Spread rest = *this;
-    rest.weight -= part.weight;
-    rest.first -= part.first;
-    rest.squares -= part.squares;
-    rest.products -= part.products;
-    return rest;
-  }
-
-  /// Returns the covariance of the points.
-  Eigen::Matrix3d covariance() const;
-  /// Returns the mean squared distance of the points from their mean.
-  double variance() const { return squares.sum() / weight - (first / weight).squaredNorm(); }
-};
-
 /// Returns the box of some simplices in a frame.
 Eigen::AlignedBox3d box_in_frame(const Soup& soup, std::span<const std::uint32_t> which, const Frame& frame);
 
-/// Returns the principal axes of some simplices, or the coordinate axes if those give a smaller box. Axes are
-/// rounded to float before they are evaluated, as the query uses them. bounds: the box of the simplices on
-/// the coordinate axes.
-Frame fit_frame(const Soup& soup, std::span<const std::uint32_t> which, const Eigen::AlignedBox3d& bounds);
+/// Returns the principal axes of points with these moments as columns, the shortest axis first. They are
+/// orthonormal up to rounding in double, or not finite.
+Eigen::Matrix3d principal_axes(const Spread& spread);
+
+/// Returns the principal axes of some simplices, or the coordinate axes if the simplices have no extent. Axes
+/// are rounded to float before they are evaluated, as the query uses them. spread: the sum of the moments.
+/// bounds: the box of the simplices on the coordinate axes.
+Frame principal_frame(const Soup& soup, std::span<const std::uint32_t> which, const Spread& spread,
+                      const Eigen::AlignedBox3d& bounds);
 
 /// Returns the number of leaves for some simplices; all except the last are full.
 inline std::uint32_t leaves_for(std::uint32_t simplices) {
@@ -123,8 +129,8 @@ struct CutEffort {
 /// coordinate axes.
 ///
 /// All cuts of a range across the coordinate axes and some principal axes are ranked by the moments of the
-/// halves. Among the best ranked ones, the cut with the smallest boxes is chosen, each box on its own axes as
-/// in fit_frame(): the cost is the sum of box_cost() times the number of leaves (the surface area heuristic
+/// halves. Among the best ranked ones, the cut with the smallest boxes is chosen, each box on its own axes
+/// as in ObbTree. The cost is the sum of box_cost() times the number of leaves (the surface area heuristic
 /// with the boxes that the query uses). Ties go to the most balanced cut, so that coincident simplices are
 /// halved.
 class FittedCuts {
@@ -153,13 +159,18 @@ class FittedCuts {
     std::uint32_t left;    ///< number of simplices on its left
     bool operator<(const Cut& y) const;
   };
+  /// Corners of a simplex in float, for estimates of boxes. The fourth coordinate is 0: it fills a vector
+  /// register.
+  using Corners = std::array<Eigen::Array4f, 3>;
 
   std::span<const std::uint32_t> along(int way) const;
+  Spread sum() const;
+  void localise();
   void measure();
-  void order_along_principal(int k, const Eigen::Vector3d& direction);
+  void order_along(const Eigen::Vector3d& direction, std::vector<std::uint32_t>& order);
   void rank(int way);
   Halves measured(const Cut& cut, float most) const;
-  double fitted_box_cost(std::span<const std::uint32_t> some) const;
+  double fitted_box_cost(std::span<const std::uint32_t> some, const Spread& spread) const;
   void part(const Cut& cut);
 
   const Soup& soup_;
@@ -167,18 +178,22 @@ class FittedCuts {
   double whole_cost_ = 0;
   std::vector<std::uint32_t> simplices_;  ///< ascending; below, simplices are identified by their index here
   std::vector<Spread> spread_;  ///< moments of each simplex; within a range, relative to one origin and scale
-  std::array<std::vector<std::uint32_t>, 3> coordinate_;  ///< range by range, ordered along an axis within
-                                                          ///< each
+  std::vector<Corners> local_;  ///< of each simplex; within a range, relative to one origin and scale
+  Eigen::Vector3d origin_{0, 0, 0};  ///< of `local_`
+  double scale_ = 1;                 ///< of `local_`
+  /// Range by range, ordered along an axis within each.
+  std::array<std::vector<std::uint32_t>, 3> coordinate_;
 
   // The current range.
   std::uint32_t begin_ = 0, size_ = 0;
   Spread all_;
   std::array<std::vector<std::uint32_t>, 3> principal_;  ///< ordered along its principal axes
   std::vector<Cut> cuts_;
+  std::vector<Spread> left_spread_;    ///< moments of the left halves, in the order in which cuts were ranked
   std::vector<std::uint8_t> is_left_;  ///< for each simplex
 
-  // Reused memory.
-  std::vector<std::uint64_t> places_;
+  // Memory that is kept from one use to the next.
+  std::vector<std::uint64_t> places_, sorted_;
   std::vector<std::uint32_t> right_;
 };
 

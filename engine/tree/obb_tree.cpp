@@ -6,7 +6,10 @@
 // 4. Fill the nodes independently, in parallel: fit a frame, compute the boxes in it, quantize them outwards.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/binary_tree.hpp"
@@ -82,27 +85,42 @@ class ObbTreeBuilder {
 
   void fill(std::uint32_t wide) {
     const BinaryNode& b = binary_[binary_of_[wide]];
-    // The boxes of children are recomputed from the simplices in this frame: a box of a box would be looser.
-    const Frame frame = fit_frame(soup_, soup_.listed(b.begin, b.end), b.box);
     TreeNode& node = tree_.nodes_[wide];
-    const std::uint32_t first = node.first;
-    std::vector<Box> boxes;
-    if (b.is_leaf()) {
-      boxes = fill_block(tree_.blocks_[first], b, frame);
-    } else {
-      for (std::uint32_t k = 0; k < node.count; ++k) {
-        const BinaryNode& child = binary_[binary_of_[first + k]];
-        boxes.push_back(box_in_frame(soup_, soup_.listed(child.begin, child.end), frame));
+    const std::uint32_t first = node.first, count = b.is_leaf() ? b.end - b.begin : node.count;
+    // The boxes of children are recomputed from the simplices in the node's frame: a box of a box would be
+    // looser.
+    Frame frame = principal_frame(soup_, soup_.listed(b.begin, b.end), b.spread, b.box);
+    std::array<Box, kTreeWidth> boxes;
+    Box all;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const auto [begin, end] = child_range(b, first, k);
+      all.extend(boxes[k] = box_in_frame(soup_, soup_.listed(begin, end), frame));
+    }
+    // Principal axes are not always best: those of a cube are arbitrary. Otherwise use the coordinate axes.
+    if (!(half_area(all) < half_area(b.box))) {
+      frame.axes.setIdentity();
+      for (std::uint32_t k = 0; k < count; ++k) {
+        const Box& box =
+            b.is_leaf() ? soup_.box[soup_.order[b.begin + k]] : binary_[binary_of_[first + k]].box;
+        boxes[k] = Box(box.min() - frame.origin, box.max() - frame.origin);
       }
     }
+    if (b.is_leaf()) fill_block(tree_.blocks_[first], b, frame);
     // quantize() overwrites the entire node.
-    quantize(node, frame, boxes);
+    quantize(node, frame, std::span(boxes).first(count));
     node.first = first;
     node.is_leaf = b.is_leaf();
   }
 
-  std::vector<Box> fill_block(LeafBlock& block, const BinaryNode& b, const Frame& frame) const {
-    std::vector<Box> boxes;
+  /// Returns the range of simplices in box `k` of a node.
+  std::pair<std::uint32_t, std::uint32_t> child_range(const BinaryNode& node, std::uint32_t first,
+                                                      std::uint32_t k) const {
+    if (node.is_leaf()) return {node.begin + k, node.begin + k + 1};
+    const BinaryNode& child = binary_[binary_of_[first + k]];
+    return {child.begin, child.end};
+  }
+
+  void fill_block(LeafBlock& block, const BinaryNode& b, const Frame& frame) const {
     block = {};
     std::fill(std::begin(block.simplex), std::end(block.simplex), kNull);
     for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
@@ -112,15 +130,11 @@ class ObbTreeBuilder {
         const Vector3d x = frame.axes * (soup_.corners[s][corner] - frame.origin);
         for (int axis = 0; axis < 3; ++axis) block.corner[corner][axis][k] = static_cast<float>(x[axis]);
       }
-      if (b.begin + k < b.end) {
-        block.simplex[k] = soup_.simplices[s];
-        boxes.push_back(box_in_frame(soup_, soup_.listed(b.begin + k, b.begin + k + 1), frame));
-      }
+      if (b.begin + k < b.end) block.simplex[k] = soup_.simplices[s];
     }
-    return boxes;
   }
 
-  static void quantize(TreeNode& node, const Frame& frame, const std::vector<Box>& boxes) {
+  static void quantize(TreeNode& node, const Frame& frame, std::span<const Box> boxes) {
     node = {};
     Box all;
     for (const Box& b : boxes) all.extend(b);

@@ -45,8 +45,13 @@ struct Triangles {
 
 double fitted_cost(const Soup& soup, std::span<const std::uint32_t> some) {
   Eigen::AlignedBox3d box;
-  for (const std::uint32_t s : some) box.extend(soup.box[s]);
-  return box_cost(box_in_frame(soup, some, fit_frame(soup, some, box)));
+  Spread spread;
+  for (const std::uint32_t s : some) {
+    box.extend(soup.box[s]);
+    spread += soup.spread[s];
+  }
+  return std::min(box_cost(box),
+                  box_cost(box_in_frame(soup, some, principal_frame(soup, some, spread, box))));
 }
 
 double cost(const Soup& soup, std::span<const std::uint32_t> order, std::size_t left) {
