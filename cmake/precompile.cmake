@@ -94,7 +94,7 @@ function(lrb_precompile target)
   set(libraries lrb_options Eigen3::Eigen)
   foreach(library IN ITEMS nlohmann_json::nlohmann_json doctest::doctest)
     # Most targets with low optimisation use JSON; the others share their precompiled header.
-    if(library IN_LIST linked OR (library STREQUAL "nlohmann_json::nlohmann_json" AND options MATCHES "-O[01]"))
+    if(library IN_LIST linked OR (TARGET ${library} AND library STREQUAL "nlohmann_json::nlohmann_json" AND options MATCHES "-O[01]"))
       list(APPEND headers ${lrb_precompile_${library}})
       list(APPEND libraries ${library})
     endif()
