@@ -17,7 +17,7 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME lrbscope)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/debs)
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "exact two-body collision engine that can be watched")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "exact collision detection for meshes, with recording and pictures")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ
@@ -34,9 +34,9 @@ set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 # What a package is for, in lines as they are shown.
-set(lrb_about "lrbscope finds which faces of two bodies meet, exactly, for bodies of any
-shape: meshes are turned into LRB-reps, whose coarse wrappers are refined only
-where the bodies come near each other.
+set(lrb_about "lrbscope finds all intersecting pairs of faces of two bodies, exactly, for
+bodies of any shape: meshes are converted to LRB-reps, whose coarse wrappers
+are refined only where the bodies are close to each other.
 
 ")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME lrbscope)
