@@ -45,9 +45,9 @@ Matrix3d axes_of(const Vector3d& forward, const Vector3d& up) {
 }
 
 void check_points(std::span<const Vector3d> points) {
-  if (points.empty()) throw InputError("a camera cannot be fitted to nothing: the scene has no points");
+  if (points.empty()) throw InputError("cannot fit a camera: the scene has no points");
   for (const Vector3d& p : points) {
-    if (!p.allFinite()) throw InputError("a camera cannot be fitted: a point of the scene is not finite");
+    if (!p.allFinite()) throw InputError("cannot fit a camera: a point of the scene is not finite");
   }
 }
 
@@ -89,7 +89,7 @@ ViewDirection view_beside(const Vector3d& axis, const Vector3d& up, double eleva
 
 Camera fit_camera(std::span<const Vector3d> points, double width, double height, const FitOptions& options) {
   check_points(points);
-  if (!(options.view.from.squaredNorm() > 0)) throw InputError("a camera's direction must not be zero");
+  if (!(options.view.from.squaredNorm() > 0)) throw InputError("expected a camera direction other than zero");
   // Step 1: the direction is given, so only a translation is unknown. Work in the camera's axes.
   const Matrix3d axes = axes_of(-options.view.from, options.view.up);
   // Points are relative to their centroid, for precision far from the origin.
@@ -138,7 +138,7 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
 }
 
 Camera fit_camera(const Eigen::AlignedBox3d& box, double width, double height, const FitOptions& options) {
-  if (box.isEmpty()) throw InputError("a camera cannot be fitted to nothing: the scene is empty");
+  if (box.isEmpty()) throw InputError("cannot fit a camera: the scene is empty");
   return fit_camera(corners_of(box), width, height, options);
 }
 
@@ -201,7 +201,7 @@ Projection::Projection(const Camera& camera, double width, double height, const 
   // Pixels per unit: at distance 1 in perspective, everywhere in orthographic views.
   focal_ = 0.5 * height / (orthographic_ ? camera.half_height : std::tan(0.5 * camera.fov_y));
   if (!std::isfinite(focal_) || !(focal_ > 0))
-    throw InputError("the camera's opening must be finite and positive");
+    throw InputError("the camera's opening angle must be finite and positive");
   // The depth range is fitted to the scene for the best resolution.
   double lo = 1, hi = 2;
   if (!scene.isEmpty()) {

@@ -23,7 +23,7 @@ using FontFace = std::unique_ptr<cairo_font_face_t, Destroy<cairo_font_face_t, c
 
 void check(cairo_status_t status) {
   if (status != CAIRO_STATUS_SUCCESS)
-    throw EnvironmentError(std::string("cairo cannot paint this picture: ") + cairo_status_to_string(status));
+    throw EnvironmentError(std::string("cairo cannot draw this picture: ") + cairo_status_to_string(status));
 }
 
 /// A font file loaded for cairo. FreeType's handles live as long as the process, because cairo caches objects
@@ -32,13 +32,13 @@ cairo_font_face_t* load_font(bool bold) {
   static const FT_Library library = [] {
     FT_Library made = nullptr;
     if (FT_Init_FreeType(&made) != 0)
-      throw EnvironmentError("FreeType cannot be started, which writes texts");
+      throw EnvironmentError("FreeType, which draws text, cannot be initialised");
     return made;
   }();
   const std::string path = find_font(bold);
   FT_Face face = nullptr;
   if (FT_New_Face(library, path.c_str(), 0, &face) != 0)
-    throw EnvironmentError(path + ": not a TrueType font; name another in LRB_FONT");
+    throw EnvironmentError(path + ": not a TrueType font; set LRB_FONT to another one");
   return cairo_ft_font_face_create_for_ft_face(face, 0);
 }
 

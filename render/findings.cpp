@@ -173,21 +173,24 @@ Look look_of(MeshFault kind) {
       return {
           "vertex with several fans", "vertices with several fans", "", "", palette::kPurple, Mark::point};
     case MeshFault::flipped_face:
-      return {"pair of neighbours that contradict each other",
-              "pairs of neighbours that contradict each other",
-              "pair of neighbours that contradict each other",
-              "pairs of neighbours that contradict each other",
+      return {"pair of inconsistently oriented neighbours",
+              "pairs of inconsistently oriented neighbours",
+              "pair of inconsistently oriented neighbours",
+              "pairs of inconsistently oriented neighbours",
               palette::kBlue,
               Mark::solid};
     case MeshFault::duplicate_face:
-      return {"doubled face",     "doubled faces", "doubled segment",
-              "doubled segments", palette::kGreen, Mark::solid};
+      return {"duplicate face",     "duplicate faces", "duplicate segment",
+              "duplicate segments", palette::kGreen,   Mark::solid};
     case MeshFault::self_intersection:
-      return {"pair of faces that meet",     "pairs of faces that meet", "pair of segments that meet",
-              "pairs of segments that meet", palette::kOrange,           Mark::solid};
+      return {"intersecting pair of faces",
+              "intersecting pairs of faces",
+              "intersecting pair of segments",
+              "intersecting pairs of segments",
+              palette::kOrange,
+              Mark::solid};
     case MeshFault::non_planar_face:
-      return {
-          "polygon that is not flat", "polygons that are not flat", "", "", palette::kYellow, Mark::solid};
+      return {"non-planar polygon", "non-planar polygons", "", "", palette::kYellow, Mark::solid};
     case MeshFault::non_convex_face:
       return {"concave polygon", "concave polygons", "", "", palette::kYellow, Mark::solid};
     case MeshFault::repeated_corner:
@@ -196,14 +199,13 @@ Look look_of(MeshFault kind) {
       return {"face without area",       "faces without area", "segment without length",
               "segments without length", palette::kYellow,     Mark::line};
     case MeshFault::inside_out:
-      return {"piece that is inside out", "pieces that are inside out",
-              "piece that is inside out", "pieces that are inside out",
-              palette::kSkyBlue,          Mark::solid};
+      return {"inside-out component",  "inside-out components", "inside-out component",
+              "inside-out components", palette::kSkyBlue,       Mark::solid};
     case MeshFault::duplicate_vertex:
-      return {"pair of vertices in one place",
-              "pairs of vertices in one place",
-              "pair of vertices in one place",
-              "pairs of vertices in one place",
+      return {"pair of coincident vertices",
+              "pairs of coincident vertices",
+              "pair of coincident vertices",
+              "pairs of coincident vertices",
               palette::kGreen,
               Mark::point};
     default:
@@ -411,15 +413,15 @@ std::vector<LegendItem> legend(const MeshReport& report, int dim, StyleName styl
   std::vector<LegendItem> out;
   if (dim == 3) {
     out.push_back({Mark::solid, style.front, "front of a face"});
-    out.push_back({Mark::solid, style.back, "its back"});
+    out.push_back({Mark::solid, style.back, "back of a face"});
   }
   for (const MeshFault kind : kinds(report)) {
     out.push_back(key(kind, dim));
     out.back().colour = style.of(out.back().colour);
     if (kind == MeshFault::self_intersection) {
-      out.back().text = dim == 2 ? "segment that meets others" : "face that meets others";
-      out.push_back({out.back().mark, palette::kSkyBlue, "one that it meets"});
-      out.push_back({dim == 3 ? Mark::line : Mark::point, style.contact, "where they cross"});
+      out.back().text = dim == 2 ? "self-intersecting segment" : "intersecting face";
+      out.push_back({out.back().mark, palette::kSkyBlue, "face intersected by it"});
+      out.push_back({dim == 3 ? Mark::line : Mark::point, style.contact, "intersection"});
     }
   }
   return out;

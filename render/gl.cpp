@@ -27,7 +27,7 @@ GLuint compile(const Gl& gl, const std::string& name, GLenum kind, const std::st
     std::array<char, 1024> log{};
     gl.GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
     gl.DeleteShader(shader);
-    throw EnvironmentError("OpenGL does not compile our shader '" + name + "': " + log.data());
+    throw EnvironmentError("OpenGL cannot compile the shader '" + name + "': " + log.data());
   }
   return shader;
 }
@@ -48,7 +48,7 @@ GlProgram make_program(const Gl& gl, const std::string& name, const std::string&
   if (ok == 0) {
     std::array<char, 1024> log{};
     gl.GetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
-    throw EnvironmentError("OpenGL does not link our shader '" + name + "': " + log.data());
+    throw EnvironmentError("OpenGL cannot link the shader '" + name + "': " + log.data());
   }
   return program;
 }
@@ -101,8 +101,8 @@ struct Offscreen::Context {
     handle = OSMesaCreateContextAttribs(attributes, nullptr);
     if (handle == nullptr) {
       throw EnvironmentError(
-          "no off-screen OpenGL 3.3 context: OSMesa refused it; install libosmesa6 (Mesa 17 to 25.0) and try "
-          "again");
+          "OSMesa cannot create an off-screen OpenGL 3.3 context; install libosmesa6 (Mesa 17 to 25.0) and "
+          "try again");
     }
   }
   ~Context() { OSMesaDestroyContext(handle); }
@@ -134,9 +134,9 @@ void require_address_space() {
   // Reserve without committing: this tests the limit and costs no memory.
   void* const room = mmap(nullptr, needed, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED)
-    throw EnvironmentError("drawing needs " + std::to_string(needed >> 20) +
-                           " MiB of address space, and there is less: raise the limit (ulimit -v), or set "
-                           "LP_NUM_THREADS=1, which needs less");
+    throw EnvironmentError("expected at least " + std::to_string(needed >> 20) +
+                           " MiB of address space for drawing, found less; raise the limit (ulimit -v), or "
+                           "set LP_NUM_THREADS=1, which needs less");
   munmap(room, needed);
 }
 
@@ -153,7 +153,7 @@ Offscreen::Offscreen() {
 #define LRB_GL(TYPE, Name)                                                          \
   gl_.Name = reinterpret_cast<PFNGL##TYPE##PROC>(OSMesaGetProcAddress("gl" #Name)); \
   if (gl_.Name == nullptr)                                                          \
-    throw EnvironmentError("OSMesa has no function gl" #Name ": its version is too old");
+    throw EnvironmentError("OSMesa has no function gl" #Name "; its version is too old");
   LRB_GL_FUNCTIONS(LRB_GL)
 #undef LRB_GL
   // A framebuffer is limited by both textures and viewports.
@@ -199,7 +199,7 @@ std::vector<Finding> check_gl_environment() {
   if (!driver.empty() && driver != "llvmpipe" && driver != "softpipe") {
     out.push_back(
         {Level::error, "GALLIUM_DRIVER",
-         "is '" + driver + "', which crashes Mesa off screen; unset it, or use llvmpipe or softpipe"});
+         "is '" + driver + "', which crashes off-screen Mesa; unset it, or use llvmpipe or softpipe"});
   }
   if (driver == "softpipe") {
     out.push_back(
@@ -210,7 +210,8 @@ std::vector<Finding> check_gl_environment() {
                    "is '" + width + "', which can crash Mesa; unset it, or use 128 or 256"});
   }
   if (!value("MESA_GL_VERSION_OVERRIDE").empty()) {
-    out.push_back({Level::warning, "MESA_GL_VERSION_OVERRIDE", "is set; unset it if contexts are refused"});
+    out.push_back(
+        {Level::warning, "MESA_GL_VERSION_OVERRIDE", "is set; unset it if no context can be created"});
   }
   return out;
 }
@@ -221,7 +222,7 @@ std::vector<Finding> check_rendering() {
   try {
     const Offscreen context;
     out.push_back({Level::ok, "off-screen OpenGL", context.version()});
-    out.push_back({Level::ok, "largest picture", std::to_string(context.max_size()) + " pixels a side"});
+    out.push_back({Level::ok, "largest picture", std::to_string(context.max_size()) + " pixels per side"});
   } catch (const EnvironmentError& e) {
     out.push_back({Level::error, "off-screen OpenGL", e.what()});
   }

@@ -76,7 +76,7 @@ bool ImageDifference::within(const ImageTolerance& tolerance) const {
 
 std::string ImageDifference::text(const ImageTolerance& tolerance) const {
   if (!same_size) return "the images differ in size";
-  if (largest == 0) return "the images are equal";
+  if (largest == 0) return "the images are identical";
   const double large_share = share(large, pixels), small_share = share(small + medium, pixels);
   const char* verdict = "within tolerance";
   if (large_share > tolerance.large_share) {

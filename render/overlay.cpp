@@ -282,7 +282,7 @@ OverlayLayout lay_out(const Overlay& overlay, int width, int height, float scale
     if (text <= kLeastText) break;
   }
   throw InputError("a frame of " + std::to_string(width) + "x" + std::to_string(height) +
-                   " is too small for its title, counters and legend: make it larger or leave some out");
+                   " is too small for its title, counters and legend; make it larger or omit some of them");
 }
 
 PixelRect common_picture(std::span<const OverlayLayout> layouts) {

@@ -67,7 +67,7 @@ class ListPainter {
 
   Vector2d place(const Vector3d& x) const {
     const auto at = projection_.to_pixel(x);
-    if (!at) throw InputError("a scene that reaches behind its camera cannot be painted as lines");
+    if (!at) throw InputError("cannot draw a scene as lines if it extends behind the camera");
     return origin_ + *at;
   }
 
@@ -230,7 +230,7 @@ void paint_ring(Canvas& canvas, const Vector2d& at, const DrawPoint& p) {
 }  // namespace
 
 void paint_flat(Canvas& canvas, const DrawList& list, const Projection& projection, const Vector2d& origin) {
-  if (!list.triangles.empty()) throw InputError("a scene with depth cannot be painted as if it were flat");
+  if (!list.triangles.empty()) throw InputError("cannot draw a scene with depth as a flat scene");
   ListPainter painter(canvas, projection, origin);
   // Without depth, the order of painting is the order of the layers.
   for (const DrawFill& f : list.fills) painter.fill(f);

@@ -56,7 +56,7 @@ png_text as_chunk(const PngText& text) {
   const auto& [key, value] = text;
   // Limits of the PNG specification.
   if (key.empty() || key.size() > 79)
-    throw InputError("PNG text keyword '" + key + "': 1 to 79 characters needed");
+    throw InputError("PNG text keyword '" + key + "': expected 1 to 79 characters");
   const bool ascii =
       std::all_of(value.begin(), value.end(), [](char c) { return static_cast<signed char>(c) > 0; });
   png_text out{};
@@ -132,7 +132,7 @@ class PngReader {
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
     if (info_ == nullptr) {
       png_destroy_read_struct(&png_, nullptr, nullptr);
-      throw EnvironmentError("cannot begin to read a PNG: out of memory");
+      throw EnvironmentError("cannot read a PNG: out of memory");
     }
     png_set_read_fn(png_, this, take);
     png_set_benign_errors(png_, 0);  // surplus pixel data are an error
@@ -183,7 +183,7 @@ class PngReader {
   static void take(png_structp png, png_bytep to, std::size_t size) {
     auto& rest = static_cast<PngReader*>(png_get_io_ptr(png))->rest_;
     // Truncated file: the error unwinds to succeeds().
-    if (size > rest.size()) png_error(png, "it ends too early");
+    if (size > rest.size()) png_error(png, "the file is truncated");
     std::memcpy(to, rest.data(), size);
     rest = rest.subspan(size);
   }
@@ -200,11 +200,9 @@ void check_size(const PngReader& reader, std::size_t file_bytes, const std::stri
   const std::string size = std::to_string(reader.width()) + "x" + std::to_string(reader.height()) + " pixels";
   // No allocation before these checks: the header may be forged.
   if (reader.width() * reader.height() > most_pixels)
-    throw InputError(name + ": has " + size + ", more than the " + std::to_string(most_pixels) +
-                     " that are expected at most");
+    throw InputError(name + ": has " + size + ", expected at most " + std::to_string(most_pixels));
   if (std::max(reader.width(), reader.height()) > Image::kMaxSide)
-    throw InputError(name + ": has " + size + ", a side longer than the " + std::to_string(Image::kMaxSide) +
-                     " of an image");
+    throw InputError(name + ": has " + size + ", a side of more than " + std::to_string(Image::kMaxSide));
   // Deflate cannot expand by more than this, so larger pictures cannot be in the file.
   constexpr std::uint64_t kDeflateMost = 1032;  // maximum expansion per byte, by the format
   if (reader.raw_bytes() > kDeflateMost * file_bytes)

@@ -150,7 +150,7 @@ struct Rasterizer::State {
     gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, t.colour, 0);
     gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, t.depth, 0);
     if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-      throw EnvironmentError("OpenGL cannot draw into a picture of our format and size: draw a smaller one");
+      throw EnvironmentError("OpenGL cannot draw a picture of this format and size; draw a smaller one");
     }
     return t;
   }
@@ -169,7 +169,7 @@ struct Rasterizer::State {
     if (w == width && h == height) return;
     scene = scene_target(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, w, h);
     width = w, height = h;
-    context.check("making room for the picture");
+    context.check("allocating the picture");
   }
 
   // ---- passes

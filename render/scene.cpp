@@ -123,11 +123,11 @@ using Mark = LegendItem::Mark;
 constexpr double kTinyContact = 0.01;
 
 void check(std::span<const SceneBody> bodies, const SceneHighlight& highlight, const SceneOptions& options) {
-  if (bodies.empty()) throw InputError("a scene needs a body");
+  if (bodies.empty()) throw InputError("scene: expected at least one body, found none");
   if (bodies.size() > 2 &&
       (highlight.under_test || !highlight.refining[0].empty() || !highlight.refining[1].empty() ||
        !options.isolate[0].empty() || !options.isolate[1].empty()))
-    throw InputError("regions and pairs can be pointed out among two bodies at most");
+    throw InputError("scene: expected at most two bodies for highlighted regions and pairs");
   for (std::size_t i = 0; i < 2; ++i) {
     static const std::vector<RegionId> kNone;
     const std::vector<RegionId>& built = i == 0 && highlight.built ? *highlight.built : kNone;
@@ -136,18 +136,18 @@ void check(std::span<const SceneBody> bodies, const SceneHighlight& highlight, c
       for (const RegionId r : *regions) {
         if (i < bodies.size() && r < bodies[i].rep->region_count()) continue;
         throw InputError("body " + std::string(i == 0 ? "A" : "B") + " has no region " + std::to_string(r) +
-                         ": regions are numbered from 0");
+                         "");
       }
     }
     if (!highlight.under_test) continue;
     if (i >= bodies.size() || (*highlight.under_test)[i] >= bodies[i].rep->simplex_count()) {
-      throw InputError("the pair under test names simplex " + std::to_string((*highlight.under_test)[i]) +
-                       ", which the body does not have");
+      throw InputError("the tested pair: no simplex " + std::to_string((*highlight.under_test)[i]) +
+                       " in the body");
     }
   }
   for (const SceneBody& b : bodies) {
     if (b.rep->dim() != bodies[0].rep->dim())
-      throw InputError("a 2D body and a 3D body cannot be drawn into one scene");
+      throw InputError("scene: expected bodies of the same dimension, found 2D and 3D bodies");
   }
 }
 
@@ -267,7 +267,7 @@ Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highl
   add_contacts(highlight, options, size, flat, out);
   if (options.colour_by == ColourBy::value) out.scale = ScaleBar{options.value_name, low, high};
   if (options.colour_by == ColourBy::layer) {
-    out.scale = ScaleBar{"layer, 0 lies on the solid", 0, static_cast<double>(layers - 1)};
+    out.scale = ScaleBar{"layer (0: innermost)", 0, static_cast<double>(layers - 1)};
   }
   return out;
 }

@@ -59,7 +59,7 @@ class Scene2dBuilder {
     if (c_.building()) return built_key(r);
     if (!telling && !c_.refining(r)) c_.add_key(Mark::translucent, body_, c_.name() + ", regions");
     if (c_.options.colour_by == ColourBy::region)
-      c_.add_key(Mark::solid, palette::category(0), "regions, a colour each");
+      c_.add_key(Mark::solid, palette::category(0), "regions, one colour each");
   }
 
   /// Returns the colour of a region of a construction: those of earlier passes are pale.
@@ -68,7 +68,7 @@ class Scene2dBuilder {
   void built_key(RegionId r) {
     const bool each = c_.options.colour_by == ColourBy::region;
     if (c_.built(r))
-      c_.add_key(Mark::solid, built_colour(r), each ? "new regions, a colour each" : "new regions");
+      c_.add_key(Mark::solid, built_colour(r), each ? "new regions, one colour each" : "new regions");
     else
       c_.add_key(Mark::solid, built_colour(r), "regions of earlier passes");
   }
@@ -99,11 +99,11 @@ class Scene2dBuilder {
     for (FaceId f = 0; f < rep_.real_face_count(); ++f)
       if (c_.in_contact(f)) real.push_back(f);
     add_lines(real, style_.contact, 3.5F, 0);
-    if (!real.empty()) c_.add_key(Mark::line, style_.contact, "real faces that meet");
+    if (!real.empty()) c_.add_key(Mark::line, style_.contact, "intersecting real faces");
     if (c_.body.wrapper == nullptr) return;
     const std::vector<FaceId> pseudo = c_.pseudo_in_contact();
     add_lines(pseudo, style_.contact, 3.5F, 7);
-    if (!pseudo.empty()) c_.add_key(Mark::dashed, style_.contact, "pseudo faces that meet");
+    if (!pseudo.empty()) c_.add_key(Mark::dashed, style_.contact, "intersecting pseudo faces");
   }
 
   /// Draws thin lines between regions, dashed between refined ones.
@@ -125,7 +125,7 @@ class Scene2dBuilder {
     // In a construction these regions do not exist yet.
     if (!c_.building()) add_lines(gone, style_.pale(body_, 0.45), 1, 5);
     if (!gone.empty() && !c_.building())
-      c_.add_key(Mark::dashed, style_.pale(body_, 0.45), c_.name() + ", refined away");
+      c_.add_key(Mark::dashed, style_.pale(body_, 0.45), c_.name() + ", refined");
   }
 
   void wrapper_line() {
@@ -136,7 +136,7 @@ class Scene2dBuilder {
       return;
     }
     add_lines(boundary, colour, 3, 0);
-    c_.add_key(Mark::line, colour, c_.name() + (c_.building() ? ", hull" : ", wrapper"));
+    c_.add_key(Mark::line, colour, c_.name() + (c_.building() ? ", front" : ", wrapper"));
   }
 
   void add_segment(DrawFill& fill, FaceId f, const Vector3d& by) const {

@@ -81,7 +81,7 @@ class Scene3dBuilder {
     if (lids.empty()) return;
     if (!telling) c_.add_key(Mark::translucent, c_.colour(), c_.name() + ", pseudo faces");
     if (c_.options.colour_by == ColourBy::region) {
-      c_.add_key(Mark::translucent, palette::category(0), "pseudo faces, a colour for each region");
+      c_.add_key(Mark::translucent, palette::category(0), "pseudo faces, one colour per region");
     }
   }
 
@@ -104,7 +104,7 @@ class Scene3dBuilder {
     const bool each = c_.options.colour_by == ColourBy::region;
     if (!c_.highlight.built->empty())
       c_.add_key(Mark::solid, c_.built_colour(c_.highlight.built->front()),
-                 each ? "new lids, a colour for each region" : "new lids");
+                 each ? "new lids, one colour per region" : "new lids");
     const Rgba earlier = each ? style_.pale(palette::category(0), kEarlierPale) : c_.colour();
     if (others) c_.add_key(each ? Mark::solid : Mark::translucent, earlier, "lids of earlier passes");
   }
@@ -115,7 +115,7 @@ class Scene3dBuilder {
     t.edges = 7;
     t.edge_style = lid_edges_;
     for (const FaceId f : lids) add_face(f, t);
-    if (!lids.empty()) c_.add_key(Mark::translucent, style_.contact, "pseudo faces that meet");
+    if (!lids.empty()) c_.add_key(Mark::translucent, style_.contact, "intersecting pseudo faces");
   }
 
   void contact_rims() {
@@ -139,7 +139,7 @@ class Scene3dBuilder {
       any_in_contact |= c_.in_contact(f);
       add_face(f, t);
     }
-    if (any_in_contact) c_.add_key(Mark::solid, style_.contact, "real faces that meet");
+    if (any_in_contact) c_.add_key(Mark::solid, style_.contact, "intersecting real faces");
     if (c_.options.colour_by == ColourBy::value) {
       c_.add_key(Mark::solid, style_.pale(c_.colour(), palette::kNoValuePale),
                  c_.name() + (c_.value_low > 0 ? ", faces with fewer " : ", faces without ") +
@@ -209,7 +209,7 @@ class Scene3dBuilder {
     if (any) {
       const bool each = c_.options.colour_by == ColourBy::region;
       c_.add_key(Mark::solid, each ? palette::category(0) : style_.pale(c_.colour(), 0.5),
-                 each ? "regions, a colour each" : c_.name() + ", regions");
+                 each ? "regions, one colour each" : c_.name() + ", regions");
     }
   }
 

@@ -170,7 +170,7 @@ std::string svg_file(const SvgCanvas& canvas, const SvgPage& page) {
 
 std::string svg(const DrawList& list, const Camera& camera, const SvgOptions& options) {
   if (!list.triangles.empty()) {
-    throw InputError("a 3D scene cannot be written as SVG: draw it as a PNG, at a larger size for print");
+    throw InputError("cannot write a 3D scene as SVG; draw it as a PNG, at a larger size for print");
   }
   SvgCanvas canvas;
   paint_flat(canvas, list, Projection(camera, options.width, options.height, bounds(list)));
@@ -185,7 +185,7 @@ using namespace svg_text;
 /// Returns a complete picture as an element of another one.
 std::string nested(const std::string& panel, const PixelRect& r) {
   const std::size_t start = panel.find("viewBox");
-  if (start == std::string::npos) throw InputError("a montage of SVG needs panels that are SVG");
+  if (start == std::string::npos) throw InputError("an SVG montage needs SVG panels");
   return "<svg" + attribute("x", number(r.x)) + attribute("y", number(r.y)) +
          attribute("width", number(r.width)) + attribute("height", number(r.height)) + " " +
          panel.substr(start);

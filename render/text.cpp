@@ -83,8 +83,8 @@ std::string find_font(bool bold) {
   for (const char* folder : kFontFolders) {
     if (readable(folder + name)) return folder + name;
   }
-  throw EnvironmentError("no font to write with: " + name +
-                         " was not found; install fonts-dejavu-core, or name a .ttf file in LRB_FONT");
+  throw EnvironmentError("no font found: " + name +
+                         " is missing; install fonts-dejavu-core, or set LRB_FONT to a .ttf file");
 }
 
 struct Font::Faces {
@@ -98,7 +98,7 @@ struct Font::Faces {
       bytes.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
       const int offset = bytes.size() < 12 ? -1 : stbtt_GetFontOffsetForIndex(bytes.data(), 0);
       if (offset < 0 || stbtt_InitFont(&info, bytes.data(), offset) == 0) {
-        throw EnvironmentError(path + ": not a TrueType font; name another in LRB_FONT");
+        throw EnvironmentError(path + ": not a TrueType font; set LRB_FONT to another one");
       }
       stbtt_GetFontVMetrics(&info, &ascent, &descent, &gap);
     }

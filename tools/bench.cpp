@@ -72,13 +72,12 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
 }  // namespace
 
 Command add_bench(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
-      "bench",
-      "Compare our query with other engines on the same bodies and poses: how many times as long they take");
+  CLI::App* app =
+      root.add_subcommand("bench", "Compare query times with other engines on the same bodies and poses");
   const auto o = std::make_shared<BenchOptions>();
   add_measure_options(*app, *o);
   app->add_option("--faces", o->faces,
-                  "Numbers of faces of the bodies to generate: every kind in the first size, rocks in the "
+                  "Face counts of the generated bodies: every kind at the first count, only rocks at the "
                   "others; 0: none [20000 100000]")
       ->check(CLI::Range(0, 2000000))
       ->type_name("N");

@@ -55,8 +55,8 @@ report::Gnuplot bounds_chart(const std::vector<Bounds>& course, const std::strin
     ends.add(b.work, b.lower, b.upper);
     if (b.upper > b.lower && std::isfinite(b.upper)) widths.push_back(row(b.work, b.upper - b.lower));
   }
-  const std::string lower = curve(g, "lower", ends.lower, what + " at least", kLower);
-  const std::string upper = curve(g, "upper", ends.upper, what + " at most", kUpper);
+  const std::string lower = curve(g, "lower", ends.lower, what + ", lower bound", kLower);
+  const std::string upper = curve(g, "upper", ends.upper, what + ", upper bound", kUpper);
   const std::string width = curve(g, "width", widths, "width of the interval", "#333333");
   g.script += std::string(kAxes) + "set multiplot layout 2,1\nset xrange [0:*]\nset key right\nset ylabel " +
               report::gnuplot_text(what) + "\n" + joined({lower, upper}) + "set xlabel " +
@@ -75,11 +75,12 @@ report::Gnuplot contact_chart(const std::vector<ContactBounds>& course) {
   }
   const std::string t0 = curve(g, "t0", time.lower, "no contact before this t", kLower);
   const std::string t1 = curve(g, "t1", time.upper, "in contact by this t", kUpper);
-  const std::string low = curve(g, "low", distance.lower, "distance there at least", kLower);
-  const std::string high = curve(g, "high", distance.upper, "at most", kUpper);
+  const std::string low = curve(g, "low", distance.lower, "distance at that t, lower bound", kLower);
+  const std::string high = curve(g, "high", distance.upper, "upper bound", kUpper);
   g.script += std::string(kAxes) +
               "set multiplot layout 2,1\nset key bottom right\nset ylabel 't'\nset yrange [0:1]\n" +
-              joined({t0, t1}) + "set xlabel 'spans, steps and exact queries'\nset ylabel 'distance'\n" +
+              joined({t0, t1}) +
+              "set xlabel 'time intervals, steps and exact queries'\nset ylabel 'distance'\n" +
               "set yrange [0:*]\nset key top right\n" + joined({low, high}) + "unset multiplot\n";
   return g;
 }
@@ -97,21 +98,22 @@ run::AnswerLook look_of(const DrawOptions& options) {
 }
 
 void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture, bool with_course) {
-  app.add_option("--draw", options.picture, picture + "; with a number of its own where there are several")
+  app.add_option("--draw", options.picture, picture + "; for several poses, one numbered file each")
       ->type_name("PNG");
-  app.add_option("--size", options.look.size, "Size of the picture in pixels [1200x750]")->type_name("WxH");
+  app.add_option("--size", options.look.size, "Picture size, in pixels [1200x750]")->type_name("WxH");
   add_up_option(app, options.look.camera.up);
   app.add_option("--chart", options.chart,
-                 "Chart how the bounds tightened with the work, as .svg, .png or .pdf (needs gnuplot)")
+                 "Chart the convergence of the bounds over the work done, as .svg, .png or .pdf (needs "
+                 "gnuplot)")
       ->check(CLI::Validator(
           [](const std::string& path) {
             const bool known = path.ends_with(".svg") || path.ends_with(".png") || path.ends_with(".pdf");
-            return known ? std::string() : path + ": charts are written as .svg, .png or .pdf";
+            return known ? std::string() : path + ": expected a file name that ends in .svg, .png or .pdf";
           },
           ""))
       ->type_name("FILE");
   if (with_course)
-    app.add_flag("--course", options.course, "Add how the bounds tightened: [work, lower, upper]");
+    app.add_flag("--course", options.course, "Add the convergence history: [work, lower, upper]");
 }
 
 }  // namespace lrb::cli

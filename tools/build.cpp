@@ -47,8 +47,8 @@ std::string as_text(const nlohmann::ordered_json& j, const ValidateReport* repor
       << "  regions  " << figure("regions") << " in " << figure("layers") << " layers\n"
       << "  volume   solid " << figure("volume_solid") << ", outermost wrapper " << figure("volume_outer")
       << ", convex hull " << figure("volume_hull") << "\n"
-      << "  memory   " << figure("bytes_per_real_face") << " bytes a real face; the program held "
-      << for_people(j["peak_bytes"].get<double>() / kMega, 3) << " MB at most\n"
+      << "  memory   " << figure("bytes_per_real_face") << " bytes per real face; peak of the process "
+      << for_people(j["peak_bytes"].get<double>() / kMega, 3) << " MB\n"
       << "  built in " << figure("seconds") << " s\n";
   if (report != nullptr) {
     out << "  valid    " << (report->valid ? "yes" : "NO") << "\n";
@@ -63,7 +63,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   BuildOptions options = o.build;
   Progress progress("build", 0, globals.quiet);
   options.progress = [&](std::uint32_t pass, std::uint32_t faces) {
-    progress.set(pass, "hull of " + std::to_string(faces) + " faces");
+    progress.set(pass, "front of " + std::to_string(faces) + " faces");
   };
   const auto begin = std::chrono::steady_clock::now();
   const LrbRep rep = bodies::build_from_mesh(check(std::move(mesh)), options, notes);
@@ -103,14 +103,14 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
 }  // namespace
 
 Command add_build(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("build", "Build a mesh's LRB-rep, prove that it is right, save it");
+  CLI::App* app = root.add_subcommand("build", "Build the LRB-rep of a mesh, validate it and save it");
   const auto o = std::make_shared<BuildCommandOptions>();
-  app->add_option("MESH", o->mesh, "OBJ, STL, PLY or OFF")->required();
-  app->add_option("-o,--output", o->out, "Write the LRB-rep here")->type_name("FILE.lrb");
+  app->add_option("MESH", o->mesh, "Mesh: OBJ, STL, PLY or OFF")->required();
+  app->add_option("-o,--output", o->out, "LRB-rep to write")->type_name("FILE.lrb");
   o->build.threads = 0;
   add_build_options(*app, o->build);
   app->add_flag("--json", o->json, "Print the figures as one JSON object");
-  app->add_flag("--no-validate", o->no_validate, "Skip the proof that the LRB-rep keeps its promises");
+  app->add_flag("--no-validate", o->no_validate, "Do not validate the LRB-rep");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_build(*o, globals); }};
 }

@@ -42,7 +42,7 @@ std::vector<bench::DataSet> read_sets(const std::string& folder, methods::Quanti
   std::transform(files.begin(), files.end(), std::back_inserter(sets), bench::read_data_set);
   std::erase_if(sets, [&](const bench::DataSet& s) { return s.quantity != quantity; });
   if (sets.empty())
-    throw InputError(printable_name(folder) + ": no data sets there; run `lrbscope chart measure` first");
+    throw InputError(printable_name(folder) + ": no data sets found; run `lrbscope chart measure` first");
   return sets;
 }
 
@@ -90,7 +90,7 @@ void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& metho
   page.numbers = {{"Machine", bench::machine(), bench::build_flags()}};
   page.command = globals.command_line;
   page.links = {{"records.jsonl", "records.jsonl", "every answer of every method"},
-                {"points.jsonl", "points.jsonl", "what was computed from them"}};
+                {"points.jsonl", "points.jsonl", "points of the charts, computed from the answers"}};
   for (const auto& [key, target] : scenes)
     page.links.push_back({key.first + ", " + bench::title(key.second), target, "scene, trace and pictures"});
   try {
@@ -125,16 +125,17 @@ int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals)
 
 Command add_chart(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
-      "chart", "Chart speed against accuracy: every method at every setting, exact ones and approximations");
+      "chart", "Chart speed versus accuracy of every method at every setting, exact and approximate");
   const auto o = std::make_shared<ChartOptions>();
   app->require_subcommand(0, 1);
   CLI::App* measures =
-      app->add_subcommand("measure", "Only measure: add raw records to those in the folder")->fallthrough();
+      app->add_subcommand("measure", "Measure only: append raw records to the folder")->fallthrough();
   CLI::App* draws =
-      app->add_subcommand("draw", "Only draw: errors, charts and page from the records")->fallthrough();
+      app->add_subcommand("draw", "Draw only: compute errors, charts and the page from existing records")
+          ->fallthrough();
   add_measure_options(*app, *o);
   add_quantity_option(*app, o->set.quantity);
-  app->add_option("--faces", o->faces, "Number of faces of the bodies to generate; 0: none [2000]")
+  app->add_option("--faces", o->faces, "Face count of the generated bodies; 0: none [2000]")
       ->check(CLI::Range(0, 200000))
       ->type_name("N");
   app->add_flag("!--no-scenes", o->scenes, "Do not run the scenarios that the chart's points link to");

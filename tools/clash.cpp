@@ -150,8 +150,8 @@ int run_clash(ClashOptions o, const Globals& globals) {
                       picture_name(o.draw.picture, i, list.poses.size()));
     if (!o.draw.chart.empty() && !course.empty())
       report::draw(bounds_chart(course, has_depth ? "depth" : "distance",
-                                has_depth ? "queries asked, steps in which hulls grew"
-                                          : "pairs of boxes opened, pairs of faces measured"),
+                                has_depth ? "queries, expansion steps of the EPA polytope"
+                                          : "pairs of boxes expanded, pairs of faces measured"),
                    picture_name(o.draw.chart, i, list.poses.size()));
     progress.set(i + 1);
   }
@@ -163,20 +163,23 @@ int run_clash(ClashOptions o, const Globals& globals) {
 
 Command add_clash(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
-      "clash", "Tell what kind of contact two solids have, and how deep, for each pose of B in a list");
+      "clash",
+      "Classify the contact between two solids and compute its penetration depth, for each pose of B");
   const auto o = std::make_shared<ClashOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
-  app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
+  app->add_option("B", o->b, "Mesh or .lrb file; moved to each pose")->required();
   app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
   app->add_option("--clearance", o->request.clearance,
-                  "Distance up to which bodies that do not meet are \"within_clearance\"")
+                  "Distance up to which disjoint bodies are reported as \"within_clearance\"")
       ->type_name("D");
-  app->add_option("--along", o->along, "Also find how far B must move in this direction to leave A")
+  app->add_option(
+         "--along", o->along,
+         "Also compute the directional penetration depth: how far B must move this way to separate from A")
       ->delimiter(',')
       ->expected(3)
       ->type_name("X,Y,Z");
-  app->add_flag("--table", o->table, "Print a table for people instead of JSON");
-  add_draw_options(*app, o->draw, "Draw the solids with the way on which B leaves A");
+  app->add_flag("--table", o->table, "Print a human-readable table instead of JSON");
+  add_draw_options(*app, o->draw, "Draw the solids with the separation vector");
   add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_clash(*o, globals); }};

@@ -30,24 +30,25 @@ bool is_closed(const Hole& hole) {
 
 /// Returns the state of a hole as text.
 std::string state_text(const Hole& hole) {
-  if (hole.of_sheet && !is_closed(hole)) return "left: its surface is a sheet: it bounds nothing";
+  if (hole.of_sheet && !is_closed(hole))
+    return "not closed: its surface is a sheet, which does not bound a solid";
   switch (hole.state) {
     case HoleState::closed:
       return "closed with " + std::to_string(hole.faces) + (hole.faces == 1 ? " face" : " faces");
     case HoleState::closed_as_ring:
-      return "closed with the ring between it and those in it or round it, " + std::to_string(hole.faces) +
-             " faces";
+      return "closed with a ring between it and the loops inside or around it, " +
+             std::to_string(hole.faces) + " faces";
     case HoleState::not_a_loop:
-      return "left: its rim is no loop, it ends at edges with more than two faces or at faces that contradict "
-             "each other; mend these first";
+      return "not closed: the boundary is not a simple loop (it runs into non-manifold edges or inconsistently "
+             "oriented faces); fix those first";
     case HoleState::no_area:
-      return "left: all of its rim lies on one line";
+      return "not closed: the boundary lies on one line";
     case HoleState::meets_surface:
-      return "left: a lid would meet face " + std::to_string(hole.obstacle);
+      return "not closed: the fill would intersect face " + std::to_string(hole.obstacle);
     case HoleState::meets_lid:
-      return "left: a lid would meet that of " + std::to_string(hole.obstacle);
+      return "not closed: the fill would intersect that of hole " + std::to_string(hole.obstacle);
     default:
-      return "left: each lid that was tried would meet itself, or have an edge that faces have already";
+      return "not closed: every candidate fill would intersect itself or reuse an existing edge";
   }
 }
 
@@ -74,22 +75,21 @@ std::string as_text(const ClosedHoles& result, std::size_t closed, const MeshRep
         << for_people(hole.loop.length, kDigits) << ", " << (hole.loop.planar ? "flat" : "not flat") << ": "
         << state_text(hole) << "\n";
   }
-  out << "buildable: " << (after.when_turned().buildable() ? "yes" : "no: lrbscope inspect tells why")
-      << "\n";
+  out << "buildable: "
+      << (after.when_turned().buildable() ? "yes" : "no (lrbscope inspect lists the reasons)") << "\n";
   return out.str();
 }
 
 int run_close(const CloseOptions& o, const Globals& globals) {
   if (std::error_code error; std::filesystem::equivalent(o.mesh, o.out, error))
-    throw InputError(printable_name(o.out) + ": is the mesh itself; write to another file");
+    throw InputError(printable_name(o.out) + ": expected another file than the mesh itself");
   std::vector<std::string> notes;
   const CheckedMesh mesh = check(bodies::read_body(o.mesh, o.corners, notes));
   note(globals, notes);
   if (mesh.mesh().dim == 2)
-    throw InputError(mesh.mesh().name + ": is a 2D body, expected one in space; close it with a segment (l)");
+    throw InputError(mesh.mesh().name + ": expected a 3D body, found a 2D body; close it with a segment (l)");
   if (!mesh.report().queryable())
-    throw InputError(mesh.mesh().name +
-                     ": has faults that have to be mended first: lrbscope inspect names them");
+    throw InputError(mesh.mesh().name + ": has faults that must be fixed first; lrbscope inspect lists them");
   if (const MeshReport& report = mesh.report(); report.sheets > 0 && report.sheets == report.open_components)
     throw InputError(report.line(MeshFault::open_edge, mesh.mesh()));
   check_mesh_name(o.out, mesh.mesh().dim);
@@ -121,10 +121,10 @@ int run_close(const CloseOptions& o, const Globals& globals) {
 Command add_close(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "close",
-      "Close the holes of a mesh with lids that are proved to meet nothing; exit code 1 if some are left");
+      "Close the holes of a mesh with faces proven not to intersect anything; exit code 1 if holes remain");
   const auto o = std::make_shared<CloseOptions>();
-  app->add_option("MESH", o->mesh, "OBJ, STL, PLY or OFF")->required();
-  app->add_option("-o,--output", o->out, "Mesh to write; what was there keeps its numbers")
+  app->add_option("MESH", o->mesh, "Mesh: OBJ, STL, PLY or OFF")->required();
+  app->add_option("-o,--output", o->out, "Mesh to write; existing vertices and faces keep their numbers")
       ->required()
       ->type_name("FILE.obj|ply");
   app->add_flag("--json", o->json, "Print one JSON object");

@@ -88,7 +88,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
     // first.
     Eigen::Vector3d direction(1, 0.35, 0.25);
     if (!o.approach.empty()) direction = io::parse_vector(o.approach, "--approach");
-    if (!(direction.squaredNorm() > 0)) throw InputError("--approach: expected a direction that is not zero");
+    if (!(direction.squaredNorm() > 0)) throw InputError("--approach: expected a direction other than zero");
     if (bodies[0].rep.dim() == 2) direction.z() = 0;
     s.motion = approach_from(direction, bodies[0].rep, bodies[1].rep);
   }
@@ -114,7 +114,8 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
     bodies.push_back(bodies::load_body(path, {}, o.corners));
   }
   if (bodies[0].rep.dim() != bodies[1].rep.dim())
-    throw InputError(o.a + " and " + o.b + ": one is 2D, the other 3D: give two of a kind");
+    throw InputError(o.a + " and " + o.b +
+                     ": expected two bodies of the same dimension, found a 2D and a 3D body");
   spec::Scenario scenario = make_scenario(o, bodies);
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   run::Recording recording = run::record(scenario, std::move(bodies), progress);
@@ -128,24 +129,27 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
 
 Command add_collide(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
-      "collide", "Let two bodies of yours approach each other until they touch, drawn and explained");
+      "collide", "Move your own mesh B into mesh A and write an interactive page of the collision");
   const auto o = std::make_shared<CollideOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; moves")->required();
-  app->add_option("-o,--output", o->folder, "Folder to write to [out/A-B]")->type_name("DIR");
-  auto* poses = app->add_option("--poses", o->poses,
-                                "File with the pose of B for each step: lines of 12 numbers, .csv or .json")
-                    ->type_name("FILE");
-  app->add_option("--approach", o->approach, "Direction that B comes from, seen from A")
+  app->add_option("-o,--output", o->folder, "Output folder [out/A-B]")->type_name("DIR");
+  auto* poses =
+      app->add_option("--poses", o->poses,
+                      "File with the pose of B at each step: lines of 12 numbers (3x4, row by row), "
+                      ".csv or .json")
+          ->type_name("FILE");
+  app->add_option("--approach", o->approach, "Direction from A to the start position of B")
       ->type_name("X,Y,Z")
       ->excludes(poses);
   add_request_options(*app, o->request);
-  app->add_flag("--distance", o->more.distance, "Bound how far apart the bodies are, too, at each step");
-  app->add_flag("--clash", o->more.clash, "Find what kind of contact they have, and how deep, at each step");
+  app->add_flag("--distance", o->more.distance, "Also compute the distance between the bodies at each step");
+  app->add_flag("--clash", o->more.clash,
+                "Also classify the contact and compute its penetration depth at each step");
   add_events_option(*app, o->events);
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);
-  app->add_flag("--json", o->json, "Print the summary instead of the page's path");
+  app->add_flag("--json", o->json, "Print the summary as JSON instead of the page's path");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_collide(*o, globals); }};
 }

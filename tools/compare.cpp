@@ -54,7 +54,7 @@ int run_compare(const CompareOptions& o, const Globals& globals) {
   const std::string folder = o.folder.empty() ? "out/compare" : o.folder;
   const std::optional<std::string> difference =
       compare::write_comparison(runs, globals.command_line, folder, progress_report(globals.quiet));
-  print(difference.value_or("the runs are the same") + "\n" + folder + "/index.html\n");
+  print(difference.value_or("the runs are identical") + "\n" + folder + "/index.html\n");
   return kOk;
 }
 
@@ -62,11 +62,12 @@ int run_compare(const CompareOptions& o, const Globals& globals) {
 
 Command add_compare(CLI::App& root, const Globals& globals) {
   CLI::App* app =
-      root.add_subcommand("compare", "Show two recorded runs side by side, and what differs first");
+      root.add_subcommand("compare", "Show two recorded runs side by side, with their first difference");
   const auto o = std::make_shared<CompareOptions>();
-  app->add_option("RUN1", o->first, "A run's folder or trace, as run, collide and xray write it")->required();
-  app->add_option("RUN2", o->second, "Folder or trace of the run to compare it with")->required();
-  app->add_option("-o,--output", o->folder, "Folder to write to [out/compare]")->type_name("DIR");
+  app->add_option("RUN1", o->first, "Folder or trace of a run, as written by run, collide or xray")
+      ->required();
+  app->add_option("RUN2", o->second, "Folder or trace of the run to compare with")->required();
+  app->add_option("-o,--output", o->folder, "Output folder [out/compare]")->type_name("DIR");
   add_up_option(*app, o->up);
   return {app, [o, &globals] { return run_compare(*o, globals); }};
 }

@@ -461,20 +461,19 @@ std::string title_of(std::string purpose) {
 }
 
 constexpr std::string_view kExitStatus =
-    ".SH \"EXIT STATUS\"\n"
-    ".TP\n0\nDone.\n"
-    ".TP\n1\nA mismatch: an expectation, a golden run or a proof failed.\n"
-    ".TP\n2\nBad usage or input; one line on stderr names the place.\n"
-    ".TP\n3\nThe machine lacks something: memory, space, a package.\n";
+    ".SH \"EXIT STATUS\"\n.TP\n0\nSuccess.\n.TP\n1\nMismatch: an expectation, a golden run or a validation "
+    "failed.\n.TP\n2\nUsage or input error; one line on stderr names the location.\n.TP\n3\nMissing "
+    "dependency or resource: memory, disk space, a package.\n";
 
 struct Variable {
   std::string_view name, help;
 };
 constexpr std::array kVariables = {
-    Variable{"LRB_FONT", "The font file for texts in pictures, where DejaVu Sans is not installed."},
+    Variable{"LRB_FONT", "Font file for text in pictures, if DejaVu Sans is not installed."},
     Variable{"LRB_SIMD",
-             "avx2 or baseline: the kernels of older processors than the one at hand. Answers are the same."},
-    Variable{"LRBSCOPE_METHODS", "The folder with the worker programs of other engines."},
+             "avx2 or baseline: use the kernels of an older processor than this machine's. Results do not "
+             "change."},
+    Variable{"LRBSCOPE_METHODS", "Folder with the worker programs of other engines."},
     Variable{"NO_COLOR", "If set, progress is drawn without colours."}};
 
 /// Returns the manual page (roff, section 1) of a program: its commands, options, exit codes and environment.
@@ -483,10 +482,9 @@ std::string program_page(const Command& program, const std::string& version) {
   out += ".SH NAME\n" + roff(program.name) + " \\- " + roff(title_of(program.purpose)) + "\n";
   out += ".SH SYNOPSIS\n" + synopsis(program.name, program);
   out +=
-      ".SH DESCRIPTION\n"
-      "Finds which faces of two bodies meet, exactly, for bodies of any shape, and shows how it found out:\n"
-      "every comparison and every refinement can be recorded, replayed and drawn. What is printed is data; what\n"
-      "is said to people goes to stderr.\n";
+      ".SH DESCRIPTION\nFinds all intersecting pairs of faces of two bodies, exactly, for bodies of any "
+      "shape. Every comparison and\nevery refinement of a query can be recorded, replayed and drawn. Results "
+      "are printed to stdout, notes and\nerrors to stderr.\n";
   out += ".SH COMMANDS\n";
   for (const Command& c : program.commands)
     out += ".TP\n.B " + roff(c.name) + "\n" + roff(c.purpose) + ". See\n.BR " +
@@ -497,10 +495,9 @@ std::string program_page(const Command& program, const std::string& version) {
   for (const Variable& v : kVariables)
     out += ".TP\n.B " + std::string(v.name) + "\n" + roff(std::string(v.help)) + "\n";
   out +=
-      ".SH EXAMPLES\n.TP\nA page on which a shipped scenario can be watched:\n"
-      ".B lrbscope run collision \\-o out\n"
-      ".TP\nWhich faces of two meshes meet, for each pose of a list:\n"
-      ".B lrbscope query a.obj b.obj \\-\\-poses poses.txt \\-\\-pairs\n";
+      ".SH EXAMPLES\n.TP\nWrite an interactive page of a shipped scenario:\n.B lrbscope run collision \\-o "
+      "out\n.TP\nFind the intersecting faces of two meshes for each pose in a file:\n.B lrbscope query a.obj "
+      "b.obj \\-\\-poses poses.txt \\-\\-pairs\n";
   return out;
 }
 
@@ -562,7 +559,7 @@ int print_manual(const CLI::App& root, const ManualOptions& o) {
     if (!o.folder.empty()) io::write_text(o.folder + "/lrbscope-" + c.name + ".1", text);
   }
   if (!known)
-    throw InputError("manual: there is no command " + printable_name(o.command) + "; see lrbscope --help");
+    throw InputError("manual: unknown command " + printable_name(o.command) + "; see lrbscope --help");
   print(o.folder.empty() ? page : o.folder + "\n");
   return kOk;
 }
@@ -570,22 +567,22 @@ int print_manual(const CLI::App& root, const ManualOptions& o) {
 }  // namespace
 
 Command add_completion(CLI::App& root, const Globals&) {
-  CLI::App* app =
-      root.add_subcommand("completion", "Print the script by which a shell completes lrbscope's words");
+  CLI::App* app = root.add_subcommand("completion", "Print a shell completion script");
   const auto o = std::make_shared<CompletionOptions>();
-  app->add_option("SHELL", o->shell, "bash, zsh or fish")
+  app->add_option("SHELL", o->shell, "Shell: bash, zsh or fish")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""))
       ->type_name("bash|zsh|fish");
-  app->add_option("-o,--output", o->file, "Write it to this file")->type_name("FILE");
+  app->add_option("-o,--output", o->file, "File to write [stdout]")->type_name("FILE");
   return {app, [&root, o] { return print_completion(root, *o); }};
 }
 
 Command add_manual(CLI::App& root, const Globals&) {
-  CLI::App* app = root.add_subcommand("manual", "Print a manual page, for man -l -");
+  CLI::App* app =
+      root.add_subcommand("manual", "Print a manual page (read it with: lrbscope manual | man -l -)");
   const auto o = std::make_shared<ManualOptions>();
-  auto* command =
-      app->add_option("COMMAND", o->command, "Of this command [of the program]")->type_name("COMMAND");
+  auto* command = app->add_option("COMMAND", o->command, "Command to print the page of [the program]")
+                      ->type_name("COMMAND");
   app->add_option("-o,--output", o->folder, "Write all pages to this folder")
       ->excludes(command)
       ->type_name("DIR");

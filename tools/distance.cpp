@@ -75,7 +75,7 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
       run::draw_distance(a.rep, Pose{}, b.rep, list.poses[i], result, look,
                          picture_name(o.draw.picture, i, list.poses.size()));
     if (!o.draw.chart.empty())
-      report::draw(bounds_chart(told.course, "distance", "pairs of boxes opened, pairs of faces measured"),
+      report::draw(bounds_chart(told.course, "distance", "pairs of boxes expanded, pairs of faces measured"),
                    picture_name(o.draw.chart, i, list.poses.size()));
     progress.set(i + 1);
   }
@@ -86,24 +86,26 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
 
 Command add_distance(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
-      "distance", "Bound the distance of two bodies for each pose of B in a list, one line of JSON each");
+      "distance",
+      "Compute the distance between two bodies, as a proven interval, for each pose of B; one JSON line "
+      "per pose");
   const auto o = std::make_shared<DistanceOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
-  app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
+  app->add_option("B", o->b, "Mesh or .lrb file; moved to each pose")->required();
   app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
-  app->add_option("--within", o->request.within, "Only say whether the surfaces are at most this far apart")
+  app->add_option("--within", o->request.within, "Only test whether the distance is at most D")
       ->type_name("D");
   app->add_option("--tolerance", o->request.tolerance,
-                  "Stop when the interval is this narrow, in the meshes' unit")
+                  "Stop once the interval is at most this wide, in mesh units")
       ->type_name("E");
   app->add_option("--relative-tolerance", o->request.relative_tolerance,
-                  "Stop when the interval is this narrow, as a share of the distance")
+                  "Stop once the interval is at most this wide, relative to the distance")
       ->type_name("E");
-  app->add_option("--budget", o->request.max_steps, "Stop after this many steps, pairs of boxes opened")
+  app->add_option("--budget", o->request.max_steps, "Stop after expanding N pairs of boxes")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
       ->type_name("N");
-  app->add_flag("--features", o->features, "Add the vertex, edge or face of each body that is nearest");
-  add_draw_options(*app, o->draw, "Draw the bodies with the way between their nearest points");
+  app->add_flag("--features", o->features, "Add the closest features (vertex, edge or face) of the bodies");
+  add_draw_options(*app, o->draw, "Draw the bodies with the segment between their closest points");
   add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_distance(*o, globals); }};

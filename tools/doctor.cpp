@@ -43,8 +43,9 @@ std::string draw_something() {
       render::Rasterizer().draw(list, render::Camera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}}, options);
   const render::Rgba middle = image.at(32, 32);
   if (middle != render::Rgba{200, 40, 40})
-    throw EnvironmentError("a red triangle came out in another colour: Mesa is broken here");
-  return "a triangle came out as it should";
+    throw EnvironmentError(
+        "rendering test failed: a red triangle was drawn in another colour, so this Mesa build is broken");
+  return "a test triangle was drawn correctly";
 }
 
 std::string ask_something() {
@@ -53,7 +54,8 @@ std::string ask_something() {
   const CollideResult meet = collide(ball.rep, Pose{}, ball.rep, Pose::translation({1.5, 0.1, 0.2}));
   if (apart.relation != Relation::separate || meet.relation != Relation::crossing)
     throw EnvironmentError(
-        "two balls got a wrong answer: the compiler or its flags break floating-point arithmetic");
+        "query test failed: two balls gave a wrong answer, so the compiler or its flags break floating-point "
+        "arithmetic");
   return "two balls: separate, then crossing in " + std::to_string(meet.pairs.size()) + " pairs";
 }
 
@@ -76,9 +78,9 @@ int run_doctor(bool json) {
            " kB of charting library compiled in";
   }));
   findings.push_back(report::has_gnuplot()
-                         ? render::Finding{Level::ok, "gnuplot", "there"}
+                         ? render::Finding{Level::ok, "gnuplot", "found"}
                          : render::Finding{Level::warning, "gnuplot",
-                                           "not there: charts for print are left out; install gnuplot-nox"});
+                                           "not found, so print charts are disabled; install gnuplot-nox"});
   bool well = true;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   std::string text;
@@ -96,8 +98,8 @@ int run_doctor(bool json) {
 }  // namespace
 
 Command add_doctor(CLI::App& root, const Globals&) {
-  CLI::App* app =
-      root.add_subcommand("doctor", "Check that this machine has what lrbscope needs; exit code 3 if not");
+  CLI::App* app = root.add_subcommand(
+      "doctor", "Check this machine for everything lrbscope needs; exit code 3 if something is missing");
   const auto json = std::make_shared<bool>(false);
   app->add_flag("--json", *json, "Print one JSON object");
   return {app, [json] { return run_doctor(*json); }};

@@ -58,7 +58,7 @@ Input kind_of(const ExportOptions& o) {
       json || ends_with(o.input, ".gz") ? trace::load_trace_text(o.input) : std::string();
   if (crowd::is_crowd_trace(text))
     throw InputError(printable_name(o.input) +
-                     ": is the trace of a crowd; runs of one or two bodies are exported");
+                     ": expected a run of one or two bodies, found the trace of a crowd");
   if (mentions(text, "traceEvents")) return Input::run;
   if (json && mentions(text, "bodies")) return Input::scenario;
   return o.asks_for("poses") ? Input::poses : Input::body;
@@ -79,7 +79,7 @@ run::Recording open_recording(const ExportOptions& o, Input kind, const Globals&
 /// Returns the event after which the run is shown: --event, or the last event of --step or of the run.
 trace::EventId event_of(const ExportOptions& o, const trace::Trace& trace) {
   if (trace.steps.empty() || trace.events.empty())
-    throw InputError(printable_name(o.input) + ": has no time step");
+    throw InputError(printable_name(o.input) + ": the trace has no time steps");
   if (o.event) {
     if (*o.event < trace.events.size()) return *o.event;
     throw InputError("--event " + std::to_string(*o.event) + ": the run has " +
@@ -90,7 +90,7 @@ trace::EventId event_of(const ExportOptions& o, const trace::Trace& trace) {
                          : trace.steps.end() - 1;
   if (at == trace.steps.end() || at->first_event >= trace.events.size())
     throw InputError("--step " + std::to_string(o.step.value_or(at == trace.steps.end() ? 0 : at->index)) +
-                     ": the trace holds no such step; its steps go from " +
+                     ": no such step in the trace; expected one from " +
                      std::to_string(trace.steps.front().index) + " to " +
                      std::to_string(trace.steps.back().index));
   return run::last_event(trace, static_cast<std::size_t>(at - trace.steps.begin()));
@@ -120,8 +120,8 @@ exchange::Wanted wanted_of(const ExportOptions& o) {
 
 void save(const ExportOptions& o, const exchange::Model& model, const Globals& globals) {
   if (model.parts.empty())
-    throw InputError(printable_name(o.input) + ": there is nothing to write: " +
-                     (o.asks_for("contacts") ? "the bodies do not meet at this moment" : "no faces"));
+    throw InputError(printable_name(o.input) + ": nothing to write: " +
+                     (o.asks_for("contacts") ? "the bodies do not intersect at this step" : "no faces"));
   exchange::save_model(model, o.out, o.file);
   std::size_t cells = 0;
   for (const exchange::Part& part : model.parts) cells += part.cell_count();
@@ -140,7 +140,7 @@ void refuse(bool given, const char* option, const char* why) {
 
 int export_body(const ExportOptions& given, const Globals& globals) {
   ExportOptions o = given;
-  const char* const kNoRun = "is for runs; a file of a body has no steps and no second body";
+  const char* const kNoRun = "needs a run; a body file has neither steps nor a second body";
   refuse(o.step.has_value(), "--step", kNoRun);
   refuse(o.event.has_value(), "--event", kNoRun);
   refuse(o.asks_for("contacts"), "--what contacts", kNoRun);
@@ -148,7 +148,7 @@ int export_body(const ExportOptions& given, const Globals& globals) {
   refuse(!o.of.empty(), "--of", kNoRun);
   using ColourBy = render::FrameSpec::ColourBy;
   refuse(o.picture.colour_by.value_or(ColourBy::kind) >= ColourBy::face_tests, "--colour-by",
-         "kind, layer and region are for bodies; counts are for runs");
+         "expected kind, layer or region for a body; the other quantities need a run");
   if (o.what.empty()) o.what = {o.chooses_wrapper() ? "wrapper" : "body"};
   const bool needs_regions = o.asks_for("wrapper") || o.picture.colour_by;
   const bodies::LoadedBody body = needs_regions ? bodies::load_body(o.input) : bodies::load_faces(o.input);
@@ -173,7 +173,7 @@ int export_body(const ExportOptions& given, const Globals& globals) {
 int export_run(const ExportOptions& given, Input kind, const Globals& globals) {
   ExportOptions o = given;
   refuse(o.chooses_wrapper(), "--faces, --layer and --tolerance",
-         "are for a body alone; a run's wrappers are as they were after --event");
+         "need a body file; choose a run's wrappers with --event");
   const run::Recording run = open_recording(o, kind, globals);
   note(globals, run.notes);
   const bool two = run.bodies.size() == 2;
@@ -181,8 +181,8 @@ int export_run(const ExportOptions& given, Input kind, const Globals& globals) {
     o.what = {"wrapper"};
     if (two) o.what.emplace_back("contacts");
   }
-  refuse(!two && o.asks_for("contacts"), "--what contacts", "the run is of one body");
-  refuse(!two && !o.of.empty(), "--of", "the run is of one body");
+  refuse(!two && o.asks_for("contacts"), "--what contacts", "the run has only one body");
+  refuse(!two && !o.of.empty(), "--of", "the run has only one body");
   const trace::EventId event = event_of(o, run.trace);
   trace::Cursor cursor = two ? trace::Cursor(run.trace, run.bodies[0].rep, run.bodies[1].rep)
                              : trace::Cursor(run.trace, run.bodies[0].rep);
@@ -199,7 +199,7 @@ int export_run(const ExportOptions& given, Input kind, const Globals& globals) {
   set_colours(o, moment);
   if (const EventLevel needed = render::needed_level(moment.colour_by); needed > run.trace.header.level)
     throw InputError("--colour-by " + std::string(name_of(moment.colour_by)) + ": " +
-                     printable_name(o.input) + " does not hold the events; record the run with --events " +
+                     printable_name(o.input) + " lacks the events for it; record the run with --events " +
                      std::string(name_of(needed)));
   std::vector<ContactRegion> contacts;
   if (o.asks_for("contacts")) contacts = contacts_of(run, *cursor.step());
@@ -210,7 +210,7 @@ int export_run(const ExportOptions& given, Input kind, const Globals& globals) {
 
 /// Writes the poses of a run's steps, or those of another file.
 int export_poses(const ExportOptions& o, Input kind, const Globals& globals) {
-  refuse(o.what.size() > 1, "--what", "poses go into a file of their own");
+  refuse(o.what.size() > 1, "--what", "poses need a file of their own");
   std::vector<Pose> poses;
   if (kind == Input::poses) {
     poses = io::open_poses(o.input).poses;
@@ -237,52 +237,53 @@ int run_export(const ExportOptions& given, const Globals& globals) {
 
 Command add_export(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
-      "export", "Write bodies, wrappers, contacts or poses to files that other programs open");
+      "export", "Export bodies, wrappers, contacts or poses to PLY, VTP, GLB, OBJ, CSV or JSON");
   const auto o = std::make_shared<ExportOptions>();
   app->add_option(
          "INPUT", o->input,
-         "Mesh or .lrb file; a run's folder or trace; a scenario; with --what poses also a file with poses")
+         "Mesh or .lrb file; a run's folder or trace; a scenario; with --what poses also a file of poses")
       ->required();
-  app->add_option("-o,--output", o->out, "FILE.ply, .vtp, .glb or .obj; poses: FILE.csv, .json or .txt")
+  app->add_option("-o,--output", o->out,
+                  "File to write: .ply, .vtp, .glb or .obj; poses: .csv, .json or .txt")
       ->required()
       ->type_name("FILE");
   app->add_option("--what", o->what,
-                  "What to write [of a body: body, or wrapper if one is chosen; of a run: wrapper,contacts]")
+                  "Contents of the file [body file: body, or wrapper if one is selected; run: "
+                  "wrapper,contacts]")
       ->delimiter(',')
       ->check(CLI::IsMember({"body", "wrapper", "contacts", "poses"}).description(""))
       ->type_name("body|wrapper|contacts|poses");
   auto* step =
-      app->add_option("--step", o->step, "Of a run: after this time step [the last]")->type_name("N");
-  app->add_option("--event", o->event, "Of a run: after this event")->excludes(step)->type_name("N");
-  auto* faces =
-      app->add_option("--faces", o->faces, "Of a body: the finest wrapper with at most so many faces")
-          ->type_name("N");
-  auto* layer =
-      app->add_option("--layer", o->layer, "Of a body: the wrapper after so many passes of the builder")
-          ->excludes(faces)
-          ->type_name("N");
+      app->add_option("--step", o->step, "Run: state after this time step [the last]")->type_name("N");
+  app->add_option("--event", o->event, "Run: state after this event")->excludes(step)->type_name("N");
+  auto* faces = app->add_option("--faces", o->faces, "Body: export the finest wrapper with at most N faces")
+                    ->type_name("N");
+  auto* layer = app->add_option("--layer", o->layer, "Body: export the wrapper after N build passes")
+                    ->excludes(faces)
+                    ->type_name("N");
   app->add_option("--tolerance", o->tolerance,
-                  "Of a body: the coarsest wrapper that is no further off than this")
+                  "Body: export the coarsest wrapper within this maximum deviation")
       ->excludes(faces)
       ->excludes(layer)
       ->check(CLI::NonNegativeNumber)
       ->type_name("LENGTH");
-  app->add_option("--of", o->of, "Only this body of two [both; poses: b]")
+  app->add_option("--of", o->of, "Export only this body of the two [both; poses: b]")
       ->check(CLI::IsMember({"a", "b"}).description(""))
       ->type_name("a|b");
-  app->add_option("--bodies", o->bodies, "Bodies that were recorded [a.lrb and b.lrb beside the trace]")
+  app->add_option("--bodies", o->bodies, "Bodies of the trace [a.lrb and b.lrb next to it]")
       ->type_name("FILE")
       ->expected(1, 2);
-  app->add_flag("--regions", o->file.regions, "An object for each region: .glb, .obj");
-  app->add_flag("--ascii", o->file.ascii, "Numbers as text: .ply, .vtp");
-  app->add_option("--up", o->up, "Axis of the bodies that points up, for .glb")
+  app->add_flag("--regions", o->file.regions, "One object per region (.glb, .obj)");
+  app->add_flag("--ascii", o->file.ascii, "Write numbers as text (.ply, .vtp)");
+  app->add_option("--up", o->up, "Axis of the bodies that points up (.glb)")
       ->check(CLI::IsMember({"x", "y", "z"}).description(""))
       ->capture_default_str()
       ->type_name("x|y|z");
-  add_choice<render::FrameSpec::ColourBy>(*app, "--colour-by", o->picture.colour_by, "What the colours mean");
+  add_choice<render::FrameSpec::ColourBy>(*app, "--colour-by", o->picture.colour_by,
+                                          "Quantity that faces are coloured by");
   add_choice<render::FrameSpec::ColourPer>(
       *app, "--colour-per", o->picture.colour_per,
-      "Whose number colours a face: its own, or its region's or level's sum");
+      "Colour a face by its own value, or by the sum over its region or level");
   return {app, [o, &globals] { return run_export(*o, globals); }};
 }
 

@@ -63,7 +63,9 @@ Source run_of_scenario(const std::string& name, const run::ProgressReport& progr
 Source open_trace(const std::string& path, const std::vector<std::string>& bodies) {
   const std::string json = trace::load_trace_text(path);
   if (crowd::is_crowd_trace(json))
-    throw InputError(printable_name(path) + ": is the trace of a crowd; `lrbscope render` draws it");
+    throw InputError(
+        printable_name(path) +
+        ": expected a run of one or two bodies, found the trace of a crowd; draw it with `lrbscope render`");
   Source out;
   out.recording = run::open_run(trace::trace_from_json(json, printable_name(path)), path, bodies);
   out.name = out.recording.trace.header.scenario;
@@ -82,7 +84,7 @@ Source open_source(const FigureOptions& o, const run::ProgressReport& progress) 
   if (std::filesystem::is_directory(o.source, error) || is_trace_name(o.source))
     return open_trace(run::trace_of(o.source), o.bodies);
   if (!o.bodies.empty())
-    throw InputError("--bodies: is for a trace, and " + printable_name(o.source) + " is none");
+    throw InputError("--bodies: expected a trace, but " + printable_name(o.source) + " is not one");
   return is_mesh_name(o.source) ? refine_body(o.source, progress) : run_of_scenario(o.source, progress);
 }
 
@@ -128,7 +130,7 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source) {
   const trace::TraceHeader& header = source.recording.trace.header;
   if (const EventLevel needed = render::needed_level(frames); needed > header.level)
     throw InputError(
-        "--colour-by or --node-boxes: the run does not hold the events for it; record it with --events " +
+        "--colour-by or --node-boxes: the run lacks the events for it; record it with --events " +
         std::string(name_of(needed)));
   return frames;
 }
@@ -155,67 +157,67 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
 
 void add_panel_options(CLI::App& app, FigureOptions& o) {
   auto* panels = app.add_option("--panels", o.figure.choice.panels,
-                                "Most panels, where the picture changes [6; of two bodies 4]")
+                                "Maximum number of panels, placed where the picture changes [6; for two "
+                                "bodies 4]")
                      ->check(CLI::Range(std::size_t{1}, figure::kMostPanels))
                      ->type_name("N");
   const auto add = [&](const char* name, std::vector<std::uint32_t>& numbers, const char* what) {
     return app.add_option(name, numbers, what)->delimiter(',')->type_name("N,N,...")->excludes(panels);
   };
-  auto* faces = add("--faces", o.faces, "Panels whose wrappers have about so many faces");
-  auto* events = add("--events", o.events, "Panels after these events");
-  auto* steps = add("--steps", o.steps, "Panels after these time steps");
-  auto* layers =
-      app.add_flag("--layers", o.layers,
-                   "A panel for each layer of regions of one body, 26 of them at most, evenly chosen")
-          ->excludes(panels);
+  auto* faces = add("--faces", o.faces, "One panel for each number of wrapper faces given (approximate)");
+  auto* events = add("--events", o.events, "One panel after each of these events");
+  auto* steps = add("--steps", o.steps, "One panel after each of these time steps");
+  auto* layers = app.add_flag("--layers", o.layers,
+                              "One panel per layer of regions of a body, at most 26, evenly spaced")
+                     ->excludes(panels);
   faces->excludes(events)->excludes(steps)->excludes(layers);
   events->excludes(steps)->excludes(layers);
   steps->excludes(layers);
 }
 
 void add_paper_options(CLI::App& app, FigureOptions& o) {
-  app.add_option("--width", o.width, "Width on paper: mm, cm, in or pt [85mm]")->type_name("LENGTH");
-  app.add_option("--columns", o.figure.columns, "Panels side by side [those that suit them]")
+  app.add_option("--width", o.width, "Width on paper, in mm, cm, in or pt [85mm]")->type_name("LENGTH");
+  app.add_option("--columns", o.figure.columns, "Number of columns [chosen automatically]")
       ->check(CLI::Range(1, 26))
       ->type_name("N");
-  app.add_option("--font-size", o.figure.font_size, "Size of all texts in points")
+  app.add_option("--font-size", o.figure.font_size, "Font size, in points")
       ->check(CLI::Range(4.0, 24.0))
       ->capture_default_str()
       ->type_name("PT");
   app.add_option("--line-width", o.line_width,
-                 "Width of thin lines, from 0.25pt; others are in proportion [0.35pt]")
+                 "Width of thin lines, at least 0.25pt; other lines scale with it [0.35pt]")
       ->type_name("LENGTH");
   app.add_option("--dpi", o.picture.dpi,
-                 "Pixels to an inch of faces of 3D bodies, and of a PNG [600; of a PNG 300]")
+                 "Resolution of 3D faces and of PNG files, in pixels per inch [600; PNG 300]")
       ->check(CLI::Range(spec::kLeastDpi, spec::kMostDpi))
       ->type_name("N");
   app.add_flag("--title,!--no-title", o.figure.titles,
-               "Write below each panel what it shows [its letter alone]");
-  app.add_flag("--legend,!--no-legend", o.figure.legend,
-               "Leave legend and colour bar out, or have them [they are there]");
+               "Show or hide a title below each panel, after its letter [hidden]");
+  app.add_flag("--legend,!--no-legend", o.figure.legend, "Show or hide the legend and colour bar [shown]");
   app.add_flag("--caption", o.figure.caption,
-               "Set the caption below; it is always written to FIG.caption.txt");
+               "Set the caption below the panels; it is always written to FIG.caption.txt");
   add_style_option(app, o.picture, "print");
-  app.add_flag("--transparent", o.picture.transparent, "Draw without a background");
+  app.add_flag("--transparent", o.picture.transparent, "Transparent background");
 }
 
 }  // namespace
 
 Command add_figure(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("figure", "Lay out panels of a run for a width on paper, as PDF, SVG or PNG");
+  CLI::App* app = root.add_subcommand(
+      "figure", "Lay out panels of a run as a print figure of a given width (PDF, SVG or PNG)");
   const auto o = std::make_shared<FigureOptions>();
   app->add_option(
          "SOURCE", o->source,
-         "A run's folder or trace, a scenario, or a mesh or .lrb file, whose wrapper shrinks onto it")
+         "A run's folder or trace; a scenario; or a mesh or .lrb file, whose refinement from the outermost "
+         "wrapper to the body is shown")
       ->required();
   app->add_option("-o,--output", o->file, "File to write [out/NAME.pdf]")->type_name("FIG.pdf|svg|png");
-  app->add_option("--bodies", o->bodies, "Bodies of a trace [a.lrb and b.lrb beside it]")
+  app->add_option("--bodies", o->bodies, "Bodies of the trace [a.lrb and b.lrb next to it]")
       ->type_name("FILE")
       ->expected(1, 2);
   add_panel_options(*app, *o);
   add_paper_options(*app, *o);
-  app->add_flag("--close-up", o->close_up, "Add panels of the contact, bodies alone");
+  app->add_flag("--close-up", o->close_up, "Add panels that show the contact close up, without wrappers");
   add_camera_options(*app, o->picture.camera);
   add_orbit_option(*app, o->picture.camera);
   add_colour_options(*app, o->picture);

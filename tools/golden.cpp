@@ -53,7 +53,7 @@ NamedGolden find_golden(const GoldenOptions& o, const std::string& word) {
   spec::Scenario scenario = spec::open_scenario(word);
   if (!golden::has_golden(o.goldens, scenario.name))
     throw InputError(word + ": no golden in " + o.goldens +
-                     " yet; make it with: lrbscope golden approve --goldens " + shell_word(o.goldens) + " " +
+                     "; create it with: lrbscope golden approve --goldens " + shell_word(o.goldens) + " " +
                      shell_word(word));
   return {scenario.name, std::move(scenario)};
 }
@@ -241,9 +241,9 @@ void refuse_another(const GoldenOptions& o, const std::string& name, const std::
     return;  // it was removed or renamed
   }
   const std::filesystem::path folder = std::filesystem::path(o.goldens) / name;
-  throw InputError(printable_name(word) + ": has the name of another scenario, whose golden is in " +
+  throw InputError(printable_name(word) + ": has the same name as another scenario, whose golden is in " +
                    printable_name(folder.string()) + " (its \"scenario\" is " + kept +
-                   "): rename one of the two, or approve into another folder with --goldens");
+                   "); rename one of them, or approve into another folder with --goldens");
 }
 
 golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& name,
@@ -292,15 +292,13 @@ int run_approve(const GoldenOptions& o, const Globals& globals) {
 }
 
 void add_folder(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
-  app.add_option("--goldens", o->goldens, "Folder with what is approved")
-      ->type_name("DIR")
-      ->capture_default_str();
+  app.add_option("--goldens", o->goldens, "Folder with the goldens")->type_name("DIR")->capture_default_str();
 }
 
 CLI::App* add_part(CLI::App& golden, const std::string& name, const std::string& what,
                    const std::shared_ptr<GoldenOptions>& o, const std::string& none) {
   CLI::App* app = golden.add_subcommand(name, what);
-  app->add_option("SCENARIO", o->scenarios, "Shipped scenarios, or JSON files [" + none + "]");
+  app->add_option("SCENARIO", o->scenarios, "Shipped scenarios or JSON files [" + none + "]");
   add_folder(*app, o);
   return app;
 }
@@ -314,59 +312,62 @@ void add_comparison(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
          [o](const std::vector<std::string>& chosen) {
            for (const std::string& word : chosen) o->levels.push_back(from_name<golden::Level>(word).value());
          },
-         "What must be as approved, separated by commas: answers, events, pictures [all, or as the golden says]")
+         "Parts to compare, comma-separated: answers, events, pictures [all, or as stored in the golden]")
       ->delimiter(',')
       ->allow_extra_args(false)  // scenarios may follow
       ->check(CLI::IsMember(words).description(""))
       ->type_name(all_names<golden::Level>(",", ","));
   app.add_option("--picture-tolerance", o->large_share,
-                 "Share of a picture's pixels that may differ strongly [0.0005, or as the golden says]")
+                 "Fraction of pixels allowed to differ strongly [0.0005, or as stored in the golden]")
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("SHARE");
 }
 
 void add_output(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
   add_comparison(app, o);
-  app.add_option("--junit", o->junit, "Write the results as JUnit XML, too")->type_name("FILE");
+  app.add_option("--junit", o->junit, "Also write the results as JUnit XML")->type_name("FILE");
   app.add_option("--jobs", o->jobs,
-                 "Number of scenarios that are run at the same time; results do not depend on it")
+                 "Number of scenarios to run in parallel; the result does not depend on it")
       ->check(CLI::Range(1, 256))
       ->type_name("N")
       ->capture_default_str();
-  app.add_option("-o,--output", o->folder, "Folder for the page and for what differs")
+  app.add_option("-o,--output", o->folder, "Folder for the report page and the differing pictures")
       ->type_name("DIR")
       ->capture_default_str();
-  app.add_flag("--json", o->json, "Print a line of JSON for each scenario");
+  app.add_flag("--json", o->json, "Print one JSON line per scenario");
 }
 
 }  // namespace
 
 Command add_golden(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("golden", "Compare runs with approved traces and pictures");
+  CLI::App* app = root.add_subcommand("golden", "Regression-test runs against approved traces and pictures");
   const auto o = std::make_shared<GoldenOptions>();
   app->require_subcommand(1);
   CLI::App* test =
-      add_part(*app, "test", "Compare; if events, counters or pictures differ, write a page and exit with 1",
-               o, "all goldens");
+      add_part(*app, "test",
+               "Compare runs with the goldens; on a difference, write a report page and exit with code 1", o,
+               "all goldens");
   add_output(*test, o);
   CLI::App* approve = add_part(
-      *app, "approve", "Approve today's runs where they differ: make them the goldens", o, "all goldens");
+      *app, "approve", "Approve the current runs: they replace the goldens that differ", o, "all goldens");
   approve
       ->add_option("--variant", o->variant,
-                   "Put pictures that differ beside the approved ones, under this name")
+                   "Store differing pictures next to the approved ones, as a variant of this name")
       ->type_name("NAME");
-  approve->add_option("--size", o->size, "Size of the pictures [480 wide, of the scenario's shape]")
+  approve
+      ->add_option("--size", o->size, "Picture size, in pixels [480 wide, with the scenario's aspect ratio]")
       ->type_name("WxH");
-  approve->add_option("--frames", o->frames, "Number of pictures, evenly chosen from the scenario's [3]")
+  approve
+      ->add_option("--frames", o->frames, "Number of pictures, evenly spaced over the scenario's frames [3]")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
   add_comparison(*approve, o);
-  CLI::App* list = app->add_subcommand(
-      "list", "List what has been approved, how it is compared, and what it takes on disk");
+  CLI::App* list =
+      app->add_subcommand("list", "List the goldens, how each is compared, and their size on disk");
   add_folder(*list, o);
-  list->add_flag("--json", o->json, "Print a line of JSON for each golden");
-  CLI::App* report =
-      add_part(*app, "report", "As test, but always with a page, of every picture", o, "all goldens");
+  list->add_flag("--json", o->json, "Print one JSON line per golden");
+  CLI::App* report = add_part(*app, "report", "Like test, but always write a report page with every picture",
+                              o, "all goldens");
   add_output(*report, o);
   return {app, [o, &globals, test, report, list] {
             if (list->parsed()) return run_list(*o);

@@ -72,8 +72,9 @@ std::string regions_text(const Json& regions) {
   if (regions.size() > kMostRows)
     out << "  and " << regions.size() - kMostRows << " more: --json lists all\n";
   return out.str() +
-         "(distance: no point of its lids is further from the body. waste: floor faces that it opens for nothing, "
-         "for each point thrown into the outermost wrapper: its share of the wrapper's volume times its floor; over all regions " +
+         "(distance: maximum distance from a point of the lids to the body. waste: expected number of faces "
+         "exposed needlessly by a random point in the outermost wrapper, that is the region's share of the "
+         "wrapper's volume times its floor faces; total over all regions, " +
          bodies::kUsualWaste + ".)\n";
 }
 
@@ -94,7 +95,7 @@ std::string trials_text(const Json& trials) {
   std::ostringstream out;
   out << "tried:\n" << std::left << std::setw(kName) << "  setting" << std::right;
   for (const char* title :
-       {"faces per real face", "outermost faces", "wrapper over hull", "waste", "seconds"})
+       {"faces per real face", "outermost faces", "wrapper/convex hull", "waste", "seconds"})
     out << std::setw(kWidth) << title;
   out << "\n";
   for (const Json& t : trials)
@@ -114,8 +115,8 @@ std::string region_caption(const bodies::RegionFigures& r) {
     return render::group_digits(n) + " " + what + (n == 1 ? "" : "s");
   };
   return "region " + std::to_string(r.region) + ", layer " + std::to_string(r.layer) + ": " +
-         plural(r.lids, "lid") + " over " + plural(r.floor, "face") + ", off by " +
-         (std::isfinite(r.thickness) ? for_people(r.thickness, kRegionDigits) : "no bound") + "; parent " +
+         plural(r.lids, "lid") + " over " + plural(r.floor, "face") + ", deviation " +
+         (std::isfinite(r.thickness) ? for_people(r.thickness, kRegionDigits) : "unbounded") + "; parent " +
          (is_region(r.parent) ? std::to_string(r.parent) : "outside") + ", waste " +
          for_people(r.waste, kRegionDigits);
 }
@@ -165,11 +166,11 @@ std::string loops_text(const Json& loops) {
   for (const Json& l : loops) edges += l["edges"].get<std::size_t>();
   std::ostringstream out;
   out << "boundary: " << edges << " open edges in " << loops.size()
-      << (loops.size() == 1 ? " loop" : " loops") << (loops.empty() ? "\n" : ", the longest first:\n");
+      << (loops.size() == 1 ? " loop" : " loops") << (loops.empty() ? "\n" : ", longest first:\n");
   for (std::size_t i = 0; i < std::min(loops.size(), kMostLines); ++i) {
     const Json& l = loops[i];
     out << "  " << i << ": " << l["edges"] << " edges, length " << for_people(l["length"], kDigits) << ", "
-        << (l["planar"] ? "flat" : "not flat") << (l["is_loop"] ? "" : ", interrupted") << ", from "
+        << (l["planar"] ? "flat" : "not flat") << (l["is_loop"] ? "" : ", not a simple loop") << ", from "
         << for_people(l["low"], kDigits) << " to " << for_people(l["high"], kDigits) << "\n";
   }
   if (loops.size() > kMostLines) out << "  and " << loops.size() - kMostLines << " more: --json lists all\n";
@@ -241,7 +242,7 @@ render::FrameSpec sheet_frames(const InspectOptions& o, bool drawing) {
                                                         {!camera.up.empty(), "--up"}};
     for (const auto& [given, name] : of_pictures)
       if (given)
-        throw InputError(std::string(name) + ": is for pictures; add --render or --draw, or leave " + name +
+        throw InputError(std::string(name) + ": needs --render or --draw; add one, or leave " + name +
                          " out");
   }
   render::FrameSpec frames;
@@ -266,8 +267,7 @@ void draw_findings(const run::FaultyMesh& faulty, const InspectOptions& o, Json&
     return;
   }
   j["drawing"] = nullptr;
-  notes.push_back(faulty.mesh.name + ": nothing to draw: there are no findings; " + path +
-                  " was not written");
+  notes.push_back(faulty.mesh.name + ": no findings to draw; " + path + " was not written");
 }
 
 /// Measures the regions, and draws the ten with the largest waste if pictures are requested (`picture` is not
@@ -275,7 +275,8 @@ void draw_findings(const run::FaultyMesh& faulty, const InspectOptions& o, Json&
 void tell_regions(const LrbRep& rep, const InspectOptions& o, const render::FrameSpec& frames,
                   const std::string& picture, Json& j) {
   if (rep.region_count() == 0)
-    throw InputError(rep.name() + ": has no regions to list: it is open, or no LRB-rep can be made of it");
+    throw InputError(rep.name() +
+                     ": no regions to list, because the mesh is open or an LRB-rep cannot be built");
   const std::vector<bodies::RegionFigures> regions = bodies::region_figures(rep, o.sort, o.threads);
   j["total_waste"] = bodies::total_waste(regions);
   j["region_figures"] = regions_json(regions);
@@ -284,8 +285,8 @@ void tell_regions(const LrbRep& rep, const InspectOptions& o, const render::Fram
     std::vector<run::ShownRegion> shown;
     for (std::size_t i = 0; i < std::min(kWorst, regions.size()); ++i)
       shown.push_back({regions[i].region, region_caption(regions[i])});
-    run::draw_region_sheet(rep, bodies::waste_over_faces(rep, regions), "a face's share of the waste", shown,
-                           picture, frames);
+    run::draw_region_sheet(rep, bodies::waste_over_faces(rep, regions), "waste per face", shown, picture,
+                           frames);
   }
   if (!o.tried) return;
   const std::vector<bodies::Trial> trials = bodies::try_settings(rep, o.threads);
@@ -334,7 +335,8 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     if (!o.drawing.empty())
       throw InputError(
           printable_name(o.file) +
-          ": is an LRB-rep, which has no findings to draw; give its mesh, or draw it with --render");
+          ": expected a mesh for --draw, found an LRB-rep, which has no findings; give its mesh, or use "
+          "--render");
     rep = std::make_unique<LrbRep>(load_lrb(o.file));
     j["file"] = o.file;
     j["kind"] = "LRB-rep";
@@ -385,24 +387,23 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
 }  // namespace
 
 Command add_inspect(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("inspect", "Tell what a mesh or an LRB-rep is, and what is wrong with it");
+  CLI::App* app = root.add_subcommand("inspect", "Report the properties and defects of a mesh or an LRB-rep");
   const auto o = std::make_shared<InspectOptions>();
   app->add_option("FILE", o->file, "Mesh or .lrb file")->required();
   app->add_flag("--validate", o->validate,
-                "Prove that the LRB-rep keeps its promises (a mesh is built first); exit code 1 if not");
+                "Validate the LRB-rep (a mesh is built first); exit code 1 if it is invalid");
   app->add_flag(
       "--render", o->render,
-      "Draw the body, its layers and its outermost wrapper; with --regions, where regions waste most and the "
-      "worst ten");
+      "Draw the body, its layers and its outermost wrapper; with --regions, also a map of wasted refinement "
+      "and the ten worst regions");
   auto* regions =
-      app->add_flag("--regions", o->regions, "List the regions (a mesh is built first), the worst first");
-  add_choice<bodies::RegionOrder>(*app, "--sort", o->sort, "What is worst [waste]");
-  app->add_flag("--try", o->tried, "With --regions: build it with other settings, and tell which help")
+      app->add_flag("--regions", o->regions, "List the regions (a mesh is built first), worst first");
+  add_choice<bodies::RegionOrder>(*app, "--sort", o->sort, "Sort key [waste]");
+  app->add_flag("--try", o->tried, "Rebuild with other settings and report which ones improve the LRB-rep")
       ->needs(regions);
   app->get_option("--sort")->needs(regions);
   app->add_option("--draw", o->drawing,
-                  "Draw what is wrong with a mesh, to this picture: the first offenders are pointed out")
+                  "Draw the mesh's defects to this PNG, with the first defective elements marked")
       ->type_name("FILE.png");
   app->add_option("-o,--output", o->picture, "Picture to write [out/NAME.png]")->type_name("FILE.png");
   add_size_options(*app, o->pictures);

@@ -27,7 +27,7 @@ std::string as_table(const std::vector<bodies::LevelFigures>& levels, const LrbR
   std::ostringstream out;
   out << std::setprecision(kDigits);
   out << rep.name() << ": " << rep.real_face_count() << " faces\n";
-  for (const char* title : {"share", "tolerance", "faces", "proved off"}) out << std::setw(kWidth) << title;
+  for (const char* title : {"share", "tolerance", "faces", "deviation"}) out << std::setw(kWidth) << title;
   out << "\n";
   for (const bodies::LevelFigures& l : levels)
     out << std::setw(kWidth) << l.share << std::setw(kWidth) << l.tolerance << std::setw(kWidth) << l.faces
@@ -61,23 +61,25 @@ int run_levels(const LevelsOptions& o, const Globals& globals) {
 }  // namespace
 
 Command add_levels(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("levels", "How many faces a body needs at a row of tolerances, and the proof");
+  CLI::App* app = root.add_subcommand(
+      "levels",
+      "Report how many faces a body needs at each of several tolerances (levels of detail), with proven "
+      "error bounds");
   const auto o = std::make_shared<LevelsOptions>();
   o->shares.assign(std::begin(bodies::kLevelShares), std::end(bodies::kLevelShares));
   app->add_option("BODY", o->body, "Mesh or .lrb file")->required();
-  app->add_option("--at", o->shares, "Tolerances, as shares of the largest side of the body's box")
+  app->add_option("--at", o->shares, "Tolerances, as fractions of the longest side of the body's box")
       ->check(CLI::Range(0.0, 1.0).description(""))
       ->type_name("SHARE...")
       ->capture_default_str();
   app->add_option(
          "-o,--output", o->folder,
-         "Draw the wrappers, how far they are off and how many faces that takes: pictures and a page")
+         "Write pictures and a page of the wrappers, their deviation from the body and their face counts")
       ->type_name("FOLDER");
   add_up_option(*app, o->up);
   o->build.threads = 0;
   add_build_options(*app, o->build);
-  app->add_flag("--json", o->json, "As one JSON object");
+  app->add_flag("--json", o->json, "Print one JSON object");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_levels(*o, globals); }};
 }

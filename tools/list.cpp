@@ -84,9 +84,10 @@ int run_list(const ListOptions& o) {
 
 Command add_list(CLI::App& root, const Globals&) {
   CLI::App* app = root.add_subcommand(
-      "list", "List the shipped scenarios, crowds and experiments, or the generators and their parameters");
+      "list",
+      "List the shipped scenarios, crowds and experiments, or the body generators with their parameters");
   const auto o = std::make_shared<ListOptions>();
-  app->add_flag("--generators", o->generators, "List the generators of bodies instead");
+  app->add_flag("--generators", o->generators, "List the body generators with their parameters");
   app->add_flag("--json", o->json, "Print JSON");
   return {app, [o] { return run_list(*o); }};
 }

@@ -50,7 +50,7 @@ int guarded(const Run& run) {
   } catch (const std::length_error&) {  // a container larger than its maximum size
     return complain("", "out of memory: try a smaller input or a larger machine", kEnvironment);
   } catch (const std::system_error& e) {
-    return complain("", std::string("the system refused: ") + e.what(), kEnvironment);
+    return complain("", std::string("system error: ") + e.what(), kEnvironment);
   } catch (const std::exception& e) {
     return complain("internal error, please report it: ", e.what(), kEnvironment);
   }
@@ -91,8 +91,8 @@ void print(const std::string& text) {
   if (written && std::fflush(stdout) == 0) return;
   const int reason = errno;
   if (reason == EPIPE) end_as_by_closed_pipe();
-  throw EnvironmentError(std::string("stdout: cannot be written (") + std::strerror(reason) +
-                         "); check where it leads and the space left there");
+  throw EnvironmentError(std::string("stdout: cannot write (") + std::strerror(reason) +
+                         "); check its target and the free space there");
 }
 
 namespace {
@@ -141,7 +141,7 @@ std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std:
     known.push_back(c->get_name());
   if (known.empty() || word.empty()) return error.what() + help;
   const std::string near = io::nearest_word(word, known);
-  return in_quotes(word) + " is no command of " + call_of(*app) +
+  return in_quotes(word) + " is not a command of " + call_of(*app) +
          (near.empty() ? "" : "; did you mean \"" + near + "\"?") + help;
 }
 
@@ -151,21 +151,24 @@ void refuse_empty_values(const CLI::App& app) {
     for (const std::string& value : option->results())
       if (value.empty())
         throw InputError(option->get_name() +
-                         ": expected a value, found an empty text; is a variable unset?");
+                         ": expected a value, found an empty string; is a shell variable unset?");
   for (const CLI::App* below : app.get_subcommands()) refuse_empty_values(*below);
 }
 
 int parse_and_run(int argc, char** argv) {
-  CLI::App app("An exact two-body collision engine that can be watched.", "lrbscope");
+  CLI::App app(
+      "Exact collision detection for pairs of meshes, which can record, draw and explain every step of a "
+      "query.",
+      "lrbscope");
   app.set_version_flag("--version", std::string("lrbscope ") + trace::lrbscope_version());
   app.require_subcommand(1);
   app.fallthrough();
   app.footer(
-      "Exit codes: 0 ok, 1 mismatch, 2 usage or input error, 3 environment. `lrbscope COMMAND --help` tells "
-      "more.");
+      "Exit codes: 0 success, 1 mismatch, 2 usage or input error, 3 missing dependency or resource. See also "
+      "`lrbscope COMMAND --help`.");
   Globals globals;
   globals.command_line = command_line(argc, argv);
-  app.add_flag("-q,--quiet", globals.quiet, "Print nothing to stderr but errors");
+  app.add_flag("-q,--quiet", globals.quiet, "Print only errors to stderr");
   const std::vector<Command> commands = add_commands(app, globals);
   try {
     app.parse(argc, argv);

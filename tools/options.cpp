@@ -27,9 +27,11 @@ std::string option_of(Value CollideRequest::*member) {
 }
 
 template <class Target>
-void add_recursion(CLI::App& app, Target& recursion) {
+void add_recursion(CLI::App& app, Target& recursion, const std::string& usual) {
   add_choice<Recursion>(app, option_of(&CollideRequest::recursion), recursion,
-                        "complete never misses; paper is the paper's own");
+                        "complete: never misses a contact; paper, paper_strict: the paper's algorithm, which "
+                        "can miss contacts [" +
+                            usual + "]");
 }
 
 /// Adds an option that takes a count, at least 1.
@@ -56,44 +58,48 @@ void apply_size(const std::string& size, render::FrameSpec& spec) {
 }  // namespace
 
 void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion) {
-  add_recursion(app, recursion);
+  add_recursion(app, recursion, "as in the scenario");
 }
 
 void add_events_option(CLI::App& app, std::optional<EventLevel>& level) {
   add_choice<EventLevel>(
       app, "--events", level,
-      "What is recorded. faces: face tests, refinements and contacts; nodes: pairs of tree nodes and "
-      "phases, too; all: also the pairs that planes part");
+      "Events to record. faces: face tests, refinements, contacts; nodes: also tree-node pairs and phases; "
+      "all: also face pairs rejected by a separating plane");
 }
 
 void add_request_options(CLI::App& app, CollideRequest& request) {
   add_choice<Mode>(app, option_of(&CollideRequest::mode), request.mode,
-                   "all: every pair; first: one pair, which crosses if any does; any: the first that meets");
-  add_recursion(app, request.recursion);
-  add_choice<Predicates>(app, option_of(&CollideRequest::predicates), request.predicates,
-                         "floating: without the exact fallback, wrong where doubles cannot decide");
+                   "all: every pair; first: one pair, a crossing one if there is any; any: stop at the first "
+                   "pair found");
+  add_recursion(app, request.recursion, "complete");
+  add_choice<Predicates>(
+      app, option_of(&CollideRequest::predicates), request.predicates,
+      "floating: no exact fallback; wrong wherever double precision cannot decide the sign");
   add_count(app, option_of(&CollideRequest::max_pairs), request.max_pairs,
-            "Largest number of pairs; a query with more is refused [" + std::to_string(kMostPairs) +
+            "Maximum number of pairs; a query that finds more is an error [" + std::to_string(kMostPairs) +
                 "; with contacts " + std::to_string(kMostPairsWithContacts) + "]");
 }
 
 void add_coarse_options(CLI::App& app, CollideRequest& request) {
   app.add_option(option_of(&CollideRequest::tolerance), request.tolerance,
-                 "Answer with the coarsest wrappers that are no further off the bodies than this, in the "
-                 "meshes' unit, and list their pairs")
+                 "Maximum error, in mesh units: answer with the coarsest wrappers within it, and list their "
+                 "pairs")
       ->check(CLI::NonNegativeNumber)
       ->type_name("LENGTH");
   add_count(app, option_of(&CollideRequest::max_tests), request.max_tests,
-            "Largest number of face tests: one pair first, then wrappers, coarsest first");
+            "Maximum number of face tests; on reaching it, return the finest result so far, with its error "
+            "bound");
   app.add_option(option_of(&CollideRequest::max_time), request.max_time,
-                 "Time limit of a query in seconds; gives the best answer found by then")
+                 "Time limit per query, in seconds; on reaching it, return the best result so far, with its "
+                 "error bound")
       ->check(CLI::PositiveNumber)
       ->type_name("S");
 }
 
 void add_repeat_option(CLI::App& app, std::uint32_t& repeat, const std::string& what) {
   app.add_option("--repeat", repeat,
-                 "Repeat each " + what + "'s query N times, and add the median time in microseconds")
+                 "Repeat the query of each " + what + " N times and add the median time, in microseconds")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
 }
@@ -101,36 +107,37 @@ void add_repeat_option(CLI::App& app, std::uint32_t& repeat, const std::string& 
 void add_join_option(CLI::App& app, bodies::Corners& corners) {
   app.add_flag_callback(
       "--no-join", [&corners] { corners = bodies::Corners::apart; },
-      "Keep corners of a mesh apart that lie in exactly the same place [where the surface is open there, they "
-      "are joined; faces keep their numbers]. Corners of STL files are always joined");
+      "Do not merge coincident vertices [merged where the surface would otherwise be open; face numbers do "
+      "not change]. Always merged in STL files");
 }
 
 void add_build_options(CLI::App& app, BuildOptions& options) {
-  app.add_option("--patch", options.patch_interior, "Number of interior vertices to aim for in a patch")
+  app.add_option("--patch", options.patch_interior, "Target number of interior vertices per patch")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str()
       ->type_name("N");
-  app.add_option("--max-outer", options.max_outer_faces,
-                 "Number of faces to aim for in the outermost wrapper")
+  app.add_option("--max-outer", options.max_outer_faces, "Target number of faces of the outermost wrapper")
       ->check(CLI::Range(4, 1000))
       ->capture_default_str()
       ->type_name("N");
   app.add_flag("--lean", options.lean,
-               "Build fewer faces in all (1.5 a real face, not 2), for wrappers that fit less well");
-  app.add_option("--seed", options.seed, "Seed of the order in which patches grow")
+               "Build fewer pseudo faces (about 1.5 faces in total per real face instead of 2); wrappers fit "
+               "less tightly");
+  app.add_option("--seed", options.seed, "Random seed for the order in which patches are grown")
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--threads", options.threads,
-                 "Number of threads to build on [all of the machine's]; the LRB-rep does not depend on it")
+                 "Number of threads [all cores]; the result does not depend on it")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
 }
 
 void add_size_options(CLI::App& app, PictureOptions& options) {
-  app.add_option("--size", options.size, "Size of the frames in pixels")->type_name("WxH");
+  app.add_option("--size", options.size, "Picture size, in pixels")->type_name("WxH");
   app.add_option(
          "--dpi", options.dpi,
-         "For print: keep the size that --size has at 96 dpi, in more pixels; lines and texts grow with them")
+         "Print resolution: same physical size as --size at 96 dpi, with more pixels; lines and text scale "
+         "with it")
       ->check(CLI::Range(spec::kLeastDpi, spec::kMostDpi))
       ->type_name("N");
   add_style_option(app, options, "screen");
@@ -139,27 +146,26 @@ void add_size_options(CLI::App& app, PictureOptions& options) {
 void add_style_option(CLI::App& app, PictureOptions& options, const std::string& usual) {
   add_choice<render::FrameSpec::Style>(
       app, "--style", options.style,
-      "print: black on white, thin lines, kinds that differ in grey; dark: for slides [" + usual + "]");
+      "print: black on white, thin lines, distinguishable in greyscale; dark: for slides [" + usual + "]");
 }
 
 void add_picture_options(CLI::App& app, PictureOptions& options) {
   add_size_options(app, options);
-  app.add_flag("--transparent", options.transparent, "Draw without a background");
+  app.add_flag("--transparent", options.transparent, "Transparent background");
   app.add_flag_callback(
-      "--no-title", [&options] { options.titles = false; },
-      "Leave title, event, counters and titles of views out of the frames");
+      "--no-title", [&options] { options.titles = false; }, "Omit titles, event text and counters");
   app.add_flag_callback(
-      "--no-legend", [&options] { options.legend = false; }, "Leave legend and colour bar out");
+      "--no-legend", [&options] { options.legend = false; }, "Omit the legend and the colour bar");
   app.add_option_function<std::string>(
          "--format", [&options](const std::string& word) { options.svg = word == "svg"; },
-         "svg: write frames and montage as SVG as well, for 2D bodies")
+         "svg: also write frames and montage as SVG (2D bodies only)")
       ->check(CLI::IsMember({"png", "svg"}).description(""))
       ->type_name("png|svg");
-  add_choice<render::FrameSpec::At>(app, "--frames", options.at, "When to draw a frame");
-  app.add_option("--every", options.every, "Draw every N-th of these")
+  add_choice<render::FrameSpec::At>(app, "--frames", options.at, "Events after which a frame is drawn");
+  app.add_option("--every", options.every, "Draw only every N-th of the frames selected by --frames")
       ->check(CLI::Range(1, 1000000000))
       ->type_name("N");
-  app.add_option("--most", options.most, "Largest number of frames, evenly chosen")
+  app.add_option("--most", options.most, "Maximum number of frames, evenly spaced")
       ->check(CLI::Range(1, 10000))
       ->type_name("N");
   add_camera_options(app, options.camera);
@@ -168,13 +174,13 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
 }
 
 void add_colour_options(CLI::App& app, PictureOptions& options) {
-  add_choice<render::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by, "What the colours mean");
+  add_choice<render::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by,
+                                          "Quantity that faces are coloured by");
   add_choice<render::FrameSpec::ColourPer>(
       app, "--colour-per", options.colour_per,
-      "Whose number colours a face: its own, or its region's or level's sum");
-  app.add_option(
-         "--node-boxes", options.node_boxes,
-         "Draw the boxes of tree nodes of this depth that the walk came to: solid where they met, else dashed")
+      "Colour a face by its own value, or by the sum over its region or level");
+  app.add_option("--node-boxes", options.node_boxes,
+                 "Draw the visited tree-node boxes at this depth; solid: overlapping, dashed: disjoint")
       ->check(CLI::Range(0U, spec::kMostDepth))
       ->type_name("DEPTH");
 }
@@ -201,16 +207,17 @@ void apply(const PictureOptions& options, render::FrameSpec& spec) {
 }
 
 void add_camera_options(CLI::App& app, CameraOptions& options) {
-  app.add_option("--from", options.from,
-                 "Direction to look from, seen from the bodies, in the axes of their files")
+  app.add_option("--from", options.from, "Direction from the bodies to the camera, in file axes")
       ->type_name("X,Y,Z");
-  app.add_option("--look-at", options.look_at, "Point in the middle of the picture [the bodies' middle]")
+  app.add_option("--look-at", options.look_at, "Point to centre the picture on [centre of the bodies]")
       ->type_name("X,Y,Z");
-  app.add_option("--zoom", options.zoom, "Above 1: closer")->check(CLI::Range(0.01, 1000.0))->type_name("N");
+  app.add_option("--zoom", options.zoom, "Zoom factor; above 1 is closer")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->type_name("N");
   app.add_option_function<std::string>(
          "--projection",
          [&options](const std::string& word) { options.orthographic = word == "orthographic"; },
-         "How depth is shown")
+         "Camera projection")
       ->check(CLI::IsMember({"perspective", "orthographic"}).description(""))
       ->type_name("perspective|orthographic");
   add_up_option(app, options.up);
@@ -218,7 +225,7 @@ void add_camera_options(CLI::App& app, CameraOptions& options) {
 
 void add_orbit_option(CLI::App& app, CameraOptions& options) {
   app.add_option("--orbit", options.orbit,
-                 "Turn the camera round the bodies by so many degrees, from the first frame to the last")
+                 "Total angle by which the camera orbits the bodies between the first and the last frame")
       ->check(CLI::Range(-36000.0, 36000.0))
       ->type_name("DEGREES");
 }
@@ -245,9 +252,8 @@ void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& v
       if (view.camera == render::FrameSpec::Camera::fixed) view.camera = render::FrameSpec::Camera::scene;
     }
     if (!(view.from.cross(view.up).squaredNorm() > 0))
-      throw InputError(
-          "--from: expected a direction that is not zero and does not lie along the one that points up (" +
-          (options.up.empty() ? "z" : options.up) + "; see --up)");
+      throw InputError("--from: expected a direction other than zero that is not parallel to the up axis (" +
+                       (options.up.empty() ? "z" : options.up) + "; see --up)");
     if (!options.look_at.empty()) view.look_at = io::parse_vector(options.look_at, "--look-at");
     if (options.zoom) view.zoom = *options.zoom;
     if (options.orthographic) view.orthographic = *options.orthographic;
@@ -274,7 +280,7 @@ render::ViewDirection turned_up(const render::ViewDirection& view, int axis) {
 }
 
 void add_animation_option(CLI::App& app, PictureOptions& options) {
-  app.add_option("--animate", options.animation, "Make a moving picture of the frames too, by ffmpeg")
+  app.add_option("--animate", options.animation, "Also write the frames as an animation (needs ffmpeg)")
       ->type_name("OUT.mp4|gif|webp");
 }
 
@@ -293,8 +299,8 @@ std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render:
     whole.up = contact.up = as[0].up;
     whole.orthographic = contact.orthographic = as[0].orthographic;
   }
-  whole.title = "Whole, with wrappers";
-  contact.title = "Contact, bodies alone";
+  whole.title = "Overview with wrappers";
+  contact.title = "Contact without wrappers";
   contact.camera = render::FrameSpec::Camera::contact;
   contact.wrapper = false;
   return {whole, contact};

@@ -33,7 +33,7 @@ std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::string>&
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     std::string list;
     for (const std::string& k : known) list.append(list.empty() ? "" : ", ").append(k);
-    throw InputError(std::string("there is no ") + what + " '" + name + "'; known: " + list);
+    throw InputError(std::string("unknown ") + what + " '" + name + "'; known: " + list);
   }
   std::vector<T> out;
   std::copy_if(all.begin(), all.end(), std::back_inserter(out),
@@ -53,19 +53,18 @@ struct MeasureOptions {
 /// Adds the options; the help shows the values in `o` as defaults.
 inline void add_measure_options(CLI::App& app, MeasureOptions& o) {
   app.add_option("-o,--output", o.folder,
-                 "Folder to write to; a survey that it holds is continued [" + o.folder_help + "]")
+                 "Output folder; a survey found in it is continued [" + o.folder_help + "]")
       ->type_name("DIR");
-  app.add_option("--models", o.models, "Folder of meshes to collide as well, each with the next one")
+  app.add_option("--models", o.models, "Folder of additional meshes; each is collided with the next")
       ->type_name("DIR");
   app.add_option("--method", o.methods, "Only these methods")->type_name("NAME");
-  app.add_option("--poses", o.set.poses,
-                 "Number of poses of each class [" + std::to_string(o.set.poses) + "]")
+  app.add_option("--poses", o.set.poses, "Number of poses per class [" + std::to_string(o.set.poses) + "]")
       ->check(CLI::Range(1, 10000))
       ->type_name("N");
-  app.add_option("--seed", o.set.seed, "Seed of the poses [1]")
+  app.add_option("--seed", o.set.seed, "Random seed for the poses [1]")
       ->check(CLI::NonNegativeNumber)
       ->type_name("S");
-  app.add_option("--timeout", o.timeout, "Seconds that a method has for a pose [20]")
+  app.add_option("--timeout", o.timeout, "Time limit per pose and method, in seconds [20]")
       ->check(CLI::Range(0.1, 3600.0))
       ->type_name("S");
 }
@@ -78,10 +77,10 @@ inline void add_quantity_option(CLI::App& app, methods::Quantity& quantity) {
            const auto known = from_name<methods::Quantity>(word);
            if (!known)
              throw CLI::ValidationError("--quantity",
-                                        "'" + word + "': use " + all_names<methods::Quantity>());
+                                        "'" + word + "': expected " + all_names<methods::Quantity>());
            quantity = *known;
          },
-         "What to ask for: pairs (the default), distance, first_contact, depth")
+         "Quantity to compute: pairs, distance, first_contact or depth [pairs]")
       ->type_name("Q");
 }
 

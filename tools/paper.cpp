@@ -28,22 +28,20 @@ struct PaperSeriesOptions {
 
 void add_series_options(CLI::App& app, PaperSeriesOptions& o) {
   app.add_option("--meshes", o.meshes,
-                 "Meshes, or folders of meshes, to collide at several resolutions [two bodies of our own]")
+                 "Meshes, or folders of meshes, to collide at several resolutions [two generated bodies]")
       ->type_name("PATH...");
   app.add_option(
          "--resolutions", o.resolutions.most,
-         "Number of resolutions of each body, each with half as many faces as the one before; 0 leaves this "
-         "part out")
+         "Number of resolutions per body, each with half as many faces as the one before; 0 omits this part")
       ->check(CLI::Range(0, 30))
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--subdivide", o.resolutions.subdivisions,
-                 "How often to subdivide each body first; each time replaces a face by four")
+                 "Number of subdivisions of each body; each one replaces a face by four")
       ->check(CLI::Range(0, 4))
       ->type_name("N")
       ->capture_default_str();
-  app.add_flag("--lean", o.lean,
-               "Build these bodies with fewer faces in all, for wrappers that fit less well");
+  app.add_flag("--lean", o.lean, "Build these bodies with fewer pseudo faces; wrappers fit less tightly");
 }
 
 /// Makes the bodies from the given meshes, or generated ones; A is the paper's object.
@@ -162,7 +160,8 @@ std::vector<paper::ContactStep> sweep_objects(std::span<const paper::PaperObject
 /// has none. Throws InputError if there is nothing to divide into shards.
 void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
   if (!experiment.collides() && (!o.shard.empty() || !o.merge.empty()))
-    throw InputError("experiment " + experiment.name + ": has no collisions; leave out --shard and --merge");
+    throw InputError("experiment " + experiment.name +
+                     ": has no collisions, so it does not take --shard or --merge");
   if (!o.merge.empty()) {
     const paper::ShardFile whole = paper::read_shard_files(o.merge);
     experiment.protocol = whole.protocol;
@@ -228,43 +227,43 @@ int run_paper(PaperOptions o, const Globals& globals) {
 Command add_paper(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "paper",
-      "Repeat the paper's experiment: its tables and figures, close-ups of single collisions, and the same on meshes");
+      "Reproduce the paper's experiment: tables, figures, close-ups of single collisions, and the same on "
+      "meshes");
   const auto o = std::make_shared<PaperOptions>();
-  app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR")->capture_default_str();
+  app->add_option("-o,--output", o->folder, "Output folder")->type_name("DIR")->capture_default_str();
   app->add_option("--experiment", o->experiment,
-                  "What to do and report: paper, table1, table2, figures, close_up, or a JSON file")
+                  "Experiment: paper, table1, table2, figures, close_up or a JSON file")
       ->type_name("NAME|FILE")
       ->capture_default_str();
-  app->add_flag("--print", o->print,
-                "Print the experiment of that name, to start one of your own from, and do nothing else");
+  app->add_flag("--print", o->print, "Only print the shipped experiment, as a starting point for your own");
   app->add_option("--collisions", o->collisions, "Number of collisions of A with each object [100]")
       ->check(CLI::Range(1u, paper::kMostCollisions))
       ->type_name("N");
-  app->add_option("--step", o->step, "Time step as a share of the diagonal [0.005]")
+  app->add_option("--step", o->step, "Time step, as a fraction of the diagonal [0.005]")
       ->check(CLI::Range(paper::kLeastStep, paper::kMostStep))
       ->type_name("SHARE");
-  app->add_option("--steps-after", o->steps_after, "Number of time steps counted after the first contact [5]")
+  app->add_option("--steps-after", o->steps_after, "Number of time steps counted after first contact [5]")
       ->check(CLI::Range(0u, paper::kMostStepsAfter))
       ->type_name("N");
-  app->add_option("--seed", o->seed, "Seed of directions and rotations [1]")->type_name("N");
+  app->add_option("--seed", o->seed, "Random seed for directions and rotations [1]")->type_name("N");
   app->add_option("--jobs", o->jobs, "Number of threads; the result does not depend on it")
       ->check(CLI::Range(1u, 1024u))
       ->type_name("N")
       ->capture_default_str();
   CLI::Option* shard =
       app->add_option("--shard", o->shard,
-                      "Run only part i (from 0) of n of the collisions, and write only records")
+                      "Run only part i of n (from 0) of the collisions, and write only its records")
           ->type_name("i/n");
   CLI::Option* merge = app->add_option("--merge", o->merge,
-                                       "Report the records of all shards instead of computing any; with the "
-                                       "shards' --meshes, if they had any")
+                                       "Report the records of all shards without computing any; repeat the "
+                                       "shards' --meshes, if any")
                            ->type_name("records.jsonl...")
                            ->excludes(shard);
   add_series_options(*app, o->series);
   for (const char* of_shards :
        {"--collisions", "--step", "--steps-after", "--seed", "--resolutions", "--subdivide", "--lean"})
     merge->excludes(app->get_option(of_shards));
-  app->add_flag("--json", o->json, "Print the tables instead of the page's path");
+  app->add_flag("--json", o->json, "Print the tables as JSON instead of the page's path");
   return {app, [o, &globals] { return run_paper(*o, globals); }};
 }
 

@@ -166,22 +166,25 @@ int run_query(const QueryOptions& o, const Globals& globals) {
 }  // namespace
 
 Command add_query(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("query", "Answer exactly for each pose of B in a list, one line of JSON each");
+  CLI::App* app = root.add_subcommand(
+      "query", "Find all intersecting pairs of faces, exactly, for each pose of B; one JSON line per pose");
   const auto o = std::make_shared<QueryOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
-  app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
+  app->add_option("B", o->b, "Mesh or .lrb file; moved to each pose")->required();
   app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
   add_request_options(*app, o->request);
   add_coarse_options(*app, o->request);
   auto* separation = app->add_flag("--separation", o->request.separation,
-                                   "Add, for separate bodies, the coarsest wrappers that prove it");
-  app->add_option("--draw-separation", o->draw, "Draw these wrappers to this picture")
+                                   "For separate bodies, add the coarsest pair of disjoint wrappers (a "
+                                   "certificate of separation)");
+  app->add_option(
+         "--draw-separation", o->draw,
+         "Draw the certificate of --separation to this PNG; for several poses, one numbered file each")
       ->needs(separation)
       ->type_name("PNG");
-  app->add_flag("--pairs", o->pairs, "Add the sorted list of pairs");
-  app->add_flag("--kind", o->kind, "Add what kind of contact the solids have, as `clash` tells it");
-  app->add_flag("--distance", o->distance, "Add the interval that holds the surfaces' distance");
+  app->add_flag("--pairs", o->pairs, "Add the sorted list of intersecting pairs");
+  app->add_flag("--kind", o->kind, "Add the kind of contact, as reported by `clash`");
+  app->add_flag("--distance", o->distance, "Add the distance between the surfaces, as a proven interval");
   add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_query(*o, globals); }};

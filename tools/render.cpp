@@ -56,9 +56,9 @@ OfBody read_of_body(const std::string& option, const std::string& what, const st
   const char *first = text.data() + (named ? 1 : 0), *last = text.data() + text.size();
   const auto [end, error] = std::from_chars(first, last, out.number);
   if (error != std::errc() || end != last)
-    throw InputError(option + ": expected a " + what + "'s number, or a or b and the number, found " +
+    throw InputError(option + ": expected a " + what + " number, optionally after a or b, found " +
                      printable_name(text));
-  if (out.body >= counts.size()) throw InputError(option + " " + text + ": there is no body B in this trace");
+  if (out.body >= counts.size()) throw InputError(option + " " + text + ": the trace has no body B");
   if (out.number >= counts[out.body])
     throw InputError(option + " " + text + ": the body has " + std::to_string(counts[out.body]) + " " + what +
                      "s, numbered from 0");
@@ -132,7 +132,7 @@ void refuse_for_crowd(const RenderOptions& o) {
       {o.picture.node_boxes.has_value(), "--node-boxes"},
       {at == At::refinement || at == At::pass || at == At::every, "--frames refinement, pass or event"}};
   for (const auto& [given, name] : none)
-    if (given) throw InputError(std::string(name) + ": is not for the trace of a crowd; leave it out");
+    if (given) throw InputError(std::string(name) + ": not supported for the trace of a crowd; leave it out");
 }
 
 int render_crowd(const RenderOptions& o, const Globals& globals, const std::string& text) {
@@ -174,13 +174,12 @@ int run_render(const RenderOptions& given, const Globals& globals) {
       {"lrbscope:scenario_hash", trace::to_hex(trace.header.scenario_hash)},
   };
   if (const EventLevel needed = render::needed_level(spec); needed > trace.header.level)
-    throw InputError(
-        printable_name(o.trace) +
-        " does not hold the events for --colour-by or --node-boxes; record the run with --events " +
-        std::string(name_of(needed)));
+    throw InputError(printable_name(o.trace) +
+                     " lacks the events for --colour-by or --node-boxes; record the run with --events " +
+                     std::string(name_of(needed)));
   if (render::needed_level(spec) == EventLevel::nodes && recording.trees.empty())
     throw InputError("--colour-by or --node-boxes: " + printable_name(o.trace) + " is of " +
-                     trace.header.engine + ", whose trees are not in it; `lrbscope xray` draws them");
+                     trace.header.engine + " and does not contain its trees; draw them with `lrbscope xray`");
   run::check_frames(p, spec);  // throws before anything is written
   make_folder(folder);
   const io::FolderLock lock(folder);
@@ -200,32 +199,33 @@ int run_render(const RenderOptions& given, const Globals& globals) {
 }  // namespace
 
 Command add_render(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("render", "Draw pictures of a recorded run, without running it again");
+  CLI::App* app = root.add_subcommand("render", "Redraw the pictures of a recorded run without rerunning it");
   const auto o = std::make_shared<RenderOptions>();
-  app->add_option("TRACE", o->trace, "A run's folder, or its trace.json or trace.json.gz")->required();
-  app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR");
-  app->add_option(
-         "--bodies", o->bodies,
-         "Bodies that were recorded [a.lrb and b.lrb beside the trace; KIND.lrb for each kind of a crowd]")
+  app->add_option("TRACE", o->trace, "A run's folder, trace.json or trace.json.gz")->required();
+  app->add_option("-o,--output", o->folder, "Output folder [out/NAME-render]")->type_name("DIR");
+  app->add_option("--bodies", o->bodies,
+                  "Bodies of the trace [a.lrb and b.lrb next to it; crowd: KIND.lrb for each kind]")
       ->type_name("FILE")
       ->expected(1, static_cast<int>(spec::kMostCrowdBodies));
-  app->add_option("--events", o->events, "Draw after these events")->delimiter(',')->type_name("N,N,...");
-  app->add_option("--montage", o->montage, "Number of panels of a montage [as the run had them]")
+  app->add_option("--events", o->events, "Draw a frame after each of these events")
+      ->delimiter(',')
+      ->type_name("N,N,...");
+  app->add_option("--montage", o->montage, "Number of panels of the montage [as in the run]")
       ->check(CLI::Range(1, 26))
       ->type_name("N");
-  app->add_option("--columns", o->columns, "Columns of the montage [as the run had them]")
+  app->add_option("--columns", o->columns, "Number of columns of the montage [as in the run]")
       ->check(CLI::Range(1, 26))
       ->type_name("N");
-  app->add_flag("--close-up", o->close_up, "Add a second view, of the contact");
+  app->add_flag("--close-up", o->close_up, "Add a second view that shows the contact close up");
   app->add_option("--region", o->regions,
-                  "Show only these regions (N or aN of A, bN of B), close up, and the rest as a ghost")
+                  "Show only these regions (N or aN of A, bN of B), close up; the rest is a ghost")
       ->delimiter(',')
       ->type_name("N,N,...");
   app->add_option("--layer", o->layers,
-                  "Show only the regions of these layers (K or aK of A, bK of B; 0 lies on the body)")
+                  "Show only the regions of these layers (K or aK of A, bK of B; 0 is the innermost)")
       ->delimiter(',')
       ->type_name("K,K,...");
-  app->add_flag("--no-ghost", o->hide_rest, "With --region or --layer: leave out the rest");
+  app->add_flag("--no-ghost", o->hide_rest, "With --region or --layer: omit the rest");
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);
   return {app, [o, &globals] { return run_render(*o, globals); }};

@@ -42,24 +42,24 @@ int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
 
 Command add_crowd(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
-      "crowd", "Move many bodies: at each step a query for each pair whose boxes meet, on all cores");
+      "crowd", "Move many bodies; per step, query each pair of bodies whose boxes overlap, on all cores");
   const auto o = std::make_shared<CrowdOptions>();
-  app->add_option("CROWD", o->crowd, "A shipped crowd (see lrbscope list), or a JSON file")
+  app->add_option("CROWD", o->crowd, "Shipped crowd (see lrbscope list) or JSON file")
       ->type_name("NAME|FILE")
       ->default_val("crowd");
-  app->add_option("-o,--output", o->folder, "Folder to write to [out/NAME]")->type_name("DIR");
+  app->add_option("-o,--output", o->folder, "Output folder [out/NAME]")->type_name("DIR");
   app->add_option("--jobs", o->jobs, "Number of threads [all cores]; the result does not depend on it")
       ->check(CLI::Range(1u, 1024u))
       ->type_name("N");
-  app->add_option("--steps", o->steps, "Number of time steps, instead of the crowd's own")
+  app->add_option("--steps", o->steps, "Number of time steps [as in the crowd's file]")
       ->check(CLI::Range(1u, 100000u))
       ->type_name("N");
   add_choice<trace::Clock>(
       *app, "--clock", o->clock,
-      "Time in the trace. event: the same for any number of threads, a track for each body; "
-      "wall: a track for each thread");
-  app->add_flag("--no-frames", o->no_frames, "Draw nothing");
-  app->add_flag("--json", o->json, "Print the summary instead of the page's path");
+      "Time in the trace. event: independent of the number of threads, one track per body; wall: wall-clock "
+      "time, one track per thread");
+  app->add_flag("--no-frames", o->no_frames, "Do not draw frames");
+  app->add_flag("--json", o->json, "Print the summary as JSON instead of the page's path");
   return {app, [o, &globals] { return run_crowd_command(*o, globals); }};
 }
 
@@ -98,16 +98,16 @@ int report_outcome(const run::RunOutcome& outcome, const std::string& folder, bo
 }
 
 Command add_run(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("run", "Run a scenario: frames, trace, numbers and a page");
+  CLI::App* app =
+      root.add_subcommand("run", "Run a scenario and write a page, frames, a trace and statistics");
   const auto o = std::make_shared<RunCommandOptions>();
-  app->add_option("SCENARIO", o->scenario, "A shipped scenario (see lrbscope list), or a JSON file")
-      ->required();
-  app->add_option("-o,--output", o->folder, "Folder to write to [out/NAME]")->type_name("DIR");
+  app->add_option("SCENARIO", o->scenario, "Shipped scenario (see lrbscope list) or JSON file")->required();
+  app->add_option("-o,--output", o->folder, "Output folder [out/NAME]")->type_name("DIR");
   add_recursion_option(*app, o->recursion);
   add_events_option(*app, o->events);
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);
-  app->add_flag("--json", o->json, "Print the summary instead of the page's path");
+  app->add_flag("--json", o->json, "Print the summary as JSON instead of the page's path");
   return {app, [o, &globals] { return run_run(*o, globals); }};
 }
 

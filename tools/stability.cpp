@@ -51,21 +51,20 @@ std::vector<SimplexPair> without(const std::vector<SimplexPair>& a, const std::v
 std::string describe(const Replay& r, Quantity quantity, bool pairs) {
   std::ostringstream out;
   const stability::Record& record = r.record;
-  out << record.family << ", dial " << record.dial << ", case " << record.case_index << ", " << record.method
-      << ": " << name_of(record.outcome);
+  out << record.family << ", difficulty " << record.dial << ", case " << record.case_index << ", "
+      << record.method << ": " << name_of(record.outcome);
   if (!record.message.empty()) out << " (" << record.message << ")";
   out << "\n";
   if (quantity == Quantity::pairs) {
     out << "  pairs: " << record.expected << " expected, ";
     if (r.answered)
-      out << r.answered->size() << " answered, " << record.missed << " missed, " << record.extra
-          << " too many\n";
+      out << r.answered->size() << " found, " << record.missed << " missed, " << record.extra << " extra\n";
     else
-      out << "no list answered\n";
+      out << "no list returned\n";
   }
   if (!record.relation.empty())
     out << "  " << (quantity == Quantity::pairs ? "relation" : name_of(quantity)) << ": "
-        << record.expected_relation << " expected, " << record.relation << " answered\n";
+        << record.expected_relation << " expected, " << record.relation << " found\n";
   if (pairs && r.answered) {
     print_pairs(out, "missed", without(r.expected, *r.answered));
     print_pairs(out, "extra", without(*r.answered, r.expected));
@@ -78,7 +77,8 @@ std::string describe(const Replay& r, Quantity quantity, bool pairs) {
 
 int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
                const std::vector<FamilyRow>& families) {
-  if (families.size() != 1 || !o.dial) throw InputError("--only CASE needs one --family and a --dial");
+  if (families.size() != 1 || !o.dial)
+    throw InputError("--only: expected exactly one --family and one --dial with it");
   bool all_right = true;
   for (const workers::WorkerMethod& m : methods) {
     if (!m.column.present) {
@@ -152,7 +152,8 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
       });
   bar.finish();
   report.command = [&](const stability::Record& r) { return command_of(r, o.quantity); };
-  report.links = {{"records.jsonl", "records.jsonl", "every answer of every method, one JSON object a line"}};
+  report.links = {
+      {"records.jsonl", "records.jsonl", "every answer of every method, one JSON object per line"}};
   const ReportFiles files = write_stability_report(grid, o.folder, report);
   if (!files.missing.empty()) std::cerr << "lrbscope: " << files.missing << "\n";
   for (const std::string& f : files.written) print(o.folder + "/" + f + "\n");
@@ -203,7 +204,7 @@ int run_stability(StabilityOptions o, const Globals& globals) {
   print(o.folder + "/records.jsonl\n");
   write_report(o, methods, grid, globals);
   if (!ours_failed(grid, methods)) return kOk;
-  std::cerr << "lrbscope: mismatch: our own answers differ from exact brute force\n";
+  std::cerr << "lrbscope: mismatch: lrbscope's answers differ from exact brute force\n";
   return kMismatch;
 }
 
@@ -211,31 +212,33 @@ int run_stability(StabilityOptions o, const Globals& globals) {
 
 Command add_stability(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
-      "stability", "Put families of hard cases to our query and to other engines: who fails where");
+      "stability",
+      "Run families of hard cases through lrbscope and other engines, and report the failures of each");
   const auto o = std::make_shared<StabilityOptions>();
-  app->add_option("-o,--output", o->folder, "Folder to write to [out/stability, or out/stability-QUANTITY]")
+  app->add_option("-o,--output", o->folder, "Output folder [out/stability, or out/stability-QUANTITY]")
       ->type_name("DIR");
   add_quantity_option(*app, o->quantity);
   app->add_option("--family", o->families, "Only these families")->type_name("NAME");
   app->add_option("--method", o->methods, "Only these methods")->type_name("NAME");
-  app->add_option("--dial", o->dial,
-                  "Only this setting of the families' dials, from 0 (benign) to 10 (degenerate)")
+  app->add_option("--dial", o->dial, "Only this difficulty, from 0 (benign) to 10 (degenerate)")
       ->check(CLI::Range(0, kDialSettings - 1))
       ->type_name("K");
-  app->add_option("--cases", o->cases, "Number of cases for each setting [100]")
+  app->add_option("--cases", o->cases, "Number of cases per family and difficulty [100]")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
-  app->add_option("--seed", o->seed, "Seed of the cases [1]")->check(CLI::NonNegativeNumber)->type_name("S");
-  app->add_option("--jobs", o->jobs, "Number of processes at a time [2]")
+  app->add_option("--seed", o->seed, "Random seed for the cases [1]")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("S");
+  app->add_option("--jobs", o->jobs, "Number of processes to run in parallel [2]")
       ->check(CLI::Range(1, 256))
       ->type_name("N");
-  app->add_option("--timeout", o->timeout, "Seconds that a method has for a case [5]")
+  app->add_option("--timeout", o->timeout, "Time limit per case and method, in seconds [5]")
       ->check(CLI::Range(0.1, 3600.0))
       ->type_name("S");
-  app->add_option("--only", o->only, "Ask this case again and print what came out")
+  app->add_option("--only", o->only, "Rerun this case and print the result")
       ->check(CLI::NonNegativeNumber)
       ->type_name("CASE");
-  app->add_flag("--pairs", o->pairs, "With --only: print the pairs expected and answered");
+  app->add_flag("--pairs", o->pairs, "With --only: print the expected and the found pairs");
   return {app, [o, &globals] { return run_stability(*o, globals); }};
 }
 

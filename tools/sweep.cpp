@@ -129,24 +129,26 @@ int run_sweep(const SweepOptions& o, const Globals& globals) {
 
 Command add_sweep(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
-      "sweep", "Find when B first meets A for each motion of B in a list, one line of JSON each");
+      "sweep", "Find the time of impact (first contact) for each motion of B; one JSON line per motion");
   const auto o = std::make_shared<SweepOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; moves")->required();
   app->add_option(
          "--motions", o->motions,
-         "File with motions: lines of 24 numbers, B's poses at t = 0 and t = 1 (3x4 each, row by row)")
+         "File with motions of B: lines of 24 numbers, the poses at t = 0 and t = 1 (3x4 each, row by row)")
       ->required();
-  app->add_option("--tolerance", o->request.tolerance, "Widest interval of t [1e-9]")->type_name("T");
-  app->add_option("--budget", o->request.max_steps, "Stop after this many steps [10000000]")
+  app->add_option("--tolerance", o->request.tolerance, "Maximum width of the interval of t [1e-9]")
+      ->type_name("T");
+  app->add_option("--budget", o->request.max_steps, "Maximum number of steps [10000000]")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
       ->type_name("N");
-  app->add_flag("--features", o->features, "Add the vertex, edge or face of each body that meet first");
+  app->add_flag("--features", o->features, "Add the features (vertex, edge or face) in first contact");
   app->add_flag("--history", o->request.history,
-                "Add the spans of t that were looked at, and what was known then");
+                "Add the intervals of t that were examined, with the result of each");
   app->add_flag("--course", o->draw.course,
-                "Add how the search went: [work, t0, t1, lower and upper end of the distance at t0]");
-  add_draw_options(*app, o->draw, "Draw the bodies at first contact, and B on its way there", false);
+                "Add the convergence history: [work, t0, t1, lower and upper bound of the distance at t0]");
+  add_draw_options(*app, o->draw, "Draw the bodies at first contact, with ghosts of B along its motion",
+                   false);
   add_repeat_option(*app, o->repeat, "motion");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_sweep(*o, globals); }};

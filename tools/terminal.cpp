@@ -111,7 +111,7 @@ std::string farewell(int signal) {
   const char* name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
   const char* clear = isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";  // there may be a progress bar
   return std::string(clear) + "lrbscope: interrupted by " + name +
-         ": files written so far are whole, the others are missing; run it again\n";
+         ": files written so far are complete, the others are missing; run it again\n";
 }
 
 /// Runs on a thread, which may lock and allocate, unlike a signal handler.

@@ -39,8 +39,8 @@ Pose pose_of(const WhyOptions& o) {
   if (o.poses.empty()) return {};
   const std::vector<Pose> poses = io::open_poses(o.poses).poses;
   if (o.pose >= poses.size())
-    throw InputError(printable_name(o.poses) + ": has " + std::to_string(poses.size()) +
-                     " poses, numbered from 0; there is no pose " + std::to_string(o.pose));
+    throw InputError(printable_name(o.poses) + ": expected a pose number below " +
+                     std::to_string(poses.size()) + ", found " + std::to_string(o.pose));
   return poses[o.pose];
 }
 
@@ -49,7 +49,7 @@ int explain(const WhyOptions& o, const Scene& scene) {
     const WalkExplanation e = explain_walk(scene.a, scene.pose_a, scene.b, scene.pose_b);
     if (!o.picture.empty() && !e.result.pairs.empty())
       throw InputError(
-          "-o: the bodies meet, so that nothing parts them; draw two of their faces with --pair");
+          "-o: the bodies intersect, so there is no separation to draw; use --pair to draw two of their faces");
     if (!o.picture.empty()) make_folder_of(o.picture);
     if (!o.picture.empty()) run::draw_parting(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
     print(o.json ? one_line(run::explanation_json(e)) : run::explanation_text(e));
@@ -71,7 +71,7 @@ int run_why(const WhyOptions& o, const Globals& globals) {
     const run::OpenStep open = run::open_step(o.run, o.step);
     return explain(o, {open.bodies[0].rep, open.bodies[1].rep, open.step.pose_a, open.step.pose_b});
   }
-  if (o.b.empty()) throw InputError("why: expected two bodies, A and B, or --run with a step of a run");
+  if (o.b.empty()) throw InputError("why: expected two bodies A and B, or --run DIR");
   const Pose pose = pose_of(o);
   const bodies::LoadedBody a = bodies::load_body(o.a, {}, o.corners),
                            b = bodies::load_body(o.b, {}, o.corners);
@@ -83,26 +83,27 @@ int run_why(const WhyOptions& o, const Globals& globals) {
 }  // namespace
 
 Command add_why(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("why", "Tell why two faces are in an answer, or are not, or why bodies are apart");
+  CLI::App* app = root.add_subcommand(
+      "why", "Explain why two faces are or are not reported as a pair, or why two bodies are separate");
   const auto o = std::make_shared<WhyOptions>();
   auto* a = app->add_option("A", o->a, "Mesh or .lrb file; does not move");
-  app->add_option("B", o->b, "Mesh or .lrb file; the pose is applied to it");
+  app->add_option("B", o->b, "Mesh or .lrb file; moved to the pose");
   auto* poses = app->add_option("--poses", o->poses, "File with poses, as for `query` [B stays in place]");
   app->add_option("--pose", o->pose, "Number of the pose in the file, from 0")
       ->needs(poses)
       ->capture_default_str();
-  auto* run = app->add_option("--run", o->run, "A run's folder or trace, in the place of A and B")
+  auto* run = app->add_option("--run", o->run, "A recorded run (folder or trace) instead of A and B")
                   ->excludes(a)
                   ->excludes(poses)
                   ->type_name("DIR");
-  app->add_option("--step", o->step, "Number of the run's time step [the last]")->needs(run)->type_name("N");
-  app->add_option("--pair", o->pair, "A simplex of A and one of B, as `query --pairs` numbers them")
+  app->add_option("--step", o->step, "Time step of the run [the last]")->needs(run)->type_name("N");
+  app->add_option("--pair", o->pair, "A simplex of A and one of B, numbered as in `query --pairs`")
       ->delimiter(',')
       ->expected(2)
       ->type_name("I,J");
   app->add_option("-o,--output", o->picture,
-                  "Draw the two faces with what is about them, or without --pair what parts the bodies")
+                  "Draw the two faces and their surroundings; without --pair, the separating plane or boxes "
+                  "of the bodies")
       ->type_name("FILE.png");
   app->add_flag("--json", o->json, "Print one JSON object");
   add_join_option(*app, o->corners);

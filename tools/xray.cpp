@@ -35,7 +35,7 @@ spec::Scenario scenario_of(const XrayOptions& o, const std::vector<bodies::Loade
   s.event_cap = 20'000'000;  // half a gigabyte
   s.frames.views = whole_and_contact();
   s.frames.views[0].wrapper = false;
-  s.frames.views[0].title = "Whole";
+  s.frames.views[0].title = "Overview";
   s.frames.most = 12;
   s.frames.colour_by = render::FrameSpec::ColourBy::box_tests;
   Fnv64 hash;
@@ -73,7 +73,8 @@ int run_xray(const XrayOptions& o, const Globals& globals) {
     progress("build", bodies.size(), 2);
     bodies.push_back(bodies::load_body(path, {}, o.corners));
     if (bodies.back().rep.dim() != 3)
-      throw InputError(printable_name(path) + ": a 2D body; the other engines answer for 3D bodies only");
+      throw InputError(printable_name(path) +
+                       ": expected a 3D body, found a 2D body; the other engines support only 3D");
   }
   const xray::ForeignWalk walk = xray::walk_of(o.method, bodies[0].rep, bodies[1].rep, poses);
   const spec::Scenario scenario = scenario_of(o, bodies);
@@ -91,18 +92,21 @@ int run_xray(const XrayOptions& o, const Globals& globals) {
 }  // namespace
 
 Command add_xray(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("xray", "Record another engine's walk, and show it beside ours");
+  CLI::App* app =
+      root.add_subcommand("xray", "Record another engine's traversal and show it next to lrbscope's");
   const auto o = std::make_shared<XrayOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file, 3D; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file, 3D; moves")->required();
-  app->add_option("--method", o->method, "The other engine, where it was installed when lrbscope was built")
+  app->add_option("--method", o->method,
+                  "The other engine; it must have been installed when lrbscope was built")
       ->check(CLI::IsMember({"fcl", "cgal"}).description(""))
       ->type_name("fcl|cgal")
       ->capture_default_str();
-  app->add_option("--poses", o->poses, "File with the poses of B: lines of 12 numbers, .csv or .json")
+  app->add_option("--poses", o->poses,
+                  "File with the poses of B: lines of 12 numbers (3x4, row by row), .csv or .json")
       ->type_name("FILE")
       ->required();
-  app->add_option("-o,--output", o->folder, "Folder to write to [out/xray-METHOD]")->type_name("DIR");
+  app->add_option("-o,--output", o->folder, "Output folder [out/xray-METHOD]")->type_name("DIR");
   add_picture_options(*app, o->picture);
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_xray(*o, globals); }};

@@ -114,12 +114,12 @@ std::vector<Statistic> statistics(const Trace& trace) {
   const std::uint64_t steps = trace.steps.size();
   std::vector<Statistic> out = {
       {"tests_per_contact", ratio(t.face_tests, t.contacts), "", "face tests / contacts; best 1"},
-      {"hit_rate", ratio(t.hits, t.face_tests), "", "face tests that met / face tests; best 1"},
-      {"contact_rate", ratio(t.contacts, t.hits), "", "contacts / face tests that met; best 1"},
+      {"hit_rate", ratio(t.hits, t.face_tests), "", "intersecting face tests / face tests; best 1"},
+      {"contact_rate", ratio(t.contacts, t.hits), "", "contacts / intersecting face tests; best 1"},
       {"tests_per_refinement", ratio(t.face_tests, refinements), "",
-       "face tests / refinements; the work that opening a region causes"},
+       "face tests / refinements; work per refined region"},
       {"faces_per_refinement", ratio(t.faces_added, refinements), "faces",
-       "faces added / refinements; the size of the regions opened"},
+       "faces added / refinements; size of the refined regions"},
       {"tests_per_step", ratio(t.face_tests, steps), "", "face tests / time steps"},
       {"refinements_per_step", ratio(refinements, steps), "", "refinements / time steps"},
       {"contacts_per_step", ratio(t.contacts, steps), "", "contacts / time steps"},
@@ -132,21 +132,21 @@ std::vector<Statistic> statistics(const Trace& trace) {
     const BodyInfo& body = trace.header.bodies[i];
     pairs *= body.real_simplices;
     out.push_back({kShares[i], ratio(most[i], std::uint64_t{body.real_faces}), "",
-                   "most faces of the wrapper / real faces of the body; best near 0, 1 means all opened"});
+                   "largest wrapper / real faces of the body; best near 0, 1: fully refined"});
   }
   if (trace.header.bodies.size() == 2)
     out.push_back({"pair_share", ratio(t.face_tests, pairs), "",
                    "face tests / (time steps x real simplices of A x real simplices of B); best near 0"});
   if (!trace.wall_ns.empty())
     out.push_back({"seconds", seconds_of(trace, 0, trace.events.size()), "s",
-                   "first to last event, recording included; best small"});
+                   "from first to last event, including recording; best low"});
   return out;
 }
 
 Histogram tests_by_depth(const Trace& trace) {
   Histogram h{"tests_by_depth",
-              "regions to the outside",
-              "face tests by the depth of the deeper of the two faces; deeper means closer to the body",
+              "region depth",
+              "face tests by the region depth of the deeper face; deeper is closer to the body",
               {},
               {}};
   for (const Event& e : trace.events) {
@@ -182,7 +182,7 @@ Histogram refinements_by_size(const Trace& trace) {
 Histogram steps_by_tests(const Trace& trace, std::size_t bins) {
   Histogram h{"steps_by_tests",
               "face tests",
-              "time steps by their number of face tests; best all at the left",
+              "time steps by their number of face tests; best near 0",
               {},
               std::vector<std::uint64_t>(bins)};
   std::vector<std::uint64_t> tests;
@@ -228,7 +228,7 @@ Chart chart_over_events(const Trace& trace, std::size_t max_points) {
   chart.series = {{"faces of wrapper A", "faces", "faces on the boundary of A's wrapper", {}},
                   {"faces of wrapper B", "faces", "faces on the boundary of B's wrapper", {}},
                   {"face tests", "", "exact comparisons in the time step so far", {}},
-                  {"hits", "", "face tests that met, in the time step so far", {}},
+                  {"hits", "", "intersecting face tests in the time step so far", {}},
                   {"refinements", "", "regions refined in the time step so far", {}},
                   {"contacts", "", "real pairs found in the time step so far", {}}};
   const std::size_t n = trace.events.size();
@@ -257,13 +257,14 @@ Chart chart_over_events(const Trace& trace, std::size_t max_points) {
 
 Chart chart_over_steps(const Trace& trace) {
   Chart chart{"time step", {}, {}};
-  chart.series = {{"face tests", "", "exact comparisons; best few", {}},
-                  {"hits", "", "face tests that met; best as many as contacts", {}},
-                  {"refinements", "", "regions refined; best few", {}},
-                  {"contacts", "", "real pairs that meet: the answer", {}},
-                  {"largest wrapper A", "faces", "most faces that A's wrapper had in the step; best few", {}},
-                  {"largest wrapper B", "faces", "most faces that B's wrapper had in the step; best few", {}},
-                  {"time", "ms", "first to last event of the step, recording included; best small", {}}};
+  chart.series = {
+      {"face tests", "", "exact comparisons; best low", {}},
+      {"hits", "", "intersecting face tests; best equal to contacts", {}},
+      {"refinements", "", "regions refined; best low", {}},
+      {"contacts", "", "intersecting real pairs: the result", {}},
+      {"largest wrapper A", "faces", "maximum number of faces of A's wrapper in the step; best low", {}},
+      {"largest wrapper B", "faces", "maximum number of faces of B's wrapper in the step; best low", {}},
+      {"time", "ms", "from first to last event of the step, including recording; best low", {}}};
   constexpr double kMilliseconds = 1e3;
   for (std::size_t i = 0; i < trace.steps.size(); ++i) {
     const std::span<const Event> events = trace.events_of(i);
@@ -380,8 +381,7 @@ std::vector<PassSummary> passes_of(const Trace& trace) {
 }
 
 Chart chart_over_construction(const Trace& trace) {
-  Chart chart{
-      "event", {}, {{"faces of the hull", "faces", "from the body's to the outermost wrapper's", {}}}};
+  Chart chart{"event", {}, {{"faces of the front", "faces", "from the body to the outermost wrapper", {}}}};
   double faces = trace.header.bodies[0].real_faces;
   for (EventId id = 0; id < trace.events.size(); ++id) {
     const Event& e = trace.events[id];
@@ -401,10 +401,10 @@ Chart chart_over_passes(const Trace& trace) {
   std::vector<std::size_t> shown = by_frequency(caps_of(passes));
   shown.resize(std::min(shown.size(), kMostReasons));
   shown.insert(shown.begin(), std::size_t{0});
-  Chart chart{"pass, those in vain counted", {}, {}};
+  Chart chart{"pass, including those without effect", {}, {}};
   for (const std::size_t v : shown)
     chart.series.push_back(
-        {name_of(static_cast<CapVerdict>(v)), "", "patches by the verdict on their cap", {}});
+        {name_of(static_cast<CapVerdict>(v)), "", "patches by the verdict on their caps", {}});
   for (std::size_t i = 0; i < passes.size(); ++i) {
     chart.x.push_back(static_cast<double>(i + 1));
     for (std::size_t s = 0; s < shown.size(); ++s) chart.series[s].values.push_back(passes[i].caps[shown[s]]);

@@ -72,7 +72,7 @@ void JsonNode::fail_type(const char* expected) const {
 void JsonNode::fail_choice(const std::vector<std::string>& known) const {
   if (!value_->is_string()) fail_type("a word");
   const auto& word = value_->get_ref<const std::string&>();
-  fail("\"" + word + "\" is not known here" + suggestion(word, known));
+  fail("\"" + word + "\": unknown word" + suggestion(word, known));
 }
 
 const JsonNode& JsonNode::object(const std::vector<std::string>& keys) const {
@@ -85,7 +85,7 @@ const JsonNode& JsonNode::object(const std::vector<std::string>& keys) const {
 
 JsonNode JsonNode::at(const std::string& key) const {
   if (!value_->is_object()) fail_type("an object");
-  if (!value_->contains(key)) fail("the key \"" + key + "\" is missing: add it");
+  if (!value_->contains(key)) fail("the key \"" + key + "\" is missing; add it");
   return {*text_, (*value_)[key], pointer_ + "/" + pointer_part(key)};
 }
 
@@ -166,7 +166,7 @@ std::string type_of(const Json& j) {
 
 void TraceNode::fail(const std::string& expected) const {
   throw InputError(*file_ + ": " + pointer() + ": expected " + expected + ", found " + type_of(*j_) +
-                   "; the trace is damaged or was not written by lrbscope: record it again");
+                   "; the trace is damaged or was not written by lrbscope; record it again");
 }
 
 TraceNode TraceNode::at(const char* key) const {
@@ -185,13 +185,13 @@ void check_format(const TraceNode& metadata, const std::string& name, std::strin
                   std::uint32_t version) {
   if (!metadata.has("format") || metadata.at("format").string() != format)
     throw InputError(name + ": /metadata/format: expected \"" + std::string(format) +
-                     "\"; this is some other file");
+                     "\", found another file format");
   // Older versions are read; newer ones are rejected with the version that wrote them.
   const auto found = metadata.at("version").integer<std::uint32_t>();
   if (found > version)
     throw InputError(name + ": /metadata/version: written in format " + std::to_string(found) +
                      " by lrbscope " + printable_name(metadata.at("lrbscope").string()) +
-                     ", but this one reads up to format " + std::to_string(version) +
+                     ", expected at most format " + std::to_string(version) +
                      "; use that version or a newer one");
   if (found == 0) metadata.at("version").fail("a version from 1");
 }
@@ -235,7 +235,7 @@ void read_course(const TraceNode& node, std::vector<Bounds>& course) {
   const std::size_t count = node.array_size();
   for (std::size_t i = 0; i < count; ++i) {
     const TraceNode item = node.at(i);
-    if (item.array_size() != 3) item.fail("work, lower and upper end");
+    if (item.array_size() != 3) item.fail("work, lower bound and upper bound");
     course.push_back({item.at(std::size_t{0}).integer<std::uint64_t>(), item.at(std::size_t{1}).least(0),
                       read_end(item.at(std::size_t{2}))});
   }
@@ -341,7 +341,7 @@ MeasuredApproach read_approach(const TraceNode& node) {
   const std::size_t count = course.array_size();
   for (std::size_t i = 0; i < count; ++i) {
     const TraceNode item = course.at(i);
-    if (item.array_size() != 5) item.fail("work, t0, t1, lower and upper end");
+    if (item.array_size() != 5) item.fail("work, t0, t1, lower bound and upper bound");
     m.course.push_back({item.at(std::size_t{0}).integer<std::uint64_t>(), item.at(std::size_t{1}).least(0),
                         read_end(item.at(std::size_t{2})), read_end(item.at(std::size_t{3})),
                         read_end(item.at(std::size_t{4}))});

@@ -171,7 +171,7 @@ struct JsonOf {
     if constexpr (std::is_enum_v<Value>) {
       const auto word = value.get<std::string>();
       if (const auto found = from_name<Value>(word)) return *found;
-      throw InputError("'" + word + "': use " + all_names<Value>());
+      throw InputError("'" + word + "': expected " + all_names<Value>());
     } else if constexpr (kFieldCount<Value> > 0) {
       return record_from_json<Value>(value);
     } else {

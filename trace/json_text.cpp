@@ -96,7 +96,7 @@ std::string plain_reason(const std::string& what) {
     const std::size_t at = reason.find(mark);
     if (at == 0) reason.erase(0, std::string_view(mark).size());
   }
-  const std::size_t last_read = reason.find("; last read: ");
+  const std::size_t last_read = reason.find("; last token: ");
   if (last_read != std::string::npos) {  // keeps "expected ...", if present
     const std::size_t expected = reason.find("; expected ", last_read);
     reason = reason.substr(0, last_read) + (expected == std::string::npos ? "" : reason.substr(expected));
@@ -221,7 +221,7 @@ void fail_json(const std::string& text, const std::string& file, std::size_t pos
   // For a number beyond a double's range, the position is its end.
   const std::size_t back = syntax ? 1 : token.size();
   throw InputError(place(text, file, position - std::min(position, back)) +
-                   (syntax ? "not JSON: " : "not usable JSON: ") + plain_reason(error.what()));
+                   (syntax ? "not JSON: " : "not valid JSON: ") + plain_reason(error.what()));
 }
 
 JsonIndex::JsonIndex(const std::string& text) {
@@ -240,7 +240,7 @@ JsonText::JsonText(std::string text, std::string file) : text_(std::move(text)),
   index_ = std::make_unique<JsonIndex>(text_);
   if (!index_->duplicate().empty())
     throw InputError(where(index_->duplicate() + "#") + ": the key " + printable_name(index_->duplicate()) +
-                     " occurs twice: keep one");
+                     " occurs twice; keep one");
 }
 
 std::string JsonText::where(const std::string& pointer) const {

@@ -212,7 +212,7 @@ void Recorder::begin_step(std::uint32_t index, const Pose& pose_a, const Pose& p
   for (const Pose* pose : {&pose_a, &pose_b})
     if (!pose->r.allFinite() || !pose->t.allFinite())
       throw InputError("time step " + std::to_string(index) +
-                       ": its pose has a number that is not finite; give 12 finite numbers");
+                       ": expected a pose of 12 finite numbers, found a NaN or an infinity");
   if (!trace_.steps.empty() && index <= trace_.steps.back().index)
     throw std::logic_error("Recorder::begin_step: indices must ascend");
   // The previous step ends here; its count includes events beyond the cap.
@@ -231,17 +231,17 @@ void Recorder::begin_step(std::uint32_t index, const Pose& pose_a, const Pose& p
 }
 
 void Recorder::add(MeasuredDistance distance) {
-  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: no step was begun");
+  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
   trace_.steps.back().result.distance = std::move(distance);
 }
 
 void Recorder::add(MeasuredClash clash) {
-  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: no step was begun");
+  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
   trace_.steps.back().result.clash = std::move(clash);
 }
 
 void Recorder::end_step(const CollideResult& result) {
-  if (trace_.steps.empty()) throw std::logic_error("Recorder::end_step: no step was begun");
+  if (trace_.steps.empty()) throw std::logic_error("Recorder::end_step: call begin_step() first");
   Step& step = trace_.steps.back();
   step.finished = true;
   step.result.relation = result.relation;

@@ -23,8 +23,8 @@ void require_same_body(const BodyInfo& recorded, const LrbRep& rep, const std::s
   given.name = recorded.name;  // the name may differ: the hash identifies the body
   if (given == recorded) return;
   given.name = rep.name();
-  throw InputError("trace: body " + who + " was recorded as " + describe(recorded) + ", but is given as " +
-                   describe(given) + "; replay needs the same LRB-rep: give that one, or record again");
+  throw InputError("trace: body " + who + ": expected " + describe(recorded) + " as recorded, found " +
+                   describe(given) + "; give the recorded LRB-rep, or record again");
 }
 
 Cursor::Cursor(const Trace& trace, const LrbRep& a, const LrbRep& b)
@@ -36,8 +36,8 @@ Cursor::Cursor(const Trace& trace, std::vector<const LrbRep*> reps)
     : trace_(&trace), replay_(reps, trace.header.request.wrapper, trace.header.construction) {
   check_trace(trace, "trace");
   if (reps.size() != trace.header.bodies.size())
-    throw InputError("trace: recorded with " + std::to_string(trace.header.bodies.size()) +
-                     " bodies, given " + std::to_string(reps.size()) + "; replay needs the same ones");
+    throw InputError("trace: expected the " + std::to_string(trace.header.bodies.size()) +
+                     " bodies of the recording, found " + std::to_string(reps.size()));
   for (std::size_t i = 0; i < reps.size(); ++i)
     require_same_body(trace.header.bodies[i], *reps[i], std::string(name_of(static_cast<Side>(i))));
   // Index the events that change a wrapper: seeking replays only these.
@@ -56,8 +56,8 @@ void Cursor::apply_to(EventId event) {
   rewind();
   throw InputError("trace: event " + std::to_string(event) + " (" + std::string(name_of(e.kind)) +
                    " region " + std::to_string(e.region()) + " of " + std::string(name_of(e.side)) +
-                   "): the wrapper has " + std::to_string(size) + " faces, recorded were " +
-                   std::to_string(recorded) + "; the trace is damaged: record it again");
+                   "): found a wrapper of " + std::to_string(size) + " faces, expected " +
+                   std::to_string(recorded) + "; the trace is damaged; record it again");
 }
 
 void Cursor::rewind() {

@@ -26,7 +26,7 @@ std::string digits(double value) {
 }
 
 std::string interval_words(double lower, double upper, std::size_t looks) {
-  return "[" + digits(lower) + ", " + digits(upper) + "] in " + std::to_string(looks) + " looks";
+  return "[" + digits(lower) + ", " + digits(upper) + "] in " + std::to_string(looks) + " steps";
 }
 
 }  // namespace
@@ -145,7 +145,7 @@ class Checker {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(where_ + ": " + what + "; the trace is damaged: record it again");
+    throw InputError(where_ + ": " + what + "; the trace is damaged; record it again");
   }
 
   void require(bool ok, const char* what) const {
@@ -159,10 +159,10 @@ class Checker {
     require(t_.events.size() <= kMaxId, "too many events");
     require(t_.events_seen >= t_.events.size(), "fewer events seen than stored");
     require(t_.wall_ns.size() == (t_.header.clock == Clock::wall ? t_.events.size() : 0),
-            "wall clock: expected one time an event, event clock: none");
+            "expected one time per event for the wall clock, and none for the event clock");
     for (std::size_t i = 1; i < t_.wall_ns.size(); ++i)
       if (t_.wall_ns[i] <= t_.wall_ns[i - 1])
-        fail("event " + std::to_string(i) + ": its time is not after the one before");
+        fail("event " + std::to_string(i) + ": its time must be later than the previous event");
     require(t_.events.empty() || (!t_.steps.empty() && t_.steps.front().first_event == 0),
             "the first event does not begin the first step");
   }
@@ -171,12 +171,12 @@ class Checker {
     // Steps partition the events: their counts add up, and each stored step begins with its step event.
     std::uint64_t seen = 0;
     for (std::size_t i = 0; i < t_.steps.size(); ++i) check_step(i), seen += t_.steps[i].events_seen;
-    if (seen != t_.events_seen) fail("the steps' events do not add up to all");
+    if (seen != t_.events_seen) fail("the events of the steps do not add up to the total");
     const auto begun = std::count_if(t_.events.begin(), t_.events.end(),
                                      [](const Event& e) { return e.kind == EventKind::step; });
     const auto stored = std::count_if(t_.steps.begin(), t_.steps.end(),
                                       [&](const Step& s) { return s.first_event < t_.events.size(); });
-    if (begun != stored) fail("the number of step events is not that of the steps");
+    if (begun != stored) fail("the number of step events differs from the number of steps");
   }
 
   void check_step(std::size_t i) const {
@@ -191,7 +191,7 @@ class Checker {
     if (i > 0 && s.index <= t_.steps[i - 1].index) fail(name + ": its number does not ascend");
     if (s.first_event < t_.events.size()) {
       const Event& e = t_.events[s.first_event];
-      if (e.kind != EventKind::step || e.a != s.index) fail(name + ": its first event does not begin it");
+      if (e.kind != EventKind::step || e.a != s.index) fail(name + ": its first event is not its step event");
     }
     if (s.events_seen < t_.events_of(i).size()) fail(name + ": fewer events seen than stored");
     if (!(s.result.error_bound >= 0)) fail(name + ": its error bound is negative");
@@ -203,7 +203,7 @@ class Checker {
     if (bodies.size() < 2) fail(step + ": a separation needs two bodies");
     for (std::size_t side = 0; side < 2; ++side)
       for (const RegionId r : separation.refined[side])
-        if (r >= bodies[side].regions) fail(step + ": its separation names a region that does not exist");
+        if (r >= bodies[side].regions) fail(step + ": its separation refers to a region that does not exist");
   }
 
   void check_event(EventId id) const {
@@ -230,8 +230,8 @@ class Checker {
         break;
       case EventKind::refine:
       case EventKind::coarsen:
-        if (static_cast<std::size_t>(e.side) >= bodies) bad("there is no such body");
-        if (e.a >= t_.header.bodies[static_cast<std::size_t>(e.side)].regions) bad("there is no such region");
+        if (static_cast<std::size_t>(e.side) >= bodies) bad("no such body");
+        if (e.a >= t_.header.bodies[static_cast<std::size_t>(e.side)].regions) bad("no such region");
         break;
       case EventKind::result:
         if (e.a >= kWords<Relation>.size()) bad("unknown relation");
@@ -240,7 +240,7 @@ class Checker {
         if (bodies < 2) bad("needs two bodies");
         if (static_cast<std::size_t>(e.node_end().step) >= kWords<NodeStep>.size()) bad("unknown step");
         if (e.work().parted + e.work().certain > e.work().met)
-          bad("more pairs are parted or certain than meet");
+          bad("more pairs are rejected or decided than intersect");
         if (static_cast<std::size_t>(e.node_end().axis) >= kWords<BoxAxis>.size()) bad("unknown axis");
         break;
       case EventKind::point:
@@ -275,17 +275,18 @@ class Checker {
              std::find(kinds.begin(), kinds.end(), t_.events[e.cause].kind) != kinds.end();
     };
     // Construction events occur in construction traces only, and have causes of fixed kinds.
-    if (!t_.header.construction) bad("the trace is not that of a construction");
-    if (e.side != Side::a) bad("there is no such body");
+    if (!t_.header.construction) bad("only the trace of a construction has such an event");
+    if (e.side != Side::a) bad("no such body");
     const bool names_region = e.kind == EventKind::region || e.kind == EventKind::merged;
-    if (names_region && e.a >= t_.header.bodies[0].regions) bad("there is no such region");
-    if (names_region && !has_cause({EventKind::cap, EventKind::pass})) bad("its cause is no cap and no pass");
+    if (names_region && e.a >= t_.header.bodies[0].regions) bad("no such region");
+    if (names_region && !has_cause({EventKind::cap, EventKind::pass}))
+      bad("its cause is neither a cap nor a pass");
     if (e.kind == EventKind::pass && e.detail >= kWords<BuildStage>.size()) bad("unknown stage");
-    if (e.kind == EventKind::pass && !(e.off() >= 0)) bad("its distance is not a number from 0 on");
+    if (e.kind == EventKind::pass && !(e.off() >= 0)) bad("its deviation is not a number of at least 0");
     if (e.kind == EventKind::cap && e.detail >= kWords<CapVerdict>.size()) bad("unknown verdict");
-    if (e.kind == EventKind::cap && !has_cause({EventKind::patch})) bad("its cause is no patch");
+    if (e.kind == EventKind::cap && !has_cause({EventKind::patch})) bad("its cause is not a patch");
     const bool in_pass = e.kind == EventKind::patch || e.kind == EventKind::pass_end;
-    if (in_pass && !has_cause({EventKind::pass})) bad("its cause is no pass");
+    if (in_pass && !has_cause({EventKind::pass})) bad("its cause is not a pass");
   }
 
   const Trace& t_;

@@ -34,7 +34,7 @@ class GzipSink final : public ByteSink {
     constexpr int kGzipHeader = 16;  // added to the window bits: gzip instead of zlib
     constexpr int kMemLevel = 8;
     if (deflateInit2(&stream_, 1, Z_DEFLATED, MAX_WBITS + kGzipHeader, kMemLevel, Z_DEFAULT_STRATEGY) != Z_OK)
-      throw EnvironmentError("zlib could not start to compress (out of memory)");
+      throw EnvironmentError("zlib cannot be initialised (out of memory)");
   }
   ~GzipSink() override { deflateEnd(&stream_); }
   GzipSink(const GzipSink&) = delete;
@@ -69,7 +69,7 @@ struct GzClose {
 };
 
 [[noreturn]] void fail_to_read(const std::string& path, const std::string& why) {
-  throw InputError(printable_name(path) + ": cannot be read: " + why +
+  throw InputError(printable_name(path) + ": cannot read the trace: " + why +
                    "; give a trace.json or trace.json.gz");
 }
 
@@ -98,16 +98,16 @@ std::string read_all(const std::string& path, std::uint64_t max_bytes) {
     // A truncated gzip stream is an error, not an early end.
     if (got < 0 || (code != Z_OK && code != Z_STREAM_END))
       fail_to_read(path, code == Z_ERRNO       ? std::strerror(errno)
-                         : code == Z_BUF_ERROR ? "the compressed file ends too early"
+                         : code == Z_BUF_ERROR ? "the compressed file is truncated"
                                                : why);
     if (got == 0) return text;
     if (text.size() + static_cast<std::size_t>(got) > max_bytes)
-      fail_to_read(path, "it has more than " + std::to_string(max_bytes) + " bytes of text");
+      fail_to_read(path, "it has more than " + std::to_string(max_bytes) + " bytes of uncompressed text");
     // Protection from decompression bombs: limit the ratio as well as the total.
     const auto packed = static_cast<std::uint64_t>(std::max<z_off_t>(gzoffset(file.get()), 0));
     if (gzdirect(file.get()) == 0 && text.size() + static_cast<std::size_t>(got) > most_unpacked(packed))
       fail_to_read(path, "its first " + std::to_string(packed) + " bytes unpack to more than " +
-                             std::to_string(most_unpacked(packed)) + ", which no trace of lrbscope does");
+                             std::to_string(most_unpacked(packed)) + ", which is not plausible for a trace");
     text.append(chunk.data(), static_cast<std::size_t>(got));
   }
 }

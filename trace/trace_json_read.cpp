@@ -90,15 +90,15 @@ class EventParser final : public nlohmann::json_sax<Json> {
     // nlohmann's exception id out_of_range.406: the number exceeds the range of double.
     constexpr int kNumberTooLarge = 406;
     if (error.id == kNumberTooLarge)
-      throw InputError(name_ + ": a number is too large for a double; the trace is damaged: record it again");
+      throw InputError(name_ + ": a number is too large for a double; the trace is damaged; record it again");
     std::string what =
         error.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
     const std::size_t colon = what.find(": ");
     if (colon != std::string::npos) what.erase(0, colon + 2);
     constexpr std::size_t kShown = 160;  // the parser quotes an unfinished string completely
     if (what.size() > kShown) what = what.substr(0, kShown) + "...";
-    throw InputError(name_ + ": " + line_and_column(text_, offset) + ": this is not JSON: " + what +
-                     "; is it a trace, and whole?");
+    throw InputError(name_ + ": " + line_and_column(text_, offset) + ": not valid JSON: " + what +
+                     "; check that the file is a complete trace");
   }
 
  private:
@@ -117,7 +117,7 @@ class EventParser final : public nlohmann::json_sax<Json> {
     // Bounds the recursion of later traversals of the tree.
     if (stack_.size() > kMaxDepth)
       throw InputError(name_ + ": containers nested more than " + std::to_string(kMaxDepth) +
-                       " deep: this is not a trace of lrbscope");
+                       " levels deep, so this is not a trace of lrbscope");
     check_place(container);
     if (in_events_ && stack_.size() == 2) before_event_ = held_;
     hold(kContainer);
@@ -150,10 +150,10 @@ class EventParser final : public nlohmann::json_sax<Json> {
     held_ += bytes;
     if (in_events_ && stack_.size() > 1 && held_ - before_event_ > kLargestEvent)
       throw InputError(name_ + ": /traceEvents/" + std::to_string(event_count_) +
-                       ": is longer than any event of lrbscope; the trace is damaged: record it again");
+                       ": longer than any event of lrbscope; the trace is damaged; record it again");
     if (!in_events_ && held_ > kFree + kPerByte * text_.size())
       throw InputError(name_ + ": its values take more than " + std::to_string(kPerByte) +
-                       " times the memory of its text, which no trace of lrbscope does: it is damaged");
+                       " times the memory of its text; the trace is damaged; record it again");
   }
 
   std::string_view text_;

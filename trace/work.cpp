@@ -19,9 +19,9 @@ const ObbTree& walked_tree(const LrbRep& rep, std::uint32_t walked) {
   if (walked == 0) return rep.tree();
   const std::span<const WrapperLevel> levels = rep.levels().all();
   if (walked > levels.size())
-    throw InputError("body " + rep.name() + ": the trace walks its level " + std::to_string(walked - 1) +
+    throw InputError("body " + rep.name() + ": the trace visits its level " + std::to_string(walked - 1) +
                      ", but it has " + std::to_string(levels.size()) +
-                     "; the trace is damaged: record it again");
+                     "; the trace is damaged; record it again");
   return levels[walked - 1].tree;
 }
 
@@ -39,7 +39,7 @@ NodeCounts count_nodes(const TreeShape& tree, Side side, std::span<const Event> 
     if (node >= tree.size())
       throw InputError("the trace visits node " + std::to_string(node) + " of " + std::string(name_of(side)) +
                        "'s tree, which has " + std::to_string(tree.size()) +
-                       "; the trace is damaged: record it again");
+                       "; the trace is damaged; record it again");
     ++counts.visits[node];
     counts.ended[node] += pair.work.met == 0;
     counts.box_tests[node] += pair.work.box_tests;
@@ -117,12 +117,12 @@ void TreeShape::finish() {
   for (std::size_t i = 0; i < order_.size(); ++i)
     for (const std::uint32_t child : children(order_[i])) {
       if (child == 0 || child >= size() || order_.size() >= size())
-        throw std::invalid_argument("TreeShape: the nodes are no tree");
+        throw std::invalid_argument("TreeShape: the nodes do not form a tree");
       depth_[child] = depth_[order_[i]] + 1;
       order_.push_back(child);
     }
   if (order_.size() != size())
-    throw std::invalid_argument("TreeShape: there are nodes that no other leads to");
+    throw std::invalid_argument("TreeShape: some nodes are not reachable from the root");
   // In reverse order children come first: sum the simplices bottom up.
   for (auto i = order_.rbegin(); i != order_.rend(); ++i) {
     beneath_[*i] += static_cast<std::uint32_t>(simplices(*i).size());

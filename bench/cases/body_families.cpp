@@ -343,15 +343,15 @@ std::vector<Family> body_families() {
        "on the grid", false, 150, slack_value},
       {"dented", "bodies with regions, made by hand and by the builder", make_dented, "0.1 off the grid",
        "on the grid", false, 160, slack_value},
-      {"containment", "inside, in a cavity, in the wall around one, nested shells, enclosed pieces",
+      {"containment", "inside, in a cavity, in the wall around one, nested shells, enclosed components",
        make_containment, "0.1 of the room left", "1e-14 of the room left", false, 170,
        [](double dial) { return rounded_value(steady::pow10(-1 - 13 * dial)); }},
       {"voxels", "random cells of one grid: interiors overlap exactly if a cell is shared", make_voxels,
        "0.1 off the grid", "on the grid, or on half of it", false, 180, slack_value},
       {"plane", "2D bodies, random cells of one grid among them", make_plane, "0.1 off",
        "edges on edges, corners on corners", false, 190, slack_value},
-      {"dirty", "open, duplicated, zero-area, turned and crossing faces", make_dirty,
-       "clean but for crossings, 0.1 off", "a third of the faces bad", false, 200,
+      {"dirty", "open, duplicated, zero-area, flipped and crossing faces", make_dirty,
+       "clean except for crossings, 0.1 off", "a third of the faces bad", false, 200,
        [](double dial) { return rounded_value(30 * dial) + " %"; }},
   };
 }

@@ -38,7 +38,7 @@ RandomEngine case_random(const Family& family, std::uint64_t seed, std::uint64_t
 
 Case make_case(const Family& family, std::uint64_t seed, int dial, std::uint64_t index) {
   if (dial < 0 || dial >= kDialSettings)
-    throw InputError("dial setting " + std::to_string(dial) + ": use 0 (benign) to " +
+    throw InputError("difficulty " + std::to_string(dial) + ": expected 0 (benign) to " +
                      std::to_string(kDialSettings - 1) + " (degenerate)");
   RandomEngine random = case_random(family, seed, index);
   return family.make(random, dial_value(dial));
@@ -142,8 +142,9 @@ Case make_swapped(RandomEngine& random, double dial) {
 
 std::vector<Family> swapped_families() {
   return {
-      {"swapped", "cases of the others, asked both ways: is B against A the transpose of A against B?",
-       make_swapped, "as theirs", "as theirs", true, 250},
+      {"swapped",
+       "cases of the other families, queried both ways: is B against A the transpose of A against B?",
+       make_swapped, "as in the other families", "as in the other families", true, 250},
   };
 }
 

@@ -246,7 +246,7 @@ render::ScaleBar scale_for(std::span<const ShownLevel> levels) {
     low = std::min(low, l.figures.share / kBelow);
     high = std::max(high, l.figures.share);
   }
-  return {"distance from the body / largest side of its box", std::min(low, high / kLeastRange), high, true};
+  return {"deviation from the body / longest side of its box", std::min(low, high / kLeastRange), high, true};
 }
 
 }  // namespace
@@ -264,7 +264,7 @@ std::string upward_text(double value) {
 
 std::string caption_of(const bodies::LevelFigures& level, double size) {
   return "tolerance " + render::short_number(level.share) + ": " + render::group_digits(level.faces) +
-         " faces, " + (level.bound > 0 ? "proved " + upward_text(level.bound / size) : "the body itself");
+         " faces, " + (level.bound > 0 ? "proved " + upward_text(level.bound / size) : "the body");
 }
 
 render::Image draw_wrappers(const ShownBody& shown, std::span<const ShownLevel> levels) {
@@ -283,10 +283,10 @@ render::Image draw_wrappers(const ShownBody& shown, std::span<const ShownLevel> 
         {draw_scene(rasterizer, rep, bodies::wrapper_at(rep, l.figures.tolerance, shown.threads), camera),
          caption_of(l.figures, shown.size)});
   render::Overlay overlay;
-  overlay.title = rep.name() + ": wrappers at a row of tolerances";
+  overlay.title = rep.name() + ": wrappers at several tolerances";
   overlay.event =
-      "Each encloses the body and is proved to be off by no more than the number below it, a share of the "
-      "box's largest side.";
+      "Each wrapper encloses the body. Below it: its proven maximum deviation, as a fraction of the longest "
+      "side of the box.";
   return with_overlay(render::montage(panels, montage_options()), overlay);
 }
 
@@ -294,10 +294,9 @@ render::Image draw_distances(const ShownBody& shown, std::span<ShownLevel> level
   const LrbRep& rep = *shown.rep;
   const render::Camera camera = camera_for(shown, levels);
   render::Overlay overlay;
-  overlay.title = rep.name() + ": how far its wrappers are off";
-  overlay.event = "Colours are measured, point by point; numbers are proved.";
-  overlay.key = {
-      {render::LegendItem::Mark::solid, render::palette::kPaleFront, "real faces, off by nothing"}};
+  overlay.title = rep.name() + ": deviation of its wrappers";
+  overlay.event = "Colours are measured at points; numbers are proven bounds.";
+  overlay.key = {{render::LegendItem::Mark::solid, render::palette::kPaleFront, "real faces, deviation 0"}};
   overlay.scale = scale_for(levels);
   render::RasterOptions raster = panel_options();
   raster.lighting = kSoft;

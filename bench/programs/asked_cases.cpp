@@ -23,7 +23,7 @@ void add_options(CLI::App& app, AskedCases& asked) {
 
 const cases::Family& family_of(const AskedCases& asked) {
   const cases::Family* family = cases::find_family(asked.family);
-  if (family == nullptr) throw InputError("there is no family '" + asked.family + "'");
+  if (family == nullptr) throw InputError("unknown family '" + asked.family + "'");
   return *family;
 }
 

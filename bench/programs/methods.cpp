@@ -80,7 +80,7 @@ int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries
   if (std::getenv("LRBSCOPE_FAKE_METHODS") != nullptr)
     for (methods::MethodEntry& fake : fake_methods(entries)) entries.push_back(std::move(fake));
   WorkerOptions o;
-  CLI::App app("Puts cases to collision engines, for lrbscope stability; see bench/programs/methods.cpp.");
+  CLI::App app("Runs cases on collision engines, for lrbscope stability; see bench/programs/methods.cpp.");
   add_options(app, o.asked);
   app.add_flag("--pairs", o.pairs);
   app.add_option("--questions", o.questions);

@@ -87,14 +87,14 @@ struct Options {
 
 Quantity quantity_of(const Options& o) {
   const auto q = from_name<Quantity>(o.quantity);
-  if (!q || *q == Quantity::pairs) throw InputError("there is no quantity '" + o.quantity + "'");
+  if (!q || *q == Quantity::pairs) throw InputError("unknown quantity '" + o.quantity + "'");
   return *q;
 }
 
 NumberMethod method_of(Quantity quantity, const std::string& name) {
   for (NumberMethod& m : number_methods())
     if (m.quantity == quantity && m.info.name == name) return m;
-  throw InputError("there is no method '" + name + "' for this quantity");
+  throw InputError("unknown method '" + name + "' for this quantity");
 }
 
 void say_records(const Options& o, Lines& out) {
@@ -135,7 +135,7 @@ void work(const Options& o, Lines& out) {
 
 int run(int argc, char** argv) {
   Options o;
-  CLI::App app("Puts cases to methods that answer with a number, for lrbscope stability.");
+  CLI::App app("Runs cases on methods that return a number, for lrbscope stability.");
   add_options(app, o.asked);
   app.add_option("--quantity", o.quantity);
   app.add_option("--questions", o.questions);

@@ -28,7 +28,7 @@ fcl::BVHModel<Volume> model_of(const LrbRep& rep, const Eigen::Vector3d& by = {0
   fcl::BVHModel<Volume> model;
   model.beginModel();
   model.addSubModel(points, triangles);
-  if (model.endModel() != fcl::BVH_OK) throw InputError("FCL could not build its tree");
+  if (model.endModel() != fcl::BVH_OK) throw InputError("FCL cannot build its tree");
   return model;
 }
 
@@ -121,13 +121,14 @@ std::vector<NumberMethod> fcl_number_methods() {
       with_knob(
           fcl_sweep(
               "fcl-naive", "continuousCollide, naive",
-              "Its default solver: the first of so many equal times at which bodies meet; 1000 unless said.",
+              "Its default solver: the first of N equally spaced times at which the bodies collide; N is 1000 "
+              "by default.",
               fcl::CCDC_NAIVE, 1000, {"FCL, naive", "#d55e00", "rect", 5}),
           "times", {10, 100, 1000}),
       fcl_sweep("fcl-advancement", "continuousCollide, advancement", "Conservative advancement.",
                 fcl::CCDC_CONSERVATIVE_ADVANCEMENT, 10,
                 {"FCL, conservative advancement", "#a3132f", "triangle", 9}),
-      fcl_sweep("fcl-polynomials", "continuousCollide, polynomials", "Its solver of polynomials.",
+      fcl_sweep("fcl-polynomials", "continuousCollide, polynomials", "Its polynomial solver.",
                 fcl::CCDC_POLYNOMIAL_SOLVER, 10, {"FCL, polynomials", "#8a5a2b", "star", 3}),
       fcl_method("fcl-contacts", "collide, contacts", "The largest penetration depth of its contacts.",
                  Quantity::depth, fcl_depth, {"FCL, contacts", "#d55e00", "rect", 5})};

@@ -57,7 +57,7 @@ void judge_number(Record& record, const NumberMethod& method, const NumberAnswer
 void ask_number(const NumberMethod& method, const cases::Case& c, const RightAnswer& expected,
                 Record& record) {
   workers::note_failures(record, [&] {
-    if (!expected.refusal.empty()) throw InputError("not asked: " + expected.refusal);
+    if (!expected.refusal.empty()) throw InputError("skipped: " + expected.refusal);
     const Asked question = asked(c);
     const NumberAnswer answer = method.ask(question, std::nullopt);
     record.microseconds = answer.microseconds;

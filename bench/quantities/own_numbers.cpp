@@ -51,7 +51,8 @@ NumberAnswer our_first_contact(const Asked& q, Setting tolerance) {
   const Stopwatch watch;
   const FirstContactResult r = first_contact(q.a, Motion::still({}), q.b, motion_of(q), request);
   const double us = watch.microseconds();
-  if (r.outcome == MotionOutcome::undecided) throw InputError("as near as rounding: it says so");
+  if (r.outcome == MotionOutcome::undecided)
+    throw InputError("undecided, as reported by the method: closer than rounding errors");
   if (r.outcome == MotionOutcome::never) return {kNever, kNever, us};
   return {r.t0, r.t1, us};
 }
@@ -62,7 +63,7 @@ NumberAnswer our_depth(const Asked& q, Setting) {
   const Stopwatch watch;
   const ClashResult r = clash(q.a, Pose{}, q.b, Pose{}, request);
   const double us = watch.microseconds();
-  if (!r.depth) throw InputError("a body that bounds no solid: it says so");
+  if (!r.depth) throw InputError("undecided, as reported by the method: not a closed solid");
   return {r.depth->lower, r.depth->upper, us};
 }
 
@@ -83,7 +84,7 @@ NumberMethod ours(Quantity quantity, const char* title, NumberAnswer (*ask)(cons
   NumberMethod m;
   m.info.name = "ours";
   m.info.title = title;
-  m.info.remark = "An interval, which is to hold the number.";
+  m.info.remark = "An interval that must contain the number.";
   m.info.role = methods::Role::ours;
   m.info.style = {"lrbscope", "#0072b2", "circle", 7};
   m.quantity = quantity;
@@ -109,7 +110,8 @@ NumberMethod sampled_method(int n) {
   NumberMethod m;
   m.info.name = "sampled-" + std::to_string(n);
   m.info.title = "exact query, " + std::to_string(n) + " steps";
-  m.info.remark = "Our exact query at equal times; says the first at which bodies meet.";
+  m.info.remark =
+      "lrbscope's exact query at equally spaced times; returns the first at which the bodies collide.";
   m.info.traits.set(methods::Trait::hard_cases, n > kTooFewForHardCases);
   m.info.style = {"exact query at 10, 100, 1000 times", "#6b6b6b", "crossRot", 2};
   m.quantity = Quantity::first_contact;
@@ -122,13 +124,13 @@ NumberMethod sampled_method(int n) {
 std::vector<NumberMethod> own_number_methods() {
   return {with_knob(ours(Quantity::distance, "lrbscope, distance", our_distance), "tolerance",
                     {0.1, 0.01, 1e-3, 1e-6, 0}),
-          with_knob(less("ours-budget", "lrbscope, distance in so many steps",
-                         "The interval that so many steps give: pairs of nodes opened.",
+          with_knob(less("ours-budget", "lrbscope, distance in N steps",
+                         "The interval after N steps (pairs of nodes expanded).",
                          {"lrbscope, within a budget", "#56b4e9", "rect", 4}, distance_in_steps),
                     "steps", {3, 10, 30, 100, 300}),
-          with_knob(less("ours-within", "lrbscope, within a twentieth of the diagonal?",
-                         "A yes or no, proved; the interval is what was known by then.",
-                         {"lrbscope, yes or no: that near?", "#0072b2", "rectRounded", 15}, within),
+          with_knob(less("ours-within", "lrbscope, within 5 % of the diagonal?",
+                         "A proven yes or no; the interval is the bound known by then.",
+                         {"lrbscope, yes or no: within a distance?", "#0072b2", "rectRounded", 15}, within),
                     "within", {0.05}),
           with_knob(ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact), "tolerance",
                     {1e-6, 1e-9, 1e-12}),

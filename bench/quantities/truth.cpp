@@ -36,7 +36,8 @@ std::string why_not_asked(Quantity quantity, const cases::Case& c) {
     if (rep->real_simplex_count() > most)
       return "a body of more than " + std::to_string(most) + " triangles, too many for rational arithmetic";
     for (const Vector3d& v : rep->vertices())
-      if (!(pose.apply(v).norm() < 1e150)) return "coordinates of which a square is no double";
+      if (!(pose.apply(v).norm() < 1e150))
+        return "coordinates whose squares are not representable as doubles";
     if (quantity == Quantity::depth && !rep->closed()) return "a body that is not closed";
   }
   return "";
@@ -248,7 +249,7 @@ RightAnswer true_number(Quantity quantity, const cases::Case& c) {
   } else if (const auto depth = depth_sq(q)) {
     set_root(e, *depth);
   } else {
-    e.refusal = "a body that is not convex: its depth is not known otherwise";
+    e.refusal = "a non-convex body, whose depth has no independent reference";
   }
   return e;
 }

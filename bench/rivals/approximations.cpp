@@ -73,8 +73,7 @@ std::vector<MethodEntry> plain_double_methods() {
   info.role = Role::no_peer;  // takes minutes
   info.title = "brute force, double, epsilon 1e-6";
   info.remark =
-      "Every pair of triangles by Moeller's test of intervals (1997) with its usual epsilon; 2D: by sides. "
-      "No "
+      "Every pair of triangles by Moeller's interval test (1997) with its usual epsilon; 2D: by sides. No "
       "boxes, no relation.";
   info.traits.set(Trait::takes_2d);
   info.traits.set(Trait::moves_exactly);
@@ -203,9 +202,8 @@ std::vector<MethodEntry> spheres_methods() {
   info.name = "spheres";
   info.title = "sphere tree, stopped at a level";
   info.remark =
-      "Contact, and points of it: two binary trees of spheres round triangles, descended to a level; what "
-      "still "
-      "overlaps there counts as contact. Never misses, often cries wolf.";
+      "Contact, and points of it: two binary trees of spheres around triangles, descended to a level; spheres "
+      "that still overlap there count as contact. Never misses a contact; many false positives.";
   info.pairs = false;
   info.traits.set(Trait::hard_cases, false);
   info.traits.set(Trait::approximate);

@@ -126,11 +126,10 @@ std::vector<MethodEntry> LRB_BULLET_METHODS() {
   info.traits.set(Trait::loose);
   info.remark =
       std::string(
-          "All pairs: contactPairTest() of two btGImpactMeshShapes with margin 0; a pair for the triangles "
-          "of "
-          "each contact point. Contact means penetration to it, so that it lists triangles behind each other "
-          "too: those are counted, but wrong only where the bodies do not meet. ") +
-      (kSingle ? "Single precision, Bullet's default; beyond its range it is not asked. "
+          "All pairs: contactPairTest() of two btGImpactMeshShapes with margin 0; one pair per contact point. "
+          "It treats contact as penetration and therefore also lists triangles behind each other: these are "
+          "counted, but wrong only if the bodies are disjoint. ") +
+      (kSingle ? "Single precision, Bullet's default; cases beyond its range are skipped. "
                : "Debian's build in double precision. ") +
       "Does not look for bodies inside bodies; 3D only.";
   return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Bullet>(); }}};

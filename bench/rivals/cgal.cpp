@@ -55,7 +55,7 @@ auto asked(const Run& run) {
   try {
     return run();
   } catch (const CGAL::Failure_exception& e) {
-    throw InputError("CGAL refused: " + e.expression());
+    throw InputError("CGAL rejected the input: " + e.expression());
   }
 }
 
@@ -86,7 +86,7 @@ class Rigid : public Method {
     for (const auto& c : t.triangles) faces.push_back({c[0], c[1], c[2]});
     namespace pmp = CGAL::Polygon_mesh_processing;
     if (!pmp::is_polygon_soup_a_polygon_mesh(faces))
-      throw InputError("not manifold, or not oriented: CGAL's Surface_mesh cannot hold it");
+      throw InputError("not manifold, or not oriented: CGAL's Surface_mesh cannot represent it");
     return asked([&] {
       auto mesh = std::make_unique<SurfaceMesh>();
       pmp::polygon_soup_to_polygon_mesh(points_of(t), faces, *mesh);
@@ -174,9 +174,9 @@ MethodEntry rigid() {
   info.name = "cgal";
   info.title = "CGAL " CGAL_VERSION_STR ", Rigid_triangle_mesh_collision_detection";
   info.remark =
-      "Yes or no, and whether a body lies in the other: get_all_intersections_and_inclusions() of two "
-      "Surface_meshes, exact predicates. Lists no pairs; takes manifold meshes only; 3D only. Judged by "
-      "contact, inside or separate.";
+      "Yes or no, and whether one body is inside the other: get_all_intersections_and_inclusions() of two "
+      "Surface_meshes, exact predicates. Lists no pairs; manifold meshes and 3D only. Judged by contact, "
+      "inside or separate.";
   info.pairs = false;
   info.says = Says::inside;
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Rigid>(); }};
@@ -190,8 +190,7 @@ MethodEntry pairs() {
   info.title = "CGAL " CGAL_VERSION_STR ", AABB_tree, triangle by triangle";
   info.remark =
       "All pairs: all_intersected_primitives() of B's tree for each triangle of A, exact predicates. CGAL "
-      "asks "
-      "for triangles with an area. Does not look for bodies inside bodies; 3D only.";
+      "requires triangles of non-zero area. Does not look for bodies inside bodies; 3D only.";
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Pairs>(); }};
 }
 

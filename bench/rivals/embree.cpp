@@ -23,7 +23,7 @@ namespace {
 class Device {
  public:
   Device() : device_(rtcNewDevice("threads=1,set_affinity=0")) {
-    if (device_ == nullptr) throw EnvironmentError("Embree could not create a device");
+    if (device_ == nullptr) throw EnvironmentError("Embree cannot create a device");
   }
   ~Device() { rtcReleaseDevice(device_); }
   Device(const Device&) = delete;
@@ -154,9 +154,8 @@ MethodEntry entry(const char* name, const char* how, const char* remark, int ran
   info.title = std::string("Embree " RTC_VERSION_STRING ", rtcCollide, ") + how;
   info.remark =
       std::string(
-          "All pairs: rtcCollide() of two scenes of triangles' boxes, the triangles tested in the "
-          "callback in double with an epsilon; it has no way to stop at the first pair. Body B moves "
-          "at every query, ") +
+          "All pairs: rtcCollide() of two scenes of triangles' boxes, the triangles tested in the callback in "
+          "double with an epsilon; it cannot stop at the first pair. Body B moves at every query, ") +
       remark;
   info.traits.set(Trait::hard_cases, false);
   return {info, make};
@@ -166,10 +165,10 @@ MethodEntry entry(const char* name, const char* how, const char* remark, int ran
 
 std::vector<MethodEntry> embree_methods() {
   return {
-      entry("embree", "refitted", "and its tree is refitted, which counts.", kRank,
+      entry("embree", "refitted", "and its tree is refitted, which is part of the time.", kRank,
             []() -> std::unique_ptr<Method> { return std::make_unique<Embree>(RTC_BUILD_QUALITY_REFIT); }),
-      entry("embree-rebuilt", "rebuilt", "and its tree is built again by the fastest builder, which counts.",
-            kRank + 1,
+      entry("embree-rebuilt", "rebuilt",
+            "and its tree is rebuilt by the fastest builder, which is part of the time.", kRank + 1,
             []() -> std::unique_ptr<Method> { return std::make_unique<Embree>(RTC_BUILD_QUALITY_LOW); })};
 }
 

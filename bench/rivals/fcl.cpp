@@ -57,7 +57,7 @@ class Fcl : public Method {
     auto body = std::make_unique<FclBody<S>>();
     body->model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
     body->model.addSubModel(vertices, triangles);
-    if (body->model.endModel() != fcl::BVH_OK) throw InputError("FCL could not build its tree");
+    if (body->model.endModel() != fcl::BVH_OK) throw InputError("FCL cannot build its tree");
     return body;
   }
 
@@ -101,8 +101,7 @@ MethodInfo fcl_info(const char* name, const char* scalar, const char* remark, in
 std::vector<MethodEntry> fcl_headers_methods() {
   MethodEntry entry = {
       fcl_info("fcl-headers", "double, compiled with our flags",
-               "As fcl, but for its code, which is instantiated from its headers with our compiler's flags.",
-               kRank),
+               "As fcl, but instantiated from its headers with lrbscope's compiler flags.", kRank),
       []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<double>>(); }};
   entry.info.traits.set(Trait::hard_cases, false);
   entry.info.role = Role::aim;
@@ -119,7 +118,7 @@ std::vector<MethodEntry> fcl_methods() {
                 kRank),
        []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<double>>(); }},
       {fcl_info("fcl-float", "float",
-                "As fcl, with coordinates rounded to float; beyond its range it is not asked.", kRank + 1),
+                "As fcl, with coordinates rounded to float; cases beyond its range are skipped.", kRank + 1),
        []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<float>>(); }}};
 }
 

@@ -157,9 +157,8 @@ MethodEntry octree() {
   info.name = "fcl-octree";
   info.title = "FCL " FCL_VERSION ", octree against mesh";
   info.remark =
-      "Contact, and points of it: A as an octree (OctoMap) of the cells that its surface goes through, B as "
-      "a mesh. "
-      "The knob is the number of cells along A's diagonal.";
+      "Contact, and points of it: A as an octree (OctoMap) of the cells that its surface intersects, B as a "
+      "mesh. Setting: number of cells along A's diagonal.";
   info.pairs = false;
   info.traits.set(Trait::hard_cases, false);
   info.traits.set(Trait::approximate);
@@ -175,9 +174,8 @@ MethodEntry gjk() {
   info.name = "fcl-gjk";
   info.title = "FCL " FCL_VERSION ", GJK of convex hulls";
   info.remark =
-      "Contact, and a point of it: the convex hulls of both bodies by GJK and EPA (libccd). Right where "
-      "bodies are "
-      "convex and neither lies in the other.";
+      "Contact, and a point of it: the convex hulls of both bodies by GJK and EPA (libccd). Correct if the "
+      "bodies are convex and neither is inside the other.";
   info.pairs = false;
   info.traits.set(Trait::hard_cases, false);
   info.traits.set(Trait::convex);

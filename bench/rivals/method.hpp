@@ -168,7 +168,7 @@ inline MethodEntry absent(const char* name, const char* title, const char* packa
   info.style = std::move(style);
   info.name = name;
   info.title = title;
-  info.remark = std::string("Not there when this was built: install Debian's ") + package;
+  info.remark = std::string("Not found when this was built; install Debian's ") + package;
   info.present = false;
   return {info};
 }

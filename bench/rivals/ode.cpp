@@ -100,9 +100,8 @@ std::vector<MethodEntry> ode_methods() {
   info.title =
       sizeof(dReal) == sizeof(double) ? "ODE, triangle meshes, double" : "ODE, triangle meshes, float";
   info.remark =
-      "Pairs of the contact points of dCollide(), at most 65535, where one may stand for several pairs: its "
-      "list "
-      "is not meant to be complete. Trees and vertices in float.";
+      "Pairs of the contact points of dCollide(), at most 65535; a contact point may represent several pairs, "
+      "so the list is not meant to be complete. Trees and vertices in float.";
   info.traits.set(Trait::loose);
   info.traits.set(Trait::hard_cases, false);
   return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Ode>(); }}};

@@ -210,9 +210,9 @@ MethodEntry ours_floating() {
 MethodEntry ours_paper() {
   MethodInfo info =
       our_info("ours-paper", "lrbscope, the paper's recursion",
-               "Section 4 of the paper to the letter, with exact predicates, on an LRB-rep built from the "
-               "body; where none can be built (open, not manifold), on the regions that the body has. "
-               "Misses contacts under lids that nothing touches.",
+               "Section 4 of the paper, unchanged, with exact predicates, on an LRB-rep built from the body; "
+               "if none can be built (open, not manifold), on the body's own regions. Misses contacts under "
+               "lids that are not touched.",
                12);
   info.role = Role::no_peer;
   return {info, []() -> std::unique_ptr<Method> {
@@ -231,8 +231,9 @@ MethodEntry ours_coherent() {
 }
 
 MethodEntry ours_one_pair() {
-  MethodInfo info = our_info("ours-one-pair", "lrbscope, one pair",
-                             "Whether they meet, exactly; and where one pair of faces that cross does.", 14);
+  MethodInfo info =
+      our_info("ours-one-pair", "lrbscope, one pair",
+               "Whether they intersect, exactly, and the contact of one crossing pair of faces.", 14);
   coarse(info);
   info.style = {"lrbscope, one pair", "#0072b2", "rectRounded", 15};
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(Content::one_pair); }};
@@ -241,8 +242,8 @@ MethodEntry ours_one_pair() {
 MethodEntry ours_tolerance() {
   MethodInfo info =
       our_info("ours-tolerance", "lrbscope, to a tolerance",
-               "Whether they meet, exactly; and where their wrappers do, whose regions no thicker than the "
-               "tolerance stay closed. The knob is the tolerance over A's diagonal.",
+               "Whether they intersect, exactly, and the contact of their wrappers, in which regions no "
+               "thicker than the tolerance are not refined. Setting: tolerance relative to A's diagonal.",
                15);
   coarse(info);
   info.knob = "tolerance";
@@ -254,8 +255,8 @@ MethodEntry ours_tolerance() {
 MethodEntry ours_budget() {
   MethodInfo info =
       our_info("ours-budget", "lrbscope, within a number of face tests",
-               "An answer in time: contact, and where the wrappers reached so far meet. The knob is the "
-               "number of face tests. Never calls bodies apart that meet.",
+               "A result within a limit: contact, and the intersection of the wrappers reached so far. "
+               "Setting: number of face tests. Never reports intersecting bodies as separate.",
                16);
   coarse(info);
   info.knob = "tests";

@@ -13,7 +13,7 @@
 namespace lrb::methods {
 
 Triangles triangles_of(const LrbRep& rep) {
-  if (rep.dim() != 3) throw InputError("a 2D body: not asked, because it answers for 3D bodies only");
+  if (rep.dim() != 3) throw InputError("skipped: a 2D body, but the method supports only 3D");
   Triangles t;
   t.vertices.assign(rep.vertices().begin(), rep.vertices().end());
   for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
@@ -27,7 +27,7 @@ Triangles triangles_of(const LrbRep& rep) {
 void check_fits_float(const Triangles& t) {
   for (const Eigen::Vector3d& v : t.vertices)
     if (!(v.cwiseAbs().maxCoeff() <= static_cast<double>(std::numeric_limits<float>::max())))
-      throw InputError("a coordinate beyond the range of float: not asked");
+      throw InputError("skipped: a coordinate exceeds the range of float");
 }
 
 void check_rigid(const Pose& pose) {
@@ -36,7 +36,7 @@ void check_rigid(const Pose& pose) {
   static constexpr double kRotationDefect = 1e-9;
   const Eigen::Matrix3d defect = pose.r * pose.r.transpose() - Eigen::Matrix3d::Identity();
   if (defect.cwiseAbs().maxCoeff() > kRotationDefect || pose.r.determinant() < 0)
-    throw InputError("a pose that is not a rotation and a translation: not asked");
+    throw InputError("skipped: a pose that is not a rigid motion");
 }
 
 Mesh real_mesh(const LrbRep& rep) {

@@ -12,29 +12,29 @@ namespace lrb::bench {
 namespace {
 
 constexpr const char* kHowToRead =
-    "Down is faster, left is more accurate; what has no error stands at the left end. The frontier joins "
-    "what nothing beats in both. Hover for all numbers; a click leads to the scene of the panel, with its "
-    "trace and pictures.";
+    "Lower is faster, left is more accurate; methods without error are at the left end. The frontier joins "
+    "the methods that are not beaten in both. Hover over a point for all its numbers; click it for the scene "
+    "of the panel, with its trace and pictures.";
 
 ChartWords of_pairs() {
   return {
-      "Speed against accuracy",
-      "Every method at every setting of its knob, on the same bodies and poses: how long the median query "
-      "takes, and how far what it calls the contact is from the exact contact.",
+      "Speed versus accuracy",
+      "Every method at every setting, on the same bodies and poses: the time of the median query, and the "
+      "distance of its contact from the exact contact.",
       "error of the contact region / diagonal",
-      "off the bodies by no more than this: proved",
-      {{"How to read it", kHowToRead},
-       {"What counts as error",
-        "The Hausdorff distance between the exact contact region and that of the answer, over the larger "
-        "body's diagonal, averaged over poses; for methods that say only yes or no, the share of wrong "
-        "ones. Contact where there is none, or none where there is, counts as one whole diagonal, and so "
-        "does what is no answer."},
-       {"What is proved",
-        "Ours alone proves what it says. Its exact answers are off by nothing; those to a tolerance, or of "
-        "a level that a budget allowed, come with a bound (a cross at the same height): where listed faces "
-        "meet, the distances from the two bodies add up to no more. That is another length than the error "
-        "on the axis: where surfaces graze each other, moving them by a little moves the contact by far "
-        "more. Column \"off\" is the length that is proved, measured."}}};
+      "proven error bound",
+      {{"Reading the chart", kHowToRead},
+       {"Error measure",
+        "The Hausdorff distance between the exact contact region and that of the result, relative to the "
+        "larger body's diagonal, averaged over poses; for methods that return only yes or no, the fraction of "
+        "wrong results. A false contact, a missed contact or a missing answer counts as an error of one "
+        "diagonal."},
+       {"Proven bounds",
+        "Only lrbscope proves its results. Its exact results have no error; those with a tolerance or a limit "
+        "have a bound (a cross at the same height) on the sum of the distances of the listed intersections "
+        "from the two bodies. This is not the error on the axis: at tangential contacts, a small displacement "
+        "of the surfaces moves the contact by far more. Column \"off\" is the measured value of the bounded "
+        "length."}}};
 }
 
 /// What counts as error, and what is proved, for one number.
@@ -46,50 +46,49 @@ NumberWords words_of_number(Quantity quantity) {
   if (quantity == Quantity::first_contact)
     return {
         "time of first contact",
-        "B moves straight, two diagonals far, past A or into it: how long every method takes to say when "
-        "they first meet, and how far off that is.",
+        "B moves in a straight line, two diagonals far, past A or into it: how long each method takes to "
+        "compute the time of first contact, and its error.",
         "error of the time of contact / motion",
-        "The time at which a method first finds the bodies in contact, beside the true one, in parts of "
-        "the motion, averaged over motions. Never, where they meet, or a time, where they never do, counts "
-        "as the whole motion, and so does what is no answer. An interval stands for its later end, at "
-        "which contact was found.",
-        "Ours gives an interval: no contact before it, a contact at its end."};
+        "The difference between the time of first contact found by a method and the true one, as a fraction "
+        "of the motion, averaged over motions. A false contact, a missed contact or a missing answer counts "
+        "as the whole motion. An interval counts by its later end, at which contact was found.",
+        "lrbscope returns an interval: no contact before it, a contact at its end."};
   if (quantity == Quantity::depth)
     return {
         "penetration depth",
-        "Two bodies that overlap: how long every method takes to say how far one must move to leave the "
-        "other, and how far off that is.",
+        "Two bodies that overlap: how long each method takes to compute the penetration depth, and its error.",
         "error of the depth / diagonal",
-        "How far the depth is outside the interval that is known to hold it, over the larger body's "
-        "diagonal, averaged over poses: the error is at least this. An interval stands for its upper end, "
-        "the length of a translation that parts the bodies. What is no answer counts as one whole diagonal.",
-        "Ours gives an interval: a shorter translation than its lower end parts nothing, and one as long "
-        "as its upper end does."};
+        "The distance of the depth from the interval that is proven to contain it, relative to the larger "
+        "body's diagonal, averaged over poses: a lower bound of the error. An interval counts by its upper "
+        "end, the length of a translation that separates the bodies. A missing answer counts as one diagonal.",
+        "lrbscope returns an interval: no translation shorter than its lower end separates the bodies, and "
+        "one as long as its upper end does."};
   return {"distance",
-          "Two bodies apart: how long every method takes to say how far, and how far off that is.",
+          "Two separate bodies: how long each method takes to compute their distance, and its error.",
           "error of the distance / diagonal",
-          "The distance that a method says, beside the true one, over the larger body's diagonal, averaged "
-          "over poses. An interval stands for its upper end, that of two points which were found. What is no "
-          "answer counts as one whole diagonal.",
-          "Ours gives an interval that holds the distance, at every tolerance and within every budget."};
+          "The difference between the distance found by a method and the true one, relative to the larger "
+          "body's diagonal, averaged over poses. An interval counts by its upper end, the distance of two "
+          "points found. A missing answer counts as one diagonal.",
+          "lrbscope returns an interval that contains the distance, at every tolerance and within every "
+          "limit."};
 }
 
 ChartWords of_number(Quantity quantity) {
   const NumberWords n = words_of_number(quantity);
   return {
-      std::string("Speed against accuracy: ") + n.name,
+      std::string("Speed versus accuracy: ") + n.name,
       n.purpose,
       n.error,
-      "the interval is no wider than this: proved",
-      {{"How to read it", kHowToRead},
-       {"What counts as error",
+      "proven width of the interval",
+      {{"Reading the chart", kHowToRead},
+       {"Error measure",
         std::string(n.judged) +
-            " The truth is our own proved interval at its finest setting, which the command stability "
-            "--quantity holds against rational arithmetic on small bodies."},
-       {"What is proved",
+            " The reference is lrbscope's own proven interval at its finest setting, which the command "
+            "stability --quantity checks against rational arithmetic on small bodies."},
+       {"Proven bounds",
         std::string(n.proved) +
-            " How wide it is, in the unit of the error, is a cross at the same height: the error is never "
-            "more. Other methods prove nothing."}}};
+            " Its width, in the unit of the error, is a cross at the same height and bounds the error. Other "
+            "methods prove nothing."}}};
 }
 
 }  // namespace
@@ -113,7 +112,7 @@ std::string note_of(const Point& p) {
       out += std::string("\n") + metric_info(static_cast<Metric>(m)).name + " " +
              render::short_number(*p.errors[m]);
   if (p.error() <= 0) out += "\nno error";
-  if (p.proved_off) out += "\nproved: off by no more than " + render::short_number(*p.proved_off);
+  if (p.proved_off) out += "\nproven error bound " + render::short_number(*p.proved_off);
   if (p.failed() > 0)
     out += "\n" + std::to_string(p.crashed) + " crashed, " + std::to_string(p.timed_out) + " timed out, " +
            std::to_string(p.refused) + " refused, of " + std::to_string(p.questions);
@@ -202,7 +201,7 @@ report::PageTable table_of_points(const std::vector<Point>& points) {
   const bool built =
       std::any_of(points.begin(), points.end(), [](const Point& p) { return p.build_seconds > 0; });
   for (const std::size_t m : errors) t.columns.emplace_back(metric_info(static_cast<Metric>(m)).name);
-  for (const char* c : {"proved off", "failed", "frontier"}) t.columns.emplace_back(c);
+  for (const char* c : {"proven bound", "failed", "frontier"}) t.columns.emplace_back(c);
   if (built) t.columns.insert(t.columns.end(), {"build s", "MB", "face tests"});
   for (const Point& p : points) {
     std::vector<std::string> row = {p.set,
@@ -223,28 +222,28 @@ report::PageTable table_of_points(const std::vector<Point>& points) {
     t.rows.push_back(std::move(row));
   }
   t.note =
-      "A dash: the method does not answer that, or proves nothing. Proved off: what \"off\" is proved to be "
-      "at most, or how wide an interval of the number is.";
+      "A dash: the method does not report this, or proves nothing. Proven bound: the proven maximum of "
+      "\"off\", or the width of the interval.";
   return t;
 }
 
 report::PageTable table_of_metrics(const std::vector<Point>& points) {
   report::PageTable t;
   t.title = "Errors";
-  t.columns = {"name", "what it is", "worst value"};
+  t.columns = {"name", "definition", "worst value"};
   for (const std::size_t m : errors_in(points)) {
     const MetricInfo& info = metric_info(static_cast<Metric>(m));
     t.rows.push_back({info.name, info.what, render::short_number(info.worst)});
   }
   t.note =
-      "A crash, a refusal and a time-out score the worst value of every error that the method answers for.";
+      "A crash, a refusal or a time-out counts as the worst value of each error that the method is judged by.";
   return t;
 }
 
 report::PageTable table_of_methods(const std::vector<methods::MethodInfo>& methods) {
   report::PageTable t;
   t.title = "Methods";
-  t.columns = {"name", "what", "how it was asked"};
+  t.columns = {"name", "what", "usage"};
   for (const methods::MethodInfo& m : methods)
     t.rows.push_back({m.name, m.title + (m.present ? "" : " (absent)"), m.remark});
   return t;

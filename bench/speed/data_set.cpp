@@ -29,12 +29,12 @@ Pose pose_from(const json& value) {
 
 PoseClass pose_class_from(const std::string& word) {
   if (const auto c = from_name<PoseClass>(word)) return *c;
-  throw InputError("'" + word + "' is not a class of poses");
+  throw InputError("'" + word + "': unknown class of poses");
 }
 
 Quantity quantity_from(const std::string& word) {
   if (const auto q = from_name<Quantity>(word)) return *q;
-  throw InputError("'" + word + "' is nothing that methods are asked for");
+  throw InputError("'" + word + "': unknown quantity");
 }
 
 ordered_json vector_json(const Eigen::Vector3d& v) {
@@ -151,7 +151,7 @@ DataSet read_data_set(const std::string& path) {
     return set;
   } catch (const json::exception& e) {
     throw InputError(printable_name(path) + ": not a data set of lrbscope bench or chart (" + e.what() +
-                     "); remove it to have it made again");
+                     "); remove it to create it again");
   }
 }
 
@@ -165,7 +165,7 @@ void find_numbers(DataSet& set) {
     const auto value = nlohmann::json::parse(line);
     if (value.contains("refusal"))
       throw InputError(set.what + ", question " + std::to_string(k) + ": its " +
-                       std::string(name_of(set.quantity)) + " is not known (" +
+                       std::string(name_of(set.quantity)) + " is unknown (" +
                        value.at("refusal").get<std::string>() +
                        "); leave these bodies out, or use another --seed");
     set.questions[k].number = {value.at("least").get<double>(), value.at("most").get<double>()};

@@ -214,7 +214,7 @@ std::vector<BodyPair> pairs_of_models(const std::string& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
     if (entry.is_regular_file()) files.push_back(entry.path());
   if (error || files.size() < 2)
-    throw InputError(printable_name(folder) + ": expected a folder with two meshes or more");
+    throw InputError(printable_name(folder) + ": expected a folder with at least two meshes");
   std::sort(files.begin(), files.end());
   std::vector<BodyPair> pairs;
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -228,7 +228,7 @@ std::vector<BodyPair> pairs_of_models(const std::string& folder) {
 
 DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder) {
   const std::string mark =
-      " (" + std::to_string(options.poses) + " poses a class, seed " + std::to_string(options.seed) + ")";
+      " (" + std::to_string(options.poses) + " poses per class, seed " + std::to_string(options.seed) + ")";
   BodyPair marked = pair;
   marked.what += mark;
   if (options.quantity != Quantity::pairs) marked.name += "-" + std::string(name_of(options.quantity));
@@ -279,8 +279,9 @@ std::vector<Pose> poses_of(const DataSet& set, const Question& q) {
 
 std::string scenario_text(const DataSet& set, std::uint64_t k, const std::string& name) {
   const Question& q = set.questions[k];
-  const ordered_json views = {{{"camera", "scene"}, {"title", "Whole, with wrappers"}},
-                              {{"camera", "contact"}, {"draw", "body"}, {"title", "Contact, bodies alone"}}};
+  const ordered_json views = {
+      {{"camera", "scene"}, {"title", "Overview with wrappers"}},
+      {{"camera", "contact"}, {"draw", "body"}, {"title", "Contact without wrappers"}}};
   ordered_json poses = ordered_json::array();
   for (const Pose& pose : poses_of(set, q)) poses.push_back(pose_json(pose));
   ordered_json value = {

@@ -42,27 +42,25 @@ struct MetricInfo {
   double worst;
 };
 inline constexpr auto kMetricInfos = std::to_array<MetricInfo>({
-    {Metric::contact, "contact", "share of poses where contact is said and there is none, or the reverse", 1},
-    {Metric::precision, "precision", "1 - precision: share of the pairs listed that do not meet", 1},
-    {Metric::recall, "recall", "1 - recall: share of the pairs that meet and are not listed", 1},
+    {Metric::contact, "contact", "fraction of poses with a false or a missed contact", 1},
+    {Metric::precision, "precision", "1 - precision: fraction of the listed pairs that do not intersect", 1},
+    {Metric::recall, "recall", "1 - recall: fraction of the intersecting pairs that are not listed", 1},
     {Metric::hausdorff, "hausdorff",
-     "Hausdorff distance of the contact regions, over the larger body's diagonal", 1},
+     "Hausdorff distance of the contact regions, relative to the larger body's diagonal", 1},
     {Metric::deviation, "off",
-     "largest distance of a point of the answer from the one body and from the other, added up, over the "
-     "diagonal",
+     "largest sum of the distances of a point of the result from the two bodies, relative to the diagonal",
      1},
-    {Metric::length, "length", "error of the contact curves' length, over the larger of both", 1},
-    {Metric::area, "area", "error of the contact's area, over the larger of both", 1},
-    {Metric::centroid, "centroid", "distance of the contacts' centroids, over the diagonal", 1},
-    {Metric::normal, "normal", "angle between the normals of the largest contact, over 180 degrees", 1},
-    {Metric::depth, "depth", "error of the largest estimated depth, over the diagonal", 1},
-    {Metric::distance, "distance", "error of the distance, over the larger body's diagonal", 1},
+    {Metric::length, "length", "error of the length of the contact curves, relative to the larger length", 1},
+    {Metric::area, "area", "error of the contact area, relative to the larger area", 1},
+    {Metric::centroid, "centroid", "distance of the contacts' centroids, relative to the diagonal", 1},
+    {Metric::normal, "normal", "angle between the normals of the largest contact, relative to 180 degrees",
+     1},
+    {Metric::depth, "depth", "error of the largest estimated depth, relative to the diagonal", 1},
+    {Metric::distance, "distance", "error of the distance, relative to the larger body's diagonal", 1},
     {Metric::time_of_impact, "time",
-     "error of the time of first contact, in parts of the motion; 1: never, where that is wrong, or not "
-     "never, where that is right",
-     1},
-    {Metric::penetration, "penetration", "error of the penetration depth, over the larger body's diagonal",
-     1},
+     "error of the time of first contact, as a fraction of the motion; 1: a false or a missed contact", 1},
+    {Metric::penetration, "penetration",
+     "error of the penetration depth, relative to the larger body's diagonal", 1},
 });
 inline constexpr std::size_t kMetrics = kMetricInfos.size();
 

@@ -118,8 +118,8 @@ std::string ratios_of(const PeerTable& t, Mode mode) {
   constexpr std::size_t kSet = 18, kClass = 16, kNumber = 10;
   std::string out =
       mode == Mode::all_pairs
-          ? "ALL PAIRS. Microseconds of ours, hot; then how many times as long others take, hot\n"
-          : "FIRST PAIR (boolean). The same\n";
+          ? "ALL PAIRS. lrbscope's time in microseconds, hot; then the others' times relative to it, hot\n"
+          : "FIRST PAIR (boolean). As above\n";
   out += padded("bodies", kSet, true) + padded("pose", kClass, true) + padded("pairs", kNumber) +
          padded("ours us", kNumber) + padded("p95", kNumber);
   for (const methods::MethodInfo& m : t.methods)
@@ -209,8 +209,9 @@ std::string ahead_of(const PeerTable& t) {
           out += "    " + set + ", " + title(c) +
                  (mode == Mode::all_pairs ? ", all pairs: " : ", boolean: ") + peers + "\n";
       }
-  if (out.empty()) return text("  No peer is ahead in any of %zu cells, hot or cold.\n", compared);
-  return text("WHERE A PEER IS AHEAD, in %zu of %zu cells, by how much\n", behind, compared) + out;
+  if (out.empty()) return text("  No other engine is faster in any of %zu cells, hot or cold.\n", compared);
+  return text("CELLS IN WHICH ANOTHER ENGINE IS FASTER (%zu of %zu), and by how much\n", behind, compared) +
+         out;
 }
 
 std::string targets_of(const PeerTable& t) {
@@ -221,8 +222,8 @@ std::string targets_of(const PeerTable& t) {
                         : text("  %-42s %.2fx, aim %.0fx: %s\n", what, reached, aim,
                                reached >= aim ? "reached" : "NOT reached");
   };
-  line("all pairs, bodies that meet", mean_ratio(t, fcl, Mode::all_pairs, false, false), 6);
-  line("boolean, bodies that meet", mean_ratio(t, fcl, Mode::first_pair, false, false), 6);
+  line("all pairs, intersecting bodies", mean_ratio(t, fcl, Mode::all_pairs, false, false), 6);
+  line("boolean, intersecting bodies", mean_ratio(t, fcl, Mode::first_pair, false, false), 6);
   line("0.5 % apart", mean_ratio(t, fcl, Mode::all_pairs, true, false), 4);
   return out + ahead_of(t) + "\n";
 }
@@ -240,8 +241,8 @@ std::string price_of(const PeerTable& t) {
   }
   if (ordinary.empty()) return "";
   return text(
-      "THE PRICE OF EXACTNESS: ours takes %.3f times as long as without the exact fallback on ordinary "
-      "poses (geometric mean; aim: at most 1.10);\n  identical poses, all pairs: %s\n",
+      "COST OF EXACTNESS: %.3f times the time without the exact fallback on ordinary poses (geometric mean; "
+      "aim: at most 1.10);\n  identical poses, all pairs: %s\n",
       geometric_mean(ordinary), identical.c_str());
 }
 

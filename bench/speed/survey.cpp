@@ -22,7 +22,7 @@ class Appender {
   explicit Appender(const std::string& path) : path_(path), out_(path, std::ios::app) {}
   void add(const std::string& line) {
     if (!(out_ << line << "\n" << std::flush))
-      throw EnvironmentError(printable_name(path_) + ": cannot be written: " + std::strerror(errno));
+      throw EnvironmentError(printable_name(path_) + ": cannot write the file: " + std::strerror(errno));
   }
 
  private:

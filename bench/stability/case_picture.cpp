@@ -148,9 +148,9 @@ bool CasePicture::crowded() const {
 void CasePicture::mark(const Pairs& pairs, Mark m) {
   for (const SimplexPair& p : pairs) {
     if (p.a >= marks[0].size() || p.b >= marks[1].size())
-      throw InputError("pair (" + std::to_string(p.a) + ", " + std::to_string(p.b) + "): there are only " +
-                       std::to_string(marks[0].size()) + " and " + std::to_string(marks[1].size()) +
-                       " real simplices");
+      throw InputError("pair (" + std::to_string(p.a) + ", " + std::to_string(p.b) +
+                       "): expected simplex numbers below " + std::to_string(marks[0].size()) + " and " +
+                       std::to_string(marks[1].size()));
     marks[0][p.a] = std::max(marks[0][p.a], m);
     marks[1][p.b] = std::max(marks[1][p.b], m);
   }
@@ -243,7 +243,7 @@ PosedBody::PosedBody(const LrbRep& rep, const Pose& pose) : rep_(&rep) {
     for (const VertexId v : rep.face(f)) {
       if (!x_[v].allFinite())
         throw InputError("vertex " + std::to_string(v) +
-                         ": its world coordinates are not finite: the case cannot be drawn");
+                         ": its world coordinates are not finite, so the case cannot be drawn");
       box_.extend(x_[v]);
     }
 }

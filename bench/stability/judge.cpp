@@ -27,7 +27,8 @@ std::string why_not(const cases::Case& c) {
   for (const auto& [rep, pose] : {std::pair{c.a, c.pose_a}, std::pair{c.b, c.pose_b}}) {
     for (std::size_t v = 0; v < rep->vertices().size(); ++v)
       if (!pose.apply(rep->vertices()[v]).allFinite())
-        return std::string("body ") + name + ", vertex " + std::to_string(v) + " is at no double";
+        return std::string("body ") + name + ", vertex " + std::to_string(v) +
+               " is not representable as double";
     ++name;
   }
   return "";
@@ -55,7 +56,7 @@ RightAnswer expected_from(const std::string& line) {
 
 Relation relation_from(const std::string& word) {
   if (const auto r = from_name<Relation>(word); r && *r != Relation::unresolved) return *r;
-  throw InputError("'" + word + "' is not a relation of two bodies");
+  throw InputError("'" + word + "': unknown relation");
 }
 
 namespace {

@@ -126,7 +126,8 @@ Record record_from(const json& value) {
   try {
     const auto r = io::record_from_json<Record>(value);
     if (r.dial < 0 || r.dial >= kDialSettings)
-      throw InputError("dial " + std::to_string(r.dial) + ": use 0 to " + std::to_string(kDialSettings - 1));
+      throw InputError("dial " + std::to_string(r.dial) + ": expected 0 to " +
+                       std::to_string(kDialSettings - 1));
     return r;
   } catch (const InputError& e) {
     throw InputError(std::string("not a record of lrbscope stability: ") + e.what());
@@ -147,7 +148,7 @@ std::vector<Record> read_records(const std::string& path) {
   for (std::size_t number = 1; std::getline(in, line); ++number) {
     const json value = json::parse(line, nullptr, false);
     try {
-      if (value.is_discarded()) throw InputError("not JSON; expected one record to a line");
+      if (value.is_discarded()) throw InputError("not JSON; expected one record per line");
       records.push_back(record_from(value));
     } catch (const InputError& e) {
       throw InputError(printable_name(path) + ":" + std::to_string(number) + ": " + e.what());
@@ -218,8 +219,8 @@ std::string table(const Grid& grid) {
       line += std::string(2 + width[i] - row[i].size(), ' ') + row[i];
     out << line.substr(0, line.find_last_not_of(' ') + 1) << "\n";
   }
-  out << "\nIn each cell: failures/cases answered, @ the first setting of the dial (0 benign, "
-      << kDialSettings - 1 << " degenerate) with a failure.\n";
+  out << "\nIn each cell: failures/cases answered, @ the lowest difficulty (0 benign, " << kDialSettings - 1
+      << " degenerate) with a failure.\n";
   for (const workers::MethodColumn& m : grid.methods)
     out << "  " << m.name << ": " << m.title << ". " << m.remark << "\n";
   return out.str();

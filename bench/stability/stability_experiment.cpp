@@ -34,7 +34,7 @@ class NamelessFile {
  public:
   NamelessFile() : file_(memfd_create("lrbscope-expected", MFD_CLOEXEC)) {
     if (file_ < 0)
-      throw EnvironmentError(std::string("cannot create a file in memory (memfd_create): ") +
+      throw EnvironmentError(std::string("cannot create a memory file (memfd_create): ") +
                              std::strerror(errno));
   }
   ~NamelessFile() { close(file_); }
@@ -44,7 +44,7 @@ class NamelessFile {
   void append(const std::string& text) {
     for (std::size_t at = 0; at < text.size();) {
       const ssize_t n = write(file_, text.data() + at, text.size() - at);
-      if (n <= 0) throw EnvironmentError("a file in memory cannot be written: free some memory");
+      if (n <= 0) throw EnvironmentError("cannot write a memory file; free some memory");
       at += static_cast<std::size_t>(n);
     }
   }
@@ -149,7 +149,7 @@ class Experiment {
       tell(family.name + ", exact brute force");
     };
     task.on_mishap = [this, &family](std::uint64_t k, const workers::Mishap& mishap) {
-      throw EnvironmentError("exact brute force, family " + family.name + ", dial " +
+      throw EnvironmentError("exact brute force, family " + family.name + ", difficulty " +
                              std::to_string(k / o_.cases) + ", case " + std::to_string(k % o_.cases) + ": " +
                              mishap.message + "; please report it");
     };
@@ -291,9 +291,9 @@ void StabilityRunner::ask(const cases::Family& family, const cases::Case& c, con
   record.expected = expected.pairs.size();
   workers::note_failures(record, [&] {
     if (c.a->dim() == 2 && !info_.has(methods::Trait::takes_2d))
-      throw InputError("a 2D body: not asked, because it answers for 3D bodies only");
+      throw InputError("skipped: a 2D body, but the method supports only 3D");
     if (!expected.refusal.empty() && !info_.has(methods::Trait::moves_exactly))
-      throw InputError(expected.refusal + ": not asked");
+      throw InputError("skipped: " + expected.refusal);
     const Posed a = place(*c.a, c.pose_a, 0), b = place(*c.b, c.pose_b, 1);
     methods::MethodAnswer answer = method_->query(*a.body, a.pose, *b.body, b.pose, mode);
     record.microseconds = answer.microseconds;

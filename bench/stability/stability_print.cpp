@@ -158,13 +158,13 @@ void add_legend(Sheet& sheet, double y, double columns, const std::string& absen
     x += needed;
   };
   for (std::size_t i = 0; i < page::kLevels.size(); ++i) item(page::kLevels[i].light, kLevelNames[i]);
-  item(page::kOnlyRefused.light, "refusals alone");
+  item(page::kOnlyRefused.light, "only refusals");
   item(page::kWrong.light, "wrong answer");
   item(page::kCrashed.light, "\u2715 crashed");
   item(page::kTimedOut.light, "\u25f7 timed out");
   item(page::kRefused.light, "\u2298 refused");
   sheet.text(-kLeft + 0.1, y - 0.42, Sheet::small,
-             "Failures/cases not refused; bars: share of cases along the dial, benign to degenerate.",
+             "Failures/cases not refused; bars: fraction of cases by difficulty, benign to degenerate.",
              render::palette::kFaint);
   sheet.text(-kLeft + 0.1, y - 0.72, Sheet::small, absent, render::palette::kFaint);
 }
@@ -346,10 +346,10 @@ std::vector<PrintFile> print_stability(const Grid& grid, const std::string& fold
   std::vector<PrintFile> files;
   for (const char* ending : {".svg", ".png"}) {
     report::draw(whole, folder + "/stability" + ending);
-    files.push_back({std::string("stability") + ending, "the grid, for print"});
+    files.push_back({std::string("stability") + ending, "table for print"});
     report::draw(profiles, folder + "/stability-profiles" + ending);
     files.push_back(
-        {std::string("stability-profiles") + ending, "share of failures along each family's dial"});
+        {std::string("stability-profiles") + ending, "fraction of failures by difficulty, per family"});
   }
   return files;
 }

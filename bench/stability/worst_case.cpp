@@ -61,16 +61,16 @@ std::optional<CloseUp> close_up(const CasePicture& s, const Verdict& verdict) {
     if (diagonal(smaller) < kTiny * whole) return CloseUp{smaller, "close-up of the smaller body"};
     return std::nullopt;
   }
-  const char* kind = !verdict.missed.empty() ? "missed" : !verdict.extra.empty() ? "in excess" : "expected";
+  const char* kind = !verdict.missed.empty() ? "missed" : !verdict.extra.empty() ? "extra" : "expected";
   Eigen::AlignedBox3d all;
   const Eigen::AlignedBox3d* smallest = nullptr;
   std::vector<Eigen::AlignedBox3d> places;
   for (const SimplexPair& p : pairs) all.extend(places.emplace_back(place_of(s, p)));
   for (const Eigen::AlignedBox3d& b : places)
     if (smallest == nullptr || diagonal(b) < diagonal(*smallest)) smallest = &b;
-  if (diagonal(all) < kSmallShare * whole) return CloseUp{all, std::string("close-up of what is ") + kind};
+  if (diagonal(all) < kSmallShare * whole) return CloseUp{all, std::string("close-up, ") + kind};
   if (diagonal(*smallest) < kTiny * whole)
-    return CloseUp{*smallest, std::string("close-up of one pair ") + kind};
+    return CloseUp{*smallest, std::string("close-up of one pair, ") + kind};
   return std::nullopt;
 }
 
@@ -226,7 +226,7 @@ render::Overlay overlay_of(const CasePicture& s, const Verdict& verdict, const W
     o.counters.push_back({"missed", count(verdict.missed)});
     o.counters.push_back({"extra", count(verdict.extra)});
   } else {
-    o.counters.push_back({"pairs that meet", count(verdict.found)});
+    o.counters.push_back({"intersecting pairs", count(verdict.found)});
   }
   o.key = {
       {render::LegendItem::Mark::translucent, render::with_alpha(render::palette::body(Side::a), 110), "A"},
@@ -234,9 +234,9 @@ render::Overlay overlay_of(const CasePicture& s, const Verdict& verdict, const W
   const auto add = [&](Mark m, const char* name) {
     if (s.shows(m)) o.key.push_back({render::LegendItem::Mark::solid, colour_of(m), name});
   };
-  add(Mark::found, verdict.listed ? "found: expected and answered" : "expected");
-  add(Mark::missed, "missed: expected, not answered");
-  add(Mark::extra, "extra: answered, not expected");
+  add(Mark::found, verdict.listed ? "found: expected and returned" : "expected");
+  add(Mark::missed, "missed: expected, not returned");
+  add(Mark::extra, "extra: returned, not expected");
   return o;
 }
 

@@ -22,9 +22,9 @@ constexpr int kPatience = 3;  // consecutive cases on which a method may hang
 constexpr int kBadInput = 2;  // an exit code that does not count as a crash
 
 std::string how_it_ended(int status) {
-  if (status >= 0) return "ended with exit code " + std::to_string(status);
+  if (status >= 0) return "exited with code " + std::to_string(status);
   const char* name = strsignal(-status);
-  return "died of signal " + std::to_string(-status) +
+  return "killed by signal " + std::to_string(-status) +
          (name != nullptr ? std::string(" (") + name + ")" : "");
 }
 
@@ -60,7 +60,7 @@ void Job::receive() {
   if (more) return;
   const int status = child_->wait();
   if (status == kBadInput || status == kNoSuchProgram)
-    throw EnvironmentError(task_.command.front() + ": " + how_it_ended(status) + "; build it again");
+    throw EnvironmentError(task_.command.front() + ": " + how_it_ended(status) + "; rebuild it");
   if (next_ == task_.end)
     child_.reset();  // its exit after the last line is ignored
   else
@@ -80,7 +80,7 @@ void Job::go_on(const Mishap& mishap) {
   hung_ = mishap.timed_out ? hung_ + 1 : 0;
   if (hung_ == kPatience)
     while (next_ < task_.end)
-      task_.on_mishap(next_++, {true, "not asked: " + mishap.message + " for " + std::to_string(kPatience) +
+      task_.on_mishap(next_++, {true, "skipped: " + mishap.message + " for " + std::to_string(kPatience) +
                                           " cases in a row"});
   start();
 }
@@ -126,10 +126,11 @@ std::vector<fs::path> programs_in(const fs::path& folder) {
 }
 
 [[noreturn]] void throw_not_found(const std::string& program) {
-  throw EnvironmentError(printable_name(program) +
-                         ": not found; it is built beside lrbscope and not installed: build it (cmake "
-                         "--build --preset release --target lrbscope-workers) and run lrbscope from its "
-                         "build folder, or name that in LRBSCOPE_METHODS");
+  throw EnvironmentError(
+      printable_name(program) +
+      ": not found. Build it with cmake --build --preset release --target "
+      "lrbscope-workers, and run lrbscope from the build folder or set LRBSCOPE_METHODS to "
+      "that folder");
 }
 
 }  // namespace
@@ -149,7 +150,7 @@ std::vector<WorkerMethod> methods_of(const std::string& program, const std::vect
     methods.push_back(m);
   }
   if (lines.empty())
-    throw EnvironmentError(printable_name(program) + ": did not say which methods it has; build it again");
+    throw EnvironmentError(printable_name(program) + ": does not list its methods; rebuild it");
   return methods;
 }
 

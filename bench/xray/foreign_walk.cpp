@@ -175,7 +175,7 @@ run::Recording recording_of(const ForeignWalk& walk, const run::Recording& ours,
   }
   out.trace = recorder.take();
   if (out.trace.truncated())
-    out.notes.push_back(walk.title + ": the trace holds the first " +
+    out.notes.push_back(walk.title + ": the trace contains only the first " +
                         std::to_string(out.trace.events.size()) + " of " +
                         std::to_string(out.trace.events_seen) + " events");
   return out;
@@ -237,8 +237,7 @@ class Words {
   bool is_at_end() const { return rest_.find_first_not_of(' ') == std::string_view::npos; }
   std::string_view rest() const { return rest_; }
   [[noreturn]] void fail() const {
-    throw EnvironmentError("lrbscope-xray-" + engine_ +
-                           " printed a line that is not understood: build it anew");
+    throw EnvironmentError("lrbscope-xray-" + engine_ + " printed an unknown line; rebuild it");
   }
 
  private:
@@ -335,12 +334,13 @@ ForeignWalk walk_of(const std::string& engine, const LrbRep& a, const LrbRep& b,
   constexpr std::chrono::seconds kLimit(600);
   const std::string program = workers::program_beside("lrbscope-xray-" + engine);
   if (program.empty())
-    throw EnvironmentError("--method " + engine + ": there is no program lrbscope-xray-" + engine +
-                           " beside lrbscope; install lib" + engine +
+    throw EnvironmentError("--method " + engine + ": cannot find the program lrbscope-xray-" + engine +
+                           " next to lrbscope; install lib" + engine +
                            "-dev and build it: cmake --build --preset release --target lrbscope-workers");
   for (const LrbRep* rep : {&a, &b})
     if (rep->real_simplex_count() < 2)
-      throw InputError(printable_name(rep->name()) + ": has one triangle; give a body with two or more");
+      throw InputError(printable_name(rep->name()) +
+                       ": expected a body of at least two triangles, found one");
   std::string text;
   append(text, a);
   append(text, b);
@@ -352,7 +352,7 @@ ForeignWalk walk_of(const std::string& engine, const LrbRep& a, const LrbRep& b,
     }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), &std::fclose);
   if (!file || std::fputs(text.c_str(), file.get()) < 0 || std::fflush(file.get()) != 0)
-    throw EnvironmentError("no temporary file can be written; is the disk full?");
+    throw EnvironmentError("cannot write a temporary file; check the free disk space");
   std::rewind(file.get());
   const std::vector<std::string> lines = workers::lines_of({program}, kLimit, fileno(file.get()));
   if (lines.empty())
@@ -371,14 +371,14 @@ constexpr const char* kHeatFile = "heat.png";
 report::PageTable wrong_table(const Xray& x, std::uint64_t& wrong) {
   constexpr std::size_t kMostRows = 30;
   report::PageTable t;
-  t.title = "Pairs that " + x.walk.title + " got wrong";
-  t.columns = {"step", "triangle of A", "triangle of B", "what is wrong", "why"};
+  t.title = "Wrong pairs of " + x.walk.title;
+  t.columns = {"step", "triangle of A", "triangle of B", "error", "why"};
   wrong = 0;
   for (std::size_t i = 0; i < x.walk.steps.size(); ++i) {
     const WrongPairs w = wrong_pairs(x.walk.steps[i], x.ours.results[i].pairs);
     wrong += w.too_many.size() + w.missing.size();
-    for (const auto& [list, words] : {std::pair{&w.too_many, "reported, but they do not meet"},
-                                      {&w.missing, "they meet, but are not reported"}})
+    for (const auto& [list, words] :
+         {std::pair{&w.too_many, "reported, but disjoint"}, {&w.missing, "intersecting, but not reported"}})
       for (const SimplexPair& p : *list)
         if (t.rows.size() < kMostRows)
           t.rows.push_back({std::to_string(x.ours.trace.steps[i].index), std::to_string(p.a),
@@ -386,12 +386,12 @@ report::PageTable wrong_table(const Xray& x, std::uint64_t& wrong) {
                             x.why + " --pose " + std::to_string(i) + " --pair " + std::to_string(p.a) + "," +
                                 std::to_string(p.b)});
   }
-  t.note = "Against exact answers. " + group_digits(wrong);
+  t.note = "Compared with exact results. " + group_digits(wrong);
   t.note += wrong == 1 ? " pair is wrong." : " pairs are wrong.";
   if (x.method == "cgal")
     t.note +=
-        " CGAL is asked as its manual shows, with A's triangles moved into B's frame: its predicates are exact, but "
-        "the corners that they see were rounded on the way.";
+        " CGAL is called as in its manual, with A's triangles transformed into B's frame: its predicates are "
+        "exact, but the transformed corners are rounded.";
   return t;
 }
 
@@ -408,11 +408,10 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
   io::refuse_links(folder);
   for (const auto& [recording, name] : {std::pair{&x.theirs, x.method}, {&x.ours, std::string("ours")}}) {
     spec::Scenario scenario = x.scenario;
-    scenario.purpose =
-        recording == &x.theirs
-            ? "Recorded in " + x.walk.title +
-                  ". It has no wrappers, so that none is refined; contact curves are exact ones."
-            : "Recorded in lrbscope.";
+    scenario.purpose = recording == &x.theirs
+                           ? "Recorded in " + x.walk.title +
+                                 ". It has no wrappers, so none is refined; contact curves are exact."
+                           : "Recorded in lrbscope.";
     const run::RunOutcome outcome = run::write_run(
         scenario, *recording, (std::filesystem::path(folder) / name).string(), x.command, progress);
     notes.insert(notes.end(), outcome.notes.begin(), outcome.notes.end());
@@ -421,7 +420,7 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
   page.title = x.scenario.name;
   page.purpose = "What " + x.walk.title + " does for two bodies at " + std::to_string(x.walk.steps.size()) +
                  (x.walk.steps.size() == 1 ? " pose" : " poses") +
-                 ", recorded in its own traversal, beside what lrbscope does.";
+                 ", recorded in its own traversal, next to that of lrbscope.";
   if (const std::string cut = compare::cut_words(runs); !cut.empty()) page.purpose += " " + cut;
   page.command = x.command;
   std::uint64_t wrong = 0;
@@ -433,21 +432,21 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
        "lrbscope: " + group_digits(compare::sum_of(x.ours, &Counters::face_tests))},
       {"Pairs found", group_digits(compare::pairs_of(x.theirs)),
        "lrbscope: " + group_digits(compare::pairs_of(x.ours))},
-      {"Wrong pairs", group_digits(wrong), "against exact answers"}};
-  page.charts = {
-      compare::chart_of(runs, "Tests of boxes, step by step", "box tests", &Counters::box_tests),
-      compare::chart_of(runs, "Tests of faces, step by step", "face tests", &Counters::face_tests)};
+      {"Wrong pairs", group_digits(wrong), "compared with exact results"}};
+  page.charts = {compare::chart_of(runs, "Box tests by step", "box tests", &Counters::box_tests),
+                 compare::chart_of(runs, "Face tests by step", "face tests", &Counters::face_tests)};
   if (!wrong_pairs.rows.empty()) page.tables.push_back(std::move(wrong_pairs));
   page.tables.push_back(compare::totals_of(runs));
   page.tables.back().note =
       "A pair of nodes of " + x.walk.title +
-      " is one test of two bounding volumes; of lrbscope's it is two nodes with up to eight boxes each, compared eight at a "
-      "time. What planes of eight faces at a time part is not among lrbscope's face tests.";
+      " is one test of two bounding volumes; a pair of lrbscope is two nodes with up to eight boxes each, "
+      "compared eight at a time. Faces separated by planes, eight at a time, are not counted as face tests of "
+      "lrbscope.";
   render::write_png(compare::draw(runs, step, progress), folder + "/" + kHeatFile);
   run::add_figure(
-      page, folder, "Where the box tests went, at step " + std::to_string(x.ours.trace.steps[step].index),
-      "Each node's tests are shared evenly by the faces beneath it; both engines on one scale, and how much they "
-      "differ. Pale faces have fewer than a fiftieth of the most.",
+      page, folder, "Distribution of the box tests at step " + std::to_string(x.ours.trace.steps[step].index),
+      "The tests of a node are distributed evenly over the faces below it; both engines on one scale, and "
+      "their difference. Pale faces have less than 2 % of the maximum.",
       kHeatFile);
   page.links.push_back({x.method + "/index.html", x.method + "/index.html",
                         "the run of " + x.walk.title + ", with its trace"});

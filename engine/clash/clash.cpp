@@ -156,12 +156,12 @@ const char* to_string(ClashKind k) {
 }
 
 void check_request(const LrbRep& a, const ClashRequest& request) {
-  if (a.dim() != 3) throw InputError("the clash query is for bodies in space; these are in the plane");
+  if (a.dim() != 3) throw InputError("clash: expected 3D bodies, found 2D bodies");
   if (!(request.clearance >= 0) || std::isinf(request.clearance))
-    throw InputError("the clash query's clearance is " + std::to_string(request.clearance) +
-                     "; give a finite number that is not negative");
+    throw InputError("clash: expected a finite clearance of at least 0, found " +
+                     std::to_string(request.clearance));
   if (request.along && (!request.along->allFinite() || request.along->isZero(0)))
-    throw InputError("the clash query's direction has no length, or none that is finite");
+    throw InputError("clash: expected a direction of finite length other than 0");
 }
 
 ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,

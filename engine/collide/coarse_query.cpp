@@ -21,16 +21,16 @@ void check_request(const CollideRequest& request) {
   // Only a tolerance or a limit restricts what else can be requested.
   if (!request.is_coarse()) return;
   if (!(request.tolerance >= 0) || !std::isfinite(request.tolerance))
-    throw InputError("the tolerance of a query must be a finite length, 0 or more");
-  if (!(request.max_time >= 0)) throw InputError("the time limit of a query must be 0 or more seconds");
+    throw InputError("tolerance: expected a finite length of at least 0");
+  if (!(request.max_time >= 0)) throw InputError("max_time: expected at least 0 seconds");
   if (request.recursion != Recursion::complete)
-    throw InputError("a tolerance or limit needs the complete recursion; leave \"paper\" out");
+    throw InputError("a tolerance or limit requires recursion \"complete\", found \"paper\"");
   if (request.contacts || request.interiors_overlap)
     throw InputError(
-        "contacts and interiors_overlap are exact: they cannot be combined with a tolerance or limit; leave "
-        "out one or the other");
+        "contacts and interiors_overlap are exact and cannot be combined with a tolerance or limit; leave one "
+        "of them out");
   if (request.wrapper != WrapperMode::regularised)
-    throw InputError("a tolerance or limit needs regularised wrappers; leave \"unregularised\" out");
+    throw InputError("a tolerance or limit requires regularised wrappers; leave \"unregularised\" out");
 }
 
 namespace {

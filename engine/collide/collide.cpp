@@ -20,8 +20,8 @@ void check_world(const LrbRep& rep, const Pose& pose, char name) {
     const Eigen::Vector3d x = pose.apply(vertices[v]);
     for (int axis = 0; axis < 3; ++axis)
       if (!std::isfinite(x[axis]))
-        throw InputError("body " + std::string(1, name) + ", vertex " + std::to_string(v) + ": its " +
-                         "xyz"[axis] + " in the world is beyond 1.8e308; scale the bodies and the pose down");
+        throw InputError("body " + std::string(1, name) + ", vertex " + std::to_string(v) + ": its world " +
+                         "xyz"[axis] + " exceeds 1.8e308; scale down the bodies and the pose");
   }
 }
 
@@ -39,14 +39,13 @@ bool is_flat(const Pose& p) {
 
 void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   if (a.dim() != b.dim())
-    throw InputError("a " + std::to_string(a.dim()) + "D body cannot meet a " + std::to_string(b.dim()) +
-                     "D body; give two of the same dimension");
+    throw InputError("expected two bodies of the same dimension, found a " + std::to_string(a.dim()) +
+                     "D and a " + std::to_string(b.dim()) + "D body");
   for (const Pose* p : {&pose_a, &pose_b}) {
-    if (!is_finite(*p))
-      throw InputError("a pose has a number that is not finite; give twelve finite numbers");
+    if (!is_finite(*p)) throw InputError("expected a pose of 12 finite numbers, found a NaN or an infinity");
     if (a.dim() == 2 && !is_flat(*p))
       throw InputError(
-          "the pose of a 2D body leaves the plane z = 0; rotate about z and translate in x and y only");
+          "the pose of a 2D body leaves the plane z = 0; rotate about z and translate along x and y only");
   }
   check_world(a, pose_a, 'A');
   check_world(b, pose_b, 'B');

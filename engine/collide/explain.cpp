@@ -335,8 +335,8 @@ void explain_faces(QueryContext& ctx, PairExplanation& out) {
 
 void check_simplex(const LrbRep& rep, SimplexId s, const char* whose) {
   if (s < rep.real_simplex_count()) return;
-  throw InputError(std::string("no simplex ") + std::to_string(s) + " of " + whose + ": there are " +
-                   std::to_string(rep.real_simplex_count()) + ", numbered from 0");
+  throw InputError(std::string("simplex of ") + whose + ": expected a number below " +
+                   std::to_string(rep.real_simplex_count()) + ", found " + std::to_string(s));
 }
 
 }  // namespace

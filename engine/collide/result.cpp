@@ -46,10 +46,9 @@ void clear(CollideResult& result) {
 }
 
 void refuse_pairs(std::uint64_t limit) {
-  throw InputError("the bodies meet in more than " + std::to_string(limit) +
-                   " pairs of triangles, the most that are kept: raise max_pairs (--max-pairs) if there is "
-                   "memory for more, about 25 bytes a pair and 650 with its contact, or ask only whether "
-                   "they meet (mode any or first)");
+  throw InputError("more than " + std::to_string(limit) +
+                   " pairs of triangles intersect, the limit set by max_pairs; raise it (--max-pairs) if "
+                   "memory allows (about 25 bytes per pair, 650 with contacts), or use mode any or first");
 }
 
 std::uint64_t fingerprint(const std::vector<SimplexPair>& pairs) {

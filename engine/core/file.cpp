@@ -52,8 +52,8 @@ bool has_name(const char* fifo) {
 }
 
 [[noreturn]] void too_large(const std::string& path, std::uint64_t most) {
-  cannot_read(path, "found more than " + std::to_string(most) +
-                        " bytes, which is the most for a file of this kind; is it the right one?");
+  cannot_read(path, "expected at most " + std::to_string(most) +
+                        " bytes for a file of this kind, found more; check that it is the right file");
 }
 
 }  // namespace
@@ -79,14 +79,15 @@ std::string_view what_is_no_file(const std::string& path) {
 std::string read_file(const std::string& path, std::uint64_t most) {
   const std::string_view kind = what_is_no_file(path);
   if (!kind.empty())
-    cannot_read(path,
-                "found " + std::string(kind) + ", expected a file" +
-                    (kind == "a directory" ? "; name a file in it" : "; copy what is in it into a file"));
+    cannot_read(
+        path, "found " + std::string(kind) + ", expected a file" +
+                  (kind == "a directory" ? "; give a file in it" : "; copy its contents to a regular file"));
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) {
     const int reason = errno;
     if (reason == ENOENT) cannot_read(path, "no such file; check the path");
-    cannot_read(path, std::string("cannot be opened (") + std::strerror(reason) + "); check its permissions");
+    cannot_read(path,
+                std::string("cannot open the file (") + std::strerror(reason) + "); check its permissions");
   }
   std::error_code ignored;
   std::string bytes;
@@ -103,7 +104,8 @@ std::string read_file(const std::string& path, std::uint64_t most) {
     if (bytes.size() > most) too_large(path, most);
     // A short read is the end of the file or an error.
     if (got == kChunk) continue;
-    if (std::ferror(file.get())) cannot_read(path, "reading failed; check the disk or copy the file again");
+    if (std::ferror(file.get()))
+      cannot_read(path, "cannot read the file; check the disk or copy the file again");
     return bytes;
   }
 }
@@ -233,7 +235,7 @@ void AtomicFile::commit() {
 
 void AtomicFile::fail(const char* doing, int reason) const {
   const std::string message = printable_name(path_) + ": cannot " + doing + " the file (" +
-                              std::strerror(reason) + "); check the path, its permissions and the space left";
+                              std::strerror(reason) + "); check the path, its permissions and the free space";
   if (is_machines_fault(reason)) throw EnvironmentError(message);
   throw InputError(message);
 }
@@ -256,8 +258,8 @@ void make_folder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
   if (error || !std::filesystem::is_directory(path, error))
-    throw EnvironmentError(path + ": cannot be made a folder (" +
-                           (error ? error.message() : "a file is in the way") + ")");
+    throw EnvironmentError(path + ": cannot create the folder (" +
+                           (error ? error.message() : "a file of this name exists") + ")");
 }
 
 void make_folder_of(const std::string& file) {

@@ -20,7 +20,7 @@ std::string fault_of(std::span<const double> n) {
     return "has " + std::to_string(n.size()) + " numbers; give 12 (3 x 4) or 16 (4 x 4), row by row";
   // An affine map has the last row 0 0 0 1. The comparison also rejects NaN.
   if (n.size() == kOf4x4 && !(n[12] == 0 && n[13] == 0 && n[14] == 0 && n[15] == 1))
-    return "has a last row other than 0 0 0 1; give a matrix that columns are multiplied by, without perspective";
+    return "has a last row other than 0 0 0 1; give an affine matrix for column vectors, without perspective";
   return {};
 }
 
@@ -56,7 +56,7 @@ Expected<std::vector<Pose>> poses_of_rows(std::span<const double> numbers, std::
   // All poses have the same shape, so the number of values decides between 3 x 4 and 4 x 4.
   const std::size_t each = count == 0 ? 0 : numbers.size() / count;
   if (count == 0 || numbers.size() % count != 0 || (each != kOf3x4 && each != kOf4x4))
-    return Refusal{std::to_string(numbers.size()) + " numbers are not " + std::to_string(count) +
+    return Refusal{std::to_string(numbers.size()) + " numbers do not make " + std::to_string(count) +
                    " poses; give 12 (3 x 4) or 16 (4 x 4) for each, row by row"};
   poses.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {

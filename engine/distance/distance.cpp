@@ -146,8 +146,8 @@ DistanceResult of_nothing(const DistanceRequest& request) {
 
 void check_number(double x, const char* name) {
   if (!(x >= 0) || std::isinf(x))
-    throw InputError(std::string("the distance query's ") + name + " is " + std::to_string(x) +
-                     "; give a finite number that is not negative");
+    throw InputError(std::string("distance: expected a finite ") + name + " of at least 0, found " +
+                     std::to_string(x));
 }
 
 }  // namespace

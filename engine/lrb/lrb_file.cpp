@@ -44,7 +44,7 @@ class Reader {
 
   [[noreturn]] void refuse(const std::string& what) const {
     throw InputError(printable_name(name_) + ": byte " + std::to_string(at_) + ": " + what +
-                     "; build it again from its mesh");
+                     "; rebuild it from its mesh");
   }
 
   template <class T>
@@ -63,7 +63,7 @@ class Reader {
     // Division avoids the overflow of count * sizeof(T). Checked before allocation, so that a damaged length
     // cannot exhaust the memory.
     if (count > (bytes_.size() - at_) / sizeof(T))
-      refuse("an array of " + std::to_string(count) + " elements does not fit into the rest of the file");
+      refuse("an array of " + std::to_string(count) + " elements exceeds the rest of the file");
     std::vector<T> x(count);
     if (count != 0) std::memcpy(static_cast<void*>(x.data()), bytes_.data() + at_, count * sizeof(T));
     at_ += count * sizeof(T);
@@ -104,7 +104,7 @@ struct StoredLevels {
 
 std::optional<StoredLevels> read_levels(Reader& r) {
   const auto there = r.value<std::uint32_t>();
-  if (there > 1) r.refuse("it does not say whether there are levels");
+  if (there > 1) r.refuse("the flag for levels is neither 0 nor 1");
   if (there == 0) return std::nullopt;
   StoredLevels s;
   s.needed = r.array<double>();
@@ -160,20 +160,19 @@ bool looks_like_lrb(std::string_view bytes) {
 LrbRep load_lrb(std::string_view bytes, const std::string& name) {
   if (!looks_like_lrb(bytes))
     throw InputError(printable_name(name) +
-                     ": byte 0: this is not a .lrb file; build one with `lrbscope build MESH -o FILE.lrb`");
+                     ": byte 0: expected a .lrb file; build one with `lrbscope build MESH -o FILE.lrb`");
   Reader r(bytes, name);
   // The version comes first: it determines the checksum and the fields that follow.
   const auto version = r.value<std::uint32_t>();
   if (version > kLrbFileVersion)
-    throw InputError(printable_name(name) + ": byte 8: the file has version " + std::to_string(version) +
-                     ", this program reads up to " + std::to_string(kLrbFileVersion) +
-                     "; use a newer lrbscope");
+    throw InputError(printable_name(name) + ": byte 8: found file version " + std::to_string(version) +
+                     ", expected at most " + std::to_string(kLrbFileVersion) + "; use a newer lrbscope");
   // The checksum is verified before any other field is interpreted.
-  if (bytes.size() < r.at() + sizeof(std::uint64_t)) r.refuse("the file is cut short");
+  if (bytes.size() < r.at() + sizeof(std::uint64_t)) r.refuse("the file is truncated");
   std::uint64_t stored;
   std::memcpy(&stored, bytes.data() + bytes.size() - sizeof stored, sizeof stored);
   if (stored != lrb_checksum(bytes.substr(0, bytes.size() - sizeof stored), version))
-    r.refuse("the checksum does not match: the file is damaged or cut short");
+    r.refuse("the checksum does not match: the file is damaged or truncated");
   // The complex, field by field in the order of save_lrb().
   LrbData d;
   d.dim = static_cast<int>(r.value<std::uint32_t>());

@@ -32,15 +32,15 @@ void check_face(const LrbData& d, FaceId f) {
     refuse(d, face + " has " + std::to_string(corners.size()) + " corners");
   for (const VertexId v : corners)
     if (v >= d.vertices.size())
-      refuse(d, face + " names vertex " + std::to_string(v) + ", which does not exist");
+      refuse(d, face + " refers to vertex " + std::to_string(v) + ", which does not exist");
   // Cells: only a real face has the solid behind it, and a face separates two different cells.
   const CellId inner = d.inner_cell[f], outer = d.outer_cell[f];
   const auto is_known = [&](CellId c) { return !is_region(c) || c < d.region_layer.size(); };
-  if (!is_known(inner) || !is_known(outer)) refuse(d, face + " names a region that does not exist");
+  if (!is_known(inner) || !is_known(outer)) refuse(d, face + " refers to a region that does not exist");
   if ((inner == kSolid) != (f < d.real_face_count))
-    refuse(d, face + " must have the solid behind it if and only if it is real");
+    refuse(d, face + " must have the solid behind it exactly if it is real");
   if (inner == kOutside || outer == kSolid || inner == outer || outer == kNull || inner == kNull)
-    refuse(d, face + " has its cells the wrong way round");
+    refuse(d, face + " has its inner and outer cell swapped");
 }
 
 void check(const LrbData& d) {

@@ -71,8 +71,8 @@ class Validator {
   void check_derived() {
     // The bounds of the OBB tree: the completeness of queries depends on them.
     const bool tree_holds = rep_.tree().bounds_hold(rep_.simplices());
-    if (!tree_holds) violation("the query's tree has bounds that do not hold its faces");
-    if (hash_of(rep_.data()) != rep_.hash()) violation("the stored hash is not that of the complex");
+    if (!tree_holds) violation("the bounds of the query's tree do not contain its faces");
+    if (hash_of(rep_.data()) != rep_.hash()) violation("the stored hash does not match the complex");
     // The thickness of regions is measured with the tree, so its bounds must be checked first.
     if (tree_holds && rep_.has_levels()) check_levels(rep_.levels());
   }
@@ -85,11 +85,11 @@ class Validator {
     const std::vector<double> thickness = region_thickness(rep_);
     for (RegionId r = 0; r < rep_.region_count(); ++r)
       if (levels.needed()[r] < thickness[r])
-        violation("region " + std::to_string(r) + " is stored as thinner than can be proved");
+        violation("region " + std::to_string(r) + " has a stored thickness below its proven thickness");
     for (const WrapperLevel& level : levels.all())
       if (!level.tree.bounds_hold(rep_.simplices()))
-        violation("the tree of the level of " + std::to_string(level.face_count) +
-                  " faces has bounds that do not hold its faces");
+        violation("the bounds of the tree of the level with " + std::to_string(level.face_count) +
+                  " faces do not contain its faces");
   }
 
   void check_closed(const std::string& what) {
@@ -123,8 +123,7 @@ class Validator {
       // Where a solid overlaps itself its volume counts twice, which a region around it may have to
       // compensate.
       if (volume_.back() < -noise && !rep_.self_intersecting())
-        violation("region " + std::to_string(r) + " has the negative volume " +
-                  std::to_string(volume_.back()));
+        violation("region " + std::to_string(r) + " has negative volume " + std::to_string(volume_.back()));
     }
     // Follows from closed cells, because the two uses of a face between cells cancel. Cheap, so it is checked
     // as well.
@@ -138,7 +137,8 @@ class Validator {
     const double gap = std::abs(report_.volume_solid + report_.volume_regions - report_.volume_outer);
     report_.volume_error = report_.volume_outer != 0 ? gap / std::abs(report_.volume_outer) : gap;
     if (rep_.region_count() > 0 && report_.volume_error > kVolumeRounding)
-      violation("volumes of solid and regions miss the outermost wrapper's by " + std::to_string(gap));
+      violation("the volumes of the solid and the regions differ from the outermost wrapper's by " +
+                std::to_string(gap));
   }
 
   /// Returns a body whose real faces are all faces of the complex.
@@ -251,7 +251,7 @@ class Validator {
     } else {
       violation("faces " + std::to_string(f) + (rep_.is_real(f) ? " (real)" : " (pseudo)") + " and " +
                 std::to_string(g) + (rep_.is_real(g) ? " (real)" : " (pseudo)") +
-                " meet outside their shared edges and corners");
+                " intersect outside their shared edges and corners");
     }
   }
 
@@ -315,7 +315,7 @@ class Validator {
     // Volume: that of the boundary must equal that of the included cells, up to rounding.
     if (std::abs(enclosed_volume(rep_, as_is, reversed) - volume) >
         kVolumeRounding * std::abs(report_.volume_outer))
-      violation(name + " encloses a volume other than that of its cells");
+      violation(name + " encloses a volume that differs from that of its cells");
     // A self-intersecting solid has vertices in its interior that are outside by parity.
     if (!rep_.self_intersecting()) check_enclosure(boundary, touched, name, random);
   }

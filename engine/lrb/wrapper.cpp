@@ -113,7 +113,7 @@ constexpr double kMostFaces = 0.5;
 constexpr std::size_t kMostLevels = 256;
 
 [[noreturn]] void refuse(const std::string& what) {
-  throw InputError("the levels of the LRB-rep " + what + "; build it again from its mesh");
+  throw InputError("the levels of the LRB-rep " + what + "; rebuild it from its mesh");
 }
 
 bool can_have_levels(const LrbRep& rep) {
@@ -143,10 +143,10 @@ std::vector<double> needed_tolerances(const LrbRep& rep, unsigned threads) {
 
 /// Throws InputError if a region could be included without a region that it hides.
 void check_needed(const LrbRep& rep, const std::vector<double>& needed) {
-  if (needed.size() != (can_have_levels(rep) ? rep.region_count() : 0)) refuse("are not for its regions");
+  if (needed.size() != (can_have_levels(rep) ? rep.region_count() : 0)) refuse("do not match its regions");
   for (RegionId r = 0; r < needed.size(); ++r) {
     // Written so that NaN is rejected as well.
-    if (!(needed[r] >= 0)) refuse("need a tolerance that is none for region " + std::to_string(r));
+    if (!(needed[r] >= 0)) refuse("have an invalid tolerance for region " + std::to_string(r));
     if (rep.lids(r).empty() && needed[r] != kInfinity)
       refuse("include region " + std::to_string(r) + ", which has no lid");
     for (const FaceId lid : rep.lids(r)) {
@@ -154,7 +154,7 @@ void check_needed(const LrbRep& rep, const std::vector<double>& needed) {
       const CellId over = rep.outer_cell(lid);
       if (is_region(over) && needed[over] < needed[r])
         refuse("include region " + std::to_string(over) + " without region " + std::to_string(r) +
-               ", which it hides");
+               ", which it covers");
     }
   }
 }
@@ -263,7 +263,7 @@ std::vector<SimplexId> outline(const LrbRep& rep, double bound, std::span<const 
 }  // namespace
 
 std::string why_no_levels(const LrbRep& rep) {
-  if (!rep.closed()) return "its surface bounds no solid";
+  if (!rep.closed()) return "its surface does not bound a solid";
   if (rep.self_intersecting()) return "its surface intersects itself";
   return {};
 }
@@ -271,8 +271,8 @@ std::string why_no_levels(const LrbRep& rep) {
 std::string note_no_levels(const LrbRep& rep) {
   const std::string why = why_no_levels(rep);
   if (why.empty()) return {};
-  return rep.name() + ": has no approximate answers, because " + why +
-         ": queries with a tolerance or limit are answered exactly";
+  return rep.name() + ": approximate queries are not supported, because " + why +
+         "; queries with a tolerance or limit are answered exactly";
 }
 
 WrapperLevels::WrapperLevels(const LrbRep& rep, unsigned threads) {

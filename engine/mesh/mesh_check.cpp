@@ -195,7 +195,7 @@ Help help_for(MeshFault fault) {
     case MeshFault::no_faces:
       return {Offender::none, "export the mesh with its faces"};
     case MeshFault::non_finite_vertex:
-      return {Offender::vertex, "give it a finite number"};
+      return {Offender::vertex, "replace it by a finite number"};
     case MeshFault::index_out_of_range:
       return {Offender::face_and_vertex, "correct the index or add the vertex"};
     case MeshFault::repeated_corner:
@@ -204,7 +204,7 @@ Help help_for(MeshFault fault) {
       return {Offender::face, "collapse or remove it"};
     case MeshFault::non_planar_face:
       return {Offender::face,
-              "it is taken as the triangles from its first corner; triangulate it to choose others"};
+              "it is read as a fan of triangles from its first corner; triangulate it to choose others"};
     case MeshFault::non_convex_face:
       return {Offender::face, "triangulate it"};
     case MeshFault::duplicate_face:
@@ -216,11 +216,11 @@ Help help_for(MeshFault fault) {
     case MeshFault::flipped_face:
       return {Offender::two_faces, "reverse one of them: list its corners in the opposite order"};
     case MeshFault::non_manifold_vertex:
-      return {Offender::vertex, "give each fan a vertex of its own"};
+      return {Offender::vertex, "duplicate the vertex, one copy per fan"};
     case MeshFault::inside_out:
-      return {Offender::component, "it can be turned without loss"};
+      return {Offender::component, "it can be flipped without loss"};
     case MeshFault::self_intersection:
-      return {Offender::two_faces, "inside is then decided by parity"};
+      return {Offender::two_faces, "inside and outside are then decided by parity"};
     case MeshFault::duplicate_vertex:
       return {Offender::two_vertices, "merge them if the surface should be connected there"};
     default:
@@ -264,23 +264,23 @@ std::string_view text_of(MeshFault fault, int dim) {
       case MeshFault::no_faces:
         return "the mesh has no segments";
       case MeshFault::index_out_of_range:
-        return "a segment names a vertex that does not exist";
+        return "a segment has a vertex index out of range";
       case MeshFault::repeated_corner:
-        return "a segment names a vertex twice";
+        return "a segment uses a vertex twice";
       case MeshFault::zero_area_face:
         return "a segment has no length";
       case MeshFault::duplicate_face:
         return "two segments have the same ends";
       case MeshFault::open_edge:
-        return "a vertex ends one segment only";
+        return "a vertex has only one segment";
       case MeshFault::non_manifold_edge:
-        return "a vertex ends more than two segments";
+        return "a vertex has more than two segments";
       case MeshFault::flipped_face:
-        return "two neighbouring segments disagree on which side is outside";
+        return "two adjacent segments are inconsistently oriented";
       case MeshFault::self_intersection:
-        return "two segments meet outside their shared ends";
+        return "two segments intersect outside their shared ends";
       case MeshFault::unused_vertex:
-        return "no segment uses a vertex";
+        return "a vertex is not used by any segment";
       default:
         break;
     }
@@ -293,12 +293,12 @@ std::string advice_on_openings(const MeshReport& report) {
   const std::uint32_t sheets = report.sheets, open = report.open_components;
   // Only sheets: closing them would create a body without volume.
   if (sheets > 0 && sheets == open)
-    return sheets == 1 ? "this is a sheet: it bounds nothing"
-                       : "these are " + std::to_string(sheets) + " sheets: they bound nothing";
+    return sheets == 1 ? "this is a sheet, which does not bound a solid"
+                       : "these are " + std::to_string(sheets) + " sheets, which do not bound a solid";
   const std::string close(help_for(MeshFault::open_edge).advice);
   if (sheets == 0) return close;
   return close + ", but " + std::to_string(sheets) + " of the " + std::to_string(open) + " open components " +
-         (sheets == 1 ? "is a sheet: it bounds" : "are sheets: they bound") + " nothing";
+         (sheets == 1 ? "is a sheet, which does" : "are sheets, which do") + " not bound a solid";
 }
 
 std::string line_for(const Mesh& mesh, MeshFault fault, const MeshReport& report) {

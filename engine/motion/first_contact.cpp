@@ -50,8 +50,9 @@ double least_tolerance(const Motion& motion_a, const Motion& motion_b) {
 
 void check_request(const FirstContactRequest& request) {
   if (!(request.tolerance > 0 && request.tolerance <= 1))
-    throw InputError("the tolerance of a first contact is " + std::to_string(request.tolerance) +
-                     "; give more than 0 and at most 1, as a share of the motion");
+    throw InputError(
+        "first contact: expected a tolerance above 0 and at most 1 (fraction of the motion), found " +
+        std::to_string(request.tolerance));
 }
 
 FirstContactSearch::FirstContactSearch(const LrbRep& a, const Motion& motion_a, const LrbRep& b,

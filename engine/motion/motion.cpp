@@ -51,9 +51,8 @@ Eigen::Vector3d logarithm(const Matrix& m) {
 void check_rotation(const Eigen::Matrix3d& r, const char* which) {
   const double defect = rotation_defect(r);
   if (!(defect <= kMotionDefect))
-    throw InputError(
-        std::string("the matrix of the motion's ") + which +
-        " pose is no rotation: give one whose columns are of length 1 and at right angles to 0.001");
+    throw InputError(std::string("the motion's ") + which +
+                     " pose: expected a rotation matrix (orthonormal columns, tolerance 0.001)");
 }
 
 /// Returns the piece between two poses.
@@ -69,7 +68,7 @@ Motion::Piece piece_between(const Pose& start, const Pose& end) {
   const Matrix turn = start.r.cast<Real>().transpose() * end.r.cast<Real>();
   // A negative determinant: no rotation leads from one matrix to the other.
   if (!(turn.determinant() > 0))
-    throw InputError("one of the motion's poses is mirrored and the other is not: give two rotations");
+    throw InputError("the motion's poses: expected two rotations, found a reflection");
   piece.turn = logarithm(turn);
   return piece;
 }
@@ -84,14 +83,15 @@ bool is_finite(const Motion::Piece& p) {
 Motion::Motion(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
   double t = 0;
   for (const Piece& piece : pieces_) {
-    if (!is_finite(piece)) throw InputError("a motion has a number that is not finite");
+    if (!is_finite(piece))
+      throw InputError("the motion: expected finite numbers, found a NaN or an infinity");
     // Exact comparison: pieces must neither overlap nor leave gaps.
     if (piece.begin != t || !(piece.end > piece.begin))
       throw InputError(
-          "a motion's times do not ascend from 0 to 1: each piece begins where the one before ends");
+          "the motion's times must ascend from 0 to 1, and each piece must begin where the previous one ends");
     t = piece.end;
   }
-  if (t != 1) throw InputError("a motion's times do not ascend from 0 to 1");
+  if (t != 1) throw InputError("the motion's times must ascend from 0 to 1");
 }
 
 Motion Motion::still(const Pose& pose) {
@@ -122,7 +122,7 @@ Motion Motion::turning(const Pose& start, const Eigen::Vector3d& turn, const Eig
 }
 
 Motion Motion::key_frames(std::span<const KeyFrame> frames) {
-  if (frames.empty()) throw InputError("a motion has no key frames");
+  if (frames.empty()) throw InputError("the motion: expected at least one key frame, found none");
   // A single frame: a body at rest.
   if (frames.size() == 1 && frames[0].t == 0) return still(frames[0].pose);
   std::vector<Piece> pieces;

@@ -8,6 +8,7 @@
 
 #include <lrbscope/body.hpp>
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/mesh.hpp>
@@ -48,7 +49,7 @@ void refuse_unless_queryable(const CheckedMesh& mesh) {
 std::string note_without_regions(const CheckedMesh& mesh, bool turn) {
   const std::string why =
       turn ? obstacles_to_build(mesh) : joined(mesh.mesh(), mesh.report().obstacles(mesh.mesh()));
-  return mesh.mesh().name + ": queried without regions, because it cannot have any: " + why;
+  return mesh.mesh().name + ": queries will not use regions, because an LRB-rep cannot be built: " + why;
 }
 
 bool can_be_built(const CheckedMesh& mesh, bool turn) {
@@ -71,9 +72,9 @@ bool is_lrb_file(const std::string& path) {
 std::string join_corners_of_mesh(Mesh& mesh) {
   const JoinedCorners joined = join_corners(mesh);
   if (!joined.any()) return "";
-  return mesh.name + ": joined corners in exactly the same place: " + std::to_string(joined.before) +
-         " vertices became " + std::to_string(joined.after) + ", " + std::to_string(joined.open_before) +
-         (mesh.dim == 2 ? " loose ends " : " open edges ") + "became " + std::to_string(joined.open_after);
+  return mesh.name + ": merged coincident vertices: " + std::to_string(joined.before) + " -> " +
+         std::to_string(joined.after) + " vertices, " + std::to_string(joined.open_before) + " -> " +
+         std::to_string(joined.open_after) + (mesh.dim == 2 ? " loose ends" : " open edges");
 }
 
 std::string obstacles_to_build(const CheckedMesh& mesh) {
@@ -85,8 +86,8 @@ std::string note_unproven(const LrbRep& rep) {
   if (rep.region_count() == 0) return {};
   const ValidateReport report = validate_cells(rep);
   if (report.valid) return {};
-  return rep.name() +
-         ": queried without regions, because the proof of its LRB-rep failed: " + report.violations.front();
+  return rep.name() + ": queries will not use regions, because the validation of its LRB-rep failed: " +
+         report.violations.front();
 }
 
 LrbRep proven(LrbRep rep, std::vector<std::string>& notes) {
@@ -99,8 +100,8 @@ LrbRep proven(LrbRep rep, std::vector<std::string>& notes) {
 std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes) {
   const std::uint32_t turned = mesh.turn_outward();
   if (turned > 0)
-    notes.push_back(mesh.mesh().name + ": turned " + std::to_string(turned) +
-                    (turned == 1 ? " component that was inside out" : " components that were inside out"));
+    notes.push_back(mesh.mesh().name + ": flipped " + std::to_string(turned) +
+                    (turned == 1 ? " inside-out component" : " inside-out components"));
   return turned;
 }
 
@@ -152,20 +153,21 @@ std::string shape_fault(const Rows<double>& vertices, const Rows<Number>& faces)
   // Two corners per face: segments of a 2D body.
   const bool is_flat = faces.each == 2;
   if (faces.each < 2)
-    return "faces have " + std::to_string(faces.each) + " corners; give 3 or more, or 2 in the plane";
+    return "expected 3 or more corners per face (2 for 2D bodies), found " + std::to_string(faces.each);
   if (vertices.each != 3 && !(is_flat && vertices.each == 2))
-    return "vertices have " + std::to_string(vertices.each) + " coordinates; give " +
-           (is_flat ? "2 or 3" : "3");
+    return std::string("expected ") + (is_flat ? "2 or 3" : "3") + " coordinates per vertex, found " +
+           std::to_string(vertices.each);
   // Incomplete rows.
   if (vertices.numbers.size() % vertices.each != 0)
-    return std::to_string(vertices.numbers.size()) + " coordinates do not make vertices of " +
-           std::to_string(vertices.each);
+    return "expected a multiple of " + std::to_string(vertices.each) + " coordinates, found " +
+           std::to_string(vertices.numbers.size());
   if (faces.numbers.size() % faces.each != 0)
-    return std::to_string(faces.numbers.size()) + " corners do not make faces of " +
-           std::to_string(faces.each);
+    return "expected a multiple of " + std::to_string(faces.each) + " corners, found " +
+           std::to_string(faces.numbers.size());
   // Indices are 32 bits wide.
   if (vertices.numbers.size() / vertices.each > kMaxId || faces.numbers.size() > kMaxId)
-    return "it has more vertices or corners than 32 bits count; give " + std::to_string(kMaxId) + " at most";
+    return "expected at most " + std::to_string(kMaxId) +
+           " vertices and corners (32-bit indices), found more";
   return {};
 }
 
@@ -184,7 +186,8 @@ Expected<Mesh> mesh_of(const Rows<double>& vertices, const Rows<Number>& faces, 
     const double* const x = vertices.numbers.data() + v * vertices.each;
     mesh.vertices.emplace_back(x[0], x[1], vertices.each == 3 ? x[2] : 0);
     if (mesh.dim == 2 && mesh.vertices.back().z() != 0)
-      return Refusal{who + ": vertex " + std::to_string(v) + " of a body in the plane has a z; give 0"};
+      return Refusal{who + ": vertex " + std::to_string(v) + ": expected z = 0 in a 2D body, found " +
+                     io::number_text(mesh.vertices.back().z())};
   }
   // Pass 2: faces. std::cmp_* compare integers of any signedness and width correctly.
   mesh.face_vertices.reserve(faces.numbers.size());
@@ -192,9 +195,8 @@ Expected<Mesh> mesh_of(const Rows<double>& vertices, const Rows<Number>& faces, 
   for (std::size_t i = 0; i < faces.numbers.size(); ++i) {
     const Number corner = faces.numbers[i];
     if (std::cmp_less(corner, 0) || std::cmp_greater_equal(corner, count))
-      return Refusal{who + ": face " + std::to_string(i / faces.each) + " names vertex " +
-                     std::to_string(corner) + ", which does not exist; give 0 to " + std::to_string(count) +
-                     " - 1"};
+      return Refusal{who + ": face " + std::to_string(i / faces.each) + ": expected a vertex index below " +
+                     std::to_string(count) + ", found " + std::to_string(corner)};
     mesh.face_vertices.push_back(VertexId(corner));
     if ((i + 1) % faces.each == 0) mesh.face_offsets.push_back(static_cast<std::uint32_t>(i + 1));
   }
@@ -211,8 +213,8 @@ Expected<Body> body_of(const Rows<double>& vertices, const Rows<Number>& faces, 
 /// Returns the note on a body that bounds no solid: the answers it does not support.
 std::string note_no_solid(const LrbRep& rep) {
   return rep.name() +
-         ": bounds no solid: pairs, contacts and distances are exact; nothing is inside it, and where its surface "
-         "meets no other although their boxes do, the relation is `undefined`";
+         ": not a closed solid: pairs, contacts and distances are exact, but inside/outside is undefined; if "
+         "the surfaces do not intersect but the boxes overlap, the relation is `undefined`";
 }
 
 /// Adds a note on each kind of answer that a body does not support.

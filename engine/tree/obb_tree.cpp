@@ -221,24 +221,25 @@ namespace {
 
 [[noreturn]] void refuse(std::size_t node, const char* what) {
   throw InputError("node " + std::to_string(node) + " of the tree " + what +
-                   "; build the LRB-rep again from its mesh");
+                   "; rebuild the LRB-rep from its mesh");
 }
 
 /// Checks a leaf and removes its simplices from `missing`.
 void check_leaf(std::size_t i, const TreeNode& node, const std::vector<LeafBlock>& blocks,
                 std::vector<bool>& block_seen, std::vector<bool>& missing) {
   // A block belongs to exactly one leaf.
-  if (node.first >= blocks.size() || block_seen[node.first]) refuse(i, "has no block of its own");
+  if (node.first >= blocks.size() || block_seen[node.first])
+    refuse(i, "shares its block with another leaf, or has none");
   block_seen[node.first] = true;
   for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
     const std::uint32_t s = blocks[node.first].simplex[k];
     // Absent simplices must be marked as such.
     if (k >= node.count) {
-      if (s != kNull) refuse(i, "has a block with more faces than it counts");
+      if (s != kNull) refuse(i, "has a block with more faces than its count");
       continue;
     }
     if (s >= missing.size() || !missing[s])
-      refuse(i, "holds a face that is not the tree's or is in another leaf, too");
+      refuse(i, "contains a face that does not belong to the tree or is also in another leaf");
     missing[s] = false;
   }
 }
@@ -255,8 +256,8 @@ void check_structure(const std::vector<TreeNode>& nodes, const std::vector<LeafB
     const TreeNode& node = nodes[i];
     // Parents come before children, so one pass in ascending order reaches every node after its parent.
     if (i > 0 && !node_seen[i]) refuse(i, "has no parent before it");
-    if (node.count == 0 || node.count > kTreeWidth) refuse(i, "has no children, or too many");
-    if (node.is_leaf > 1) refuse(i, "is neither leaf nor inner");
+    if (node.count == 0 || node.count > kTreeWidth) refuse(i, "has no children or too many");
+    if (node.is_leaf > 1) refuse(i, "is neither a leaf nor an inner node");
     if (node.is_leaf != 0) {
       check_leaf(i, node, blocks, block_seen, missing);
       continue;
@@ -265,14 +266,14 @@ void check_structure(const std::vector<TreeNode>& nodes, const std::vector<LeafB
     if (node.first <= i || node.first > nodes.size() || node.count > nodes.size() - node.first)
       refuse(i, "has children that do not exist");
     for (std::uint32_t k = 0; k < node.count; ++k) {
-      if (node_seen[node.first + k]) refuse(i, "has a child of another node");
+      if (node_seen[node.first + k]) refuse(i, "has a child that belongs to another node");
       node_seen[node.first + k] = true;
     }
   }
   // Every simplex and every block must have been reached.
   if (std::find(missing.begin(), missing.end(), true) != missing.end() ||
       std::find(block_seen.begin(), block_seen.end(), false) != block_seen.end())
-    refuse(0, "does not hold all faces");
+    refuse(0, "does not contain all faces");
 }
 
 Eigen::Vector3d in_frame(const TreeNode& node, const Eigen::Vector3d& x) {

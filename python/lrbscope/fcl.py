@@ -91,7 +91,7 @@ def _matrix_of_quaternion(given: npt.ArrayLike) -> _Floats:
     q = _vector(given, 4, "a quaternion")
     length = np.linalg.norm(q)
     if not length > 0:
-        raise ValueError("a quaternion: expected one that is not zero")
+        raise ValueError("a quaternion: expected one other than zero")
     w, x, y, z = q / length
     return np.array(
         [
@@ -200,7 +200,7 @@ class CollisionGeometry:
 
     def _surface(self) -> _Surface:
         """Return vertices and faces."""
-        raise ValueError("this geometry has no surface: take one of its kinds, such as BVHModel")
+        raise ValueError("this geometry has no surface; use one of its subclasses, such as BVHModel")
 
     def _body(self) -> Body:
         if self._made is None:
@@ -558,7 +558,7 @@ class CollisionRequest:
         gjk_solver_type: GJKSolverType = GJKSolverType.GST_LIBCCD,
     ) -> None:
         if enable_cost:
-            raise Unsupported("lrbscope.fcl has no costs: leave enable_cost out")
+            raise Unsupported("lrbscope.fcl does not support costs; leave enable_cost out")
         self.num_max_contacts, self.enable_contact = num_max_contacts, enable_contact
         self.num_max_cost_sources, self.enable_cost = num_max_cost_sources, enable_cost
         self.use_approximate_cost, self.gjk_solver_type = use_approximate_cost, gjk_solver_type
@@ -827,7 +827,7 @@ class DynamicAABBTreeCollisionManager:
         keys to objects, and data and callback.
         """
         if len(args) not in (2, 3) or not callable(args[-1]):
-            raise ValueError("expected data and callback, after an object or a manager if there is one")
+            raise ValueError("expected data and callback, optionally after an object or a manager")
         if len(args) == 2 or args[0] is self:
             return (), lambda a, b: (self._objects[a], self._objects[b]), *args[-2:]
         other = args[0]
@@ -898,7 +898,7 @@ def _motion(o: CollisionObject, tf_end: Transform, kind: CCDMotionType) -> _Floa
     if kind == CCDMotionType.CCDM_TRANS:
         end.setRotation(o.getRotation())
     elif kind != CCDMotionType.CCDM_LINEAR:
-        raise Unsupported("lrbscope.fcl has no CCDM_SCREW and CCDM_SPLINE: take CCDM_TRANS or CCDM_LINEAR")
+        raise Unsupported("lrbscope.fcl does not support CCDM_SCREW and CCDM_SPLINE; use CCDM_TRANS or CCDM_LINEAR")
     return np.array([o.pose, end._pose()])
 
 

@@ -54,7 +54,7 @@ void add_vertices(py::handle given, Mesh& mesh) {
   const Numbers v = numbers(given, "vertices", "numbers of shape (n, 3)");
   const bool empty = v.ndim() == 1 && v.size() == 0;  // an empty list
   if (!empty && (v.ndim() != 2 || (v.shape(1) != 3 && v.shape(1) != 2)))
-    refuse_shape("vertices", "shape (n, 3), or (n, 2) in the plane", v);
+    refuse_shape("vertices", "shape (n, 3), or (n, 2) in 2D", v);
   const py::ssize_t n = empty ? 0 : v.shape(0), width = empty ? 3 : v.shape(1);
   mesh.dim = static_cast<int>(width);
   mesh.vertices.resize(static_cast<std::size_t>(n));
@@ -75,8 +75,8 @@ void add_face(std::span<const std::int64_t> corners, Mesh& mesh, std::vector<Ver
   memory.clear();
   for (const std::int64_t c : corners) {
     if (c < 0 || c >= static_cast<std::int64_t>(mesh.vertices.size()))
-      throw InputError(face + " names vertex " + std::to_string(c) + ", but there are " +
-                       std::to_string(mesh.vertices.size()));
+      throw InputError(face + ": expected a vertex index below " + std::to_string(mesh.vertices.size()) +
+                       ", got " + std::to_string(c));
     memory.push_back(VertexId(c));
   }
   mesh.add_face(memory);
@@ -106,7 +106,7 @@ void add_any_faces(const py::sequence& faces, Mesh& mesh) {
     const py::array found = any_array(face);
     if (!found || found.ndim() != 1)
       throw InputError("faces: face " + std::to_string(mesh.face_count()) +
-                       ": expected numbers of vertices, got " + described(face));
+                       ": expected vertex indices, got " + described(face));
     const Integers f = integers(found, "faces");
     add_face({f.data(), static_cast<std::size_t>(f.size())}, mesh, memory);
   }
@@ -157,7 +157,7 @@ double number(py::handle given, const char* what, double fallback) {
 double size(py::handle given, const char* what, double fallback) {
   const double x = number(given, what, fallback);
   if (!(x >= 0 && x <= std::numeric_limits<double>::max()))
-    throw InputError(std::string(what) + ": expected a finite number from 0 on, got " +
+    throw InputError(std::string(what) + ": expected a finite number of at least 0, got " +
                      std::string(py::str(given)));
   return x;
 }
@@ -169,7 +169,7 @@ std::uint64_t count(py::handle given, const char* what, std::uint64_t fallback) 
   if (PyErr_Occurred() != nullptr) {
     PyErr_Clear();
     if (!index) throw py::type_error(std::string(what) + ": expected an integer, got " + described(given));
-    throw InputError(std::string(what) + ": expected an integer from 0 on, got " +
+    throw InputError(std::string(what) + ": expected an integer of at least 0, got " +
                      std::string(py::str(index)));
   }
   return n;
@@ -183,7 +183,7 @@ std::string text(py::handle given, const char* what, const std::string& fallback
   const char* const utf8 = PyUnicode_AsUTF8AndSize(given.ptr(), &size);
   if (utf8 == nullptr) {
     PyErr_Clear();
-    throw InputError(std::string(what) + ": expected characters that UTF-8 has, got a lone surrogate");
+    throw InputError(std::string(what) + ": expected a valid Unicode string, got a lone surrogate");
   }
   return {utf8, static_cast<std::size_t>(size)};
 }

@@ -164,7 +164,7 @@ py::bytes bytes_of(const std::vector<T>& numbers) {
 template <class T>
 std::vector<T> numbers_of(const py::handle& bytes) {
   const auto text = bytes.cast<std::string_view>();
-  if (text.size() % sizeof(T) != 0) throw InputError("a pickled body is damaged");
+  if (text.size() % sizeof(T) != 0) throw InputError("the pickled body is damaged");
   std::vector<T> out(text.size() / sizeof(T));
   std::copy(text.begin(), text.end(), reinterpret_cast<char*>(out.data()));
   return out;
@@ -185,7 +185,7 @@ py::tuple pickled(const Body& body) {
 
 BodyPtr unpickled(const py::tuple& t) {
   if (t.size() != kPickled || t[0].cast<int>() != kPickleVersion)
-    throw InputError("a pickled body is of another version of lrbscope: pickle it again");
+    throw InputError("the pickled body comes from another version of lrbscope; pickle it again");
   LrbData d;
   d.dim = t[1].cast<int>();
   d.vertices = numbers_of<Eigen::Vector3d>(t[2]);
@@ -201,7 +201,7 @@ BodyPtr unpickled(const py::tuple& t) {
   bodies::LoadedBody loaded{LrbRep(std::move(d)), t[12].cast<std::vector<std::string>>(),
                             t[13].cast<double>()};
   const auto n = t[14].cast<std::size_t>();
-  if (n > loaded.rep.vertices().size()) throw InputError("a pickled body is damaged");
+  if (n > loaded.rep.vertices().size()) throw InputError("the pickled body is damaged");
   return std::make_shared<Body>(std::move(loaded), n);
 }
 

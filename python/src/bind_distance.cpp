@@ -333,7 +333,7 @@ Motions motions(py::handle given, const char* what) {
   const py::list each = many ? py::list(py::reinterpret_borrow<py::object>(given)) : py::list();
   const auto add = [&](py::handle one) {
     const std::vector<Pose> through = poses(one, what).to_vector();
-    if (through.empty()) throw InputError(std::string(what) + ": expected a pose or more, got none");
+    if (through.empty()) throw InputError(std::string(what) + ": expected at least one pose, got none");
     out.all.push_back(motion_through(through));
   };
   if (!many) add(given);

@@ -28,7 +28,7 @@ py::object parsed(const std::string& json) {
 
 SimplexPair pair_of(py::handle given) {
   const auto refuse = [&] {
-    throw InputError("pair: expected a triangle of A and one of B, as Result.pairs has them, got " +
+    throw InputError("pair: expected a triangle of A and one of B, as in Result.pairs, got " +
                      std::string(py::str(given)));
   };
   if (!py::isinstance<py::sequence>(given) || py::isinstance<py::str>(given)) refuse();

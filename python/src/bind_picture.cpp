@@ -42,7 +42,7 @@ Wanted wanted(const PictureArguments& given) {
   for (const Eigen::Vector3d* v : {&view.from, &view.up})
     if (!v->allFinite() || !(v->squaredNorm() > 0))
       throw InputError(std::string(v == &view.from ? "view_from" : "up") +
-                       ": expected a direction that is not zero");
+                       ": expected a direction other than zero");
   if (!given.look_at.is_none()) view.look_at = vector(given.look_at, "look_at");
   view.zoom = number(given.zoom, "zoom", 1);
   if (!(view.zoom > 0 && view.zoom < 1e6)) throw InputError("zoom: expected a number above 0");
@@ -61,7 +61,7 @@ run::PaintedFrame paint(const Recorded& recorded, std::size_t step, Wanted wante
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   const run::RecordedRun shown = recorded.shown();
-  if (recorded.trace.events.empty()) throw InputError("there is nothing to draw: the trace holds no events");
+  if (recorded.trace.events.empty()) throw InputError("nothing to draw: the trace contains no events");
   wanted.frames.events = {run::last_event(recorded.trace, step)};
   View& view = wanted.frames.views[0];
   if (!wanted.from_given && recorded.bodies.size() == 2 && !recorded.results->empty())
@@ -100,7 +100,7 @@ py::object draw(const Recorded& recorded, std::size_t step, const PictureArgumen
 
 py::bytes png_of(const py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>& pixels) {
   if (pixels.ndim() != 3 || (pixels.shape(2) != 3 && pixels.shape(2) != 4))
-    throw InputError("a picture is of shape (height, width, 3) or (height, width, 4), got " +
+    throw InputError("expected a picture of shape (height, width, 3) or (height, width, 4), got " +
                      described(pixels));
   const auto channels = pixels.shape(2);
   render::Image image(static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)));

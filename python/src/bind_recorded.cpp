@@ -139,7 +139,7 @@ std::string notebook_html(const Recorded& r) {
 py::object picture(const Recorded& r, py::handle step, const PictureArguments& given) {
   const std::size_t n = r.trace.steps.size();
   const auto i = step.is_none() ? -1 : static_cast<py::ssize_t>(number(step, "step"));
-  if (n == 0) throw InputError("there is no step to draw: the run has none");
+  if (n == 0) throw InputError("nothing to draw: the run has no steps");
   return draw(r, checked_index(i, n), given);
 }
 

@@ -75,14 +75,14 @@ Others others_of(const HeldScene& self, py::handle given, py::handle pose_of_bod
   if (py::isinstance<HeldScene>(given)) {
     const auto& scene = given.cast<const HeldScene&>();
     out.scene = given.cast<ScenePtr>();
-    if (&scene == &self) throw InputError("other: is the scene itself; leave it out");
+    if (&scene == &self)
+      throw InputError("other: expected another scene, got the scene itself; leave it out");
   } else if (!given.is_none()) {
     if (!py::isinstance<Body>(given))
       throw py::type_error("other: expected a Scene or a Body, got " + described(given));
     out.body = shared_body(given, "other");
   }
-  if (!out.body && !pose_of_body.is_none())
-    throw InputError("pose: is that of a body from outside; there is none");
+  if (!out.body && !pose_of_body.is_none()) throw InputError("pose: only allowed if `other` is a Body");
   out.pose = pose(pose_of_body, "pose");
   return out;
 }
@@ -116,7 +116,7 @@ auto with_others(const Others& others, const Ask& ask) {
 BodyKey key_of(const HeldScene& self, py::handle given) {
   const auto key = BodyKey{count(given, "key")};
   if (given.is_none() || !self.scene.has(key))
-    throw InputError("key: there is no body " + std::string(py::str(given)) + " in the scene");
+    throw InputError("key: no body " + std::string(py::str(given)) + " in the scene");
   return key;
 }
 
@@ -221,7 +221,7 @@ py::tuple near(HeldScene& self, py::handle within, py::handle other, py::handle 
   const Others others = others_of(self, other, at);
   const double limit = within.is_none() ? 0 : number(within, "within");
   if (!(limit >= 0))
-    throw InputError("within: expected a number from 0 on, got " + std::string(py::str(within)));
+    throw InputError("within: expected a number of at least 0, got " + std::string(py::str(within)));
   const Locked lock(self, others);
   const NearPairs found = near_of(self, others, limit);
   const auto n = static_cast<py::ssize_t>(found.gaps.size());

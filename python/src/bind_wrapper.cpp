@@ -32,13 +32,14 @@ RegionId region(const BodyWrapper& w, py::handle given) {
   const std::uint64_t i = count(given, "region");
   const std::uint32_t n = w.body->rep().region_count();
   if (i >= n)
-    throw InputError("region: there is no region " + std::to_string(i) + " among " + std::to_string(n));
+    throw InputError("region: expected a number below " + std::to_string(n) + ", got " + std::to_string(i));
   return RegionId(i);
 }
 FaceId face(const BodyWrapper& w, py::handle given) {
   const std::uint64_t i = count(given, "face");
   const std::uint32_t n = w.body->rep().face_count();
-  if (i >= n) throw InputError("face: there is no face " + std::to_string(i) + " among " + std::to_string(n));
+  if (i >= n)
+    throw InputError("face: expected a number below " + std::to_string(n) + ", got " + std::to_string(i));
   return FaceId(i);
 }
 

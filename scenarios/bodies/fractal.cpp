@@ -68,7 +68,8 @@ class Carver {
       throw InputError(
           "fractal body: no dents make " + std::to_string(spec_.real_faces) + " real faces of " +
           std::to_string(spec_.total_faces) +
-          "; give real_faces - 7 between 2.5 and 7 times the pseudo faces (total_faces - real_faces)");
+          "; expected real_faces - 7 to be 2.5 to 7 times the number of pseudo faces (total_faces - "
+          "real_faces)");
     while (lids_left_ > 0) carve_next();
     return LrbRep(data());
   }
@@ -166,7 +167,7 @@ class Carver {
     bool done = false;
     while (!done) {
       if (waiting_.empty())
-        throw InputError("fractal body: the faces have become too small for the grid; ask for fewer");
+        throw InputError("fractal body: the faces are too small for the grid; request fewer");
       const auto [size, f] = waiting_.top();
       waiting_.pop();
       done = carve(f);

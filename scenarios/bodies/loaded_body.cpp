@@ -21,8 +21,8 @@ LoadedBody saved_body(const std::string& path) {
 
 LrbRep build_from_mesh(CheckedMesh mesh, const BuildOptions& options, std::vector<std::string>& notes) {
   if (!mesh.report().when_turned().buildable())
-    throw InputError(mesh.mesh().name + ": cannot be an LRB-rep: " + obstacles_to_build(mesh) +
-                     " | it can still be queried, not built");
+    throw InputError(mesh.mesh().name + ": cannot build an LRB-rep: " + obstacles_to_build(mesh) +
+                     " | queries are still possible without it");
   turn_outward(mesh, notes);
   return build_lrb(mesh, options);
 }
@@ -39,7 +39,7 @@ Mesh read_body(const std::string& path, Corners corners, std::vector<std::string
   Mesh mesh = read_mesh(path);
   if (corners == Corners::apart) return mesh;
   const std::string note = join_corners_of_mesh(mesh);
-  if (!note.empty()) notes.push_back(note + " (--no-join keeps them apart)");
+  if (!note.empty()) notes.push_back(note + " (--no-join keeps them separate)");
   return mesh;
 }
 

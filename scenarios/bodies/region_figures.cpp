@@ -115,8 +115,9 @@ std::string why_loose(const LrbRep& rep) {
   const Eigen::Vector3d sizes = principal_sizes(rep);
   if (rep.dim() == 3 && sizes[2] > kThin * sizes[0])
     return "the body is " + (sizes[0] > 0 ? rounded(sizes[2] / sizes[0]) : "infinitely many") +
-           " times as long as it is thick, and the wrapper keeps 0.5 % of the length off it on each side";
-  return "so few faces do not fit it closer: try --max-outer";
+           " times as long as it is thick, and the wrapper keeps a distance of 0.5 % of the length on each "
+           "side";
+  return "more faces are needed for a tighter fit; try --max-outer";
 }
 
 /// Names the region that refines a large part of the body at once; empty if there is none.
@@ -128,17 +129,17 @@ std::string crowded_region(const LrbRep& rep) {
     if (rep.floor(r).size() > rep.floor(worst).size()) worst = r;
   const std::size_t faces = rep.floor(worst).size();
   if (faces < kFew || faces * kPart < rep.real_face_count()) return {};
-  return "region " + std::to_string(worst) + " opens " + std::to_string(faces) + " faces at once";
+  return "region " + std::to_string(worst) + " exposes " + std::to_string(faces) + " faces at once";
 }
 
 /// Returns the cause and a remedy if an LRB-rep is poor for reasons other than its options; empty if no cause
 /// is known.
 std::string cause_of_waste(const LrbRep& rep) {
   if (rep.self_intersecting())
-    return "its surface intersects itself, and faces that intersect others cannot be covered; repair it or unite "
-           "its parts first: lrbscope inspect lists these faces, and --draw shows them";
+    return "its surface intersects itself, and intersecting faces cannot be covered; repair it or compute the "
+           "union of the overlapping parts first (lrbscope inspect lists these faces, --draw shows them)";
   if (const std::size_t pieces = rep.component_vertices().size(); pieces > 1)
-    return "it is in " + std::to_string(pieces) + " pieces, each of which has wrappers of its own first";
+    return "it has " + std::to_string(pieces) + " components, each with its own wrappers";
   return {};
 }
 
@@ -203,7 +204,7 @@ std::vector<std::string> advice(const LrbRep& rep, std::span<const Trial> trials
       return number(a.figures) < number(b.figures);
     });
   };
-  const auto change = [](double from, double to) { return rounded(to) + " in place of " + rounded(from); };
+  const auto change = [](double from, double to) { return rounded(to) + " instead of " + rounded(from); };
   std::vector<std::string> out;
   const Trial& tight = least([](const RepFigures& f) { return f.waste; });
   if (now.waste > kPoorWaste && tight.figures.waste >= kWorth * now.waste) {
@@ -212,47 +213,49 @@ std::vector<std::string> advice(const LrbRep& rep, std::span<const Trial> trials
             ") by more than 5 %" + (cause.empty() ? "" : ": " + cause)};
   }
   if (tight.figures.waste < kWorth * now.waste)
-    out.push_back(tight.setting + " wastes least: " + change(now.waste, tight.figures.waste) +
-                  " faces a point, with " + change(now.total_per_real, tight.figures.total_per_real) +
+    out.push_back(tight.setting + " has the lowest waste: " + change(now.waste, tight.figures.waste) +
+                  " faces per point, with " + change(now.total_per_real, tight.figures.total_per_real) +
                   " faces per real face");
   const Trial& small = least([](const RepFigures& f) { return f.total_per_real; });
   if (small.figures.total_per_real < kWorth * now.total_per_real)
     out.push_back(small.setting +
                   " has the fewest faces: " + change(now.total_per_real, small.figures.total_per_real) +
-                  " per real face, and wastes " + change(now.waste, small.figures.waste));
+                  " per real face, with a waste of " + change(now.waste, small.figures.waste));
   const Trial& close = least([](const RepFigures& f) { return f.outer_per_hull; });
   if (close.figures.outer_per_hull < kWorth * now.outer_per_hull)
     out.push_back(close.setting + " has the closest outermost wrapper: " +
-                  change(now.outer_per_hull, close.figures.outer_per_hull) + " times the hull, and wastes " +
-                  change(now.waste, close.figures.waste));
-  if (out.empty()) out.emplace_back("none of the settings tried is better by more than 5 %");
+                  change(now.outer_per_hull, close.figures.outer_per_hull) +
+                  " times the convex hull, with a waste of " + change(now.waste, close.figures.waste));
+  if (out.empty()) out.emplace_back("no setting tried is more than 5 % better");
   return out;
 }
 
 std::string poor_line(const LrbRep& rep, const BuildOptions& build) {
   constexpr double kLoose = 2, kMany = 2.5, kOpen = 2;            // 1.1 to 1.4, 1.5 to 2, and 1 are typical
   if (rep.real_face_count() <= build.max_outer_faces) return {};  // bodies with so few faces need no wrapper
-  if (rep.region_count() == 0) return rep.name() + ": has no regions: every query starts from its faces";
+  if (rep.region_count() == 0) return rep.name() + ": has no regions, so every query starts from its faces";
   const RepFigures f = figures_of(rep);
   std::vector<std::string> faults;
   if (f.waste > kPoorWaste)
-    faults.push_back("a point in its outermost wrapper needlessly opens " + rounded(f.waste) +
+    faults.push_back("a random point in its outermost wrapper needlessly exposes " + rounded(f.waste) +
                      " faces on average (" + kUsualWaste + ")");
   if (f.outer_per_hull > kLoose)
-    faults.push_back("its outermost wrapper has " + rounded(f.outer_per_hull) + " times the hull's " +
+    faults.push_back("its outermost wrapper has " + rounded(f.outer_per_hull) + " times the convex hull's " +
                      (rep.dim() == 2 ? "area: " : "volume: ") + why_loose(rep));
   if (f.outer_faces > kOpen * build.max_outer_faces)
-    faults.push_back("its outermost wrapper has " + std::to_string(f.outer_faces) + " faces, not " +
-                     std::to_string(build.max_outer_faces) + ": nothing simpler was proved to enclose it");
+    faults.push_back("its outermost wrapper has " + std::to_string(f.outer_faces) + " faces instead of " +
+                     std::to_string(build.max_outer_faces) +
+                     ", because no simpler surface was proven to enclose it");
   if (f.total_per_real > kMany)
     faults.push_back("it has " + rounded(f.total_per_real) +
-                     " faces per real face: patches of this size save little");
+                     " faces per real face, because patches of this size save little");
   if (const std::string crowd = crowded_region(rep); !crowd.empty()) faults.push_back(crowd);
   if (faults.empty()) return {};
-  std::string line = rep.name() + ": the LRB-rep is poor: ";
+  std::string line = rep.name() + ": low-quality LRB-rep: ";
   for (std::size_t i = 0; i < faults.size(); ++i) line += (i > 0 ? "; " : "") + faults[i];
   if (const std::string cause = cause_of_waste(rep); !cause.empty()) line += "; " + cause;
-  if (!rep.self_intersecting()) line += "; lrbscope inspect --regions --try shows where, and what helps";
+  if (!rep.self_intersecting())
+    line += "; lrbscope inspect --regions --try shows where, and which settings help";
   return line;
 }
 

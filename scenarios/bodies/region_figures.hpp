@@ -38,7 +38,7 @@ std::vector<RegionFigures> region_figures(const LrbRep& rep, RegionOrder order, 
 
 /// Typical total waste of closed meshes without faults: measured on four real models of 5,856 to 268,686
 /// faces.
-inline constexpr const char* kUsualWaste = "clean meshes have 20 to 120";
+inline constexpr const char* kUsualWaste = "typical of clean meshes: 20 to 120";
 /// Total waste from which a body's LRB-rep counts as poor.
 inline constexpr double kPoorWaste = 400;
 

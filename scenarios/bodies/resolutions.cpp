@@ -75,11 +75,10 @@ Mesh subdivide(const Mesh& mesh) {
 
 std::vector<Mesh> resolutions(const Mesh& mesh, const ResolutionOptions& options) {
   const MeshReport report = check_mesh(mesh, false).when_turned();
-  if (mesh.dim != 3)
-    throw InputError(mesh.name + ": a body in the plane has no resolutions; give one in space");
+  if (mesh.dim != 3) throw InputError(mesh.name + ": expected a 3D body, found a 2D body");
   if (!report.buildable()) {
     const std::vector<std::string> obstacles = report.obstacles(mesh);
-    throw InputError(obstacles.empty() ? mesh.name + ": no LRB-rep can be built of it" : obstacles.front());
+    throw InputError(obstacles.empty() ? mesh.name + ": cannot build an LRB-rep" : obstacles.front());
   }
   const std::uint32_t all[] = {~0u};
   Mesh finest = decimate(mesh, all).front();  // without any collapse: only triangulates polygons

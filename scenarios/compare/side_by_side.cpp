@@ -102,7 +102,8 @@ std::size_t busiest_step(const Runs& runs) {
   for (std::size_t i = 0; i < step_count(runs); ++i)
     if (is_whole(*runs.of[0], i) && is_whole(*runs.of[1], i) && (!best || work(i) > work(*best))) best = i;
   if (!best)
-    throw InputError("no step was recorded whole in both runs: record them with a larger trace.max_events");
+    throw InputError(
+        "no step is recorded completely in both runs; record them with a larger trace.max_events");
   return *best;
 }
 
@@ -114,7 +115,7 @@ std::string cut_words(const Runs& runs) {
   std::string out;
   for (std::size_t i = 0; i < 2; ++i)
     if (const trace::Trace& t = runs.of[i]->trace; t.truncated())
-      out += (out.empty() ? "" : " ") + runs.names[i] + " was cut: its trace holds " +
+      out += (out.empty() ? "" : " ") + runs.names[i] + " is truncated: its trace contains " +
              group_digits(t.events.size()) + " of " + group_digits(t.events_seen) + " events.";
   return out;
 }
@@ -124,7 +125,7 @@ void refuse_folder_of_run(const std::string& folder) {
   for (const char* file : {"/trace.json", "/trace.json.gz"})
     if (std::filesystem::exists(folder + file, error))
       throw InputError(printable_name(folder) +
-                       ": holds a run, whose page would be lost: give another folder with -o");
+                       ": contains a run, whose page would be overwritten; choose another folder with -o");
 }
 
 ColourBy common_colours(const Runs& runs) {
@@ -181,8 +182,8 @@ std::uint64_t pairs_of(const run::Recording& run) {
 
 report::PageTable totals_of(const Runs& runs) {
   report::PageTable t;
-  t.title = "All steps together";
-  t.columns = {"run", "pairs of nodes", "box tests", "face tests", "regions opened", "pairs found"};
+  t.title = "All steps";
+  t.columns = {"run", "pairs of nodes", "box tests", "face tests", "regions refined", "pairs found"};
   for (std::size_t i = 0; i < 2; ++i) {
     const run::Recording& r = *runs.of[i];
     t.rows.push_back({runs.names[i], group_digits(sum_of(r, &Counters::node_pairs)),

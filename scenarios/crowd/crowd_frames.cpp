@@ -69,16 +69,16 @@ class FrameState {
     const CrowdStep& step = run_.steps[m.step];
     render::Overlay o;
     o.title = crowd_.name + "  ·  step " + std::to_string(m.step);
-    o.event =
-        render::counted(count(step, Relation::crossing), "pair of bodies crosses", "pairs of bodies cross");
+    o.event = render::counted(count(step, Relation::crossing), "crossing pair of bodies",
+                              "crossing pairs of bodies");
     o.style = run::style_name(spec_);
     o.event_colour = style().contact;
     const Counters c = sum(step);
     const std::uint64_t n = run_.motion.body_count();
     o.counters = {{"bodies in contact",
                    render::group_digits(bodies_in_contact(step, n)) + " of " + render::group_digits(n)},
-                  {"boxes meet", render::group_digits(step.queries.size()) + " of " +
-                                     render::group_digits(n * (n - 1) / 2) + " pairs"},
+                  {"boxes overlap", render::group_digits(step.queries.size()) + " of " +
+                                        render::group_digits(n * (n - 1) / 2) + " pairs"},
                   {"face tests", render::group_digits(c.face_tests)},
                   {"refined", render::group_digits(c.refinements)}};
     for (std::uint32_t k = 0; k < crowd_.kinds.size(); ++k)
@@ -161,11 +161,12 @@ std::string crowd_caption(const CrowdRun& run, std::uint32_t step) {
   const CrowdStep& s = run.steps[step];
   const std::size_t crossing = count(s, Relation::crossing), touching = count(s, Relation::touching),
                     inside = count(s, Relation::a_inside_b) + count(s, Relation::b_inside_a);
-  std::string out = "Step " + std::to_string(step) + ": " +
-                    render::counted(s.queries.size(), "pair of boxes meets", "pairs of boxes meet") + ", " +
-                    render::counted(crossing, "pair of bodies crosses", "pairs of bodies cross");
-  if (touching > 0) out += ", " + render::group_digits(touching) + " touch";
-  if (inside > 0) out += ", " + render::group_digits(inside) + " lie one in the other";
+  std::string out =
+      "Step " + std::to_string(step) + ": " +
+      render::counted(s.queries.size(), "overlapping pair of boxes", "overlapping pairs of boxes") + ", " +
+      render::counted(crossing, "crossing pair of bodies", "crossing pairs of bodies");
+  if (touching > 0) out += ", " + render::group_digits(touching) + " touching";
+  if (inside > 0) out += ", " + render::group_digits(inside) + " with one body inside the other";
   return out + ".";
 }
 

@@ -29,7 +29,7 @@ std::vector<bodies::LoadedBody> make_kinds(const spec::Crowd& crowd, const run::
     if (kinds.back().rep.dim() != kinds[0].rep.dim())
       throw InputError("crowd " + crowd.name + ": " + kind.name + " is " +
                        std::to_string(kinds.back().rep.dim()) + "D and " + crowd.kinds[0].name + " is " +
-                       std::to_string(kinds[0].rep.dim()) + "D; give bodies of one dimension");
+                       std::to_string(kinds[0].rep.dim()) + "D; expected bodies of the same dimension");
   }
   return kinds;
 }

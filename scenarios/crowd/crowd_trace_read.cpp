@@ -31,8 +31,8 @@ void compare(const CrowdTrace& trace, const CrowdRun& run, std::size_t step) {
     if (x != nullptr && y != nullptr && x->bodies != y->bodies) (x->bodies < y->bodies ? y : x) = nullptr;
     const BodyPair bodies = x != nullptr ? x->bodies : y->bodies;
     throw InputError(trace.file + ": step " + std::to_string(step) + ", " + run.names[bodies.i] + " and " +
-                     run.names[bodies.j] + ": recorded was " + words(x) + ", but these bodies give " +
-                     words(y) + "; the trace is damaged: record it again");
+                     run.names[bodies.j] + ": expected " + words(x) + " as recorded, but these bodies give " +
+                     words(y) + "; the trace is damaged; record it again");
   }
 }
 
@@ -42,15 +42,15 @@ CrowdRun replay_crowd(const CrowdTrace& trace, std::vector<bodies::LoadedBody> k
                       const run::ProgressReport& progress) {
   if (kinds.size() != trace.bodies.size())
     throw InputError(trace.file + ": has " + std::to_string(trace.bodies.size()) +
-                     " kinds of bodies, given are " + std::to_string(kinds.size()));
+                     " kinds of bodies, found " + std::to_string(kinds.size()));
   for (std::size_t k = 0; k < kinds.size(); ++k)
     trace::require_same_body(trace.bodies[k], kinds[k].rep, trace.crowd.kinds[k].name);
   CrowdRun run =
       play_crowd(trace.crowd, std::move(kinds), CrowdMotion(trace.crowd, trace.poses), threads, progress);
   for (std::size_t step = 0; step < run.steps.size(); ++step) compare(trace, run, step);
   if (trace.crowd.steps < trace.steps)
-    run.notes.push_back("the trace holds the first " + std::to_string(trace.crowd.steps) + " of " +
-                        std::to_string(trace.steps) + " steps (trace.max_events): these are drawn");
+    run.notes.push_back("the trace contains only the first " + std::to_string(trace.crowd.steps) + " of " +
+                        std::to_string(trace.steps) + " steps (trace.max_events); only these are drawn");
   return run;
 }
 
@@ -69,9 +69,8 @@ class Reader {
     const TraceNode metadata = root.at("metadata");
     trace::check_format(metadata, t_.file, kCrowdFormat, kCrowdVersion);
     if (metadata.at("version").integer<std::uint32_t>() < kCrowdVersion)
-      throw InputError(t_.file +
-                       ": was recorded by an lrbscope that did not keep where the bodies are: run the "
-                       "crowd again");
+      throw InputError(
+          t_.file + ": recorded by a version of lrbscope that did not store the poses; run the crowd again");
     read_header(metadata);
     read_kinds(metadata.at("kinds"));
     read_answers();
@@ -133,13 +132,13 @@ class Reader {
         node.at("name").fail("the name of a kind of bodies");
       kind.count = node.at("count").integer<std::uint32_t>(spec::kMostCrowdBodies);
       if (kind.count == 0 || names_.size() + kind.count > spec::kMostCrowdBodies)
-        node.at("count").fail("at least 1 body of a kind, and at most 10000 in all");
+        node.at("count").fail("at least 1 body per kind and at most 10000 in total");
       for (std::uint32_t i = 1; i <= kind.count; ++i)
         if (!names_.emplace(kind.name + " " + std::to_string(i), names_.size()).second)
-          node.at("name").fail("another name for each kind");
+          node.at("name").fail("a different name for each kind");
       t_.bodies.push_back(trace::read_body(node.at("body")));
       if (t_.bodies.back().dim != t_.bodies.front().dim)
-        node.at("body").at("dim").fail("bodies of one dimension");
+        node.at("body").at("dim").fail("bodies of the same dimension");
       t_.crowd.kinds.push_back(std::move(kind));
     }
   }
@@ -147,8 +146,8 @@ class Reader {
   std::uint32_t body_called(const std::string& name) const {
     const auto body = names_.find(name);
     if (body == names_.end())
-      throw InputError(t_.file + ": a query names " + printable_name(name) +
-                       ", but there is no such body; the trace is damaged: record it again");
+      throw InputError(t_.file + ": a query refers to " + printable_name(name) +
+                       ", which does not exist; the trace is damaged; record it again");
     return static_cast<std::uint32_t>(body->second);
   }
 
@@ -156,8 +155,8 @@ class Reader {
     t_.answers.resize(queries_.size());
     for (const Slice& s : slices_) {
       if (s.step >= queries_.size())
-        throw InputError(t_.file + ": a query is of step " + std::to_string(s.step) +
-                         ", which does not exist; the trace is damaged: record it again");
+        throw InputError(t_.file + ": a query refers to step " + std::to_string(s.step) +
+                         ", which does not exist; the trace is damaged; record it again");
       const BodyPair bodies{body_called(s.a), body_called(s.b)};
       t_.answers[s.step].push_back({bodies, s.relation, s.pairs, s.fingerprint});
     }
@@ -172,7 +171,7 @@ class Reader {
     for (std::size_t i = 0; i < count; ++i) {
       const TraceNode bodies = steps.at(i);
       if (bodies.array_size() != names_.size())
-        bodies.fail(std::to_string(names_.size()) + " poses, one a body");
+        bodies.fail(std::to_string(names_.size()) + " poses, one per body");
       std::vector<Pose>& poses = t_.poses.emplace_back();
       for (std::size_t body = 0; body < names_.size(); ++body) {
         const Pose pose = trace::read_pose(bodies.at(body));
@@ -188,7 +187,8 @@ class Reader {
     while (whole < std::min(t_.poses.size(), queries_.size()) && t_.answers[whole].size() == queries_[whole])
       ++whole;
     if (whole == 0)
-      throw InputError(t_.file + ": holds no step whole: run the crowd again with a larger trace.max_events");
+      throw InputError(t_.file +
+                       ": contains no complete step; run the crowd again with a larger trace.max_events");
     t_.crowd.steps = static_cast<std::uint32_t>(whole);
     t_.poses.resize(whole);
     t_.answers.resize(whole);

@@ -271,7 +271,7 @@ Wrapper wrapper_of_faces(const LrbRep& rep, std::uint32_t most) {
   }
   if (best > order.size())
     throw InputError("--faces " + std::to_string(most) + ": the outermost wrapper has " +
-                     std::to_string(rep.outermost_faces().size()) + " faces already");
+                     std::to_string(rep.outermost_faces().size()) + " faces");
   Wrapper wrapper(rep);
   for (std::size_t i = 0; i < best; ++i) wrapper.refine(order[i]);
   return wrapper;

@@ -197,7 +197,7 @@ class GlbOut {
     constexpr std::size_t kHeader = 12, kChunkHeader = 8;
     const std::size_t size = kHeader + kChunkHeader + text.size() + kChunkHeader + bin_.size();
     if (size > std::numeric_limits<std::uint32_t>::max())
-      throw InputError("too large for GLB, which holds 4 GB: take PLY or VTP, or fewer faces (--faces)");
+      throw InputError("too large for GLB (at most 4 GB); use PLY or VTP, or fewer faces (--faces)");
     std::string out;
     append(out, kMagic);
     append(out, kVersion);

@@ -94,8 +94,8 @@ const Format& format_of(const std::string& path, const FileOptions& options) {
       std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& f) { return f.ending == ending; });
   if (format == kFormats.end())
     throw InputError(printable_name(path) + ": expected a name that ends in .ply, .vtp, .glb or .obj");
-  if (options.ascii && !format->ascii) throw InputError("--ascii: is for .ply and .vtp");
-  if (options.regions && !format->regions) throw InputError("--regions: is for .glb and .obj");
+  if (options.ascii && !format->ascii) throw InputError("--ascii: needs a .ply or .vtp file");
+  if (options.regions && !format->regions) throw InputError("--regions: needs a .glb or .obj file");
   return *format;
 }
 

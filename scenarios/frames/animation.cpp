@@ -60,7 +60,7 @@ int run_program(const std::vector<std::string>& words) {
   pid_t child = 0;
   const int error = posix_spawnp(&child, arguments[0], &files, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&files);
-  if (error != 0) throw EnvironmentError(words[0] + ": cannot be started: " + std::strerror(error));
+  if (error != 0) throw EnvironmentError(words[0] + ": cannot start the program: " + std::strerror(error));
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -92,8 +92,8 @@ void check_animation(const std::string& file) {
   if (ending != ".mp4" && ending != ".gif" && ending != ".webp")
     throw InputError("--animate: expected a .mp4, .gif or .webp file, found \"" + file + "\"");
   if (!is_installed(program()))
-    throw EnvironmentError("--animate: there is no program " + program() +
-                           ": install ffmpeg, name it in LRB_FFMPEG, or leave --animate out");
+    throw EnvironmentError("--animate: cannot find the program " + program() +
+                           "; install ffmpeg, set LRB_FFMPEG to its path, or leave --animate out");
 }
 
 void animate(const std::string& folder, const std::string& file) {
@@ -106,9 +106,9 @@ void animate(const std::string& folder, const std::string& file) {
   std::error_code error;
   if (code != 0) std::filesystem::remove(part, error);
   if (code != 0)
-    throw EnvironmentError(file + ": ffmpeg could not write it (exit code " + std::to_string(code) + ")");
+    throw EnvironmentError(file + ": ffmpeg cannot write the file (exit code " + std::to_string(code) + ")");
   std::filesystem::rename(part, path, error);
-  if (error) throw EnvironmentError(file + ": cannot be written: " + error.message());
+  if (error) throw EnvironmentError(file + ": cannot write the file: " + error.message());
 }
 
 }  // namespace lrb::run

@@ -117,7 +117,7 @@ void widen_close_ups(const RecordedRun& recorded, std::vector<render::FrameSpec:
   for (render::FrameSpec::View& view : views) {
     if (view.camera != render::FrameSpec::Camera::contact || !close_up_is_whole(recorded, view)) continue;
     view.camera = render::FrameSpec::Camera::scene;
-    if (!view.wrapper) view.title = "Bodies alone";
+    if (!view.wrapper) view.title = "Without wrappers";
   }
 }
 

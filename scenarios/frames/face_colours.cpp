@@ -86,9 +86,8 @@ struct Look {
 };
 
 Look look_of(Side side, bool met, const render::Style& style) {
-  static constexpr const char* kWords[2][2] = {
-      {"A: boxes of nodes that parted", "A: boxes of nodes that met"},
-      {"B: boxes of nodes that parted", "B: boxes of nodes that met"}};
+  static constexpr const char* kWords[2][2] = {{"A: disjoint node boxes", "A: overlapping node boxes"},
+                                               {"B: disjoint node boxes", "B: overlapping node boxes"}};
   const render::Rgba colour = style.edge_of(style.body(side));
   return {met ? BoxLook{colour, 2, 0} : BoxLook{colour, 1, 4}, kWords[static_cast<int>(side)][met ? 1 : 0]};
 }

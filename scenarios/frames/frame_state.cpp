@@ -192,7 +192,7 @@ void FrameState::add_marks(render::Scene& scene, bool plain) const {
   if (now_.way_out) add_way_out(scene, *now_.way_out, reps_[0]->dim());
   if (!plain && !now_.wrong.empty()) {
     add_wrong_pairs(scene.list, now_.wrong, *reps_[0], pose(Side::a), *reps_[1], pose(Side::b), style.paper);
-    scene.key.push_back({render::LegendItem::Mark::line, render::palette::kWrong, "pair got wrong"});
+    scene.key.push_back({render::LegendItem::Mark::line, render::palette::kWrong, "wrong pair"});
   }
   for (const Side side : {Side::a, Side::b})
     if (const trace::TreeShape* tree = tree_of(side); spec_.node_boxes && tree != nullptr)

@@ -61,16 +61,16 @@ std::string FrameState::event_text() const {
              std::to_string(face_of(Side::b)) + ": " + std::string(trace::name_of(e.meet));
     case EventKind::refine:
       return "refine " + region + ": " + render::counted(e.wrapper_change().faces, "face", "faces") +
-             " under it";
+             " exposed";
     case EventKind::coarsen:
       return region + " added";
     case EventKind::contact:
-      return "contact: " + face(Side::a) + " of A meets " + face(Side::b) + " of B";
+      return "contact: " + face(Side::a) + " of A and " + face(Side::b) + " of B";
     case EventKind::result:
       return result_text();
     case EventKind::plane_test:
       return "simplex " + std::to_string(e.a) + " of A and " + std::to_string(e.b) +
-             " of B: parted by the plane of " + side + "'s";
+             " of B: separated by the plane of " + side + "'s";
     case EventKind::node_pair:
       return node_pair_text(e);
     case EventKind::point:
@@ -94,32 +94,31 @@ std::string FrameState::construction_text() const {
 
 std::string FrameState::first_wrappers_text() const {
   const auto has_none = [](const LrbRep* rep) { return rep->region_count() == 0; };
-  if (is_single())
-    return has_none(reps_[0]) ? "the body itself, which has no wrapper" : "the outermost wrapper";
+  if (is_single()) return has_none(reps_[0]) ? "the body (it has no wrapper)" : "the outermost wrapper";
   const bool a = has_none(reps_[0]), b = has_none(reps_[1]);
-  if (a && b) return "the bodies themselves, which have no wrappers";
+  if (a && b) return "the bodies (they have no wrappers)";
   if (a || b)
-    return std::string(a ? "A itself, which has no wrapper; B's" : "B itself, which has no wrapper; A's") +
-           " is the outermost one";
-  return "both wrappers are the outermost ones";
+    return std::string(a ? "A (it has no wrapper) and B's" : "B (it has no wrapper) and A's") +
+           " outermost wrapper";
+  return "both outermost wrappers";
 }
 
 std::string FrameState::open_text() const {
   const bool a = !reps_[0]->closed(), b = !reps_[1]->closed();
-  return a && b ? "undefined, for both bodies are open"
-         : a    ? "undefined, for A is open"
-                : "undefined, for B is open";
+  return a && b ? "undefined, because both bodies are open"
+         : a    ? "undefined, because A is open"
+                : "undefined, because B is open";
 }
 
 std::string FrameState::node_pair_text(const trace::Event& e) {
   const auto [a, b, work, end, pairs_above] = e.node_pair();
   std::string out = "nodes " + std::to_string(a) + " of A and " + std::to_string(b) + " of B: ";
   if (work.met == 0)
-    return out + (end.apart                     ? "apart along " + std::string(name_of(end.axis))
-                  : end.step == NodeStep::whole ? "apart across an edge of each"
-                                                : "no boxes in them meet");
+    return out + (end.apart                     ? "disjoint along " + std::string(name_of(end.axis))
+                  : end.step == NodeStep::whole ? "disjoint across an edge of each"
+                                                : "no overlapping boxes in them");
   if (end.step != NodeStep::leaves)
-    return out + render::counted(work.met, "pair of boxes meets", "pairs of boxes meet");
+    return out + render::counted(work.met, "overlapping pair of boxes", "overlapping pairs of boxes");
   return out + render::counted(work.met, "pair of faces", "pairs of faces") + ", " +
          render::counted(work.met - work.parted, "left to test", "left to test");
 }
@@ -127,10 +126,10 @@ std::string FrameState::node_pair_text(const trace::Event& e) {
 std::string FrameState::measured_text() const {
   if (now_.answer == nullptr) return {};
   std::string out;
-  if (now_.gap) out = now_.gap->text + " apart";
+  if (now_.gap) out = "distance " + now_.gap->text;
   if (now_.answer->clash && now_.answer->clash->kind != ClashKind::apart)
     out += (out.empty() ? "" : ", ") + kind_words(now_.answer->clash->kind, now_.answer->clash->reason);
-  if (now_.way_out) out += ", " + now_.way_out->text + " deep";
+  if (now_.way_out) out += ", depth " + now_.way_out->text;
   return out;
 }
 
@@ -157,8 +156,8 @@ std::string FrameState::relation_text() const {
            render::counted(proof->face_count[1], "face prove it", "faces prove it");
   if (r.relation == Relation::unresolved)
     return std::isfinite(r.error_bound)
-               ? "unresolved: in contact, or no further apart than " + render::short_number(r.error_bound)
-               : "unresolved: the limit came before the coarsest wrappers were compared";
+               ? "unresolved: in contact, or at a distance of at most " + render::short_number(r.error_bound)
+               : "unresolved: the limit was reached before the coarsest wrappers were compared";
   if (now_.parting) {
     const trace::Step& step = *cursor_.step();
     const std::string words = parting_words(*now_.parting, *reps_[0], step.pose_a, *reps_[1], step.pose_b);
@@ -166,7 +165,7 @@ std::string FrameState::relation_text() const {
   }
   const bool open = !reps_[0]->closed() || !reps_[1]->closed();
   return (r.relation == Relation::undefined && open ? open_text() : relation_words(r.relation)) + ": " +
-         render::counted(r.pair_count, "pair of faces meets", "pairs of faces meet");
+         render::counted(r.pair_count, "intersecting pair of faces", "intersecting pairs of faces");
 }
 
 render::Overlay FrameState::overlay(const std::string& title) const {
@@ -226,7 +225,7 @@ void FrameState::add_construction(render::Overlay& o) const {
     o.title += "  ·  " + stage_words(*pass);
   }
   o.counters = {
-      {"hull", render::counted(cursor_.boundary_size(Side::a), "face", "faces")},
+      {"front", render::counted(cursor_.boundary_size(Side::a), "face", "faces")},
       {"regions", render::group_digits(made) + " of " + render::group_digits(reps_[0]->region_count())}};
 }
 
@@ -235,11 +234,11 @@ std::string FrameState::construction_caption() const {
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   const trace::PassSummary* pass = now_.pass;
   if (!now_.is_pass_end)
-    return text + ". Hull: " + render::counted(cursor_.boundary_size(Side::a), "face", "faces") + ".";
+    return text + ". Front: " + render::counted(cursor_.boundary_size(Side::a), "face", "faces") + ".";
   text += ". " + std::string(name_of(pass->stage));
   if (pass->most_off > 0)
-    text += " by caps at most " + render::short_number(pass->most_off) +
-            " off the body (the farthest: " + render::short_number(pass->off) + ")";
+    text += " with caps of deviation at most " + render::short_number(pass->most_off) +
+            " (largest: " + render::short_number(pass->off) + ")";
   if (pass->covered > 0)
     text += "; " + render::counted(pass->accepted(), "cap", "caps") + " of " +
             render::counted(pass->lids, "face", "faces") + " over " + render::group_digits(pass->covered);
@@ -258,9 +257,9 @@ std::string FrameState::short_caption() const {
   if (is_single()) {
     const trace::Totals t = totals();
     const std::uint64_t refined = t.refinements[0] - t.coarsenings[0], all = reps_[0]->region_count();
-    const std::string state = all == 0         ? "the body itself, which has no wrappers"
+    const std::string state = all == 0         ? "the body (it has no wrappers)"
                               : refined == 0   ? "outermost wrapper"
-                              : refined == all ? "the body itself"
+                              : refined == all ? "the body"
                                                : render::group_digits(refined) + " of " +
                                                      render::counted(all, "region", "regions") + " refined";
     return state + ", " + render::counted(cursor_.boundary_size(Side::a), "face", "faces");

@@ -30,8 +30,7 @@ struct Script {
 render::OverlayLayout lay_out_frame(const render::Overlay& overlay, const render::FrameSpec& spec) try {
   return render::lay_out(overlay, spec.width, spec.height, static_cast<float>(spec.scale()));
 } catch (const InputError& e) {
-  throw InputError(std::string(e.what()) +
-                   " (--no-title, --no-legend); `lrbscope figure` lays pictures out for a width on paper");
+  throw InputError(std::string(e.what()) + " (--no-title, --no-legend); for print, use `lrbscope figure`");
 }
 
 Script write_script(FrameState& state, const std::vector<trace::EventId>& events, const std::string& title,
@@ -195,10 +194,10 @@ void check_colours(const RecordedRun& recorded, const render::FrameSpec& spec) {
                                ? std::string("boxes of tree nodes")
                                : "colours by " + std::string(name_of(spec.colour_by));
   if (recorded.reps.size() != 2)
-    throw InputError(what + " need two bodies, whose trees are walked, and this run is of one");
+    throw InputError(what + " need the trees of two bodies, but this run has one body");
   if (recorded.trace->header.request.recursion != Recursion::complete)
-    throw InputError(what + " need the complete query: --recursion " +
-                     std::string(name_of(recorded.trace->header.request.recursion)) + " walks no trees");
+    throw InputError(what + " need the complete query; --recursion " +
+                     std::string(name_of(recorded.trace->header.request.recursion)) + " does not use trees");
 }
 
 }  // namespace
@@ -211,16 +210,15 @@ const std::vector<CollideResult>& results_of(const RecordedRun& recorded) {
 void check_views(const std::vector<render::FrameSpec::View>& views, int dim) {
   if (dim == 2 && std::any_of(views.begin(), views.end(), [](const auto& view) { return view.directed; }))
     throw InputError(
-        "--from, --up, --projection and --orbit: bodies in the plane are seen from above: leave them out; --look-at "
-        "and --zoom are for them too");
+        "--from, --up, --projection and --orbit: expected 3D bodies, found 2D bodies, which are always drawn "
+        "from above; use --look-at and --zoom");
 }
 
 void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec) {
   check_views(spec.views, recorded.reps[0]->dim());
   static_cast<void>(moments(spec, *recorded.trace));
   if (spec.svg && recorded.reps[0]->dim() != 2)
-    throw InputError(
-        "frames as SVG are for 2D bodies, and these are 3D: leave svg out, and ask for a higher --dpi");
+    throw InputError("SVG frames: expected 2D bodies, found 3D bodies; leave svg out, or set a higher --dpi");
   check_colours(recorded, spec);
   check_frame_size(spec);
 }
@@ -231,7 +229,7 @@ void check_frame_size(const render::FrameSpec& spec) {
   if (in_file.width > kMost || in_file.height > kMost)
     throw InputError("frames of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
                      " would have " + std::to_string(in_file.width) + "x" + std::to_string(in_file.height) +
-                     " pixels at this dpi, and 8192 a side is the most: lower --dpi or --size");
+                     " pixels at this dpi, more than 8192 per side; lower --dpi or --size");
 }
 
 std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render::FrameSpec& given,

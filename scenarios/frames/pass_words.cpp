@@ -13,13 +13,13 @@ std::string pass_words(const trace::PassSummary& pass) {
                     render::counted(pass.faces_after, "face", "faces");
   if (pass.refused() > 0)
     out += ", " + render::counted(pass.refused(), "cap", "caps") +
-           " refused: " + trace::refusal_words(pass.caps);
+           " rejected: " + trace::refusal_words(pass.caps);
   return out;
 }
 
 std::string stage_words(const trace::PassSummary& pass) {
   std::string out(name_of(pass.stage));
-  if (pass.most_off > 0) out += ", caps at most " + render::short_number(pass.most_off) + " off the body";
+  if (pass.most_off > 0) out += ", max. deviation " + render::short_number(pass.most_off);
   return out;
 }
 
@@ -27,11 +27,11 @@ namespace {
 
 std::string cap_words(const trace::Event& e) {
   const trace::payload::Cap cap = e.cap();
-  const std::string size = cap.covered == 0 ? "no cap, nothing could be left out"
+  const std::string size = cap.covered == 0 ? "no cap, because no vertex could be removed"
                                             : "cap of " + render::counted(cap.faces, "face", "faces") +
                                                   " over " + render::group_digits(cap.covered);
   std::string out = size + ": " + std::string(name_of(cap.verdict));
-  if (std::isfinite(cap.off)) out += ", " + render::short_number(cap.off) + " off the body";
+  if (std::isfinite(cap.off)) out += ", deviation " + render::short_number(cap.off);
   return out;
 }
 
@@ -48,9 +48,9 @@ std::string built_words(const trace::Event& e) {
       return cap_words(e);
     case EventKind::region:
       return "region " + std::to_string(e.region()) +
-             " made: " + render::counted(e.wrapper_change().faces, "face", "faces") + " under it";
+             " created: " + render::counted(e.wrapper_change().faces, "face", "faces") + " covered";
     case EventKind::merged:
-      return render::counted(e.merged().pieces, "inner shell", "inner shells") + " became part of region " +
+      return render::counted(e.merged().pieces, "inner shell", "inner shells") + " merged into region " +
              std::to_string(e.merged().into);
     case EventKind::closed:
       return "built: " + render::counted(e.closed().regions, "region", "regions") +

@@ -24,7 +24,7 @@ namespace {
 
 std::string rep_words(const trace::BodyInfo& body) {
   return render::group_digits(body.regions) + " regions in " + std::to_string(body.layers) + " layers, " +
-         render::group_digits(body.outer_faces) + " faces outermost";
+         render::group_digits(body.outer_faces) + " outermost faces";
 }
 
 /// Tells whether a body's mesh or only its LRB-rep is another one.
@@ -32,16 +32,16 @@ std::string body_cause(const Golden& golden, const GoldenRun& run, std::size_t i
   const trace::BodyInfo &expected = golden.trace.header.bodies[i],
                         &found = run.recording.trace.header.bodies[i];
   const std::string who = "body " + std::string(name_of(static_cast<Side>(i))) + " (" + found.name + "): ";
-  const std::string built = rep_words(expected) + " became " + rep_words(found);
+  const std::string built = rep_words(expected) + " -> " + rep_words(found);
   if (i >= golden.facts.meshes.size())
-    return who + "its mesh or its LRB-rep is another one: " + built +
-           " (approved by a version that did not note which; approve it anew to have it told)";
+    return who + "its mesh or its LRB-rep changed: " + built +
+           " (this golden does not record which; approve it again to record it)";
   const Mesh mesh = kept_mesh(run.recording.bodies[i].rep);
   if (mesh_hash(mesh) == golden.facts.meshes[i])
-    return who + "the mesh is the same, its LRB-rep was built otherwise: " + built;
+    return who + "the mesh is unchanged, but its LRB-rep was built differently: " + built;
   if (i < golden.meshes.size() && golden.meshes[i])
     return who + "its mesh changed: " + mesh_difference(*golden.meshes[i], mesh);
-  return who + "its mesh changed: " + render::group_digits(expected.real_faces) + " faces became " +
+  return who + "its mesh changed: " + render::group_digits(expected.real_faces) + " -> " +
          render::group_digits(found.real_faces);
 }
 
@@ -51,7 +51,7 @@ std::string request_cause(const CollideRequest& x, const CollideRequest& y) {
   for_each_field<CollideRequest>([&](const auto& field) {
     if (x.*field.member != y.*field.member) names.append(names.empty() ? "" : ", ").append(field.name);
   });
-  return names.empty() ? names : "the query asks otherwise: " + names;
+  return names.empty() ? names : "the query request changed: " + names;
 }
 
 /// Names the first pose that is not as approved.
@@ -61,7 +61,7 @@ std::string pose_cause(const trace::Trace& x, const trace::Trace& y) {
       const Pose &p = x.steps[i].*pose, &q = y.steps[i].*pose;
       if (trace::equal(p, q)) continue;
       return "step " + std::to_string(y.steps[i].index) + ": body " + name +
-             " is elsewhere: its origin moved by " + render::short_number((q.t - p.t).norm());
+             " moved: its origin is displaced by " + render::short_number((q.t - p.t).norm());
     }
   return {};
 }
@@ -72,14 +72,14 @@ std::vector<std::string> find_causes(const Golden& golden, const GoldenRun& run)
   const trace::TraceHeader &x = golden.trace.header, &y = run.recording.trace.header;
   std::vector<std::string> out;
   if (x.scenario_hash != run.scenario.hash)
-    out.emplace_back("the scenario's file is not the one that was approved");
+    out.emplace_back("the scenario file changed since it was approved");
   for (std::size_t i = 0; i < std::min(x.bodies.size(), y.bodies.size()); ++i)
     if (x.bodies[i].hash != y.bodies[i].hash) out.push_back(body_cause(golden, run, i));
   if (const std::string words = request_cause(x.request, y.request); !words.empty()) out.push_back(words);
   if (const std::string words = pose_cause(golden.trace, run.recording.trace); !words.empty())
     out.push_back(words);
   if (x.lrbscope != y.lrbscope)
-    out.push_back("approved with lrbscope " + x.lrbscope + ", run by " + y.lrbscope);
+    out.push_back("approved with lrbscope " + x.lrbscope + ", run with " + y.lrbscope);
   return out;
 }
 
@@ -131,7 +131,7 @@ std::string diagnose(const trace::Trace& expected, const trace::Trace& actual,
   const std::size_t found_in_x = find_after(x, i, y[i]), found_in_y = find_after(y, i, x[i]);
   const bool y_comes = found_in_x < x.size(), x_comes = found_in_y < y.size();
   if (y_comes && x_comes) {
-    if (found_in_x != found_in_y) return "events come in another order" + contacts;
+    if (found_in_x != found_in_y) return "the events are in a different order" + contacts;
     return "events " + std::to_string(event) + " and " + std::to_string(event + found_in_x - i) +
            " are swapped: " + trace::describe(x[i]) + "; " + trace::describe(y[i]) + contacts;
   }
@@ -169,7 +169,7 @@ std::string commonest_change(const render::Image& expected, const render::Image&
   for (const auto& [key, count] : counts)
     if (count > most || (count == most && key < change)) change = key, most = count;
   if (most == 0) return {};
-  return "most often " + hex_colour(static_cast<std::uint32_t>(change >> 32)) + " became " +
+  return "most often " + hex_colour(static_cast<std::uint32_t>(change >> 32)) + " -> " +
          hex_colour(static_cast<std::uint32_t>(change)) + " (" + std::to_string(most) +
          (most == 1 ? " pixel)" : " pixels)");
 }
@@ -194,7 +194,7 @@ std::vector<std::string> parts_of(const std::string& words) {
 /// Returns the first part in which the words for two cameras differ, and how many more parts do.
 std::string moved_words(const std::string& expected, const std::string& actual) {
   const std::vector<std::string> x = parts_of(expected), y = parts_of(actual);
-  if (x.size() != y.size()) return "the camera changed: there were other views";
+  if (x.size() != y.size()) return "the camera changed: the number of views differs";
   std::size_t first = x.size(), more = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (x[i] == y[i]) continue;
@@ -202,7 +202,7 @@ std::string moved_words(const std::string& expected, const std::string& actual) 
     first = std::min(first, i);
   }
   return "the camera moved: expected " + x[first] + ", found " + y[first] +
-         (more > 0 ? ", and " + std::to_string(more) + " more such changes" : "");
+         (more > 0 ? ", and " + std::to_string(more) + " more changes" : "");
 }
 
 /// Tells what is behind a difference: another moment, another camera, or else other colours or shapes.
@@ -250,7 +250,7 @@ ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::Pa
     best.file = variants[i].file;
     best.passed = passed;
     best.equal = equal;
-    best.text = equal ? "the images are equal"
+    best.text = equal ? "the images are identical"
                 : d.same_size
                     ? d.text(tolerance)
                     : "expected " + size_words(expected) + " pixels, found " + size_words(actual.image);
@@ -275,7 +275,7 @@ std::vector<ImageVerdict> check_frames(const Golden& golden, const GoldenRun& ru
     missing.frame = i;
     missing.file = golden.frames[i][0].file;
     missing.has_expected = golden.frames[i][0].damage.empty();
-    missing.text = "approved, but the run has " + std::to_string(run.frames.size()) + " frames only";
+    missing.text = "approved, but the run has only " + std::to_string(run.frames.size()) + " frames";
     out.push_back(missing);
   }
   return out;
@@ -379,7 +379,7 @@ std::vector<std::string> approve_variant(Approval approval, const GoldenVerdict&
                                          const std::string& name, const std::string& variant) {
   if (verdict.divergence)
     throw InputError(name + ": " + verdict.divergence->message() +
-                     "; events must be the same everywhere: approve them first, without --variant");
+                     "; events must match on all machines, so approve them first, without --variant");
   for (const ImageVerdict& image : verdict.images) {
     if (image.passed) continue;
     if (!image.has_actual || !image.has_expected)

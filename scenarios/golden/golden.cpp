@@ -73,7 +73,7 @@ std::string kept_file(std::size_t body, int dim) {
 
 std::string mesh_difference(const Mesh& x, const Mesh& y) {
   if (x.vertices.size() != y.vertices.size() || x.face_count() != y.face_count())
-    return counts_of(x) + " became " + counts_of(y);
+    return counts_of(x) + " -> " + counts_of(y);
   std::size_t moved = 0, farthest = 0;
   double most = 0;
   for (std::size_t v = 0; v < x.vertices.size(); ++v) {
@@ -86,13 +86,14 @@ std::string mesh_difference(const Mesh& x, const Mesh& y) {
   std::string out;
   if (moved > 0) {
     const double share = 100 * most / diagonal_of(x);
-    out = (moved == 1 ? "vertex " : render::group_digits(moved) + " vertices moved, vertex ") +
-          std::to_string(farthest) + (moved == 1 ? " moved by " : " farthest, by ") +
-          render::short_number(most) + " (" + render::short_number(share) + " % of the body's diagonal)";
+    out = (moved == 1 ? "vertex "
+                      : render::group_digits(moved) + " vertices moved; largest displacement: vertex ") +
+          std::to_string(farthest) + (moved == 1 ? " moved by " : " by ") + render::short_number(most) +
+          " (" + render::short_number(share) + " % of the body's diagonal)";
   }
   if (faces > 0)
     out += (out.empty() ? "" : "; ") + render::group_digits(faces) +
-           (faces == 1 ? " face has other corners" : " faces have other corners");
+           (faces == 1 ? " face has different corners" : " faces have different corners");
   return out;
 }
 
@@ -237,8 +238,8 @@ std::vector<std::string> golden_names(const std::string& goldens) {
       out.push_back(entry.path().filename().string());
   if (out.empty())
     throw InputError(printable_name(goldens) +
-                     ": no goldens there; make some with lrbscope golden approve SCENARIO, or name another "
-                     "folder with --goldens");
+                     ": no goldens found; create them with lrbscope golden approve SCENARIO, or choose "
+                     "another folder with --goldens");
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -281,8 +282,8 @@ spec::Scenario golden_scenario(const std::string& goldens, const std::string& na
       shipped ? spec.scenario : (fs::path(goldens) / name / spec.scenario).lexically_normal().string());
   if (scenario.name != name)
     throw InputError(printable_name(folder_of(goldens, name)) + ": " + kGoldenSpec +
-                     " leads to a scenario that is called " + scenario.name +
-                     "; rename the folder, or remove it and approve the scenario anew");
+                     " refers to a scenario with the name " + scenario.name +
+                     "; rename the folder, or remove it and approve the scenario again");
   return scenario;
 }
 

@@ -26,8 +26,8 @@ std::string words(bool value) {
   return value ? "yes" : "no";
 }
 std::string words(const std::optional<Separation>& s) {
-  return s ? "proved by " + std::to_string(s->face_count[0]) + " and " + std::to_string(s->face_count[1]) +
-                 " faces"
+  return s ? "proven by wrappers of " + std::to_string(s->face_count[0]) + " and " +
+                 std::to_string(s->face_count[1]) + " faces"
            : "none";
 }
 template <class Measured>

@@ -17,7 +17,8 @@ namespace lrb::io {
 std::string_view embedded_file(std::string_view name) {
   for (const EmbeddedFile& file : embedded_files())
     if (file.name == name) return file.text;
-  throw EnvironmentError("the program was built without its file " + std::string(name) + ": build it again");
+  throw EnvironmentError("internal file missing from the program: " + std::string(name) +
+                         "; rebuild the program");
 }
 
 namespace fs = std::filesystem;
@@ -37,8 +38,8 @@ void refuse_links_in(const fs::path& folder) {
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (fs::is_symlink(entry->symlink_status()) && is_written(entry->path().filename()))
       throw EnvironmentError(printable_name(entry->path().string()) +
-                             ": a symbolic link stands where a file of the run goes, and could lead out of "
-                             "the folder; remove it, or name another folder with -o");
+                             ": expected a file of the run, found a symbolic link, which could lead out of "
+                             "the folder; remove it, or choose another folder with -o");
 }
 
 }  // namespace
@@ -69,8 +70,8 @@ void refuse_run_of_another(const std::string& folder, const std::string& scenari
   std::string other = read_file(marker);
   if (!other.empty() && other.back() == '\n') other.pop_back();
   if (fs::is_regular_file(other, error) && !fs::equivalent(other, scenario_file, error))
-    throw InputError(printable_name(folder) + ": holds the run of another scenario of this name, " +
-                     printable_name(other) + "; rename one of the two, or name another folder with -o");
+    throw InputError(printable_name(folder) + ": contains the run of another scenario of this name, " +
+                     printable_name(other) + "; rename one of them, or choose another folder with -o");
 }
 
 void mark_run(const std::string& folder, const std::string& scenario_file) {
@@ -86,7 +87,7 @@ FolderLock::FolderLock(const std::string& path)
   close(folder_);
   throw EnvironmentError(
       printable_name(path) +
-      ": another lrbscope is writing to this folder; wait for it, or name another with -o");
+      ": another lrbscope process is writing to this folder; wait for it, or choose another folder with -o");
 }
 
 FolderLock::~FolderLock() {

@@ -48,11 +48,11 @@ double number(std::string_view word, const std::string& where, const std::string
   double x = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
   if (error == std::errc::result_out_of_range)
-    throw InputError(where + shown(word) + " is beyond the range of a double");
+    throw InputError(where + shown(word) + " exceeds the range of a double");
   if (error != std::errc() || end != digits.data() + digits.size())
     throw InputError(where + shown(word) + " is not a number: expected " + wanted);
   if (!std::isfinite(x))
-    throw InputError(where + shown(word) + " is not finite: every number of a pose must be");
+    throw InputError(where + shown(word) + " is not finite; every number of a pose must be finite");
   return x;
 }
 
@@ -101,7 +101,7 @@ std::array<std::size_t, 12> columns_of(const std::vector<std::string_view>& name
   for (std::size_t i = 0; i < out.size(); ++i) {
     const auto at = std::find(names.begin(), names.end(), kPoseColumns[i]);
     if (at == names.end())
-      throw InputError(where + "no column " + std::string(kPoseColumns[i]) +
+      throw InputError(where + "missing column " + std::string(kPoseColumns[i]) +
                        ": expected r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz in any order");
     out[i] = static_cast<std::size_t>(at - names.begin());
   }
@@ -111,14 +111,14 @@ std::array<std::size_t, 12> columns_of(const std::vector<std::string_view>& name
 double number_in(const std::vector<std::string_view>& cells, std::size_t column, const std::string& where) {
   if (cells[column].empty())
     throw InputError(where + "cell " + std::to_string(column + 1) + " is empty: expected a number");
-  return number(cells[column], where, "12 numbers a line");
+  return number(cells[column], where, "12 numbers per line");
 }
 
 /// Throws unless the last four of 16 cells are 0, 0, 0, 1.
 void check_last_row(const std::vector<std::string_view>& cells, const std::string& where) {
   for (std::size_t i = 12; i < 16; ++i)
     if (number_in(cells, i, where) != (i == 15 ? 1 : 0))
-      throw InputError(where + "the last row of the 4x4 pose is not 0, 0, 0, 1");
+      throw InputError(where + "expected 0, 0, 0, 1 as the last row of the 4x4 pose");
 }
 
 /// Calls see(numbers, line) for each line of `count` numbers; `meaning` describes them for messages.
@@ -133,7 +133,7 @@ void read_lines(const std::string& text, const std::string& name, std::size_t co
     const std::string where = name + ":" + std::to_string(++line_number) + ": ";
     if (words.empty()) continue;
     for (std::size_t i = 0; i < words.size() && i < count; ++i)
-      x[i] = number(words[i], where, numbers + " a line");
+      x[i] = number(words[i], where, numbers + " per line");
     if (words.size() != count)
       throw InputError(where + "expected " + numbers + " (" + meaning + "), found " +
                        std::to_string(words.size()));
@@ -207,7 +207,7 @@ std::vector<Pose> parse_pose_table(const std::string& text, const std::string& n
     const std::size_t needed = *std::max_element(column.begin(), column.end()) + 1;
     if (!whole && (named ? cells.size() < needed : cells.size() != 12))
       throw InputError(where + "expected " +
-                       (named ? std::to_string(needed) + " cells, as the first line names them"
+                       (named ? std::to_string(needed) + " cells, as in the first line"
                               : "12 numbers (a row-major 3x4 pose) or 16 (4x4)") +
                        ", found " + std::to_string(cells.size()));
     std::array<double, 12> x{};
@@ -259,7 +259,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
   bool key(string_t& key) override {
     if (level_ == Level::object && skipped_ == 0 && key == "poses") {
       if (!pointer_.empty())
-        throw InputError(place(value_start()) + ": the key /poses occurs twice: keep one");
+        throw InputError(place(value_start()) + ": the key /poses occurs twice; keep one");
       pointer_ = "/poses";
       level_ = Level::member;
     }
@@ -373,7 +373,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
            "expected a pose of 12 numbers (3x4, row by row) or 16 (4x4), found " + std::to_string(found_));
     constexpr std::array<double, 4> kLast = {0, 0, 0, 1};
     if (found_ == 16 && !std::equal(kLast.begin(), kLast.end(), x_.begin() + 12))
-      fail(start_[1], pose_pointer(), "the last row of the 4x4 pose is not 0, 0, 0, 1");
+      fail(start_[1], pose_pointer(), "expected 0, 0, 0, 1 as the last row of the 4x4 pose");
     out_.poses.push_back(pose_of(std::span<const double, 12>(x_.data(), 12)));
     out_.places.push_back(place(position_));
   }

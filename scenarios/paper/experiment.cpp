@@ -32,7 +32,7 @@ std::vector<PaperPart> read_report(const io::JsonNode& node) {
   std::vector<PaperPart> parts;
   for (const io::JsonNode& item : node.items(1)) {
     const auto part = item.choice<PaperPart>();
-    if (std::find(parts.begin(), parts.end(), part) != parts.end()) item.fail("is there twice: remove one");
+    if (std::find(parts.begin(), parts.end(), part) != parts.end()) item.fail("occurs twice; remove one");
     parts.push_back(part);
   }
   std::sort(parts.begin(), parts.end());
@@ -55,10 +55,11 @@ std::vector<PaperExperiment::Object> read_objects(const io::JsonNode& node,
     PaperExperiment::Object o;
     o.name = read_object_name(item.at("name"));
     for (const auto& other : objects)
-      if (other.name == o.name) item.at("name").fail("another object is called " + o.name + ": rename one");
+      if (other.name == o.name)
+        item.at("name").fail("another object has the name " + o.name + "; rename one");
     const io::JsonNode body = item.at("body");
     o.body = spec::read_body(body, folder, 1);
-    if (body.has("pose")) body.fail_key("pose", "the protocol places the bodies: remove it");
+    if (body.has("pose")) body.fail_key("pose", "the protocol places the bodies; remove it");
     objects.push_back(std::move(o));
   }
   if (objects.size() > kMostObjects) node.fail("expected at most 100 objects");
@@ -99,7 +100,7 @@ PaperExperiment parse_experiment(const std::string& text, const std::string& fil
   e.close_up = read_close_up(root, e.objects);
   if (e.collides() && e.objects.size() < 2)
     root.at("objects").fail(
-        "expected a second object for the first one to meet, or \"report\": [\"table1\"]");
+        "expected a second object to collide with the first, or \"report\": [\"table1\"]");
   return e;
 }
 
@@ -110,7 +111,7 @@ std::vector<PaperObject> make_objects(const PaperExperiment& experiment, std::ve
     notes.insert(notes.end(), body.notes.begin(), body.notes.end());
     if (body.rep.dim() != 3)
       throw InputError("experiment " + experiment.name + ": object " + o.name +
-                       " is a 2D body: give one in 3D");
+                       ": expected a 3D body, found a 2D body");
     const double by = objects.empty() ? 1 : diagonal(objects[0].rep) / diagonal(body.rep);
     objects.push_back({o.name, by == 1 ? std::move(body.rep) : scaled(body.rep, by)});
   }
@@ -124,7 +125,7 @@ std::vector<std::string> shipped_experiments() {
 std::string shipped_experiment(const std::string& name) {
   const std::vector<std::string> names = shipped_experiments();
   if (std::find(names.begin(), names.end(), name) == names.end())
-    throw InputError("no experiment is called \"" + name + "\"" + io::suggestion(name, names));
+    throw InputError("unknown experiment \"" + name + "\"" + io::suggestion(name, names));
   return spec::open_named(name, spec::kExperimentEnding, "experiment").text;
 }
 

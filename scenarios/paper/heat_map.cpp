@@ -159,10 +159,9 @@ render::Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, cons
   const render::Image all = render::montage(panels, options);
 
   render::Overlay overlay;
-  overlay.key = {
-      {render::LegendItem::Mark::line, render::palette::kContact, "where the bodies meet in the end"},
-      {render::LegendItem::Mark::dashed, render::palette::kContact, "the same, hidden"}};
-  overlay.scale = render::ScaleBar{"face tests of a face (log scale)", 0, most};
+  overlay.key = {{render::LegendItem::Mark::line, render::palette::kContact, "contact at the last step"},
+                 {render::LegendItem::Mark::dashed, render::palette::kContact, "contact, hidden"}};
+  overlay.scale = render::ScaleBar{"face tests per face (log scale)", 0, most};
   constexpr int kRoom = 400;  // more than the legend needs; what it does not need is cut off
   const render::OverlayLayout tentative = render::lay_out(overlay, all.width(), all.height() + kRoom);
   const int height = all.height() + (all.height() + kRoom - tentative.picture.height);

@@ -99,7 +99,7 @@ class Tree {
     n.state = refined ? State::refined : tests > 0 ? State::tested : State::untouched;
     n.name = std::to_string(r);
     n.what = "region " + n.name + (refined ? ", refined: " : ": ") + std::to_string(rep_.floor(r).size()) +
-             " faces under it, " + std::to_string(tests) + " face tests of its lids";
+             " faces exposed, " + std::to_string(tests) + " face tests of its lids";
     if (n.state == State::tested) n.inside.push_back(hidden(r, n.width));
     return n;
   }
@@ -117,8 +117,8 @@ class Tree {
     }
     Node n;
     n.width = width;
-    n.what = "untouched, under region " + std::to_string(r) + ": " + std::to_string(regions) + " regions, " +
-             std::to_string(faces) + " real faces";
+    n.what = "not visited, under region " + std::to_string(r) + ": " + std::to_string(regions) +
+             " regions, " + std::to_string(faces) + " real faces";
     return n;
   }
 

@@ -60,7 +60,7 @@ std::vector<std::string> files_of(const std::vector<std::string>& paths) {
       if (ending == ".obj" || ending == ".ply" || ending == ".stl" || ending == ".off")
         found.push_back(entry.path().string());
     }
-    if (failure) throw InputError(printable_name(path) + ": cannot be read: " + failure.message());
+    if (failure) throw InputError(printable_name(path) + ": cannot read the file: " + failure.message());
     std::sort(found.begin(), found.end());
     files.insert(files.end(), found.begin(), found.end());
   }
@@ -69,9 +69,9 @@ std::vector<std::string> files_of(const std::vector<std::string>& paths) {
 
 /// Says why no series can be made of a mesh; empty if one can.
 std::string obstacle(const Mesh& mesh) {
-  if (mesh.dim != 3) return "a body in the plane";
+  if (mesh.dim != 3) return "a 2D body";
   const MeshReport report = check_mesh(mesh, false).when_turned();
-  return report.buildable() ? "" : "no LRB-rep can be built of it; see `lrbscope inspect`";
+  return report.buildable() ? "" : "an LRB-rep cannot be built (see `lrbscope inspect`)";
 }
 
 double median(std::vector<double> values) {
@@ -107,18 +107,18 @@ std::vector<Mesh> read_series_bodies(const std::vector<std::string>& paths, std:
     Mesh mesh = read_mesh(file);
     mesh.name = fs::path(file).stem().string();
     if (const std::string why = obstacle(mesh); !why.empty()) {
-      notes.push_back(printable_name(file) + ": left out: " + why);
+      notes.push_back(printable_name(file) + ": skipped: " + why);
       continue;
     }
     if (!names.insert(mesh.name).second)
-      throw InputError(printable_name(file) + ": another mesh is named " + printable_name(mesh.name) +
-                       ", too; give each a name of its own");
+      throw InputError(printable_name(file) + ": another mesh has the name " + printable_name(mesh.name) +
+                       "; give each mesh its own name");
     bodies.push_back(std::move(mesh));
   }
   if (bodies.empty())
     throw InputError(
-        "--meshes: no mesh that an LRB-rep can be built of; give OBJ, PLY, STL or OFF files of "
-        "closed bodies, or folders of them");
+        "--meshes: no mesh from which an LRB-rep can be built; give OBJ, PLY, STL or OFF files of closed "
+        "bodies, or folders of them");
   return bodies;
 }
 
@@ -175,7 +175,7 @@ std::string times_to_json_lines(std::span<const ContactStep> steps) {
 void read_times(const std::string& text, const std::string& file, std::vector<ContactStep>& steps) {
   const auto refuse = [&](std::size_t line, const std::string& why) {
     throw InputError(printable_name(file) + ":" + std::to_string(line) + ": " + why +
-                     "; give the folders that the shards of one `lrbscope paper` wrote");
+                     "; give the output folders of the shards of one `lrbscope paper`");
   };
   std::map<std::tuple<std::string, std::uint32_t, std::uint32_t>, ContactStep*> by_key;
   for (ContactStep& s : steps) by_key[key(s)] = &s;
@@ -188,7 +188,7 @@ void read_times(const std::string& text, const std::string& file, std::vector<Co
           by_key.find({j.at("object").get<std::string>(), j.at("collision").get<std::uint32_t>(),
                        j.at("step").get<std::uint32_t>()});
       const auto ns = j.at("nanoseconds").get<std::array<std::uint64_t, 3>>();
-      if (found == by_key.end()) refuse(number, "the time of a step that has no record");
+      if (found == by_key.end()) refuse(number, "a time for a step without a record");
       for (std::size_t i = 0; i < ns.size(); ++i) found->second->counts[i].nanoseconds = ns[i];
     } catch (const nlohmann::json::exception& e) {
       refuse(number, "not the time of a step: " + printable_name(e.what()));
@@ -220,9 +220,9 @@ std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject
   }
   if (!by_object.empty())
     throw InputError(
-        "the records have an object " + printable_name(by_object.begin()->first) +
-        " that is not in the series; give the same --meshes, --resolutions and --subdivide as to "
-        "the shards");
+        "the records contain the object " + printable_name(by_object.begin()->first) +
+        ", which is not in the series; give the same --meshes, --resolutions and --subdivide as for the "
+        "shards");
   return rows;
 }
 

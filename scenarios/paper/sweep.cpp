@@ -42,7 +42,7 @@ std::array<std::uint32_t, 2> easiest_and_hardest(std::span<const ContactStep> st
   for (const ContactStep& s : steps)
     if (s.object == object) comparisons[s.collision] += s.counts[kPaper].comparisons;
   if (comparisons.empty())
-    throw InputError("no collision with " + object + " was recorded: there is nothing to look at closely");
+    throw InputError("no collision with " + object + " was recorded, so there is no close-up");
   const auto less = [](const auto& p, const auto& q) { return p.second < q.second; };
   return {std::min_element(comparisons.begin(), comparisons.end(), less)->first,
           std::max_element(comparisons.begin(), comparisons.end(), less)->first};
@@ -55,10 +55,10 @@ CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProt
   out.collision = collision;
   out.steps = run_collision(pair.a.rep, pair.x.rep, pair.x.name, collision, protocol, workspace);
   if (!same_counts(records, out, pair.x.name))
-    throw InputError("collision " + std::to_string(collision) + " of " + pair.a.name + " with " +
-                     pair.x.name +
-                     " is not what the records say: they were made by another experiment; "
-                     "give the one they were made by, with the same options");
+    throw InputError(
+        "collision " + std::to_string(collision) + " of " + pair.a.name + " with " + pair.x.name +
+        " differs from the records, which come from another experiment; give the experiment that "
+        "wrote them, with the same options");
   trace::RecorderSettings settings;
   settings.request.recursion = kRecursions[kPaper];
   trace::Recorder recorder(pair.a.rep, pair.x.rep, settings);
@@ -86,7 +86,7 @@ nlohmann::ordered_json experiment(const ShardFile& s) {
 ShardFile read(const std::string& path) {
   const auto refuse = [&](const char* why) {
     throw InputError(printable_name(path) + ": not written by `lrbscope paper --shard`: " +
-                     printable_name(why) + "; give the records.jsonl in the folders that its shards wrote");
+                     printable_name(why) + "; give the records.jsonl files of its shards' output folders");
   };
   const auto j = nlohmann::json::parse(io::read_text(path), nullptr, false);
   ShardFile s;
@@ -123,9 +123,9 @@ ShardFile read_shard_files(const std::vector<std::string>& records) {
     const ShardFile s = read(path);
     if (!first) first = s;
     if (experiment(s) != experiment(*first))
-      throw InputError(printable_name(path) + ": a shard of another experiment than " +
+      throw InputError(printable_name(path) + ": belongs to another experiment than " +
                        printable_name(shard_file_of(records.front())) +
-                       "; give all shards of one, run with the same options");
+                       "; give all shards of one experiment, run with the same options");
     there.push_back(s.shard.index);
   }
   std::sort(there.begin(), there.end());
@@ -133,7 +133,7 @@ ShardFile read_shard_files(const std::vector<std::string>& records) {
     const auto times = std::count(there.begin(), there.end(), i);
     if (times != 1)
       throw InputError("--merge: shard " + std::to_string(i) + "/" + std::to_string(first->shard.count) +
-                       (times == 0 ? " is missing" : " is there twice") +
+                       (times == 0 ? " is missing" : " occurs twice") +
                        "; give each shard's records.jsonl once");
   }
   first->shard = {};
@@ -211,7 +211,7 @@ std::vector<ContactStep> read_json_lines(const std::string& text, const std::str
     } catch (const std::exception& e) {
       throw InputError(printable_name(file) + ":" + std::to_string(line) +
                        ": not a record of `lrbscope paper`: " + printable_name(e.what()) +
-                       "; give the records.jsonl files that its shards wrote");
+                       "; give the records.jsonl files written by its shards");
     }
     begin = end + 1;
   }
@@ -225,7 +225,7 @@ std::vector<ContactStep> merged(std::vector<ContactStep> steps) {
     if (key(steps[i - 1]) == key(steps[i]))
       throw InputError("object " + steps[i].object + ", collision " + std::to_string(steps[i].collision) +
                        ", step " + std::to_string(steps[i].step) +
-                       " is there twice; give each shard's records once");
+                       " occurs twice; give each shard's records once");
   return steps;
 }
 

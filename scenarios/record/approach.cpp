@@ -135,7 +135,7 @@ std::string contact_step(const trace::MeasuredApproach& search) {
 std::string contact_way(const trace::MeasuredApproach& search) {
   if (!search.length) return {};
   const double length = (*search.length)[1];
-  return length < 0 ? "B moves " + io::number_text(-length) + " from there to step 0"
+  return length < 0 ? "B moves " + io::number_text(-length) + " from there until step 0"
                     : "after B has moved " + io::number_text(length) + " from step 0";
 }
 

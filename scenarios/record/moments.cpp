@@ -40,7 +40,7 @@ std::vector<EventId> wrapper_changes(const trace::Trace& trace) {
 /// regions.
 std::vector<EventId> pass_ends(const trace::Trace& trace) {
   if (!trace.header.construction)
-    throw InputError("frames after passes are for constructions: take step, refinement or event");
+    throw InputError("frames \"pass\": expected a construction; use step, refinement or event");
   std::vector<EventId> out = {0};
   for (const trace::PassSummary& p : trace::passes_of(trace))
     if (p.regions > 0) out.push_back(p.last);
@@ -52,8 +52,7 @@ std::vector<EventId> listed(const render::FrameSpec& spec, const trace::Trace& t
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   if (!out.empty() && out.back() >= trace.events.size())
-    throw InputError("frames: event " + std::to_string(out.back()) +
-                     " was asked for, but the trace ends with event " +
+    throw InputError("frames: event " + std::to_string(out.back()) + ": the trace ends with event " +
                      std::to_string(trace.events.size() - 1));
   return out;
 }

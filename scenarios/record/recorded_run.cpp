@@ -30,8 +30,8 @@ void check_vertex(const Recording& run, const trace::Event& e) {
   const std::size_t count =
       side < run.bodies.size() ? run.bodies[side].rep.vertices().size() : std::size_t{0};
   if (e.a >= count)
-    throw InputError("an event is about vertex " + std::to_string(e.a) + " of " +
-                     std::string(name_of(e.side)) + ", which has " + std::to_string(count));
+    throw InputError("an event refers to vertex " + std::to_string(e.a) + " of " +
+                     std::string(name_of(e.side)) + ", which has only " + std::to_string(count));
 }
 
 /// Throws if the trace cannot be a recording of the run's bodies.
@@ -79,7 +79,7 @@ std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
     for (const std::string& name : names) paths.push_back((beside / name).string());
   }
   if (paths.size() != names.size())
-    throw InputError(trace_path + ": has " + std::to_string(names.size()) + " bodies, --bodies names " +
+    throw InputError(trace_path + ": has " + std::to_string(names.size()) + " bodies, but --bodies gives " +
                      std::to_string(paths.size()));
   std::vector<bodies::LoadedBody> out;
   out.reserve(paths.size());
@@ -107,9 +107,8 @@ std::string trace_of(const std::string& run) {
   std::string path = (std::filesystem::path(run) / "trace.json").string();
   if (!std::filesystem::exists(path, error)) path += ".gz";
   if (!std::filesystem::exists(path, error))
-    throw InputError(
-        printable_name(run) +
-        ": there is no trace.json or trace.json.gz: give the folder of a run, as `lrbscope run -o` writes it");
+    throw InputError(printable_name(run) +
+                     ": no trace.json or trace.json.gz found; give the output folder of `lrbscope run`");
   return path;
 }
 
@@ -122,19 +121,19 @@ OpenStep open_step(const std::string& run, std::optional<std::uint32_t> number) 
   const std::string path = trace_of(run);
   const trace::Trace trace = trace::load_trace(path);
   if (trace.header.bodies.size() != 2)
-    throw InputError(printable_name(path) + ": is of one body, and pairs are of two");
-  if (trace.steps.empty()) throw InputError(printable_name(path) + ": has no time step");
+    throw InputError(printable_name(path) + ": expected a run of two bodies, found one body");
+  if (trace.steps.empty()) throw InputError(printable_name(path) + ": the trace has no time steps");
   const auto at = number ? std::find_if(trace.steps.begin(), trace.steps.end(),
                                         [&](const trace::Step& s) { return s.index == *number; })
                          : trace.steps.end() - 1;
   if (at == trace.steps.end())
-    throw InputError(printable_name(path) + ": has no step " + std::to_string(*number) +
-                     "; its steps go from " + std::to_string(trace.steps.front().index) + " to " +
-                     std::to_string(trace.steps.back().index));
+    throw InputError(printable_name(path) + ": no step " + std::to_string(*number) +
+                     " in the trace; expected one from " + std::to_string(trace.steps.front().index) +
+                     " to " + std::to_string(trace.steps.back().index));
   OpenStep out{find_bodies(path, {}, {"a.lrb", "b.lrb"}), *at};
   for (std::size_t i = 0; i < out.bodies.size(); ++i)
     if (out.bodies[i].rep.hash() != trace.header.bodies[i].hash)
-      throw InputError(printable_name(path) + ": the body beside it is not the one that was recorded as " +
+      throw InputError(printable_name(path) + ": the .lrb file next to it is not the recorded body " +
                        (i == 0 ? "A" : "B"));
   return out;
 }
@@ -164,7 +163,7 @@ std::string note_of(const Approach& approach) {
     return "first contact at " + step + ", " + contact_way(approach.search) +
            "; the first step in contact is step " + std::to_string(approach.first_contact);
   return approach.met ? "first contact at step " + std::to_string(approach.first_contact)
-                      : "the bodies did not meet on the way";
+                      : "the bodies do not touch along the path";
 }
 
 std::vector<Pose> poses_of_b(const spec::Scenario& s, Recording& r) {
@@ -246,8 +245,8 @@ std::vector<RegionId> outside_in(const LrbRep& rep) {
 void require_closed(const spec::Scenario& s, const LrbRep& rep) {
   if (rep.closed()) return;
   throw InputError("scenario " + s.name + ": body a, " + printable_name(source_of(s.bodies[0])) +
-                   ", is open: it has no inside, and so no wrapper to refine or to construct; close it "
-                   "(lrbscope inspect names its open edges), or show a collision");
+                   ", is open, so it has no wrapper to refine or to construct; close it (lrbscope inspect "
+                   "lists its open edges), or show a collision");
 }
 
 void record_refinement(const spec::Scenario& s, Recording& r) {
@@ -265,8 +264,7 @@ void record_known(const spec::Scenario& s, Recording& r) {
   require_closed(s, rep);
   r.trace = trace::known_construction(rep, s.bodies[0].pose, recorder_settings(s));
   if (rep.region_count() > 0)
-    r.notes.push_back(rep.name() +
-                      ": came with its regions: no builder could be watched, and they are shown by layers");
+    r.notes.push_back(rep.name() + ": its regions were not built in this run, so they are shown by layers");
 }
 
 void record_construction(const spec::Scenario& s, Recording& r) {
@@ -287,7 +285,7 @@ void finish(const spec::Scenario& s, Recording& r) {
     of_bodies.insert(of_bodies.end(), body.notes.begin(), body.notes.end());
   r.notes.insert(r.notes.begin(), of_bodies.begin(), of_bodies.end());
   if (r.trace.truncated())
-    r.notes.push_back("the trace holds the first " + std::to_string(r.trace.events.size()) + " of " +
+    r.notes.push_back("the trace contains only the first " + std::to_string(r.trace.events.size()) + " of " +
                       std::to_string(r.trace.events_seen) + " events (trace.max_events)");
 }
 
@@ -350,7 +348,7 @@ std::vector<std::string> mismatches(const spec::Scenario& scenario, const Record
   for (const spec::Expectation& e : scenario.expect) {
     const std::string where = e.place + ": step " + std::to_string(e.step) + ": ";
     if (e.step >= r.results.size()) {
-      out.push_back(where + "the run has " + std::to_string(r.results.size()) + " steps only");
+      out.push_back(where + "the run has only " + std::to_string(r.results.size()) + " steps");
       continue;
     }
     const CollideResult& result = r.results[e.step];

@@ -11,17 +11,17 @@ namespace lrb::run {
 std::string_view words(DecidedBy by) {
   switch (by) {
     case DecidedBy::node_boxes:
-      return "boxes of the trees' nodes, which are apart";
+      return "boxes of tree nodes, which are disjoint";
     case DecidedBy::node_edges:
-      return "a direction across the edges of two nodes' boxes, which are apart along it";
+      return "a direction across edges of two nodes' boxes, along which the boxes are disjoint";
     case DecidedBy::face_boxes:
-      return "the faces' own boxes, which are apart";
+      return "the boxes of the two faces, which are disjoint";
     case DecidedBy::planes:
-      return "the plane of one face, which has all of the other on one side, in floats with bounded errors";
+      return "the plane of one face, which has the other face on one side (floating point with error bounds)";
     case DecidedBy::floats:
-      return "floats with bounded errors, which are certain here";
+      return "floating point with error bounds";
     case DecidedBy::exact:
-      return "the exact test, because floats were not certain";
+      return "the exact test, because floating point could not decide";
   }
   return {};
 }
@@ -86,7 +86,7 @@ std::vector<std::string> contact_points(const exact::PairContact& contact) {
 /// Writes one line for each pair of boxes.
 void write_way(std::ostream& out, const PairExplanation& e) {
   constexpr int kNodeColumn = 10, kGapColumn = 14;
-  out << "the way from the roots, largest gap of the boxes first, negative: they overlap\n";
+  out << "path from the roots; gap: widest separating gap of the two boxes, negative if they overlap\n";
   out << std::setw(kNodeColumn) << "A's node" << std::setw(kNodeColumn) << "B's node" << std::setw(kGapColumn)
       << "gap"
       << "  along\n";
@@ -95,29 +95,30 @@ void write_way(std::ostream& out, const PairExplanation& e) {
         << p.gap << "  " << name_of(p.axis) << what << "\n";
   };
   for (const BoxPair& p : e.nodes) line(p, "");
-  if (e.reaches_faces) line(e.face_boxes, ", the faces' own boxes");
+  if (e.reaches_faces) line(e.face_boxes, ", the boxes of the two faces");
 }
 
 void write_regions(std::ostream& out, const LrbRep& rep, const std::vector<RegionId>& regions,
                    const char* whose) {
-  out << whose << " face is hidden by " << regions.size() << (regions.size() == 1 ? " region" : " regions");
+  out << whose << " face is covered by " << regions.size() << (regions.size() == 1 ? " region" : " regions");
   for (std::size_t i = 0; i < regions.size(); ++i)
-    out << (i == 0 ? ", from the outside inward: " : ", ") << regions[i].value() << " (layer "
+    out << (i == 0 ? ", from outside to inside: " : ", ") << regions[i].value() << " (layer "
         << rep.layer(regions[i]) << ")";
   out << "\n";
 }
 
 void write_sides(std::ostream& out, const PlaneSides& sides, int corners, const char* whose,
                  const char* other) {
-  out << whose << " corners by the " << (corners == 3 ? "plane" : "line") << " of " << other << " face: ";
+  out << whose << " corners relative to the " << (corners == 3 ? "plane" : "line") << " of " << other
+      << " face: ";
   for (int i = 0; i < corners; ++i) {
     const int sign = sides.exact[i];
     out << (i == 0 ? "" : ", ")
         << (sign > 0   ? "in front"
             : sign < 0 ? "behind"
-                       : "in it")
+                       : "on it")
         << " (" << sides.distance[i] << ")";
-    if (sides.in_double[i] != sign) out << " where double arithmetic has " << sides.in_double[i];
+    if (sides.in_double[i] != sign) out << " (double precision gives " << sides.in_double[i] << ")";
   }
   out << "\n";
 }
@@ -188,7 +189,7 @@ std::string explanation_text(const PairExplanation& e, const LrbRep& a, const Lr
   write_sides(out, e.sides[0], corners, "A's", "B's");
   write_sides(out, e.sides[1], corners, "B's", "A's");
   if (e.meet == exact::Meet::disjoint) {
-    out << "nearest points: " << point_text(e.nearest[0]) << " and " << point_text(e.nearest[1])
+    out << "closest points: " << point_text(e.nearest[0]) << " and " << point_text(e.nearest[1])
         << "\ndistance " << e.distance;
     if (const double ulps = e.distance / e.ulp; ulps < kMostUlps)
       out << ", " << ulps << " units in the last place of the largest coordinate";
@@ -208,37 +209,37 @@ std::string explanation_text(const WalkExplanation& e) {
   std::ostringstream out;
   out << std::setprecision(kShownDigits);
   out << name_of(e.result.relation) << ", " << e.result.pairs.size() << " pairs\n";
-  out << "boxes round the bodies: "
+  out << "boxes of the bodies: "
       << (e.roots.gap > 0 ? "gap >= " + io::lower_text(e.roots.gap, kShownDigits)
                           : "overlap by " + io::number_text(-e.roots.gap, kShownDigits))
       << " along " << name_of(e.roots.axis) << "\n\n";
-  out << std::setw(kColumn) << "depth" << std::setw(kColumn) << "node pairs" << std::setw(kColumn) << "apart"
+  out << std::setw(kColumn) << "depth" << std::setw(kColumn) << "node pairs" << std::setw(kColumn)
+      << "disjoint"
       << "\n";
   for (std::size_t i = 0; i < e.depths.size(); ++i)
     out << std::setw(kColumn) << i << std::setw(kColumn) << e.depths[i].node_pairs << std::setw(kColumn)
         << e.depths[i].ended << "\n";
-  out << "\npairs of leaves " << e.leaf_pairs << ", pairs of faces whose boxes meet " << e.face_pairs
-      << "; planes left " << e.left << " of them, about " << e.certain << " of which floats are certain\n";
+  out << "\npairs of leaves " << e.leaf_pairs << ", pairs of faces with overlapping boxes " << e.face_pairs
+      << "; not separated by planes: " << e.left << ", about " << e.certain
+      << " of which are decided in floating point\n";
   if (!e.near.empty()) {
-    out << "nearest of those left, for --pair:";
+    out << "closest of these, for --pair:";
     for (const SimplexPair& p : e.near) out << " " << p.a << "," << p.b;
     out << "\n";
   }
-  if (e.result.pairs.empty() && e.left == 0) out << "no two faces come as far as a comparison of their own\n";
+  if (e.result.pairs.empty() && e.left == 0) out << "no two faces need an individual test\n";
   if (const auto& boxes = e.nearest_boxes)
-    out << "the nearest of the boxes found apart, of "
-        << (boxes->of_faces ? "faces in the leaves " : "nodes ") << boxes->pair.node[0] << " of A and "
-        << boxes->pair.node[1] << " of B: " << boxes->pair.gap << " apart along " << name_of(boxes->pair.axis)
-        << "\n";
+    out << "closest disjoint boxes: " << (boxes->of_faces ? "faces in the leaves " : "nodes ")
+        << boxes->pair.node[0] << " of A and " << boxes->pair.node[1] << " of B, gap " << boxes->pair.gap
+        << " along " << name_of(boxes->pair.axis) << "\n";
   if (e.plane)
-    out << "a plane across (" << e.plane->normal.x() << ", " << e.plane->normal.y() << ", "
-        << e.plane->normal.z() << ") has all of A on one side and all of B on the other, gap >= "
-        << io::lower_text(e.plane->gap(), kShownDigits) << "\n";
+    out << "separating plane with normal (" << e.plane->normal.x() << ", " << e.plane->normal.y() << ", "
+        << e.plane->normal.z() << "), gap >= " << io::lower_text(e.plane->gap(), kShownDigits) << "\n";
   if (e.result.separation) {
     const auto& [refined, faces] = *e.result.separation;
     out << "wrappers of " << faces[0] << " and " << faces[1] << " faces, with " << refined[0].size()
         << " and " << refined[1].size()
-        << " regions refined, prove it too (`query --draw-separation` draws them)\n";
+        << " regions refined, also prove it (draw them with `query --draw-separation`)\n";
   }
   return out.str();
 }

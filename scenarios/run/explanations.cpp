@@ -247,7 +247,7 @@ json explanations_json(const RecordedRun& p, const Explained& what, const SceneF
   std::string cut;
   if (pairs.size() < all)
     cut = "This page explains " + render::group_digits(pairs.size()) + " of the " +
-          render::group_digits(all) + " pairs that its events compare, contacts first.";
+          render::group_digits(all) + " pairs tested by its events, contacts first.";
   return {{"by", std::move(by)},
           {"meets", std::move(meets)},
           {"axes", std::move(axes)},

@@ -46,7 +46,7 @@ nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame) {
     ways_out.push_back(is_way_out ? 1 : 0);
     frame.add_point(ends, way.from);
     frame.add_point(ends, way.to);
-    words.push_back(way.text + (is_way_out ? " deep" : " apart"));
+    words.push_back((is_way_out ? "depth " : "distance ") + way.text);
   };
   for (std::size_t i = 0; i < p.trace->steps.size(); ++i) {
     const trace::Step& s = p.trace->steps[i];
@@ -384,16 +384,16 @@ json wrong_json(const RecordedRun& p, const Numbers& steps) {
 std::string thinned_words(const trace::Trace& trace, const ThinnedEvents& events,
                           const std::string& trace_file) {
   if (events.all(trace)) return {};
-  std::string out = "Of the run's " + render::group_digits(trace.events.size()) + " events this page has " +
-                    render::group_digits(events.kept.size()) + ": ";
+  std::string out = "Of the run's " + render::group_digits(trace.events.size()) +
+                    " events, this page contains " + render::group_digits(events.kept.size()) + ": ";
   if (trace.header.construction)
-    return out + "all regions, and evenly chosen others. " + trace_file + " has them all.";
+    return out + "all regions, and others evenly spaced. " + trace_file + " contains all of them.";
   out += events.cut ? "the first refinements"
          : events.steps < trace.steps.size()
              ? "of " + render::group_digits(events.steps) + " of " +
-                   render::group_digits(trace.steps.size()) + " time steps all refinements"
+                   render::group_digits(trace.steps.size()) + " time steps, all refinements"
              : "all refinements, then contacts";
-  return out + ", and evenly chosen others as far as there is room. " + trace_file + " has them all.";
+  return out + ", and others, evenly spaced, up to a size limit. " + trace_file + " contains all of them.";
 }
 
 /// Returns the passes of a construction: where they end, and what they made, in words; null for other runs.
@@ -406,9 +406,9 @@ json passes_json(const trace::Trace& trace) {
 }
 
 std::string too_large_words(std::size_t faces, const SceneLimits& limits) {
-  return "No view in three dimensions: the bodies have " + render::group_digits(faces) +
-         " faces with those of their regions, and a page takes " + render::group_digits(limits.faces) +
-         ". lrbscope render draws them.";
+  return "No 3D view: the bodies have " + render::group_digits(faces) +
+         " faces including their regions, and the limit for a page is " + render::group_digits(limits.faces) +
+         ". Draw them with lrbscope render.";
 }
 
 /// Returns from where frames are seen, as their first view has it: the page's view begins so. Null where

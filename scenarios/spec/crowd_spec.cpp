@@ -22,12 +22,12 @@ std::vector<CrowdKind> read_kinds(const io::JsonNode& node, const std::filesyste
     kind.name = read_name(item.at("name"));
     for (const CrowdKind& other : kinds)
       if (other.name == kind.name)
-        item.at("name").fail("other bodies are called " + kind.name + ": rename one");
+        item.at("name").fail("other bodies have the name " + kind.name + "; rename one");
     kind.body = read_body(item.at("body"), folder, seed);
     if (const auto n = item.get("count"))
       kind.count = static_cast<std::uint32_t>(n->integer(1, kMostCrowdBodies));
     bodies += kind.count;
-    if (bodies > kMostCrowdBodies) node.fail("expected at most 10000 bodies in all");
+    if (bodies > kMostCrowdBodies) node.fail("expected at most 10000 bodies in total");
     kinds.push_back(std::move(kind));
   }
   return kinds;
@@ -61,9 +61,9 @@ Eigen::Vector3d read_room(const io::JsonNode& node) {
 FrameSpec read_crowd_frames(const io::JsonNode& node) {
   FrameSpec frames = read_frames(node, {});
   for (const char* key : {"events", "colour_by", "node_boxes", "explode", "montage", "format"})
-    if (node.has(key)) node.fail_key(key, "frames of a crowd have none: remove it");
+    if (node.has(key)) node.fail_key(key, "not supported for a crowd; remove it");
   if (frames.at != FrameSpec::At::step && frames.at != FrameSpec::At::none)
-    node.at("at").fail("frames of a crowd are drawn at a step, or none are");
+    node.at("at").fail("expected step or none for the frames of a crowd");
   return frames;
 }
 
@@ -92,7 +92,7 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   c.request.contacts = true;
   if (const auto n = root.get("query")) {
     for (const char* key : {"tolerance", "max_tests", "separation"})
-      if (n->has(key)) n->fail_key(key, "queries of a crowd are exact: remove it, or make it a scenario");
+      if (n->has(key)) n->fail_key(key, "queries of a crowd are exact; remove it, or use a scenario");
     c.request = read_query(*n);
   }
   if (const auto trace = root.get("trace")) {

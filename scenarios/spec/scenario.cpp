@@ -51,7 +51,7 @@ BodySpec read_body(const io::JsonNode& node, const std::filesystem::path& folder
   body.build.seed = seed;
   if (node.has("file") == node.has("generator")) node.fail("expected either \"file\" or \"generator\"");
   if (const auto file = node.get("file")) {
-    if (node.has("parameters")) node.fail_key("parameters", "only a generator has parameters: remove it");
+    if (node.has("parameters")) node.fail_key("parameters", "only a generator has parameters; remove it");
     if (file->string().empty()) file->fail("expected the name of a mesh or .lrb file");
     body.file = (folder / file->string()).lexically_normal().string();
   } else {
@@ -67,7 +67,7 @@ BodySpec read_body(const io::JsonNode& node, const std::filesystem::path& folder
     const generators::Generator* generator = generators::find_generator(body.generator);
     for (const char* key : {"patch_interior", "max_outer_faces", "lean"})
       if (generator != nullptr && generator->make_rep != nullptr && build->has(key))
-        build->fail_key(key, "the regions of this body are known by construction: remove it");
+        build->fail_key(key, "the regions of this body are known by construction; remove it");
   }
   if (const auto pose = node.get("pose")) body.pose = read_pose(*pose);
   return body;
@@ -78,7 +78,7 @@ std::string read_name(const io::JsonNode& node) {
   const bool plain = !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
-  if (!plain) node.fail("expected 1 to 64 letters, digits, - and _: the output folder is named after it");
+  if (!plain) node.fail("expected 1 to 64 letters, digits, - and _, because it also names the output folder");
   return name;
 }
 
@@ -109,7 +109,7 @@ std::vector<BodySpec> read_bodies(const io::JsonNode& node, Show show, const std
   if (show == Show::collision)
     bodies.push_back(read_body(node.at("b"), folder, seed));
   else if (node.has("b"))
-    node.fail_key("b", "a scenario that shows a refinement or a construction has body a only: remove it");
+    node.fail_key("b", "a scenario of a refinement or a construction has only body a; remove it");
   return bodies;
 }
 
@@ -141,8 +141,7 @@ Expectation read_expectation(const io::JsonNode& node, const io::JsonText& text)
 CollideRequest read_query(const io::JsonNode& node, StepQuestions* more) {
   if (node.has("max_time"))
     node.fail_key("max_time",
-                  "how far a query comes in a time differs from run to run, and the same file is to give the "
-                  "same trace: give max_tests instead");
+                  "a time limit would make the trace differ from run to run; use max_tests instead");
   std::vector<std::string> keys;
   for_each_field<CollideRequest>([&](const auto& field) { keys.emplace_back(field.name); });
   std::erase(keys, "max_time");
@@ -189,7 +188,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file) {
   } else {
     for (const char* key : {"motion", "query", "expect"})
       if (root.has(key))
-        root.fail_key(key, "a refinement or a construction shows one body and asks nothing: remove it");
+        root.fail_key(key, "a refinement or a construction has one body and no query; remove it");
   }
   s.request.contacts = true;
   if (const auto n = root.get("query")) s.request = read_query(*n, &s.more);
@@ -197,7 +196,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file) {
   s.frames = default_frames(s.show);
   if (const auto n = root.get("frames")) s.frames = read_frames(*n, s.frames);
   if (s.frames.at == FrameSpec::At::pass && s.show != Show::construction)
-    root.at("frames").fail_key("at", "only a construction has passes: take step, refinement or event");
+    root.at("frames").fail_key("at", "only a construction has passes; use step, refinement or event");
   if (const auto n = root.get("expect"))
     for (const io::JsonNode& item : n->items()) s.expect.push_back(read_expectation(item, json));
   Fnv64 hash;

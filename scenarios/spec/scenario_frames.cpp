@@ -16,7 +16,7 @@ FrameSpec::View read_view(const io::JsonNode& node) {
   if (const auto n = node.get("projection"))
     v.orthographic = n->choice<bool>({{"perspective", false}, {"orthographic", true}});
   if ((v.camera == Camera::fixed) != (node.has("eye") && node.has("target")))
-    node.fail("a fixed camera needs \"eye\" and \"target\", and no other camera has them");
+    node.fail("\"eye\" and \"target\" are required for a fixed camera, and not allowed for others");
   if (const auto n = node.get("eye")) v.eye = n->vector();
   if (const auto n = node.get("target")) v.target = n->vector();
   if (const auto n = node.get("from")) v.from = n->vector();
@@ -26,7 +26,7 @@ FrameSpec::View read_view(const io::JsonNode& node) {
   if (const auto n = node.get("zoom")) v.zoom = n->number(0.01, 1000);
   if (const auto n = node.get("draw")) v.wrapper = n->choice<bool>({{"wrapper", true}, {"body", false}});
   if (const auto n = node.get("title")) v.title = n->string();
-  if (!(v.from.cross(v.up).squaredNorm() > 0)) node.fail("\"from\" and \"up\" must not lie along one line");
+  if (!(v.from.cross(v.up).squaredNorm() > 0)) node.fail("\"from\" and \"up\" must not be parallel");
   return v;
 }
 
@@ -36,7 +36,7 @@ void read_moments(const io::JsonNode& node, FrameSpec& f) {
   if (const auto n = node.get("every")) f.every = static_cast<std::uint32_t>(n->integer(1, kMaxId));
   if (const auto n = node.get("events")) {
     if (node.has("at") || node.has("every"))
-      node.fail_key("events", "a list of events takes the place of \"at\" and \"every\"");
+      node.fail_key("events", "a list of events replaces \"at\" and \"every\"; remove them");
     f.at = At::events;
     for (const io::JsonNode& item : n->items(1))
       f.events.push_back(static_cast<std::uint32_t>(item.integer(0, kMaxId)));

@@ -12,7 +12,7 @@ constexpr double kFar = 1e150;  // coordinates whose squares are still finite
 
 Eigen::Vector3d read_axis(const io::JsonNode& node) {
   const Eigen::Vector3d axis = node.vector();
-  if (!(axis.squaredNorm() > 0)) node.fail("expected a direction that is not zero");
+  if (!(axis.squaredNorm() > 0)) node.fail("expected a direction other than zero");
   return axis;
 }
 
@@ -33,8 +33,8 @@ std::vector<Motion::Keyframe> read_keyframes(const io::JsonNode& node) {
     Motion::Keyframe k;
     k.step = static_cast<std::uint32_t>(item.at("step").integer(0, kMostSteps));
     if (out.empty() ? k.step != 0 : k.step <= out.back().step)
-      item.at("step").fail(out.empty() ? "the first keyframe is at step 0"
-                                       : "keyframes come in order of their steps");
+      item.at("step").fail(out.empty() ? "expected the first keyframe at step 0"
+                                       : "expected keyframes in ascending order of their steps");
     k.position = item.at("position").vector();
     if (const auto n = item.get("axis")) k.axis = read_axis(*n);
     if (const auto n = item.get("degrees")) k.degrees = read_degrees(*n);
@@ -52,7 +52,7 @@ void read_approach(const io::JsonNode& node, Motion& m) {
   node.object(
       {"kind", "from", "target", "step_length", "axis", "degrees", "before", "into", "most_steps", "exact"});
   m.from = node.at("from").vector();
-  if (!(m.from.squaredNorm() > 0)) node.at("from").fail("expected a direction that is not zero");
+  if (!(m.from.squaredNorm() > 0)) node.at("from").fail("expected a direction other than zero");
   if (const auto n = node.get("target")) m.target = n->vector();
   constexpr double kShortest = 1e-6;  // as a share of the bodies' diagonals: a million steps across
   if (const auto n = node.get("step_length")) m.step_length = n->number(kShortest, 1);

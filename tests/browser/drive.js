@@ -599,7 +599,7 @@
     await frame();
     const says = (id, words) =>
       check(byId(id).textContent.includes(words), `${id} says "${words}"`, byId(id).textContent);
-    says("view-caption", "A itself, which has no wrapper; B's is the outermost one");
+    says("view-caption", "A (it has no wrapper) and B's outermost wrapper");
     says("view-caption", "Wrappers: A 5 (no wrapper) + B ");
     says("event-facts", "A 5 (no wrapper) + B ");
     says("legend", "A open, real faces");
@@ -641,11 +641,11 @@
         length = shown.to.distanceTo(shown.from) * scene.unit,
         wanted = apart ? result.distance.upper : result.clash.depth[1];
       check(Math.abs(length - wanted) < 1e-5 * scene.unit, "as long as the trace says", `${length}, not ${wanted}`);
-      check(label.textContent.endsWith(apart ? " apart" : " deep"), "in words", label.textContent);
+      check(label.textContent.startsWith(apart ? "distance " : "depth "), "in words", label.textContent);
       check(byId("legend").textContent.includes(apart ? "nearest points" : "B leaves A"), "and in the key", byId("legend").textContent);
       texts.add(label.textContent);
     }
-    check([...texts].some((t) => t.endsWith("apart")) && [...texts].some((t) => t.endsWith("deep")), "the run comes near and goes in", [...texts]);
+    check([...texts].some((t) => t.startsWith("distance ")) && [...texts].some((t) => t.startsWith("depth ")), "the run comes near and goes in", [...texts]);
   }
 
   const parts = {

@@ -225,7 +225,7 @@ TEST_CASE("a simplex that does not exist is refused by its number") {
   const LrbRep body = build_lrb(icosphere(1));
   const std::string count = std::to_string(body.real_simplex_count());
   CHECK_THROWS_WITH_AS(explain_pair(body, {}, body, {}, {SimplexId(body.real_simplex_count()), 0}),
-                       ("no simplex " + count + " of A: there are " + count + ", numbered from 0").c_str(),
+                       ("simplex of A: expected a number below " + count + ", found " + count).c_str(),
                        InputError);
   CHECK_THROWS_AS(explain_pair(body, {}, body, {}, {0, SimplexId(99999)}), InputError);
 }

@@ -69,7 +69,7 @@ TEST_CASE("world coordinates that overflow are refused by name") {
   far.r *= 1.5e308;
   far.t.y() = 1e308;
   CHECK(complaint(box, Pose{}, box, far) ==
-        "body B, vertex 1: its y in the world is beyond 1.8e308; scale the bodies and the pose down");
+        "body B, vertex 1: its world y exceeds 1.8e308; scale down the bodies and the pose");
   far.t.y() = 0;
   CHECK(complaint(box, far, box, Pose{}).empty());
   CHECK(collide(box, far, box, Pose{}).relation == Relation::touching);

@@ -79,7 +79,7 @@ TEST_CASE("2D bodies that cannot be built") {
   Mesh open = circle(10);
   open.face_vertices.resize(open.face_vertices.size() - 2);
   open.face_offsets.pop_back();
-  CHECK_THROWS_WITH_AS(build_lrb(open), doctest::Contains("ends one segment only"), InputError);
+  CHECK_THROWS_WITH_AS(build_lrb(open), doctest::Contains("has only one segment"), InputError);
   CHECK_THROWS_WITH_AS(build_lrb(turned_inside_out(circle(10))), doctest::Contains("inside out"), InputError);
 }
 

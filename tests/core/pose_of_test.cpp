@@ -54,13 +54,13 @@ TEST_CASE("what is no pose is refused, and the reason says which") {
   CHECK(pose_of(Eigen::Matrix3d(Eigen::Matrix3d::Zero())).error().reason ==
         "the pose is a matrix of 3 x 3; give one of 3 x 4 or 4 x 4");
   CHECK(poses_of_rows(rows, 3).error().reason ==
-        "32 numbers are not 3 poses; give 12 (3 x 4) or 16 (4 x 4) for each, row by row");
+        "32 numbers do not make 3 poses; give 12 (3 x 4) or 16 (4 x 4) for each, row by row");
   CHECK(!poses_of_rows({}, 2));
   CHECK(!poses_of_rows(rows, 0));
   rows[31] = 2;
   CHECK(
       poses_of_rows(rows, 2).error().reason ==
-      "pose 1 has a last row other than 0 0 0 1; give a matrix that columns are multiplied by, without perspective");
+      "pose 1 has a last row other than 0 0 0 1; give an affine matrix for column vectors, without perspective");
   rows[31] = std::numeric_limits<double>::quiet_NaN();
   CHECK(!poses_of_rows(rows, 2));
 }

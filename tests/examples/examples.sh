@@ -54,7 +54,7 @@ case "$name" in
     expect '^5120 real faces, .* 20 faces in the outermost wrapper$' '^proven: ' '^crossing: 105 pairs .* 275 exact pairs$'
     "$lrbscope" -q inspect rock.lrb >said || fail "lrbscope cannot read rock.lrb"
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >open.obj
-    refuse "open.obj: an edge has a face on one side only" open.obj open.lrb
+    refuse "open.obj: an edge has only one face" open.obj open.lrb
     refuse "no/rock.lrb: cannot create the file" rock.obj no/rock.lrb
     ;;
   clearance)

@@ -119,7 +119,7 @@ TEST_CASE("a newer version is refused politely, before anything else is looked a
   std::string newer = bytes_of(shapes::stairs_2d());
   newer[kVersionAt] = static_cast<char>(kLrbFileVersion + 1);
   CHECK(complaint(newer) ==
-        "body.lrb: byte 8: the file has version 4, this program reads up to 3; use a newer lrbscope");
+        "body.lrb: byte 8: found file version 4, expected at most 3; use a newer lrbscope");
 }
 
 TEST_CASE("lengths beyond the file are refused before memory is taken") {

@@ -59,10 +59,10 @@ TEST_CASE("arrays that do not fit together are refused by name") {
     return text.find(part) != std::string::npos;
   };
   CHECK(message([](LrbData&) {}).empty());
-  CHECK(names(message([](LrbData& d) { d.face_vertices[7] = 99; }), "face 2 names vertex 99"));
-  CHECK(names(message([](LrbData& d) { d.outer_cell[3] = 5; }), "face 3 names a region"));
+  CHECK(names(message([](LrbData& d) { d.face_vertices[7] = 99; }), "face 2 refers to vertex 99"));
+  CHECK(names(message([](LrbData& d) { d.outer_cell[3] = 5; }), "face 3 refers to a region"));
   CHECK(names(message([](LrbData& d) { d.inner_cell[28] = kSolid; }), "face 28"));
-  CHECK(names(message([](LrbData& d) { d.outer_cell[0] = kSolid; }), "wrong way round"));
+  CHECK(names(message([](LrbData& d) { d.outer_cell[0] = kSolid; }), "inner and outer cell swapped"));
   CHECK(names(message([](LrbData& d) { d.vertices[4].y() = std::nan(""); }), "vertex 4"));
   CHECK(names(message([](LrbData& d) { d.inner_cell.pop_back(); }), "differ in length"));
   CHECK(names(message([](LrbData& d) { d.face_offsets[2] = 50; }), "not ascending"));

@@ -118,7 +118,7 @@ TEST_CASE("a tree whose bounds are no numbers is reported, with levels too") {
   for (const WrapperLevel& level : levels.all())
     stored.push_back({level.bound, level.tree.nodes(), level.tree.blocks()});
   damaged.keep_levels(WrapperLevels(damaged, {levels.needed().begin(), levels.needed().end()}, stored));
-  CHECK(names(validate(damaged), "tree has bounds that do not hold its faces"));
+  CHECK(names(validate(damaged), "tree do not contain its faces"));
   // Nothing is at a finite distance in such a tree: the bound says so.
   CHECK(region_thickness(damaged)[0] >= 0);
 }

@@ -303,7 +303,7 @@ TEST_CASE("findings say what, how often and where, in one line each") {
   const std::vector<std::string> lines = check_mesh(m).lines(m);
   REQUIRE(lines.size() == 1);
   CHECK(lines[0] ==
-        "box.obj: an edge has a face on one side only (3 times): edge (by its vertices) 0-2, 0-3, 2-3, "
+        "box.obj: an edge has only one face (3 times): edge (by its vertices) 0-2, 0-3, 2-3, "
         "counted from 0 "
         "in file order; close the hole (lrbscope close)");
   const Mesh many = open_cylinder(50);

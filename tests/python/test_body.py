@@ -151,9 +151,9 @@ def one_line(error):
         (cube_arrays()[0], np.zeros((2, 3)), "faces: expected integers.*float64"),
         (cube_arrays()[0], np.zeros(3, dtype=int), r"faces: .*got shape \(3,\)"),
         (cube_arrays()[0], [[0, 1]], "faces: face 0 has 2 corners"),
-        (cube_arrays()[0], [[0, 1, 8]], "faces: face 0 names vertex 8, but there are 8"),
-        (cube_arrays()[0], [[0, 1, 2], [0, -1, 2]], "faces: face 1 names vertex -1"),
-        (cube_arrays()[0], [[0, 1, 2**32]], "faces: face 0 names vertex 4294967296"),
+        (cube_arrays()[0], [[0, 1, 8]], "faces: face 0: expected a vertex index below 8, got 8"),
+        (cube_arrays()[0], [[0, 1, 2], [0, -1, 2]], "faces: face 1: expected a vertex index below 8, got -1"),
+        (cube_arrays()[0], [[0, 1, 2**32]], "faces: face 0: expected a vertex index below 8, got 4294967296"),
         (cube_arrays()[0], [[0, 1, 2], [0, 1, 2.5, 3]], "faces: expected integers"),
         (cube_arrays()[0], "text", "faces: "),
         (cube_arrays()[0], [], "no faces"),
@@ -216,7 +216,7 @@ def test_options_are_checked():
     arrays = cube_arrays()
     with pytest.raises(TypeError, match="lean: expected True or False, got str"):
         Body(*arrays, lean="yes")
-    with pytest.raises(InputError, match="threads: expected an integer from 0 on, got -1"):
+    with pytest.raises(InputError, match="threads: expected an integer of at least 0, got -1"):
         Body(*arrays, threads=-1)
     with pytest.raises(TypeError, match="seed: expected an integer, got float"):
         Body(*arrays, seed=0.5)

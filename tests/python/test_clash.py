@@ -46,7 +46,7 @@ def test_what_goes_through(cube):
 
 
 def test_what_is_refused(cube):
-    with pytest.raises(InputError, match="clearance: expected a finite number from 0 on"):
+    with pytest.raises(InputError, match="clearance: expected a finite number of at least 0"):
         clash(cube, cube, clearance=-1)
     with pytest.raises(InputError):
         clash(cube, cube, along=(0, 0, 0))

@@ -120,13 +120,13 @@ def test_arguments_that_are_refused(cube):
         collide(cube, cube, mode="some")
     with pytest.raises(InputError, match=r"pose_a: expected shape \(4, 4\)"):
         collide(cube, cube, pose_a=np.zeros((2, 4, 4)))
-    with pytest.raises(InputError, match="max_tests: expected an integer from 0 on"):
+    with pytest.raises(InputError, match="max_tests: expected an integer of at least 0"):
         collide(cube, cube, max_tests=-1)
     with pytest.raises(TypeError, match="contacts: expected True or False"):
         collide(cube, cube, contacts=1)
     with pytest.raises(TypeError, match="tolerance: expected a number"):
         collide(cube, cube, tolerance="1")
-    with pytest.raises(InputError, match="tolerance: expected a finite number from 0 on, got -1"):
+    with pytest.raises(InputError, match="tolerance: expected a finite number of at least 0, got -1"):
         collide(cube, cube, tolerance=-1)
     with pytest.raises(TypeError):
         collide(cube, cube, nonsense=1)

@@ -81,7 +81,7 @@ def test_models_are_built_in_order():
         bad = fcl.BVHModel()
         bad.beginModel()
         bad.addSubModel(cube_arrays()[0], np.zeros((2, 3)))
-    with pytest.raises(InputError, match="names vertex 9"):
+    with pytest.raises(InputError, match="expected a vertex index below .*, got 9"):
         model(cube_arrays()[0], [[0, 1, 9]])
 
 

@@ -46,7 +46,7 @@ def test_what_is_refused(cube):
         first_contact(cube, cube, [shifted(3, 0, 0), shifted(0, 0, 0)], tolerance=0)
     with pytest.raises(InputError, match="motion_b: expected numbers"):
         first_contact(cube, cube, "there")
-    with pytest.raises(InputError, match="motion_b: expected a pose or more, got none"):
+    with pytest.raises(InputError, match="motion_b: expected at least one pose, got none"):
         first_contact(cube, cube, [])
     with pytest.raises(InputError):
         first_contact(cube, cube, [shifted(3, 0, 0), np.diag([2.0, 1, 1, 1])])

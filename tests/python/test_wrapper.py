@@ -54,9 +54,9 @@ def test_unregularised(ball):
 
 def test_what_is_refused(ball):
     w = Wrapper(ball)
-    with pytest.raises(InputError, match="there is no region"):
+    with pytest.raises(InputError, match="region: expected a number below"):
         w.refine(ball.region_count)
-    with pytest.raises(InputError, match="there is no face"):
+    with pytest.raises(InputError, match="face: expected a number below"):
         w.refine_face(ball.face_count)
     with pytest.raises(TypeError, match="body: expected a Body, got Wrapper"):
         Wrapper(w)

@@ -57,7 +57,7 @@ TEST_CASE("image difference counts in buckets") {
   const render::Image a(100, 100, {100, 100, 100});
   render::Image b = a;
   CHECK(render::compare(a, b).within());
-  CHECK(render::compare(a, b).text() == "the images are equal");
+  CHECK(render::compare(a, b).text() == "the images are identical");
   for (int x = 0; x < 100; ++x) b.at(x, 0).g = 102;  // 1 % by 2
   for (int x = 0; x < 50; ++x) b.at(x, 1).g = 106;   // 0.5 % by 6
   for (int x = 0; x < 5; ++x) b.at(x, 2).r = 150;    // 0.05 % by 50

@@ -18,7 +18,7 @@ render::Overlay full_overlay() {
   o.event = "Event 123 456: face test, pseudo face 1 234 of A against real face 99 938 of B: they cross";
   o.event_colour = render::palette::kYellow;
   o.counters = {{"face tests", "12 345 678"}, {"refinements", "87"}, {"wrapper A", "112"},
-                {"wrapper B", "98"},          {"contacts", "23"},    {"regions opened", "1 234"}};
+                {"wrapper B", "98"},          {"contacts", "23"},    {"regions refined", "1 234"}};
   using Mark = render::LegendItem::Mark;
   for (const char* text : {"A, real faces", "A, pseudo faces", "B, real faces", "B, pseudo faces",
                            "region being refined", "pair under test", "contact", "contact, hidden"}) {

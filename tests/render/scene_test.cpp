@@ -231,7 +231,7 @@ TEST_CASE("2D: the solid dark, regions light, the wrapper as a line") {
   REQUIRE(scene.list.fills.size() == rep.region_count());  // the solid, and all regions but one
   CHECK(scene.list.fills.back().segments.size() == rep.real_face_count());
   CHECK(has_key(scene, "A, wrapper"));
-  CHECK(has_key(scene, "A, refined away"));
+  CHECK(has_key(scene, "A, refined"));
 
   render::Rasterizer rasterizer;
   render::RasterOptions o;
@@ -355,8 +355,8 @@ TEST_CASE(
         return std::any_of(scene.key.begin(), scene.key.end(),
                            [&](const render::LegendItem& item) { return item.text == text; });
       };
-      CHECK(has("real faces that meet"));
-      CHECK(has("pseudo faces that meet") == (wrapper != nullptr));
+      CHECK(has("intersecting real faces"));
+      CHECK(has("intersecting pseudo faces") == (wrapper != nullptr));
     }
   }
 }

@@ -155,8 +155,7 @@ TEST_CASE("what is refused of a batch has its reason in its place, and memory th
       if (answers[i]) check_same(*answers[i], collide(bodies.ball, Pose{}, bodies.ring, poses[i]));
     }
     if (round == 0)
-      CHECK(answers[5].error().reason ==
-            "a pose has a number that is not finite; give twelve finite numbers");
+      CHECK(answers[5].error().reason == "expected a pose of 12 finite numbers, found a NaN or an infinity");
     if (round == 1) poses[5] = poses[4];
   }
   const PosedPair pairs[] = {{&flat, {}, &bodies.ball, {}}, {&flat, {}, &flat, {}}};
@@ -189,7 +188,7 @@ TEST_CASE("a workspace answers one query after another, of any bodies, as new on
   const Pose nowhere = Pose::translation({std::numeric_limits<double>::quiet_NaN(), 0, 0});
   CHECK(!collide(bodies.box, Pose{}, bodies.box, nowhere, {}, workspace));
   CHECK(distance(bodies.box, Pose{}, bodies.box, nowhere, {}, workspace).error().reason ==
-        "a pose has a number that is not finite; give twelve finite numbers");
+        "expected a pose of 12 finite numbers, found a NaN or an infinity");
   CHECK(collide(bodies.box, Pose{}, bodies.box, Pose{}, {}, workspace).value().relation ==
         Relation::touching);
 }

@@ -97,7 +97,7 @@ TEST_CASE("what is inside out is turned, and it is said; or left, if that is wan
   const Body turned = Body::from(mesh).value();
   CHECK(turned.turned() == 1);
   REQUIRE(turned.notes().size() == 1);
-  CHECK(turned.notes()[0].find("turned 1 component that was inside out") != std::string::npos);
+  CHECK(turned.notes()[0].find("flipped 1 inside-out component") != std::string::npos);
   CHECK(turned.rep().face(0)[1] == mesh.face(0)[2]);
   const Pose inside = Pose::translation({0.25, 0.25, 0.25});
   const Body small = Body::from(shapes::scaled(shapes::box(), 0.5)).value();
@@ -109,15 +109,15 @@ TEST_CASE("what is inside out is turned, and it is said; or left, if that is wan
   CHECK(left.turned() == 0);
   CHECK(left.rep().face(0)[1] == mesh.face(0)[1]);
   CHECK(!left.has_regions());
-  CHECK(left.notes()[0].find("the body is inside out") != std::string::npos);
+  CHECK(left.notes()[0].find("a component is inside out") != std::string::npos);
 }
 
 TEST_CASE("what bounds no solid is a body that says what cannot be asked of it") {
   const Body tube = Body::from(shapes::open_cylinder(12)).value(), box = Body::from(shapes::box()).value();
   CHECK(!tube.is_solid());
   REQUIRE(tube.notes().size() == 2);
-  CHECK(tube.notes()[0].find("an edge has a face on one side only") != std::string::npos);
-  CHECK(tube.notes()[1].find("bounds no solid") != std::string::npos);
+  CHECK(tube.notes()[0].find("an edge has only one face") != std::string::npos);
+  CHECK(tube.notes()[1].find("not a closed solid") != std::string::npos);
   CHECK(collide(tube, Pose{}, box, Pose::translation({5, 5, 5})).relation == Relation::separate);
   CHECK(collide(tube, Pose{}, Body::from(shapes::box({-0.1, -0.1, 0.4}, {0.1, 0.1, 0.6})).value(), Pose{})
             .relation == Relation::undefined);
@@ -165,32 +165,32 @@ TEST_CASE("what cannot be a body is refused with a reason that names the element
   BodyOptions options;
   options.name = "my\nbox";
   f(3, 1) = -1;
-  CHECK(reason(Body::from(v, f, options)) ==
-        "my\\x0abox: face 3 names vertex -1, which does not exist; give 0 to 8 - 1");
+  CHECK(reason(Body::from(v, f, options)) == "my\\x0abox: face 3: expected a vertex index below 8, found -1");
   f(3, 1) = 8;
-  CHECK(reason(Body::from(v, f)) == "body: face 3 names vertex 8, which does not exist; give 0 to 8 - 1");
+  CHECK(reason(Body::from(v, f)) == "body: face 3: expected a vertex index below 8, found 8");
   f = triangles_of<int>(box);
   v(5, 2) = std::numeric_limits<double>::quiet_NaN();
   CHECK(
       reason(Body::from(v, f)) ==
-      "body: cannot be queried: a coordinate is not finite (1 time): vertex 5, counted from 0 in file order; give "
-      "it a finite number");
+      "body: cannot be queried: a coordinate is not finite (1 time): vertex 5, counted from 0 in file order; "
+      "replace it by a finite number");
   CHECK(reason(Body::from(vertices_of(box), Eigen::MatrixX3i(0, 3))).find("the mesh has no faces") !=
         std::string::npos);
   CHECK(reason(Body::from(Eigen::MatrixXd(Eigen::MatrixXd::Zero(8, 2)), f)) ==
-        "body: vertices have 2 coordinates; give 3");
+        "body: expected 3 coordinates per vertex, found 2");
   CHECK(reason(Body::from(vertices_of(box), Eigen::MatrixXi(Eigen::MatrixXi::Zero(4, 1)))) ==
-        "body: faces have 1 corners; give 3 or more, or 2 in the plane");
+        "body: expected 3 or more corners per face (2 for 2D bodies), found 1");
   Eigen::MatrixXi side(1, 2);
   side << 0, 1;
   CHECK(reason(Body::from(Eigen::MatrixXd(Eigen::MatrixXd::Ones(2, 3)), side)) ==
-        "body: vertex 0 of a body in the plane has a z; give 0");
+        "body: vertex 0: expected z = 0 in a 2D body, found 1");
   const std::vector<double> x(8);
-  CHECK(reason(Body::from(x, std::vector<int>{0, 0, 0})) == "body: 8 coordinates do not make vertices of 3");
+  CHECK(reason(Body::from(x, std::vector<int>{0, 0, 0})) ==
+        "body: expected a multiple of 3 coordinates, found 8");
   CHECK(reason(Body::from(std::vector<double>(9), std::vector<int>{0, 1})) ==
-        "body: 2 corners do not make faces of 3");
+        "body: expected a multiple of 3 corners, found 2");
   CHECK(reason(Body::from(std::vector<double>(9), std::vector<std::int64_t>{0, 1, std::int64_t{1} << 32})) ==
-        "body: face 0 names vertex 4294967296, which does not exist; give 0 to 3 - 1");
+        "body: face 0: expected a vertex index below 3, found 4294967296");
   CHECK(reason(Body::load("/nowhere/at.obj")) == "/nowhere/at.obj: no such file; check the path");
   CHECK_THROWS_WITH_AS((void)Body::load("/nowhere/at.obj").value(),
                        "/nowhere/at.obj: no such file; check the path", InputError);
@@ -211,7 +211,7 @@ TEST_CASE(
     CHECK_FALSE(body.has_regions());
     REQUIRE(body.notes().size() == 1);
     CHECK(body.notes()[0].starts_with(
-        body.name() + ": queried without regions, because the proof of its LRB-rep failed: "));
+        body.name() + ": queries will not use regions, because the validation of its LRB-rep failed: "));
     CHECK(body.notes()[0].find("is open at edge (") != std::string::npos);
     const Pose pose = Pose::translation({0.7, 0.2, 0.1});
     CHECK(collide(body, Pose{}, sound, pose).pairs == collide(sound, Pose{}, sound, pose).pairs);
@@ -223,6 +223,6 @@ TEST_CASE("a body that intersects itself says that it has no approximate answers
   const Mesh rock = shapes::bumpy_sphere(2, 1);
   const Body body = Body::from(shapes::several({rock, shapes::translated(rock, {0.3, 0.1, 0.05})})).value();
   REQUIRE(body.notes().size() == 1);
-  CHECK(body.notes()[0].find("has no approximate answers, because its surface intersects itself") !=
+  CHECK(body.notes()[0].find("approximate queries are not supported, because its surface intersects itself") !=
         std::string::npos);
 }

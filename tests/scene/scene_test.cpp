@@ -210,12 +210,12 @@ TEST_CASE("a scene's request is that of its queries, and what is refused says wh
   scene.move(b, Pose::translation({std::numeric_limits<double>::quiet_NaN(), 0, 0}));
   REQUIRE(scene.collide().size() == 1);
   CHECK(scene.collide()[0].result.error().reason ==
-        "a pose has a number that is not finite; give twelve finite numbers");
+        "expected a pose of 12 finite numbers, found a NaN or an infinity");
   CHECK(!scene.nearest()->result.has_value());
   scene.remove(b);
   scene.add(square);
   CHECK(scene.collide()[0].result.error().reason ==
-        "a 3D body cannot meet a 2D body; give two of the same dimension");
+        "expected two bodies of the same dimension, found a 3D and a 2D body");
   CHECK(scene.collide()[0].a == a);
 }
 

@@ -138,7 +138,7 @@ TEST_CASE("lrbscope stability --quantity: table, records, a case again, a quanti
   again.insert(again.end(), {"--dial", "3", "--only", "0"});
   o = test::run(folder, again);
   CHECK(o.code == 0);
-  CHECK(o.out.find("kiss, dial 3, case 0, ours: right\n  distance: ") == 0);
+  CHECK(o.out.find("kiss, difficulty 3, case 0, ours: right\n  distance: ") == 0);
   o = test::run(folder, {"stability", "--quantity", "length"});
   CHECK(o.code == 2);
   CHECK(o.error_lines() == 1);

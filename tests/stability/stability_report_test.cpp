@@ -181,7 +181,7 @@ TEST_CASE("the page has every cell, every mark and every worst case") {
   CHECK(count(html, "class=\"mark crashed\"") == crashed + 1);
   CHECK(count(html, "class=\"mark timed-out\"") == timed_out + 1);
   CHECK(count(html, "class=\"mark refused\"") == refused + 2);
-  for (const char* what : {"wrong answer", "crashed", "timed out", "refused", "refusals alone"})
+  for (const char* what : {"wrong answer", "crashed", "timed out", "refused", "only refusals"})
     CHECK(html.find(what) != std::string::npos);
   for (std::size_t m = 0; m < methods; ++m)  // the sums too
     if (grid.methods[m].present) {

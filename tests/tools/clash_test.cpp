@@ -80,14 +80,14 @@ TEST_CASE("B2: clash says why a kind is undecided, of a mesh and of its .lrb ali
 
 TEST_CASE("clash: what cannot be asked is refused in one line") {
   ClashingBoxes boxes;
-  boxes.check_refusals({{{"--clearance", "-1"}, "clearance is -1"},
-                        {{"--clearance", "nan"}, "clearance is nan"},
-                        {{"--along", "0,0,0"}, "direction has no length"},
+  boxes.check_refusals({{{"--clearance", "-1"}, "clearance of at least 0, found -1"},
+                        {{"--clearance", "nan"}, "clearance of at least 0, found nan"},
+                        {{"--along", "0,0,0"}, "expected a direction of finite length"},
                         {{"--along", "1,2"}, "--along"},
-                        {{"--along", "nan,0,0"}, "direction has no length"}});
+                        {{"--along", "nan,0,0"}, "expected a direction of finite length"}});
   boxes.words = {"clash", "--poses", "poses.txt"};
-  boxes.check_refusals(
-      {{{"cube.obj", "none.obj"}, "none.obj"}, {{"plane.obj", "plane.obj"}, "these are in the plane"}});
+  boxes.check_refusals({{{"cube.obj", "none.obj"}, "none.obj"},
+                        {{"plane.obj", "plane.obj"}, "expected 3D bodies, found 2D bodies"}});
 }
 
 }  // namespace

@@ -110,8 +110,8 @@ TEST_CASE("run: two scenario files of one name do not replace each other's run")
   REQUIRE(run(folder, {"run", "one.json"}).code == 0);
   REQUIRE(run(folder, {"run", "./one.json"}).code == 0);  // again, and changed, as often as one likes
   const Outcome o = check_refused(folder, {"run", "two.json"});
-  CHECK(o.err.find("out/twin: holds the run of another scenario of this name, ") != std::string::npos);
-  CHECK(o.err.find("one.json; rename one of the two, or name another folder with -o") != std::string::npos);
+  CHECK(o.err.find("out/twin: contains the run of another scenario of this name, ") != std::string::npos);
+  CHECK(o.err.find("one.json; rename one of them, or choose another folder with -o") != std::string::npos);
   CHECK(run(folder, {"run", "two.json", "-o", "elsewhere"}).code == 0);
   fs::rename(folder / "one.json", folder / "three.json");  // the other is not there any more
   CHECK(run(folder, {"run", "two.json"}).code == 0);
@@ -159,7 +159,7 @@ TEST_CASE("query: an open mesh is queried all the same, and inside has no meanin
                std::string("1 0 0 0 0 1 0 0 0 0 1 0\n0.1 0 0 0.5 0 0.1 0 0.5 0 0 0.1 0.5\n") + kApart);
   const Outcome o = run(folder, {"query", "a.obj", "b.obj", "--poses", "p.txt"});
   CHECK(o.code == 0);
-  CHECK(o.err.find("without regions") != std::string::npos);
+  CHECK(o.err.find("will not use regions") != std::string::npos);
   CHECK(o.out.find("\"crossing\"") != std::string::npos);
   CHECK(o.out.find("\"separate\"") != std::string::npos);
   CHECK(o.out.find("\"undefined\"") != std::string::npos);
@@ -268,7 +268,7 @@ TEST_CASE("levels: faces and proved distances at a row of tolerances, the same f
       json::parse(run(folder, {"levels", "ball.obj", "--at", "0.02", "--lean", "--json"}).out);
   REQUIRE(coarse["levels"].size() == 1);
   CHECK(coarse["levels"][0]["share"] == 0.02);
-  CHECK(run(folder, {"levels", "ball.lrb"}).out.find("proved off") != std::string::npos);
+  CHECK(run(folder, {"levels", "ball.lrb"}).out.find("deviation") != std::string::npos);
   CHECK(run(folder, {"levels", "ball.lrb", "--at", "2"}).code == 2);
 }
 

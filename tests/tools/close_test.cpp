@@ -34,7 +34,7 @@ TEST_CASE("inspect lists every loop, and close closes them") {
         std::string::npos);
   const Outcome text = run(folder, {"inspect", "m.ply"});
   CHECK(text.out.find("boundary: " + std::to_string(edges) + " open edges in " + std::to_string(holes) +
-                      " loops, the longest first:\n  0: ") != std::string::npos);
+                      " loops, longest first:\n  0: ") != std::string::npos);
   CHECK(text.out.find("  and " + std::to_string(holes - 20) + " more: --json lists all\n") !=
         std::string::npos);
 
@@ -58,7 +58,7 @@ TEST_CASE("a sheet is told from a body with a hole, by inspect and by close") {
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\n",
                     faces = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
   folder.write("sheet.obj", vertices + faces);
-  const std::string what = "this is a sheet: it bounds nothing";
+  const std::string what = "this is a sheet, which does not bound a solid";
   CHECK(run(folder, {"inspect", "sheet.obj"}).out.find("; " + what + "\n") != std::string::npos);
   CHECK(check_refused(folder, {"close", "sheet.obj", "-o", "closed.obj"}).err.find(what) !=
         std::string::npos);
@@ -66,13 +66,14 @@ TEST_CASE("a sheet is told from a body with a hole, by inspect and by close") {
   folder.write("both.obj", vertices + faces +
                                "v 5 0 0\nv 6 0 0\nv 5 1 0\nv 5 0 1\n"
                                "f 6 8 7\nf 6 7 9\nf 6 9 8\n");
-  CHECK(run(folder, {"inspect", "both.obj"})
-            .out.find("close the hole (lrbscope close), but 1 of the 2 open components is a sheet: it bounds "
-                      "nothing") != std::string::npos);
+  CHECK(
+      run(folder, {"inspect", "both.obj"})
+          .out.find("close the hole (lrbscope close), but 1 of the 2 open components is a sheet, which does "
+                    "not bound a solid") != std::string::npos);
   const Outcome o = run(folder, {"close", "both.obj", "-o", "closed.obj"});
   CHECK(o.code == 1);
   CHECK(o.out.find("1 of 2 holes closed") != std::string::npos);
-  CHECK(o.out.find("left: its surface is a sheet: it bounds nothing") != std::string::npos);
+  CHECK(o.out.find("not closed: its surface is a sheet, which does not bound a solid") != std::string::npos);
   // A bend of one unit in the last place is no plane any more.
   folder.write("bent.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1e-300\n" + faces);
   CHECK(run(folder, {"inspect", "bent.obj"}).out.find("close the hole") != std::string::npos);
@@ -92,8 +93,8 @@ TEST_CASE("close says what it leaves, with exit code 1, and refuses what it cann
   CHECK(o.code == 1);
   CHECK(
       o.out.starts_with("0 of 1 hole closed, 0 faces and 0 vertices added\n"
-                        "  0: 4 edges, length 4, flat: left: a lid would meet face "));
-  CHECK(o.out.ends_with("buildable: no: lrbscope inspect tells why\n"));
+                        "  0: 4 edges, length 4, flat: not closed: the fill would intersect face "));
+  CHECK(o.out.ends_with("buildable: no (lrbscope inspect lists the reasons)\n"));
   CHECK(slurp(folder / "closed.obj") == slurp(folder / "pot.obj"));
 
   write_mesh(circle(5), folder / "round.obj");

@@ -35,7 +35,7 @@ TEST_CASE("compare: the same run, another recursion, other levels of events; and
   const Runs runs;
   const Outcome same = run(runs.folder, {"--quiet", "compare", "one", "one", "-o", "same"});
   CHECK(same.code == 0);
-  CHECK(same.out == "the runs are the same\nsame/index.html\n");
+  CHECK(same.out == "the runs are identical\nsame/index.html\n");
   const int two = render::read_png(runs.folder / "same/compare.png").image.width();
 
   const Outcome paper = run(runs.folder, {"--quiet", "compare", "one", "paper", "-o", "out"});
@@ -91,7 +91,7 @@ TEST_CASE("compare: two constructions of a body, pass by pass; not one body with
     CHECK(page.find(part) != std::string::npos);
   CHECK(render::read_png(runs.folder / "built/compare.png").image.width() > 900);
   const Outcome same = run(runs.folder, {"--quiet", "compare", "few", "few", "-o", "same"});
-  CHECK(same.out.find("the runs are the same") != std::string::npos);
+  CHECK(same.out.find("the runs are identical") != std::string::npos);
   const Outcome mixed = run(runs.folder, {"--quiet", "compare", "one", "few", "-o", "mixed"});
   CHECK(mixed.code == 2);
   CHECK(mixed.error_lines() == 1);

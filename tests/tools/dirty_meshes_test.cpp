@@ -68,17 +68,17 @@ std::vector<Row> rows_3d() {
   const Mesh ball = icosphere(1);
   const auto n = static_cast<VertexId>(ball.vertices.size());  // 42; 80 faces
   const Mesh twice = several({ball, ball});
-  const std::string meet = "two faces meet outside their shared edges and corners (";
+  const std::string meet = "two faces intersect outside their shared edges and corners (";
   return {
       {.kind = "open",
        .mesh = without_faces(ball, {7}),
-       .findings = {"an edge has a face on one side only (3 times): edge (by its vertices) "},
+       .findings = {"an edge has only one face (3 times): edge (by its vertices) "},
        .build = Build::refused,
        .relation = "undefined"},
       {.kind = "open strip, one-sided",
        .mesh = moebius(),
-       .findings = {"an edge has a face on one side only (18 times)",
-                    "two neighbouring faces disagree on which side is outside (1 time): face 0 and 17"},
+       .findings = {"an edge has only one face (18 times)",
+                    "two adjacent faces are inconsistently oriented (1 time): face 0 and 17"},
        .build = Build::refused,
        .relation = "undefined"},
       {.kind = "crosses itself",
@@ -102,29 +102,28 @@ std::vector<Row> rows_3d() {
       {.kind = "non-manifold edge between solids",
        .mesh = welded(several({box(), box({1, 1, 0}, {2, 2, 1})})),
        .findings = {"an edge has more than two faces (1 time): edge (by its vertices) ",
-                    "two vertices lie in one place (2 times): vertex 5 and 8, 6 and 11",
-                    "no face uses a vertex (2 times)"},
+                    "two vertices coincide (2 times): vertex 5 and 8, 6 and 11",
+                    "a vertex is not used by any face (2 times)"},
        .build = Build::refused,
        .relation = "b_inside_a",
        .at = {0.5, 0.5, 0.5}},
       {.kind = "non-manifold edge at a fin",
        .mesh = with_face(ball, {{2, 0, 0}}, {ball.face(0)[0], ball.face(0)[1], n}),
-       .findings = {"an edge has a face on one side only (2 times)",
-                    "an edge has more than two faces (1 time)", meet},
+       .findings = {"an edge has only one face (2 times)", "an edge has more than two faces (1 time)", meet},
        .build = Build::refused,
        .relation = "undefined"},
       {.kind = "non-manifold vertex between solids",
        .mesh = welded(several({box(), box({1, 1, 1}, {2, 2, 2})})),
-       .findings = {"a vertex joins two fans of faces (1 time): vertex 6",
-                    "two vertices lie in one place (1 time): vertex 6 and 8",
-                    "no face uses a vertex (1 time)"},
+       .findings = {"a vertex joins two separate fans of faces (1 time): vertex 6",
+                    "two vertices coincide (1 time): vertex 6 and 8",
+                    "a vertex is not used by any face (1 time)"},
        .build = Build::done,
        .relation = "b_inside_a",
        .at = {0.5, 0.5, 0.5}},
       {.kind = "vertices merged across the body",
        .mesh = with_merged(ball, 3, 0),
-       .findings = {"a vertex joins two fans of faces (1 time): vertex 0",
-                    "no face uses a vertex (1 time): vertex 3"},
+       .findings = {"a vertex joins two separate fans of faces (1 time): vertex 0",
+                    "a vertex is not used by any face (1 time): vertex 3"},
        .build = Build::done,
        .relation = "b_inside_a",
        .at = {0, 0, 0.3}},
@@ -144,32 +143,31 @@ std::vector<Row> rows_3d() {
        .mesh = welded(twice),
        .findings = {"two faces have the same corners (80 times): face 0 and 80, 1 and 81, 2 and 82",
                     "an edge has more than two faces (120 times)", meet,
-                    "two vertices lie in one place (42 times): vertex 0",
-                    "no face uses a vertex (42 times): vertex 42"},
+                    "two vertices coincide (42 times): vertex 0",
+                    "a vertex is not used by any face (42 times): vertex 42"},
        .build = Build::refused,
        .relation = "separate"},
       {.kind = "two shells in one place",
        .mesh = twice,
-       .findings = {meet, "two vertices lie in one place (42 times): vertex 0 and 42, 1"},
+       .findings = {meet, "two vertices coincide (42 times): vertex 0 and 42, 1"},
        .build = Build::done,
        .relation = "separate"},
       {.kind = "two corners in one vertex",
        .mesh = with_face(ball, {}, {0, 0, 1}),
-       .findings = {"a face names a vertex twice (1 time): face 80 (vertex 0)",
+       .findings = {"a face uses a vertex twice (1 time): face 80 (vertex 0)",
                     "a face has no area (1 time): face 80"},
        .build = Build::refused,
        .relation = "b_inside_a"},
       {.kind = "edge collapsed",
        .mesh = with_merged(ball, ball.face(0)[0], ball.face(0)[1]),
-       .findings = {"a face names a vertex twice (2 times): face 0", "a face has no area (2 times): face 0",
-                    "no face uses a vertex (1 time)"},
+       .findings = {"a face uses a vertex twice (2 times): face 0", "a face has no area (2 times): face 0",
+                    "a vertex is not used by any face (1 time)"},
        .build = Build::refused,
        .relation = "b_inside_a"},
       {.kind = "corners on a line",
        .mesh =
            with_face(with_face(without_faces(tetrahedron(), {0}), {{0.5, 0, 0}}, {1, 0, 4}), {}, {0, 2, 4}),
-       .findings = {"a face has no area (1 time): face 3", "an edge has a face on one side only (3 times)",
-                    meet},
+       .findings = {"a face has no area (1 time): face 3", "an edge has only one face (3 times)", meet},
        .build = Build::refused,
        .relation = "undefined",
        .at = {0.2, 0.2, 0.2}},
@@ -180,22 +178,22 @@ std::vector<Row> rows_3d() {
        .relation = "b_inside_a"},
       {.kind = "duplicate vertices and a hole",
        .mesh = as_soup(without_faces(ball, {7})),
-       .findings = {"an edge has a face on one side only (3 times): edge (by its vertices) "},
+       .findings = {"an edge has only one face (3 times): edge (by its vertices) "},
        .build = Build::refused,
        .relation = "undefined"},
       {.kind = "unused vertices",
        .mesh = with_vertices(ball, {{9, 9, 9}, {8, 8, 8}}),
-       .findings = {"no face uses a vertex (2 times): vertex 42, 43"},
+       .findings = {"a vertex is not used by any face (2 times): vertex 42, 43"},
        .build = Build::done,
        .relation = "b_inside_a"},
       {.kind = "inconsistent orientation",
        .mesh = with_flipped(ball, {7, 50}),
-       .findings = {"two neighbouring faces disagree on which side is outside (6 times): face "},
+       .findings = {"two adjacent faces are inconsistently oriented (6 times): face "},
        .build = Build::refused,
        .relation = "undefined"},
       {.kind = "inside out",
        .mesh = turned_inside_out(ball),
-       .findings = {"the body is inside out (1 time): component (by its first face) 0"},
+       .findings = {"a component is inside out (1 time): component (by its first face) 0"},
        .build = Build::done,
        .relation = "b_inside_a"},
       {.kind = "isolated piece, closed",
@@ -205,13 +203,12 @@ std::vector<Row> rows_3d() {
        .relation = "b_inside_a"},
       {.kind = "isolated piece, open",
        .mesh = with_face(ball, {{3, 0, 0}, {3, 1, 0}, {3, 0, 1}}, {n, VertexId(n + 1), VertexId(n + 2)}),
-       .findings =
-           {"an edge has a face on one side only (3 times): edge (by its vertices) 42-43, 42-44, 43-44"},
+       .findings = {"an edge has only one face (3 times): edge (by its vertices) 42-43, 42-44, 43-44"},
        .build = Build::refused,
        .relation = "undefined"},
       {.kind = "nested, facing out",
        .mesh = several({ball, icosphere(1, 0.4)}),
-       .findings = {"the body is inside out (1 time): component (by its first face) 80"},
+       .findings = {"a component is inside out (1 time): component (by its first face) 80"},
        .build = Build::done,
        .relation = "separate"},
       {.kind = "nested, a void",
@@ -232,13 +229,12 @@ std::vector<Row> rows_3d() {
        .relation = "b_inside_a"},
       {.kind = "far away",
        .mesh = translated(ball, {1e16, 0, 0}),
-       .findings = {"a face has no area (", meet, "two vertices lie in one place ("},
+       .findings = {"a face has no area (", meet, "two vertices coincide ("},
        .build = Build::refused,
        .relation = "separate"},
       {.kind = "concave polygon",
        .mesh = with_face(tetrahedron(), {{0.1, 0.1, 2}, {3, 0, 2}, {0, 0, 2}, {0, 3, 2}}, {4, 5, 6, 7}),
-       .findings = {"a polygon is not convex (1 time): face 4",
-                    "an edge has a face on one side only (4 times)"},
+       .findings = {"a polygon is not convex (1 time): face 4", "an edge has only one face (4 times)"},
        .build = Build::refused,
        .relation = "undefined",
        .at = {0.2, 0.2, 0.2}},
@@ -254,47 +250,46 @@ std::vector<Row> rows_2d() {
   return {
       {.kind = "2D, open",
        .mesh = without_faces(round, {0}),
-       .findings = {"a vertex ends one segment only (2 times): vertex 0, 1"},
+       .findings = {"a vertex has only one segment (2 times): vertex 0, 1"},
        .build = Build::refused,
        .relation = "undefined"},
       {.kind = "2D, crosses itself",
        .mesh = star,
-       .findings = {"two segments meet outside their shared ends (5 times): segment 0 and 2"},
+       .findings = {"two segments intersect outside their shared ends (5 times): segment 0 and 2"},
        .build = Build::done,
        .relation = "b_inside_a",
        .at = {0.7, 0, 0}},
       {.kind = "2D, crosses itself, where it does",
        .mesh = star,
-       .findings = {"two segments meet"},
+       .findings = {"two segments intersect"},
        .build = Build::done,
        .relation = "separate"},
       {.kind = "2D, branch",
        .mesh = with_face(round, {{2, 0, 0}}, {0, 12}),
-       .findings = {"a vertex ends one segment only (1 time): vertex 12",
-                    "a vertex ends more than two segments (1 time): vertex 0"},
+       .findings = {"a vertex has only one segment (1 time): vertex 12",
+                    "a vertex has more than two segments (1 time): vertex 0"},
        .build = Build::refused,
        .relation = "undefined"},
       {.kind = "2D, duplicate segment",
        .mesh = with_doubled(round, {3}),
        .findings = {"two segments have the same ends (1 time): segment 3 and 12",
-                    "a vertex ends more than two segments (2 times)", "two segments meet"},
+                    "a vertex has more than two segments (2 times)", "two segments intersect"},
        .build = Build::refused,
        .relation = "undefined"},
       {.kind = "2D, no length",
        .mesh = with_face(round, {}, {2, 2}),
-       .findings = {"a segment names a vertex twice (1 time): segment 12",
+       .findings = {"a segment uses a vertex twice (1 time): segment 12",
                     "a segment has no length (1 time): segment 12"},
        .build = Build::refused,
        .relation = "b_inside_a"},
       {.kind = "2D, inconsistent orientation",
        .mesh = with_flipped(round, {4}),
-       .findings =
-           {"two neighbouring segments disagree on which side is outside (2 times): segment 3 and 4, 4 and 5"},
+       .findings = {"two adjacent segments are inconsistently oriented (2 times): segment 3 and 4, 4 and 5"},
        .build = Build::refused,
        .relation = "undefined"},
       {.kind = "2D, inside out",
        .mesh = turned_inside_out(round),
-       .findings = {"the body is inside out (1 time)"},
+       .findings = {"a component is inside out (1 time)"},
        .build = Build::done,
        .relation = "b_inside_a"},
   };
@@ -338,7 +333,7 @@ bool is_joined(const Row& row) {
 void check_inspect(const Folder& folder, const Row& row) {
   const Outcome o = run(folder, {"inspect", "m.obj", "--json"});
   REQUIRE(o.code == 0);
-  CHECK(o.err.starts_with(is_joined(row) ? "note: m.obj: joined corners in exactly the same place: " : ""));
+  CHECK(o.err.starts_with(is_joined(row) ? "note: m.obj: merged coincident vertices: " : ""));
   CHECK(o.error_lines() == is_joined(row));
   const json j = json::parse(o.out);
   CAPTURE(j["findings"].dump(1));
@@ -357,7 +352,7 @@ void check_build(const Folder& folder, const Row& row) {
     CHECK(o.code == 2);
     CHECK(o.out.empty());
     CHECK(o.error_lines() == 1);
-    CHECK(o.err.starts_with("lrbscope: m.obj: cannot be an LRB-rep: "));
+    CHECK(o.err.starts_with("lrbscope: m.obj: cannot build an LRB-rep: "));
     CHECK_FALSE(std::filesystem::exists(folder / "m.lrb"));
     return;
   }
@@ -366,11 +361,11 @@ void check_build(const Folder& folder, const Row& row) {
   CHECK(j["valid"] == true);
   CHECK(j["real_faces"] == row.mesh.face_count());
   const bool turned = std::any_of(row.findings.begin(), row.findings.end(), [](const std::string& f) {
-    return f.starts_with("the body is inside out");
+    return f.starts_with("a component is inside out");
   });
   const auto of_the_mesh = std::count_if(j["notes"].begin(), j["notes"].end(), [](const json& note) {
     const auto text = note.get<std::string>();
-    return text.find(": joined ") != std::string::npos || text.find(": turned ") != std::string::npos;
+    return text.find(": merged ") != std::string::npos || text.find(": flipped ") != std::string::npos;
   });
   CHECK(of_the_mesh == int{turned} + int{is_joined(row)});
   std::filesystem::remove(folder / "m.lrb");
@@ -390,7 +385,7 @@ void check_query(const Folder& folder, const Row& row, const Mesh& speck) {
   check_pairs(got[1], row.mesh, speck, across);
   const std::vector<json> swapped = answers(folder, "speck.obj", "m.obj", {Pose{}}, notes);
   check_pairs(swapped[0], speck, row.mesh, Pose{});
-  CHECK((notes.find("queried without regions") != std::string::npos) == (row.build == Build::refused));
+  CHECK((notes.find("queries will not use regions") != std::string::npos) == (row.build == Build::refused));
 }
 
 void check_row(const Row& row) {
@@ -419,10 +414,8 @@ TEST_CASE("corners in one place are kept apart if that is asked for") {
   CHECK(o.err.empty());
   const json findings = json::parse(o.out)["findings"];
   REQUIRE(findings.size() == 3);
-  CHECK(findings[0]["text"].get<std::string>().starts_with(
-      "m.obj: an edge has a face on one side only (240 times)"));
-  CHECK(
-      findings[2]["text"].get<std::string>().starts_with("m.obj: two vertices lie in one place (198 times)"));
+  CHECK(findings[0]["text"].get<std::string>().starts_with("m.obj: an edge has only one face (240 times)"));
+  CHECK(findings[2]["text"].get<std::string>().starts_with("m.obj: two vertices coincide (198 times)"));
   CHECK(findings[0]["kind"] == "open_edge");
   CHECK(findings[0]["count"] == 240);
   CHECK(findings[0]["elements"].size() == 240);  // all, not the few that the text names
@@ -437,7 +430,7 @@ TEST_CASE("corners in one place are kept apart if that is asked for") {
     std::vector<std::string> words = {"query", "m.obj", "m.obj", "--poses", "pose.txt"};
     if (apart) words.emplace_back("--no-join");
     const Outcome q = run(folder, words);
-    CHECK((q.err.find("joined corners") == std::string::npos) == apart);
+    CHECK((q.err.find("merged coincident vertices") == std::string::npos) == apart);
     const json answer = json::parse(q.out);
     check_pairs(answer, as_soup(icosphere(1)), as_soup(icosphere(1)), Pose::translation({0, 0, 0.4}));
     CHECK(answer["relation"] == "crossing");

@@ -66,8 +66,8 @@ TEST_CASE("distance: within, tolerance, budget, features and times") {
 
 TEST_CASE("distance: what cannot be asked is refused in one line") {
   Boxes boxes;
-  boxes.check_refusals({{{"--within", "-1"}, "`within` is -1"},
-                        {{"--within", "nan"}, "`within` is nan"},
+  boxes.check_refusals({{{"--within", "-1"}, "`within` of at least 0, found -1"},
+                        {{"--within", "nan"}, "`within` of at least 0, found nan"},
                         {{"--tolerance", "-1e-9"}, "`tolerance`"},
                         {{"--budget", "0"}, "--budget"}});
   boxes.words = {"distance", "cube.obj"};

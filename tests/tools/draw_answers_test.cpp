@@ -84,14 +84,14 @@ TEST_CASE("chart: of the bounds, by gnuplot" * doctest::skip(!report::has_gnuplo
   const TwoCubes c;
   c.ask("distance", {"--chart", "gap.svg"});
   c.ask("sweep", {"--chart", "met.svg"});
-  CHECK(slurp(c.folder / "gap-0.svg").find("distance at least") != std::string::npos);
+  CHECK(slurp(c.folder / "gap-0.svg").find("distance, lower bound") != std::string::npos);
   CHECK(slurp(c.folder / "met.svg").find("no contact before this t") != std::string::npos);
 }
 
 TEST_CASE("chart: of another kind is refused before anything is printed") {
   const TwoCubes c;
   c.check_refusals({{{"distance", "cube.obj", "small.obj", "--poses", "poses.txt", "--chart", "gap.txt"},
-                     "charts are written as .svg, .png or .pdf"}});
+                     "expected a file name that ends in .svg, .png or .pdf"}});
 }
 
 TEST_CASE("query: the kind of contact and the distance, as clash and distance say them") {
@@ -111,7 +111,7 @@ TEST_CASE("query: the kind of contact and the distance, as clash and distance sa
   CHECK(lines[3]["kind"] == "touching_face");
   const Outcome flat = c.run({"query", "star.obj", "star.obj", "--poses", "beside.txt", "--kind"});
   CHECK(flat.code == 2);
-  CHECK(flat.err.find("bodies in space") != std::string::npos);
+  CHECK(flat.err.find("expected 3D bodies") != std::string::npos);
 }
 
 }  // namespace

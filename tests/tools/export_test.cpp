@@ -61,17 +61,17 @@ TEST_CASE("export: what cannot be is refused, and nothing is written") {
   command.check_refusals(
       {{{"cube.obj", "-o", "cube.stl"}, "expected a name that ends in .ply, .vtp, .glb or .obj"},
        {{"cube.obj", "-o", "cube.obj2", "--ascii"}, ".ply, .vtp, .glb or .obj"},
-       {{"cube.obj", "-o", "c.glb", "--ascii"}, "--ascii: is for .ply and .vtp"},
-       {{"cube.obj", "-o", "c.ply", "--regions"}, "--regions: is for .glb and .obj"},
-       {{"cube.obj", "-o", "c.ply", "--step", "1"}, "--step: is for runs"},
-       {{"cube.obj", "-o", "c.ply", "--what", "contacts"}, "--what contacts: is for runs"},
-       {{"cube.obj", "-o", "c.ply", "--colour-by", "hits"}, "counts are for runs"},
+       {{"cube.obj", "-o", "c.glb", "--ascii"}, "--ascii: needs a .ply or .vtp file"},
+       {{"cube.obj", "-o", "c.ply", "--regions"}, "--regions: needs a .glb or .obj file"},
+       {{"cube.obj", "-o", "c.ply", "--step", "1"}, "--step: needs a run"},
+       {{"cube.obj", "-o", "c.ply", "--what", "contacts"}, "--what contacts: needs a run"},
+       {{"cube.obj", "-o", "c.ply", "--colour-by", "hits"}, "the other quantities need a run"},
        {{"cube.obj", "-o", "c.ply", "--faces", "2"}, "the outermost wrapper has"},
        {{"cube.obj", "-o", "c.ply", "--what", "boddy"}, "boddy"},
        {{"no_such_thing", "-o", "c.ply"}, "no_such_thing"},
-       {{"islands", "-o", "c.ply", "--step", "999"}, "the trace holds no such step"},
+       {{"islands", "-o", "c.ply", "--step", "999"}, "no such step in the trace"},
        {{"islands", "-o", "c.ply", "--event", "99999999"}, "events, numbered from 0"},
-       {{"islands", "-o", "c.ply", "--faces", "50"}, "are for a body alone"},
+       {{"islands", "-o", "c.ply", "--faces", "50"}, "need a body file"},
        {{"p.csv", "-o", "p.json", "--what", "poses"}, "p.csv:1: expected 12 numbers"}});
 }
 

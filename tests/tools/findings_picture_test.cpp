@@ -135,7 +135,7 @@ TEST_CASE("a clean mesh says that there is nothing to draw, and no picture is wr
   const std::vector<std::string> before = folder.tree();
   const Outcome o = run(folder, {"inspect", "cube.obj", "--json", "--draw", "new/x.png"});
   CHECK(o.code == 0);
-  CHECK(o.err.find("cube.obj: nothing to draw") != std::string::npos);
+  CHECK(o.err.find("cube.obj: no findings to draw") != std::string::npos);
   CHECK(json::parse(o.out)["drawing"].is_null());
   CHECK(folder.tree() == before);
 }

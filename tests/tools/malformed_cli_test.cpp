@@ -288,7 +288,7 @@ TEST_CASE("malformed traces") {
              {with("\"region\":2", "\"region\":-2"), " /traceEvents/"},
              {with("\"dim\": 2", "\"dim\": 1e999"), " "},
              {"{\"traceEvents\":" + std::string(1000, '[') + std::string(1000, ']') + "}", " "},
-             {"\x1f\x8b\x08\0\0\0\0\0\0\3abc"s, " cannot be read"},
+             {"\x1f\x8b\x08\0\0\0\0\0\0\3abc"s, " cannot read the trace"},
              {"{}", " /metadata"},
              {"[]", " "},
              {utf16("{}"), " line 1"},

@@ -154,14 +154,13 @@ TEST_CASE("what is said to help was tried") {
   REQUIRE_FALSE(j["advice"].empty());
   // A setting is only recommended if its numbers are better.
   const std::vector<bodies::Trial> worse = {{"", {1.5, 20, 1.2, 3, 0}}, {"--patch 8", {1.6, 20, 1.3, 4, 1}}};
-  CHECK(bodies::advice(disc, worse) ==
-        std::vector<std::string>{"none of the settings tried is better by more than 5 %"});
+  CHECK(bodies::advice(disc, worse) == std::vector<std::string>{"no setting tried is more than 5 % better"});
   const std::vector<bodies::Trial> better = {{"", {1.59, 20, 1.2, 3, 0}},
                                              {"--patch 40", {1.42, 20, 1.2, 2, 1}}};
   REQUIRE(bodies::advice(disc, better).size() == 2);
   CHECK(
       bodies::advice(disc, better)[0] ==
-      "--patch 40 wastes least: 2 in place of 3 faces a point, with 1.42 in place of 1.59 faces per real face");
+      "--patch 40 has the lowest waste: 2 instead of 3 faces per point, with 1.42 instead of 1.59 faces per real face");
 }
 
 TEST_CASE("build warns on one line where the LRB-rep is poor, and says why") {
@@ -171,7 +170,7 @@ TEST_CASE("build warns on one line where the LRB-rep is poor, and says why") {
   const Outcome poor = run(folder, {"build", "disc.obj", "--no-validate"});
   CHECK(poor.code == 0);
   CHECK(poor.error_lines() == 1);
-  CHECK(poor.err.starts_with("note: disc.obj: the LRB-rep is poor: its outermost wrapper has "));
+  CHECK(poor.err.starts_with("note: disc.obj: low-quality LRB-rep: its outermost wrapper has "));
   CHECK(poor.err.find("times as long as it is thick") != std::string::npos);
   CHECK(run_json(folder, {"build", "disc.obj", "--no-validate"})["notes"].size() == 1);
   CHECK(run(folder, {"build", "fine.obj", "--no-validate"}).err.empty());
@@ -185,23 +184,24 @@ TEST_CASE("build warns of a noisy scan by its waste, and names the cause") {
   write_mesh(scan, folder / "scan.obj");
   const Outcome poor = run(folder, {"build", "scan.obj", "--no-validate", "-o", "scan.lrb"});
   CHECK(poor.code == 0);
-  CHECK(poor.err.find("faces on average (clean meshes have 20 to 120)") != std::string::npos);
-  CHECK(poor.err.find("its surface intersects itself, and faces that intersect others cannot be covered") !=
+  CHECK(poor.err.find("faces on average (typical of clean meshes: 20 to 120)") != std::string::npos);
+  CHECK(poor.err.find("its surface intersects itself, and intersecting faces cannot be covered") !=
         std::string::npos);
-  CHECK(poor.err.find("has no approximate answers, because its surface intersects itself") !=
+  CHECK(poor.err.find("approximate queries are not supported, because its surface intersects itself") !=
         std::string::npos);
-  CHECK(run(folder, {"levels", "scan.lrb"}).err.find("has no approximate answers") != std::string::npos);
+  CHECK(run(folder, {"levels", "scan.lrb"}).err.find("approximate queries are not supported") !=
+        std::string::npos);
   folder.write("p.txt", "1 0 0 0.1  0 1 0 0  0 0 1 0\n");
   CHECK(run(folder, {"query", "scan.lrb", "scan.lrb", "--poses", "p.txt", "--tolerance", "0.1"})
-            .err.find("has no approximate answers") != std::string::npos);
-  CHECK(run(folder, {"inspect", "scan.lrb", "--regions"}).out.find("(clean meshes have 20 to 120)") !=
+            .err.find("approximate queries are not supported") != std::string::npos);
+  CHECK(run(folder, {"inspect", "scan.lrb", "--regions"}).out.find("(typical of clean meshes: 20 to 120)") !=
         std::string::npos);
   const LrbRep rep = build_lrb(scan);
   const bodies::Trial poor_trial{"", {1.5, 20, 1.2, 5000, 0}};
   const auto lines =
       bodies::advice(rep, std::vector{poor_trial, {"--max-outer 80", {1.5, 80, 1.0, 4990, 1}}});
   REQUIRE(lines.size() == 1);
-  CHECK(lines[0].starts_with("no setting lowers the waste of 5e+03 (clean meshes have 20 to 120)"));
+  CHECK(lines[0].starts_with("no setting lowers the waste of 5e+03 (typical of clean meshes: 20 to 120)"));
 }
 
 TEST_CASE("an isolated region is drawn once, close up, and said to be what it is") {
@@ -270,7 +270,7 @@ TEST_CASE("a direction to look from is refused for bodies in the plane") {
        {std::vector<std::string>{"--from", "1,1,1"}, {"--up", "y"}, {"--projection", "orthographic"}}) {
     const auto with = [&](std::vector<std::string> words) {
       words.insert(words.end(), camera.begin(), camera.end());
-      CHECK(check_refused(folder, words).err.find("are seen from above") != std::string::npos);
+      CHECK(check_refused(folder, words).err.find("are always drawn from above") != std::string::npos);
     };
     with({"inspect", "star.obj", "--render", "-o", "x.png"});
     with({"inspect", "open.obj", "--draw", "x.png"});

@@ -190,7 +190,7 @@ TEST_CASE("run --format svg: frames, montage and caption; the former run's are g
   REQUIRE(run(folder, {"run", "figure2", "-o", "two", "--most", "4"}).code == 0);
   const std::string montage = slurp(folder / "two/montage.svg"), caption = slurp(folder / "two/caption.txt");
   CHECK(caption.find("(a) outermost wrapper, 8 faces; (b) ") != std::string::npos);
-  CHECK(caption.find("(d) the body itself, 144 faces.") != std::string::npos);
+  CHECK(caption.find("(d) the body, 144 faces.") != std::string::npos);
   CHECK(montage.find(">(a) outermost wrapper, 8 faces</text>") != std::string::npos);
   CHECK(std::filesystem::exists(folder / "two/frames/frame_0003.svg"));
   REQUIRE(run(folder, {"run", "figure2", "-o", "two", "--most", "2", "--format", "png"}).code == 0);
@@ -244,14 +244,14 @@ TEST_CASE(
   for (const char* by : {"box_tests", "plane_tests", "expansions"}) {
     const std::string what = std::string("colours by ") + by + " need ";
     const Outcome one = check_refused(folder, {"--quiet", "run", "one.json", "-o", "out", "--colour-by", by});
-    CHECK(one.err.find(what + "two bodies") != std::string::npos);
+    CHECK(one.err.find(what + "the trees of two bodies") != std::string::npos);
   }
   const Outcome boxes =
       check_refused(folder, {"--quiet", "run", "one.json", "-o", "out", "--node-boxes", "1"});
-  CHECK(boxes.err.find("boxes of tree nodes need two bodies") != std::string::npos);
+  CHECK(boxes.err.find("boxes of tree nodes need the trees of two bodies") != std::string::npos);
   const Outcome paper = check_refused(
       folder, {"--quiet", "run", "islands", "-o", "out", "--recursion", "paper", "--colour-by", "box_tests"});
-  CHECK(paper.err.find("--recursion paper walks no trees") != std::string::npos);
+  CHECK(paper.err.find("--recursion paper does not use trees") != std::string::npos);
 }
 
 TEST_CASE("render: flags that do not fit are refused before anything is written") {

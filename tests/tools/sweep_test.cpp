@@ -72,7 +72,7 @@ TEST_CASE("sweep: tolerance, budget, features, history and times") {
 TEST_CASE("sweep: what cannot be asked is refused in one line") {
   MovingBoxes boxes;
   for (const char* tolerance : {"0", "-1", "2", "nan"})
-    boxes.check_refusals({{{"--tolerance", tolerance}, "the tolerance of a first contact"}});
+    boxes.check_refusals({{{"--tolerance", tolerance}, "first contact: expected a tolerance"}});
   boxes.check_refusals({{{"--budget", "0"}, "--budget"}});
   boxes.words = {"sweep", "cube.obj"};
   boxes.check_refusals({{{"none.obj", "--motions", "motions.txt"}, "none.obj"}});

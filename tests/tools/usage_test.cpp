@@ -16,12 +16,12 @@ TEST_CASE("usage: a misspelt command is named, with the nearest one") {
   const auto refused = [&](const std::vector<std::string>& arguments, const std::string& message) {
     CHECK(check_refused(folder, arguments).err == "lrbscope: " + message + "\n");
   };
-  refused({"figre"}, "'figre' is no command of lrbscope; did you mean \"figure\"? (see lrbscope --help)");
+  refused({"figre"}, "'figre' is not a command of lrbscope; did you mean \"figure\"? (see lrbscope --help)");
   refused({"figre", "run", "--width", "85mm"},
-          "'figre' is no command of lrbscope; did you mean \"figure\"? (see lrbscope --help)");
-  refused({"xyzzyplugh"}, "'xyzzyplugh' is no command of lrbscope (see lrbscope --help)");
+          "'figre' is not a command of lrbscope; did you mean \"figure\"? (see lrbscope --help)");
+  refused({"xyzzyplugh"}, "'xyzzyplugh' is not a command of lrbscope (see lrbscope --help)");
   refused({"golden", "tst"},
-          "'tst' is no command of lrbscope golden; did you mean \"test\"? (see lrbscope golden --help)");
+          "'tst' is not a command of lrbscope golden; did you mean \"test\"? (see lrbscope golden --help)");
   refused({}, "A subcommand is required (see lrbscope --help)");
 }
 
@@ -59,7 +59,7 @@ TEST_CASE("usage: an empty text is no value of any option") {
            {"inspect", ""}}) {
     CAPTURE(arguments[0]);
     const Outcome o = check_refused(folder, arguments);
-    CHECK(says(o, ": expected a value, found an empty text; is a variable unset?"));
+    CHECK(says(o, ": expected a value, found an empty string; is a shell variable unset?"));
   }
 }
 
@@ -107,14 +107,14 @@ TEST_CASE("commands that take a recorded run take its folder, and its trace") {
   both({"figure"}, {"--panels", "1", "-o", "run.pdf"});
   both({"why", "--run"}, {});
   both({"compare", "run"}, {"-o", "compared"});
-  CHECK(says(check_refused(folder, {"render", ".", "-o", "none"}), "there is no trace.json"));
+  CHECK(says(check_refused(folder, {"render", ".", "-o", "none"}), "no trace.json"));
 }
 
 TEST_CASE("inspect names the option of pictures that has no picture") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   CHECK(check_refused(folder, {"inspect", "cube.obj", "--regions", "--up", "y"}).err ==
-        "lrbscope: --up: is for pictures; add --render or --draw, or leave --up out\n");
+        "lrbscope: --up: needs --render or --draw; add one, or leave --up out\n");
 }
 
 }  // namespace

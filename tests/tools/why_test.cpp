@@ -42,8 +42,8 @@ TEST_CASE("why: bodies that are apart") {
   const Bodies bodies;
   const Outcome text = bodies.run({"--pose", "1"});
   CHECK(text.code == 0);
-  CHECK(text.out.rfind("separate, 0 pairs\nboxes round the bodies: gap >= ", 0) == 0);
-  CHECK(text.out.find("prove it too") != std::string::npos);
+  CHECK(text.out.rfind("separate, 0 pairs\nboxes of the bodies: gap >= ", 0) == 0);
+  CHECK(text.out.find("also prove it") != std::string::npos);
   const auto j = nlohmann::json::parse(bodies.run({"--pose", "1", "--json"}).out);
   CHECK(j["roots"]["gap"] > 5);
   CHECK(j["separation"]["refined"] == nlohmann::json({0, 0}));
@@ -77,8 +77,8 @@ TEST_CASE(
 
 TEST_CASE("why: what parts bodies that are apart") {
   const Bodies bodies;
-  CHECK(bodies.run({"--pose", "1", "-o", "plane.png"})
-            .out.find("has all of A on one side and all of B on the other, gap >= ") != std::string::npos);
+  CHECK(bodies.run({"--pose", "1", "-o", "plane.png"}).out.find("separating plane with normal (") !=
+        std::string::npos);
   const auto j = nlohmann::json::parse(bodies.run({"--pose", "1", "--json"}).out);
   CHECK(j["plane"]["gap"] > 5);
   // Beside the whole is a close-up that looks along the plane: a line in the middle of the gap.
@@ -113,25 +113,25 @@ TEST_CASE("why: a step of a run, by the run's folder or its trace") {
     CHECK(why({"--run", place, "--json"}).out == bodies.run({"--pose", "1", "--json"}).out);  // the last step
   }
   bodies.words = {"--quiet", "why"};
-  bodies.check_refusals({{{"--run", "out", "--step", "2"}, "has no step 2; its steps go from 0 to 1"},
-                         {{"--run", "nowhere"}, "nowhere"},
-                         {{"--run", "out", "ball.obj", "ring.obj"}, "--run"},
-                         {{"--step", "1"}, "--run"},
-                         {{"ball.obj"}, "expected two bodies, A and B, or --run"}});
+  bodies.check_refusals(
+      {{{"--run", "out", "--step", "2"}, "no step 2 in the trace; expected one from 0 to 1"},
+       {{"--run", "nowhere"}, "nowhere"},
+       {{"--run", "out", "ball.obj", "ring.obj"}, "--run"},
+       {{"--step", "1"}, "--run"},
+       {{"ball.obj"}, "expected two bodies A and B, or --run"}});
   std::filesystem::copy_file(bodies.folder / "out/b.lrb", bodies.folder / "out/a.lrb",
                              std::filesystem::copy_options::overwrite_existing);
-  bodies.check_refusals({{{"--run", "out"}, "the body beside it is not the one that was recorded as A"}});
+  bodies.check_refusals({{{"--run", "out"}, "the .lrb file next to it is not the recorded body A"}});
 }
 
 TEST_CASE("why: bad input is refused in one line, and nothing is written") {
   Bodies bodies;
   bodies.words = bodies.with({"-o", "no.png"});
-  bodies.check_refusals(
-      {{{"--pair", "0,99999"}, "no simplex 99999 of B: there are "},
-       {{"--pair", "0,0", "--pose", "2"}, "has 2 poses, numbered from 0; there is no pose 2"},
-       {{}, "-o: the bodies meet"},
-       {{"--pair", "0"}, "--pair"},
-       {{"--pair", "-1,0"}, "--pair"}});
+  bodies.check_refusals({{{"--pair", "0,99999"}, "simplex of B: expected a number below "},
+                         {{"--pair", "0,0", "--pose", "2"}, "expected a pose number below 2, found 2"},
+                         {{}, "-o: the bodies intersect"},
+                         {{"--pair", "0"}, "--pair"},
+                         {{"--pair", "-1,0"}, "--pair"}});
 }
 
 }  // namespace

@@ -132,8 +132,8 @@ TEST_CASE("a replay refuses another body and another number of bodies") {
   const LrbRep other(std::move(moved));
   const Trace t = runs::record(plate, plate, runs::kPlatePoses).trace;
   CHECK_NOTHROW(Cursor(t, plate, plate));
-  CHECK_THROWS_WITH_AS(Cursor(t, plate, other), doctest::Contains("body B was recorded as"), InputError);
-  CHECK_THROWS_WITH_AS(Cursor(t, other, plate), doctest::Contains("body A was recorded as"), InputError);
+  CHECK_THROWS_WITH_AS(Cursor(t, plate, other), doctest::Contains("body B: expected"), InputError);
+  CHECK_THROWS_WITH_AS(Cursor(t, other, plate), doctest::Contains("body A: expected"), InputError);
   CHECK_THROWS_AS(Cursor(t, plate), InputError);
 }
 

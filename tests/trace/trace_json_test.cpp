@@ -271,7 +271,7 @@ TEST_CASE("bad files are refused with one line that says where and what") {
   names("", "line 1, column 1");
   names("{\"traceEvents\": [\n\n  tru]}", "line 3, column 6");
   names("{\"traceEvents\": [\n  1,\n  tru]}", "/traceEvents/0: expected an event");
-  names(good.substr(0, good.size() / 2), "this is not JSON");
+  names(good.substr(0, good.size() / 2), "not valid JSON");
   names("[]", "expected an object");
   names("{\"traceEvents\": []}", "/metadata/format");
   names("{\"traceEvents\": [], \"metadata\": 3}", "/metadata");
@@ -281,7 +281,7 @@ TEST_CASE("bad files are refused with one line that says where and what") {
   names(replaced(good, "\"version\": 3", "\"version\": 4"), "/metadata/version: written in format 4");
   names(replaced(good, "\"version\": 3", "\"version\": 0"), "/metadata/version");
   names(replaced(good, "\"version\": 3", "\"version\": \"1\""), "expected an integer");
-  names(replaced(good, "lrbscope trace", "another trace"), "this is some other file");
+  names(replaced(good, "lrbscope trace", "another trace"), "found another file format");
   RecorderSettings settings;
   settings.request.tolerance = 0.5;
   settings.request.separation = true;
@@ -302,11 +302,11 @@ TEST_CASE("bad files are refused with one line that says where and what") {
         "/result/finished: expected true or false");
   names(replaced(coarse, "[7, 6]", "[7]"), "/result/separation/faces: expected two numbers");
   names(replaced(coarse, "[[0], [0]]", "[[0], [1000000]]"),
-        "step 0: its separation names a region that does not exist");
+        "step 0: its separation refers to a region that does not exist");
   names(replaced(good, "\"name\":\"refine\"", "\"name\":\"refin\""), "refine");
   names(replaced(good, "\"meet\":\"cross\"", "\"meet\":\"crosses\""),
         "/args/meet: expected disjoint, touch or cross");
-  names(replaced(good, "\"region\":1", "\"region\":2"), "there is no such region");
+  names(replaced(good, "\"region\":1", "\"region\":2"), "no such region");
   names(replaced(good, "\"region\":1", "\"region\":-1"), "/args/region: expected an integer from 0");
   names(replaced(good, "\"region\":1", "\"region\":1.5"), "/args/region");
   names(replaced(good, "\"region\":1", "\"region\":4294967296"), "/args/region");
@@ -361,7 +361,7 @@ TEST_CASE("no damage to a trace does more than a refusal") {
 
 TEST_CASE("files that cannot be read are named") {
   const TempFolder folder;
-  CHECK_THROWS_WITH_AS(load_trace(folder.file("none.json")), doctest::Contains("none.json: cannot be read"),
+  CHECK_THROWS_WITH_AS(load_trace(folder.file("none.json")), doctest::Contains("none.json: cannot read the trace"),
                        InputError);
   CHECK_THROWS_WITH_AS(load_trace(folder.path.string()), doctest::Contains("it is a directory"), InputError);
   const std::string path = folder.file("t.json.gz");
@@ -370,7 +370,7 @@ TEST_CASE("files that cannot be read are named") {
   CHECK_THROWS_WITH_AS(load_trace(path, {.max_bytes = 1000}), doctest::Contains("more than 1000 bytes"),
                        InputError);
   std::ofstream(path, std::ios::binary) << whole.substr(0, whole.size() / 2);
-  CHECK_THROWS_WITH_AS(load_trace(path), doctest::Contains("ends too early"), InputError);
+  CHECK_THROWS_WITH_AS(load_trace(path), doctest::Contains("is truncated"), InputError);
   std::string flipped = whole;
   flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 0x55);
   std::ofstream(path, std::ios::binary) << flipped;

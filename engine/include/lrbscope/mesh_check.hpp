@@ -15,23 +15,23 @@ namespace lrb {
 
 /// All faults that a mesh can have.
 /// MESH_FAULT(enumerator, message, can an LRB-rep be built?, can the mesh be queried?)
-#define LRB_MESH_FAULTS(MESH_FAULT)                                                                  \
-  MESH_FAULT(no_faces, "the mesh has no faces", false, false)                                        \
-  MESH_FAULT(non_finite_vertex, "a coordinate is not finite", false, false)                          \
-  MESH_FAULT(index_out_of_range, "a face names a vertex that does not exist", false, false)          \
-  MESH_FAULT(repeated_corner, "a face names a vertex twice", false, true)                            \
-  MESH_FAULT(zero_area_face, "a face has no area", false, true)                                      \
-  MESH_FAULT(non_planar_face, "a polygon's corners do not lie in one plane", true, true)             \
-  MESH_FAULT(non_convex_face, "a polygon is not convex", false, true)                                \
-  MESH_FAULT(duplicate_face, "two faces have the same corners", false, true)                         \
-  MESH_FAULT(open_edge, "an edge has a face on one side only", false, true)                          \
-  MESH_FAULT(non_manifold_edge, "an edge has more than two faces", false, true)                      \
-  MESH_FAULT(flipped_face, "two neighbouring faces disagree on which side is outside", false, true)  \
-  MESH_FAULT(non_manifold_vertex, "a vertex joins two fans of faces", true, true)                    \
-  MESH_FAULT(inside_out, "the body is inside out", false, true)                                      \
-  MESH_FAULT(self_intersection, "two faces meet outside their shared edges and corners", true, true) \
-  MESH_FAULT(duplicate_vertex, "two vertices lie in one place", true, true)                          \
-  MESH_FAULT(unused_vertex, "no face uses a vertex", true, true)
+#define LRB_MESH_FAULTS(MESH_FAULT)                                                                       \
+  MESH_FAULT(no_faces, "the mesh has no faces", false, false)                                             \
+  MESH_FAULT(non_finite_vertex, "a coordinate is not finite", false, false)                               \
+  MESH_FAULT(index_out_of_range, "a face has a vertex index out of range", false, false)                  \
+  MESH_FAULT(repeated_corner, "a face uses a vertex twice", false, true)                                  \
+  MESH_FAULT(zero_area_face, "a face has no area", false, true)                                           \
+  MESH_FAULT(non_planar_face, "a polygon is not planar", true, true)                                      \
+  MESH_FAULT(non_convex_face, "a polygon is not convex", false, true)                                     \
+  MESH_FAULT(duplicate_face, "two faces have the same corners", false, true)                              \
+  MESH_FAULT(open_edge, "an edge has only one face", false, true)                                         \
+  MESH_FAULT(non_manifold_edge, "an edge has more than two faces", false, true)                           \
+  MESH_FAULT(flipped_face, "two adjacent faces are inconsistently oriented", false, true)                 \
+  MESH_FAULT(non_manifold_vertex, "a vertex joins two separate fans of faces", true, true)                \
+  MESH_FAULT(inside_out, "a component is inside out", false, true)                                        \
+  MESH_FAULT(self_intersection, "two faces intersect outside their shared edges and corners", true, true) \
+  MESH_FAULT(duplicate_vertex, "two vertices coincide", true, true)                                       \
+  MESH_FAULT(unused_vertex, "a vertex is not used by any face", true, true)
 
 enum class MeshFault : std::uint8_t {
 #define MESH_FAULT(name, text, build, query) name,

@@ -113,7 +113,7 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   // The header of a binary STL may begin with "solid", so its size is tested before that keyword.
   if (has_size_of_binary_stl(bytes)) return MeshFormat::stl_binary;
   if (bytes.find_first_not_of(" \t\r\n\v\f") == std::string_view::npos)
-    refuse(name, bytes.empty() ? "an empty file" : "a file of blanks", "export or copy the file again");
+    refuse(name, bytes.empty() ? "an empty file" : "only white space", "export or copy the file again");
 
   // First token with and without "#" comments: PLY and STL have none.
   const std::string_view first = TextCursor(bytes, name, {.hash_comments = true}).any_token();
@@ -128,9 +128,9 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   // Binary data: only the extension is left as evidence.
   if (!is_text(bytes)) {
     if (extension == "stl") return MeshFormat::stl_binary;
-    if (extension != "obj") refuse(name, "binary data of no known kind");
+    if (extension != "obj") refuse(name, "binary data of an unknown format");
   }
-  if (first.empty()) refuse(name, "nothing but comments", "export or copy the file again");
+  if (first.empty()) refuse(name, "only comments", "export or copy the file again");
   // OBJ has no signature, so its first statement identifies it.
   if (std::find(kObjWords.begin(), kObjWords.end(), first) != kObjWords.end()) return MeshFormat::obj;
   if (extension == "obj") return MeshFormat::obj;  // the OBJ reader reports the invalid line

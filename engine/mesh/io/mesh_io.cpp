@@ -44,7 +44,7 @@ void check_index_limits(std::uint64_t vertices, std::uint64_t corners, std::stri
 void refuse_without_faces(const Mesh& mesh, std::string_view name) {
   if (mesh.face_count() == 0)
     throw InputError(printable_name(name) + ": found " + std::to_string(mesh.vertices.size()) +
-                     " vertices and no face, expected a body's boundary; export the mesh with its faces");
+                     " vertices and no faces, expected a surface mesh; export the mesh with its faces");
 }
 
 Mesh read_mesh(const std::string& bytes, const std::string& name) {

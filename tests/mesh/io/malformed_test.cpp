@@ -271,8 +271,8 @@ TEST_CASE("malformed OFF files are refused by line") {
 TEST_CASE("files of other kinds are named for what they look like") {
   check_all({
       {"", "a.obj", "a.obj:1: ", "an empty file"},
-      {" \r\n\n\t ", "a.ply", "a.ply:1: ", "a file of blanks"},
-      {"# only\n# comments\n", "a.obj", "a.obj:1: ", "nothing but comments"},
+      {" \r\n\n\t ", "a.ply", "a.ply:1: ", "only white space"},
+      {"# only\n# comments\n", "a.obj", "a.obj:1: ", "only comments"},
       {"<!DOCTYPE html>\n<html>\n", "a.obj", "a.obj:1: ", "an HTML page"},
       {"\n  <HTML><body>404</body>", "a.stl", "a.stl:1: ", "an HTML page"},
       {"<?xml version=\"1.0\"?>", "a.ply", "a.ply:1: ", "XML"},
@@ -285,7 +285,7 @@ TEST_CASE("files of other kinds are named for what they look like") {
       {"glTF\2", "a.obj", "a.obj:1: ", "glTF"},
       {"{\"asset\":{}}", "a.off", "a.off:1: ", "JSON"},
       {"\x89PNG\r\n", "a.obj", "a.obj:1: ", "PNG"},
-      {std::string(100, '\0'), "a.ply", "a.ply:1: ", "binary data of no known kind"},
+      {std::string(100, '\0'), "a.ply", "a.ply:1: ", "binary data of an unknown format"},
       {"Dear reader,\n", "a.txt", "a.txt:1: ", "text that begins with 'Dear'"},
       {"Dear reader,\n", "a.obj", "a.obj:1: ", "found 'Dear', expected an OBJ statement"},
       {"v 0 0 x", "new\nline.obj", "new\\x0aline.obj:1: ", "found 'x'"},

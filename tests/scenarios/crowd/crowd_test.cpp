@@ -217,7 +217,7 @@ TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
   CHECK(part.notes.at(0).find(" of 5 steps (trace.max_events)") != std::string::npos);
   crowd.max_events = 3;
   CHECK(error(trace_of(crowd, run), kinds()) ==
-        "t.json: holds no step whole: run the crowd again with a larger trace.max_events");
+        "t.json: contains no complete step; run the crowd again with a larger trace.max_events");
 
   const json whole = json::parse(text);
   const auto changed = [&](const std::string& pointer, const json& value) {
@@ -227,29 +227,29 @@ TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
   };
   std::vector<bodies::LoadedBody> swapped = kinds();
   std::swap(swapped[0], swapped[2]);
-  CHECK(error(text, std::move(swapped)).find("trace: body ball was recorded as ") == 0);
+  CHECK(error(text, std::move(swapped)).find("trace: body ball: expected ") == 0);
   std::vector<bodies::LoadedBody> few = kinds();
   few.pop_back();
-  CHECK(error(text, std::move(few)) == "t.json: has 4 kinds of bodies, given are 3");
+  CHECK(error(text, std::move(few)) == "t.json: has 4 kinds of bodies, found 3");
   CHECK(changed("/metadata/poses/2/0/3", 1.25).find("t.json: step 2, ball 1 and ") == 0);
   CHECK(changed("/metadata/version", 1).find("run the crowd again") != std::string::npos);
   CHECK(changed("/metadata/version", 3).find("written in format 3") != std::string::npos);
   CHECK(changed("/metadata/kinds/0/name", "../x").find("/metadata/kinds/0/name: ") != std::string::npos);
-  CHECK(changed("/metadata/kinds/0/name", "bal").find("a query names ball 1, but there is no such body") !=
+  CHECK(changed("/metadata/kinds/0/name", "bal").find("a query refers to ball 1, which does not exist") !=
         std::string::npos);
   CHECK(changed("/metadata/kinds/1/name", "ball").find("/metadata/kinds/1/name: ") != std::string::npos);
   CHECK(changed("/metadata/kinds/1/count", 100000).find("/metadata/kinds/1/count: ") != std::string::npos);
-  CHECK(changed("/metadata/kinds/1/body/dim", 2).find("bodies of one dimension") != std::string::npos);
+  CHECK(changed("/metadata/kinds/1/body/dim", 2).find("bodies of the same dimension") != std::string::npos);
   CHECK(changed("/metadata/poses/0/1", json::array({1, 2})).find("/metadata/poses/0/1: expected 12") !=
         std::string::npos);
   CHECK(changed("/metadata/poses/0/1/3", 1e300).find("/metadata/poses/0/1: ") != std::string::npos);
-  CHECK(changed("/metadata/poses/0", json::array()).find("12 poses, one a body") != std::string::npos);
+  CHECK(changed("/metadata/poses/0", json::array()).find("12 poses, one per body") != std::string::npos);
   CHECK(changed("/metadata/room", json::array({1, 2, -1})).find("/metadata/room/2: ") != std::string::npos);
   json other = whole;
   for (json& e : other["traceEvents"])
     if (e["args"].contains("fingerprint") && e["args"]["relation"] == "crossing")
       e["args"]["fingerprint"] = "0000000000000000";
-  CHECK(error(other.dump(), kinds()).find(": recorded was crossing in ") != std::string::npos);
+  CHECK(error(other.dump(), kinds()).find(": expected crossing in ") != std::string::npos);
 }
 
 TEST_CASE("traces of crowds fulfil the schema of traces, on either clock; broken ones do not") {
@@ -372,13 +372,15 @@ TEST_CASE("what is wrong with a crowd is said with its place") {
   CHECK(error_of(with("/arrangement", "grd")).find("did you mean \"grid\"?") != std::string::npos);
   CHECK(error_of(with("/motion/speed", {2, 1})).find("/motion/speed: expected 0 <= least <= most") !=
         std::string::npos);
-  CHECK(error_of(with("/bodies/1/name", "ball")).find("other bodies are called ball") != std::string::npos);
+  CHECK(error_of(with("/bodies/1/name", "ball")).find("other bodies have the name ball") !=
+        std::string::npos);
   CHECK(error_of(with("/query/tolerance", 0.1)).find("/query/tolerance: queries of a crowd are exact") !=
         std::string::npos);
   json mixed = good();
   mixed["bodies"].push_back({{"name", "flat"}, {"body", {{"generator", "island"}}}});
   CHECK_THROWS_WITH_AS(static_cast<void>(crowd::run_crowd(crowd_of(mixed), 1, run::kSilent)),
-                       "crowd few: flat is 2D and ball is 3D; give bodies of one dimension", InputError);
+                       "crowd few: flat is 2D and ball is 3D; expected bodies of the same dimension",
+                       InputError);
   CHECK_THROWS_WITH_AS(static_cast<void>(spec::open_crowd("crowds")),
                        "crowds: neither a shipped crowd nor a file; did you mean \"crowd\"? known: crowd",
                        InputError);

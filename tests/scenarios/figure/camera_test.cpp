@@ -106,7 +106,7 @@ TEST_CASE("--animate: by ffmpeg; without it, refused before anything is drawn") 
     CAPTURE(o.err);
     CHECK(o.code == 3);
     CHECK(o.error_lines() == 1);
-    CHECK(o.err.find("--animate: there is no program /no such program") != std::string::npos);
+    CHECK(o.err.find("--animate: cannot find the program /no such program") != std::string::npos);
     CHECK_FALSE(std::filesystem::exists(folder / "other"));
   }
   ::unsetenv("LRB_FFMPEG");

@@ -149,7 +149,7 @@ TEST_CASE("goldens: a moved camera is called a moved camera") {
   CHECK(has(o.out, "frame_1.png: too many pixels differ strongly"));
   CHECK(has(o.out, "the camera moved: expected eye ("));
   CHECK(has(o.out, "events equal; images: 2 of 2 differ"));
-  CHECK(has(o.out, "the scenario's file is not the one that was approved"));
+  CHECK(has(o.out, "the scenario file changed since it was approved"));
   CHECK(has(o.out, "lrbscope golden approve --goldens goldens balls\n"));
   CHECK(files_ending(folder, ".expected.png") == 2);
   CHECK(files_ending(folder, ".actual.png") == 2);
@@ -298,7 +298,7 @@ TEST_CASE("goldens: frames that one side alone has are failures") {
   CHECK(has(folder.test().out, "frame_2.png: not approved yet"));
   fs::copy_file(folder / "goldens/balls/frame_1.png", folder / "goldens/balls/frame_2.png");
   fs::copy_file(folder / "goldens/balls/frame_1.png", folder / "goldens/balls/frame_3.png");
-  CHECK(has(folder.test().out, "frame_3.png: approved, but the run has 2 frames only"));
+  CHECK(has(folder.test().out, "frame_3.png: approved, but the run has only 2 frames"));
   CHECK(test::run(folder, {"golden", "approve"}).code == 0);
   CHECK_FALSE(fs::exists(folder / "goldens/balls/frame_3.png"));
   CHECK(folder.test().code == 0);
@@ -358,10 +358,10 @@ TEST_CASE("goldens: what is damaged fails, and the others are tested all the sam
   CHECK(test::run(folder, {"golden", "approve", "balls"}).code == 0);  // which puts a sound one in its place
   CHECK(folder.test().code == 0);
   folder.write("goldens/balls/trace.json.gz", sound.substr(0, sound.size() / 2));
-  check_fails("ends too early");
+  check_fails("is truncated");
   const auto answer = nlohmann::json::parse(test::run(folder, {"golden", "test", "--json", "balls"}).out);
   CHECK(answer["passed"] == false);
-  CHECK(has(answer["refusal"].get<std::string>(), "ends too early"));
+  CHECK(has(answer["refusal"].get<std::string>(), "is truncated"));
   folder.write("goldens/balls/trace.json.gz", sound);
   folder.write("goldens/balls/golden.json", "{\"scenario\": \"balls\", \"size\": [1]}");
   check_fails("golden.json:1:");
@@ -377,7 +377,7 @@ TEST_CASE("goldens: two scenarios of one name are refused; one that has been mov
   };
   const Outcome refused = approve("more/balls.scenario.json");
   CHECK(refused.code == 2);
-  CHECK(has(refused.err, "more/balls.scenario.json: has the name of another scenario"));
+  CHECK(has(refused.err, "more/balls.scenario.json: has the same name as another scenario"));
   CHECK(slurp(folder / "goldens/balls/trace.json.gz") == approved);
   CHECK(approve("./balls.scenario.json").code == 0);
   std::filesystem::rename(folder / "balls.scenario.json", folder / "more/moved.scenario.json");
@@ -438,18 +438,18 @@ TEST_CASE("goldens: a body built otherwise from the same mesh is told from anoth
   golden::Golden golden = golden_of(run);
   ++golden.trace.header.bodies[0].hash;
   CHECK(has(golden::check_golden(golden, run).causes.at(0),
-            "the mesh is the same, its LRB-rep was built otherwise"));
+            "the mesh is unchanged, but its LRB-rep was built differently"));
   ++golden.facts.meshes[0];
   CHECK(has(golden::check_golden(golden, run).causes.at(0), "its mesh changed: "));
   golden.facts.meshes.clear();
-  CHECK(has(golden::check_golden(golden, run).causes.at(0), "its mesh or its LRB-rep is another one"));
+  CHECK(has(golden::check_golden(golden, run).causes.at(0), "its mesh or its LRB-rep changed"));
   golden = golden_of(run);
   golden.trace.steps[1].pose_b.t.x() += 1;
   CHECK(has(golden::check_golden(golden, run).causes.at(0),
-            "step 1: body B is elsewhere: its origin moved by 1"));
+            "step 1: body B moved: its origin is displaced by 1"));
   golden = golden_of(run);
   golden.trace.header.request.contacts = false;
-  CHECK(has(golden::check_golden(golden, run).causes.at(0), "the query asks otherwise: contacts"));
+  CHECK(has(golden::check_golden(golden, run).causes.at(0), "the query request changed: contacts"));
 }
 
 TEST_CASE("goldens: what is compared can be chosen, by the golden or by the call") {

@@ -76,7 +76,7 @@ TEST_CASE("readers say what they expected and where") {
                        "f:1:53: /f: expected a whole number from 0 to 9, found 1.5", InputError);
   CHECK_THROWS_WITH_AS(root.at("s").number(0, 1), "f:1:16: /s: expected a number, found string", InputError);
   CHECK_THROWS_WITH_AS(root.at("v").vector(), "f:1:26: /v: expected 3 numbers, found 2", InputError);
-  CHECK_THROWS_WITH_AS(root.at("w"), "f:1:1: the key \"w\" is missing: add it", InputError);
+  CHECK_THROWS_WITH_AS(root.at("w"), "f:1:1: the key \"w\" is missing; add it", InputError);
   CHECK_THROWS_AS(root.at("big").number(-1, 1), InputError);
 }
 

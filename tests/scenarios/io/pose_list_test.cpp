@@ -44,18 +44,19 @@ TEST_CASE("poses in CSV: what is wrong is said with file and line") {
     CHECK_THROWS_WITH_AS(io::parse_pose_table(text, "p.csv"), message, InputError);
   };
   fails("1,2,3\n", "p.csv:1: expected 12 numbers (a row-major 3x4 pose) or 16 (4x4), found 3");
-  fails("1,2,3,4,5,6,7,8,9,10,11,12,0,0,0,2\n", "p.csv:1: the last row of the 4x4 pose is not 0, 0, 0, 1");
+  fails("1,2,3,4,5,6,7,8,9,10,11,12,0,0,0,2\n",
+        "p.csv:1: expected 0, 0, 0, 1 as the last row of the 4x4 pose");
   fails("1,,3,4,5,6,7,8,9,10,11,12\n", "p.csv:1: cell 2 is empty: expected a number");
   fails("1,2,3,4,5,6,7,8,9,10,11,12,0,0,,1\n", "p.csv:1: cell 15 is empty: expected a number");
   fails("1;2;3;4;5;6;7;8;9;10;11;12\n",
         "p.csv:1: expected 12 numbers (a row-major 3x4 pose) or 16 (4x4), found 1");
   fails("r00,r01\n1,2\n",
-        "p.csv:1: no column r02: expected r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz in any order");
+        "p.csv:1: missing column r02: expected r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz in any order");
   fails("r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz\n1,2\n",
-        "p.csv:2: expected 12 cells, as the first line names them, found 2");
+        "p.csv:2: expected 12 cells, as in the first line, found 2");
   fails("r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz\n",
         "p.csv: no poses: expected lines of 12 numbers (row-major 3x4)");
-  fails("1,2,3,4,5,6,x,8,9,10,11,12\n", "p.csv:1: \"x\" is not a number: expected 12 numbers a line");
+  fails("1,2,3,4,5,6,x,8,9,10,11,12\n", "p.csv:1: \"x\" is not a number: expected 12 numbers per line");
 }
 
 TEST_CASE("poses in JSON: flat or in rows, 3x4 or 4x4, alone or under \"poses\"") {
@@ -80,7 +81,7 @@ TEST_CASE("poses in JSON: what is wrong is said with file, line and column") {
   fails("[\n [1,2]]", "p.json:2:2: /0: expected a pose of 12 numbers (3x4, row by row) or 16 (4x4), found 2");
   fails("[[[1,2,3,4],[5,6,7,8],[9,10,11]]]", "p.json:1:23: /0/2: expected 4 numbers, found 3");
   fails("[[1,2,3,4,5,6,7,8,9,10,11,12,0,0,1,1]]",
-        "p.json:1:2: /0: the last row of the 4x4 pose is not 0, 0, 0, 1");
+        "p.json:1:2: /0: expected 0, 0, 0, 1 as the last row of the 4x4 pose");
   fails("[[1,2,3,4,5,6,7,8,9,10,11,\"x\"]]", "p.json:1:27: /0/11: expected a number, found string");
   fails("[[1,2,3,4,[5,6,7,[8]]]]", "p.json:1:18: /0/4/3: expected a number, found array");
   fails("[[1,{\"x\": 2}]]", "p.json:1:5: /0/1: expected a number, found object");
@@ -91,7 +92,7 @@ TEST_CASE("poses in JSON: what is wrong is said with file, line and column") {
   fails("{\"poses\": []}", "p.json:1:11: /poses: expected at least 1 items, found 0");
   fails("{\"poses\": [[1, true]]}", "p.json:1:16: /poses/0/1: expected a number, found boolean");
   fails("{\"poses\":\n[[1,2,3,4,5,6,7,8,9,10,11,12]], \"poses\": []}",
-        "p.json:2:33: the key /poses occurs twice: keep one");
+        "p.json:2:33: the key /poses occurs twice; keep one");
   fails("[[1,2,3,4,5,6,7,8,9,10,11,12]] 5",
         "p.json:1:32: not JSON: value - unexpected number literal; expected end of input");
 }
@@ -118,8 +119,8 @@ TEST_CASE("poses in JSON: refused at the first mistake, before the rest is read;
   const test::Folder folder;
   folder.write("p.json", "[]");
   std::filesystem::resize_file(folder / "p.json", (std::uintmax_t{64} << 20) + 1);
-  CHECK_THROWS_WITH_AS(io::open_poses(folder / "p.json"), doctest::Contains("found more than 67108864 bytes"),
-                       InputError);
+  CHECK_THROWS_WITH_AS(io::open_poses(folder / "p.json"),
+                       doctest::Contains("expected at most 67108864 bytes"), InputError);
 }
 
 TEST_CASE("poses: each form is read back as the same numbers, to the last bit") {

@@ -130,7 +130,7 @@ TEST_CASE("experiments: errors name file, line, column and the nearest word") {
             .rfind("dir/e.json:3:2: /purpos: unknown key; did you mean \"purpose\"?", 0) == 0);
   CHECK(experiment_error(experiment_with("/close_up", "rok")).find("did you mean \"rock\"?") !=
         std::string::npos);
-  CHECK(experiment_error(experiment_with("/objects/1/name", "A")).find("another object is called A") !=
+  CHECK(experiment_error(experiment_with("/objects/1/name", "A")).find("another object has the name A") !=
         std::string::npos);
   json lone = good_experiment();
   lone["objects"].erase(1);
@@ -142,7 +142,7 @@ TEST_CASE("experiments: errors name file, line, column and the nearest word") {
       paper::make_objects(
           paper::parse_experiment(experiment_with("/objects/1/body", json{{"generator", "island"}}), "e"),
           notes),
-      doctest::Contains("is a 2D body"), InputError);
+      doctest::Contains("expected a 3D body"), InputError);
 }
 
 TEST_CASE("easiest and hardest: by comparisons over all time steps, the first of several") {

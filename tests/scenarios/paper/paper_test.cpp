@@ -139,7 +139,7 @@ TEST_CASE("paper: the program's shards make the report of the whole, and bad inp
   };
   refused({"--merge", "part1/records.jsonl", "part1/records.jsonl"}, "shard 0/2 is missing");
   refused({"--merge", "part0/records.jsonl", "part1/records.jsonl", "part1/records.jsonl"},
-          "1/2 is there twice");
+          "1/2 occurs twice");
   refused({"--merge", "part1/records.jsonl"}, "shard 0/2 is missing");
   refused({"--merge", "part0/records.jsonl", "other/records.jsonl"}, "another experiment");
   refused({"--merge", "whole/records.jsonl"}, "whole/shard.json");
@@ -253,7 +253,7 @@ TEST_CASE("paper: meshes at several resolutions, in shards and as a whole" * doc
   refused("meshes/ball.ply",
           {"--merge", "part0/records.jsonl", "part1/records.jsonl", "part2/records.jsonl", "-o", "x"},
           "not in the series");
-  refused("meshes/open.obj", {"-o", "x"}, "no mesh that an LRB-rep can be built of");
+  refused("meshes/open.obj", {"-o", "x"}, "no mesh from which an LRB-rep can be built");
   refused("none.obj", {"-o", "x"}, "none.obj");
   std::filesystem::create_directory(folder.path / "other");
   write_mesh(ball, folder / "other/ball.ply");

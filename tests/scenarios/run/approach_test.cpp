@@ -104,5 +104,5 @@ TEST_CASE("approach: the first contact is a step of those that are recorded") {
   const run::Approach after = run::find_approach(box(), {}, box(), {}, late);
   CHECK(after.search.step->at(1) == doctest::Approx(found.search.step->at(1) - 3));
   CHECK(run::contact_step(after.search) == "0.72 steps before step 0");
-  CHECK(run::contact_way(after.search) == "B moves 0.1248711 from there to step 0");
+  CHECK(run::contact_way(after.search) == "B moves 0.1248711 from there until step 0");
 }

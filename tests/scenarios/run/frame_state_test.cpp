@@ -31,7 +31,7 @@ TEST_CASE("captions name faces, of bodies of polygons too") {
     const bool contact = e.kind == EventKind::contact;
     const std::string fa = std::to_string(a.face_of_simplex(e.simplex(Side::a))),
                       fb = std::to_string(b.face_of_simplex(e.simplex(Side::b)));
-    const std::string said = contact ? "face " + fa + " of A meets face " + fb + " of B"
+    const std::string said = contact ? "face " + fa + " of A and face " + fb + " of B"
                                      : "face test " + fa + " against " + fb + ":";
     state.seek(i);
     CHECK_MESSAGE(state.caption().find(said) != std::string::npos, state.caption());

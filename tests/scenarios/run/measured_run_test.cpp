@@ -88,9 +88,9 @@ TEST_CASE("measured runs: frames show the nearest points, and the way out, and s
   const run::FrameState apart = at_end(r, 0, spec), met = at_end(r, 6, spec);
   CHECK(draws_line(apart.scene().list, run::kGapColour));
   CHECK_FALSE(draws_line(apart.scene().list, run::kWayOutColour));
-  CHECK(apart.caption().find(" apart") != std::string::npos);
+  CHECK(apart.caption().find("distance ") != std::string::npos);
   CHECK(draws_line(met.scene().list, run::kWayOutColour));
-  CHECK(met.caption().find(" deep") != std::string::npos);
+  CHECK(met.caption().find(", depth ") != std::string::npos);
   CHECK(met.caption().find("protrudes") != std::string::npos);
   CHECK_FALSE(draws_line(at_end(plain, 0, spec).scene().list, run::kGapColour));
   CHECK_FALSE(draws_line(at_end(plain, 6, spec).scene().list, run::kWayOutColour));
@@ -146,6 +146,6 @@ TEST_CASE("measured runs: a clash of bodies in the plane is refused by step") {
     FAIL("no error");
   } catch (const InputError& e) {
     CAPTURE(std::string(e.what()));
-    CHECK(std::string(e.what()).find("scenario flat, step 0: the clash query is for bodies in space") == 0);
+    CHECK(std::string(e.what()).find("scenario flat, step 0: clash: expected 3D bodies") == 0);
   }
 }

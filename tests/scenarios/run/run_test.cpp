@@ -55,7 +55,7 @@ TEST_CASE("an approach that misses says so and still shows the way") {
   CHECK(r.results.size() >= 2);
   for (const CollideResult& result : r.results) CHECK(result.relation == Relation::separate);
   REQUIRE(r.notes.size() == 1);
-  CHECK(r.notes[0].find("did not meet") != std::string::npos);
+  CHECK(r.notes[0].find("do not touch") != std::string::npos);
 }
 
 TEST_CASE("expectations that are not met are named, those that are met are not") {
@@ -119,10 +119,10 @@ TEST_CASE("a construction's frames say what each pass made and refused, and noth
     all += overlay.title + overlay.event + state.caption() + state.short_caption();
     for (const render::OverlayCounter& c : overlay.counters) all += c.name + c.value;
     for (const render::LegendItem& item : scene.key) all += item.text;
-    refusals += overlay.event.find("refused: ") != std::string::npos;
+    refusals += overlay.event.find("rejected: ") != std::string::npos;
     CHECK((e == 0 || overlay.event.starts_with("pass ")));
     const bool new_lids = std::any_of(scene.key.begin(), scene.key.end(), [](const render::LegendItem& i) {
-      return i.text == "new lids, a colour for each region";
+      return i.text == "new lids, one colour per region";
     });
     CHECK(new_lids == (e != 0));
   }
