@@ -88,6 +88,12 @@ ViewDirection view_beside(const Vector3d& axis, const Vector3d& up, double eleva
   return {std::cos(elevation) * side.normalized() + std::sin(elevation) * vertical, up};
 }
 
+Eigen::AlignedBox3d bounds(std::span<const Vector3d> points) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : points) box.extend(p);
+  return box;
+}
+
 Camera fit_camera(std::span<const Vector3d> points, double width, double height, const FitOptions& options) {
   check_points(points);
   if (!(options.view.from.squaredNorm() > 0)) throw InputError("a camera's direction must not be zero");
@@ -95,8 +101,7 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
   const Matrix3d axes = axes_of(-options.view.from, options.view.up);
   Vector3d origin = Vector3d::Zero();  // points are measured from their middle, to keep digits when they are
                                        // far from the origin
-  Eigen::AlignedBox3d box;
-  for (const Vector3d& p : points) box.extend(p);
+  const Eigen::AlignedBox3d box = bounds(points);
   origin = box.center();
 
   // Step 2: the opening angles inside the margins.
@@ -153,8 +158,7 @@ Camera fit_top(std::span<const Vector3d> points, double width, double height, do
 Camera fit_contact(std::span<const Vector3d> contact, const Eigen::AlignedBox3d& scene, double width,
                    double height, const FitOptions& options, double context, double least) {
   check_points(contact);
-  Eigen::AlignedBox3d box;
-  for (const Vector3d& p : contact) box.extend(p);
+  const Eigen::AlignedBox3d box = bounds(contact);
   // A cube inscribed in a ball around the contact; the ball grows with the contact and with the scene.
   const double radius = 0.5 * (context * box.diagonal().norm() + least * scene.diagonal().norm());
   const Vector3d r = Vector3d::Constant(radius / std::sqrt(3.0));

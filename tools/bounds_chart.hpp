@@ -28,8 +28,8 @@ struct DrawOptions {
 
   bool is_watched() const { return course || !chart.empty(); }
 };
-/// Returns how pictures are to look. Throws InputError for a size that they cannot have.
-run::AnswerLook look_of(const DrawOptions& options);
+/// Returns the appearance of pictures. Throws InputError for a size that they cannot have.
+render::Look look_of(const DrawOptions& options);
 /// Adds --draw, --size, --up, --chart and, unless there is another option for it, --course. `picture`: what
 /// --draw draws.
 void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture,

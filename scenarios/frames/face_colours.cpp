@@ -81,7 +81,7 @@ std::array<double, 2> scale_without_the_smallest(std::span<const std::vector<dou
 namespace {
 
 struct Look {
-  BoxLook lines;
+  BoxStyle lines;
   const char* words;
 };
 
@@ -90,7 +90,7 @@ Look look_of(Side side, bool met, const render::Style& style) {
       {"A: boxes of nodes that parted", "A: boxes of nodes that met"},
       {"B: boxes of nodes that parted", "B: boxes of nodes that met"}};
   const render::Rgba colour = style.edge_of(style.body(side));
-  return {met ? BoxLook{colour, 2, 0} : BoxLook{colour, 1, 4}, kWords[static_cast<int>(side)][met ? 1 : 0]};
+  return {met ? BoxStyle{colour, 2, 0} : BoxStyle{colour, 1, 4}, kWords[static_cast<int>(side)][met ? 1 : 0]};
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "render/pictures/panel.hpp"
-#include "scenarios/frames/chosen_view.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>
