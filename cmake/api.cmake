@@ -1,4 +1,4 @@
-# The target api: makes a reference of the public headers with Doxygen, and fails if Doxygen warns of anything.
+# The target api: makes the reference of the public headers with Doxygen, and fails on any warning.
 find_program(LRB_DOXYGEN doxygen DOC "Doxygen, for the target api")
 set(LRB_API_INPUT "\"${PROJECT_SOURCE_DIR}/docs/library.md\"")
 foreach(header IN LISTS LRB_PUBLIC_HEADERS)
@@ -11,6 +11,6 @@ if(LRB_DOXYGEN)
     COMMAND ${CMAKE_COMMAND} -E echo "${PROJECT_BINARY_DIR}/api/html/index.html"
     VERBATIM)
 else()
-  add_custom_target(api COMMAND ${CMAKE_COMMAND} -E echo "api: install doxygen first, and configure again"
+  add_custom_target(api COMMAND ${CMAKE_COMMAND} -E echo "api: doxygen is not installed: install it and configure again"
                         COMMAND ${CMAKE_COMMAND} -E false VERBATIM)
 endif()

@@ -1,10 +1,10 @@
 # Debian packages: `cmake --build --preset release --target package`, or `cd build/release && cpack`, writes them to
-# build/release/debs. A package for each component that something is installed for:
+# build/release/debs. One package per installed component:
 #   program   lrbscope           the program, its manual pages and completions
 #   library   liblrbscopeN       the shared library, if it is built (install(... COMPONENT library); N: its soname's version)
-#   dev       liblrbscope-dev    headers, the static library, CMake's and pkg-config's files: what has no component
+#   dev       liblrbscope-dev    headers, the static library, CMake's and pkg-config's files: all files without a component
 #   python    python3-lrbscope   the Python module, if it is built (install(... COMPONENT python))
-# Dependencies on shared libraries are found by dpkg-shlibdeps.
+# dpkg-shlibdeps finds the dependencies on shared libraries.
 get_cmake_property(lrb_components COMPONENTS)
 set(CPACK_COMPONENTS_ALL "")
 foreach(component IN ITEMS program library dev python)
@@ -26,17 +26,17 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SOURCE lrbscope)
-set(LRB_MAINTAINER "The lrbscope authors <lrbscope@example.org>" CACHE STRING "Who answers for the Debian packages")
+set(LRB_MAINTAINER "The lrbscope authors <lrbscope@example.org>" CACHE STRING "Maintainer of the Debian packages")
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${LRB_MAINTAINER}")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
-# What a package is for, in lines as they are shown.
-set(lrb_about "lrbscope finds which faces of two bodies meet, exactly, for bodies of any
-shape: meshes are turned into LRB-reps, whose coarse wrappers are refined only
-where the bodies come near each other.
+# Package descriptions, wrapped as displayed.
+set(lrb_about "lrbscope finds the intersecting faces of two bodies of any shape, exactly.
+It converts meshes to LRB-reps, whose coarse wrappers are refined only
+where the bodies are close to each other.
 
 ")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME lrbscope)
@@ -44,7 +44,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS fonts-dejavu-core)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS gnuplot-nox)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS ffmpeg)
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${lrb_about}This package has the program, which records, replays and draws every
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${lrb_about}This package contains the program, which records, replays and draws every
 comparison and every refinement, as pictures, pages and traces.")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME liblrbscope-dev)
@@ -52,12 +52,12 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libboost-dev, libtbb-dev, nlohmann-json3-dev, zlib1g-dev, libosmesa6-dev, \
 libcairo2-dev, libpng-dev, libglm-dev")
-set(CPACK_COMPONENT_DEV_DESCRIPTION "${lrb_about}This package has the headers and the library for find_package(lrbscope).")
+set(CPACK_COMPONENT_DEV_DESCRIPTION "${lrb_about}This package contains the headers and the library for find_package(lrbscope).")
 
 if(library IN_LIST CPACK_COMPONENTS_ALL)
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME liblrbscope${PROJECT_VERSION_MAJOR})
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
-  set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "${lrb_about}This package has the shared library.")
+  set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "${lrb_about}This package contains the shared library.")
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
          ", ${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME} (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
 endif()
@@ -67,7 +67,7 @@ if(python IN_LIST CPACK_COMPONENTS_ALL)
   math(EXPR lrb_next_python "${LRB_PYTHON_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${LRB_PYTHON_MINOR}~), python3 (<< 3.${lrb_next_python}), \
 python3-numpy, fonts-dejavu-core")
-  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "${lrb_about}This package has the Python module, for numpy's arrays.")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "${lrb_about}This package contains the Python module, which takes NumPy arrays.")
 endif()
 
 # Every package's copyright and changelogs.

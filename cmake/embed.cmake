@@ -32,7 +32,7 @@ function(lrb_embed target)
     string(APPEND declarations "extern const char* const ${symbol};\n")
     string(APPEND table "      {\"${name}\", ${symbol}},\n")
   endforeach()
-  # The texts are as long as they are: no warnings about long literals.
+  # No warnings about long literals.
   set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS -Wno-overlength-strings
                               SKIP_PRECOMPILE_HEADERS ON)
   set(registry "${CMAKE_CURRENT_BINARY_DIR}/embedded/registry.cpp")

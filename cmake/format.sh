@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# cmake/format.sh [--mend]: fails unless clang-format would leave every C++ file as it is; --mend: formats them.
+# cmake/format.sh [--mend]: fails if clang-format would change a C++ file; --mend: formats all of them.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 how=(--dry-run --Werror)
@@ -8,7 +8,7 @@ case "${1:-}" in
   --mend) how=(-i) ;;
   *) sed -n '2s/^# //p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
 esac
-# Versions format differently; this is Debian 12's.
+# Versions format differently; Debian 12 has this one.
 program=$(command -v clang-format-14) || { echo "format.sh: clang-format-14 is missing: apt-get install clang-format-14" >&2 && exit 3; }
 find engine trace render scenarios bench tools python examples tests '(' -name '*.cpp' -o -name '*.hpp' -o -name '*.inl' ')' -print0 |
   xargs -0 -P "$(nproc)" -n 40 "$program" --style=file "${how[@]}" ||

@@ -1,9 +1,9 @@
-# `cmake --install`: the program, and its libraries for find_package(lrbscope COMPONENTS engine trace render) and pkg-config.
+# `cmake --install`: the program, and the libraries for find_package(lrbscope COMPONENTS engine trace render) and pkg-config.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# A component's public headers are those in its folder include/lrbscope; LRB_PUBLIC_HEADERS has all. They may include only public
-# headers, so that what is installed is what is documented.
+# The public headers of a component are in its folder include/lrbscope; LRB_PUBLIC_HEADERS lists all of them. They may include only
+# public headers, so that all installed headers are documented.
 set(LRB_PUBLIC_HEADERS "")
 foreach(component IN ITEMS engine trace render)
   if(NOT TARGET lrb_${component})
@@ -15,13 +15,13 @@ foreach(component IN ITEMS engine trace render)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${header})
     file(STRINGS ${PROJECT_SOURCE_DIR}/${header} included REGEX "^#include \"")
     if(included)
-      message(FATAL_ERROR "${header} is public, but has ${included}: include a private header in a .cpp file instead")
+      message(FATAL_ERROR "${header} public headers may not include private ones, found ${included}: include it in a .cpp file instead")
     endif()
   endforeach()
 endforeach()
 
-# Programs that are compiled again go on with a later minor version; those that are not need the one that they were
-# compiled for, whose number is part of the name by which they find a shared library (docs/compatibility.md).
+# Minor versions are source compatible, not binary compatible: a program needs the minor version that it was compiled for,
+# which is part of the soname (docs/compatibility.md).
 set(lrb_soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 
 set(LRB_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/lrbscope)
@@ -36,9 +36,9 @@ if(NOT LRB_INSTALL)
   return()
 endif()
 
-# What is installed without a component is for those who build with the libraries: the parts of packages (cmake/debs.cmake).
+# Files without a component belong to the development package (cmake/debs.cmake).
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
-# The installed program finds shared libraries beside it, wherever both are.
+# The installed program finds its shared libraries by a relative path.
 file(RELATIVE_PATH lrb_bin_to_lib /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
 if(BUILD_SHARED_LIBS)
   if(TARGET lrbscope)
@@ -54,7 +54,7 @@ if(LRB_BUILD_PROGRAM)
   install(TARGETS lrbscope RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
 
-# pkg-config: what a static library needs, programs must link; of a shared one, only what its headers include.
+# pkg-config: with a static library, programs link all its dependencies; with a shared one, only those of its headers.
 file(RELATIVE_PATH lrb_pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 set(lrb_requires_engine eigen3)
 set(lrb_requires_trace "lrbscope = ${PROJECT_VERSION}")

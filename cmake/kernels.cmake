@@ -1,5 +1,5 @@
-# lrb_kernel(TARGET NAME FILE): compiles the kernel FILE, an .inl, once for each set of instructions; the newest that the processor
-# has is chosen at run time. Each compilation gives its function a name of its own, run_NAME_SET, by a macro: LRB_TREE_KERNEL_NAME of
+# lrb_kernel(TARGET NAME FILE): compiles the kernel FILE, an .inl, once per instruction set. The best one for the processor
+# is chosen at run time. Each compilation names its function run_NAME_SET, by a macro such as LRB_TREE_KERNEL_NAME for
 # tree_kernel.
 function(lrb_kernel target name file)
   set(sets baseline)

@@ -1,5 +1,5 @@
-# The Debian packages that parts of the build need, and what becomes of a part that lacks some: it is left out, and the summary
-# of configuring says so; or configuring ends with one line that names the packages and the option, if the part was asked for.
+# Debian packages needed by parts of the build. A part without its packages is left out and listed in the summary of configuring.
+# If the part was requested, configuring fails with one line that names the packages and the option.
 
 # lrb_need(PART PACKAGE VARIABLE...): PART needs PACKAGE, which was found if all variables are true. PACKAGE may end in a
 # version: "libpng-dev (>= 1.6)".
@@ -27,8 +27,8 @@ function(lrb_lacking variable)
   set(${variable} "${all}" PARENT_SCOPE)
 endfunction()
 
-# lrb_part(WANTED OPTION PART [OTHER...]): leaves the CMakeLists.txt that calls it if PART, or another part that it needs, lacks
-# packages. If WANTED is ON, configuring ends; OPTION is what leaves the part out.
+# lrb_part(WANTED OPTION PART [OTHER...]): returns from the calling CMakeLists.txt if PART, or another part that it needs, lacks
+# packages. If WANTED is ON, configuring fails; OPTION is the option that leaves the part out.
 macro(lrb_part wanted option part)
   lrb_lacking(lrb_lacks "${part}" ${ARGN})
   if(lrb_lacks)
@@ -38,11 +38,11 @@ macro(lrb_part wanted option part)
     endif()
     list(JOIN lrb_lacks ", " lrb_lacks)
     # A leading space keeps CMake from breaking the line.
-    message(FATAL_ERROR " lrbscope: ${part} needs Debian's ${lrb_lacks}: install them or what they hold, or configure with ${option}")
+    message(FATAL_ERROR " lrbscope: ${part} needs Debian's ${lrb_lacks}: install them or equivalents, or configure with ${option}")
   endif()
 endmacro()
 
-# Says what will be built, and what is left out for want of which packages.
+# Prints the parts that will be built, and those left out with the missing packages.
 function(lrb_summary)
   set(built "")
   foreach(pair IN ITEMS lrb_engine:engine lrb_trace:trace lrb_render:render lrbscope:program lrb_python:Python lrb_test_main:tests)

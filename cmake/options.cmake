@@ -1,6 +1,6 @@
-# Compile options of all our targets, as one interface target. Users of our targets get only the options that the answer
-# depends on. Warnings, tuning and sanitizers are for our own build, so that a project that adds lrbscope as a subfolder, or
-# finds it installed, keeps its own flags.
+# Compile options of all targets, as interface targets. Users of the libraries inherit only options that affect answers
+# (lrb_options). Warnings, tuning and sanitizers (lrb_own_options) apply only to lrbscope's own build, so that a project that
+# adds lrbscope as a subfolder, or finds it installed, keeps its own flags.
 add_library(lrb_options INTERFACE)
 target_compile_features(lrb_options INTERFACE cxx_std_20)
 target_include_directories(lrb_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
@@ -18,19 +18,18 @@ if(PROJECT_IS_TOP_LEVEL)
   target_link_libraries(lrb_options INTERFACE $<BUILD_INTERFACE:lrb_own_options>)
 endif()
 
-# -Wrestrict of gcc 12 is wrong about inlined std::string::replace and operator+ (gcc bug 105329), and -Wstringop-overread
-# about moved short strings if their header was precompiled.
+# False warnings of gcc 12: -Wrestrict for inlined std::string::replace and operator+ (gcc bug 105329), and -Wstringop-overread
+# for moved short strings if their header was precompiled.
 target_compile_options(lrb_own_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overread>)
-# The same objects go into programs, shared libraries and the Python module. Nobody replaces our functions when a program starts, so that
-# the compiler may inline them as it would without -fPIC.
+# The same objects go into programs, shared libraries and the Python module. Symbol interposition is not supported, so the compiler
+# may inline functions as without -fPIC.
 target_compile_options(lrb_own_options INTERFACE -fPIC -fno-semantic-interposition)
-# Files of a room that are compiled together take gcc about 1 GB: without collecting garbage below 600 MB it takes 5 to 10 %
-# less time, and 0.2 GB more.
+# A unity build takes gcc about 1 GB. Without garbage collection below 600 MB it takes 5 to 10 % less time and 0.2 GB more.
 if(CMAKE_UNITY_BUILD)
   target_compile_options(lrb_own_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=600000>)
 endif()
-# Compilers that CI does not have may warn of what they like.
+# Warnings of compilers that CI does not use are not errors.
 set(lrb_compiler "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}")
 if(LRB_WARNINGS_AS_ERRORS STREQUAL "TRIED" AND NOT lrb_compiler MATCHES "^(GNU 12|Clang 14)\\.")
   set(LRB_WARNINGS_AS_ERRORS OFF)
@@ -39,7 +38,7 @@ if(LRB_WARNINGS_AS_ERRORS)
   target_compile_options(lrb_own_options INTERFACE -Werror)
 endif()
 if(LRB_NATIVE)
-  # With it gcc 12 misjudges the sizes of Boost.Multiprecision's integers.
+  # False warnings of gcc 12 about the sizes of Boost.Multiprecision's integers.
   target_compile_options(lrb_own_options INTERFACE -march=native $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow
                                                -Wno-array-bounds -Wno-maybe-uninitialized>)
 endif()
@@ -48,11 +47,11 @@ if(LRB_SANITIZE)
   target_link_options(lrb_own_options INTERFACE -fsanitize=${LRB_SANITIZE})
 endif()
 if(LRB_HARDEN)
-  # Checked copies, guarded stacks, addresses that are random and tables that are read-only once loaded.
+  # Checked copies, stack protector, position-independent executables, and relocation tables read-only after loading.
   set(lrb_fortify -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
   target_compile_options(lrb_options INTERFACE $<BUILD_INTERFACE:-fstack-protector-strong>
                                                "$<BUILD_INTERFACE:$<$<NOT:$<CONFIG:Debug>>:${lrb_fortify}>>")
-  # With it gcc 12 misjudges the sizes of Boost.Multiprecision's integers.
+  # False warnings of gcc 12 about the sizes of Boost.Multiprecision's integers.
   set(lrb_misjudged -Wno-stringop-overflow -Wno-array-bounds)
   target_compile_options(lrb_options INTERFACE "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:${lrb_misjudged}>>")
   target_link_options(lrb_options INTERFACE $<BUILD_INTERFACE:LINKER:-z,relro> $<BUILD_INTERFACE:LINKER:-z,now>
@@ -65,7 +64,7 @@ if(LRB_FUZZ)
   target_compile_options(lrb_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# The flags that everything is optimised with, for programs that print them beside their timings.
+# The optimisation flags, for programs that print them with their timings.
 string(TOUPPER "${CMAKE_BUILD_TYPE}" lrb_build_type)
 set(lrb_flags "${CMAKE_CXX_FLAGS_${lrb_build_type}}")
 if(LRB_NATIVE)

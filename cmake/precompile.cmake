@@ -1,8 +1,7 @@
-# Precompiled headers, because most of what the compiler reads is Eigen, nlohmann-json and doctest, again in every file.
-# lrb_precompile_all(): precompiles, for every target below the current folder, the headers of the libraries that it links
-# to; targets that are compiled with equal options share the result, unless they are so few that making it takes longer than
-# it saves. No target needs to ask for it, and every file still includes what it uses: -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
-# builds without.
+# Precompiled headers, because most compile time goes into Eigen, nlohmann-json and doctest, in every file.
+# lrb_precompile_all(): precompiles, for every target below the current folder, the headers of its linked libraries.
+# Targets with equal options share the result, unless they have too few files to save time. Targets need no declaration,
+# and every file still includes the headers that it uses: -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds without.
 set(lrb_precompile_base <algorithm> <array> <chrono> <cmath> <cstdint> <cstdio> <cstdlib> <cstring> <fstream>
     <functional> <limits> <map> <memory> <numbers> <numeric> <optional> <random> <set> <span> <sstream> <string>
     <string_view> <unordered_map> <utility> <vector> <Eigen/Core> <Eigen/Geometry>)
@@ -10,13 +9,13 @@ set(lrb_precompile_nlohmann_json::nlohmann_json <filesystem> <nlohmann/json.hpp>
 set(lrb_precompile_doctest::doctest <doctest/doctest.h>)
 set(lrb_precompile_least_units 4)
 
-# Packages that are found in one folder are known in all.
+# Packages found in one folder are visible in all.
 if(PROJECT_IS_TOP_LEVEL)
   set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL TRUE)
 endif()
 
-# The compiler cache, if there is one. It has to recognise a precompiled header by its bytes: gcc's needs an option for that,
-# clang's must not have a time written into it.
+# The compiler cache, if installed. It must recognise precompiled headers by their bytes: this needs an option for gcc's, and
+# no time stamp in clang's.
 if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   find_program(LRB_CCACHE ccache DOC "The compiler cache ccache")
   if(LRB_CCACHE)
@@ -33,7 +32,7 @@ if(CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache$")
   endif()
 endif()
 
-# Adds the libraries that a target links to, and those that these link to, to the caller's variable FOUND.
+# Adds all libraries that a target links to, directly or indirectly, to the caller's variable FOUND.
 function(lrb_linked target found)
   get_target_property(aliased ${target} ALIASED_TARGET)
   if(aliased)
@@ -52,7 +51,7 @@ function(lrb_linked target found)
   set(${found} ${result} PARENT_SCOPE)
 endfunction()
 
-# Leaves out those files of a target that are compiled for another processor than the rest.
+# Excludes files of a target that are compiled for another instruction set.
 function(lrb_precompile_skip target)
   get_target_property(sources ${target} SOURCES)
   get_target_property(folder ${target} SOURCE_DIR)
@@ -65,7 +64,7 @@ function(lrb_precompile_skip target)
   endforeach()
 endfunction()
 
-# Sets the caller's VARIABLE to how many files the compiler is given for a target.
+# Sets the caller's VARIABLE to the number of compiled files of a target.
 function(lrb_units target variable)
   get_target_property(sources ${target} SOURCES)
   get_target_property(unity ${target} UNITY_BUILD)
@@ -78,12 +77,12 @@ function(lrb_units target variable)
   set(${variable} ${units} PARENT_SCOPE)
 endfunction()
 
-# With COUNT, only adds up how many files would share what is precompiled for a target; else precompiles it for them.
+# With COUNT, only counts the files that would share the precompiled header of a target; otherwise precompiles it.
 function(lrb_precompile target)
   set(linked "")
   lrb_linked(${target} linked)
   if(NOT lrb_options IN_LIST linked)
-    return() # not compiled with our options
+    return() # not compiled with lrb_options
   endif()
   # Targets with different warnings can share a precompiled header.
   get_target_property(options ${target} COMPILE_OPTIONS)
@@ -94,7 +93,7 @@ function(lrb_precompile target)
   set(headers ${lrb_precompile_base})
   set(libraries lrb_options Eigen3::Eigen)
   foreach(library IN ITEMS nlohmann_json::nlohmann_json doctest::doctest)
-    # Most of what is optimised little reads JSON: the rest of it shares what that has precompiled.
+    # Most targets with low optimisation use JSON; the others share their precompiled header.
     if(library IN_LIST linked OR (library STREQUAL "nlohmann_json::nlohmann_json" AND options MATCHES "-O[01]"))
       list(APPEND headers ${lrb_precompile_${library}})
       list(APPEND libraries ${library})
@@ -102,7 +101,7 @@ function(lrb_precompile target)
   endforeach()
   get_target_property(definitions ${target} COMPILE_DEFINITIONS)
   if(definitions MATCHES "NDEBUG")
-    return() # assert() is something else there
+    return() # assert() differs there
   endif()
   string(MD5 key "${libraries} ${options}")
   string(SUBSTRING ${key} 0 8 key)

@@ -1,8 +1,7 @@
-# lrb_registry(TARGET NAMESPACE HEADER ITEM KIND SOURCE...): registers what files define, so that a file in the right folder
-# needs no list. Every SOURCE, called NAME.cpp or NAME_KIND.cpp, must define `std::vector<ITEM> NAME_KIND()` in NAMESPACE.
-# Writes a function `std::vector<ITEM> registered_KIND()`, which HEADER declares and which returns all items, by
-# rank_of(item), then by file, and compiles it into TARGET. It calls each of them by name, so that no linker can drop one, and
-# the order does not depend on the linker.
+# lrb_registry(TARGET NAMESPACE HEADER ITEM KIND SOURCE...): registers the items of all SOURCE files, so that no list of files
+# is needed. Every SOURCE, named NAME.cpp or NAME_KIND.cpp, must define `std::vector<ITEM> NAME_KIND()` in NAMESPACE.
+# Generates `std::vector<ITEM> registered_KIND()` (declared in HEADER), which returns all items by rank_of(item), then by
+# file, and compiles it into TARGET. It calls each function by name, so that the linker cannot drop one or change the order.
 function(lrb_registry target namespace header item kind)
   set(names "")
   foreach(source IN LISTS ARGN)

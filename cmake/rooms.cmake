@@ -1,5 +1,5 @@
-# lrb_room(ROOM FOLDER SEEN...): every source file of a folder as the library lrb_ROOM, alias lrb::ROOM; the rest: what it
-# links, other rooms first. Which rooms a room may see stands in tests/layers/rooms.txt.
+# lrb_room(ROOM FOLDER SEEN...): a module, the library lrb_ROOM (alias lrb::ROOM) of all source files of a folder. SEEN: the libraries
+# that it links, other modules first. tests/layers/rooms.txt lists the allowed dependencies.
 function(lrb_room room folder)
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   add_library(lrb_${room} STATIC ${sources})
@@ -7,8 +7,8 @@ function(lrb_room room folder)
   target_link_libraries(lrb_${room} PUBLIC ${ARGN} lrb_options)
 endfunction()
 
-# lrb_cold(TARGET...): targets in which nothing takes long; templates of JSON and of the command line take minutes to
-# optimise. Not less than this: the linker may take what they compile of Eigen for the engine, too.
+# lrb_cold(TARGET...): optimises targets without hot code less, because templates of JSON and of the command line take minutes.
+# Not below -O1, because the linker may use their copies of Eigen's functions for the engine.
 function(lrb_cold)
   foreach(target IN LISTS ARGN)
     target_compile_options(${target} PRIVATE -O1)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# docs/figures.sh [LRBSCOPE]: makes the pictures of README and docs that show bodies: figure2.png, collision.png, crowd.png,
+# docs/figures.sh [LRBSCOPE]: makes the pictures of bodies in README and docs: figure2.png, collision.png, crowd.png,
 # figure.png, distance.png, first_contact.png and clash.png. (chart.png and xray.png are measurements: docs/measurements.md, docs/profiling.md.)
 set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -11,7 +11,7 @@ run figure figure2 --width 160mm --title --no-legend --font-size 10 --line-width
 run run collision --size 1000x562 -o "$work/collision"
 run crowd -o "$work/crowd"
 run figure figure2_mesh --width 85mm --dpi 300 -o "$work/figure.png"
-answer() { # NAME COMMAND POSES-OPTION NUMBERS SIZE: a picture of one answer about the bodies of `collision`
+answer() { # NAME COMMAND POSES-OPTION NUMBERS SIZE: a picture of one answer, for the bodies of `collision`
   echo "$4" >"$work/poses.txt"
   run "$2" "$work/collision/a.lrb" "$work/collision/b.lrb" "$3" "$work/poses.txt" --draw "$docs/$1.png" --size "$5"
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# docs/rooms.sh [ROOMS]: draws which room may see which, from tests/layers/rooms.txt, as SVG to stdout: this is docs/rooms.svg,
-# which the test `docs` compares. A room stands above all that it may see; an arrow leads down to what it sees. Arrows that
-# follow from others are left out. Colours stand for the top folders, so that most rooms are named without them. Lines with
-# "has", which tell whose the public headers are, are not drawn.
+# docs/rooms.sh [ROOMS]: draws the allowed dependencies of modules (tests/layers/rooms.txt) as SVG to stdout. The test `docs` compares
+# the result with docs/rooms.svg. A module is above all its dependencies; an arrow leads down to each, except to those implied by
+# others (transitive reduction). Colours mark the top folders, and names omit them. Lines with "has" (owners of public headers) are
+# not drawn.
 set -euo pipefail
 rooms=${1:-$(dirname "${BASH_SOURCE[0]}")/../tests/layers/rooms.txt}
 awk '
@@ -18,7 +18,7 @@ awk '
     for (i = 1; i <= n; i++) if (part[i] == to || sees(part[i], to)) return 1
     return 0
   }
-  function follows(from, to,   i, n, part) { # from another arrow of the same room
+  function follows(from, to,   i, n, part) { # implied by another arrow of the same module
     n = split(seen[from], part, " ")
     for (i = 1; i <= n; i++) if (part[i] != to && sees(part[i], to)) return 1
     return 0
@@ -35,7 +35,7 @@ awk '
   function label(r) { sub(/^(engine|render|scenarios|bench)\//, "", r); return r }
   function put(item, f) { floor[item] = f; row[f, wide[f]++] = item }
   function link(upper, lower) { below[upper, downs[upper]++] = lower; above[lower, ups[lower]++] = upper }
-  # An arrow leads through a point on each floor between its ends, where it takes room like a narrow box.
+  # An arrow passes through a point on each layer between its ends, which takes space like a narrow box.
   function add_arrow(from, to,   f, last, point) {
     arrows++
     last = from
@@ -59,8 +59,8 @@ awk '
       for (j = k; j > 0 && key[row[f, j]] < key[row[f, j - 1]]; j--) { t = row[f, j]; row[f, j] = row[f, j - 1]; row[f, j - 1] = t }
   }
   function apart(one, other) { return (size[one] + size[other]) / 2 + gap }
-  # Puts the items of a floor as near to where they want to be as their neighbours allow: least squares, weighted by the number
-  # of links. Items that would overlap form a block, which stands at their mean.
+  # Places the items of a layer as close to their preferred positions as possible without overlap: least squares, weighted by the
+  # number of links. Items that would overlap form a block at their mean.
   function place_row(f,   k, r, shift, blocks, n, sum, weight, last, w) {
     for (k = 0; k < wide[f]; k++) {
       r = row[f, k]
@@ -79,7 +79,7 @@ awk '
       x[row[f, k]] = sum[n] / weight[n] + shift[k]
     }
   }
-  # Where an arrow leaves or enters a box: arrows are spread along the edge in the order of where they come from or go to.
+  # Returns where an arrow leaves or enters a box: arrows are spread along the edge in the order of their other ends.
   function port(item, other, up,   i, n, o, place) {
     n = up ? ups[item] : downs[item]
     for (i = 0; i < n; i++) {
@@ -102,12 +102,12 @@ awk '
       n = split(seen[name[i]], part, " ")
       for (j = 1; j <= n; j++) if (!follows(name[i], part[j])) add_arrow(name[i], part[j])
     }
-    for (i = 1; i <= count; i++) { # tips of arrows do not overlap
+    for (i = 1; i <= count; i++) { # arrow tips must not overlap
       r = name[i]
       if (size[r] < 11 * (ups[r] + 1)) size[r] = 11 * (ups[r] + 1)
     }
     for (f = 0; f <= floors; f++) for (k = 0; k < wide[f]; k++) x[row[f, k]] = 100 * (k - (wide[f] - 1) / 2)
-    # Orders the floors by turns from below and from above, then moves items towards what they are linked to.
+    # Orders the layers alternately from below and from above, then moves items towards their neighbours.
     for (pass = 0; pass < 24; pass++)
       for (i = 0; i <= floors; i++) {
         f = pass % 2 ? floors - i : i

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# docs/site.sh OUT [API]: makes a site of these pages in OUT/html, with mkdocs (Debian's package), which must not warn. Links out of
-# this folder lead to copies of what they name. API: the folder with Doxygen's HTML, if it has been made. Then looks whether
-# every link in the site leads somewhere, anchors included, and whether a page would fetch anything from elsewhere.
+# docs/site.sh OUT [API]: makes a site of these pages in OUT/html, with mkdocs (Debian's package), which must not warn. Targets of links
+# out of this folder are copied. API: the folder with Doxygen's HTML, if it exists. Then checks that every link and anchor in the site
+# has a target, and that no page loads external resources.
 set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 tree=$(dirname "$docs")
@@ -30,7 +30,7 @@ cp "$tree/CONTRIBUTING.md" "$out/pages/contributing.md"
     sed 's|^[a-z]*/include/\(.*\)|- [`<\1>`](../&)|')
 } >"$out/pages/reference.md"
 
-# Lists of lines need a blank line before them, which hosts of repositories do not ask for; links out of the folder get copies.
+# mkdocs, unlike GitHub, needs a blank line before lists. Targets of links out of the folder are copied.
 python3 - "$tree" "$out/pages" <<'P'
 import glob, os, re, shutil, sys
 
@@ -42,7 +42,7 @@ def target(page, link):
     path, _, anchor = link.partition("#")
     if "://" in link or link.startswith("mailto:") or not path:
         return link
-    if page in ("changelog.md", "contributing.md"):  # from the top of the tree
+    if page in ("changelog.md", "contributing.md"):  # links relative to the top of the tree
         path = path[len("docs/"):] if path.startswith("docs/") else "../" + path
     if path == "start.md":
         path = "index.md"
@@ -78,10 +78,10 @@ for file in glob.glob(pages + "/*.md"):
     open(file, "w").writelines(lines)
 P
 
-# Pages that are not there (yet) have no place in the menu.
+# Leaves missing pages out of the menu.
 while IFS= read -r line; do
   page=$(sed -n 's/.*: \([a-z]*\.md\)$/\1/p' <<<"$line")
-  [ -z "$page" ] || [ -f "$out/pages/$page" ] || { echo "site.sh: there is no $page" >&2 && continue; }
+  [ -z "$page" ] || [ -f "$out/pages/$page" ] || { echo "site.sh: missing page: $page" >&2 && continue; }
   printf '%s\n' "$line"
 done <"$docs/mkdocs.yml" >"$out/mkdocs.yml"
 (cd "$out" && mkdocs build --strict --quiet)
@@ -96,7 +96,7 @@ for file, text in texts.items():
     if file.endswith("/404.html"):
         continue  # its links are absolute
     for fetched in re.findall(r'<(?:script|img|link)[^>]+(?:src|href)="((?:https?:)?//[^"]+)"', text):
-        bad.append("%s fetches %s" % (os.path.basename(file), fetched))
+        bad.append("%s loads %s" % (os.path.basename(file), fetched))
     for link in re.findall(r'(?:href|src)="([^"]+)"', text):
         if re.match(r"[a-z]+:|//|#$", link):
             continue
@@ -107,7 +107,7 @@ for file, text in texts.items():
             bad.append("%s: no %s" % (os.path.basename(file), link))
         elif anchor and at in ids and anchor not in ids[at]:
             bad.append("%s: no heading %s" % (os.path.basename(file), link))
-print("\n".join(sorted(set(bad))) or "%d pages, %d links: all lead somewhere" % (len(texts), count))
+print("\n".join(sorted(set(bad))) or "%d pages, %d links: all have a target" % (len(texts), count))
 sys.exit(bool(bad))
 P
 echo "$out/html/index.html"

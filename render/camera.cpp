@@ -13,30 +13,29 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// The nearest depth that is drawn when the camera stands within the scene, as a share of the distance to the
-/// far end.
+/// Minimum rendered depth if the camera is inside the scene, as a share of the distance to the far end.
 constexpr double kNearShare = 1e-4;
-/// The same, as a share of the distance to the target: in a close-up, depths must be told apart there.
+/// The same, as a share of the distance to the target: a close-up needs depth resolution there.
 constexpr double kNearFocus = 0.02;
-/// The range of depths exceeds the scene by this share of it: room for lines that are nudged towards the
+/// Extension of the depth range beyond the scene, as a share of it: space for lines nudged towards the
 /// viewer.
 constexpr double kDepthSlack = 0.01;
-/// A scene that is a single point is shown as if it were this share of its coordinates across, or this
+/// A scene that is a single point is shown with an extent of this share of its coordinates, or of this
 /// length.
 constexpr double kLeastExtent = 1e-9;
 constexpr double kLeastLength = 1e-30;
-/// The least ratio of height to width of what a picture shows: for a flat scene seen from its edge.
+/// Minimum ratio of height to width of the visible extent: for a flat scene seen edge-on.
 constexpr double kFlattest = 1e-3;
-/// The eye stays this share of the scene's size in front of it.
+/// The eye keeps a distance of this share of the scene's size from it.
 constexpr double kClearance = 0.05;
 constexpr double kNearlyVertical = 1e-3;  ///< view_beside(): sine of the angle between axis and vertical
-constexpr double kSteepest = 0.49 * std::numbers::pi;  ///< orbit() lifts a camera up to this angle
+constexpr double kSteepest = 0.49 * std::numbers::pi;  ///< orbit() raises a camera up to this angle
 
 /// Returns the camera's axes as rows: right, up, forward.
 Matrix3d axes_of(const Vector3d& forward, const Vector3d& up) {
   Matrix3d axes;
   const Vector3d f = forward.normalized();
-  // `up` may be parallel to the view: fall back to other axes.
+  // `up` may be parallel to the view direction: fall back to other axes.
   Vector3d right = f.cross(up);
   if (!(right.squaredNorm() > 0)) right = f.cross(Vector3d::UnitY());
   if (!(right.squaredNorm() > 0)) right = f.cross(Vector3d::UnitX());
@@ -52,7 +51,7 @@ void check_points(std::span<const Vector3d> points) {
   }
 }
 
-/// Upper bounds of a.x + b.z and -a.x + b.z over points: the two planes of a frustum that touch them.
+/// Upper bounds of a.x + b.z and -a.x + b.z over points: the two tangent planes of a frustum.
 struct Support {
   double plus = -std::numeric_limits<double>::infinity(), minus = plus;
   void add(double across, double slope_depth) {
@@ -79,8 +78,8 @@ ViewDirection view_from_angles(double azimuth, double elevation) {
 ViewDirection view_beside(const Vector3d& axis, const Vector3d& up, double elevation) {
   const Vector3d vertical = up.normalized();
   Vector3d side = axis.cross(vertical);
-  // A nearly vertical axis does not say which side is which: turning it by a hair would turn the picture
-  // round.
+  // For a nearly vertical axis the side direction is ill-conditioned: a tiny rotation would rotate the
+  // picture by a large angle.
   if (!(side.norm() > kNearlyVertical * axis.norm())) {
     side = Vector3d::UnitX() - vertical * vertical.x();
     if (!(side.norm() > kNearlyVertical)) side = Vector3d::UnitY();
@@ -99,10 +98,9 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
   if (!(options.view.from.squaredNorm() > 0)) throw InputError("a camera's direction must not be zero");
   // Step 1: the direction is given, so only a translation is unknown. Work in the camera's axes.
   const Matrix3d axes = axes_of(-options.view.from, options.view.up);
-  Vector3d origin = Vector3d::Zero();  // points are measured from their middle, to keep digits when they are
-                                       // far from the origin
+  // Points are relative to the centre of their box, for precision far from the origin.
   const Eigen::AlignedBox3d box = bounds(points);
-  origin = box.center();
+  const Vector3d origin = box.center();
 
   // Step 2: the opening angles inside the margins.
   const double free = options.margin * std::min(width, height);
@@ -133,7 +131,8 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
         std::max({y.half() / inner_y, x.half() / inner_x * height / width, kFlattest * size});
     eye.z() = -z.minus - size;
   } else {
-    // The eye moves back from z = 0 until each pair of planes holds the points, and stays in front of them.
+    // The eye moves back from z = 0 until each pair of planes encloses the points, and stays in front of
+    // them.
     eye.z() = -std::max({x.half() / slope_x, y.half() / slope_y, z.minus + kClearance * size});
     camera.half_height = 0.5 * size;
   }
@@ -165,7 +164,7 @@ Camera fit_contact(std::span<const Vector3d> contact, const Eigen::AlignedBox3d&
   FitOptions fit = options;
   fit.margin = 0;
   Camera camera = fit_camera(Eigen::AlignedBox3d(box.center() - r, box.center() + r), width, height, fit);
-  // The middle of the box need not be the middle of what is seen of the contact.
+  // The centre of the box need not be the centre of the contact's image.
   const Projection projection(camera, width, height, box);
   Eigen::AlignedBox2d seen;
   for (const Vector3d& p : contact) {
@@ -182,7 +181,7 @@ Camera fit_contact(std::span<const Vector3d> contact, const Eigen::AlignedBox3d&
 
 Camera orbit(const Camera& camera, double azimuth, double elevation) {
   const Vector3d up = camera.up.normalized();
-  // Rotate about the vertical first, then lift within limits, so that the camera never turns over.
+  // Rotate around the vertical first, then raise within limits, so that the camera never turns over.
   Vector3d arm = Eigen::AngleAxisd(azimuth, up) * (camera.eye - camera.target);
   if (elevation != 0) {
     const double now = std::asin(std::clamp(arm.normalized().dot(up), -1.0, 1.0));

@@ -26,8 +26,8 @@ void check(cairo_status_t status) {
     throw EnvironmentError(std::string("cairo cannot paint this picture: ") + cairo_status_to_string(status));
 }
 
-/// A font's file as cairo takes it. FreeType's handles live as long as the process: cairo caches what it
-/// makes of them.
+/// A font file loaded for cairo. FreeType's handles live as long as the process, because cairo caches objects
+/// that use them.
 cairo_font_face_t* load_font(bool bold) {
   static const FT_Library library = [] {
     FT_Library made = nullptr;
@@ -47,7 +47,7 @@ cairo_font_face_t* font_face(bool bold) {
   return (bold ? heavy : regular).get();
 }
 
-/// Returns an image as a surface of cairo's: premultiplied, rows from the top.
+/// Returns an image as a cairo surface: premultiplied, rows from the top.
 Surface surface_of(const Image& image) {
   Surface out(cairo_image_surface_create(image.opaque() ? CAIRO_FORMAT_RGB24 : CAIRO_FORMAT_ARGB32,
                                          image.width(), image.height()));
@@ -73,7 +73,7 @@ class CairoCanvas : public Canvas {
   explicit CairoCanvas(cairo_t* context) : c_(context) {
     cairo_font_options_t* options = cairo_font_options_create();
     cairo_font_options_set_hint_style(options,
-                                      CAIRO_HINT_STYLE_NONE);  // texts are as wide at every resolution
+                                      CAIRO_HINT_STYLE_NONE);  // text width does not depend on the resolution
     cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
     cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
     cairo_set_font_options(c_, options);
@@ -112,7 +112,7 @@ class CairoCanvas : public Canvas {
     cairo_text_extents(c_, t.text.c_str(), &size);
     const double share = t.align == Align::left ? 0 : t.align == Align::centre ? 0.5 : 1;
     const double x = t.at.x() - share * size.x_advance, y = t.at.y() + kBaseline * t.height;
-    // The halo is the outline of the glyphs, stroked beneath the text.
+    // The halo is the outline of the glyphs, stroked under the text.
     if (t.halo.a > 0) {
       cairo_move_to(c_, x, y);
       cairo_text_path(c_, t.text.c_str());
@@ -132,7 +132,8 @@ class CairoCanvas : public Canvas {
     cairo_translate(c_, place.min().x(), place.min().y());
     cairo_scale(c_, place.sizes().x() / image.width(), place.sizes().y() / image.height());
     cairo_set_source_surface(c_, surface.get(), 0, 0);
-    cairo_pattern_set_filter(cairo_get_source(c_), CAIRO_FILTER_NEAREST);  // its pixels are the paper's
+    // Keep the picture's pixels, without interpolation.
+    cairo_pattern_set_filter(cairo_get_source(c_), CAIRO_FILTER_NEAREST);
     cairo_paint(c_);
     cairo_restore(c_);
   }
@@ -197,7 +198,7 @@ std::string paint_pdf(const PaperPage& page, const std::function<void(Canvas&)>&
 
 Image paint_pixels(const PaperPage& page, double dpi, const std::function<void(Canvas&)>& paint) {
   const double scale = dpi / kPointsPerInch;
-  constexpr double kRounding = 1e-6;  // a size that is whole but for rounding stays as it is
+  constexpr double kRounding = 1e-6;  // a size within rounding of a whole number is not enlarged
   Image out(static_cast<int>(std::ceil(page.width * scale - kRounding)),
             static_cast<int>(std::ceil(page.height * scale - kRounding)), kTransparent);
   const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, out.width(), out.height()));
@@ -227,7 +228,7 @@ Image paint_pixels(const PaperPage& page, double dpi, const std::function<void(C
 
 double text_width(const std::string& text, double height, bool bold) {
   TextStyle style;
-  style.height = 256;  // a line's width is measured in whole pixels: of a large font, these are small
+  style.height = 256;  // line width is rounded to whole pixels: negligible for a large font
   style.bold = bold;
   return default_font().measure(text, style).width * height / style.height;
 }

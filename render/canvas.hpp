@@ -1,6 +1,6 @@
 #pragma once
-/// Paper to paint on, whatever file it becomes: SVG (SvgCanvas), PDF or pixels (CairoCanvas).
-/// Whoever paints does not know which. Lengths are in the paper's own units, x to the right, y down.
+/// An abstract canvas. Implementations write SVG (SvgCanvas), PDF or pixels (CairoCanvas). Lengths are in the
+/// canvas's own units, x to the right, y down.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,16 +18,16 @@
 
 namespace lrb::render {
 
-/// Returns bytes as text of RFC 4648, with padding: how pictures stand inside SVG and HTML.
+/// Returns bytes as base64 text (RFC 4648) with padding, as pictures are embedded in SVG and HTML.
 std::string base64(const std::uint8_t* bytes, std::size_t size);
 
 struct Pen {
   Rgba colour;
   double width = 1;
-  double dash = 0;  ///< length of dashes and of the gaps between; 0: solid, with round ends
+  double dash = 0;  ///< length of dashes and of gaps; 0: solid, with round ends
 };
 
-/// One line of text. `at` is its left end, middle or right end, halfway between ascent and descent.
+/// One line of text. `at` is its left end, centre or right end, halfway between ascent and descent.
 struct PaperText {
   Eigen::Vector2d at{0, 0};
   std::string text;   ///< UTF-8
@@ -35,7 +35,7 @@ struct PaperText {
   bool bold = false;
   Rgba colour = kBlack;
   Align align = Align::left;
-  Rgba halo = kTransparent;  ///< an outline that keeps text legible on anything
+  Rgba halo = kTransparent;  ///< an outline that keeps text legible on any background
 };
 
 class Canvas {
@@ -43,13 +43,13 @@ class Canvas {
   using Loop = std::vector<Eigen::Vector2d>;
 
   virtual ~Canvas() = default;
-  /// Fills the inside of closed loops by the even-odd rule.
+  /// Fills the interior of closed loops by the even-odd rule.
   virtual void fill(const std::vector<Loop>& loops, Rgba colour) = 0;
   virtual void stroke(const Loop& points, bool closed, const Pen& pen) = 0;
   virtual void disc(const Eigen::Vector2d& at, double radius, Rgba colour) = 0;
   virtual void text(const PaperText& text) = 0;
   virtual void picture(const Image& image, const Eigen::AlignedBox2d& place) = 0;
-  /// Keep what is painted in between inside a box. They do not nest.
+  /// Clip everything painted in between to a box. Clips do not nest.
   virtual void begin_clip(const Eigen::AlignedBox2d& box) = 0;
   virtual void end_clip() = 0;
 };
@@ -58,7 +58,7 @@ class Canvas {
 inline constexpr double kTextHalo = 0.14;
 /// The height of DejaVu Sans from ascent to descent, in font sizes.
 inline constexpr double kHeightOfFont = 1.164;
-/// The base line of a text below the middle of its height, as a share of the height.
+/// Offset of the baseline below the centre of the text's height, as a share of the height.
 inline constexpr double kBaseline = 0.297;
 
 /// Returns the width of a line of text of a given height.
@@ -67,29 +67,28 @@ double text_width(const std::string& text, double height, bool bold = false);
 /// Returns the corners of a box, for fill().
 Canvas::Loop corners(const Eigen::AlignedBox2d& box);
 
-// Canvases that become PDF or pixels, by cairo. Text is written with the fonts of text.hpp, which a PDF
-// holds.
+// Writes PDF or pixels with cairo. Text uses the fonts of text.hpp, which are embedded in a PDF.
 
 inline constexpr double kPointsPerInch = 72;
 
 struct PaperPage {
   double width = 0, height = 0;             ///< points
-  std::optional<Rgba> background = kWhite;  ///< nothing: transparent
+  std::optional<Rgba> background = kWhite;  ///< nullopt: transparent
   std::string title;                        ///< in a PDF's properties; empty: none
-  std::string creator;                      ///< the same: the program
+  std::string creator;                      ///< the same for the program's name
 };
 
-/// Returns what `paint` paints, in points, as the bytes of a PDF. They do not tell when they were made, so
-/// that they are the same each time. Throws EnvironmentError.
+/// Returns the page painted by `paint`, in points, as a PDF. It contains no creation date, so that equal
+/// pages give equal bytes. Throws EnvironmentError.
 std::string paint_pdf(const PaperPage& page, const std::function<void(Canvas&)>& paint);
 
-/// Returns the same in pixels, `dpi` of them to an inch; sizes are rounded up to whole ones.
+/// Returns the page as pixels, `dpi` per inch; sizes are rounded up to whole pixels.
 Image paint_pixels(const PaperPage& page, double dpi, const std::function<void(Canvas&)>& paint);
 
 /// Escapes text for SVG and HTML, for elements and for quoted attributes.
 std::string escape_markup(std::string_view text);
 
-// A canvas that becomes SVG, in which text stays text. Gives the same bytes on every machine.
+// A canvas that writes SVG with real text. Gives the same bytes on every machine.
 
 class SvgCanvas : public Canvas {
  public:
@@ -101,7 +100,7 @@ class SvgCanvas : public Canvas {
   void begin_clip(const Eigen::AlignedBox2d& box) override;
   void end_clip() override;
 
-  /// Returns what has been painted, as elements.
+  /// Returns everything painted so far, as SVG elements.
   const std::string& elements() const { return out_; }
 
  private:
@@ -111,12 +110,12 @@ class SvgCanvas : public Canvas {
 
 struct SvgPage {
   double width = 0, height = 0;  ///< of the view box
-  double units_per_pixel = 1;  ///< units of the view box per pixel of a screen (1/96 inch): the size on paper
-  std::string title;           ///< for people who cannot see the picture; empty: none
-  std::optional<Rgba> background = kWhite;  ///< nothing: transparent
+  double units_per_pixel = 1;    ///< units of the view box per screen pixel (1/96 inch): the size on paper
+  std::string title;             ///< alternative text for screen readers; empty: none
+  std::optional<Rgba> background = kWhite;  ///< nullopt: transparent
 };
 
-/// Returns a whole file.
+/// Returns a complete file.
 std::string svg_file(const SvgCanvas& canvas, const SvgPage& page);
 
 }  // namespace lrb::render

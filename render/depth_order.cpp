@@ -13,14 +13,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The largest number of polygons that are ordered by their own planes.
+/// Maximum number of polygons that are split by their own planes.
 constexpr std::size_t kLeaf = 24;
-/// A corner closer to a plane than this share of the scene's size counts as on it. A cut that is wrong by so
-/// little cannot be seen.
+/// A corner closer to a plane than this share of the scene's size counts as on it. The error is invisible.
 constexpr double kOnPlane = 1e-9;
-/// Planes perpendicular to axes are used as long as neither side keeps more than this share of the polygons.
+/// Axis-perpendicular planes are used while neither side keeps more than this share of the polygons.
 constexpr double kWorthIt = 0.75;
-/// The largest depth of recursion, for where cutting leads nowhere (many polygons through one point).
+/// Maximum recursion depth, for sets that splitting does not reduce (many polygons through one point).
 constexpr int kMaxDepth = 64;
 
 struct Plane {
@@ -66,7 +65,7 @@ class Sorter {
     return sum / static_cast<double>(p.x.size());
   }
 
-  /// Returns false if the plane would cut so many polygons that little is won.
+  /// Returns false if the plane would split too many polygons.
   bool median_plane(const std::vector<EyePolygon>& polygons, Plane& plane) const {
     Vector3d lo = Vector3d::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
     for (const EyePolygon& p : polygons) {
@@ -86,8 +85,8 @@ class Sorter {
            kWorthIt * static_cast<double>(polygons.size());
   }
 
-  /// Picks, among the first few polygons, the one whose plane cuts the fewest others; of those, the one that
-  /// divides them most evenly.
+  /// Picks, among the first few polygons, the one whose plane splits the fewest others; on a tie, the one
+  /// that divides them most evenly.
   Plane best_own_plane(const std::vector<EyePolygon>& polygons) const {
     Plane best{};
     std::size_t least = std::numeric_limits<std::size_t>::max();

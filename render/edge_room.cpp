@@ -11,12 +11,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What a triangle takes of the screen.
+/// The screen size of a triangle.
 struct OnScreen {
   double altitude, area;
 };
 
-/// Returns a triangle's lowest altitude on the screen, and its area; nothing if it reaches behind the eye.
+/// Returns a triangle's smallest altitude on the screen and its area, or nullopt if it reaches behind the
+/// eye.
 std::optional<OnScreen> on_screen(const DrawTriangle& t, const Projection& projection) {
   std::array<Eigen::Vector2d, 3> at;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -26,7 +27,7 @@ std::optional<OnScreen> on_screen(const DrawTriangle& t, const Projection& proje
   }
   const Eigen::Vector2d u = at[1] - at[0], v = at[2] - at[0];
   const double twice_area = std::abs(u.x() * v.y() - u.y() * v.x());
-  // The lowest altitude is that on the longest edge.
+  // The smallest altitude is that on the longest edge.
   const double longest = std::max({u.norm(), v.norm(), (v - u).norm()});
   return OnScreen{longest > 0 ? twice_area / longest : 0, twice_area / 2};
 }
@@ -37,7 +38,7 @@ struct Corner {
   std::uint8_t style;
 };
 
-/// Sorts by place, then by style, so that equal ones come together.
+/// Sorts by position, then by style, so that equal corners are adjacent.
 bool before(const Corner& a, const Corner& b) {
   for (int i = 0; i < 3; ++i) {
     if (a.x[i] != b.x[i]) return a.x[i] < b.x[i];
@@ -49,19 +50,19 @@ bool before(const Corner& a, const Corner& b) {
 
 std::vector<double> edge_room(const DrawList& list, const Projection& projection) {
   std::vector<double> own(list.triangles.size(), 0), room(list.triangles.size(), 0);
-  // Step 1: the room of each triangle, and its corners with their exact coordinates.
+  // Step 1: the altitude of each triangle, and its corners with their exact coordinates.
   std::vector<Corner> corners;
   for (std::uint32_t i = 0; i < list.triangles.size(); ++i) {
     const DrawTriangle& t = list.triangles[i];
     if (t.edges == 0) continue;
-    // A triangle that comes right up to the eye is large.
+    // A triangle that reaches the eye is large.
     const std::optional<OnScreen> seen = on_screen(t, projection);
     own[i] = seen ? seen->altitude : projection.height();
     for (const Vector3d& x : t.x) corners.push_back({x, i, t.edge_style});
   }
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return before(a, b) ||
-           (!before(b, a) && a.triangle < b.triangle);  // so that sums are taken in one order everywhere
+           (!before(b, a) && a.triangle < b.triangle);  // a fixed order of summation on every machine
   });
   // Step 2: average over the triangles at each vertex, and give each of them a third: neighbours fade alike.
   for (std::size_t first = 0, end = 0; first < corners.size(); first = end) {

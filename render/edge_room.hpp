@@ -1,6 +1,6 @@
 #pragma once
-/// Measures how much room the edges of triangles have on the screen. Where there is little of it edges have
-/// to fade, or dense meshes turn black.
+/// Measures the space that the edges of triangles have on the screen. Where there is little, edges must fade,
+/// or dense meshes turn black.
 
 #include <vector>
 
@@ -9,15 +9,14 @@
 
 namespace lrb::render {
 
-/// Returns for every triangle the altitude on the screen, in the projection's pixels, that it and the
-/// triangles around it have: the mean over its corners of the mean over the triangles that share the corner
-/// and the edge style. (A triangle's altitude is its lowest one.) Altitudes of single triangles jump from
-/// each to the next, and edges that fade by them look patchy; these means change little by little. 0 for
-/// triangles without edges.
+/// Returns for every triangle the smoothed altitude on the screen, in the projection's pixels: the mean over
+/// its corners of the mean over the triangles that share the corner and the edge style. (A triangle's
+/// altitude is its smallest.) Altitudes of single triangles vary abruptly, and edges that fade by them look
+/// patchy; these means vary gradually. 0 for triangles without edges.
 std::vector<double> edge_room(const DrawList& list, const Projection& projection);
 
-/// Returns, for each triangle with edges, the median room of its style, weighted by area on the screen. Edges
-/// of a style then fade together: a mesh shows all of them, or none.
+/// Returns, for each triangle with edges, the median of edge_room() over its style, weighted by area on the
+/// screen, so that all edges of a style fade together.
 std::vector<double> even_edge_room(const DrawList& list, const Projection& projection);
 
 /// Rises smoothly from 0 at `gone` to 1 at `full`.

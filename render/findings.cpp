@@ -78,8 +78,8 @@ std::vector<FaceId> component(const Mesh& mesh, FaceId first) {
 
 namespace {
 
-/// A cut shorter than this share of the faces' sizes is ignored: faces in one plane seem to cross in specks
-/// once their coordinates are rounded.
+/// Cuts shorter than this share of the faces' sizes are ignored: with rounded coordinates, coplanar faces
+/// appear to intersect in specks.
 constexpr double kLeastCut = 1e-6;
 
 using Triangle = std::array<Vector3d, 3>;
@@ -145,11 +145,11 @@ namespace {
 
 using Mark = LegendItem::Mark;
 
-/// An unused vertex farther from the faces than this many times their size is left out of the picture.
+/// An unused vertex farther from the faces than this many times their size is omitted from the picture.
 constexpr double kNear = 1.0;
-/// In its close-up, the faces are left out if they are farther from it than this many times their size.
+/// In the close-up of a vertex, faces farther away than this many times their size are omitted.
 constexpr double kFar = 20;
-/// The share of the default direction that is added to a normal, so that a close-up does not look flat.
+/// Share of the default direction that is added to a normal, so that a close-up does not look flat.
 constexpr double kTilt = 0.35;
 
 struct Look {
@@ -216,7 +216,8 @@ bool is_edge_kind(MeshFault kind) {
   return kind == MeshFault::open_edge || kind == MeshFault::non_manifold_edge;
 }
 
-/// Returns the faces at the offender: its own, or those that use its vertices (of an edge, both of them).
+/// Returns the faces at an affected element: its own, or those that use its vertices (for an edge, both of
+/// them).
 std::vector<FaceId> faces_at(const Mesh& mesh, const Parts& parts) {
   if (!parts.faces.empty()) return parts.faces;
   std::vector<FaceId> out;
@@ -237,16 +238,16 @@ bool is_inside_out(const Mesh& mesh, const MeshReport& report, FaceId f) {
   });
 }
 
-/// Looks along a normal, a little aslant.
+/// Looks along a normal, slightly oblique.
 ViewDirection tilted(const Vector3d& n) {
   ViewDirection view;
   view.from = n.normalized() + kTilt * ViewDirection{}.from.normalized();
-  constexpr double kSteep = 0.9;  // of a unit vector along z: steeper than this, y is up
+  constexpr double kSteep = 0.9;  // z component of a unit vector: above this, y is up
   if (std::abs(view.from.normalized().z()) > kSteep) view.up = {0, 1, 0};
   return view;
 }
 
-/// Returns " in 3 loops, of 9, 4 and 3", the first few of them.
+/// Returns " in 3 loops, of 9, 4 and 3"; lists the first few loops.
 std::string loops_text(std::span<const BoundaryLoop> loops) {
   constexpr std::size_t kMost = 8;
   std::string out = " in " + group_digits(loops.size()) + (loops.size() == 1 ? " loop" : " loops");
@@ -262,7 +263,7 @@ Eigen::AlignedBox3d box_of_faces(const Mesh& mesh) {
   return box;
 }
 
-/// Moves and scales points so that a mesh's faces come to lie in [-1, 1].
+/// Translates and scales points so that a mesh's faces fit into [-1, 1].
 class UnitSize {
  public:
   explicit UnitSize(const Mesh& mesh) {
@@ -345,8 +346,8 @@ CloseUp close_up_of_loop(const Mesh& mesh, const BoundaryLoop& loop) {
   for (std::size_t i = 0; i < loop.vertices.size(); ++i) {
     const Vector3d x = mesh.vertices[loop.vertices[i]];
     out.points.push_back(x);
-    // The rim runs with its faces on the left, so that a lid's normal is the other way round.
-    // The sum is the loop's area vector; the loop need not be planar.
+    // The loop has its faces on the left, so that a lid's normal points the other way. The sum is the loop's
+    // area vector; the loop need not be planar.
     n += (mesh.vertices[loop.vertices[(i + 1) % loop.vertices.size()]] - first).cross(x - first);
   }
   if (!(n.norm() > 0)) return out;

@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// How far the neighbour of a face that is turned the wrong way fades from its colour.
+/// Share by which the colour of a flipped face's neighbour fades.
 constexpr double kNeighbourPale = 0.6;
-/// Alpha of faces in front of what a close-up is about.
+/// Alpha of faces in front of the subject of a close-up.
 constexpr std::uint8_t kVeil = 50;
-/// Faces hide an offender if they lie within this share of the way to it: its own faces do not.
+/// Faces hide an element if they are within this share of the distance to it; its own faces are not.
 constexpr double kJustBefore = 0.999;
 
 class FindingsListBuilder {
@@ -26,14 +26,14 @@ class FindingsListBuilder {
 
   DrawList run() {
     std::vector<MeshFault> all = kinds(report_);
-    // Whole pieces come last: what is wrong with some of their faces must stay visible on them.
+    // Components come last: faults of their single faces must stay visible on them.
     std::stable_partition(all.begin(), all.end(), [](MeshFault k) { return k != MeshFault::inside_out; });
     for (const MeshFault kind : all)
       for (const Element& e : report_[kind].first) choose_colours(kind, e);
     veiled_ = o_.focus && (*o_.focus == MeshFault::inside_out || is_hidden(*o_.focus));
     mesh_.dim == 2 ? segments() : faces();
     std::vector<MeshFault> marked = kinds(report_);
-    // What the picture is about is drawn last, over the others.
+    // The subject of the picture is drawn last, over the others.
     std::stable_partition(marked.begin(), marked.end(),
                           [&](MeshFault k) { return !o_.focus || k != *o_.focus; });
     for (const MeshFault kind : marked)
@@ -82,8 +82,8 @@ class FindingsListBuilder {
     return (mesh_.vertices[loop.vertices[0]] + mesh_.vertices[loop.vertices[1]]) / 2;
   }
 
-  /// Returns the fault that colours a face: the first it has, but the one that a close-up is about goes
-  /// first.
+  /// Chooses the fault that colours a face: the first it has, except that the subject of a close-up has
+  /// priority.
   void choose_colours(MeshFault kind, const Element& e) {
     const bool first = o_.focus && *o_.focus == kind;
     const auto give = [&](FaceId f, Rgba c) {
@@ -96,7 +96,7 @@ class FindingsListBuilder {
     };
     if (kind == MeshFault::zero_area_face) return;
     if (kind == MeshFault::inside_out && o_.focus && !first)
-      return;  // it would hide what the picture is about
+      return;  // it would hide the subject of the picture
     if (kind == MeshFault::self_intersection) {
       give(FaceId(e[0]), palette::kOrange);
       give(FaceId(e[1]), palette::kSkyBlue);
@@ -111,8 +111,8 @@ class FindingsListBuilder {
     for (const FaceId f : parts_of(mesh_, kind, e).faces) give(f, colour(kind));
   }
 
-  /// Returns, of two neighbouring faces that are turned against each other, the one that disagrees with more
-  /// of its neighbours.
+  /// Returns, of two neighbouring faces with opposite orientations, the one that disagrees with more
+  /// neighbours.
   FaceId turned_of(const Element& e) const {
     std::map<FaceId, int> times;
     for (const Element& other : report_[MeshFault::flipped_face].first) {
@@ -129,7 +129,7 @@ class FindingsListBuilder {
                                       : camera_.eye - mesh_.vertices[mesh_.face(f)[0]]) < 0;
   }
 
-  /// Returns true if faces lie between the eye and the first offender.
+  /// Returns true if faces lie between the eye and the first affected element.
   bool is_hidden(MeshFault kind) const {
     const Vector3d to = camera_.eye + kJustBefore * (place(kind, report_[kind].first.front()) - camera_.eye);
     for (FaceId f = 0; f < mesh_.face_count() && mesh_.dim == 3; ++f)
@@ -149,7 +149,7 @@ class FindingsListBuilder {
       if (c != colours_.end()) {
         t.colour = c->second;
         t.edge_style = strong;
-        t.nudge = 1;  // drawn over another face in the same place
+        t.nudge = 1;  // drawn over another face in the same position
       } else if (veiled_) {
         t.layer = Layer::translucent;
         t.colour.a = kVeil;
@@ -193,7 +193,7 @@ class FindingsListBuilder {
     out_.points.push_back(p);
   }
 
-  /// Draws edges, vertices, faces without area and cuts, which faces' colours cannot show.
+  /// Draws edges, vertices, zero-area faces and cuts, which face colours cannot show.
   void mark(MeshFault kind, const Element& e) {
     const Parts parts = parts_of(mesh_, kind, e);
     if (parts.edge) line({mesh_.vertices[e[0]], mesh_.vertices[e[1]]}, colour(kind), 5, true);
@@ -226,7 +226,7 @@ class FindingsListBuilder {
     return sum;
   }
 
-  /// Writes a kind's letter at its first offender.
+  /// Writes a kind's letter at its first affected element.
   void point_at(MeshFault kind, const std::string& letter) {
     const Vector3d x = place(kind, report_[kind].first.front());
     dot(x, colour(kind), 5);
@@ -267,7 +267,7 @@ class FindingsListBuilder {
   DrawList out_;
   std::map<FaceId, Rgba> colours_;
   std::set<FaceId> chosen_;
-  bool veiled_ = false;  ///< faces without a fault are see-through
+  bool veiled_ = false;  ///< faces without a fault are translucent
   std::optional<Projection> projection_;
   std::vector<Eigen::AlignedBox2d> taken_;
 };

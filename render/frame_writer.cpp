@@ -54,7 +54,7 @@ void FrameWriter::run() {
     }
     lock.lock();
     busy_ = false;
-    if (error) {  // frames that wait behind a failure are dropped: the run is over
+    if (error) {  // frames queued behind a failure are dropped: the run is over
       if (!error_) error_ = error;
       jobs_.clear();
     }

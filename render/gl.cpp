@@ -40,7 +40,7 @@ GlProgram make_program(const Gl& gl, const std::string& name, const std::string&
   for (const GLuint shader : {compile(gl, name + ".vertex", GL_VERTEX_SHADER, vertex),
                               compile(gl, name + ".fragment", GL_FRAGMENT_SHADER, fragment)}) {
     gl.AttachShader(program, shader);
-    gl.DeleteShader(shader);  // stays until the program is deleted
+    gl.DeleteShader(shader);  // is kept until the program is deleted
   }
   gl.LinkProgram(program);
   GLint ok = 0;
@@ -55,8 +55,7 @@ GlProgram make_program(const Gl& gl, const std::string& name, const std::string&
 
 }  // namespace lrb::render
 
-// For builds with the leak sanitizer: Mesa keeps about a kilobyte per process for good, which is not ours to
-// free.
+// For builds with the leak sanitizer: Mesa never frees about a kilobyte per process.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define LRB_LEAK_SANITIZER 1
@@ -72,14 +71,14 @@ extern "C" const char* __lsan_default_suppressions() {
 }
 extern "C" const char* __lsan_default_options();  // NOLINT: the sanitizer's name
 extern "C" const char* __lsan_default_options() {
-  return "print_suppressions=0";  // stderr is for what the program says
+  return "print_suppressions=0";  // keep stderr for the program's own output
 }
 #endif
 
 namespace lrb::render {
 
-/// The pixels that OSMesa is given to draw into. We draw into framebuffer objects instead, whose pixels do
-/// not depend on the number of threads; these only serve to make the context current.
+/// The pixel buffer passed to OSMesa. It only serves to make the context current: rendering goes to
+/// framebuffer objects, whose pixels do not depend on the number of threads.
 struct Offscreen::Context {
   static constexpr int kSide = 16;
   OSMesaContext handle = nullptr;
@@ -113,8 +112,8 @@ struct Offscreen::Context {
 
 namespace {
 
-/// Returns how much address space, in bytes, Mesa takes until it has drawn its first picture: two threads for
-/// each of llvmpipe's and two more, each with a stack and an arena of glibc's; and what LLVM compiles.
+/// Returns the address space, in bytes, that Mesa takes until it has drawn its first picture: two threads for
+/// each of llvmpipe's and two more, each with a stack and a glibc arena, and the code compiled by LLVM.
 std::size_t mesas_address_space() {
   constexpr std::size_t kMiB = std::size_t{1} << 20, kStack = 8 * kMiB, kArena = 64 * kMiB,
                         kRest = 100 * kMiB;
@@ -128,8 +127,8 @@ std::size_t mesas_address_space() {
   return threads * kStack + std::min(threads, kArenasPerCore * cores) * kArena + kRest;
 }
 
-/// Throws EnvironmentError unless a limit leaves so much address space: where LLVM's allocations fail, it
-/// crashes.
+/// Throws EnvironmentError if a limit leaves less address space than that: LLVM crashes if its allocations
+/// fail.
 void require_address_space() {
   const std::size_t needed = mesas_address_space();
   // Reserve without committing: this tests the limit and costs no memory.

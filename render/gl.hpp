@@ -1,6 +1,6 @@
 #pragma once
-/// The functions of OpenGL 3.3 core that we use, loaded at run time: whoever makes the context
-/// (Offscreen) chooses the library that provides them, and nothing else links one.
+/// The functions of OpenGL 3.3 core used by render, loaded at run time. The code that makes the context
+/// (Offscreen) selects the library; nothing else links one.
 
 #include <cstddef>
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace lrb::render {
 
-/// LRB_GL(type of the pointer without PFNGL and PROC, name of the function without gl)
+/// LRB_GL(pointer type without PFNGL and PROC, function name without gl)
 #define LRB_GL_FUNCTIONS(LRB_GL)                           \
   LRB_GL(ATTACHSHADER, AttachShader)                       \
   LRB_GL(BINDBUFFER, BindBuffer)                           \
@@ -74,9 +74,9 @@ struct Gl {
 #undef LRB_GL
 };
 
-// OpenGL objects that free themselves, and the few things we do with them.
+// OpenGL objects that delete themselves, and operations on them.
 
-/// The number by which OpenGL knows an object, with the function that deletes it.
+/// OpenGL's name (number) of an object, with the function that deletes it.
 template <class Delete>
 class GlName {
  public:
@@ -92,7 +92,7 @@ class GlName {
     return *this;
   }
   ~GlName() { clear(); }
-  operator GLuint() const { return name_; }  // NOLINT: it stands for the number in every call
+  operator GLuint() const { return name_; }  // NOLINT: used as the number in every call
 
  private:
   void clear() {
@@ -107,7 +107,7 @@ struct DeleteProgram {
   PFNGLDELETEPROGRAMPROC f = nullptr;
   void operator()(GLuint name) const { f(name); }
 };
-/// Calls glDelete*(1, &name), for all kinds whose function has this type.
+/// Calls glDelete*(1, &name), for all kinds of objects with a delete function of this type.
 struct DeleteOne {
   PFNGLDELETETEXTURESPROC f = nullptr;
   void operator()(GLuint name) const { f(1, &name); }
@@ -136,18 +136,17 @@ inline GlObject make_vertex_array(const Gl& gl) {
   gl.GenVertexArrays(1, &name);
   return {name, {gl.DeleteVertexArrays}};
 }
-/// Compiles and links a program; throws EnvironmentError with the library's log.
+/// Compiles and links a program. Throws EnvironmentError with the driver's log.
 GlProgram make_program(const Gl& gl, const std::string& name, const std::string& vertex,
                        const std::string& fragment);
 
-// An OpenGL 3.3 core context without a window. Only gl.cpp knows that it is Mesa's OSMesa: a context
-// from EGL (surfaceless) could replace it by filling in the same table of functions. (Mesa 25.1 removed
-// OSMesa.)
+// An OpenGL 3.3 core context without a window. Only gl.cpp depends on Mesa's OSMesa. A surfaceless EGL
+// context could replace it by filling in the same function table. (Mesa 25.1 removed OSMesa.)
 
 class Offscreen {
  public:
-  /// Makes a context and makes it current on the calling thread. Throws EnvironmentError that says what is
-  /// missing; first refuses settings in the environment that are known to crash Mesa.
+  /// Makes a context and makes it current on the calling thread. Throws EnvironmentError that states what is
+  /// missing. Environment settings known to crash Mesa are rejected first.
   Offscreen();
   ~Offscreen();
   Offscreen(const Offscreen&) = delete;
@@ -156,10 +155,11 @@ class Offscreen {
   /// Makes the context current on the calling thread.
   void make_current() const;
   const Gl& gl() const { return gl_; }
-  /// Throws EnvironmentError if a call failed since the last check; `where` names the place in the message.
+  /// Throws EnvironmentError if a call failed since the last check; `where` names the location in the
+  /// message.
   void check(const char* where) const;
-  int max_size() const { return max_size_; }  ///< largest side of a picture, pixels
-  std::string version() const;                ///< version and renderer as the library names them
+  int max_size() const { return max_size_; }  ///< maximum side of a picture, pixels
+  std::string version() const;                ///< version and renderer as reported by OpenGL
 
  private:
   struct Context;
@@ -172,14 +172,14 @@ class Offscreen {
 struct Finding {
   enum class Level { ok, warning, error } level = Level::ok;
   std::string what;    ///< "off-screen OpenGL", "font", ...
-  std::string detail;  ///< a version, a size; or what is wrong and what to do
+  std::string detail;  ///< a version, a size; or the problem and its remedy
 };
 
 /// Checks for environment variables that make Mesa crash or behave differently. Needs no context.
 std::vector<Finding> check_gl_environment();
 
-/// Checks everything that drawing needs: environment, context, sizes, fonts. Reports what it finds and does
-/// not throw for it.
+/// Checks everything that drawing needs: environment, context, sizes, fonts. Reports problems as findings and
+/// does not throw.
 std::vector<Finding> check_rendering();
 
 }  // namespace lrb::render

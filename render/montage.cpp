@@ -12,7 +12,7 @@ namespace {
 constexpr double kGutterShare = 1.0 / 24;
 constexpr double kLabelShare = 1.0 / 20;
 constexpr float kLeastLabel = 12;
-constexpr double kShape = 4.0 / 3;  ///< width to height that automatic columns aim at
+constexpr double kShape = 4.0 / 3;  ///< target ratio of width to height for automatic columns
 
 int columns_for(const std::vector<Panel>& panels) {
   int best = 1;

@@ -11,12 +11,12 @@ namespace {
 
 constexpr double kTextShare = 0.0275;  ///< height of text, as a share of the frame's
 constexpr float kLeastText = 10.5F, kMostText = 44;
-constexpr double kPictureShare = 0.5;  ///< of the frame's height, at least
+constexpr double kPictureShare = 0.5;  ///< minimum share of the frame's height
 constexpr const char* kNarrowSpace = "\u202f";
 constexpr const char* kRoom = "0\u202f000";
 
-/// Returns 1, 2 and 5 times powers of ten between two positive values, which may be among them; on a long
-/// scale the powers alone.
+/// Returns 1, 2 and 5 times powers of ten between two positive values, inclusive; on a long scale only the
+/// powers.
 std::vector<double> log_ticks(double low, double high) {
   constexpr double kRounding = 1e-9, kLong = 1e3;
   std::vector<double> out;
@@ -30,13 +30,13 @@ std::vector<double> log_ticks(double low, double high) {
   return out;
 }
 
-/// Places things one after the other from the left, in as many rows as they need.
+/// Places items from left to right, in as many rows as needed.
 class Flow {
  public:
   Flow(int left, int right, int top, int row_height, int gap)
       : left_(left), right_(right), x_(left), y_(top), row_height_(row_height), gap_(gap) {}
 
-  /// Returns the place of something `width` wide; begins a new row if it does not fit on this one.
+  /// Returns the rectangle of an item of width `width`; starts a new row if it does not fit on this one.
   PixelRect place(int width) {
     if (x_ > left_ && x_ + width > right_) new_row();
     const PixelRect r{x_, y_, width, row_height_};
@@ -70,8 +70,8 @@ class Layouter {
   }
 
   OverlayLayout run() {
-    // The picture gets what header and footer leave. The footer is measured first, because it is aligned to
-    // the bottom.
+    // The picture gets the space between header and footer. The footer is measured first, because it is
+    // aligned to the bottom.
     const int top = header();
     const int below = footer(0);
     const int bottom = below == 0 ? height_ : height_ - below - margin_;
@@ -91,7 +91,7 @@ class Layouter {
     out_.texts.push_back({{x, row.y, text_width(text, bold), row.height}, text, bold, faint});
   }
 
-  /// Returns the y at which it ends.
+  /// Returns the y of its lower end.
   int header() {
     int y = o_.title.empty() && o_.event.empty() ? 0 : margin_ / 2;
     y = lines(o_.title, y, true, 0);
@@ -131,7 +131,7 @@ class Layouter {
   }
 
   void place_counter(Flow& flow, const OverlayCounter& c) {
-    // There is room for four digits, so that counters stand still while they count.
+    // Reserve four digits, so that counters do not move while they count.
     const int name = text_width(c.name + " "), value = std::max(text_width(c.value), text_width(kRoom));
     const PixelRect r = flow.place(std::min(name + value, width_ - 2 * margin_));
     add_text(r, r.x, c.name, false, true);
@@ -202,7 +202,7 @@ bool fits(const OverlayLayout& layout, int width, int height) {
                      [&](const auto& t) { return frame.contains(t.box); });
 }
 
-/// Returns true if there is more than one colour along the rim.
+/// Returns true if there is more than one colour along the border.
 bool runs_over(const Image& picture) {
   // A picture with a uniform border needs no frame.
   const Rgba first = picture.at(0, 0);
@@ -215,7 +215,7 @@ bool runs_over(const Image& picture) {
   return false;
 }
 
-/// Returns the width of a line as thin as a screen's pixel.
+/// Returns the width of a line one screen pixel thick.
 int hairline(float scale) {
   return std::max(1, static_cast<int>(std::lround(scale)));
 }
@@ -270,7 +270,7 @@ OverlayLayout lay_out(const Overlay& overlay, int width, int height, float scale
     layout.scale = scale;
     return layout;
   }
-  // Text goes by the frame's smaller side: a frame higher than it is wide has no more room for a line than
+  // Text size depends on the frame's smaller side: a frame higher than wide has no more space for a line than
   // its width.
   const double side = std::min<double>(height, width * 0.75) / scale;
   float text = std::clamp(static_cast<float>(std::round(2 * kTextShare * side) / 2), kLeastText, kMostText);
@@ -299,7 +299,7 @@ PixelRect common_picture(std::span<const OverlayLayout> layouts) {
 
 void draw_overlay(Image& image, const Overlay& overlay, const OverlayLayout& layout) {
   const Style& style = style_of(overlay.style);
-  // The mark of the event, the key, the scale, then all texts over them.
+  // The event marker, the key, the scale, then all texts over them.
   if (layout.event_mark.width > 0) {
     image.fill(layout.event_mark, overlay.event_colour);
     image.stroke(layout.event_mark, style.edge_of(overlay.event_colour), hairline(layout.scale));

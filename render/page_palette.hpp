@@ -1,6 +1,6 @@
 #pragma once
-/// The colours of pages, light and dark. Pages get them as CSS variables (root_css()); charts for print take
-/// the light ones. Colours that pictures have too are the palette's.
+/// The colours of pages, light and dark. Pages get them as CSS variables (root_css()); charts for print use
+/// the light ones. Colours shared with pictures come from the palette.
 
 #include <array>
 #include <span>
@@ -13,7 +13,7 @@ namespace lrb::render {
 
 /// A CSS variable. Pages of a dark system theme use `dark`.
 struct PageColour {
-  std::string_view name;  ///< without the dashes before it
+  std::string_view name;  ///< without the leading dashes
   Rgba light, dark;
 };
 
@@ -30,7 +30,7 @@ inline constexpr PageColour kGrid{"grid", {236, 236, 234}, {42, 46, 51}};
 inline constexpr PageColour kBad{"bad", {179, 38, 30}, {255, 138, 128}};
 inline constexpr PageColour kGood{"good", {0, 112, 79}, {47, 193, 152}};
 
-/// Series of charts, by number. The yellow is darker than the palette's: lines must be seen on white.
+/// Series of charts, by number. The yellow is darker than the palette's, so that lines are visible on white.
 inline constexpr std::array<PageColour, 7> kSeries = {{{"s0", palette::kBlue, palette::kSkyBlue},
                                                        {"s1", palette::kVermillion, {240, 128, 60}},
                                                        {"s2", palette::kGreen, {47, 193, 152}},
@@ -50,7 +50,7 @@ inline constexpr PageColour kCrashed{"crashed", {20, 22, 26}, kWhite};
 inline constexpr PageColour kTimedOut{"timed", {160, 69, 138}, {231, 155, 211}};
 inline constexpr PageColour kRefused{"refused", {154, 160, 166}, {132, 139, 148}};
 inline constexpr PageColour kOnlyRefused{"hatch", {228, 230, 232}, {51, 56, 63}};
-/// Backgrounds of cells: pale blue if nothing fails, then ever more orange.
+/// Backgrounds of cells: pale blue for no failures, then increasingly orange.
 inline constexpr std::array<PageColour, 5> kLevels = {{{"level-0", {226, 238, 246}, {27, 48, 64}},
                                                        {"level-1", {253, 241, 220}, {58, 49, 34}},
                                                        {"level-2", {251, 220, 174}, {87, 58, 28}},
@@ -64,7 +64,7 @@ inline constexpr PageColour kOnLevel4{"on-4", kInk.light, kWhite};
 /// Returns "#rrggbb", without the alpha.
 std::string css(Rgba c);
 
-/// Returns the rules that define the colours as variables of a page's root, for both themes.
+/// Returns the CSS rules that define the colours as variables of a page's root, for both themes.
 std::string root_css(std::span<const PageColour> colours);
 
 /// The variables of every page, of views of runs, and of grids of outcomes.

@@ -17,11 +17,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// How Rasterizer::draw() shows the hidden part of lines and points on top (shaders.hpp): this share of the
-/// width, dashes as long as so many half widths, rings with this share of the radius to their middle and with
-/// such a width.
+/// Style of hidden lines and points on top in Rasterizer::draw() (shaders.hpp): share of the width; length of
+/// dashes in half widths; radius of rings to their centre line, and their width, as shares of the radius.
 constexpr double kGhostWidth = 0.6, kGhostDash = 5, kRingRadius = 0.8, kRingWidth = 0.4;
-/// What is hidden or seen for less than so many pixels of depths is not told from what is around it.
+/// Visible or hidden runs shorter than this many pixels of the depth image are merged with their neighbours.
 constexpr double kLeastRun = 1.5;
 
 struct Less {
@@ -30,7 +29,7 @@ struct Less {
   }
 };
 
-/// Joins segments, in any order and direction, where they share an end exactly.
+/// Joins segments, in any order and direction, whose ends coincide exactly.
 std::vector<std::vector<Vector3d>> loops(const std::vector<std::array<Vector3d, 2>>& segments) {
   // Both ends of each segment, by their exact coordinates.
   std::multimap<Vector3d, std::size_t, Less> at;
@@ -60,7 +59,7 @@ std::vector<std::vector<Vector3d>> loops(const std::vector<std::array<Vector3d, 
   return out;
 }
 
-/// What painting a flat list and painting over a picture have in common.
+/// Shared by painting a flat list and painting over a picture.
 class ListPainter {
  public:
   ListPainter(Canvas& canvas, const Projection& projection, const Vector2d& origin)
@@ -113,7 +112,7 @@ class ListPainter {
   Vector2d origin_;
 };
 
-/// A part of a line that is wholly seen, or wholly hidden.
+/// A part of a line that is entirely visible or entirely hidden.
 struct Run {
   bool seen = true;
   Canvas::Loop points;
@@ -125,13 +124,13 @@ double length_of(const Run& run) {
   return sum;
 }
 
-/// Solves what the faces hide of lines and points on top.
+/// Finds the parts of lines and points on top that faces hide.
 class HiddenLines {
  public:
   HiddenLines(const Projection& projection, const DepthImage& depths)
       : projection_(projection), depths_(depths), unit_(projection.width() / depths.width) {}
 
-  /// Returns a line's parts, in order, in pixels of the projection.
+  /// Returns the runs of a line, in order, in pixels of the projection.
   std::vector<Run> runs(const DrawLine& l) const {
     // A line is tested as if it were moved towards the viewer by half its width: lines along faces are
     // visible.
@@ -156,14 +155,14 @@ class HiddenLines {
   }
 
   bool seen(const Vector3d& screen, double heights) const {
-    // Nearest pixel of the depth image; outside of it nothing hides.
+    // Nearest pixel of the depth image; nothing is hidden outside it.
     const int x = static_cast<int>(std::floor(screen.x() / unit_));
     const int y = static_cast<int>(std::floor((projection_.height() - screen.y()) / unit_));
     if (x < 0 || y < 0 || x >= depths_.width || y >= depths_.height) return true;
     return projection_.nearer(screen.z(), heights) <= depths_.at(x, y);
   }
 
-  /// Adds a segment, which stays straight on the screen, cut where it becomes hidden or seen.
+  /// Adds a segment, which stays straight on the screen, split where its visibility changes.
   void add_segment(const Vector3d& from, const Vector3d& to, double heights, std::vector<Run>& out) const {
     const Vector3d a = projection_.to_eye(from), b = projection_.to_eye(to);
     if (!in_front(a) || !in_front(b)) return;
@@ -188,7 +187,7 @@ class HiddenLines {
     out.back().points.push_back(place(1));
   }
 
-  /// Takes runs that are too short to be told apart together with what is around them.
+  /// Merges runs that are too short with their neighbours.
   std::vector<Run> joined(std::vector<Run> runs) const {
     std::vector<Run> out;
     // Runs below the resolution of the depth image are noise, as at the silhouette of a face.
@@ -205,10 +204,10 @@ class HiddenLines {
 
   const Projection& projection_;
   const DepthImage& depths_;
-  double unit_;  ///< pixels of the projection in one of the depths
+  double unit_;  ///< pixels of the projection per pixel of the depth image
 };
 
-/// Paints a part of a line, hidden or seen, in the width and dashes that it then has.
+/// Paints a hidden or visible run of a line, in the corresponding width and dashes.
 void paint_run(Canvas& canvas, const DrawLine& l, const Run& run, bool closed) {
   const double share = run.seen ? 1 : kGhostWidth;
   const double dash = run.seen || l.dash > 0 ? l.dash : kGhostDash * 0.5 * l.width;
@@ -220,7 +219,7 @@ void paint_run(Canvas& canvas, const DrawLine& l, const Run& run, bool closed) {
 void paint_ring(Canvas& canvas, const Vector2d& at, const DrawPoint& p) {
   constexpr int kCorners = 32;
   Canvas::Loop ring;
-  // A hidden point is a ring: a polygon that no eye can tell from a circle at this size.
+  // A hidden point is a ring: a polygon indistinguishable from a circle at this size.
   for (int i = 0; i < kCorners; ++i) {
     const double angle = 2 * std::numbers::pi * i / kCorners;
     ring.push_back(at + kRingRadius * p.radius * Vector2d(std::cos(angle), std::sin(angle)));
@@ -254,7 +253,7 @@ DrawList under_lines(DrawList list) {
 void paint_over(Canvas& canvas, const DrawList& list, const Projection& projection, const DepthImage& depths,
                 const Vector2d& origin) {
   const HiddenLines hidden(projection, depths);
-  for (const bool seen : {false, true}) {  // what is seen goes over what is hidden
+  for (const bool seen : {false, true}) {  // visible parts go over hidden ones
     for (const DrawLine& l : list.lines) {
       if (l.layer != Layer::on_top || l.points.size() < 2) continue;
       std::vector<Run> runs = hidden.runs(l);

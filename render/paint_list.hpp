@@ -1,5 +1,6 @@
 #pragma once
-/// Paints draw lists on a canvas: flat ones wholly, of those with depth what lies over the faces.
+/// Paints draw lists on a canvas: flat lists completely, lists with depth only the lines and labels over the
+/// faces.
 
 #include "render/canvas.hpp"
 #include <lrbscope/render/camera.hpp>
@@ -8,18 +9,18 @@
 
 namespace lrb::render {
 
-/// Paints what Rasterizer::draw() gives of a scene without depth: fills, then lines and points layer by layer
-/// in the order of the list, then labels. The projection's pixels are the canvas's units, from `origin` on.
-/// Throws InputError if the list has triangles, or reaches behind the camera.
+/// Paints the picture that Rasterizer::draw() gives of a scene without depth: fills, then lines and points
+/// layer by layer in list order, then labels. The projection's pixels are the canvas's units, relative to
+/// `origin`. Throws InputError if the list has triangles or reaches behind the camera.
 void paint_flat(Canvas& canvas, const DrawList& list, const Projection& projection,
                 const Eigen::Vector2d& origin = {0, 0});
 
-/// Returns the list without what paint_over() paints: to be drawn as pixels.
+/// Returns the part of the list that paint_over() does not paint, to be rasterised.
 DrawList under_lines(DrawList list);
 
-/// Paints the lines and points of Layer::on_top and the labels over a picture of the rest. What the faces
-/// hide, by their depths, is painted as Rasterizer::draw() does: lines thinner and dashed, points as rings.
-/// `depths` are of the same list and camera.
+/// Paints the lines and points of Layer::on_top and the labels over a picture of the rest. Parts hidden by
+/// faces, according to `depths`, are painted as in Rasterizer::draw(): lines thinner and dashed, points as
+/// rings. `depths` must be of the same list and camera.
 void paint_over(Canvas& canvas, const DrawList& list, const Projection& projection, const DepthImage& depths,
                 const Eigen::Vector2d& origin = {0, 0});
 

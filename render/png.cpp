@@ -17,17 +17,18 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Level 1 without row filters: rendered frames have large flat areas, where more effort gains next to
+/// Level 1 without row filters: rendered frames have large flat areas, where more effort gains almost
 /// nothing.
 constexpr int kZlibLevel = 1;
 constexpr double kInchesPerMetre = 1 / 0.0254;
-/// Limits of chunks beside the pixels: our texts stay far below; a file with millions of chunks is refused.
+/// Limits of chunks other than pixels: lrbscope's texts are far below; a file with millions of chunks is
+/// rejected.
 constexpr png_alloc_size_t kLongestChunk = png_alloc_size_t{1} << 20;
 constexpr png_uint_32 kMostChunks = 100;
 
 static_assert(sizeof(Rgba) == 4);
 
-/// What libpng complained of last.
+/// The last error message of libpng.
 struct Complaint {
   std::array<char, 200> text{};
 };
@@ -41,8 +42,8 @@ struct Complaint {
 
 void keep_silent(png_structp /*png*/, png_const_charp /*text*/) {}
 
-/// Calls `body`, which calls libpng. Returns false if it did not come to its end: where libpng finds an error
-/// it leaves by longjmp, so nothing in `body` may need a destructor.
+/// Calls `body`, which calls libpng. Returns false if it was aborted: libpng reports errors by longjmp, so
+/// `body` must not need a destructor.
 template <class Body>
 bool succeeds(png_structp png, const Body& body) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's way
@@ -97,13 +98,13 @@ class PngWriter {
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
     png_set_compression_level(png_, kZlibLevel);
-    // A buffer for the whole compressed stream: a single IDAT chunk.
+    // A buffer for the whole compressed stream gives a single IDAT chunk.
     const std::size_t raw = std::size_t{height} * (1 + std::size_t{width} * (rgb ? 3 : 4));
     png_set_compression_buffer_size(png_, compressBound(raw));  // pixels in one chunk
     if (per_metre > 0) png_set_pHYs(png_, info_, per_metre, per_metre, PNG_RESOLUTION_METER);
     png_set_text(png_, info_, text.data(), static_cast<int>(text.size()));
     png_write_info(png_, info_);
-    if (rgb) png_set_filler(png_, 0, PNG_FILLER_AFTER);  // leaves out each fourth byte
+    if (rgb) png_set_filler(png_, 0, PNG_FILLER_AFTER);  // skips each fourth byte
   }
 
   static void append(png_structp png, png_bytep data, std::size_t size) {
@@ -134,7 +135,7 @@ class PngReader {
       throw EnvironmentError("cannot begin to read a PNG: out of memory");
     }
     png_set_read_fn(png_, this, take);
-    png_set_benign_errors(png_, 0);  // pixels beyond the picture are an error
+    png_set_benign_errors(png_, 0);  // surplus pixel data are an error
     png_set_chunk_malloc_max(png_, kLongestChunk);
     png_set_chunk_cache_max(png_, kMostChunks);
   }
@@ -193,7 +194,7 @@ class PngReader {
   png_infop info_ = nullptr;
 };
 
-/// Refuses, before any memory is taken, a picture that would take far more than its file can hold.
+/// Rejects, before allocating, a picture with far more pixels than its file can contain.
 void check_size(const PngReader& reader, std::size_t file_bytes, const std::string& name,
                 std::uint64_t most_pixels) {
   const std::string size = std::to_string(reader.width()) + "x" + std::to_string(reader.height()) + " pixels";
@@ -205,7 +206,7 @@ void check_size(const PngReader& reader, std::size_t file_bytes, const std::stri
     throw InputError(name + ": has " + size + ", a side longer than the " + std::to_string(Image::kMaxSide) +
                      " of an image");
   // Deflate cannot expand by more than this, so larger pictures cannot be in the file.
-  constexpr std::uint64_t kDeflateMost = 1032;  // bytes from one, by its format
+  constexpr std::uint64_t kDeflateMost = 1032;  // maximum expansion per byte, by the format
   if (reader.raw_bytes() > kDeflateMost * file_bytes)
     throw InputError(name + ": not a readable PNG (" + size + " cannot be in " + std::to_string(file_bytes) +
                      " bytes)");

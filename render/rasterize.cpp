@@ -1,6 +1,7 @@
-// Off-screen rendering with OpenGL. One frame: project the draw list on the CPU (ScreenMesh), then paint
-// in layers: fills by stencil, opaque faces and lines by depth test, translucent faces in sorted order, and
-// what is on top with its hidden part weakened. At last the supersampled image is averaged in integers.
+// Off-screen rendering with OpenGL. Steps of a frame: project the draw list on the CPU (ScreenMesh), then
+// paint in layers: fills by stencil, opaque faces and lines by depth test, translucent faces in sorted order,
+// and primitives on top with their hidden parts ghosted. Finally the supersampled image is averaged in
+// integers.
 
 #include <algorithm>
 #include <cmath>
@@ -253,7 +254,7 @@ struct Rasterizer::State {
     draw_lines(mesh.line_layers[layer], GL_LEQUAL, false, false);
   }
 
-  /// What is hidden is drawn first, ghosted, and then what is seen.
+  /// Hidden parts are drawn first, ghosted, then visible ones.
   void draw_on_top(const ScreenMesh& mesh) {
     const auto layer = static_cast<std::size_t>(Layer::on_top);
     // The reversed depth test selects the hidden fragments.
@@ -303,8 +304,8 @@ struct Rasterizer::State {
     return downsample(samples, options.width, options.height, n);
   }
 
-  /// Begins a pass in which each pixel is that of one face, for its id or its depth. The target must live as
-  /// long.
+  /// Begins a pass in which each pixel belongs to one face, for its id or its depth. The target must outlive
+  /// the pass.
   std::pair<ScreenMesh, Target> begin_faces(const DrawList& list, const Camera& camera, int w, int h) {
     check_size(w, h);
     context.make_current();
@@ -326,7 +327,7 @@ struct Rasterizer::State {
     gl.DepthFunc(GL_LESS);
     draw(faces, mesh.face_layers[static_cast<std::size_t>(Layer::opaque)]);
     if (translucent) draw(faces, mesh.face_layers[static_cast<std::size_t>(Layer::translucent)]);
-    // OpenGL's rows begin at the bottom, ours at the top.
+    // OpenGL's rows begin at the bottom, those of images at the top.
     std::vector<std::uint32_t> rows(static_cast<std::size_t>(w) * h);
     gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
     gl.ReadPixels(0, 0, w, h, GL_RED_INTEGER, GL_UNSIGNED_INT, rows.data());

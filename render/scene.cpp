@@ -119,7 +119,7 @@ namespace {
 
 using Mark = LegendItem::Mark;
 
-/// A contact smaller than this share of the scene gets a dot, so that it can be found.
+/// A contact smaller than this share of the scene gets a dot, so that it is noticeable.
 constexpr double kTinyContact = 0.01;
 
 void check(std::span<const SceneBody> bodies, const SceneHighlight& highlight, const SceneOptions& options) {
@@ -151,7 +151,7 @@ void check(std::span<const SceneBody> bodies, const SceneHighlight& highlight, c
   }
 }
 
-/// Returns the values at the ends of the scale bar: as asked for, else zero and the largest there is.
+/// Returns the values at the ends of the scale bar: as requested, else zero and the maximum.
 std::array<double, 2> value_range(std::span<const SceneBody> bodies, const SceneOptions& options) {
   if (options.value_range) return *options.value_range;
   double high = 0;
@@ -205,7 +205,7 @@ void add_contacts(const SceneHighlight& highlight, const SceneOptions& options, 
   dot.layer = Layer::on_top;
   bool lines = false;
   for (const ContactRegion& region : highlight.contacts) {
-    if (region.loops.empty()) {  // bodies that meet in a single point have no curve there
+    if (region.loops.empty()) {  // a contact at a single point has no curve
       dot.x = region.centroid;
       out.list.points.push_back(dot);
     }
@@ -244,7 +244,7 @@ void add_contacts(const SceneHighlight& highlight, const SceneOptions& options, 
 Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highlight,
                   const SceneOptions& options) {
   check(bodies, highlight, options);
-  // Values and layers are common to all bodies, so that colours can be compared.
+  // Values and layers are common to all bodies, so that colours are comparable.
   const auto [low, high] = value_range(bodies, options);
   const bool flat = bodies[0].rep->dim() == 2;
   std::uint32_t layers = 1;
@@ -261,7 +261,7 @@ Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highl
         flat ? LegendItem{Mark::solid, style.pale(style.refining, scene::kRefining2d), "region being refined"}
              : LegendItem{Mark::translucent, style.refining, "region being refined"});
   }
-  // The size of the bodies, before marks are added.
+  // The size of the bodies, before markers are added.
   const double size = bounds(out.list).isEmpty() ? 0 : bounds(out.list).diagonal().norm();
   if (highlight.under_test) add_pair_under_test(bodies, highlight, options, out);
   add_contacts(highlight, options, size, flat, out);
@@ -294,7 +294,7 @@ Eigen::Vector3d middle(const LrbRep& rep, const Pose& pose, std::span<const Face
 }  // namespace
 
 Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, RegionId r, double explode) {
-  constexpr double kLayerStep = 0.12;  // in space: extra way per layer, as a share of the body's radius
+  constexpr double kLayerStep = 0.12;  // 3D: extra displacement per layer, as a share of the body's radius
   // Regions move away from the centre of the outermost wrapper. Extra distance per layer separates nested
   // regions.
   const Eigen::Vector3d centre = middle(rep, pose, rep.outermost_faces());

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 using Mark = LegendItem::Mark;
 
-constexpr double kGhost = 0.82;  ///< how far ghosts fade
+constexpr double kGhost = 0.82;  ///< share by which ghosts fade
 
 class Scene2dBuilder {
  public:
@@ -93,7 +93,7 @@ class Scene2dBuilder {
     }
   }
 
-  /// Drawn on top of the wrapper's line, which runs along real faces too.
+  /// Drawn on top of the wrapper's line, which also runs along real faces.
   void contact_lines() {
     std::vector<FaceId> real;
     for (FaceId f = 0; f < rep_.real_face_count(); ++f)
@@ -106,7 +106,7 @@ class Scene2dBuilder {
     if (!pseudo.empty()) c_.add_key(Mark::dashed, style_.contact, "pseudo faces that meet");
   }
 
-  /// Draws thin lines between regions, dashed between those that have been refined away.
+  /// Draws thin lines between regions, dashed between refined ones.
   void region_lines() {
     std::vector<FaceId> inside, gone;
     // Each pseudo face is between a region and another cell: classify it by the state of the region inside.
@@ -122,7 +122,8 @@ class Scene2dBuilder {
       }
     }
     add_lines(inside, style_.pale(body_, 0.15), 1.1F, 0);
-    if (!c_.building()) add_lines(gone, style_.pale(body_, 0.45), 1, 5);  // there, they are yet to come
+    // In a construction these regions do not exist yet.
+    if (!c_.building()) add_lines(gone, style_.pale(body_, 0.45), 1, 5);
     if (!gone.empty() && !c_.building())
       c_.add_key(Mark::dashed, style_.pale(body_, 0.45), c_.name() + ", refined away");
   }

@@ -11,15 +11,16 @@ namespace {
 using Eigen::Vector3d;
 using Mark = LegendItem::Mark;
 
-/// Opacity of pseudo faces: a veil, so that what they cover looks fainter than what lies bare.
+/// Opacity of pseudo faces: translucent, so that covered faces look fainter than uncovered ones.
 constexpr std::uint8_t kLidAlpha = 124;
 constexpr std::uint8_t kLidEdgeAlpha = 220;
-/// Edges on the far side are nearly left out: the hundreds of faces of a refined wrapper would make a tangle.
+/// Edges on the far side are almost invisible: the hundreds of faces of a refined wrapper would clutter the
+/// picture.
 constexpr float kLidEdgeBack = 0.3F;
-constexpr std::uint8_t kTellingAlpha = 175;  ///< where their colour says something
+constexpr std::uint8_t kTellingAlpha = 175;  ///< if their colour carries information
 constexpr std::uint8_t kRefiningAlpha = 120;
 constexpr std::uint8_t kGhostAlpha = 14;
-/// Of a construction, lids of earlier passes: how far their colour fades, and its opacity.
+/// Lids of earlier passes of a construction: share by which their colour fades, and its opacity.
 constexpr double kEarlierPale = 0.72;
 constexpr std::uint8_t kEarlierAlpha = 215;
 
@@ -52,7 +53,7 @@ class Scene3dBuilder {
   }
 
  private:
-  // ---- the usual picture
+  // ---- the standard picture
 
   void wrapper() {
     real_faces();
@@ -70,8 +71,8 @@ class Scene3dBuilder {
     // Translucent, in the painting order that the rasterizer determines.
     for (const FaceId f : lids) {
       DrawTriangle t = translucent(lid_colour(f));
-      // Edges of faces, not lines, so that those behind other lids show through them instead of lying on
-      // them.
+      // Edges of faces, not lines, so that edges behind other lids show through them instead of being drawn
+      // on top.
       t.edges = 7;
       t.edge_style = lid_edges_;
       add_face(f, t);
@@ -84,7 +85,7 @@ class Scene3dBuilder {
     }
   }
 
-  /// Draws the lids that a construction has just put on, as opaque as real faces. `others`: there are earlier
+  /// Draws the lids that a construction has just made, opaque like real faces. `others`: there are earlier
   /// ones.
   void built_lids(bool others) {
     for (const RegionId r : *c_.highlight.built) {
@@ -94,7 +95,7 @@ class Scene3dBuilder {
       // Real faces are opaque, and coloured by the highest priority that applies: contact, value, kind.
       DrawTriangle t;
       t.colour = c_.built_colour(r);
-      t.nudge = 2;  // where they lie on what they cover
+      t.nudge = 2;  // if they are coplanar with the covered faces
       t.edges = 7;
       t.edge_style = cell_edges_;
       for (const FaceId f : lids) add_face(f, t);
@@ -168,7 +169,7 @@ class Scene3dBuilder {
     for (const FaceId f : rep_.floor(r)) {
       if (!rep_.is_real(f)) floor.push_back(f);
     }
-    // Edges of faces fade where there are many; of a small region only the rim is left, and its colour.
+    // Edges of faces fade where they are dense; a small region shows only its border and colour.
     DrawTriangle t = translucent(with_alpha(style_.refining, kRefiningAlpha), 2);
     t.edges = 7;
     t.edge_style = refining_edges_;
@@ -178,7 +179,7 @@ class Scene3dBuilder {
     add_outlines(lids, {mix(style_.refining, style_.ink, 0.4), 2 * c_.options.scale}, Edges::rim_on_top);
   }
 
-  // ---- regions on their own
+  // ---- single regions
 
   void isolate() {
     for (const RegionId r : c_.isolated()) region(r, Vector3d::Zero(), true);
@@ -212,7 +213,7 @@ class Scene3dBuilder {
     }
   }
 
-  /// Draws a region by itself: its floor solid, its lids solid too, or translucent so that the floor shows.
+  /// Draws a single region: its floor opaque, its lids opaque or translucent so that the floor is visible.
   void region(RegionId r, const Vector3d& moved, bool open) {
     Rgba colour = c_.region_colour(r);
     if (c_.options.colour_by == ColourBy::kind) colour = style_.pale(colour, 0.5);
@@ -241,7 +242,7 @@ class Scene3dBuilder {
     DrawTriangle t;
     t.colour = colour;
     t.layer = Layer::translucent;
-    t.nudge = nudge;  // so that a lid on a real face, in a region without volume, is seen
+    t.nudge = nudge;  // so that a lid that coincides with a real face, in a region without volume, is visible
     return t;
   }
 
@@ -252,12 +253,12 @@ class Scene3dBuilder {
 
   enum class Edges : std::uint8_t {
     all,
-    rim,         ///< those of a single face
-    rim_on_top,  ///< the same, seen through everything
+    rim,         ///< edges of exactly one face
+    rim_on_top,  ///< the same, visible through everything
   };
 
-  /// Draws edges of faces as lines, each once. Lines keep their width at outlines, where edges of faces show
-  /// half of it.
+  /// Draws edges of faces as lines, each once. Lines keep their full width at outlines, where face edges show
+  /// half.
   void add_outlines(const std::vector<FaceId>& faces, const EdgeStyle& style, Edges which = Edges::all) {
     // Undirected edges of all faces, sorted so that equal ones are neighbours.
     std::vector<std::array<VertexId, 2>> edges;

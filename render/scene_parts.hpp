@@ -1,5 +1,5 @@
 #pragma once
-/// What the scene builders of 3D and 2D bodies share.
+/// Code shared by the scene builders of 3D and 2D bodies.
 
 #include <array>
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace lrb::render::scene {
 
-/// What it takes to draw one body into a scene.
+/// The data needed to draw one body into a scene.
 struct Context {
   const SceneBody& body;
   Side side;
   const SceneHighlight& highlight;
   const SceneOptions& options;
   double value_low, value_high;  ///< range of ColourBy::value
-  std::uint32_t layers;          ///< number of layers of the body that has most: one scale for both
+  std::uint32_t layers;          ///< maximum number of layers over all bodies: one scale for all
   Scene& out;
 
   std::string name() const;
@@ -32,11 +32,11 @@ struct Context {
   bool isolated(RegionId r) const;
   bool refining(RegionId r) const;
   bool building() const { return highlight.built.has_value(); }
-  bool built(RegionId r) const;  ///< just now
+  bool built(RegionId r) const;  ///< in the current event
   std::vector<Eigen::Vector3d> corners(FaceId f,
                                        const Eigen::Vector3d& moved = Eigen::Vector3d::Zero()) const;
-  /// Returns the colour of a face by SceneOptions::colour_by; `cell` is the region that it stands for. Where
-  /// values are shown, faces without one or with the lowest are pale, so that the few that matter stand out.
+  /// Returns the colour of a face by SceneOptions::colour_by; `cell` is the region it represents. If values
+  /// are shown, faces without a value or with the lowest are pale, so that the others are prominent.
   Rgba colour_of(FaceId f, CellId cell) const;
   bool has_value(FaceId f) const { return f < body.face_values.size() && body.face_values[f] > value_low; }
   Rgba region_colour(RegionId r) const;
@@ -45,13 +45,13 @@ struct Context {
   void add_key(LegendItem::Mark mark, Rgba colour, const std::string& text) const;
 };
 
-/// How far the colour of regions being refined fades in 2D, as a fill under lines.
+/// Share by which the colour of regions being refined fades in 2D, as a fill under lines.
 inline constexpr double kRefining2d = 0.4;
 
 void add_body_3d(const Context& c);
 void add_body_2d(const Context& c);
 
-/// A polyline through segments that join, as long as it can be made; closed where it closes.
+/// A polyline of joined segments, as long as possible; closed if its ends join.
 struct Chain {
   std::vector<VertexId> vertices;
   bool closed = false;

@@ -17,27 +17,27 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Corners are rounded to 1/256 pixel, the grid of Mesa's rasterizer, so that it has nothing to round.
+/// Corners are rounded to 1/256 pixel, the grid of Mesa's rasterizer, so that Mesa does not round again.
 constexpr double kSnap = 256;
-/// A line's halo lies this share of a step behind the line.
+/// A line's halo is this share of a nudge step behind the line.
 constexpr double kHaloNudge = 0.25;
 /// Corners farther outside than this many picture sizes are clipped, so that float coordinates stay precise.
 constexpr double kGuard = 8;
-/// Edges fade out where faces are so small that edges would cover them: they are full where there is room for
-/// the first number of edge widths (see edge_room.hpp), and gone where there is room for the second only, ...
+/// Edges fade where faces are too small for them (see edge_room.hpp): they are full if the altitude is at
+/// least the first number of edge widths, and invisible at the second, ...
 constexpr double kEdgesFull = 9, kEdgesGone = 1.5;
-/// ... where they have come down to this share of their width.
+/// ... where their width is reduced to this share.
 constexpr double kLeastWidth = 0.6;
-/// How much weaker the shading of translucent faces is than that of opaque ones.
+/// Factor by which the shading of translucent faces is weaker than that of opaque ones.
 constexpr double kSoften = 0.6;
-/// Room for the soft rim of lines, pixels.
+/// Margin for the soft border of lines, pixels.
 constexpr double kRim = 1;
 
 double snap(double pixels) {
   return std::nearbyint(pixels * kSnap) / kSnap;
 }
 
-/// Returns homogeneous picture coordinates about the middle: pixel = (x, y) / w.
+/// Returns homogeneous picture coordinates relative to the centre: pixel = (x, y) / w.
 Vector3d homogeneous(const Projection& p, const Vector3d& eye) {
   return {p.focal() * eye.x(), p.focal() * eye.y(), p.orthographic() ? 1.0 : eye.z()};
 }
@@ -83,7 +83,7 @@ class ScreenMeshBuilder {
     mesh_.line_layers[index].count = mesh_.lines.size() - mesh_.line_layers[index].first;
   }
 
-  /// Adds the faces that let others shine through, in the order in which they must be painted.
+  /// Adds translucent faces in painting order.
   void add_blended(Layer layer) {
     std::vector<EyePolygon> polygons;
     for (std::uint32_t i = 0; i < list_.triangles.size(); ++i) {
@@ -155,8 +155,7 @@ class ScreenMeshBuilder {
     return norm > 0 ? Vector3d(line / norm) : Vector3d::Zero();
   }
 
-  /// Returns the part of a triangle that can be seen, in the eye's frame; fewer than three corners if there
-  /// is none.
+  /// Returns the visible part of a triangle in the eye's frame; fewer than three corners if there is none.
   std::vector<Vector3d> visible_part(const DrawTriangle& t) const {
     std::vector<Vector3d> polygon;
     for (const Vector3d& x : t.x) polygon.push_back(p_.to_eye(x));
@@ -211,7 +210,7 @@ class ScreenMeshBuilder {
     return normal.dot(p_.towards_viewer(t.x[0])) < 0;
   }
 
-  /// Sets the lines of the three edges and the vertex's edge style, faded where faces are small on the
+  /// Computes the lines of the three edges and the vertex's edge style, faded where faces are small on the
   /// screen.
   std::array<Vector3d, 3> edge_lines(const DrawTriangle& t, const std::array<Vector3d, 3>& h,
                                      FaceVertex& v) const {
@@ -219,7 +218,7 @@ class ScreenMeshBuilder {
     for (int i = 0; i < 3; ++i) lines[i] = edge_line(h[i], h[(i + 1) % 3]);
     if (t.edges == 0) return lines;
     const EdgeStyle& style = list_.edge_styles[t.edge_style];
-    // Fade colour and width where the face has little room on the screen.
+    // Fade colour and width where the face is small on the screen.
     const double room = room_[static_cast<std::size_t>(&t - list_.triangles.data())] / (style.width * scale_);
     const double fade = fade_between(room, kEdgesGone, kEdgesFull), back = shows_back(t) ? style.back : 1;
     const double width = style.width * (kLeastWidth + (1 - kLeastWidth) * fade) * (0.5 + 0.5 * back);
@@ -227,7 +226,7 @@ class ScreenMeshBuilder {
     v.edge_colour =
         to_bytes(with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade * back + 0.5)));
     if (t.layer != Layer::opaque) return lines;
-    // An opaque face stays opaque under its edges: they are blended here, where it is exact.
+    // An opaque face stays opaque under its edges: blend them here, exactly.
     v.edge_colour = to_bytes(over(to_rgba(v.edge_colour), with_alpha(to_rgba(v.colour), 255)));
     return lines;
   }
@@ -284,10 +283,10 @@ class ScreenMeshBuilder {
     add_polyline(l, l.colour, l.width, l.dash, nudge);
   }
 
-  /// Returns the number of nudge steps that bring the whole width of a line in front of a face that it runs
-  /// along, if the face is seen at 45 degrees or more; a dot is as thick as it is wide. `half_width` is in
-  /// pixels of the final image. Opaque lines stay where they are: of two, the wider one must not hide the
-  /// later one.
+  /// Returns the number of nudge steps that bring the full width of a line in front of the face that it
+  /// follows, if the face is seen at 45 degrees or more; a dot is as thick as it is wide. `half_width` is in
+  /// pixels of the final image. Opaque lines are not moved: of two, the wider one must not hide the later
+  /// one.
   double lift(Layer layer, double half_width) const {
     return layer == Layer::opaque ? 0 : half_width * scale_ / p_.height() / kNudge;
   }
@@ -329,7 +328,7 @@ class ScreenMeshBuilder {
       if (da < 0) a += (b - a) * (da / (da - db));
       if (db < 0) b += (a - b) * (db / (db - da));
     }
-    // A rectangle around the segment, with room for round ends and a soft border.
+    // A rectangle around the segment, with a margin for round ends and a soft border.
     const Vector3d sa = snapped_screen(a), sb = snapped_screen(b);
     const Vector2d d = (sb - sa).head<2>();
     const double length = d.norm();
@@ -342,7 +341,7 @@ class ScreenMeshBuilder {
       const double along = i == 1 || i == 2 ? length + reach : -reach, across = i < 2 ? -reach : reach;
       const Vector2d at = sa.head<2>() + along * u + across * side;
       v.at = to_float(Vector2d(along, across));
-      // Beyond the ends the depth stays constant: a round end must not sink into what it ends on.
+      // Beyond the ends the depth stays constant: a round end must not sink into the face it ends on.
       v.x = device({at.x(), at.y(), along < 0 ? sa.z() : sb.z()}, nudge);
       corner[i] = v;
     }
@@ -354,7 +353,7 @@ class ScreenMeshBuilder {
   const Projection& p_;
   double scale_;
   const Lighting& lighting_;
-  Lighting soft_;             ///< of faces that let others shine through: they should tint, not darken
+  Lighting soft_;             ///< of translucent faces: they should tint, not darken
   std::vector<double> room_;  ///< see edge_room(): by triangle
   ScreenMesh mesh_;
   std::vector<FaceVertex> corners_;
@@ -370,7 +369,7 @@ Rgba shade(Rgba colour, const Vector3d& normal, const Eigen::Matrix3d& axes, con
   const double light = lighting.ambient + lighting.head * n.z() + lighting.key * from(lighting.key_from) +
                        lighting.fill * from(lighting.fill_from);
   const Rgba dark{0, 0, 0, colour.a}, bright{255, 255, 255, colour.a};
-  // Beyond one, the colour goes on towards white, so that bright faces keep their differences.
+  // Above one, the colour is mixed towards white, so that bright faces keep their differences.
   return light <= 1 ? mix(dark, colour, light) : mix(colour, bright, std::min(1.0, light - 1));
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-/// The shaders. Positions come in as final device coordinates; colours are straight going in and
-/// premultiplied coming out. Coverage is rounded to sixteenths: where processors differ in the last bit of an
-/// interpolation, the pixel then mostly does not differ.
+/// The shaders. Positions are final device coordinates; colours are straight on input and premultiplied on
+/// output. Coverage is rounded to sixteenths, so that last-bit differences between processors rarely change a
+/// pixel.
 
 namespace lrb::render::shaders {
 

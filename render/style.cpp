@@ -11,8 +11,8 @@
 namespace lrb::render::palette {
 
 Rgba viridis(double t) {
-  // Every sixteenth entry of the map that matplotlib published into the public domain (CC0), linear in
-  // between: no eye can see the difference.
+  // Every sixteenth entry of the map that matplotlib published into the public domain (CC0), interpolated
+  // linearly: the difference is invisible.
   static constexpr std::array<Rgba, 17> kStops = {{{68, 1, 84},
                                                    {72, 23, 105},
                                                    {71, 44, 122},
@@ -79,7 +79,7 @@ constexpr Style kScreen = {.paper = kWhite,
                            .lid_pale = palette::kLidPale,
                            .weight = 1};
 
-/// Black on white; kinds lie further apart in lightness than on a screen, for presses without colours.
+/// Black on white; kinds differ more in lightness than on a screen, for greyscale print.
 constexpr Style kPrint = {.paper = kWhite,
                           .ink = kBlack,
                           .faint = {84, 86, 90},
@@ -96,7 +96,7 @@ constexpr Style kPrint = {.paper = kWhite,
                           .lid_pale = palette::kLidPale,
                           .weight = 0.7F};
 
-/// For slides: nearly black behind, lines and texts light.
+/// For slides: almost black background, light lines and texts.
 constexpr Style kDark = {.paper = {20, 22, 27},
                          .ink = {236, 238, 241},
                          .faint = {160, 165, 173},

@@ -128,13 +128,13 @@ void SvgCanvas::disc(const Eigen::Vector2d& at, double radius, Rgba colour) {
 }
 
 void SvgCanvas::text(const PaperText& t) {
-  // A base line, not dominant-baseline: editors and printers of SVG do not all know that.
+  // A baseline instead of dominant-baseline, which not all SVG editors and printers support.
   out_ += "<text" + attribute("x", number(t.at.x())) +
           attribute("y", number(t.at.y() + kBaseline * t.height)) + font(t.height);
   if (t.bold) out_ += attribute("font-weight", "bold");
   if (t.align != Align::left) out_ += attribute("text-anchor", t.align == Align::centre ? "middle" : "end");
   out_ += paint("fill", t.colour);
-  // paint-order draws the stroke beneath the fill, so the glyphs keep their shape.
+  // paint-order draws the stroke under the fill, so the glyphs keep their shape.
   if (t.halo.a > 0)
     out_ += paint("stroke", t.halo) + attribute("stroke-width", number(2 * kTextHalo * t.height)) +
             attribute("stroke-linejoin", "round") + attribute("paint-order", "stroke");
@@ -143,7 +143,7 @@ void SvgCanvas::text(const PaperText& t) {
 
 void SvgCanvas::picture(const Image& image, const Eigen::AlignedBox2d& place) {
   const std::vector<std::uint8_t> png = encode_png(image);
-  // Inkscape 1.2 shows no picture whose href is not of XLink's namespace.
+  // Inkscape 1.2 shows pictures only if their href is in the XLink namespace.
   out_ += "<image" + box_attributes(place) + attribute("preserveAspectRatio", "none") +
           attribute("xmlns:xlink", "http://www.w3.org/1999/xlink") +
           attribute("xlink:href", "data:image/png;base64," + base64(png.data(), png.size())) + "/>\n";
@@ -182,7 +182,7 @@ namespace {
 
 using namespace svg_text;
 
-/// Returns a whole picture as an element of another one.
+/// Returns a complete picture as an element of another one.
 std::string nested(const std::string& panel, const PixelRect& r) {
   const std::size_t start = panel.find("viewBox");
   if (start == std::string::npos) throw InputError("a montage of SVG needs panels that are SVG");
@@ -209,7 +209,7 @@ std::string svg_montage(const std::vector<std::string>& panels, const MontageLay
   for (std::size_t i = 0; i < panels.size(); ++i) {
     out += nested(panels[i], layout.panels.at(i));
     const PixelRect& c = layout.captions[i];
-    double y = c.y + 0.75 * layout.text_height;  // as montage(): a quarter of a line above them
+    double y = c.y + 0.75 * layout.text_height;  // as in montage(): a quarter of a line above them
     for (const std::string& line : layout.lines[i]) {
       out += centred(line, c.x + 0.5 * c.width, y, layout.text_height, style_of(options.style).ink);
       y += layout.text_height;

@@ -18,7 +18,7 @@
 namespace lrb::render {
 namespace {
 
-/// Where distributions put DejaVu, in case the file that the build found has moved.
+/// DejaVu's folders in distributions, in case the file found by the build has moved.
 constexpr std::array kFontFolders = {"/usr/share/fonts/truetype/dejavu/", "/usr/share/fonts/dejavu/",
                                      "/usr/share/fonts/TTF/", "/usr/share/fonts/dejavu-sans-fonts/",
                                      "/usr/local/share/fonts/"};
@@ -36,7 +36,7 @@ struct Mask {
   std::uint8_t operator()(int x, int y) const { return at[static_cast<std::size_t>(y) * width + x]; }
 };
 
-/// Grows the mask by a disc with a soft rim.
+/// Dilates the mask by a disc with a soft border.
 Mask dilate(const Mask& mask, float radius) {
   struct Tap {
     int x, y, weight;
@@ -130,7 +130,7 @@ Font::Font(Font&&) noexcept = default;
 
 TextSize Font::measure(std::string_view text, const TextStyle& style) const {
   const auto& face = style.bold ? faces_->bold : faces_->regular;
-  // Round outward, so that nothing is cut off.
+  // Round outward, so that nothing is clipped.
   const float scale = stbtt_ScaleForPixelHeight(&face.info, style.height);
   TextSize size;
   size.width = static_cast<int>(std::ceil(face.walk(text, scale, [](int, float) {})));
@@ -148,7 +148,7 @@ void Font::draw(Image& image, std::string_view text, int x, int y, const TextSty
   if (style.align == Align::right) x -= size.width;
 
   const int pad =
-      2 + static_cast<int>(std::ceil(style.halo_width));  // glyphs may reach a little beyond the advance
+      2 + static_cast<int>(std::ceil(style.halo_width));  // glyphs may extend slightly beyond the advance
   // Step 1: render all glyphs into one coverage mask, at subpixel positions.
   Mask ink(size.width + 2 * pad, size.height + 2 * pad);
   face.walk(text, scale, [&](int glyph, float at) {
@@ -192,7 +192,7 @@ std::vector<std::string> Font::wrap(std::string_view text, int width, const Text
     }
     if (!line.empty()) lines.push_back(std::move(line));
     line.clear();
-    while (!word.empty()) {  // by code points, as many as fit, but at least one
+    while (!word.empty()) {  // by code points, as many as fit, at least one
       std::string_view rest = word;
       next_code_point(rest);
       const std::string next = line + std::string(word.substr(0, word.size() - rest.size()));

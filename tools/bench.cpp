@@ -21,7 +21,7 @@ struct BenchOptions : MeasureOptions {
   std::vector<std::uint32_t> faces = {20000, 100000};
 };
 
-/// Returns true for ours and for engines that answer the same question.
+/// Returns true for lrbscope and for engines that answer the same query.
 bool is_peer(const workers::WorkerMethod& m) {
   return !m.info.has(methods::Trait::approximate) && !m.info.has(methods::Trait::convex) &&
          m.info.role != methods::Role::no_peer;

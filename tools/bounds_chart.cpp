@@ -34,7 +34,7 @@ std::string row(std::uint64_t work, double value) {
   return std::to_string(work) + " " + io::number_text(value);
 }
 
-/// Two curves that hold a number between them, as rows of data.
+/// Two curves that bracket a number, as rows of data.
 struct Ends {
   std::vector<std::string> lower, upper;
   void add(std::uint64_t work, double low, double high) {

@@ -30,7 +30,7 @@ struct BuildCommandOptions {
 
 constexpr double kMega = 1e6;
 
-/// Returns the largest amount of memory that this process ever held, in bytes.
+/// Returns the peak memory of this process, in bytes.
 std::uint64_t peak_bytes() {
   rusage use{};
   getrusage(RUSAGE_SELF, &use);
@@ -78,7 +78,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
     j["levels"] = bodies::level_json(bodies::level_figures(rep, bodies::kLevelShares, o.build.threads));
   j["seconds"] = seconds;
   j["peak_bytes"] = peak_bytes();
-  j["notes"] = notes;  // what was done to the mesh, for nothing is done in silence, and what is poor
+  j["notes"] = notes;  // repairs made to the mesh, and weaknesses of the result
   ValidateReport report;
   if (o.no_validate) {
     j["valid"] = nullptr;

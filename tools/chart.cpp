@@ -31,7 +31,7 @@ struct ChartOptions : MeasureOptions {
   bool scenes = true;
 };
 
-/// Returns the data sets of an earlier run that were asked for this, by name.
+/// Returns the data sets of an earlier run for this quantity, by name.
 std::vector<bench::DataSet> read_sets(const std::string& folder, methods::Quantity quantity) {
   std::vector<std::string> files;
   std::error_code error;

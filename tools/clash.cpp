@@ -34,7 +34,7 @@ void write_interval(trace::JsonWriter& w, const char* name, const std::optional<
   if (!interval) return;
   w.key(name).begin_array().value(interval->lower);
   w.value(std::isfinite(interval->upper) ? interval->upper : std::numeric_limits<double>::quiet_NaN());
-  w.end_array();  // not a number is written as null
+  w.end_array();  // NaN is written as null
 }
 
 void write_pieces(trace::JsonWriter& w, const char* name, const SurfacePieces& pieces) {
@@ -70,7 +70,7 @@ std::string line_of(std::size_t pose, const ClashResult& result, const std::vect
   });
 }
 
-/// Returns an interval with the digits that both ends have, or both ends.
+/// Returns an interval as the digits common to both bounds, or as both bounds.
 std::string interval_text(const std::optional<ProvedInterval>& interval) {
   if (!interval) return "-";
   std::ostringstream out;

@@ -28,7 +28,7 @@ bool is_closed(const Hole& hole) {
   return hole.state <= HoleState::closed_as_ring;
 }
 
-/// Returns what became of a hole, for people.
+/// Returns the state of a hole as text.
 std::string state_text(const Hole& hole) {
   if (hole.of_sheet && !is_closed(hole)) return "left: its surface is a sheet: it bounds nothing";
   switch (hole.state) {

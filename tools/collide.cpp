@@ -28,14 +28,14 @@ struct CollideOptions {
   bool json = false;
 };
 
-/// Returns a motion on which B's middle heads for A's, from where it is clear of it, and goes on for a while
-/// after the first contact.
+/// Returns a motion that moves B's centre towards A's, from a separate position until some distance past the
+/// first contact.
 spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, const LrbRep& b) {
   const Eigen::AlignedBox3d box_a = run::box_of(a), box_b = run::box_of(b);
   spec::Motion m;
   m.kind = spec::Motion::Kind::approach;
   m.target = box_a.center() - box_b.center();
-  constexpr double kClear = 1.02;  // in distances at which balls around both boxes touch
+  constexpr double kClear = 1.02;  // in distances at which the bounding spheres of both boxes touch
   m.from = direction.normalized() * kClear * (box_a.diagonal().norm() + box_b.diagonal().norm()) / 2;
   m.step_length = 0.004;
   m.steps = 100'000;
@@ -45,8 +45,8 @@ spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, co
   return m;
 }
 
-/// Returns a direction beside the path on which B comes, a little on B's side and above, so that the gap
-/// between the bodies is seen; for bodies that do not come, `otherwise`.
+/// Returns a direction beside the path of B, slightly on B's side and above, so that the gap between the
+/// bodies is visible; `otherwise` if B does not approach.
 Eigen::Vector3d beside(const spec::Motion& motion, const Eigen::Vector3d& up,
                        const Eigen::Vector3d& otherwise) {
   const Eigen::Vector3d side = motion.from.cross(up.normalized());
@@ -54,7 +54,8 @@ Eigen::Vector3d beside(const spec::Motion& motion, const Eigen::Vector3d& up,
   return 0.8 * side.normalized() + 0.3 * motion.from.normalized() + 0.45 * up.normalized();
 }
 
-/// Looks from where least of the contacts is hidden, and makes no close-up of what is nearly the whole.
+/// Looks from the direction that hides least of the contacts, and omits a close-up that would show almost
+/// everything.
 void choose_views(const CollideOptions& o, spec::Scenario& scenario, run::Recording& recording) {
   const run::RecordedRun recorded = run::recorded_run_of(scenario, recording);
   std::vector<render::FrameSpec::View>& views = scenario.frames.views;
@@ -83,8 +84,8 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
     s.motion.kind = spec::Motion::Kind::poses;
     s.motion.poses = io::open_poses(o.poses).poses;
   } else {
-    // The default direction is aslant: along an axis, bodies that are lined up with it would meet in whole
-    // faces first.
+    // The default direction is oblique: along an axis, bodies aligned with it would touch with entire faces
+    // first.
     Eigen::Vector3d direction(1, 0.35, 0.25);
     if (!o.approach.empty()) direction = io::parse_vector(o.approach, "--approach");
     if (!(direction.squaredNorm() > 0)) throw InputError("--approach: expected a direction that is not zero");
@@ -104,7 +105,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
 }
 
 int run_collide(const CollideOptions& o, const Globals& globals) {
-  if (!o.poses.empty()) io::open_poses(o.poses);  // a typing error in this file should not cost a build
+  if (!o.poses.empty()) io::open_poses(o.poses);  // check the file before an expensive build
   if (!o.picture.animation.empty()) run::check_animation(o.picture.animation);
   const run::ProgressReport progress = progress_report(globals.quiet);
   std::vector<bodies::LoadedBody> bodies;

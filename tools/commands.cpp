@@ -5,7 +5,7 @@
 
 namespace lrb::cli {
 
-// Each adds a command with its options to the program, and returns what runs it.
+// Each adds a command with its options to the program, and returns the function that runs it.
 Command add_run(CLI::App& root, const Globals& globals);
 Command add_collide(CLI::App& root, const Globals& globals);
 Command add_crowd(CLI::App& root, const Globals& globals);

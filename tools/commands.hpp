@@ -1,6 +1,6 @@
 #pragma once
-/// The commands of `lrbscope`, a file each in this folder, listed in commands.cpp. stdout is for data, stderr
-/// for people. Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
+/// The commands of `lrbscope`, one file each in this folder, listed in commands.cpp. stdout is for data,
+/// stderr for messages. Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
 
 #include <functional>
 #include <string>
@@ -15,10 +15,10 @@ namespace lrb::cli {
 
 inline constexpr int kOk = 0, kMismatch = 1, kBadInput = 2, kEnvironment = 3;
 
-/// What applies to every command.
+/// Settings common to all commands.
 struct Globals {
-  bool quiet = false;        ///< nothing on stderr but errors
-  std::string command_line;  ///< as it was given, quoted for a shell
+  bool quiet = false;        ///< only errors on stderr
+  std::string command_line;  ///< as given, quoted for a shell
 };
 
 struct Command {
@@ -29,21 +29,21 @@ struct Command {
 /// Adds all commands to the program, in their order in --help. They are listed in commands.cpp.
 std::vector<Command> add_commands(CLI::App& root, const Globals& globals);
 
-/// Parses the command line and runs the command; turns exceptions into one line on stderr and an exit code.
+/// Parses the command line and runs the command. Turns exceptions into one line on stderr and an exit code.
 int main(int argc, char** argv);
 
-/// Prints lines for people to stderr, unless quiet.
+/// Prints message lines to stderr, unless quiet.
 void note(const Globals& globals, const std::vector<std::string>& lines);
 
 using io::shell_word;
 
-/// Returns JSON on one line. Bytes that are not UTF-8, which a file's name may have, become U+FFFD.
+/// Returns JSON on one line. Bytes that are not UTF-8, which file names may contain, become U+FFFD.
 std::string one_line(const nlohmann::ordered_json& value);
 
-/// Returns a value as people read it: numbers that are not whole have `digits` significant digits.
+/// Returns a value as display text: numbers that are not integers have `digits` significant digits.
 std::string for_people(const nlohmann::ordered_json& value, int digits);
 
-/// Writes to stdout and makes sure that it arrived. Throws EnvironmentError.
+/// Writes to stdout and checks that it was written. Throws EnvironmentError.
 void print(const std::string& text);
 
 }  // namespace lrb::cli

@@ -16,7 +16,7 @@ struct CompareOptions {
   std::string first, second, folder, up;
 };
 
-/// Returns what the pictures of a run need: its name, and where to look from.
+/// Returns the scenario for the pictures of a run: its name, and the view direction.
 spec::Scenario scenario_of(const run::Recording& recording, const std::string& up) {
   spec::Scenario s;
   s.name = recording.trace.header.scenario;
@@ -27,7 +27,7 @@ spec::Scenario scenario_of(const run::Recording& recording, const std::string& u
   return s;
 }
 
-/// Returns short names of two folders: their last parts, if these differ.
+/// Returns short names of two folders: their last components, if they differ.
 std::array<std::string, 2> names_of(const std::string& first, const std::string& second) {
   const auto last = [](const std::string& path) {
     const std::filesystem::path p(path);
@@ -37,7 +37,7 @@ std::array<std::string, 2> names_of(const std::string& first, const std::string&
   return {last(first), last(second)};
 }
 
-/// Returns the page of a run that is given by its folder, or by its trace.
+/// Returns the page of a run that is given by its folder or by its trace.
 std::string page_of(const std::string& run) {
   const std::filesystem::path p(run);
   return ((std::filesystem::is_directory(p) ? p : p.parent_path()) / "index.html").string();

@@ -1,4 +1,4 @@
-/// What is made of the program's own words: completions of shells, and manual pages.
+/// Texts generated from the program's option definitions: shell completions and manual pages.
 
 #include <algorithm>
 #include <array>
@@ -21,18 +21,18 @@
 namespace lrb::words {
 namespace {
 
-// The commands and options of a program as data, taken from the definitions by which it parses them.
+// The commands and options of a program as data, taken from the definitions that parse them.
 
-/// What completes a value.
+/// Source of completions for a value.
 enum class Value : std::uint8_t { none, choice, file, folder, scenario, crowd, experiment };
 
 struct Option {
-  std::vector<std::string> names;  ///< "-o", "--output"; of a positional one its name alone
-  std::string type;                ///< as --help has it: "DIR", "N", "a|b"; empty: a flag
+  std::vector<std::string> names;  ///< "-o", "--output"; for a positional one only its name
+  std::string type;                ///< as in --help: "DIR", "N", "a|b"; empty: a flag
   std::string help;
-  std::string fallback;  ///< the value without it; empty: none to tell
+  std::string fallback;  ///< the default value; empty: none shown
   bool positional = false, required = false;
-  bool many = false;  ///< takes several values
+  bool many = false;  ///< accepts several values
   Value value = Value::none;
   std::vector<std::string> choices;
 
@@ -45,7 +45,7 @@ struct Command {
   std::vector<Command> commands;
 };
 
-/// Returns the words of a type such as "png|svg" or "answers,events"; none for another type.
+/// Returns the choices of a type such as "png|svg" or "answers,events", or an empty list for another type.
 std::vector<std::string> choices_of(const std::string& type) {
   std::vector<std::string> out(1);
   for (const char c : type) {
@@ -61,7 +61,7 @@ std::vector<std::string> choices_of(const std::string& type) {
   return whole && out.size() > 1 ? out : std::vector<std::string>();
 }
 
-/// Returns what completes a value, by the names that commands give to values.
+/// Returns the source of completions for a value, from the value names that commands use.
 Value value_of(const std::string& type, const std::string& name, bool positional) {
   const std::string word = type.substr(0, type.find_first_of(":= "));
   if (!choices_of(word).empty()) return Value::choice;
@@ -71,7 +71,7 @@ Value value_of(const std::string& type, const std::string& name, bool positional
   if (word == "DIR" || word == "FOLDER") return Value::folder;
   const bool names_file = word.find("FILE") != std::string::npos || word.find('.') != std::string::npos ||
                           word == "PNG" || word.find("PATH") != std::string::npos;
-  // A text that says no more is a file in this program.
+  // A value type "TEXT" without further choices is a file in this program.
   return names_file || word == "TEXT" ? Value::file : Value::none;
 }
 
@@ -92,7 +92,7 @@ Option option_of(const CLI::Option& o) {
   return out;
 }
 
-/// Returns the words of a program or command, without what it hides.
+/// Returns the words of a program or command, without hidden ones.
 Command words_of(const CLI::App& app) {
   Command out;
   out.name = app.get_name();
@@ -113,12 +113,12 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-// Scripts of shells.
+// Shell scripts.
 
-/// Names that stand in the place of files.
+/// Names accepted instead of a file path.
 struct ShippedNames {
   std::vector<std::string> scenarios, crowds, experiments;
-  const std::vector<std::string>& of(Value value) const;  ///< none for values that are no such names
+  const std::vector<std::string>& of(Value value) const;  ///< empty for other values
 };
 
 const std::vector<std::string>& ShippedNames::of(Value value) const {
@@ -135,7 +135,7 @@ const std::vector<std::string>& ShippedNames::of(Value value) const {
   }
 }
 
-/// What the script does with the tables before it. COMP_WORDS has "=" as a word of its own.
+/// The script's code, which follows the tables. COMP_WORDS has "=" as a separate word.
 constexpr const char* kDriver = R"sh(
 _lrbscope() {
   local cur=${COMP_WORDS[COMP_CWORD]} path="" previous="" word i
@@ -186,7 +186,7 @@ _lrbscope() {
 complete -F _lrbscope lrbscope
 )sh";
 
-/// Returns what the script is to do for a value: "none", "folder", "file NAMES" or "choice WORDS".
+/// Returns the script's action for a value: "none", "folder", "file NAMES" or "choice WORDS".
 std::string bash_action(const Option& o, const ShippedNames& names) {
   switch (o.value) {
     case Value::none:
@@ -255,7 +255,7 @@ std::string fish_quoted(const std::string& text) {
   return out + "'";
 }
 
-/// Returns the words that say what a value is.
+/// Returns the fish arguments that complete a value.
 std::string fish_action(const Option& o, const ShippedNames& names) {
   switch (o.value) {
     case Value::none:
@@ -305,7 +305,7 @@ std::string fish_completion(const Command& program, const ShippedNames& names) {
   return out;
 }
 
-/// Returns text in single quotes, with what _arguments takes for its own escaped.
+/// Returns text in single quotes, with the special characters of _arguments escaped.
 std::string zsh_quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) {
@@ -355,7 +355,7 @@ std::string argument_lines(const Command& c, const ShippedNames& names) {
   return out;
 }
 
-/// Writes the function of a command, after those of the commands below it.
+/// Writes the function of a command, after those of its subcommands.
 void write_zsh(const Command& c, const std::string& function, const ShippedNames& names, std::string& out) {
   for (const Command& below : c.commands) write_zsh(below, function + "_" + below.name, names, out);
   out += function + "() {\n";
@@ -386,7 +386,7 @@ std::string zsh_completion(const Command& program, const ShippedNames& names) {
 
 // Manual pages.
 
-/// Returns text as roff shows it: a hyphen can be copied, and no line is a request.
+/// Returns text escaped for roff: hyphens stay copyable, and no line is a request.
 std::string roff(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -413,7 +413,7 @@ std::string heading(const std::string& name, const std::string& version) {
   return ".TH " + upper(name) + " 1 \"\" \"lrbscope " + version + "\" \"lrbscope\"\n";
 }
 
-/// Returns "NAME..." in square brackets unless it has to be given.
+/// Returns "NAME...", in square brackets if it is optional.
 std::string usage_of(const Option& o) {
   const std::string name = "\\fI" + roff(o.names.front()) + "\\fR" + (o.many ? "..." : "");
   return o.required ? name : "[" + name + "]";
@@ -453,7 +453,7 @@ std::string options_of(const Command& c, const std::string& section) {
   return out;
 }
 
-/// Returns a sentence without its full stop, as headings of manual pages are.
+/// Returns a sentence without its full stop, as in headings of manual pages.
 std::string title_of(std::string purpose) {
   while (!purpose.empty() && purpose.back() == '.') purpose.pop_back();
   if (!purpose.empty()) purpose[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(purpose[0])));
@@ -477,8 +477,7 @@ constexpr std::array kVariables = {
     Variable{"LRBSCOPE_METHODS", "The folder with the worker programs of other engines."},
     Variable{"NO_COLOR", "If set, progress is drawn without colours."}};
 
-/// Returns the manual page (roff, section 1) of a program: its commands, its options, exit codes and
-/// environment.
+/// Returns the manual page (roff, section 1) of a program: its commands, options, exit codes and environment.
 std::string program_page(const Command& program, const std::string& version) {
   std::string out = heading(program.name, version);
   out += ".SH NAME\n" + roff(program.name) + " \\- " + roff(title_of(program.purpose)) + "\n";
@@ -505,7 +504,7 @@ std::string program_page(const Command& program, const std::string& version) {
   return out;
 }
 
-/// Returns that of one of its commands, with the options of the commands below it.
+/// Returns the manual page of one of its commands, with the options of its subcommands.
 std::string command_page(const Command& program, const Command& command, const std::string& version) {
   const std::string name = program.name + "-" + command.name, call = program.name + " " + command.name;
   std::string out = heading(name, version);

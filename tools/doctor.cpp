@@ -20,7 +20,7 @@ namespace {
 
 using Level = render::Finding::Level;
 
-/// Runs a check that says in a few words what it found, or throws.
+/// Runs a check that returns a short result or throws.
 template <class Check>
 render::Finding look(const std::string& what, const Check& check) {
   try {

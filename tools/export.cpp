@@ -36,7 +36,7 @@ struct ExportOptions {
   bool chooses_wrapper() const { return faces || layer || tolerance; }
 };
 
-/// What the input may be.
+/// Kind of the input.
 enum class Input : std::uint8_t { body, run, scenario, poses };
 
 bool ends_with(const std::string& text, std::string_view ending) {
@@ -44,7 +44,7 @@ bool ends_with(const std::string& text, std::string_view ending) {
          text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-/// Returns true if a JSON text has this member, as far as a look tells.
+/// Returns true if a JSON text appears to have this member (a text search).
 bool mentions(const std::string& text, std::string_view key) {
   return text.find("\"" + std::string(key) + "\"") != std::string::npos;
 }
@@ -76,7 +76,7 @@ run::Recording open_recording(const ExportOptions& o, Input kind, const Globals&
   return run::open_run(trace::load_trace(path), path, o.bodies);
 }
 
-/// Returns the event after which the run is shown: --event, or the last one of --step, or of the run.
+/// Returns the event after which the run is shown: --event, or the last event of --step or of the run.
 trace::EventId event_of(const ExportOptions& o, const trace::Trace& trace) {
   if (trace.steps.empty() || trace.events.empty())
     throw InputError(printable_name(o.input) + ": has no time step");
@@ -96,7 +96,7 @@ trace::EventId event_of(const ExportOptions& o, const trace::Trace& trace) {
   return run::last_event(trace, static_cast<std::size_t>(at - trace.steps.begin()));
 }
 
-/// Returns where two bodies meet, whatever else the run asked.
+/// Returns the contact regions of two bodies, whatever the run's request.
 std::vector<ContactRegion> contacts_of(const run::Recording& run, const trace::Step& step) {
   CollideRequest request;
   request.contacts = true;

@@ -32,12 +32,12 @@ struct FigureOptions {
   figure::FigureSpec figure;
 };
 
-/// What a figure is drawn from, with what its pictures look like where the call does not say.
+/// The input of a figure, with default picture options.
 struct Source {
   std::string name, purpose;
   run::Recording recording;
   render::FrameSpec frames;
-  bool own_view = false;  ///< nobody has said where it is to be seen from
+  bool own_view = false;  ///< no view was given
 };
 
 bool is_mesh_name(const std::string& path) {
@@ -45,7 +45,7 @@ bool is_mesh_name(const std::string& path) {
   return ending == ".obj" || ending == ".stl" || ending == ".ply" || ending == ".off" || ending == ".lrb";
 }
 
-/// Returns the run in which the wrapper of a body of the user's shrinks onto it.
+/// Returns the run in which the wrapper of a user's body is refined down to the body.
 Source refine_body(const std::string& path, const run::ProgressReport& progress) {
   spec::Scenario s;
   s.name = std::filesystem::path(path).stem().string();
@@ -86,7 +86,7 @@ Source open_source(const FigureOptions& o, const run::ProgressReport& progress) 
   return is_mesh_name(o.source) ? refine_body(o.source, progress) : run_of_scenario(o.source, progress);
 }
 
-/// Returns which panels are asked for. Of --faces, --events, --steps and --layers, one at most is given.
+/// Returns the selected panels. At most one of --faces, --events, --steps and --layers is given.
 figure::Choice choice_of(const FigureOptions& o) {
   using By = figure::Choice::By;
   figure::Choice choice = o.figure.choice;
@@ -116,7 +116,7 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source) {
   render::FrameSpec frames = source.frames;
   if (o.close_up) frames.views = whole_and_contact(frames.views);
   PictureOptions picture = o.picture;
-  picture.dpi.reset();  // it is the figure's
+  picture.dpi.reset();  // set for the whole figure
   if (!picture.style) picture.style = render::StyleName::print;
   apply(picture, frames);
   run::check_views(frames.views, source.recording.bodies[0].rep.dim());
@@ -135,7 +135,7 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source) {
 
 int run_figure(const FigureOptions& o, const Globals& globals) {
   const run::ProgressReport progress = progress_report(globals.quiet);
-  if (!o.file.empty()) static_cast<void>(figure_spec(o, o.file));  // a typing error should not cost a run
+  if (!o.file.empty()) static_cast<void>(figure_spec(o, o.file));  // check the file before an expensive run
   const Source source = open_source(o, progress);
   const std::string file = o.file.empty() ? "out/" + source.name + ".pdf" : o.file;
   const figure::FigureSpec spec = figure_spec(o, file);

@@ -22,14 +22,14 @@ struct GoldenOptions {
   std::vector<std::string> scenarios;
   std::string goldens = "goldens", folder = "out/golden", variant, size;
   std::optional<std::uint32_t> frames;
-  std::vector<golden::Level> levels;  ///< none: as each golden says
-  std::optional<double> large_share;  ///< of pixels; none: as each golden says
+  std::vector<golden::Level> levels;  ///< nullopt: as in each golden
+  std::optional<double> large_share;  ///< of pixels; nullopt: as in each golden
   std::string junit;
   unsigned jobs = 1;
   bool json = false;
 };
 
-/// Applies what the call says of how to compare.
+/// Applies the comparison options of the command line.
 void apply(const GoldenOptions& o, golden::GoldenSpec& spec) {
   if (!o.levels.empty()) {
     spec.levels = {};
@@ -44,7 +44,7 @@ std::string approve_command(const GoldenOptions& o, const std::string& name) {
 
 struct NamedGolden {
   std::string name;
-  std::optional<spec::Scenario> scenario;  ///< nothing unless it has been opened
+  std::optional<spec::Scenario> scenario;  ///< nullopt until it has been opened
 };
 
 /// Finds a golden by its own name, or by its scenario: the name of a shipped one, or a file.
@@ -87,7 +87,7 @@ std::string as_json(const golden::GoldenResult& r) {
   return one_line(line);
 }
 
-/// A golden whose scenario has been run, or why it could not be.
+/// A golden whose scenario has been run, or the reason why it could not be.
 struct Tried {
   std::optional<golden::Golden> golden;
   std::optional<golden::GoldenRun> run;
@@ -100,8 +100,8 @@ double seconds_since(Clock::time_point began) {
   return std::chrono::duration<double>(Clock::now() - began).count();
 }
 
-/// Reads a golden and runs its scenario. One that is damaged or refused fails by itself; the others are
-/// tested all the same.
+/// Loads a golden and runs its scenario. A damaged or rejected golden fails alone; the others are still
+/// tested.
 Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressReport& progress) {
   const auto began = Clock::now();
   Tried out;
@@ -118,7 +118,7 @@ Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressR
   return out;
 }
 
-/// Runs scenarios on several threads, at most --jobs ahead of the one that is asked for: runs take memory.
+/// Runs scenarios on several threads, at most --jobs ahead of the requested one, to limit memory.
 class Trials {
  public:
   Trials(const GoldenOptions& o, const Globals& globals, const std::vector<NamedGolden>& todo)
@@ -139,7 +139,7 @@ class Trials {
   std::vector<std::future<Tried>> begun_;
 };
 
-/// Draws the pictures of what was tried, and compares.
+/// Draws the pictures of a run and compares them.
 golden::GoldenResult judge(Tried& tried, const NamedGolden& g, const GoldenOptions& o, const Globals& globals,
                            bool report) {
   const auto began = Clock::now();
@@ -158,7 +158,7 @@ golden::GoldenResult judge(Tried& tried, const NamedGolden& g, const GoldenOptio
   return result;
 }
 
-/// `report`: writes a page in any case, with every picture on it.
+/// `report`: writes a page in any case, with all pictures.
 int run_test(const GoldenOptions& o, const Globals& globals, bool report) {
   const std::vector<NamedGolden> todo = goldens_to_test(o);
   std::vector<std::string> names;
@@ -228,8 +228,8 @@ int run_list(const GoldenOptions& o) {
   return kOk;
 }
 
-/// Throws InputError if a golden is of another scenario, which is still there: two of one name would take
-/// turns in one folder.
+/// Throws InputError if the golden belongs to another scenario that still exists: two scenarios of one name
+/// would overwrite each other's folder.
 void refuse_another(const GoldenOptions& o, const std::string& name, const std::string& kept,
                     const std::string& reference, const std::string& word) {
   if (kept == reference) return;
@@ -238,7 +238,7 @@ void refuse_another(const GoldenOptions& o, const std::string& name, const std::
   try {
     golden::golden_scenario(o.goldens, name, other);
   } catch (const InputError&) {
-    return;  // it has gone, or has another name by now
+    return;  // it was removed or renamed
   }
   const std::filesystem::path folder = std::filesystem::path(o.goldens) / name;
   throw InputError(printable_name(word) + ": has the name of another scenario, whose golden is in " +
@@ -305,7 +305,7 @@ CLI::App* add_part(CLI::App& golden, const std::string& name, const std::string&
   return app;
 }
 
-/// How to compare: for a call of test, or kept by approve.
+/// Comparison options: for a call of test, or stored by approve.
 void add_comparison(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
   std::vector<std::string> words;
   for (const EnumWord<golden::Level>& w : kWords<golden::Level>) words.emplace_back(w.word);

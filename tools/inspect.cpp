@@ -36,11 +36,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Regions and tried settings as `--regions` and `--try` print them.
+// Regions and trial settings as printed by `--regions` and `--try`.
 
 constexpr int kRegionDigits = 3;
 
-/// Returns all regions, in the order given. The keys are those of `--json`.
+/// Returns all regions, in the given order. The keys are those of `--json`.
 Json regions_json(std::span<const bodies::RegionFigures> regions) {
   Json out = Json::array();
   for (const bodies::RegionFigures& r : regions)
@@ -55,7 +55,7 @@ Json regions_json(std::span<const bodies::RegionFigures> regions) {
   return out;
 }
 
-/// Returns them as a table for people: the first of them.
+/// Returns the first regions as a text table.
 std::string regions_text(const Json& regions) {
   constexpr std::size_t kMostRows = 25;
   constexpr int kWidth = 11;
@@ -108,7 +108,7 @@ std::string trials_text(const Json& trials) {
   return out.str();
 }
 
-/// Returns what stands below a region's picture.
+/// Returns the caption of a region's picture.
 std::string region_caption(const bodies::RegionFigures& r) {
   const auto plural = [](std::uint32_t n, const char* what) {
     return render::group_digits(n) + " " + what + (n == 1 ? "" : "s");
@@ -157,7 +157,7 @@ Json loops_json(const std::vector<BoundaryLoop>& loops) {
   return out;
 }
 
-/// Returns boundary loops for people: the longest, a line each.
+/// Returns boundary loops as text: the longest, one per line.
 std::string loops_text(const Json& loops) {
   constexpr std::size_t kMostLines = 20;
   constexpr int kDigits = 4;
@@ -176,8 +176,8 @@ std::string loops_text(const Json& loops) {
   return out.str();
 }
 
-/// Returns the findings: of each its kind, how often it occurs, the elements, and a line for people. An
-/// element is a number, or an array of two.
+/// Returns the findings: for each its kind, count, elements, and a text line. An element is a number, or an
+/// array of two.
 Json findings_json(const Mesh& mesh, const MeshReport& report) {
   Json out = Json::array();
   for (std::size_t i = 0; i < kMeshFaultCount; ++i) {
@@ -208,7 +208,7 @@ Json mesh_json(const CheckedMesh& checked, const std::vector<BoundaryLoop>& loop
   j["genus"] = report.genus >= 0 ? Json(report.genus) : Json(nullptr);
   j["closed"] = report.closed;
   j["bounds_solid"] = report.bounds_solid;
-  j["buildable"] = report.when_turned().buildable();  // because `build` turns it
+  j["buildable"] = report.when_turned().buildable();  // because `build` flips the orientation
   j["queryable"] = report.queryable();
   j["findings"] = findings_json(mesh, report);
   j["boundary_loops"] = loops_json(loops);
@@ -227,8 +227,7 @@ Json layers_json(const LrbRep& rep) {
   return out;
 }
 
-/// Returns how pictures are to be drawn; of findings (`drawing`), as high as they need unless a size is
-/// given.
+/// Returns the drawing options. For findings (`drawing`), the height is computed unless a size is given.
 render::Look sheet_look(const InspectOptions& o, bool drawing) {
   if (!o.render && o.drawing.empty()) {
     const CameraOptions& camera = o.pictures.camera;
@@ -269,7 +268,8 @@ void draw_findings(const run::FaultyMesh& faulty, const InspectOptions& o, Json&
                   " was not written");
 }
 
-/// Measures the regions, and draws the worst ten if pictures are asked for (`picture` is not empty).
+/// Measures the regions, and draws the ten with the largest waste if pictures are requested (`picture` is not
+/// empty).
 void tell_regions(const LrbRep& rep, const InspectOptions& o, const render::Look& look,
                   const std::string& picture, Json& j) {
   if (rep.region_count() == 0)
@@ -341,7 +341,7 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     j["layers_from_the_solid"] = layers_json(*rep);
   } else {
     constexpr std::size_t kMostElements =
-        1'000'000;  // of a kind, so that the answer is no larger than a mesh
+        1'000'000;  // per kind, so that the output is not larger than a mesh
     CheckedMesh mesh =
         check(bodies::read_body(o.file, o.corners, notes), o.json ? kMostElements : MeshFinding::kShown);
     mesh.find_self_intersections();

@@ -17,7 +17,7 @@ struct ListOptions {
   bool json = false, generators = false;
 };
 
-/// A kind of shipped file, how its names end, and what uses it.
+/// A kind of shipped file, its file extension, and the command that uses it.
 struct ShippedKind {
   std::string_view name, ending, use;
 };

@@ -47,7 +47,7 @@ int guarded(const Run& run) {
     return complain("", e.what(), kEnvironment);
   } catch (const std::bad_alloc&) {
     return complain("", "out of memory: try a smaller input or a larger machine", kEnvironment);
-  } catch (const std::length_error&) {  // a container that no memory can hold
+  } catch (const std::length_error&) {  // a container larger than its maximum size
     return complain("", "out of memory: try a smaller input or a larger machine", kEnvironment);
   } catch (const std::system_error& e) {
     return complain("", std::string("the system refused: ") + e.what(), kEnvironment);
@@ -97,7 +97,7 @@ void print(const std::string& text) {
 
 namespace {
 
-/// Prints what CLI11 says for --help and --version.
+/// Prints CLI11's text for --help and --version.
 int print_help(CLI::App& app, const CLI::ParseError& request) {
   std::ostringstream text;
   app.exit(request, text, text);
@@ -105,14 +105,14 @@ int print_help(CLI::App& app, const CLI::ParseError& request) {
   return kOk;
 }
 
-/// The first argument that is not an option: the command's name.
+/// Returns the first argument that is not an option: the command's name.
 std::string_view command_word(int argc, char** argv) {
   for (int i = 1; i < argc; ++i)
     if (argv[i][0] != '-') return argv[i];
   return "";
 }
 
-/// Returns the command that was named, down to its own: that of `lrbscope golden test` is test.
+/// Returns the selected command, down to subcommands: for `lrbscope golden test` it is test.
 const CLI::App& named_command(const CLI::App& app) {
   const std::vector<CLI::App*> below = app.get_subcommands();
   return below.empty() ? app : named_command(*below.front());
@@ -123,7 +123,8 @@ std::string call_of(const CLI::App& app) {
   return app.get_parent() == nullptr ? app.get_name() : call_of(*app.get_parent()) + " " + app.get_name();
 }
 
-/// Returns what is wrong with a command line that CLI11 refused. `word`: the first that is no option.
+/// Returns the error message for a command line that CLI11 rejected. `word`: the first word that is not an
+/// option.
 std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std::string word) {
   const CLI::App* app = &root;
   const auto is_named = [&](const CLI::App* a) { return a->get_name() == word; };
@@ -144,8 +145,7 @@ std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std:
          (near.empty() ? "" : "; did you mean \"" + near + "\"?") + help;
 }
 
-/// Throws InputError for an option or argument that is given as an empty text: mostly a variable of the
-/// shell that is not set.
+/// Throws InputError for an option or argument with an empty value: usually an unset shell variable.
 void refuse_empty_values(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options())
     for (const std::string& value : option->results())

@@ -32,7 +32,7 @@ void add_recursion(CLI::App& app, Target& recursion) {
                         "complete never misses; paper is the paper's own");
 }
 
-/// Adds an option that takes a number of things, from 1.
+/// Adds an option that takes a count, at least 1.
 void add_count(CLI::App& app, const std::string& name, std::uint64_t& count, const std::string& what) {
   app.add_option(name, count, what)
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))

@@ -1,5 +1,5 @@
 #pragma once
-/// Options that several commands have.
+/// Options shared by several commands.
 
 #include <algorithm>
 #include <iterator>
@@ -21,7 +21,7 @@
 
 namespace lrb::cli {
 
-/// Returns those of `all` that are named, in their order; all if none is named. Throws InputError for an
+/// Returns the named elements of `all` in their order, or all if none is named. Throws InputError for an
 /// unknown name.
 template <class T, class NameOf>
 std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::string>& names, const char* what,
@@ -41,7 +41,7 @@ std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::string>&
   return out;
 }
 
-// The options that commands which measure share.
+// The options shared by benchmark commands.
 
 struct MeasureOptions {
   std::string folder, folder_help, models;
@@ -50,7 +50,7 @@ struct MeasureOptions {
   double timeout = 20;
 };
 
-/// Adds the options; the help names the values in `o` as defaults.
+/// Adds the options; the help shows the values in `o` as defaults.
 inline void add_measure_options(CLI::App& app, MeasureOptions& o) {
   app.add_option("-o,--output", o.folder,
                  "Folder to write to; a survey that it holds is continued [" + o.folder_help + "]")
@@ -70,7 +70,7 @@ inline void add_measure_options(CLI::App& app, MeasureOptions& o) {
       ->type_name("S");
 }
 
-/// Adds --quantity: what methods are asked for.
+/// Adds --quantity: the quantity that methods are compared on.
 inline void add_quantity_option(CLI::App& app, methods::Quantity& quantity) {
   app.add_option_function<std::string>(
          "--quantity",
@@ -101,19 +101,19 @@ void add_choice(CLI::App& app, const std::string& name, Target& target, const st
 void add_request_options(CLI::App& app, CollideRequest& request);
 /// Adds --tolerance, --max-tests and --max-time.
 void add_coarse_options(CLI::App& app, CollideRequest& request);
-/// Adds --recursion, which takes precedence over a scenario.
+/// Adds --recursion, which overrides the scenario.
 void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion);
-/// Adds --events, which takes precedence over a scenario.
+/// Adds --events, which overrides the scenario.
 void add_events_option(CLI::App& app, std::optional<EventLevel>& level);
 /// Adds --no-join.
 void add_join_option(CLI::App& app, bodies::Corners& corners);
-/// Adds --repeat. what: what a query is asked for, "pose".
+/// Adds --repeat. what: the unit of a query, such as "pose".
 void add_repeat_option(CLI::App& app, std::uint32_t& repeat, const std::string& what);
 /// Adds --patch, --max-outer, --lean, --seed and --threads.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
-/// The options --from, --look-at, --zoom, --projection and --up, and --orbit where it is added, too: where
-/// pictures are seen from. They take precedence over a scenario.
+/// The options --from, --look-at, --zoom, --projection and --up, and --orbit if added: the cameras of
+/// pictures. They override the scenario.
 struct CameraOptions {
   std::string from, look_at, up;
   std::optional<double> orbit;
@@ -121,15 +121,14 @@ struct CameraOptions {
   std::optional<bool> orthographic;
 };
 void add_camera_options(CLI::App& app, CameraOptions& options);
-/// Adds --orbit, which pictures of several moments have.
+/// Adds --orbit, for pictures of several frame states.
 void add_orbit_option(CLI::App& app, CameraOptions& options);
-/// Changes all views. --up turns what they have; --from and --look-at are given in the axes of the bodies'
-/// files, and are not turned. Throws InputError for what is no camera.
+/// Changes all views. --up rotates existing views; --from and --look-at are given in the axes of the bodies'
+/// files, and are not rotated. Throws InputError for an invalid camera.
 void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& views);
 
-/// The options of cameras, and --size, --dpi, --style, --no-title, --no-legend, --transparent, --format,
-/// --frames, --every, --most, --colour-by, --colour-per and --node-boxes, which take precedence over a
-/// scenario.
+/// The camera options, and --size, --dpi, --style, --no-title, --no-legend, --transparent, --format,
+/// --frames, --every, --most, --colour-by, --colour-per and --node-boxes, which override the scenario.
 struct PictureOptions {
   CameraOptions camera;
   std::string size, animation;
@@ -147,7 +146,7 @@ struct PictureOptions {
 void add_picture_options(CLI::App& app, PictureOptions& options);
 /// Adds --size, --dpi and --style alone.
 void add_size_options(CLI::App& app, PictureOptions& options);
-/// Adds --style alone; `usual` is taken if it is not given.
+/// Adds --style alone; `usual` is its default.
 void add_style_option(CLI::App& app, PictureOptions& options, const std::string& usual);
 /// Adds --colour-by and --node-boxes alone.
 void add_colour_options(CLI::App& app, PictureOptions& options);
@@ -155,19 +154,19 @@ void apply(const PictureOptions& options, render::FrameSpec& spec);
 
 /// Adds --animate, for commands that call animate_frames().
 void add_animation_option(CLI::App& app, PictureOptions& options);
-/// Makes the moving picture, if one was asked for, of the frames in a folder.
+/// Makes the animation, if requested, of the frames in a folder.
 void animate_frames(const PictureOptions& options, const std::string& folder);
 
 /// Adds --up, which takes x, y or z.
 void add_up_option(CLI::App& app, std::string& up);
-/// Returns a view in which an axis (0, 1, 2) points up in place of z.
+/// Returns a view rotated so that an axis (0, 1, 2) points up instead of z.
 render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
 
 /// Returns two views side by side: the whole scene with the wrappers, and the contact with the bodies alone.
-/// They look from where the first of the views given does.
+/// Both use the direction of the first given view.
 std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as = {});
 
-/// Returns the number of threads of the machine; at least 1.
+/// Returns the number of hardware threads, at least 1.
 std::uint32_t all_cores();
 
 /// Prints the outcome of a run and returns its exit code.

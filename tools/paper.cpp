@@ -46,7 +46,7 @@ void add_series_options(CLI::App& app, PaperSeriesOptions& o) {
                "Build these bodies with fewer faces in all, for wrappers that fit less well");
 }
 
-/// Makes the bodies from the given meshes, or our own; A is the paper's object.
+/// Makes the bodies from the given meshes, or generated ones; A is the paper's object.
 std::vector<paper::SeriesObject> make_series(const PaperSeriesOptions& o, const LrbRep& a,
                                              const Globals& globals) {
   if (o.resolutions.most == 0) return {};
@@ -78,7 +78,7 @@ void write_series_shard(const std::vector<paper::ContactStep>& steps, const std:
   io::write_text(folder + "/series_times.jsonl", paper::times_to_json_lines(steps));
 }
 
-/// Reads those that lie beside the records.jsonl of the shards.
+/// Reads the series next to the shards' records.jsonl.
 std::vector<paper::ContactStep> read_series_shards(const std::vector<std::string>& records) {
   const auto beside = [](const std::string& file, const char* name) {
     return (std::filesystem::path(file).parent_path() / name).string();
@@ -102,7 +102,7 @@ std::vector<paper::ContactStep> read_series_shards(const std::vector<std::string
 struct PaperOptions {
   std::string folder = "out/paper", experiment = "paper", shard;
   std::vector<std::string> merge;
-  std::optional<std::uint32_t> collisions, steps_after;  ///< these take precedence over the experiment
+  std::optional<std::uint32_t> collisions, steps_after;  ///< these override the experiment
   std::optional<double> step;
   std::optional<std::uint64_t> seed;
   std::uint32_t jobs = 1;
@@ -136,7 +136,7 @@ std::vector<paper::ContactStep> read_shards(const std::vector<std::string>& file
   return paper::merged(std::move(steps));
 }
 
-/// Runs a part of the command, and notes the time it took.
+/// Runs a part of the command, and records its duration.
 class PartTimes {
  public:
   template <class Part>
@@ -158,8 +158,8 @@ std::vector<paper::ContactStep> sweep_objects(std::span<const paper::PaperObject
   });
 }
 
-/// Takes the protocol and the resolutions from the shards that are to be merged; leaves out the series where
-/// the experiment has none. Throws InputError if there is nothing to cut into shards.
+/// Takes the protocol and the resolutions from the shards to be merged; drops the series if the experiment
+/// has none. Throws InputError if there is nothing to divide into shards.
 void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
   if (!experiment.collides() && (!o.shard.empty() || !o.merge.empty()))
     throw InputError("experiment " + experiment.name + ": has no collisions; leave out --shard and --merge");
@@ -169,7 +169,7 @@ void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
     o.series.resolutions = whole.resolutions;
     o.series.lean = whole.lean;
   } else if (!experiment.collides() || (experiment.name != "paper" && o.series.meshes.empty())) {
-    o.series.resolutions.most = 0;  // other experiments have a series only with meshes for it
+    o.series.resolutions.most = 0;  // other experiments have a series only if meshes are given
   }
 }
 

@@ -15,13 +15,13 @@
 
 namespace lrb::cli {
 
-// Writes points and witnesses as `distance` and `sweep` print them.
+// Writes points and witnesses in the form used by `distance` and `sweep`.
 
 inline void write_vector(trace::JsonWriter& w, const char* name, const Eigen::Vector3d& x) {
   w.key(name).begin_array().value(x.x()).value(x.y()).value(x.z()).end_array();
 }
 
-/// Writes what of a face is nearest: its kind, and the vertices that span it.
+/// Writes the closest feature of a face: its kind, and the vertices that span it.
 inline void write_feature_of(trace::JsonWriter& w, const Witness& witness) {
   static constexpr const char* kNames[] = {"vertex", "edge", "face"};
   w.member("feature", kNames[witness.corner_count - 1]);
@@ -45,12 +45,12 @@ double median_us(std::uint32_t repeat, const Ask& ask) {
   return us[middle];
 }
 
-/// The poses of a command, and where each stands in its file.
+/// The poses of a command, and the location of each in its file.
 struct PoseLines {
   explicit PoseLines(const std::string& path) : PoseLines(io::open_poses(path)) {}
   explicit PoseLines(io::PoseList list) : poses(std::move(list.poses)), places(std::move(list.places)) {}
 
-  /// Calls ask(), and puts the place of the pose before the message of an InputError.
+  /// Calls ask(), and prefixes the message of an InputError with the location of the pose.
   template <class Ask>
   auto at(std::size_t i, const Ask& ask) const {
     try {
@@ -60,14 +60,14 @@ struct PoseLines {
     }
   }
 
-  /// Throws InputError unless the bodies can be asked about at every pose: before anything is printed.
+  /// Throws InputError unless the bodies can be queried at every pose. Called before anything is printed.
   void check(const LrbRep& a, const LrbRep& b) const;
 
   std::vector<Pose> poses;
   std::vector<std::string> places;
 };
 
-/// Returns a picture's file: `path`, or with the number of the pose before its ending if there are several
+/// Returns a picture's file: `path`, or with the number of the pose before its extension if there are several
 /// poses.
 std::string picture_name(const std::string& path, std::size_t pose, std::size_t poses);
 

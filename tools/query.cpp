@@ -25,7 +25,7 @@ struct QueryOptions {
   std::uint32_t repeat = 0;
 };
 
-/// Returns the answer to one query, with memory of its own.
+/// Answers a query with its own memory.
 CollideResult ask(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
                   Workspace& workspace) {
   return std::move(collide(a, Pose{}, b, pose, o.request, workspace).value());
@@ -40,8 +40,8 @@ double repeated_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const Que
   });
 }
 
-/// Touching bodies may overlap all the same (see Relation::touching). This is decided for a query that found
-/// all pairs exactly, if there are few enough of them: 1000 take 0.1 s and more (docs/measurements.md).
+/// The interiors of touching bodies may still overlap (see Relation::touching). This is decided for a query
+/// that found all pairs exactly, up to this number of pairs: 1000 take 0.1 s or more (docs/measurements.md).
 constexpr std::size_t kMostPairsToDecide = 1000;
 
 bool tells_overlap(const CollideRequest& request) {
@@ -125,7 +125,7 @@ std::string line_of(std::size_t pose, const CollideResult& result, const ExtraAn
   });
 }
 
-/// Returns true if an answer depends on more than the bodies' faces, namely on wrappers.
+/// Returns true if an answer depends on wrappers, not only on the bodies' faces.
 bool needs_regions(const CollideRequest& request) {
   return request.recursion != Recursion::complete || request.is_coarse() || request.separation;
 }

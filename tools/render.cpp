@@ -40,13 +40,14 @@ std::string output_folder(const RenderOptions& o) {
              : o.folder;
 }
 
-/// A number of one of the bodies, as options name it.
+/// An element number of one of the bodies, as given in options.
 struct OfBody {
   std::size_t body = 0;
   std::uint32_t number = 0;
 };
 
-/// Reads a number: "12" and "a12" are A's, "b12" is B's. `what` is numbered, and body b has counts[b] of it.
+/// Parses a number: "12" and "a12" are A's, "b12" is B's. `what` is the kind of element; body b has counts[b]
+/// of them.
 OfBody read_of_body(const std::string& option, const std::string& what, const std::string& text,
                     const std::vector<std::uint32_t>& counts) {
   const bool named = text.starts_with('a') || text.starts_with('b');
@@ -64,8 +65,7 @@ OfBody read_of_body(const std::string& option, const std::string& what, const st
   return out;
 }
 
-/// Shows the regions alone that are asked for, and says of each what it is: once, unless frames are asked
-/// for.
+/// Shows only the requested regions and describes each: once, unless frames are requested.
 void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodies, render::FrameSpec& spec) {
   std::vector<std::uint32_t> regions, layers;
   for (const bodies::LoadedBody& body : bodies) {
@@ -95,7 +95,7 @@ void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodi
   spec.ghost_rest = !o.hide_rest;
 }
 
-/// Returns how to draw: as the run was drawn, `pictures`, but for what the call says.
+/// Returns the drawing options: those of the run, `pictures`, overridden by the command line.
 render::FrameSpec frame_spec(const RenderOptions& o, spec::Show show, const std::string& pictures = "") {
   render::FrameSpec spec = spec::read_pictures(pictures, printable_name(o.trace), spec::default_frames(show));
   if (o.close_up) spec.views = whole_and_contact(spec.views);
@@ -109,13 +109,13 @@ render::FrameSpec frame_spec(const RenderOptions& o, spec::Show show, const std:
   return spec;
 }
 
-/// Returns what a recorded run shows.
+/// Returns the content kind of a recorded run.
 spec::Show show_of(const trace::Trace& trace, std::size_t bodies) {
   if (trace.header.construction) return spec::Show::construction;
   return bodies == 2 ? spec::Show::collision : spec::Show::refinement;
 }
 
-/// Throws for options that frames of a crowd do not have.
+/// Throws for options that frames of a crowd do not support.
 void refuse_for_crowd(const RenderOptions& o) {
   using At = render::FrameSpec::At;
   const auto& at = o.picture.at;

@@ -132,7 +132,7 @@ std::string command_of(const stability::Record& r, Quantity quantity) {
          std::to_string(r.seed) + " --pairs";
 }
 
-/// Writes the page and its pictures, for which the worst cases are asked again.
+/// Writes the page and its pictures, for which the worst cases are rerun.
 void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
                   const Grid& grid, const Globals& globals) {
   Progress bar("pictures", 0, globals.quiet);
@@ -158,7 +158,7 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
   for (const std::string& f : files.written) print(o.folder + "/" + f + "\n");
 }
 
-/// Our methods must not fail; others may.
+/// lrbscope's methods must not fail; others may.
 bool ours_failed(const Grid& grid, const std::vector<workers::WorkerMethod>& methods) {
   for (std::size_t m = 0; m < methods.size(); ++m)
     for (std::size_t f = 0; f < grid.families.size(); ++f)
@@ -166,7 +166,7 @@ bool ours_failed(const Grid& grid, const std::vector<workers::WorkerMethod>& met
   return false;
 }
 
-/// Returns the methods that answer with what is asked for.
+/// Returns the methods that answer with the requested quantity.
 std::vector<workers::WorkerMethod> methods_for(Quantity quantity) {
   if (quantity == Quantity::pairs) return workers::find_methods();
   std::vector<workers::WorkerMethod> methods = workers::find_number_methods(quantity);
@@ -175,8 +175,7 @@ std::vector<workers::WorkerMethod> methods_for(Quantity quantity) {
   return methods;
 }
 
-/// Returns the families that are asked about unless others are named: for numbers those of small bodies, as
-/// rational arithmetic is slow.
+/// Returns the default families: for numbers those of small bodies, because rational arithmetic is slow.
 std::vector<FamilyRow> families_for(const StabilityOptions& o) {
   std::vector<FamilyRow> rows =
       chosen(stability::family_rows(), o.families, "family", [](const FamilyRow& f) { return f.name; });

@@ -81,7 +81,7 @@ std::string line_of(std::size_t motion, const FirstContactResult& result,
   });
 }
 
-/// The motions of B, each checked, so that a mistake is told before the first answer.
+/// The motions of B, each checked, so that an error is reported before the first answer.
 std::vector<Motion> motions_of(const std::vector<io::PosePair>& list, const std::string& file,
                                const LrbRep& a, const LrbRep& b) {
   std::vector<Motion> motions;

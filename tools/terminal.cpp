@@ -19,7 +19,7 @@
 namespace lrb::cli {
 namespace {
 
-/// Returns true if colours are not wanted (https://no-color.org): the variable is set and not empty.
+/// Returns true unless NO_COLOR is set and not empty (https://no-color.org), or the terminal is dumb.
 bool colour_wanted() {
   const char* no_colour = std::getenv("NO_COLOR");
   const char* terminal = std::getenv("TERM");
@@ -97,7 +97,7 @@ bool is_ignored(int signal) {
   return sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
 }
 
-/// Ends the process by the signal itself.
+/// Ends the process by the same signal.
 void die_of(int signal) {
   sigset_t only;
   sigemptyset(&only);
@@ -114,19 +114,19 @@ std::string farewell(int signal) {
          ": files written so far are whole, the others are missing; run it again\n";
 }
 
-/// Runs on a thread, which may take locks and allocate, as a signal handler may not.
+/// Runs on a thread, which may lock and allocate, unlike a signal handler.
 void wait_for(const sigset_t& signals) {
   int signal = 0;
   if (sigwait(&signals, &signal) != 0) return;
   abandon_atomic_files();
   const std::string line = farewell(signal);
   if (write(STDERR_FILENO, line.data(), line.size()) < 0) {
-    // There is nobody left to tell.
+    // No further place to report an error.
   }
   die_of(signal);
 }
 
-/// There may be no memory left, so nothing here takes any.
+/// Memory may be exhausted, so nothing here allocates.
 [[noreturn]] void say_why_and_end() {
   std::string_view line = "lrbscope: internal error, please report it: std::terminate was called\n";
   try {
@@ -134,11 +134,11 @@ void wait_for(const sigset_t& signals) {
   } catch (const std::bad_alloc&) {
     line = kOutOfMemoryLine;
   } catch (...) {
-    // The line above says all we know.
+    // The line above is all the information available.
   }
   abandon_atomic_files();
   if (write(STDERR_FILENO, line.data(), line.size()) < 0) {
-    // There is nobody left to tell.
+    // No further place to report an error.
   }
   _exit(kEnvironment);
 }
@@ -151,7 +151,7 @@ void end_cleanly_on_terminate() {
 
 void end_cleanly_on_signals() {
   pipes_end_us = !is_ignored(SIGPIPE);
-  std::signal(SIGPIPE, SIG_IGN);  // writing fails with EPIPE instead, where we can act on it
+  std::signal(SIGPIPE, SIG_IGN);  // writing fails with EPIPE instead, which can be handled
   sigset_t signals, before;
   sigemptyset(&signals);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})
@@ -159,8 +159,7 @@ void end_cleanly_on_signals() {
   pthread_sigmask(SIG_BLOCK, &signals, &before);
   try {
     std::thread(wait_for, signals).detach();
-  } catch (const std::system_error&) {  // no thread can be started: the signals then end us at once, as
-                                        // without us
+  } catch (const std::system_error&) {  // no thread: the signals then end the process immediately
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Ends the program in order when it is told to end.
+/// Orderly termination of the program, and its progress bar.
 
 #include <chrono>
 #include <cstdint>
@@ -29,20 +29,20 @@ class Progress {
   std::chrono::steady_clock::time_point begin_, last_;
 };
 
-/// Returns a function that draws the progress of a job of several parts, a bar for each.
+/// Returns a function that draws the progress of a job of several parts, one bar per part.
 run::ProgressReport progress_report(bool quiet);
 
-/// Installs handlers so that SIGINT, SIGTERM and SIGHUP remove the files that were begun, say so in a line,
-/// and then end the program as they would have done by themselves: a shell sees what happened. Finished files
-/// stay. Signals that the caller ignores stay ignored. Call it once, before any thread is started.
+/// Installs handlers for SIGINT, SIGTERM and SIGHUP that remove unfinished files, print a line, and then end
+/// the program by the same signal, so that a shell sees the cause. Finished files stay. Signals that the
+/// caller ignores stay ignored. Call it once, before any thread is started.
 void end_cleanly_on_signals();
 
-/// Installs a handler so that an exception that nobody can catch removes the files that were begun and ends
-/// the program with a line and code 3. (It is a std::bad_alloc in a destructor of nlohmann-json; these
-/// allocate.)
+/// Installs a handler for an exception that cannot be caught: it removes unfinished files and ends the
+/// program with a line and code 3. (The known case is a std::bad_alloc in a destructor of nlohmann-json;
+/// these allocate.)
 void end_cleanly_on_terminate();
 
-/// Ends the program silently, as SIGPIPE does, because nobody reads its stdout any more; returns if the
+/// Ends the program silently, as SIGPIPE does, because the reader of its stdout has closed it. Returns if the
 /// caller had that signal ignored.
 void end_as_by_closed_pipe();
 

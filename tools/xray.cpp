@@ -49,7 +49,8 @@ spec::Scenario scenario_of(const XrayOptions& o, const std::vector<bodies::Loade
   return s;
 }
 
-/// Reads the poses of B. Throws InputError for one that is no rotation and translation, by file and line.
+/// Reads the poses of B. Throws InputError with file and line for a pose that is not a rotation and a
+/// translation.
 std::vector<xray::PosePair> rigid_poses(const std::string& path) {
   const io::PoseList list = io::open_poses(path);
   std::vector<xray::PosePair> out;

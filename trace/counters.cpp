@@ -21,7 +21,7 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
   return ratio(part, static_cast<double>(whole));
 }
 
-/// Follows the sizes of the two wrappers, event after event.
+/// Tracks the sizes of the two wrappers, event by event.
 class WrapperSizes {
  public:
   explicit WrapperSizes(const Trace& trace) : trace_(&trace) { reset(); }
@@ -95,7 +95,7 @@ Totals count_events(std::span<const Event> events) {
       case EventKind::point:
       case EventKind::begin:
       case EventKind::end:
-      case EventKind::pass:  // what is built: passes_of()
+      case EventKind::pass:  // construction: see passes_of()
       case EventKind::patch:
       case EventKind::cap:
       case EventKind::region:
@@ -347,7 +347,7 @@ void take(PassSummary& p, EventId id, const Trace& trace) {
   }
 }
 
-/// Returns the verdicts that refuse caps, most frequent first.
+/// Returns the verdicts that reject caps, most frequent first.
 std::vector<std::size_t> by_frequency(const Caps& caps) {
   std::vector<std::size_t> order;
   for (std::size_t v = 1; v < caps.size(); ++v)

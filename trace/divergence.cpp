@@ -1,5 +1,5 @@
 // First difference of two traces, in causal order: bodies, request, then each step's poses, events and
-// results. A comparison that has found a difference ignores all that follow, so the checks are written in
+// results. A comparison that has found a difference ignores all later ones, so the checks are written in
 // sequence.
 
 #include <algorithm>
@@ -65,7 +65,7 @@ std::string words(const Pose& pose) {
   return out + ")";
 }
 
-/// Compares value after value and keeps the first difference.
+/// Compares values one by one and keeps the first difference.
 class Comparison {
  public:
   bool differs() const { return found_.has_value(); }
@@ -93,7 +93,7 @@ void compare_bodies(Comparison& c, const TraceHeader& x, const TraceHeader& y) {
   c.same("number of bodies", std::uint64_t{x.bodies.size()}, std::uint64_t{y.bodies.size()});
   for (std::size_t i = 0; i < x.bodies.size() && !c.differs(); ++i) {
     const BodyInfo &p = x.bodies[i], &q = y.bodies[i];
-    // The hash covers the whole LRB-rep; face and region counts only help the reader.
+    // The hash covers the whole LRB-rep; face and region counts only make the message clearer.
     if (p.hash == q.hash) continue;
     const auto tell = [](const BodyInfo& b) {
       return to_hex(b.hash) + " (" + std::to_string(b.real_faces) + " real faces, " +
@@ -103,7 +103,7 @@ void compare_bodies(Comparison& c, const TraceHeader& x, const TraceHeader& y) {
   }
 }
 
-/// Compares the fields of two records; `before` stands before their names.
+/// Compares the fields of two records; `before` is the prefix of their names.
 template <class Record>
 void compare_fields(Comparison& c, const Record& x, const Record& y, const std::string& before) {
   for_each_field<Record>([&](const auto& field) {
@@ -132,12 +132,12 @@ void compare_nodes(Comparison& c, const Event& x, const Event& y) {
 }
 
 void compare_events(Comparison& c, const Event& x, const Event& y) {
-  // Fields mean different things for different kinds: compare these first.
+  // The meaning of fields depends on the kind: compare kinds first.
   c.same("kind", x.kind, y.kind);
   if (c.differs()) return;
   const auto [a, b] = fields_of(x.kind);
   c.same("side", x.side, y.side);
-  // Fields a and b: enumerators are reported by name, numbers as they are.
+  // Fields a and b: enumerators are reported by name, numbers as numbers.
   if (x.kind == EventKind::result)
     c.same("relation", static_cast<Relation>(x.a), static_cast<Relation>(y.a));
   else if (x.kind == EventKind::begin || x.kind == EventKind::end)
@@ -158,7 +158,7 @@ void compare_events(Comparison& c, const Event& x, const Event& y) {
   if (x.kind == EventKind::point) c.same("where", x.where(), y.where());
   if (x.kind == EventKind::pass) c.same("stage", x.stage(), y.stage());
   if (x.kind == EventKind::cap) c.same("verdict", x.verdict(), y.verdict());
-  // Likewise `boundary`: packed work, a float deviation, or a number of faces.
+  // The same for `boundary`: packed work, a float deviation, or a number of faces.
   if (x.kind == EventKind::node_pair)
     compare_nodes(c, x, y);
   else if (x.kind == EventKind::pass || x.kind == EventKind::cap)

@@ -31,8 +31,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
-  constexpr std::size_t kLongestWord = 64;  // no longer word is a typing error, and the table above is
-                                            // quadratic
+  // Longer words are not typing errors; bounds the quadratic table above.
+  constexpr std::size_t kLongestWord = 64;
   if (word.size() > kLongestWord) return {};
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
@@ -214,7 +214,7 @@ void read_value(const TraceNode& node, Separation& s) {
   }
 }
 
-/// Reads a number of at least 0 that may be infinite, which is written as null.
+/// Reads a number of at least 0; null is infinity.
 double read_end(const TraceNode& node) {
   return node.is_null() ? std::numeric_limits<double>::infinity() : node.least(0);
 }
@@ -291,7 +291,7 @@ void read_field(const TraceNode& node, const Field<Record, Value>& field, Value&
     read_value(node, value);
 }
 
-/// Reads the fields that the record's table says must be there, and of the others those that are.
+/// Reads the fields that the record's table requires, and the optional ones that are present.
 template <class Record>
 void read_record(const TraceNode& node, Record& record, bool coarse) {
   for_each_field<Record>([&](const auto& field) {

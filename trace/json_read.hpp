@@ -1,6 +1,6 @@
 #pragma once
-/// Reads the JSON of traces by naming what is expected at each place. No other header of this folder includes
-/// nlohmann-json.
+/// Reads the JSON of traces by stating the expected type of each value. No other header of this folder
+/// includes nlohmann-json.
 
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +26,7 @@
 
 namespace lrb::io {
 
-// JSON that remembers where in its file each value stands, so that a message can name file, line and column.
+// JSON with the location of each value in its file, so that messages can name file, line and column.
 
 /// The line and column of a byte in a text, both from 1; columns count characters of UTF-8.
 struct TextPosition {
@@ -37,12 +37,13 @@ TextPosition position_in(const std::string& text, std::size_t offset);
 void advance(TextPosition& position, const std::string& text, std::size_t from, std::size_t to);
 
 /// Finds the offset of each value of a JSON text by its JSON pointer (RFC 6901), and of each member's key by
-/// the pointer followed by '#'. The text must be one that a parser has accepted, and not nested deeply.
+/// the pointer followed by '#'. The text must have been accepted by a parser, and its nesting must be
+/// limited.
 class JsonIndex {
  public:
   explicit JsonIndex(const std::string& text);
   std::size_t offset(const std::string& pointer) const;
-  /// Returns the pointer of the first member whose key occurs twice in its object; empty if there is none.
+  /// Returns the pointer of the first duplicate key, or an empty string if there is none.
   const std::string& duplicate() const { return duplicate_; }
 
  private:
@@ -52,48 +53,48 @@ class JsonIndex {
 
 class JsonText {
  public:
-  /// Parses a text; throws InputError "file:line:column: ..." for bad syntax and for repeated keys, and for
-  /// more than 64 levels.
+  /// Parses a text. Throws InputError "file:line:column: ..." for bad syntax, repeated keys, and more than 64
+  /// levels.
   JsonText(std::string text, std::string file);
 
   const nlohmann::json& root() const { return root_; }
   const std::string& file() const { return file_; }
-  /// Returns "file:line:column" of the value (or, with '#' behind it, the key) at a JSON pointer.
+  /// Returns "file:line:column" of the value (or, with '#' appended, the key) at a JSON pointer.
   std::string where(const std::string& pointer) const;
 
  private:
   std::string text_, file_;
-  mutable TextPosition last_;  ///< the place asked for last: asking in order walks the text once
+  mutable TextPosition last_;  ///< last location computed: requests in order scan the text once
   mutable std::size_t last_offset_ = 0;
   nlohmann::json root_;
   std::unique_ptr<JsonIndex> index_;
 };
 
-/// Throws InputError if a text has a NUL byte: nlohmann-json takes one for the end of the text, and would not
-/// look at what follows.
+/// Throws InputError if a text has a NUL byte: nlohmann-json would take it for the end of the text and ignore
+/// the rest.
 void refuse_nul(const std::string& text, const std::string& file);
-/// Throws the InputError "file:line:column: ..." of a text that nlohmann-json gave up on; the arguments are
-/// those of nlohmann::json_sax::parse_error().
+/// Throws InputError "file:line:column: ..." for a text that nlohmann-json rejected. The arguments are those
+/// of nlohmann::json_sax::parse_error().
 [[noreturn]] void fail_json(const std::string& text, const std::string& file, std::size_t position,
                             const std::string& token, const nlohmann::json::exception& error);
 
-/// Parses a text; `seen` is where the parser has come to whenever it calls `handler`.
+/// Parses a text. `seen` is the parser's current position whenever it calls `handler`.
 void parse_with(const std::string& text, const char*& seen, nlohmann::json_sax<nlohmann::json>& handler);
 
-/// Returns a member's name or an index as a part of a JSON pointer.
+/// Returns a member's name or an index as a component of a JSON pointer.
 std::string pointer_part(const std::string& key);
 
-// Reads a JsonText by naming what is expected at each place: a wrong type, value or key is an InputError
-// that tells where it stands.
+// Reads a JsonText by stating the expected type of each value. A wrong type, value or key throws InputError
+// with its location.
 
 class JsonNode {
  public:
   explicit JsonNode(const JsonText& text) : text_(&text), value_(&text.root()) {}
 
-  /// Requires an object with no keys but these; for an unknown one the error names the nearest known word.
+  /// Requires an object with no other keys. For an unknown key the error suggests the closest known one.
   const JsonNode& object(const std::vector<std::string>& keys) const;
   bool has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
-  JsonNode at(const std::string& key) const;  ///< requires the member to be there
+  JsonNode at(const std::string& key) const;  ///< requires that the member exists
   std::optional<JsonNode> get(const std::string& key) const;
 
   /// Requires an array of at least `least` values.
@@ -108,7 +109,7 @@ class JsonNode {
   std::string string() const;
   std::vector<double> numbers(std::size_t count) const;  ///< requires an array of exactly `count` numbers
   Eigen::Vector3d vector() const;                        ///< requires an array of three numbers
-  /// Requires one of these words.
+  /// Requires one of the given words.
   template <class T>
   T choice(const std::vector<std::pair<std::string, T>>& words) const {
     std::vector<std::string> known;
@@ -130,7 +131,7 @@ class JsonNode {
 
   /// Throws InputError: "file:line:column: pointer: message".
   [[noreturn]] void fail(const std::string& message) const;
-  /// Does the same, but names the place of the member's key.
+  /// As above, with the location of the member's key.
   [[noreturn]] void fail_key(const std::string& key, const std::string& message) const;
   const nlohmann::json& json() const { return *value_; }
   const std::string& pointer() const { return pointer_; }
@@ -146,7 +147,7 @@ class JsonNode {
   std::string pointer_;
 };
 
-// Writes records as JSON objects, and reads them, by their tables of fields
+// Writes records as JSON objects and reads them, by their field tables
 // (engine/include/lrbscope/core/fields.hpp).
 
 template <class Record>
@@ -154,8 +155,8 @@ nlohmann::ordered_json record_to_json(const Record& record);
 template <class Record>
 Record record_from_json(const nlohmann::json& value);
 
-/// How a value of a field stands in JSON: numbers, strings and lists of them as they are, enumerators by
-/// their words, records as objects. Specialise it for other types.
+/// JSON form of a field's value: numbers, strings and lists of them directly, enumerators by name, records as
+/// objects. Specialise it for other types.
 template <class Value>
 struct JsonOf {
   static nlohmann::ordered_json write(const Value& value) {
@@ -178,7 +179,7 @@ struct JsonOf {
     }
   }
 };
-/// Only of fields that are kept if they are set.
+/// Only for fields that are written if set.
 template <class Value>
 struct JsonOf<std::optional<Value>> {
   static nlohmann::ordered_json write(const std::optional<Value>& value) {
@@ -187,7 +188,7 @@ struct JsonOf<std::optional<Value>> {
   static std::optional<Value> read(const nlohmann::json& value) { return JsonOf<Value>::read(value); }
 };
 
-/// Returns the record as an object; its members stand in the order of the table.
+/// Returns the record as an object, with its members in the order of the table.
 template <class Record>
 nlohmann::ordered_json record_to_json(const Record& record) {
   nlohmann::ordered_json out = nlohmann::ordered_json::object();
@@ -198,8 +199,8 @@ nlohmann::ordered_json record_to_json(const Record& record) {
   return out;
 }
 
-/// Reads a record. Throws InputError that says what is wrong with the value. Keys that are no fields are not
-/// looked at.
+/// Reads a record. Throws InputError that states what is wrong with the value. Keys that are not fields are
+/// ignored.
 template <class Record>
 Record record_from_json(const nlohmann::json& value) {
   Record record;
@@ -216,33 +217,34 @@ Record record_from_json(const nlohmann::json& value) {
   return record;
 }
 
-/// Returns the number of edits (insert, delete, replace, swap neighbours) that turn one word into the other.
+/// Returns the number of edits (insert, delete, replace, swap neighbours) that transform one word into the
+/// other.
 std::size_t edit_distance(const std::string& a, const std::string& b);
 
-/// Returns the word of `known` that `word` was probably meant to be; empty if none is near.
+/// Returns the closest word of `known`, or an empty string if none is close.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
 
-/// Returns the end of a message: "; did you mean \"x\"?" if there is such a word, then "; known: a, b, c".
+/// Returns the end of a message: "; did you mean \"x\"?" if a close word exists, then "; known: a, b, c".
 std::string suggestion(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace lrb::io
 
 namespace lrb::trace {
 
-/// A JSON value together with its place in the document, so that every complaint can name it. The place is a
-/// chain of the values around it, which must outlive it; it costs nothing until something is wrong.
+/// A JSON value with its location in the document, so that every error can name it. The location is a chain
+/// of the enclosing values, which must outlive it; it is formatted only if there is an error.
 class TraceNode {
  public:
   using Json = nlohmann::json;
   TraceNode(const Json& j, const std::string& file) : j_(&j), file_(&file) {}
 
-  /// Throws InputError: "file: pointer: expected ..., found ...; what to do".
+  /// Throws InputError: "file: pointer: expected ..., found ...; remedy".
   [[noreturn]] void fail(const std::string& expected) const;
 
   bool has(const char* key) const { return j_->is_object() && j_->contains(key); }
   TraceNode at(const char* key) const;
   TraceNode at(std::size_t i) const { return {(*j_)[i], this, nullptr, i}; }
-  /// Returns element `i` of a long array whose earlier elements the parser has dropped.
+  /// Returns element `i` of a long array whose earlier elements the parser has discarded.
   static TraceNode element(const Json& j, const TraceNode& array, std::size_t i) {
     return {j, &array, nullptr, i};
   }
@@ -296,7 +298,7 @@ class TraceNode {
   TraceNode(const Json& j, const TraceNode* parent, const char* key, std::size_t index)
       : j_(&j), file_(parent->file_), parent_(parent), key_(key), index_(index) {}
 
-  /// Returns the place as a JSON pointer (RFC 6901); no key of ours needs escaping.
+  /// Returns the location as a JSON pointer (RFC 6901). No key of lrbscope's formats needs escaping.
   std::string pointer() const;
 
   const Json* j_;
@@ -306,9 +308,9 @@ class TraceNode {
   std::size_t index_ = 0;
 };
 
-/// Calls `take` with each event (element of traceEvents) as soon as the parser has completed it, so that they
-/// are never all in memory as JSON; returns the rest of the document. Throws InputError, also for what is not
-/// JSON.
+/// Calls `take` with each event (element of traceEvents) as soon as it is parsed, so that the events are
+/// never all in memory as JSON. Returns the rest of the document. Throws InputError, also for text that is
+/// not JSON.
 nlohmann::json parse_events(std::string_view text, const std::string& name,
                             const std::function<void(const TraceNode&)>& take);
 
@@ -318,7 +320,7 @@ void check_format(const TraceNode& metadata, const std::string& name, std::strin
 
 BodyInfo read_body(const TraceNode& node);
 CollideRequest read_request(const TraceNode& node);
-/// Reads the answer to `request` that write_answer() wrote.
+/// Reads the answer to `request` as written by write_answer().
 StepResult read_answer(const TraceNode& node, const CollideRequest& request);
 MeasuredApproach read_approach(const TraceNode& node);
 Pose read_pose(const TraceNode& node);

@@ -10,7 +10,7 @@
 namespace lrb::io {
 namespace {
 
-/// Walks a text that is known to be JSON and notes where values begin.
+/// Scans a text known to be valid JSON and records where values begin.
 class Walker {
  public:
   Walker(const std::string& text, std::unordered_map<std::string, std::size_t>& offsets,
@@ -88,7 +88,7 @@ class Walker {
   std::size_t at_ = 0;
 };
 
-/// Returns nlohmann's message without its own name, number and position.
+/// Returns nlohmann's message without its exception name, number and position.
 std::string plain_reason(const std::string& what) {
   const std::size_t colon = what.find(": ");
   std::string reason = colon == std::string::npos ? what : what.substr(colon + 2);
@@ -97,14 +97,14 @@ std::string plain_reason(const std::string& what) {
     if (at == 0) reason.erase(0, std::string_view(mark).size());
   }
   const std::size_t last_read = reason.find("; last read: ");
-  if (last_read != std::string::npos) {  // keeps "expected ...", if it is there
+  if (last_read != std::string::npos) {  // keeps "expected ...", if present
     const std::size_t expected = reason.find("; expected ", last_read);
     reason = reason.substr(0, last_read) + (expected == std::string::npos ? "" : reason.substr(expected));
   }
-  return printable_name(reason);  // on one line, whatever it quotes
+  return printable_name(reason);  // on one line, whatever text it quotes
 }
 
-/// An iterator over a text. The parser reads by a copy of it; `seen` is how far that has come.
+/// An iterator over a text. The parser reads through a copy of it; `seen` tracks the copy's position.
 class Reading {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -131,7 +131,7 @@ std::string place(const std::string& text, const std::string& file, std::size_t 
   return file + ":" + std::to_string(p.line) + ":" + std::to_string(p.column) + ": ";
 }
 
-/// Looks a text over before any value of it is kept: a text that is refused costs no memory.
+/// Checks a text before any value of it is stored, so that a rejected text costs no memory.
 class Check final : public nlohmann::json_sax<nlohmann::json> {
  public:
   Check(const std::string& text, const std::string& file) : text_(text), file_(file) {
@@ -157,7 +157,7 @@ class Check final : public nlohmann::json_sax<nlohmann::json> {
 
  private:
   bool enter() {
-    constexpr int kDeepest = 64;  // levels: Walker recurses, and none of our files needs ten
+    constexpr int kDeepest = 64;  // levels: Walker is recursive, and lrbscope's files need fewer than ten
     if (++depth_ > kDeepest)
       throw InputError(place(text_, file_, static_cast<std::size_t>(seen_ - text_.data()) - 1) +
                        "nested more than 64 levels deep");
@@ -218,7 +218,7 @@ void refuse_nul(const std::string& text, const std::string& file) {
 void fail_json(const std::string& text, const std::string& file, std::size_t position,
                const std::string& token, const nlohmann::json::exception& error) {
   const bool syntax = dynamic_cast<const nlohmann::json::parse_error*>(&error) != nullptr;
-  // Of a number beyond a double's range, the position is its end.
+  // For a number beyond a double's range, the position is its end.
   const std::size_t back = syntax ? 1 : token.size();
   throw InputError(place(text, file, position - std::min(position, back)) +
                    (syntax ? "not JSON: " : "not usable JSON: ") + plain_reason(error.what()));

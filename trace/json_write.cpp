@@ -8,7 +8,7 @@ void JsonOut::floating(Floating value) {
   if (!std::isfinite(value)) return raw("null");
   reserve_number();
   char* const begin = buffer_.data() + used_;
-  // Shortest form that reads back to the same double. A fraction marks it as floating point.
+  // Shortest form that parses to the same double. A fraction marks it as floating point.
   char* end = std::to_chars(begin, begin + kNumber, value).ptr;
   if (std::string_view(begin, static_cast<std::size_t>(end - begin)).find_first_of(".e") ==
       std::string_view::npos) {
@@ -27,8 +27,8 @@ void JsonOut::number(float value) {
 
 namespace {
 
-/// Returns the length of the UTF-8 sequence that `text` begins with; 0 if it does not begin with one (RFC
-/// 3629: no surrogates, no overlong forms, nothing beyond U+10FFFF).
+/// Returns the length of the UTF-8 sequence at the start of `text`, or 0 if it is not valid (RFC 3629: no
+/// surrogates, no overlong forms, nothing beyond U+10FFFF).
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const auto within = [&](std::size_t i, unsigned low, unsigned high) {

@@ -18,7 +18,7 @@ std::uint16_t saturated(std::uint32_t value) {
   return static_cast<std::uint16_t>(std::min(value, std::uint32_t{0xffff}));
 }
 
-/// Returns a deviation as events have it; negative ones were not measured.
+/// Returns a deviation as stored in events; negative means not measured.
 float deviation_of(double off) {
   return off < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(off);
 }
@@ -69,7 +69,7 @@ void ConstructRecorder::end_pass(const PassEnd& end) {
   const EventId id = push(Event::of(
       payload::PassEnd{.no_patch = end.no_patch, .waiting = end.waiting, .given_up = end.given_up}, pass_));
   if (id == kNull) return;
-  // Only the end of a pass tells how many faces it left out.
+  // The number of excluded faces is known only at the end of a pass.
   payload::Pass pass = trace_.events[pass_].pass();
   pass.barred = end.barred;
   trace_.events[pass_] = Event::of(pass);
@@ -128,8 +128,8 @@ Trace known_construction(const LrbRep& rep, const Pose& pose, const RecorderSett
 
 namespace {
 
-/// Gives each contact of a coarse query its cause. Such a query reports its contacts when it is done: the
-/// test that found one is the last test of its pair.
+/// Sets the cause of each contact of a coarse query. Such a query reports its contacts at its end: the test
+/// that found one is the last test of its pair.
 void find_causes(std::vector<Event>& events) {
   std::unordered_map<std::uint64_t, EventId> tests;
   for (EventId i = 0; i < events.size(); ++i) {
@@ -144,7 +144,7 @@ void find_causes(std::vector<Event>& events) {
   }
 }
 
-/// Finds along which axes pairs of nodes ended, of which no two boxes met.
+/// Finds the separating axes of node pairs without overlapping boxes.
 void find_axes(Trace& trace, const std::array<const LrbRep*, 2>& reps) {
   std::array<const ObbTree*, 2> tree{};
   std::size_t step = 0;
@@ -215,7 +215,7 @@ void Recorder::begin_step(std::uint32_t index, const Pose& pose_a, const Pose& p
                        ": its pose has a number that is not finite; give 12 finite numbers");
   if (!trace_.steps.empty() && index <= trace_.steps.back().index)
     throw std::logic_error("Recorder::begin_step: indices must ascend");
-  // The step before ends here; its count includes events beyond the cap.
+  // The previous step ends here; its count includes events beyond the cap.
   close_step();
   seen_before_step_ = seen_;
   step_event_ = static_cast<EventId>(trace_.events.size());

@@ -20,7 +20,7 @@ std::string describe(const BodyInfo& info) {
 
 void require_same_body(const BodyInfo& recorded, const LrbRep& rep, const std::string& who) {
   BodyInfo given = describe_body(rep, recorded.source);
-  given.name = recorded.name;  // the name may differ: the hash tells which body it is
+  given.name = recorded.name;  // the name may differ: the hash identifies the body
   if (given == recorded) return;
   given.name = rep.name();
   throw InputError("trace: body " + who + " was recorded as " + describe(recorded) + ", but is given as " +
@@ -78,8 +78,8 @@ void Cursor::seek(EventId event) {
   };
   const std::size_t target = count_up_to(event);
   if (target != applied_) {
-    // Each step begins afresh, so that nothing before the target's step matters. Going backward means
-    // starting again at the beginning of that step.
+    // Each step starts from the outermost wrappers, so that nothing before the target's step matters. Going
+    // backward means replaying from the beginning of that step.
     const std::size_t begin = count_up_to(trace_->steps[step].first_event) - 1;
     for (std::size_t i = target > applied_ ? std::max(applied_, begin) : begin; i < target; ++i)
       apply_to(changes_[i]);
@@ -139,7 +139,7 @@ std::vector<RefinedRegion> Cursor::refined() const {
   std::vector<RefinedRegion> out;
   if (at_start()) return out;
   const EventId cause = event().cause;
-  // Walk back over consecutive refinements of the same cause.
+  // Scan back over consecutive refinements of the same cause.
   for (EventId id = position_;; --id) {
     const Event& e = trace_->events[id];
     if (e.kind != EventKind::refine || e.cause != cause) break;
@@ -152,15 +152,15 @@ std::vector<RefinedRegion> Cursor::refined() const {
 
 namespace {
 
-/// Returns the number of the region's faces on the boundary. Refining or coarsening a region changes nothing
-/// but these.
+/// Returns the number of the region's faces on the boundary. Refining or coarsening a region affects only
+/// these.
 std::uint32_t visible_faces(const Wrapper& wrapper, RegionId region) {
   const std::span<const FaceId> faces = wrapper.rep().collector(region);
   return static_cast<std::uint32_t>(
       std::count_if(faces.begin(), faces.end(), [&](FaceId f) { return wrapper.on_boundary(f); }));
 }
 
-/// Returns the face that a refinement in unregularised mode takes away; kNull: all faces of the region.
+/// Returns the face that a refinement in unregularised mode removes; kNull: all faces of the region.
 FaceId refined_face(const Event& event, std::span<const Event> events, const LrbRep& rep) {
   if (event.cause == kNull || events[event.cause].kind != EventKind::face_test) return kNull;
   const Event& test = events[event.cause];
@@ -203,7 +203,7 @@ bool Replay::apply(const Event& event, std::span<const Event> events) {
   if (event.kind == EventKind::step) reset();
   if (!event.changes_wrapper()) return false;
   const auto side = static_cast<std::size_t>(event.side);
-  // Only faces of the region itself can change sides: update the boundary's size by their difference.
+  // Only faces of the region itself can enter or leave the boundary: update its size by their difference.
   const std::uint32_t before = visible_faces(wrappers_[side], event.region());
   change(wrappers_[side], event, events);
   sizes_[side] += visible_faces(wrappers_[side], event.region()) - before;

@@ -104,7 +104,7 @@ void write_construction(JsonWriter& w, const Trace& trace) {
   w.end_array().end_object();
 }
 
-/// Writes what queries are measured by.
+/// Writes the statistics of queries.
 void write_queries(JsonWriter& w, const Trace& trace) {
   w.key("steps").begin_array();
   for (std::size_t i = 0; i < trace.steps.size(); ++i) write_step(w, trace, i);
@@ -142,7 +142,7 @@ void write_depths(JsonWriter& w, const std::vector<DepthWork>& depths) {
   w.end_array();
 }
 
-/// Writes what the bodies say beyond the trace.
+/// Writes the statistics of the bodies, which are not in the trace.
 void write_bodies(JsonWriter& w, const Trace& trace, std::span<const SummaryBody> bodies) {
   if (bodies.empty()) return;
   w.key("quality").begin_array();

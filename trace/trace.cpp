@@ -93,7 +93,7 @@ BodyInfo describe_body(const LrbRep& rep, std::string source) {
 }
 
 std::span<const Event> Trace::events_of(std::size_t step) const {
-  // Both ends are clamped: a trace cut off by its cap has steps without stored events.
+  // Both ends are clamped: a trace truncated by its cap has steps without stored events.
   const std::size_t begin = std::min<std::size_t>(steps[step].first_event, events.size());
   const std::size_t end = step + 1 < steps.size()
                               ? std::min<std::size_t>(steps[step + 1].first_event, events.size())
@@ -211,7 +211,7 @@ class Checker {
     const auto bad = [&](const char* what) {
       fail("event " + std::to_string(id) + " (" + std::string(name_of(e.kind)) + "): " + what);
     };
-    // Enumerators before their use: a damaged file may hold any byte.
+    // Check enumerators before use: a damaged file may contain any byte.
     if (static_cast<std::size_t>(e.kind) >= kEventKinds) bad("unknown kind");
     if (e.side != Side::a && e.side != Side::b) bad("unknown side");
     if (static_cast<std::size_t>(e.meet) >= kWords<exact::Meet>.size()) bad("unknown meet");

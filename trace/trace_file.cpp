@@ -1,4 +1,4 @@
-/// Traces on disk: reads and writes bytes, compressed or not. trace_json_*.cpp knows what the bytes mean.
+/// Trace files: reads and writes bytes, compressed or not. trace_json_*.cpp interprets the bytes.
 
 #include <algorithm>
 #include <cerrno>
@@ -26,8 +26,8 @@ class FileSink final : public ByteSink {
   AtomicFile* file_;
 };
 
-/// Compresses with gzip at level 1: traces repeat themselves so much that higher levels cost time and gain
-/// little. The header holds no name or time, so that equal traces give equal files.
+/// Compresses with gzip at level 1: traces are so repetitive that higher levels cost time and gain little.
+/// The header contains no name or time, so that equal traces give equal files.
 class GzipSink final : public ByteSink {
  public:
   explicit GzipSink(ByteSink& next) : next_(&next), out_(kChunk) {
@@ -49,7 +49,7 @@ class GzipSink final : public ByteSink {
   void deflate_all(std::string_view bytes, int flush) {
     // zlib's interface predates const; deflate does not write to its input.
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-    stream_.avail_in = static_cast<uInt>(bytes.size());  // JsonOut hands over 64 kB at a time, or one string
+    stream_.avail_in = static_cast<uInt>(bytes.size());  // JsonOut passes 64 kB at a time, or one string
     // A full output buffer means that more may follow.
     do {
       stream_.next_out = reinterpret_cast<Bytef*>(out_.data());
@@ -73,14 +73,14 @@ struct GzClose {
                    "; give a trace.json or trace.json.gz");
 }
 
-/// The largest number of bytes that a compressed file may unpack to for each of its own. Our traces,
-/// compressed as far as gzip can, unpack to 15 times their size; a file of zeros unpacks to 1000 times.
+/// Maximum decompressed size of a compressed file. Traces compressed at gzip's highest level expand 15 times;
+/// a file of zeros expands 1000 times.
 std::uint64_t most_unpacked(std::uint64_t packed) {
   constexpr std::uint64_t kFree = std::uint64_t{8} << 20, kRatio = 60;
   return kFree + kRatio * packed;
 }
 
-/// Reads all bytes of a file and decompresses them if they are gzip's.
+/// Reads all bytes of a file and decompresses them if they are gzip.
 std::string read_all(const std::string& path, std::uint64_t max_bytes) {
   // Directories and devices are rejected before zlib opens them.
   const std::string_view kind = what_is_no_file(path);
@@ -95,7 +95,7 @@ std::string read_all(const std::string& path, std::uint64_t max_bytes) {
     const int got = gzread(file.get(), chunk.data(), kChunk);
     int code = Z_OK;
     const char* why = gzerror(file.get(), &code);
-    // A truncated gzip stream is an error here, not an early end.
+    // A truncated gzip stream is an error, not an early end.
     if (got < 0 || (code != Z_OK && code != Z_STREAM_END))
       fail_to_read(path, code == Z_ERRNO       ? std::strerror(errno)
                          : code == Z_BUF_ERROR ? "the compressed file ends too early"

@@ -34,7 +34,7 @@ void write_value(JsonWriter& w, const T& value, Form form) {
   else if constexpr (std::is_same_v<T, Counters>)
     write_json(w, value);
   else
-    w.value(value);  // what is infinite, as null
+    w.value(value);  // infinite values as null
 }
 
 template <class Record>

@@ -1,5 +1,5 @@
 #pragma once
-/// Writes the parts that traces and summaries have in common.
+/// Writes the parts shared by traces and summaries.
 
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/trace.hpp>
@@ -11,13 +11,13 @@ void write_json(JsonWriter& w, const Counters& counters);
 void write_json(JsonWriter& w, const CollideRequest& request);
 /// Writes {"faces", "refined"}, each for A and B.
 void write_json(JsonWriter& w, const Separation& separation);
-/// Writes "course", how bounds tightened: a list of [work, lower, upper], or of [work, t0, t1, lower, upper];
-/// what is infinite, as null.
+/// Writes "course", the convergence of bounds: a list of [work, lower, upper], or of [work, t0, t1, lower,
+/// upper]. Infinite values are written as null.
 void write_course(JsonWriter& w, const std::vector<Bounds>& course);
 void write_course(JsonWriter& w, const std::vector<ContactBounds>& course);
 void write_json(JsonWriter& w, const MeasuredDistance& m);
 void write_json(JsonWriter& w, const MeasuredClash& m);
-/// Writes the members of a first contact but its course, without brackets.
+/// Writes the members of a first contact except its course, without brackets.
 void write_answer(JsonWriter& w, const MeasuredApproach& m);
 void write_json(JsonWriter& w, const MeasuredApproach& m);
 /// Writes a pose as the 12 numbers of a 3x4 matrix, row by row, as in pose files.
@@ -29,7 +29,7 @@ void write_scenario(JsonWriter& w, const TraceHeader& header);
 /// Writes {"stored", "seen", "cap", "truncated"}.
 void write_event_counts(JsonWriter& w, const Trace& trace);
 
-/// Writes a trace's `metadata`: all that its events do not say.
+/// Writes a trace's `metadata`: everything not in its events.
 void write_metadata(const Trace& trace, JsonOut& out);
 
 }  // namespace lrb::trace

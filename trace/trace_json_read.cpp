@@ -1,4 +1,4 @@
-/// Reads what trace_json_write.cpp wrote.
+/// Parses the output of trace_json_write.cpp.
 
 #include <algorithm>
 #include <bit>
@@ -30,17 +30,17 @@ std::string line_and_column(std::string_view text, std::size_t offset) {
   return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
 }
 
-/// The largest depth of nested containers; ours need six levels.
+/// Maximum depth of nested containers; traces need six levels.
 constexpr std::size_t kMaxDepth = 32;
 
-/// Builds the tree of a document from what nlohmann's parser finds in its text, without the events: each
-/// event is handed over when it is complete, and dropped. nlohmann's own builder with a callback could drop
-/// them, too, but searches everything that an array holds whenever an object in it ends, so that the time for
-/// an array of n objects would grow with n^2.
+/// Builds the document tree from nlohmann's SAX calls, without the events: each event is passed on when it is
+/// complete, and discarded. nlohmann's own builder with a callback could discard them as well, but it
+/// searches all elements of an array whenever an object in it ends, so that an array of n objects would take
+/// O(n^2) time.
 ///
-/// Limits the memory that it takes by the length of the text it has read. A "0," of two bytes becomes 16
-/// bytes, an "[]," of three about 60; what we write takes more bytes as text than in memory, except for poses
-/// of round numbers.
+/// Memory is limited by the length of the text read so far. A "0," of two bytes becomes 16 bytes, an "[]," of
+/// three about 60. In files written by lrbscope the text is longer than the tree, except for poses of round
+/// numbers.
 class EventParser final : public nlohmann::json_sax<Json> {
  public:
   EventParser(std::string_view text, const std::string& name,
@@ -95,14 +95,14 @@ class EventParser final : public nlohmann::json_sax<Json> {
         error.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
     const std::size_t colon = what.find(": ");
     if (colon != std::string::npos) what.erase(0, colon + 2);
-    constexpr std::size_t kShown = 160;  // the parser quotes all of an unfinished string
+    constexpr std::size_t kShown = 160;  // the parser quotes an unfinished string completely
     if (what.size() > kShown) what = what.substr(0, kShown) + "...";
     throw InputError(name_ + ": " + line_and_column(text_, offset) + ": this is not JSON: " + what +
                      "; is it a trace, and whole?");
   }
 
  private:
-  static constexpr std::uint64_t kValue = 16, kContainer = 64, kMember = 80;  // bytes of the tree, about
+  static constexpr std::uint64_t kValue = 16, kContainer = 64, kMember = 80;  // approximate bytes of the tree
 
   template <class Value>
   bool add_value(Value&& value) {
@@ -125,7 +125,7 @@ class EventParser final : public nlohmann::json_sax<Json> {
     return true;
   }
 
-  /// Refuses a value that stands where the array of events, or an event, should.
+  /// Rejects a value in place of the array of events or of an event.
   void check_place(const Json& j) const {
     if (!in_events_) return;
     if (stack_.size() == 1 && !j.is_array()) {
@@ -143,9 +143,9 @@ class EventParser final : public nlohmann::json_sax<Json> {
     return &(*member_ = std::move(j));
   }
 
-  /// An event is held until it is complete, the rest to the end.
+  /// Limits memory. An event is kept until it is complete, everything else to the end.
   void hold(std::uint64_t bytes) {
-    constexpr std::uint64_t kLargestEvent = std::uint64_t{1} << 16;  // ours take less than 2000
+    constexpr std::uint64_t kLargestEvent = std::uint64_t{1} << 16;  // written events take less than 2000
     constexpr std::uint64_t kFree = std::uint64_t{16} << 20, kPerByte = 8;
     held_ += bytes;
     if (in_events_ && stack_.size() > 1 && held_ - before_event_ > kLargestEvent)
@@ -160,12 +160,12 @@ class EventParser final : public nlohmann::json_sax<Json> {
   const std::string& name_;
   const std::function<void(const TraceNode&)>& take_;
   Json root_;
-  std::vector<Json*> stack_;  ///< the containers that are open, from the root
-  Json* member_ = nullptr;    ///< where the value after a key goes
+  std::vector<Json*> stack_;  ///< the open containers, from the root
+  Json* member_ = nullptr;    ///< destination of the value after a key
   bool in_events_ = false;    ///< within traceEvents
   std::size_t event_count_ = 0;
-  std::uint64_t held_ = 0, before_event_ = 0;  ///< bytes, about
-  const Json unfinished_ = Json::object();     ///< stands for the root in messages
+  std::uint64_t held_ = 0, before_event_ = 0;  ///< approximate bytes
+  const Json unfinished_ = Json::object();     ///< represents the root in messages
   const TraceNode document_{unfinished_, name_};
   const TraceNode events_ = document_.at("traceEvents");
 };
@@ -186,7 +186,7 @@ std::uint32_t read_contact(const TraceNode& args, Side side) {
   return args.at(args.has(pseudo) ? pseudo : side == Side::a ? a.data() : b.data()).integer<std::uint32_t>();
 }
 
-/// Returns the kind of an event: steps and phases have names that say more, and a category.
+/// Returns the kind of an event. Steps and phases have more specific names, and a category.
 EventKind kind_of(const TraceNode& node) {
   const std::string& category = node.at("cat").string();
   const std::string& name = node.at("name").string();
@@ -215,7 +215,7 @@ void read_node_pair(const TraceNode& args, Event& e) {
   e = Event::of(payload::NodePair{e.a, e.b, work, end, pairs_above}, e.cause);
 }
 
-/// Reads what only the events from EventLevel::nodes on have.
+/// Reads the fields of events at EventLevel::nodes and above.
 void read_more(const TraceNode& args, Event& e) {
   if (e.kind == EventKind::face_test && args.has("decided by"))
     e.set_tested_by(args.at("decided by").named<TestedBy>());
@@ -235,7 +235,7 @@ std::uint32_t read_distance(const TraceNode& args, const char* name, std::uint32
   return args.has(name) ? std::bit_cast<std::uint32_t>(static_cast<float>(args.at(name).least(0))) : none;
 }
 
-/// Reads what only the events of a construction have.
+/// Reads the fields of construction events.
 void read_built(const TraceNode& args, Event& e) {
   const auto is_set = [&](const char* name) { return args.has(name) && args.at(name).boolean(); };
   if (e.kind == EventKind::pass) {
@@ -299,7 +299,7 @@ class Reader {
 
  private:
   void take_event(const TraceNode& node) {
-    if (node.at("ph").string() != "X") return;  // names, counters and flows follow from the rest
+    if (node.at("ph").string() != "X") return;  // names, counters and flows can be derived from the rest
     // Event numbers are 32-bit ids, and must be consecutive.
     if (t_.events.size() >= kMaxId) node.fail("fewer events");
     Event e;

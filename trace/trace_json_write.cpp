@@ -32,7 +32,7 @@ enum class Thread : std::uint8_t {
 struct ThreadName {
   Thread thread;
   std::string_view name;
-  EventLevel from = EventLevel::faces;  ///< level of events from which on it has any
+  EventLevel from = EventLevel::faces;  ///< lowest event level with events of this thread
 };
 constexpr ThreadName kThreads[] = {{Thread::steps, "time steps"},
                                    {Thread::tests, "face tests"},
@@ -46,8 +46,7 @@ constexpr ThreadName kBuildThreads[] = {{Thread::steps, "construction"},
                                         {Thread::caps, "patches and caps"},
                                         {Thread::hull, "hull"}};
 
-/// The number of events from one "work" counter to the next: small enough for a smooth curve, large enough to
-/// cost little.
+/// Number of events between "work" counters: small enough for a smooth curve, large enough to cost little.
 constexpr EventId kWorkInterval = 16;
 
 Thread thread_of(const Event& e) {
@@ -120,8 +119,7 @@ std::string_view category_of(EventKind kind) {
 class TraceWriter {
  public:
   TraceWriter(const Trace& trace, ByteSink& sink) : t_(trace), out_(sink) {
-    // First scan: everything that a line needs to know about later events. The writing itself is a single
-    // pass.
+    // First scan: everything that a line needs from later events. The writing itself is a single pass.
     for (const PassSummary& p : passes_of(t_)) passes_[p.first] = p;
     find_ends();
     find_arrows();
@@ -144,7 +142,7 @@ class TraceWriter {
   /// The constant parts of the lines for events of one kind.
   struct Parts {
     std::string head;  ///< from the name to the thread
-    std::string a, b;  ///< `, "name": ` of its two numbers; empty: not written
+    std::string a, b;  ///< `, "name": ` of the event's two numbers; empty: not written
   };
 
   void prepare(EventKind kind) {
@@ -155,7 +153,7 @@ class TraceWriter {
     if (!b.empty()) p.b = ",\"" + std::string(b) + "\":";
   }
 
-  /// Finds where the phases and passes end that begin at an event.
+  /// Finds the ends of the phases and passes by their first events.
   void find_ends() {
     for (EventId i = 0; i < t_.events.size(); ++i) {
       const Event& e = t_.events[i];
@@ -196,12 +194,12 @@ class TraceWriter {
 
   bool wall() const { return t_.header.clock == Clock::wall; }
 
-  /// Returns true if an event's slice holds the events up to another one.
+  /// Returns true if an event's slice contains the events up to a later one.
   static bool lasts(const Event& e) {
     return e.kind == EventKind::step || e.kind == EventKind::begin || e.kind == EventKind::pass;
   }
 
-  /// Returns the last event of a step, a phase or a pass; that of the step if the end was cut off.
+  /// Returns the last event of a step, a phase or a pass; that of the step if the end was truncated.
   EventId last_of(EventId i) const {
     const auto end = ends_.find(i);
     if (end != ends_.end()) return end->second;
@@ -209,13 +207,13 @@ class TraceWriter {
     return t_.steps[step].first_event + static_cast<EventId>(t_.events_of(step).size()) - 1;
   }
 
-  /// Returns when the slice of an event begins: event numbers, or nanoseconds.
+  /// Returns the start of an event's slice: event numbers, or nanoseconds.
   std::uint64_t begin_of(EventId i) const {
     if (!wall()) return i;
     return lasts(t_.events[i]) ? t_.wall_ns[i] : t_.wall_ns[i - 1];
   }
 
-  /// Returns how long it lasts, in the same unit; never 0, because viewers drop such slices.
+  /// Returns its duration in the same unit; never 0, because viewers drop such slices.
   std::uint64_t duration_of(EventId i) const {
     if (!lasts(t_.events[i])) return wall() ? t_.wall_ns[i] - begin_of(i) : 1;
     const EventId last = last_of(i);
@@ -260,7 +258,7 @@ class TraceWriter {
     if (i == 0 && t_.header.first_contact && !wall()) write_first_contact(*t_.header.first_contact);
   }
 
-  /// Steps and passes are named by what they found, phases by what they are, all others by their kind.
+  /// Steps and passes are named after their results, phases after themselves, all others after their kind.
   void write_name(const Event& e, EventId i) {
     if (e.kind == EventKind::begin) return out_.raw(name_of(e.phase()));
     if (e.kind == EventKind::pass) return write_pass_name(passes_.at(i));
@@ -368,7 +366,7 @@ class TraceWriter {
     write_cause(e.cause);
   }
 
-  /// Writes what a pass allows, or what became of a cap.
+  /// Writes the limits of a pass, or the verdict on a cap.
   void write_built(const Event& e) {
     if (e.kind == EventKind::pass)
       write_word("stage", name_of(e.stage()));
@@ -389,7 +387,7 @@ class TraceWriter {
     write_cause(e.cause);
   }
 
-  /// Writes a simplex of the answer; `name` is what a real one is called.
+  /// Writes a simplex of the answer; `name` is the name of a real one.
   void write_simplex(Side side, const std::string& name, SimplexId simplex) {
     if (simplex < t_.header.bodies[static_cast<std::size_t>(side)].real_simplices) {
       out_.raw(name);
@@ -428,7 +426,7 @@ class TraceWriter {
   }
 
   /// Returns true if an arrow leads to an event from its cause: to each face test from the refinement that
-  /// showed its face, and to a refinement from the test that caused it.
+  /// exposed its face, and to a refinement from the test that caused it.
   bool has_arrow(const Event& e) const {
     if (e.cause == kNull) return false;
     const EventKind cause = t_.events[e.cause].kind;
@@ -443,7 +441,7 @@ class TraceWriter {
     std::sort(arrows_.begin(), arrows_.end());
   }
 
-  /// Writes the ends of arrows that are at an event, since times must not fall.
+  /// Writes the ends of arrows at an event; times must not decrease.
   void write_flows(EventId i) {
     if (has_arrow(t_.events[i])) write_flow('f', i, i);
     for (; next_arrow_ < arrows_.size() && arrows_[next_arrow_].first == i; ++next_arrow_)
@@ -486,7 +484,7 @@ class TraceWriter {
       case EventKind::region:
         ++regions_;
         break;
-      case EventKind::end:  // a query that found what was asked for leaves the rest
+      case EventKind::end:  // a query that stops early leaves the rest pending
         pending_pairs_ = pending_tests_ = 0;
         break;
     }
@@ -506,7 +504,7 @@ class TraceWriter {
     if (t_.header.level != EventLevel::faces) write_pending_counter(i);
   }
 
-  /// Counts what a pair of nodes leaves to be done.
+  /// Updates the pending work after a pair of nodes.
   void count_pending(const Event& e) {
     const NodeWork work = e.work();
     // The pair itself is done. Its overlapping child pairs, or face pairs at leaves, are what it adds.
@@ -533,7 +531,8 @@ class TraceWriter {
     out_.raw(",\"args\":{");
   }
 
-  /// Begins a counter within an event's slice: so much of it has passed. An event on the event clock takes 1.
+  /// Begins a counter within an event's slice, at `share` of its duration. An event on the event clock takes
+  /// 1.
   void begin_counter_within(std::string_view name, EventId i, double share) {
     out_.raw(",\n{\"name\":\"");
     out_.raw(name);
@@ -555,8 +554,8 @@ class TraceWriter {
     out_.raw("}}");
   }
 
-  /// Writes how bounds tightened, spread by the work that it took over the half of an event's slice that
-  /// begins at `begin`.
+  /// Writes the convergence of bounds, spread by work over the half of an event's slice that begins at
+  /// `begin`.
   void write_course(std::string_view name, EventId i, double begin, const std::vector<Bounds>& course) {
     for (const Bounds& b : course) {
       const double all = static_cast<double>(course.back().work) + 1;
@@ -565,14 +564,14 @@ class TraceWriter {
     }
   }
 
-  /// Writes what was measured before a step's result, which is its last event.
+  /// Writes the measurements of a step before its result, which is its last event.
   void write_measured(EventId i) {
     const StepResult& r = t_.steps[t_.step_of(i)].result;
     if (r.distance) write_course("distance", i, 0, r.distance->course);
     if (r.clash) write_course("depth", i, 0.5, r.clash->course);
   }
 
-  /// Writes the search for the first contact, which came before all steps, within the first event.
+  /// Writes the search for the first contact, which precedes all steps, within the first event.
   void write_first_contact(const MeasuredApproach& m) {
     for (const ContactBounds& b : m.course) {
       const double share = static_cast<double>(b.work) / (static_cast<double>(m.course.back().work) + 1);

@@ -49,7 +49,7 @@ NodeCounts count_nodes(const TreeShape& tree, Side side, std::span<const Event> 
 
 std::vector<double> box_tests_by_face(const LrbRep& rep, const TreeShape& tree, const NodeCounts& counts) {
   std::vector<double> out(rep.face_count());
-  std::vector<double> share(tree.size());  // of the node and those above, for each simplex
+  std::vector<double> share(tree.size());  // of the node and its ancestors, per simplex
   // Distribute each node's tests evenly over the simplices beneath it, as a prefix sum from the root:
   // O(nodes).
   for (const std::uint32_t node : tree.from_root()) {
@@ -132,12 +132,12 @@ void TreeShape::finish() {
 
 namespace {
 
-/// What files and charts call a part of the work.
+/// Names of a part of the work in files and charts.
 struct PartRow {
   WorkPart part;
   std::string_view name;     ///< in files, snake_case
-  std::string_view what;     ///< what WorkShare::count counts
-  std::string_view phase;    ///< in the chart; empty: the walk that is going on
+  std::string_view what;     ///< unit of WorkShare::count
+  std::string_view phase;    ///< in the chart; empty: the current traversal
   std::string_view outcome;  ///< in the chart
 };
 constexpr auto kParts = std::to_array<PartRow>({
@@ -197,7 +197,7 @@ std::optional<WorkPart> part_of_phase(Phase phase) {
       return WorkPart::contact_geometry;
     case Phase::cache:
       return WorkPart::cache_making;
-    case Phase::kept:    // its regions are counted with the wrappers'
+    case Phase::kept:    // its regions are counted with those of the wrappers
     case Phase::cached:  // its tests are counted with the others
       return {};
   }
@@ -243,7 +243,7 @@ std::uint64_t work_count(const Event& e) {
       return e.work().met;
     case EventKind::end:
       return e.phase_end().count;
-    case EventKind::point:  // the phase's end has their number
+    case EventKind::point:  // their number is in the event that ends the phase
     case EventKind::plane_test:
       return 0;
     default:
@@ -253,8 +253,8 @@ std::uint64_t work_count(const Event& e) {
 
 namespace {
 
-/// Returns the seconds that an event took: events are recorded when their work is done, so this is the time
-/// since the event before. 0 on the event clock.
+/// Returns the duration of an event in seconds: events are recorded when their work is done, so this is the
+/// time since the previous event. 0 on the event clock.
 double elapsed_s(const Trace& trace, EventId event) {
   constexpr double kNanosecond = 1e-9;
   if (trace.wall_ns.empty()) return 0;
@@ -281,7 +281,7 @@ std::vector<WorkShare> work_shares(const Trace& trace) {
 
 namespace {
 
-/// Which walk of the trees is going on.
+/// The current tree traversal.
 enum class Walk : std::uint8_t { bodies, levels, recursion, cache, cached };
 constexpr auto words_of(Walk) {
   return std::array<EnumWord<Walk>, 5>{{{Walk::bodies, "walk of the bodies"},
@@ -291,7 +291,7 @@ constexpr auto words_of(Walk) {
                                         {Walk::cached, "cached pairs"}}};
 }
 
-/// Follows which walk is going on.
+/// Tracks the current traversal.
 class WalkFollower {
  public:
   explicit WalkFollower(const Trace& trace)
@@ -310,7 +310,7 @@ class WalkFollower {
   Walk walk_;
 };
 
-/// The chart's cells, one for each walk and part: walk by walk, in the order of the parts.
+/// The chart's cells, one per traversal and part: by traversal, parts in order.
 constexpr std::size_t kCells = kWords<Walk>.size() * kParts.size();
 Walk walk_of_cell(std::size_t cell) {
   return static_cast<Walk>(cell / kParts.size());
@@ -318,7 +318,7 @@ Walk walk_of_cell(std::size_t cell) {
 const PartRow& part_of_cell(std::size_t cell) {
   return kParts[cell % kParts.size()];
 }
-/// Returns the cell of a part's work. Work outside of walks has the cells of the first walk.
+/// Returns the cell of a part's work. Work outside of traversals uses the cells of the first one.
 std::size_t cell_of(WorkPart part, Walk walk) {
   const auto column = static_cast<std::size_t>(part);
   const std::size_t row = belongs_to_walk(kParts[column]) ? static_cast<std::size_t>(walk) : 0;
@@ -349,7 +349,7 @@ std::vector<WorkOutcome> outcomes_of_step(const Trace& trace, const WorkChart& c
 }
 
 WorkChart work_chart(const Trace& trace) {
-  // Step 1: one cell for each walk and kind of work.
+  // Step 1: one cell per traversal and kind of work.
   std::vector<WorkOutcome> all(kCells);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const PartRow& part = part_of_cell(i);
@@ -371,7 +371,7 @@ WorkChart work_chart(const Trace& trace) {
     all[at].operations += operations_of(e);
     all[at].seconds += elapsed_s(trace, i);
   }
-  // Step 3: drop empty cells, with walks before the other phases.
+  // Step 3: drop empty cells; traversals come before the other phases.
   std::vector<std::size_t> order;
   for (const bool of_walk : {true, false})
     for (std::size_t i = 0; i < all.size(); ++i)

@@ -1,5 +1,5 @@
-// Families of awkward bodies: lattices, nested and broken ones, and cells of one grid, where the answer is
-// known.
+// Families of awkward bodies: lattices, nested and defective ones, and cells of one grid, for which the
+// answer is known.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -24,7 +24,7 @@ Mesh menger() {
   });
 }
 
-/// A cube of 3^3 cells with a smaller cube on the middle of every face.
+/// A cube of 3^3 cells with a smaller cube at the centre of every face.
 Mesh koch_cube() {
   const auto in = [](int i, int low, int high) { return i >= low && i < high; };
   return shapes::voxels(5, 5, 5, [=](int i, int j, int k) {
@@ -113,8 +113,8 @@ struct Cells {
   }
 };
 
-/// Returns true if a cell of `a` and a cell of `b`, moved by `shift`, have inner points in common; the faces
-/// of B's cells lie where rounding puts them.
+/// Returns true if a cell of `a` and a cell of `b`, moved by `shift`, have interior points in common; the
+/// faces of B's cells are at their rounded positions.
 bool share_a_cell(const Cells& a, const Cells& b, const Vector3d& shift) {
   const auto each = [](const Cells& c, auto visit) {
     for (int i = 0; i < c.n[0]; ++i)
@@ -131,7 +131,7 @@ bool share_a_cell(const Cells& a, const Cells& b, const Vector3d& shift) {
   });
 }
 
-/// Half the time in whole cells, else in half cells; small enough that grids of n cells meet.
+/// Half the time in whole cells, else in half cells; small enough that grids of n cells intersect.
 Vector3d grid_shift(RandomEngine& random, int n, bool flat) {
   const double step = random() % 2 ? 1 : 0.5;
   Vector3d s;
@@ -141,7 +141,7 @@ Vector3d grid_shift(RandomEngine& random, int n, bool flat) {
   return s;
 }
 
-/// Exact motions keep the answer: turns of the grid, whole translations and powers of two.
+/// Exact motions keep the answer: rotations of the grid, integer translations and powers of two.
 void move_exactly(RandomEngine& random, Case& c) {
   const double size = steady::exp2(pick(random, -3, 3));
   const Pose by{size * grid_turn(random, true), pick_point(random, {-9, -9, -9}, {9, 9, 9})};
@@ -176,7 +176,7 @@ Case make_dented(RandomEngine& random, double dial) {
   return c;
 }
 
-/// A ball or a box that reaches no further than this from the origin.
+/// A ball or a box within this distance from the origin.
 Body small_body(RandomEngine& random, double reach) {
   return body(random() % 2 ? shapes::icosphere(0, reach)
                            : shapes::box({-reach, -reach, -reach}, {reach, reach, reach}));
@@ -187,7 +187,7 @@ const Body& large_ball() {
   return kBall;
 }
 
-/// In the void, which is [4, 8]^3, or in the wall round it, which is [0, 4] thick.
+/// In the void, which is [4, 8]^3, or in the wall around it, which is [0, 4] thick.
 Case about_a_void(RandomEngine& random, double near, bool in_wall) {
   static const Body kVoid = body(shapes::scaled(shapes::box_with_void(), 4));
   if (!in_wall)
@@ -215,7 +215,7 @@ Case in_shells(RandomEngine& random, double near) {
   return c;
 }
 
-/// One of B's three pieces lies in A.
+/// One of B's three pieces is inside A.
 Case one_piece_inside(RandomEngine& random) {
   const Mesh piece = shapes::icosphere(0, 0.5);
   const Body pieces = body(
@@ -223,7 +223,7 @@ Case one_piece_inside(RandomEngine& random) {
   return {large_ball(), pieces, {}, any_pose(random, 1), Relation::b_inside_a, true};
 }
 
-/// Each holds a piece of the other: the relation names A first.
+/// Each contains a piece of the other: the relation names A first.
 Case each_holds_a_piece() {
   const Mesh big = shapes::icosphere(1, 3), tiny = shapes::icosphere(0, 0.5);
   return {body(shapes::several({big, shapes::translated(tiny, {20, 0, 0})})),
@@ -234,7 +234,7 @@ Case each_holds_a_piece() {
           true};
 }
 
-/// `near`: how much of the room is used.
+/// `near`: share of the available space that is used.
 Case containment_of_kind(int kind, RandomEngine& random, double near) {
   switch (kind) {
     case 0:
@@ -317,8 +317,8 @@ Case make_dirty(RandomEngine& random, double dial) {
       std::vector<VertexId> corners(m.face(f).begin(), m.face(f).end());
       const double r = uniform(random);
       if (r < share / 4) continue;                                         // a hole
-      if (r < share / 2) std::swap(corners[0], corners[1]);                // turned
-      if (r > 1 - share / 4) corners[2] = corners[random() % 2];           // no area
+      if (r < share / 2) std::swap(corners[0], corners[1]);                // flipped
+      if (r > 1 - share / 4) corners[2] = corners[random() % 2];           // zero area
       if (r > 1 - share / 2 && r <= 1 - share / 4) out.add_face(corners);  // doubled
       out.add_face(corners);
     }

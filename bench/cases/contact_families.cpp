@@ -1,4 +1,4 @@
-// Families in which bodies share points, edges, faces, or come as near to it as doubles allow.
+// Families in which bodies share points, edges or faces, or come as close to it as doubles allow.
 #include <numbers>
 
 #include <Eigen/Geometry>
@@ -32,7 +32,7 @@ Mesh tetrahedron(const std::array<Vector3d, 4>& p) {
   return inside_out ? shapes::turned_inside_out(m) : m;
 }
 
-/// A prism of `layers` turned slices about z, whose section is an `n`-gon of radius r: the core of a screw.
+/// A prism of `layers` rotated slices about z, whose section is an `n`-gon of radius r: the core of a screw.
 std::vector<Vector3d> twisted_rings(int n, int layers, double r, double twist, double height) {
   std::vector<Vector3d> x;
   for (int j = 0; j <= layers; ++j)
@@ -114,7 +114,7 @@ Case make_touch(RandomEngine& random, double dial) {
     c.pose_b.t = start + middle * away;
     (in_contact(c) ? near : far) = middle;
   }
-  // Vertex on vertex, from where it began, is another family's.
+  // Vertex on vertex from the initial position belongs to another family.
   c.pose_b.t = start + (random() % 2 && near > 0 ? near : far) * away;
   return c;
 }
@@ -167,7 +167,7 @@ Case make_identical(RandomEngine& random, double dial) {
   const int kind = pick(random, 0, 3);
   if (kind == 0) c.pose_a = Pose{};
   c.pose_b = c.pose_a;
-  if (kind == 1) {  // about the middle of the unit cube
+  if (kind == 1) {  // about the centre of the unit cube
     const Eigen::Matrix3d r = grid_turn(random);
     const Vector3d middle(0.5, 0.5, 0.5);
     c.pose_a = Pose{};
@@ -183,13 +183,13 @@ Case make_identical(RandomEngine& random, double dial) {
 }
 
 Case make_hub(RandomEngine& random, double dial) {
-  // Tip on tip n^2 pairs meet: seldom with all hundred faces.
+  // Tip on tip n^2 pairs intersect: rarely with all hundred faces.
   const int n = 3 + static_cast<int>((random() % 8 ? 21 : 97) * dial);
   static const Body kPoly = body(screw(64, 1, 0));
   Case c{body(cone(n, 1)), body(cone(pick(random, 3, n), 1)), {}, {}, {}, {}};
   const int kind = pick(random, 0, 3);
   if (kind == 0) c.pose_b.r = Vector3d(1, -1, -1).asDiagonal();  // tip on tip
-  if (kind == 1) c.pose_b = any_pose(random, 0);                 // tips in one point, any directions
+  if (kind == 1) c.pose_b = any_pose(random, 0);                 // tips at one point, in any directions
   if (kind == 2) {
     c.b = kPoly;
     c.pose_b = {grid_turn(random), {0, 0, static_cast<double>(pick(random, -2, 2))}};
@@ -208,7 +208,7 @@ Case make_interlock(RandomEngine& random, double dial) {
       body(shapes::voxels(5, 3, 1, [](int i, int j, int) { return j != 1 || i % 4 == 0; }));
   Case c;
   const int kind = pick(random, 0, 2);
-  if (kind == 0) {  // comb (width 7, depth 4) turned by half about z, teeth into the gaps
+  if (kind == 0) {  // comb (width 7, depth 4) rotated by half a turn about z, teeth into the gaps
     c.a = c.b = kComb;
     c.pose_b.r = Vector3d(-1, -1, 1).asDiagonal();
     c.pose_b.t = {8, static_cast<double>(pick(random, 4, 8)), static_cast<double>(pick(random, -1, 1))};

@@ -62,7 +62,7 @@ Body any_body(RandomEngine& random) {
 }
 
 Pose any_pose(RandomEngine& random, double distance) {
-  // One after the other, because compilers evaluate operands in different orders.
+  // In separate statements, because compilers evaluate operands in different orders.
   const Eigen::Matrix3d turn = shapes::random_rotation(random);
   const Eigen::Vector3d direction = shapes::random_direction(random);
   return {turn, distance * uniform(random) * direction};
@@ -125,8 +125,8 @@ Eigen::Matrix3d grid_turn(RandomEngine& random, bool reflections) {
   return r;
 }
 
-// Cases of the other families, asked both ways. They are drawn from all families in their order: a family
-// that is added changes which cases these are.
+// Cases of the other families, queried both ways. They are drawn from all families in their order: adding a
+// family changes which cases these are.
 
 namespace {
 

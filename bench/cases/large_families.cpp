@@ -1,4 +1,4 @@
-// Families whose answers are known to the last ulp, and families of bodies with very many faces or corners.
+// Families with answers known to the last ulp, and families of bodies with very many faces or corners.
 #include <cmath>
 #include <numbers>
 
@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Makes a prism over a polygon that runs counter-clockwise; each of its two ends is one polygon.
+/// Makes a prism over a counter-clockwise polygon; each of its two ends is one polygon.
 Mesh prism(const std::vector<shapes::Point2>& section, double height) {
   Mesh m;
   m.name = "prism";
@@ -84,13 +84,13 @@ Mesh cone(int n) {
 
 Case make_kiss(RandomEngine& random, double dial) {
   static const std::vector<Body> cubes = {body(shapes::box()), body(shapes::quad_box())};
-  const double gap = steady::exp2(-std::round(4 + 48 * dial));  // at the end of the dial an ulp of 1
+  const double gap = steady::exp2(-std::round(4 + 48 * dial));  // at difficulty 1 an ulp of 1
   Case c{cubes[random() % 2], cubes[random() % 2], {}, {}, {}, {}};
   const int axes = pick(random, 1, 3);  // in contact along: a face, an edge, a vertex
   bool apart = false, touch = false;
   for (int k = 0; k < 3; ++k) {
     if (k >= axes) {
-      c.pose_b.t[k] = (2 * pick(random, -4, 3) + 1) / 8.0;  // no sides in one plane
+      c.pose_b.t[k] = (2 * pick(random, -4, 3) + 1) / 8.0;  // no coplanar sides
       continue;
     }
     const int gaps = uniform(random) < dial ? pick(random, -1, 1) : random() % 2 ? 1 : -1;
@@ -101,7 +101,7 @@ Case make_kiss(RandomEngine& random, double dial) {
   if (apart) c.relation = Relation::separate;
   if (!apart && touch) c.relation = Relation::touching;
   c.interiors_overlap = !apart && !touch;
-  // All of it is exact: a permutation of the axes, a change of signs, a power of two.
+  // All operations are exact: a permutation of the axes, a change of signs, a power of two.
   const double size = steady::exp2(std::round(40 * dial * uniform(random, -1, 1)));
   const Pose by{size * grid_turn(random, true), Vector3d::Zero()};
   if (random() % 2) move_both(c, by);
@@ -121,23 +121,23 @@ Case make_nested(RandomEngine& random, double dial) {
                                     : shapes::quad_box({-reach, -reach, -reach}, {reach, reach, reach});
     shells.push_back(i % 2 ? shapes::turned_inside_out(shell) : shell);
   }
-  const double near = 1 - steady::pow10(-1 - 13 * dial);  // how much of the room is used
+  const double near = 1 - steady::pow10(-1 - 13 * dial);  // share of the available space that is used
   const double reach = 0.5 * near;
-  const int layer = pick(random, 0, walls);  // 0: outside of all
+  const int layer = pick(random, 0, walls);  // 0: outside all of them
   const double middle = walls - layer + 0.5;
   const auto piece = [&](double at) {
     return shapes::translated(shapes::box({-reach, -reach, -reach}, {reach, reach, reach}), {at, 0, 0});
   };
   const bool in_solid = layer % 2 == 1;
   Case c{body(shapes::several(shells)), {}, {}, {}, {}, {}};
-  // Other pieces stand outside: it is enough if one is enclosed.
+  // Other pieces are outside: it is enough if one is enclosed.
   const int pieces = pick(random, 1, 3);
   std::vector<Mesh> all = {piece(middle)};
   for (int i = 1; i < pieces; ++i) all.push_back(piece(-walls - 2.0 * i));
   c.b = body(shapes::several(all));
   c.relation = in_solid ? Relation::b_inside_a : Relation::separate;
   c.interiors_overlap = in_solid;
-  // The outside piece of B must not hold anything of A: it is a box without room.
+  // The outside piece of B must not contain any part of A: it is a box without a cavity.
   if (random() % 2) move_both(c, {grid_turn(random, true), Vector3d::Zero()});
   if (random() % 2) {
     std::swap(c.a, c.b);
@@ -159,17 +159,17 @@ Case make_polygon(RandomEngine& random, double dial) {
     for (int n = 2; n <= 1024; n *= 8) list.push_back(body(prism(comb_section(n), 1)));
     return list;
   }();
-  // The largest takes a hundred times as long as the others, so it comes seldom.
+  // The largest takes a hundred times as long as the others, so it is rare.
   const std::size_t largest = random() % 16 == 0 ? 3 : 2;
   const auto& bodies = uniform(random) < 0.5 * dial ? kComb : kRound;
   Case c{bodies[std::min(largest, static_cast<std::size_t>(4 * dial))], any_body(random), {}, {}, {}, {}};
   const int kind = uniform(random) < dial ? pick(random, 0, 2) : 3;
-  if (kind == 0) {  // one many-cornered end on another's: the answer is quadratic
+  if (kind == 0) {  // one many-cornered end on another: the answer is quadratic
     c.a = bodies[random() % 64 == 0];
     c.b = bodies[random() % 64 == 0];
     const double angle = random() % 2 ? 0 : uniform(random);
     c.pose_b = Pose::rotation({0, 0, 1}, angle, {0, 0, pick(random, -1, 1) * 1.0});
-  } else if (kind == 1) {  // something stands on an end
+  } else if (kind == 1) {  // a body on top of an end
     c.pose_b = {grid_turn(random), {uniform(random, -1, 1), uniform(random, -1, 1), 1}};
   } else if (kind == 2) {  // at a corner of the section
     const auto v = c.a->vertices()[random() % c.a->vertices().size()];
@@ -203,7 +203,7 @@ Case make_fractal(RandomEngine& random, double dial) {
     c.b = dented[random() % 3];
     c.pose_b = {grid_turn(random), pick_point(random, {4, -8, -8}, {8, 8, 8}) / 7};
     c.pose_b.t += fine * shapes::random_direction(random);
-  } else if (kind == 14) {  // hundreds of faces in a point, one of the other's corners in it
+  } else if (kind == 14) {  // hundreds of faces at a point, with a corner of the other body in it
     c.a = kHub;
     c.b = any_body(random);
     c.pose_b = any_pose(random, 0);

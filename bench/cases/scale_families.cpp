@@ -1,4 +1,5 @@
-// Families in which coordinates are far apart in size: thin, distant, tiny, huge, or moved by odd matrices.
+// Families with coordinates of very different magnitudes: thin, distant, tiny, huge, or transformed by
+// unusual matrices.
 #include <algorithm>
 #include <cmath>
 
@@ -63,7 +64,7 @@ Case make_sliver(RandomEngine& random, double dial) {
   return c;
 }
 
-/// Boxes flat against each other, side by side, crossing or turned, all by the scale of their thickness.
+/// Boxes flat against each other, side by side, crossing or rotated, all by the scale of their thickness.
 Case make_thin(RandomEngine& random, double dial) {
   const double thin = steady::pow10(-1 - 11 * dial);
   const LrbRep cube = *body(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
@@ -75,7 +76,7 @@ Case make_thin(RandomEngine& random, double dial) {
   c.pose_b.r = kind == 3 ? shapes::random_rotation(random) : grid_turn(random);
   for (int k = 0; k < 3; ++k) c.pose_b.t[k] = uniform(random, -0.4, 0.4);
   if (kind == 1 || kind == 2) {
-    // A few thicknesses apart or into each other: over A's large face, or beside it.
+    // A few thicknesses separate or penetrating: over A's large face, or beside it.
     const int k = kind == 1 ? 2 : 0;
     const auto reach = [&] {
       double most_a = 0, most_b = 0;
@@ -106,7 +107,7 @@ Case make_zero_area(RandomEngine& random, double dial) {
   Case c{collapsed(*any_body(random)), collapsed(*any_body(random)), {}, {}, {}, {}};
   if (random() % 2) c.pose_a = any_pose(random);
   c.pose_b.r = random() % 2 ? shapes::random_rotation(random) : grid_turn(random);
-  // A vertex of one on a vertex of the other, a little off.
+  // A vertex of one close to a vertex of the other.
   const Vector3d x = c.pose_a.apply(c.a->vertices()[random() % c.a->vertices().size()]);
   const Vector3d y = c.pose_b.r * c.b->vertices()[random() % c.b->vertices().size()];
   c.pose_b.t = x - y + slack(dial) * shapes::random_direction(random);
@@ -122,7 +123,7 @@ Case make_far(RandomEngine& random, double dial) {
   c.b = stretched(*c.b, Vector3d::Constant(size));
   c.pose_b =
       random() % 2 ? any_pose(random, 2 * size) : Pose{grid_turn(random), random_sign_vector(random, size)};
-  loosen(random, c, 0.1);  // the dial is the distance alone: rounding brings exact contact back
+  loosen(random, c, 0.1);  // the difficulty is the distance alone: rounding restores exact contact
   const Vector3d away =
       random() % 2 ? random_sign_vector(random, offset) : Vector3d(offset * shapes::random_direction(random));
   const int kind = pick(random, 0, 3);
@@ -168,7 +169,7 @@ Case make_extreme(RandomEngine& random, double dial) {
   // The bodies are up to 7 wide; they are divided first, so that the meshes themselves stay finite.
   c.a = stretched(*stretched(*c.a, Vector3d::Constant(0.125)), Vector3d::Constant(by));
   c.b = stretched(*stretched(*c.b, Vector3d::Constant(0.125)), Vector3d::Constant(by_b));
-  c.pose_b.t *= random() % 4 ? 0.125 * by : by;  // the second overflows sometimes: a refusal
+  c.pose_b.t *= random() % 4 ? 0.125 * by : by;  // the second overflows sometimes: a rejection
   if (pick(random, 0, 2) == 0) c.pose_a.r = shapes::random_rotation(random);
   return c;
 }
@@ -206,7 +207,7 @@ Case make_matrix(RandomEngine& random, double dial) {
   };
   c.pose_a.r = matrix();
   c.pose_b.r = matrix();
-  // Aims a vertex of one more or less at a vertex of the other.
+  // Aims a vertex of one approximately at a vertex of the other.
   const Vector3d x = c.pose_a.r * c.a->vertices()[random() % c.a->vertices().size()];
   const Vector3d y = c.pose_b.r * c.b->vertices()[random() % c.b->vertices().size()];
   c.pose_b.t = x - y + (0.5 + x.norm()) * random_step(random, 0.02, 0.3);

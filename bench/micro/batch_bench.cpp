@@ -1,6 +1,6 @@
-// Batches on one thread and on several. "independent" runs one batch per thread that share nothing but the
-// bodies, which no batch divided among threads can outperform: compare its time per thread. CPU is the
-// processor time of all threads.
+// Batches on one thread and on several. "independent" runs one batch per thread that share only the bodies,
+// an upper bound for a batch divided among threads: compare its time per thread. CPU is the processor time of
+// all threads.
 #include <thread>
 
 #include "bench/micro/poses.hpp"
@@ -27,7 +27,7 @@ const std::vector<Pose>& poses_of(const Subject& s) {
   return poses;
 }
 
-/// ask(batch, poses, answers): asks for all poses.
+/// ask(batch, poses, answers): queries all poses.
 template <class Answers, class Ask>
 void add_batch(const Subject& s, const std::string& what, const Ask& ask) {
   const auto measure = [&s, ask](benchmark::State& state, unsigned threads) {
@@ -44,7 +44,7 @@ void add_batch(const Subject& s, const std::string& what, const Ask& ask) {
   };
   add_one("1 thread", 1);
   add_one(std::to_string(many) + " threads", many);
-  poses_of(s);  // before threads ask for them
+  poses_of(s);  // before threads use them
   add_one("independent", 1)->Threads(static_cast<int>(many));
 }
 

@@ -1,6 +1,6 @@
-// Building a body lean and to fit, its levels of detail, and loading its .lrb; and growth: the same of rocks
-// of 31,000 to 2,000,000 faces, with the exponent of the growth of time (tests/scaling measures memory).
-// Times are processor times of one thread; `lrbscope inspect` prints the figures of a body.
+// Building a body lean and to fit, its levels of detail, and loading its .lrb; and scaling: the same for
+// rocks of 31,000 to 2,000,000 faces, with the exponent of the growth of time (tests/scaling measures
+// memory). Times are processor times of one thread; `lrbscope inspect` prints the figures of a body.
 #include <filesystem>
 #include <string>
 
@@ -59,7 +59,7 @@ void add_all(const Subject& s) {
     const Mesh mesh = methods::real_mesh(s.body);
     for (auto _ : state) {
       state.PauseTiming();
-      const LrbRep rep = build_lrb(mesh);  // without levels
+      const LrbRep rep = build_lrb(mesh);  // without levels of detail
       state.ResumeTiming();
       rep.levels(1);
     }

@@ -1,5 +1,4 @@
-// Penetration depths of bodies that are not convex: how long they take, and the lower bound as a share of the
-// upper one.
+// Penetration depths of non-convex bodies: their time, and the lower bound as a share of the upper one.
 #include <algorithm>
 
 #include "bench/micro/poses.hpp"

@@ -1,5 +1,5 @@
-// Queries to a tolerance and within limits of time, beside exact ones of the same poses. Tolerances and error
-// bounds are shares of the largest side of the body's box. `lrbscope chart` compares them with other methods.
+// Coarse queries with tolerances and time limits, and exact ones at the same poses. Tolerances and error
+// bounds are shares of the longest side of the body's box. `lrbscope chart` compares them with other methods.
 #include <cmath>
 
 #include "bench/micro/poses.hpp"

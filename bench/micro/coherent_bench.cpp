@@ -1,5 +1,5 @@
-// Coherent queries beside queries from scratch, by length of step, for bodies that are separate, touch and
-// intersect deeply.
+// Coherent queries compared with queries from scratch, by step length, for bodies that are separate, touch
+// and penetrate deeply.
 #include "bench/micro/poses.hpp"
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/core/strings.hpp>

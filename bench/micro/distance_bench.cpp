@@ -1,4 +1,4 @@
-// Distances by gap: from scratch, only whether it is at most a little more than the gap, and along a path of
+// Distances by gap: from scratch, only whether it is at most slightly more than the gap, and along a path of
 // small steps, from scratch and coherently. `lrbscope chart --quantity distance` compares with FCL.
 #include "bench/micro/poses.hpp"
 #include <lrbscope/core/strings.hpp>
@@ -28,7 +28,7 @@ void add_distance(const Subject& s, const std::string& what, double gap, const D
   });
 }
 
-/// along(path): asks at every pose of a path, one after the other.
+/// along(path): queries every pose of a path in order.
 template <class Along>
 void add_paths(const Subject& s, const std::string& what, double gap, const Along& along) {
   add(s, what, [&s, gap, along](benchmark::State& state) {

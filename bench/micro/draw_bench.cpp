@@ -1,5 +1,5 @@
 // The cost of encoding and writing frames: a sequence drawn and discarded, and the same frames drawn, encoded
-// and written, as `lrbscope run` does it. The aim is at most 1.25 times the time of drawing.
+// and written, as `lrbscope run` does it. The target is at most 1.25 times the time of drawing.
 #include <filesystem>
 #include <string>
 

@@ -25,7 +25,7 @@ struct SimplexPair {
   std::array<const double*, 3> b() const { return {p[3].data(), p[4].data(), p[5].data()}; }
 };
 
-/// A rotation that leaves no coordinate round.
+/// A rotation after which no coordinate is a round number.
 Vec rotated(const Vec& p) {
   static const Matrix r = [] {
     const double a = 0.7, b = 1.1;
@@ -61,8 +61,7 @@ SimplexPair make(shapes::RandomEngine& random, Case kind) {
   if (flat) {
     for (auto& p : s.p) p[2] = 0.25;
   }
-  if (kind ==
-      Case::flat_exact) {  // coplanar to the last bit, in a plane that is not along an axis: short mantissas
+  if (kind == Case::flat_exact) {  // exactly coplanar, in a plane not along an axis: short mantissas
     for (auto& p : s.p) {
       for (std::size_t k = 0; k < 2; ++k) p[k] = std::floor(p[k] * 0x1p20) * 0x1p-20;
       p[2] = p[0] * 0.375 + p[1] * 0.625;

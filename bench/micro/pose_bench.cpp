@@ -1,5 +1,5 @@
-// The cost of a pose that is not a rotation: queries of a sphere and the body with a map in its pose, beside
-// those of the body with the map applied to its vertices, under a rotation.
+// The cost of a pose that is not a rotation: queries of a sphere and the body with a map in its pose,
+// compared with the body with the map applied to its vertices, under a rotation.
 #include <memory>
 
 #include "bench/micro/poses.hpp"
@@ -42,7 +42,7 @@ std::vector<Map> maps() {
 }
 
 constexpr Depth kWhere[] = {
-    {"deep", 0.3}, {"shallow", 0.5}, {"separate", 1.05}};  // shares as of random_pose()
+    {"deep", 0.3}, {"shallow", 0.5}, {"separate", 1.05}};  // shares as in random_pose()
 
 void add_query(const Subject& s, const Map& map, const Depth& where, bool in_pose) {
   const std::string name =

@@ -25,7 +25,7 @@ struct Subject {
   double diagonal, size;  ///< of its box: the diagonal and the largest side
 };
 
-/// Loads the bodies that are named, or the default ones, calls `add` for each, and runs what it registers.
+/// Loads the named bodies, or the default ones, calls `add` for each, and runs the registered benchmarks.
 /// Returns the exit code of the program.
 int run(int argc, char** argv, void (*add)(const Subject&));
 
@@ -46,7 +46,7 @@ struct Depth {
 /// once.
 const std::vector<Pose>& poses_at(const Subject& subject, double depth, int count = 16);
 
-/// Returns `steps` poses: each moves by `length` diagonals and rotates about the body's middle, half of the
+/// Returns `steps` poses: each moves by `length` diagonals and rotates about the body's centre, half of the
 /// step each, in a constant direction that changes when the copy would leave its surroundings or, if
 /// `separate`, intersect.
 std::vector<Pose> path_from(const Subject& subject, const Pose& start, double length, int steps,

@@ -1,4 +1,4 @@
-/// What recording and writing cost, per event.
+/// The cost of recording and writing, per event.
 
 #include <algorithm>
 #include <filesystem>
@@ -85,7 +85,7 @@ void report(benchmark::State& state) {
                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-/// The calls alone, with a probe that only adds up: subtract it.
+/// The calls alone, with a probe that only adds up: subtract this time.
 void calls_alone(benchmark::State& state) {
   struct Sum {
     std::uint64_t sum = 0;
@@ -126,8 +126,8 @@ void record(benchmark::State& state) {
 }
 BENCHMARK(record)->ArgName("wall")->Arg(0)->Arg(1);
 
-/// A query of two bodies that cross, alone (-1) or recorded at a level of events. An event costs what a query
-/// takes longer than alone, divided by its events.
+/// A query of two crossing bodies, alone (-1) or recorded at an event level. The cost of an event is the
+/// additional time divided by the number of events.
 void watched_query(benchmark::State& state) {
   static const LrbRep rock = build_lrb(shapes::bumpy_sphere(5, 7, 0.3));
   const Pose pose = Pose::translation({0.9, 0.3, 0.2});
@@ -157,7 +157,7 @@ void watched_query(benchmark::State& state) {
 }
 BENCHMARK(watched_query)->ArgName("level")->DenseRange(-1, 2)->Unit(benchmark::kMicrosecond);
 
-/// Bytes that go nowhere.
+/// A sink that discards its bytes.
 struct Nowhere final : ByteSink {
   void write(std::string_view bytes) override { size += bytes.size(); }
   std::size_t size = 0;

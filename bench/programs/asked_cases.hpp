@@ -1,5 +1,5 @@
 #pragma once
-/// The cases that a worker is asked, as options of its command line name them.
+/// The cases that a worker runs, as selected on its command line.
 
 #include <cstdint>
 #include <cstdio>
@@ -21,13 +21,13 @@ namespace lrb::worker_programs {
 
 // The lines of JSON that a worker writes to stdout.
 
-/// Our lines have a channel of their own, and libraries that print to stdout print to stderr instead.
+/// lrbscope's lines have a separate channel; libraries that print to stdout print to stderr instead.
 class Lines {
  public:
   Lines() : out_(fdopen(dup(STDOUT_FILENO), "w")) { dup2(STDERR_FILENO, STDOUT_FILENO); }
   void say(const std::string& line) {
     if (out_ == nullptr || std::fputs(line.c_str(), out_) < 0 || std::fflush(out_) != 0)
-      std::_Exit(1);  // nobody listens any more
+      std::_Exit(1);  // the reader has closed the channel
   }
 
  private:
@@ -38,34 +38,34 @@ inline std::string dump(const nlohmann::ordered_json& value) {
   return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-/// Numbers begin to end - 1 of a family's cases: `cases` for each setting of its dial.
+/// Cases begin to end - 1 of a family: `cases` for each difficulty.
 struct AskedCases {
-  bool list = false;  ///< none of them: the worker's methods are to be listed
+  bool list = false;  ///< no cases: list the worker's methods
   std::string family, method, expected;
   std::uint64_t seed = 1, cases = 1, begin = 0, end = 0;
 };
 
 void add_options(CLI::App& app, AskedCases& asked);
 
-/// Throws InputError if there is no such family.
+/// Throws InputError if the family is unknown.
 const cases::Family& family_of(const AskedCases& asked);
 cases::Case make(const cases::Family& family, const AskedCases& asked, std::uint64_t number);
 /// Returns the record of a case, before it is answered.
 stability::Record record_of(const AskedCases& asked, std::uint64_t number);
 
-/// Right answers that were written to a file before, from the first case that is asked on.
+/// Correct answers from a file, starting at the first requested case.
 class KnownAnswers {
  public:
-  /// Throws InputError if a file is named and ends before that case.
+  /// Throws InputError if a file is given and ends before that case.
   explicit KnownAnswers(const AskedCases& asked);
-  /// Returns the next one; nothing where no file is named, or at its end.
+  /// Returns the next answer, or nullopt without a file or at its end.
   std::optional<stability::RightAnswer> next();
 
  private:
   std::ifstream in_;
 };
 
-/// Calls work(lines). Returns the exit code: 2, and a line with the error, if it throws.
+/// Calls work(lines). Returns the exit code: 2, after a line with the error, if it throws.
 template <class Work>
 int run_worker(Work work) {
   constexpr int kOk = 0, kBadInput = 2;
@@ -79,12 +79,12 @@ int run_worker(Work work) {
   }
 }
 
-// Methods that misbehave, to test what becomes of them. The list has them only if the environment has
+// Methods that misbehave, to test the handling of failures. They are listed only if the environment has
 // LRBSCOPE_FAKE_METHODS.
 
-/// Returns the fake methods. All answer rightly where there is no contact. Where there is, "fake-crash"
-/// aborts, "fake-hang" never returns, "fake-refuse" refuses, "fake-throw" throws, and "fake-miss" forgets the
-/// first pair. "fake-absent" is absent. Returns none if "ours", which they pretend to be, is not among the
+/// Returns the fake methods. All answer correctly if there is no contact. Otherwise "fake-crash" aborts,
+/// "fake-hang" never returns, "fake-refuse" rejects the query, "fake-throw" throws, and "fake-miss" omits the
+/// first pair. "fake-absent" is absent. Returns an empty list if "ours", which they imitate, is not among the
 /// program's methods.
 std::vector<methods::MethodEntry> fake_methods(const std::vector<methods::MethodEntry>& methods);
 

@@ -1,16 +1,16 @@
-/// The worker: a program beside lrbscope that puts cases to methods whose code lrbscope does not contain, and
-/// that may crash or hang.
+/// The worker: a program beside lrbscope that runs cases with methods whose code lrbscope does not contain,
+/// and which may crash or hang.
 ///
 /// It writes everything as JSON lines to stdout:
-///   --list                the methods it has
+///   --list                its methods
 ///   --family F --seed S --cases N --begin K --end L
-///                         the right answers (RightAnswer) to cases K .. L - 1; case k is number k % N at
-///                         setting k / N of the dial
+///                         the correct answers (RightAnswer) to cases K .. L - 1; case k is number k % N at
+///                         difficulty k / N
 ///   ... --method M [--expected FILE] [--pairs]
-///                         a record for each; the right answers are read from the file's lines, the first of
-///                         which is case 0's, or found here; with --pairs the lists as well
+///                         a record for each; the correct answers are read from the file's lines, the first
+///                         of which is case 0's, or computed; with --pairs also the lists of pairs
 ///   --questions FILE --method M [--setting X] [--pairs] --begin K --end L
-///                         a bench::Record for each of a data set's questions K .. L - 1
+///                         a bench::Record for each of a data set's queries K .. L - 1
 /// Exit codes: 0, or 2 with the line {"error": "..."}.
 
 #include <algorithm>
@@ -92,8 +92,7 @@ int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries
 }  // namespace
 }  // namespace lrb::worker_programs
 
-// The main() of every worker program: what differs is which methods it is linked with
-// (bench/rivals/rivals.cmake).
+// The main() of every worker program; programs differ in the linked methods (bench/rivals/rivals.cmake).
 
 int main(int argc, char** argv) {
   return lrb::worker_programs::worker_main(argc, argv, lrb::methods::registered_methods());

@@ -1,5 +1,5 @@
-/// lrbscope-quantities: a worker as in methods.cpp, for methods that answer with a number. --quantity Q
-/// says with which one, or the data set of --questions does; without --method it prints the right answers.
+/// lrbscope-quantities: a worker like methods.cpp, for methods that answer with a number. --quantity Q
+/// selects the number, or the data set of --questions does; without --method it prints the correct answers.
 
 #include <algorithm>
 #include <optional>
@@ -39,8 +39,8 @@ bool says_contact(methods::Quantity quantity, const NumberAnswer& answer) {
   return quantity == methods::Quantity::depth ? answer.upper > 0 : answer.upper <= 0;
 }
 
-/// Puts a question to a method at a setting of its knob. A refusal is an outcome, too. Throws InputError if
-/// there is no such question.
+/// Runs a query with a method at a parameter value. A rejection is also an outcome. Throws InputError if the
+/// query does not exist.
 bench::Record bench_record(const NumberMethod& method, std::optional<double> setting, const DataSet& set,
                            std::uint64_t question) {
   const Question& q = question_of(set, question);
@@ -64,7 +64,7 @@ bench::Record bench_record(const NumberMethod& method, std::optional<double> set
   return r;
 }
 
-/// Returns what a method says at its finest setting, as {"least": .., "most": ..}, or {"refusal": "why"}.
+/// Returns a method's answer at its finest setting, as {"least": .., "most": ..}, or {"refusal": "why"}.
 nlohmann::ordered_json known_number(const NumberMethod& method, const DataSet& set, std::uint64_t question) {
   const std::vector<double>& settings = method.info.settings;
   const Question& q = question_of(set, question);
@@ -110,7 +110,7 @@ void say_records(const Options& o, Lines& out) {
   }
 }
 
-/// Answers a data set's questions; without a method, with ours at its finest setting.
+/// Answers a data set's queries; without a method, with lrbscope at its finest setting.
 void answer_questions(const Options& o, Lines& out) {
   const bench::DataSet set = bench::read_data_set(o.questions);
   const bool judges = o.asked.method.empty();
@@ -140,7 +140,7 @@ int run(int argc, char** argv) {
   app.add_option("--quantity", o.quantity);
   app.add_option("--questions", o.questions);
   app.add_option("--setting", o.setting);
-  app.add_flag("--pairs");  // asked of all workers; there are none here
+  app.add_flag("--pairs");  // accepted by all workers; unused in this one
   CLI11_PARSE(app, argc, argv);
   return run_worker([&](Lines& out) { work(o, out); });
 }

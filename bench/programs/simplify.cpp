@@ -1,8 +1,8 @@
-/// lrbscope-simplify N...: reads a mesh of triangles (OFF) from its file descriptor 3, simplifies it to N
-/// faces each, most first, and prints a line for each: its faces, the largest distance of its points from the
-/// mesh, and that of the mesh's points from it, both sampled. Edges collapse by Garland and Heckbert's
-/// quadrics, free to cut off corners: what is left does not enclose the mesh. A program of its own, because
-/// CGAL's licence is the GPL.
+/// lrbscope-simplify N...: reads a mesh of triangles (OFF) from file descriptor 3, simplifies it to N faces
+/// for each N, largest first, and prints a line for each: its faces, the maximum distance of its points from
+/// the mesh, and that of the mesh's points from it, both sampled. Edges collapse by Garland and Heckbert's
+/// quadrics and may cut off corners: the result does not enclose the mesh. A separate program, because CGAL's
+/// licence is the GPL.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -29,7 +29,8 @@ double largest_distance(const Mesh& from, const Mesh& to) {
 }
 
 void simplify(Mesh& mesh, std::size_t faces) {
-  const simplification::Count_stop_predicate<Mesh> stop(faces * 3 / 2 + 1);  // ends when fewer edges are left
+  // Stops when fewer edges are left.
+  const simplification::Count_stop_predicate<Mesh> stop(faces * 3 / 2 + 1);
   const simplification::GarlandHeckbert_policies<Mesh, Kernel> quadrics(mesh);
   simplification::edge_collapse(
       mesh, stop, CGAL::parameters::get_cost(quadrics.get_cost()).get_placement(quadrics.get_placement()));

@@ -1,7 +1,7 @@
-/// lrbscope-xray-cgal: as lrbscope-xray-fcl, for CGAL's AABB_tree (xray_form.hpp: input and output): asks the
-/// tree over B's triangles for those that meet, with one triangle of A after another, moved into B's frame,
-/// by traits that do what CGAL's own do and tell it. A's tree is a root with a leaf for each triangle. A
-/// program of its own, because CGAL's licence is the GPL.
+/// lrbscope-xray-cgal: like lrbscope-xray-fcl, for CGAL's AABB_tree (xray_form.hpp: input and output).
+/// Queries the tree over B's triangles with one triangle of A after another, moved into B's frame. The traits
+/// do the same as CGAL's own and report it. A's tree is a root with a leaf for each triangle. A separate
+/// program, because CGAL's licence is the GPL.
 #include <cstdio>
 #include <map>
 #include <vector>
@@ -43,8 +43,8 @@ void print_box(const CGAL::Bbox_3& box) {
                        [&](int axis, int k) { return k == axis ? (box.max(k) - box.min(k)) / 2 : 0.0; });
 }
 
-/// Numbers of a tree's nodes; leaves for single triangles, which CGAL has no nodes for, follow them. CGAL's
-/// traversal shows what is beneath the root; the root itself it neither shows nor tests.
+/// Numbers of a tree's nodes; leaves for single triangles, for which CGAL has no nodes, follow them. CGAL's
+/// traversal exposes the nodes below the root; it neither exposes nor tests the root itself.
 class Numbers {
  public:
   Numbers(const Tree& tree, const Triangles& triangles) : triangles_(triangles), root_box_(tree.bbox()) {
@@ -53,7 +53,7 @@ class Numbers {
     nodes_[0].children = beneath_root_;
   }
 
-  // What CGAL's traversal asks of traits. It is shown the root's children, and goes no further.
+  // Interface required of traits by CGAL's traversal. It is passed the root's children, and does not descend.
   bool go_further() const { return true; }
   void intersection(const Triangle&, const Primitive& p) { beneath_root_.push_back(leaf(p)); }
   bool do_intersect(const Triangle&, const Node& node) {
@@ -82,7 +82,7 @@ class Numbers {
     std::vector<std::size_t> children;
   };
 
-  /// Adds a node with so many triangles beneath it, as CGAL divides them. Returns its number.
+  /// Adds a node with `count` triangles below it, divided as CGAL does. Returns its number.
   std::size_t add(const Node& node, std::size_t count) {
     const std::size_t number = nodes_.size();
     numbers_[&node] = number;
@@ -105,7 +105,7 @@ class Numbers {
   std::map<const Node*, std::size_t> numbers_;
 };
 
-/// Does what CGAL's Listing_primitive_traits do for triangle i of A, and tells it.
+/// Does the same as CGAL's Listing_primitive_traits for triangle i of A, and reports it.
 struct Told {
   const Tree& tree;
   const Numbers& numbers;

@@ -1,13 +1,13 @@
 #pragma once
-/// What the programs lrbscope-xray-* read and print. Nothing of lrbscope is needed for it, so that each may
-/// have the licence of the engine that it records.
+/// Input and output format of the programs lrbscope-xray-*. It needs no part of lrbscope, so that each
+/// program can have the licence of the engine it records.
 ///
 /// Input, from file descriptor 3, numbers between white space: for each body the numbers of vertices and
 /// triangles, the vertices, the corners of the triangles; then the number of poses, and for each the 12
 /// numbers (3x4 matrix, row by row) of A and of B. Output, a line each: `title`; for each body `tree N`, then
 /// for each node `node N CHILD...` or `leaf N TRIANGLE...`, followed by its box in the body's frame: centre,
 /// then three half axes; for each pose `pose`, then in the engine's order `b I J M` (bounding volumes of
-/// nodes I and J, M = 1: they meet) and `t I J M` (triangles I and J), and `end B T`, the numbers of both.
+/// nodes I and J, M = 1: they overlap) and `t I J M` (triangles I and J), and `end B T`, the numbers of both.
 
 #include <array>
 #include <cstdio>
@@ -60,7 +60,7 @@ void print_box(const Centre& centre, const Half& half) {
   std::printf("\n");
 }
 
-/// Returns the exit code of a program that does run(in), which returns one.
+/// Calls run(in) and returns its exit code.
 template <class Run>
 int exit_code_of(const Run& run) {
   constexpr int kBadInput = 2;

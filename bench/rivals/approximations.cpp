@@ -1,7 +1,7 @@
-// Two trees of spheres are descended together down to a level: an answer in time, and an approximate one (P.
-// M. Hubbard, "Collision Detection for Interactive Graphics Applications", PhD thesis, Brown University,
-// 1994: the paper's Hub94). Spheres contain the triangles beneath them, so that nothing is missed; spheres
-// that overlap at the last level count as contact.
+// Two sphere trees are descended together to a given level: an approximate, interruptible answer (P. M.
+// Hubbard, "Collision Detection for Interactive Graphics Applications", PhD thesis, Brown University, 1994:
+// the paper's Hub94). Spheres contain the triangles below them, so that no contact is missed; spheres that
+// overlap at the last level count as contact.
 
 #include <algorithm>
 
@@ -20,7 +20,7 @@ struct PlainBody : MethodBody {
   std::vector<VertexId> corners;  ///< (|simplices| x dim)
 };
 
-/// Returns the corners in the world, simplex by simplex.
+/// Returns the corners in world coordinates, simplex by simplex.
 std::vector<Eigen::Vector3d> in_world(const PlainBody& body, const Pose& pose) {
   std::vector<Eigen::Vector3d> moved, out;
   for (const Eigen::Vector3d& v : body.vertices) moved.push_back(pose.apply(v));
@@ -97,7 +97,7 @@ struct SphereBody : MethodBody {
   }
   using Iterator = std::vector<std::uint32_t>::iterator;
 
-  /// Divides at the median of the middles, along the longest side of their box.
+  /// Splits at the median of the centres, along the longest side of their box.
   std::uint32_t build(Iterator begin, Iterator end) {
     const auto index = static_cast<std::uint32_t>(spheres.size());
     spheres.push_back(round(begin, end));
@@ -168,7 +168,8 @@ class Spheres : public Method {
       if (way.squaredNorm() > reach * reach) continue;
       const bool leaf_a = p.left == 0, leaf_b = q.left == 0;
       if (item.level >= level_ || (leaf_a && leaf_b)) {
-        // On average, the middle of where the line of centres leaves the one sphere and enters the other.
+        // On average, the midpoint between the points where the line of centres leaves one sphere and enters
+        // the other.
         const double length = way.norm();
         const double at = length > 0 ? (p.radius + length - q.radius) / (2 * length) : 0;
         answer.points.push_back(pose_a.apply(p.centre + at * way));

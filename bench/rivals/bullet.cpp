@@ -1,5 +1,5 @@
-// Bullet's GImpact meshes in a collision world: contactPairTest() calls back for each contact point, with the
-// triangles that it belongs to. Compiled for the precision of the library it is linked to.
+// Bullet's GImpact meshes in a collision world: contactPairTest() calls back for each contact point, with its
+// two triangles. Compiled for the precision of the linked library.
 #include "bench/rivals/method.hpp"
 
 namespace lrb::methods {
@@ -44,7 +44,7 @@ btTransform transform(const Pose& p) {
                      btVector3(s(p.t.x()), s(p.t.y()), s(p.t.z())));
 }
 
-/// Gathers the triangles of contact points.
+/// Collects the triangles of contact points.
 struct Gatherer : btCollisionWorld::ContactResultCallback {
   explicit Gatherer(const btCollisionObject* first) : a(first) {}
   btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper* object0, int, int index0,
@@ -62,8 +62,8 @@ class Bullet : public Method {
  public:
   Bullet() : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
-    // That is not enough: contactPairTest() looks in a second table, and says that there is no contact if it
-    // finds no entry there.
+    // Needed as well: contactPairTest() looks in a second table, and reports no contact if it finds no entry
+    // there.
     dispatcher_.registerClosestPointsCreateFunc(GIMPACT_SHAPE_PROXYTYPE, GIMPACT_SHAPE_PROXYTYPE, &create_);
   }
 

@@ -1,5 +1,5 @@
-// CGAL, with its kernel of exact predicates and inexact constructions, as its manual shows: the collision
-// detection of rigid triangle meshes, and the AABB tree asked with one triangle after another.
+// CGAL, with its kernel of exact predicates and inexact constructions, as in its manual: the collision
+// detection of rigid triangle meshes, and the AABB tree queried with one triangle after another.
 #include "bench/rivals/method.hpp"
 
 namespace lrb::methods {
@@ -49,7 +49,7 @@ std::vector<Point> points_of(const Triangles& t) {
   return points;
 }
 
-/// Runs CGAL, and turns a precondition that does not hold into a refusal.
+/// Runs CGAL, and turns a violated precondition into a rejection.
 template <class Run>
 auto asked(const Run& run) {
   try {
@@ -135,7 +135,7 @@ class Pairs : public Method {
     return body;
   }
 
-  /// Moves A's triangles into B's frame and asks B's tree about each.
+  /// Moves A's triangles into B's frame and queries B's tree with each.
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
     const auto& body_a = static_cast<const TreeBody&>(a);

@@ -1,6 +1,6 @@
-// Embree's rtcCollide: two trees of boxes around triangles are descended against each other; a callback gets
-// the contents of leaves that meet and tests the triangles, as in Embree's own example. Its boxes are in the
-// world: when a body moves, its tree must be refitted or built again before it can be asked.
+// Embree's rtcCollide: two trees of triangle boxes are descended against each other. A callback gets the
+// contents of overlapping leaves and tests the triangles, as in Embree's own example. Its boxes are in world
+// coordinates: when a body moves, its tree must be refitted or rebuilt before the query.
 #include "bench/rivals/method.hpp"
 
 namespace lrb::methods {
@@ -60,7 +60,7 @@ struct EmbreeBody : MethodBody {
     rtcCommitScene(scene);
     at = pose;
   }
-  /// A body that stays where it is need not be moved again.
+  /// A body that has not moved needs no update.
   void move_to(const Pose& pose) {
     if (at.r != pose.r || at.t != pose.t) move(pose);
   }
@@ -91,7 +91,7 @@ struct EmbreeBody : MethodBody {
   RTCGeometry geometry = nullptr;
 };
 
-/// What the callback needs and finds.
+/// Input and output of the callback.
 struct Candidates {
   const EmbreeBody *a, *b;
   std::vector<SimplexPair> pairs;
@@ -122,7 +122,7 @@ class Embree : public Method {
 
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
-    // Our own copies of the bodies are moved.
+    // Only the method's own copies of the bodies are moved.
     auto& body_a = const_cast<EmbreeBody&>(static_cast<const EmbreeBody&>(a));
     auto& body_b = const_cast<EmbreeBody&>(static_cast<const EmbreeBody&>(b));
     body_a.move_to(pose_a);

@@ -1,7 +1,7 @@
 // FCL's BVHModel with OBBRSS nodes, as its README recommends for the collision of two meshes: collide() with
-// as many contacts as there may be, and without their positions. It is compiled twice: against the packaged
-// library, with the flags of the packages, and (LRB_FCL_HEADERS) with all of FCL's templates instantiated
-// here, with our flags.
+// unlimited contacts, without their positions. It is compiled twice: against the packaged library, with the
+// packages' flags, and (LRB_FCL_HEADERS) with all of FCL's templates instantiated here, with lrbscope's
+// flags.
 #include "bench/rivals/method.hpp"
 
 namespace lrb::methods {

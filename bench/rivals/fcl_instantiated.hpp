@@ -1,8 +1,8 @@
 #pragma once
-/// Includes FCL's headers so that every template that its library has is instantiated here instead. FCL
-/// declares them as `extern template`, which makes those who include its headers run the packaged code,
-/// compiled for any x86-64; without that word the declarations are instantiations. What FCL includes from
-/// elsewhere is included first, because there the word must stay.
+/// Includes FCL's headers so that every template of its library is instantiated here. FCL declares them as
+/// `extern template`, so that users of its headers run the packaged code, compiled for any x86-64; without
+/// that keyword the declarations are instantiations. Headers that FCL includes from elsewhere are included
+/// first, because the keyword must stay there.
 
 #include <algorithm>
 #include <array>

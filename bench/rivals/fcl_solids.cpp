@@ -1,5 +1,5 @@
-// FCL with other forms of bodies than meshes: an octree of cells against a mesh, with the size of cells as a
-// knob, and the convex hulls of both by GJK (libccd).
+// FCL with other geometries than meshes: an octree against a mesh, with the cell size as parameter, and the
+// convex hulls of both by GJK (libccd).
 #include "bench/rivals/method.hpp"
 
 namespace lrb::methods {
@@ -38,7 +38,7 @@ fcl::Transform3d transform(const Pose& pose) {
   return t;
 }
 
-/// Asks FCL for contacts of two geometries, with their positions.
+/// Queries FCL for contacts of two geometries, with their positions.
 MethodAnswer ask(const fcl::CollisionGeometryd& a, const Pose& pose_a, const fcl::CollisionGeometryd& b,
                  const Pose& pose_b, Mode mode) {
   static constexpr std::size_t kMost = std::size_t{1} << 40;
@@ -59,7 +59,7 @@ struct OctreeBody : MethodBody {
   fcl::BVHModel<fcl::OBBRSSd> mesh;
 };
 
-/// Makes an octree; each triangle is sampled at half the cell's size.
+/// Makes an octree; each triangle is sampled at half the cell size.
 std::shared_ptr<octomap::OcTree> cells_of(const Triangles& t, double cell) {
   auto tree = std::make_shared<octomap::OcTree>(cell);
   for (const auto& c : t.triangles) {
@@ -100,7 +100,7 @@ class Octree : public Method {
     return body;
   }
 
-  /// Asks for A's cells against B's mesh.
+  /// Queries A's cells against B's mesh.
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
     check_rigid(pose_a);

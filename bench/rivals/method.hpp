@@ -1,7 +1,7 @@
 #pragma once
-/// One interface for everything that finds the pairs of triangles in which two bodies meet: ours, brute
-/// force, and engines of others. Bodies are built once and queried at many poses; whatever else a query needs
-/// is kept from one to the next.
+/// One interface for every method that finds the intersecting triangle pairs of two bodies: lrbscope, brute
+/// force, and other engines. Bodies are built once and queried at many poses; other data that a query needs
+/// are kept between queries.
 
 #include <array>
 #include <cstdint>
@@ -17,10 +17,10 @@
 
 namespace lrb::methods {
 
-/// What a method says about two bodies whose surfaces do not meet.
+/// The answer of a method about two bodies whose surfaces do not intersect.
 enum class Says : std::uint8_t {
-  nothing,   ///< only whether and where surfaces meet
-  inside,    ///< whether one body lies in the other
+  nothing,   ///< only whether and where surfaces intersect
+  inside,    ///< whether one body is inside the other
   relation,  ///< all of Relation
 };
 constexpr auto words_of(Says) {
@@ -28,23 +28,23 @@ constexpr auto words_of(Says) {
       {{Says::nothing, "nothing"}, {Says::inside, "inside"}, {Says::relation, "relation"}});
 }
 
-/// What sets a method apart from one that answers exactly for two bodies at two poses.
+/// Differences from a method that answers exactly for two bodies at two poses.
 enum class Trait : std::uint8_t {
-  /// Its list includes pairs that are near or behind each other, because that is what contact means to it:
-  /// extra pairs are counted, but are wrong only where the bodies do not meet at all.
+  /// Its pairs include close ones or ones behind each other, because of its definition of contact. Extra
+  /// pairs are counted, but are wrong only if the bodies do not intersect at all.
   loose,
-  takes_2d,  ///< takes 2D bodies
-  /// Moves vertices exactly as Pose::apply does. Other methods can be given the same question only with world
-  /// coordinates in the body and poses that move nothing.
+  takes_2d,  ///< accepts 2D bodies
+  /// Transforms vertices exactly as Pose::apply does. Other methods get the same query only if the bodies are
+  /// in world coordinates and the poses are the identity.
   moves_exactly,
-  hard_cases,  ///< takes part in `stability`; else only in `bench` and `chart`
-  /// Gives pairs, or points of contact, up to an error that a knob trades for time.
+  hard_cases,  ///< takes part in `stability`; otherwise only in `bench` and `chart`
+  /// Returns pairs or contact points up to an error that a parameter trades for time.
   approximate,
   convex,                  ///< answers for the bodies' convex hulls
-  knows_poses_in_advance,  ///< not an answer to the same question
-  own_rep,                 ///< works on the LRB-rep as it comes: building a body means building that
+  knows_poses_in_advance,  ///< answers a different query
+  own_rep,                 ///< uses the given LRB-rep directly: building a body means building the LRB-rep
 };
-/// The words are JSON keys of lists of methods.
+/// Names are JSON keys in lists of methods.
 constexpr auto words_of(Trait) {
   return std::to_array<EnumWord<Trait>>({{Trait::loose, "loose"},
                                          {Trait::takes_2d, "plane"},
@@ -72,14 +72,14 @@ class Traits {
   std::uint8_t bits_ = 0;
 };
 
-/// The part that a method plays where methods are compared.
+/// Role of a method in comparisons.
 enum class Role : std::uint8_t {
-  peer,         ///< answers the question that `ours` does
-  ours,         ///< the one that all others are compared with, and that must not fail
-  ours_double,  ///< ours without the exact fallback: what exactness costs
-  ours_other,   ///< ours, asked otherwise
-  aim,          ///< the peer that our aims are set against
-  no_peer,      ///< answers another question, or takes minutes: in no table of peers
+  peer,         ///< answers the same query as `ours`
+  ours,         ///< the baseline of all comparisons, which must not fail
+  ours_double,  ///< lrbscope without the exact fallback: the cost of exactness
+  ours_other,   ///< lrbscope with another query
+  aim,          ///< the engine that the performance targets refer to
+  no_peer,      ///< answers another query or takes minutes: in no table of engines
 };
 constexpr auto words_of(Role) {
   return std::to_array<EnumWord<Role>>({{Role::peer, "peer"},
@@ -90,26 +90,25 @@ constexpr auto words_of(Role) {
                                         {Role::no_peer, "no_peer"}});
 }
 
-/// How a method is drawn on charts. Methods of one title are one series, which looks as the first of them
-/// does.
+/// Style of a method on charts. Methods with the same title form one series, in the style of the first.
 struct MethodStyle {
-  std::string title;   ///< for the key: "FCL"; empty: a style is chosen, under the method's name
+  std::string title;   ///< in the key: "FCL"; empty: a style is chosen, under the method's name
   std::string colour;  ///< #rrggbb
-  std::string shape;   ///< Chart.js's name of the point's shape
-  int point = 0;       ///< gnuplot's number of the point's shape
+  std::string shape;   ///< Chart.js's name of the point shape
+  int point = 0;       ///< gnuplot's number of the point shape
   friend bool operator==(const MethodStyle&, const MethodStyle&) = default;
 };
 
 struct MethodInfo {
   std::string name;    ///< for the command line: "fcl"
-  std::string title;   ///< for people, with the version: "FCL 0.7.0, OBBRSS, double"
-  std::string remark;  ///< what it answers, and how it was asked
+  std::string title;   ///< display name with the version: "FCL 0.7.0, OBBRSS, double"
+  std::string remark;  ///< what it answers, and the options of the query
   bool present = true;
-  bool pairs = true;          ///< lists the pairs; else it only says whether the surfaces meet
-  Says says = Says::nothing;  ///< what it says besides
+  bool pairs = true;          ///< lists the pairs; false: only reports whether the surfaces intersect
+  Says says = Says::nothing;  ///< what else it reports
   Traits traits = {Trait::hard_cases};
-  std::string knob;              ///< what `settings` set: "level"; empty: there is nothing to set
-  std::vector<double> settings;  ///< settings worth a sweep, from coarse to fine
+  std::string knob;              ///< the parameter that `settings` sets: "level"; empty: none
+  std::vector<double> settings;  ///< values for a sweep, from coarse to fine
   MethodStyle style = {};
   Role role = Role::peer;
   int rank = 1000;  ///< the methods' order in tables and charts: by rank, then by file
@@ -124,45 +123,44 @@ class MethodBody {
 };
 
 struct MethodAnswer {
-  bool contact = false;            ///< the surfaces meet
-  std::vector<SimplexPair> pairs;  ///< ascending, each once; in Mode::first_pair at most one
-  std::optional<bool> inside;  ///< no contact, and one body lies in the other; nothing if the method does not
-                               ///< say
-  std::optional<Relation> relation;  ///< nothing if the method does not say
-  double microseconds = 0;           ///< the time of the query alone, without sorting what the method found
+  bool contact = false;              ///< the surfaces intersect
+  std::vector<SimplexPair> pairs;    ///< ascending, each once; in Mode::first_pair at most one
+  std::optional<bool> inside;        ///< no contact, and one body is inside the other; nullopt: not reported
+  std::optional<Relation> relation;  ///< nullopt: not reported
+  double microseconds = 0;           ///< time of the query alone, without sorting the result
   std::uint64_t face_tests = 0;      ///< number of comparisons of two faces (or spheres), if it counts them
-  /// Proved: for any point of the answer, the distances to the two bodies add up to no more; world. Nothing
-  /// if that is not proved.
+  /// Proven bound: for any point of the answer, the sum of the distances to both bodies; world units.
+  /// nullopt: not proven.
   std::optional<double> error_bound;
-  std::vector<Eigen::Vector3d> points;  ///< in the world, if it says where the contact is but not which faces
-                                        ///< meet
+  /// World frame; if it reports the location of the contact but not the intersecting faces.
+  std::vector<Eigen::Vector3d> points;
 };
 
-/// A method. Not for two threads at once.
+/// A method. Not thread-safe.
 class Method {
  public:
   virtual ~Method() = default;
-  /// Sets the knob for the queries that follow.
+  /// Sets the parameter for the following queries.
   virtual void set(double) {}
-  /// Makes a body from the real simplices of an LRB-rep. Throws InputError if the method cannot take it,
-  /// which counts as a refusal.
+  /// Makes a body from the real simplices of an LRB-rep. Throws InputError if the method does not support it,
+  /// which counts as a rejection.
   virtual std::unique_ptr<MethodBody> build(const LrbRep& rep) = 0;
-  /// Answers for two bodies, different objects, that this very method has built. Most methods refuse poses
-  /// that are not rotations (InputError).
+  /// Answers for two bodies, different objects, built by this method. Most methods reject poses that are not
+  /// rigid (InputError).
   virtual MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                              Mode mode) = 0;
 };
 
-/// A method that this program may have or not.
+/// A method that may or may not be available in this program.
 struct MethodEntry {
   MethodInfo info;
-  std::unique_ptr<Method> (*make)() = nullptr;  ///< of those that are present
+  std::unique_ptr<Method> (*make)() = nullptr;  ///< null if not available
 };
 inline int rank_of(const MethodEntry& e) {
   return e.info.rank;
 }
 
-/// Returns the entry of a method whose Debian package was not found when the program was built.
+/// Returns the entry of a method whose Debian package was not found by the build.
 inline MethodEntry absent(const char* name, const char* title, const char* package, int rank = 1000,
                           MethodStyle style = {}) {
   MethodInfo info;
@@ -175,20 +173,20 @@ inline MethodEntry absent(const char* name, const char* title, const char* packa
   return {info};
 }
 
-/// Returns the methods of the program that this is linked to, in their order. A file of this folder defines
-/// `std::vector<MethodEntry> NAME_methods()`, and rivals.cmake names it.
+/// Returns the methods linked into this program, in their order. A file of this folder defines
+/// `std::vector<MethodEntry> NAME_methods()`, and rivals.cmake lists it.
 std::vector<MethodEntry> registered_methods();
 
-/// Returns the method of that name. Throws InputError if there is none, or it is absent.
+/// Returns the method of that name. Throws InputError if it is unknown or absent.
 const MethodEntry& find_method(const std::vector<MethodEntry>& methods, const std::string& name);
 
-// What methods are asked for where they are compared: pairs that meet, or a number.
+// The quantity that methods are compared on: intersecting pairs, or a number.
 
 enum class Quantity : std::uint8_t {
-  pairs,          ///< which pairs meet, and how the bodies lie
+  pairs,          ///< intersecting pairs, and the relation of the bodies
   distance,       ///< of the surfaces
-  first_contact,  ///< the time at which B, which moves straight, first meets A
-  depth,          ///< the length of the shortest translation that parts the bodies
+  first_contact,  ///< the time of first contact of B, which moves on a straight line, with A
+  depth,          ///< length of the shortest translation that separates the bodies
 };
 constexpr auto words_of(Quantity) {
   return std::to_array<EnumWord<Quantity>>({{Quantity::pairs, "pairs"},
@@ -197,7 +195,7 @@ constexpr auto words_of(Quantity) {
                                             {Quantity::depth, "depth"}});
 }
 
-/// What is said of a first contact if there is none: motions end at 1.
+/// Value of a first contact if there is none: motions end at 1.
 inline constexpr double kNever = 2;
 
 }  // namespace lrb::methods

@@ -1,4 +1,4 @@
-// ODE's triangle meshes: dCollide() of two of them, which makes contact points, each with its two triangles.
+// ODE's triangle meshes: dCollide() of two of them returns contact points, each with its two triangles.
 #include "bench/rivals/method.hpp"
 
 namespace lrb::methods {
@@ -18,7 +18,7 @@ constexpr int kRank = 70;
 namespace lrb::methods {
 namespace {
 
-constexpr int kMostContacts = 0xffff;  // the largest number that its flags can ask for
+constexpr int kMostContacts = 0xffff;  // the maximum that its flags can request
 
 struct OdeBody : MethodBody {
   explicit OdeBody(const Triangles& t) {
@@ -77,7 +77,7 @@ class Ode : public Method {
     for (int i = 0; i < n; ++i) {
       const dContactGeom& c = contacts_[static_cast<std::size_t>(i)];
       const bool in_order = c.g1 == body_a.geom;
-      if (c.side1 < 0 || c.side2 < 0) continue;  // it stands for several pairs
+      if (c.side1 < 0 || c.side2 < 0) continue;  // represents several pairs
       answer.pairs.push_back({static_cast<SimplexId>(in_order ? c.side1 : c.side2),
                               static_cast<SimplexId>(in_order ? c.side2 : c.side1)});
     }

@@ -22,14 +22,14 @@ const LrbRep& rep_of(const MethodBody& body) {
   return static_cast<const OurBody&>(body).rep;
 }
 
-/// Returns what the peers are asked, too: all pairs, or one.
+/// Returns the request put to all methods: all pairs, or one.
 CollideRequest request_for(Mode mode) {
   CollideRequest request;
   request.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;
   return request;
 }
 
-/// Returns the answer to a query with memory of its own, which is part of what is timed.
+/// Answers a query with its own memory, whose allocation is part of the measured time.
 CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const CollideRequest& request, Workspace& workspace) {
   return std::move(collide(a, pose_a, b, pose_b, request, workspace).value());
@@ -85,8 +85,8 @@ double diagonal_of(const LrbRep& rep) {
   return box.diagonal().norm();
 }
 
-/// Asks the query that keeps what it knows from one step to the next: the pose is the last of a few small
-/// steps. Only that one is timed.
+/// Runs the coherent query, which caches results between steps: the pose is the last of a few small steps.
+/// Only that one is timed.
 class OursCoherent : public Method {
  public:
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return std::make_unique<OurBody>(rep); }
@@ -107,11 +107,11 @@ class OursCoherent : public Method {
   }
 };
 
-/// What an answer is content with.
+/// Stopping criterion of a coarse query.
 enum class Content : std::uint8_t { one_pair, tolerance, tests };
 
-/// Does no more than is asked for: one pair of faces, to a tolerance, or within a number of face tests. Its
-/// pairs may be of wrappers' faces; it answers with the points where these meet.
+/// Stops early: after one pair of faces, within a tolerance, or after a number of face tests. Its pairs may
+/// be faces of wrappers; it answers with the points of their intersection.
 class OursCoarse : public Method {
  public:
   explicit OursCoarse(Content content) : content_(content) {}
@@ -142,7 +142,7 @@ class OursCoarse : public Method {
   }
 
  private:
-  /// Returns corners of the intersection; for faces that only come within rounding of each other, the middle.
+  /// Returns corners of the intersection; for faces within rounding of each other, the midpoint.
   static void add_points(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                          const SimplexPair& pair, std::vector<Eigen::Vector3d>& points) {
     Eigen::Vector3d p[3], q[3];

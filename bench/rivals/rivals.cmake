@@ -1,10 +1,12 @@
-# The workers that put cases to methods, ours and engines of others, found where their Debian packages are installed. They are
-# built beside lrbscope, which starts them, and never installed: CGAL's licence is GPL, so nothing of ours may contain it.
+# The workers that run cases with all methods, lrbscope's and other engines', found by their Debian packages.
+# They are built beside lrbscope, which starts them, and never installed: CGAL's licence is GPL, so no part of
+# lrbscope may contain it.
 
-# lrb_add_peer(NAME [SOURCE NAME.cpp] [PROGRAM lrbscope-methods] HAS MACRO [LIBRARIES ...]): an engine of another's, with
-# SOURCE, which defines NAME_methods() (see lrb_registry), in a library lrb_peer_NAME of its own, for what that engine wants
-# of the compiler; its headers are not held to our warnings. MACRO is defined if it was found: if LIBRARIES names any.
-# Two engines that define the same symbols need programs of their own: any name that begins with "lrbscope-methods".
+# lrb_add_peer(NAME [SOURCE NAME.cpp] [PROGRAM lrbscope-methods] HAS MACRO [LIBRARIES ...]): another engine.
+# SOURCE defines NAME_methods() (see lrb_registry) and is compiled into the separate library lrb_peer_NAME,
+# with the compiler options of that engine; its headers are exempt from lrbscope's warnings. MACRO is defined
+# if the engine was found, that is, if LIBRARIES names any. Two engines that define the same symbols need
+# separate programs: any name that begins with "lrbscope-methods".
 function(lrb_add_peer name)
   cmake_parse_arguments(peer "" "SOURCE;PROGRAM;HAS" "LIBRARIES" ${ARGN})
   if(NOT peer_SOURCE)
@@ -23,7 +25,7 @@ function(lrb_add_peer name)
   set_property(GLOBAL APPEND PROPERTY lrb_peers_of_${peer_PROGRAM} ${name})
 endfunction()
 
-# Bullet in double precision has the names of Bullet in single: a program of its own.
+# Bullet in double precision has the symbols of Bullet in single: a separate program.
 find_path(LRB_BULLET_INCLUDE btBulletCollisionCommon.h PATH_SUFFIXES bullet DOC "Bullet's headers")
 function(lrb_add_bullet name precision program)
   find_library(LRB_BULLET_COLLISION${precision} BulletCollision${precision} DOC "Bullet's collision detection")
@@ -49,7 +51,7 @@ if(CGAL_FOUND)
   set(cgal_library CGAL::CGAL)
 endif()
 lrb_add_peer(cgal HAS LRB_HAS_CGAL LIBRARIES ${cgal_library})
-target_compile_definitions(lrb_peer_cgal PRIVATE NDEBUG)  # as its manual asks for programs that are not debugged
+target_compile_definitions(lrb_peer_cgal PRIVATE NDEBUG)  # as its manual requires for release builds
 
 find_package(embree 3.13 QUIET)
 set(embree_library "")
@@ -71,7 +73,7 @@ lrb_add_peer(fcl_solids HAS LRB_HAS_FCL LIBRARIES ${fcl_library})
 if(LRB_NATIVE)  # as packaged, and not half of it for another processor; the file's options come after the target's
   set_source_files_properties(rivals/fcl.cpp rivals/fcl_solids.cpp PROPERTIES COMPILE_OPTIONS -march=x86-64)
 endif()
-# FCL with our flags has the names of FCL as packaged: a program of its own.
+# FCL built with lrbscope's flags has the symbols of FCL as packaged: a separate program.
 lrb_add_peer(fcl_headers PROGRAM lrbscope-methods-fcl HAS LRB_HAS_FCL LIBRARIES ${fcl_library})
 
 find_path(LRB_ODE_INCLUDE ode/ode.h DOC "ODE's headers")
@@ -83,13 +85,13 @@ endif()
 lrb_need("other engines" libode-dev ode_library)
 lrb_add_peer(ode HAS LRB_HAS_ODE LIBRARIES ${ode_library})
 
-# Ours.
+# lrbscope's own methods.
 set_property(GLOBAL PROPERTY lrb_own_methods ours plain_double spheres)
 add_library(lrb_own_methods STATIC rivals/ours.cpp rivals/approximations.cpp)
 target_link_libraries(lrb_own_methods PUBLIC lrb::methods)
 
-# lrb_register_methods(TARGET [PEER...]): gives a program our methods, if it is not one of the further workers, and those of
-# the peers; registered_methods() has them.
+# lrb_register_methods(TARGET [PEER...]): links a program with lrbscope's methods, unless it is one of the
+# further workers, and with those of the given engines; registered_methods() returns them.
 function(lrb_register_methods target)
   set(names ${ARGN})
   foreach(name IN LISTS names)
@@ -116,7 +118,7 @@ foreach(program IN LISTS LRB_WORKER_PROGRAMS)
   lrb_register_methods(${program} ${names})
 endforeach()
 
-# What makes the simplification that `levels` compares wrappers with, where CGAL is installed.
+# The simplification that `levels` compares wrappers with, if CGAL is installed.
 if(CGAL_FOUND)
   find_package(Eigen3 3.3 REQUIRED NO_MODULE)
   add_executable(lrbscope-simplify programs/simplify.cpp)
@@ -126,7 +128,7 @@ if(CGAL_FOUND)
   target_compile_options(lrbscope-simplify PRIVATE -w)
 endif()
 
-# What records other engines' walks for `xray`, where they are installed.
+# The recorders of other engines' traversals for `xray`, if they are installed.
 foreach(engine IN ITEMS fcl cgal)
   if(NOT ${engine}_library)
     continue()

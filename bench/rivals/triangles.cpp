@@ -31,8 +31,8 @@ void check_fits_float(const Triangles& t) {
 }
 
 void check_rigid(const Pose& pose) {
-  // Rotations come rounded, perhaps as products of several. This limit lies far above their errors, and far
-  // below any stretch that is meant.
+  // Rotations are rounded, perhaps as products of several. This limit is far above their errors, and far
+  // below any intended stretch.
   static constexpr double kRotationDefect = 1e-9;
   const Eigen::Matrix3d defect = pose.r * pose.r.transpose() - Eigen::Matrix3d::Identity();
   if (defect.cwiseAbs().maxCoeff() > kRotationDefect || pose.r.determinant() < 0)
@@ -100,7 +100,7 @@ bool holds(const std::array<Vector2d, 3>& t, const Vector2d& p) {
   return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
 }
 
-/// Tests triangles of one plane, seen along the axis in which its normal is longest.
+/// Tests coplanar triangles, projected along the axis of the normal's largest component.
 bool coplanar_meet(const Vector3d& normal, const Vector3d a[3], const Vector3d b[3]) {
   Eigen::Index drop = 0;
   normal.cwiseAbs().maxCoeff(&drop);
@@ -131,8 +131,8 @@ bool one_side(const std::array<double, 3>& d) {
   return d[0] * d[1] > 0 && d[0] * d[2] > 0;
 }
 
-/// Returns the corner that is alone on its side of the other's plane, or on the plane where the others share
-/// a side.
+/// Returns the corner that is alone on its side of the other triangle's plane, or on the plane if the others
+/// share a side.
 int lone_corner(const std::array<double, 3>& d) {
   if (d[0] * d[1] > 0) return 2;
   if (d[0] * d[2] > 0) return 1;
@@ -140,7 +140,7 @@ int lone_corner(const std::array<double, 3>& d) {
   return d[1] != 0 ? 1 : 2;
 }
 
-/// Returns where a triangle cuts the common line, along one of its coordinates.
+/// Returns the interval in which a triangle cuts the common line, along one of its coordinates.
 std::array<double, 2> interval(const Vector3d t[3], const std::array<double, 3>& d, Eigen::Index axis) {
   const int lone = lone_corner(d);
   std::array<double, 2> ends{};

@@ -1,5 +1,5 @@
 #pragma once
-/// Makes from an LRB-rep what methods build their bodies from.
+/// Converts an LRB-rep to the input of methods.
 
 #include <array>
 #include <chrono>
@@ -24,19 +24,19 @@ struct Triangles {
 /// Returns the real triangles of a 3D body. Throws InputError for a 2D one, as methods for 3D bodies do.
 Triangles triangles_of(const LrbRep& rep);
 
-/// Throws InputError if a coordinate is too large for a float, however it is rounded.
+/// Throws InputError if a coordinate exceeds the range of float.
 void check_fits_float(const Triangles& t);
 
-/// Throws InputError unless the pose is a rotation and a translation, as most engines expect.
+/// Throws InputError unless the pose is a rotation and a translation, as most engines require.
 void check_rigid(const Pose& pose);
 
 /// Returns the real faces in their order, with the vertices that they use.
 Mesh real_mesh(const LrbRep& rep);
 
-/// Returns the body moved: its world coordinates as its own. It has no regions.
+/// Returns the body with its world coordinates as its own. It has no regions.
 LrbRep at_pose(const LrbRep& rep, const Pose& pose);
 
-/// Puts pairs in order, each once.
+/// Sorts pairs and removes duplicates.
 void sort_pairs(std::vector<SimplexPair>& pairs);
 
 class Stopwatch {
@@ -49,20 +49,19 @@ class Stopwatch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-// Tests of two simplices in plain double with an epsilon, as textbooks give them. The exact ones are
-// compared with them.
+// Textbook tests of two simplices in plain double with an epsilon. The baseline for the exact ones.
 
-/// Distances from a plane, areas and parameters below this count as 0. The widely copied code of the triangle
-/// test by intervals uses this value, meant for coordinates of about 1. It is absolute on purpose: this is
-/// what the comparison is about.
+/// Plane distances, areas and parameters below this count as 0. The widely copied code of the interval
+/// triangle test uses this value, which suits coordinates of about 1. It is absolute on purpose: the
+/// comparison measures its effect.
 inline constexpr double kUsualEpsilon = 1e-6;
 
-/// Returns true if two triangles meet. Compares the intervals in which they cut the line common to their
+/// Returns true if two triangles intersect. Compares the intervals in which they cut the line common to their
 /// planes (T. Moeller, "A Fast Triangle-Triangle Intersection Test", Journal of Graphics Tools 2(2), 1997);
-/// coplanar ones by their edges in the plane.
+/// coplanar ones are tested by their edges in the plane.
 bool plain_triangles_meet(const Eigen::Vector3d a[3], const Eigen::Vector3d b[3]);
 
-/// Returns true if two segments of the plane z = 0 meet, by the sides that their ends lie on.
+/// Returns true if two segments of the plane z = 0 intersect, by the sides of their ends.
 bool plain_segments_meet(const Eigen::Vector3d a[2], const Eigen::Vector3d b[2]);
 
 }  // namespace lrb::methods

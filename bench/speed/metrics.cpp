@@ -16,8 +16,8 @@
 namespace lrb::bench {
 namespace {
 
-/// The number of points that distances are measured between: enough for three digits, few enough for all
-/// pairs of them.
+/// The number of points between which distances are measured: enough for three digits, few enough for all
+/// pairs.
 constexpr std::size_t kMostPoints = 1500;
 
 std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points) {
@@ -27,7 +27,7 @@ std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points)
   return out;
 }
 
-/// Returns the largest distance of a point of `from` to its nearest in `to`.
+/// Returns the maximum distance of a point of `from` to its closest point in `to`.
 double directed(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to) {
   double worst = 0;
   for (const Eigen::Vector3d& p : from) {
@@ -56,7 +56,7 @@ Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3d>& points) {
   return points.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(points.size()));
 }
 
-/// A triangle of a posed body, as the exact predicates take it.
+/// A triangle of a posed body, as input of the exact predicates.
 struct WorldTriangle {
   WorldTriangle(const LrbRep& rep, const Pose& pose, SimplexId simplex) {
     VertexId v[3] = {};
@@ -111,7 +111,7 @@ BodyDistance::BodyDistance(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
 BodyDistance::Side::Side(const LrbRep& rep, const Pose& p)
     : unit(rep.tree().unit()), pose(p), vertices(vertices_in_units(rep)), nearest(rep, vertices) {}
 
-/// For poses that are rotations, as those of data sets are.
+/// For rigid poses, as in data sets.
 double BodyDistance::Side::distance(const Eigen::Vector3d& world) {
   const Eigen::Vector3d x = pose.r.transpose() * (world - pose.t);
   return nearest.find(x / unit).distance * unit;
@@ -163,7 +163,7 @@ bool is_of_number(Metric m) {
   return std::find(std::begin(kOfNumbers), std::end(kOfNumbers), m) != std::end(kOfNumbers);
 }
 
-/// Returns true if a method that is asked for pairs answers what a metric is about at all.
+/// Returns true if a method that is compared on pairs provides the data for a metric.
 bool applies(const methods::MethodInfo& info, Metric m) {
   if (is_of_number(m)) return false;
   if (m == Metric::contact) return true;
@@ -194,8 +194,8 @@ double unit_of(const DataSet& set) {
   return set.quantity == Quantity::first_contact ? 1 : set.diagonal;
 }
 
-/// Judges a number. An interval stands for its upper end: there is a pair of points so far apart, the bodies
-/// are in contact then, and a translation as long parts them.
+/// Judges a number. For an interval its upper end is used: there is a pair of points at that distance, the
+/// bodies are in contact at that time, or a translation of that length separates them.
 Errors errors_of_number(const DataSet& set, const Question& q, const Record& r) {
   const Metric metric = chart_metric(set.quantity);
   Errors e;
@@ -209,7 +209,7 @@ Errors errors_of_number(const DataSet& set, const Question& q, const Record& r) 
   return e;
 }
 
-/// Judges which pairs all methods found for one question.
+/// Judges the pairs that all methods found for one query.
 class Judge {
  public:
   Judge(const DataSet& set, const Question& q, const LrbRep& a, const LrbRep& b)
@@ -258,12 +258,12 @@ class Judge {
   Region exact_;
 };
 
-/// What is gathered for a point.
+/// Data collected for a point.
 struct Gathered {
   Point point;
   std::vector<double> us;
   Errors sums;
-  std::optional<double> proved_sum = 0;  ///< nothing as soon as an answer comes without a proof
+  std::optional<double> proved_sum = 0;  ///< nullopt as soon as an answer has no proof
   double worst = -1;
 };
 
@@ -305,9 +305,9 @@ Point finished(Gathered g) {
   return p;
 }
 
-/// Marks the points that no other point beats: none is at least as fast and as right, and better in one of
-/// the two. A point without an answer has no time; one that says only yes or no, or knows the poses before,
-/// answers another question.
+/// Marks the points that are not dominated: no other point is at least as fast and as accurate, and better in
+/// one of the two. A point without an answer has no time; one that only answers yes or no, or knows the poses
+/// in advance, answers another query.
 void mark_frontiers(std::vector<Point>& points, const std::vector<methods::MethodInfo>& methods) {
   const auto told_more = [&](const Point& p) {
     return std::any_of(methods.begin(), methods.end(), [&](const methods::MethodInfo& m) {
@@ -360,7 +360,7 @@ namespace {
 using RecordsByQuestion = std::map<std::pair<std::string, std::uint64_t>, std::vector<const Record*>>;
 using JudgeFunction = std::function<Errors(const methods::MethodInfo&, const Record&)>;
 
-/// Returns what judges the answers to a question.
+/// Returns the function that judges the answers to a query.
 JudgeFunction judge_of(const DataSet& set, const Question& q, const std::vector<LrbRep>& bodies) {
   if (set.quantity != Quantity::pairs)
     return [&set, &q](const methods::MethodInfo&, const Record& r) { return errors_of_number(set, q, r); };

@@ -1,5 +1,5 @@
 #pragma once
-/// Computes from records one point for each method, at each setting, on each data set (two bodies at one
+/// Computes one point from the records for each method, at each setting, on each data set (two bodies at one
 /// class of poses).
 
 #include <algorithm>
@@ -18,11 +18,11 @@
 
 namespace lrb::bench {
 
-/// A way to be wrong, from 0 (not at all) to its worst value, which a question without an answer scores.
+/// An error measure, from 0 (exact) to its worst value, which is the score of an unanswered query.
 enum class Metric : std::uint8_t {
-  contact,    ///< says contact where there is none, or the reverse
-  precision,  ///< share of the pairs found that do not meet (1 - precision)
-  recall,     ///< share of the pairs that meet and were not found (1 - recall)
+  contact,    ///< reports contact if there is none, or the reverse
+  precision,  ///< share of the reported pairs that do not intersect (1 - precision)
+  recall,     ///< share of the intersecting pairs that were not reported (1 - recall)
   hausdorff,  ///< distance of the contact regions
   deviation,  ///< distance of the answer's points from both bodies
   length,
@@ -30,9 +30,9 @@ enum class Metric : std::uint8_t {
   centroid,
   normal,
   depth,
-  distance,        ///< error of the distance, where a method is asked for that number
-  time_of_impact,  ///< error of the time of first contact, where a method is asked for it
-  penetration,     ///< error of the penetration depth, where a method is asked for it
+  distance,        ///< error of the distance, for methods compared on it
+  time_of_impact,  ///< error of the time of first contact, for methods compared on it
+  penetration,     ///< error of the penetration depth, for methods compared on it
 };
 
 struct MetricInfo {
@@ -66,7 +66,7 @@ inline constexpr auto kMetricInfos = std::to_array<MetricInfo>({
 });
 inline constexpr std::size_t kMetrics = kMetricInfos.size();
 
-/// Returns the line of a metric. Number `i` of the table is that of static_cast<Metric>(i).
+/// Returns the row of a metric. Row `i` of the table is that of static_cast<Metric>(i).
 constexpr const MetricInfo& metric_info(Metric m) {
   return kMetricInfos[static_cast<std::size_t>(m)];
 }
@@ -76,10 +76,10 @@ consteval bool metrics_are_in_enum_order() {
   return true;
 }
 static_assert(metrics_are_in_enum_order());
-/// Returns how wrong an answer is where this is asked for: the error that the chart shows.
+/// Returns the metric that the chart shows for a quantity.
 Metric chart_metric(Quantity quantity);
 
-/// The errors of the answer to one question; nothing where a method does not answer that.
+/// The errors of the answer to one query; nullopt if the method does not provide it.
 using Errors = std::array<std::optional<double>, kMetrics>;
 
 struct Point {
@@ -87,19 +87,18 @@ struct Point {
   std::optional<double> setting;
   PoseClass pose_class = PoseClass::apart;
   std::size_t questions = 0, refused = 0, crashed = 0, timed_out = 0;
-  Errors errors;  ///< means over the questions
-  /// What is proved, mean: Metric::deviation is no more; or where a number was asked for, its interval is as
-  /// wide, in the unit of its error. Nothing: not proved.
+  Errors errors;  ///< means over the queries
+  /// Mean proven bound: of Metric::deviation, or, for a number, the width of its interval in the unit of its
+  /// error. nullopt: not proven.
   std::optional<double> proved_off;
-  double median = 0, p95 = 0, p99 = 0;  ///< microseconds, hot, all pairs, over the questions that were
-                                        ///< answered
+  double median = 0, p95 = 0, p99 = 0;  ///< microseconds, hot, all pairs, over the answered queries
   double build_seconds = 0, bytes = 0;  ///< of both bodies
   double face_tests = 0;                ///< mean; 0: not counted
   std::uint64_t worst_question = 0;     ///< the one with the largest error
-  bool frontier = false;                ///< no other point of its data set is both faster and less wrong
+  bool frontier = false;                ///< no other point of its data set is both faster and more accurate
 
   std::size_t failed() const { return refused + crashed + timed_out; }
-  /// Returns the error that the chart shows: that of the number or the contact region if the method gives
+  /// Returns the error that the chart shows: that of the number or the contact region if the method provides
   /// one, else that of its yes or no.
   double error() const;
   bool says_only_yes_or_no() const;
@@ -112,10 +111,10 @@ std::vector<Point> measure_points(const std::vector<DataSet>& sets,
                                   const std::vector<methods::MethodInfo>& methods,
                                   const std::vector<Record>& records, const MetricProgress& progress = {});
 
-/// Returns them as JSON, one on each line.
+/// Returns them as JSON, one per line.
 std::string to_lines(const std::vector<Point>& points);
 
-/// Returns the value below which a share of the others lies (nearest rank); 0 if there are none.
+/// Returns the quantile of the values at `share` (nearest rank), or 0 if there are no values.
 inline double quantile(std::vector<double> x, double share) {
   if (x.empty()) return 0;
   const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(x.size())));
@@ -126,7 +125,7 @@ inline double quantile(std::vector<double> x, double share) {
 inline double median(const std::vector<double>& x) {
   return quantile(x, 0.5);
 }
-/// Returns the geometric mean of positive values; 0 if there are none.
+/// Returns the geometric mean of positive values, or 0 if there are no values.
 inline double geometric_mean(const std::vector<double>& x) {
   if (x.empty()) return 0;
   double sum = 0;
@@ -134,15 +133,15 @@ inline double geometric_mean(const std::vector<double>& x) {
   return std::exp(sum / static_cast<double>(x.size()));
 }
 
-// Measures the distance between the contact region that a method reports, by a list of pairs or by points,
+// Measures the distance between the contact region that a method reports, as a list of pairs or as points,
 // and the exact one of the two posed bodies.
 
-/// A contact in few numbers and many points; all in the world frame and the meshes' unit.
+/// A contact as a few numbers and many points; all in the world frame and the meshes' unit.
 struct Region {
   std::vector<Eigen::Vector3d> points;  ///< corners of the intersections, at most kMostPoints of them
   double length = 0, area = 0;          ///< sums over connected regions
   Eigen::Vector3d centroid{0, 0, 0};    ///< of the points
-  Eigen::Vector3d normal{0, 0, 0};      ///< of the largest connected region; zero: none
+  Eigen::Vector3d normal{0, 0, 0};      ///< of the largest connected region; zero if undefined
   double depth = 0;                     ///< the largest
 };
 
@@ -154,13 +153,13 @@ struct RegionError {
   double depth = 0;                    ///< over the diagonal
 };
 
-/// Describes lists of pairs of two bodies at given poses.
+/// Computes the regions of lists of pairs of two bodies at given poses.
 class RegionMaker {
  public:
   /// Keeps references to the bodies.
   RegionMaker(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
-  /// Describes the region of these pairs. Pairs that do not meet count only for the points, where the middles
-  /// of their triangles stand for them.
+  /// Computes the region of these pairs. Pairs that do not intersect contribute only to the points, by the
+  /// centroids of their triangles.
   Region of_pairs(const std::vector<SimplexPair>& pairs);
 
  private:
@@ -169,14 +168,13 @@ class RegionMaker {
   Workspace workspace_;
 };
 
-/// Tells how far points in the world are off two posed bodies.
+/// Measures the distance of world points from two posed bodies.
 class BodyDistance {
  public:
   BodyDistance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
-  BodyDistance(const BodyDistance&) = delete;  // its parts refer to each other
+  BodyDistance(const BodyDistance&) = delete;  // its members refer to each other
   BodyDistance& operator=(const BodyDistance&) = delete;
-  /// Returns the largest sum of the distances from the one body's surface and from the other's; 0 without
-  /// points.
+  /// Returns the maximum over the points of the sum of the distances from both surfaces, or 0 without points.
   double off(const std::vector<Eigen::Vector3d>& points);
 
  private:
@@ -193,7 +191,7 @@ class BodyDistance {
 
 Region of_points(const std::vector<Eigen::Vector3d>& points);
 
-/// Returns the errors. Two empty regions have none; if only one is empty, all are the worst.
+/// Returns the errors. Two empty regions have no error; if only one is empty, all errors are the worst.
 RegionError region_error(const Region& exact, const Region& found, double diagonal);
 
 }  // namespace lrb::bench

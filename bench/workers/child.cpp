@@ -16,12 +16,12 @@
 namespace lrb::workers {
 namespace {
 
-constexpr int kGiven = 3;  // the child's file descriptor for the file that it is given
+constexpr int kGiven = 3;  // the child's file descriptor for `given`
 
 /// Runs in the child, between fork and exec: must not allocate or take locks.
 [[noreturn]] void become(char* const* arguments, int output, int given, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(kNoSuchProgram);  // the parent died before we asked
+  if (getppid() != parent) _exit(kNoSuchProgram);  // the parent died before prctl()
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);

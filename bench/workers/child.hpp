@@ -1,5 +1,5 @@
 #pragma once
-/// Runs a program of ours beside this one and reads its lines.
+/// Runs another program of lrbscope as a child process and reads its lines.
 
 #include <chrono>
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace lrb::workers {
 
-/// The exit code of a child whose program does not exist, as in shells.
+/// Exit code of a child whose program does not exist, as in shells.
 inline constexpr int kNoSuchProgram = 127;
 
-/// A process that is killed when this object goes, and when this process ends, however that ends (Linux). Its
+/// A process that is killed when this object is destroyed, and when this process ends in any way (Linux). Its
 /// stderr is discarded.
 class Child {
  public:
   /// Starts a program. `given` is a file descriptor that becomes the child's number 3, or -1. Throws
-  /// EnvironmentError if the machine has no room for another process; a program that does not exist ends with
+  /// EnvironmentError if the system cannot start another process. A program that does not exist ends with
   /// kNoSuchProgram.
   Child(const std::vector<std::string>& command, int given);
   ~Child();
@@ -26,10 +26,10 @@ class Child {
 
   /// Returns the file descriptor to wait on for lines.
   int output() const { return output_; }
-  /// Reads what there is, and appends the lines that are whole. Returns false at the end.
+  /// Reads the available output, and appends complete lines. Returns false at the end.
   bool read(std::vector<std::string>& lines);
   void kill();
-  /// Waits for the end; returns an exit code, or -signal.
+  /// Waits for the end. Returns an exit code, or -signal.
   int wait();
 
  private:
@@ -38,8 +38,8 @@ class Child {
   std::string unfinished_;
 };
 
-/// Returns all lines of a child that should end soon; empty if it did not end with code 0 in time. `given` as
-/// for Child.
+/// Returns all lines of a child that is expected to end soon, or an empty list if it did not end with code 0
+/// within `limit`. `given` as for Child.
 std::vector<std::string> lines_of(const std::vector<std::string>& command, std::chrono::seconds limit,
                                   int given = -1);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Writes and reads what a worker says about its methods, one line for each.
+/// Writes and reads a worker's description of its methods, one line for each.
 
 #include <exception>
 #include <string>
@@ -15,13 +15,13 @@
 namespace lrb::workers {
 
 nlohmann::ordered_json to_json(const methods::MethodInfo& info);
-/// Reads a line. Throws InputError that says what is wrong with it.
+/// Reads a line. Throws InputError that states what is wrong with it.
 methods::MethodInfo method_info_from(const nlohmann::json& value);
 
-// What becomes of a question that a method refuses, or that ends in an exception.
+// Outcome of a query that a method rejects, or that ends with an exception.
 
-/// Calls ask(). Notes an InputError in the record as a refusal, and any other exception as a crash, with what
-/// it says. Record: has a `message`, and an `outcome` that may be refused or crashed.
+/// Calls ask(). Records an InputError as a rejection, and any other exception as a crash, with its message.
+/// Record: has a `message`, and an `outcome` that may be refused or crashed.
 template <class Record, class Ask>
 void note_failures(Record& record, Ask ask) {
   using Outcome = decltype(record.outcome);
@@ -38,7 +38,8 @@ void note_failures(Record& record, Ask ask) {
 
 }  // namespace lrb::workers
 
-// Pairs of simplices in JSON: one array of numbers, A's and B's of the first pair, of the second, and so on.
+// Pairs of simplices in JSON: one array of numbers, A's and B's of the first pair, then of the second, and so
+// on.
 
 template <>
 struct lrb::io::JsonOf<std::vector<lrb::SimplexPair>> {

@@ -18,7 +18,7 @@
 namespace lrb::workers {
 namespace {
 
-constexpr int kPatience = 3;  // number of cases in a row on which a method may hang
+constexpr int kPatience = 3;  // consecutive cases on which a method may hang
 constexpr int kBadInput = 2;  // an exit code that does not count as a crash
 
 std::string how_it_ended(int status) {
@@ -28,7 +28,7 @@ std::string how_it_ended(int status) {
          (name != nullptr ? std::string(" (") + name + ")" : "");
 }
 
-/// Returns a worker's complaint about what we asked, or nothing.
+/// Returns a worker's error message about its input, or an empty string.
 std::string complaint(const std::string& line) {
   if (line.compare(0, std::strlen("{\"error\""), "{\"error\"") != 0) return "";
   const auto value = nlohmann::json::parse(line, nullptr, false);
@@ -62,7 +62,7 @@ void Job::receive() {
   if (status == kBadInput || status == kNoSuchProgram)
     throw EnvironmentError(task_.command.front() + ": " + how_it_ended(status) + "; build it again");
   if (next_ == task_.end)
-    child_.reset();  // whatever became of it after its last line does not matter
+    child_.reset();  // its exit after the last line is ignored
   else
     go_on({false, how_it_ended(status)});
 }
@@ -110,7 +110,7 @@ fs::path folder_of_workers() {
   return error ? fs::path(".") : self.parent_path();
 }
 
-/// Returns the workers' programs in the order of their names.
+/// Returns the worker programs, sorted by name.
 std::vector<fs::path> programs_in(const fs::path& folder) {
   std::vector<fs::path> programs;
   std::error_code error;

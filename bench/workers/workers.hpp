@@ -1,5 +1,5 @@
 #pragma once
-/// Finds the worker programs beside lrbscope, and the methods that they have.
+/// Finds the worker programs beside lrbscope, and their methods.
 
 #include <chrono>
 #include <functional>
@@ -12,9 +12,9 @@
 
 namespace lrb::workers {
 
-// Puts the cases of one family to one method, or to exact brute force, in a chain of worker processes: where
-// one dies or hangs, the next begins after the case it was at. If several cases in a row hang, the remaining
-// ones are not asked and count as time-outs, so that a run ends in time whatever a method does.
+// Runs the cases of one family with one method, or with exact brute force, in a chain of worker processes: if
+// one dies or hangs, the next begins after its current case. If several consecutive cases hang, the remaining
+// ones are skipped and count as time-outs, so that the run ends in bounded time.
 
 /// What ended a worker before its work was done.
 struct Mishap {
@@ -29,9 +29,9 @@ class Job {
   struct Task {
     std::vector<std::string> command;  ///< without --begin and --end
     std::uint64_t begin = 0, end = 0;  ///< cases
-    int given = -1;                    ///< file descriptor that the worker gets, see Child
+    int given = -1;                    ///< file descriptor passed to the worker, see Child
     Clock::duration limit{};           ///< for one case
-    /// Called in order for each case, with its line or the mishap that took its place.
+    /// Called in order for each case, with its line or the failure in its place.
     std::function<void(std::uint64_t k, const std::string& line)> on_line;
     std::function<void(std::uint64_t k, const Mishap& mishap)> on_mishap;
   };
@@ -41,9 +41,9 @@ class Job {
   bool done() const { return !child_; }
   int output() const { return child_->output(); }
   Clock::time_point deadline() const { return deadline_; }
-  /// Reads lines; call it when there is something to read.
+  /// Reads lines. Call it when there is output to read.
   void receive();
-  /// Ends the case at hand; call it when the deadline has passed.
+  /// Ends the current case. Call it when the deadline has passed.
   void expire();
 
  private:
@@ -51,45 +51,45 @@ class Job {
   void go_on(const Mishap& mishap);
 
   Task task_;
-  std::uint64_t next_;  ///< the case whose line comes next
-  int hung_ = 0;        ///< number of cases in a row that hung
+  std::uint64_t next_;  ///< case of the next line
+  int hung_ = 0;        ///< consecutive cases that hung
   std::optional<Child> child_;
   Clock::time_point deadline_;
 };
 
-/// Runs a job to its end, with all its lines and mishaps.
+/// Runs a job to its end, with all its lines and failures.
 void run_to_end(Job job);
 
 struct MethodColumn {
   std::string name;     ///< for the command line: "ours", "fcl"
-  std::string title;    ///< for people: "FCL 0.7.0, OBBRSS, double"
-  std::string remark;   ///< what it answers, and how it was asked
-  bool present = true;  ///< false: not installed when this was built
+  std::string title;    ///< display name: "FCL 0.7.0, OBBRSS, double"
+  std::string remark;   ///< what it answers, and the options of the query
+  bool present = true;  ///< false: not available when this was built
 };
 
 struct WorkerMethod {
   MethodColumn column;
-  std::string program;       ///< path of the worker that has it
-  methods::MethodInfo info;  ///< what the worker says about it, including what the column shows
+  std::string program;       ///< path of the worker with this method
+  methods::MethodInfo info;  ///< the worker's description of it, including the entries of the table column
 };
 
-/// Asks the workers in the folder of this very program, or in the one that the environment's LRBSCOPE_METHODS
-/// names. Throws EnvironmentError if there is none, or if one does not answer.
+/// Queries the workers in the folder of the running program, or in the folder named by the environment
+/// variable LRBSCOPE_METHODS. Throws EnvironmentError if there is no worker or one does not answer.
 std::vector<WorkerMethod> find_all_methods();
 /// Returns those that take part in the stability experiment.
 std::vector<WorkerMethod> find_methods();
 
-/// Returns those that answer with a number. Throws EnvironmentError if their worker is not there.
+/// Returns those that answer with a number. Throws EnvironmentError if their worker is missing.
 std::vector<WorkerMethod> find_number_methods(methods::Quantity quantity);
-/// Returns the path of that worker. Throws EnvironmentError if it is not there.
+/// Returns the path of that worker. Throws EnvironmentError if it is missing.
 std::string number_worker();
 
-/// Returns the methods of one program, in its order, which may be asked for some of them with options. Throws
-/// EnvironmentError if it does not answer.
+/// Returns the methods of one program, in its order; options may select some of them. Throws EnvironmentError
+/// if it does not answer.
 std::vector<WorkerMethod> methods_of(const std::string& program,
                                      const std::vector<std::string>& options = {});
 
-/// Returns the path of another program in that folder; empty if it is not there.
+/// Returns the path of another program in that folder, or an empty string if it is missing.
 std::string program_beside(const std::string& name);
 
 }  // namespace lrb::workers

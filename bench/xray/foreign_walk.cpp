@@ -43,15 +43,15 @@ std::vector<std::uint32_t> leaves_of(const trace::TreeShape& tree) {
   return out;
 }
 
-/// A pair of bounding volumes with what led to it.
+/// A pair of bounding volumes with its predecessor.
 struct Visit {
   std::size_t parent = kNone;  ///< index of a visit; kNone: the first pair
   std::optional<NodeStep> step;
-  std::uint8_t children = 0;  ///< pairs that it led to
+  std::uint8_t children = 0;  ///< pairs descended into from it
   static constexpr std::size_t kNone = ~std::size_t{0};
 };
 
-/// Finds which pair led to which: that of the parents, or of one parent and the other node.
+/// Finds the predecessor of each pair: the pair of the parents, or of one parent and the other node.
 class Descent {
  public:
   explicit Descent(const std::array<trace::TreeShape, 2>& trees)
@@ -59,13 +59,13 @@ class Descent {
         parents_{parents_of(trees[0]), parents_of(trees[1])},
         leaves_{leaves_of(trees[0]), leaves_of(trees[1])} {}
 
-  /// Returns a visit for each event; those of leaf tests mean nothing.
+  /// Returns a visit for each event; those of leaf tests are unused.
   std::vector<Visit> visits_of(const std::vector<ForeignEvent>& events) {
     std::vector<Visit> out(events.size());
     visited_.clear();
     for (std::size_t i = 0; i < events.size(); ++i) {
       const ForeignEvent& e = events[i];
-      if (e.is_leaf_test) {  // without a test of the leaves' boxes, if the engine does none
+      if (e.is_leaf_test) {  // without a test of the leaves' boxes, if the engine has none
         const std::uint32_t a = leaves_[0][e.a], b = leaves_[1][e.b];
         if (!visited_.count(key(a, b))) lead(a, b, i, out);
         continue;
@@ -80,7 +80,7 @@ class Descent {
  private:
   static std::uint64_t key(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
 
-  /// Finds what led to visit i, of nodes a and b.
+  /// Finds the predecessor of visit i, of nodes a and b.
   void lead(std::uint32_t a, std::uint32_t b, std::size_t i, std::vector<Visit>& out) const {
     const std::uint32_t up_a = parents_[0][a], up_b = parents_[1][b];
     const struct {
@@ -115,7 +115,7 @@ std::vector<SimplexPair> pairs_of(const ForeignStep& step) {
   return out;
 }
 
-/// Tells the recorder what the engine did, and returns its answer.
+/// Reports the engine's events to the recorder, and returns its answer.
 CollideResult replay(const ForeignStep& step, Descent& descent, trace::Recorder& recorder) {
   const std::vector<Visit> visits = descent.visits_of(step.events);
   std::vector<std::uint32_t> told(visits.size(), kNull);
@@ -213,7 +213,7 @@ void append(std::string& text, const Pose& pose) {
     for (int column = 0; column < 4; ++column) append(text, column < 3 ? pose.r(row, column) : pose.t[row]);
 }
 
-/// Reads the words of a line one by one.
+/// Parses the words of a line one by one.
 class Words {
  public:
   Words(std::string_view line, const std::string& engine) : rest_(line), engine_(engine) {}
@@ -246,7 +246,7 @@ class Words {
   const std::string& engine_;
 };
 
-/// Reads what a program printed.
+/// Parses the output of a program.
 class Reader {
  public:
   Reader(const std::vector<std::string>& lines, const std::string& engine) : lines_(lines), engine_(engine) {}
@@ -261,7 +261,7 @@ class Reader {
   }
 
  private:
-  /// Returns the words of the next line after its first one, which must be this.
+  /// Returns the words of the next line after its first one, which must be `first`.
   Words next(std::string_view first) {
     Words words = next();
     if (words.word() != first) words.fail();

@@ -3,7 +3,7 @@
 /// 2. Disjoint solids: measure the distance, and compare it with the clearance.
 /// 3. Otherwise cut each surface by the other and count the pieces inside and outside (surface_pieces.hpp):
 ///    they decide whether interiors overlap, and the kind.
-/// 4. Overlapping interiors: bound the penetration depth (depth.hpp) and the common volume
+/// 4. If interiors overlap, bound the penetration depth (depth.hpp) and the common volume
 ///    (shared_volume.cpp).
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 using parting::UnitBodies;
 
-/// Adapters that forward bounds to a probe, which may be null as long as no bounds are reported.
+/// Adapters that forward bounds to a probe, which may be null if no bounds are reported.
 struct GapTeller final : BoundsProbe {
   explicit GapTeller(ClashProbe* p) : probe(p) {}
   void bounds(const Bounds& known) override { probe->distance(known); }
@@ -35,8 +35,8 @@ struct DepthTeller final : BoundsProbe {
   ClashProbe* probe;
 };
 
-/// Returns the kind of contact of bodies whose interiors are disjoint but whose surfaces intersect: by the
-/// highest dimension of what they share.
+/// Returns the kind of contact of bodies whose interiors are disjoint but whose surfaces intersect: the
+/// highest dimension of a pair's intersection.
 ClashKind touching_kind(QueryContext& query, const CollideResult& found) {
   int most = 1;
   for (const SimplexPair& pair : found.pairs) {
@@ -51,9 +51,9 @@ ClashKind touching_kind(QueryContext& query, const CollideResult& found) {
                      : ClashKind::touching_point;
 }
 
-/// Returns the kind of contact of bodies whose interiors overlap. One contains the other if nothing of the
-/// other's surface is outside of it, and none of its own surface is inside the other (a cavity) or back to
-/// back with the other's (a cavity that the other fills).
+/// Returns the kind of contact of bodies whose interiors overlap. One body contains the other if no piece of
+/// the other's surface is outside it, and no piece of its own surface is inside the other (a cavity) or
+/// coincides with the other's surface with opposite orientation (a cavity that the other fills).
 ClashKind overlapping_kind(const std::array<SurfacePieces, 2>& pieces) {
   const SurfacePieces &a = pieces[0], &b = pieces[1];
   const bool a_in_b = a.outside == 0 && b.inside == 0 && !a.on_opposite;
@@ -61,7 +61,7 @@ ClashKind overlapping_kind(const std::array<SurfacePieces, 2>& pieces) {
   // Containment in both directions: the same solid.
   if (a_in_b) return b_in_a ? ClashKind::equal : ClashKind::a_inside_b;
   if (b_in_a) return ClashKind::b_inside_a;
-  // Several pieces outside on one component: the other body goes through it.
+  // Several pieces outside on one component: the other body passes through it.
   if (b.most_outside > 1) return ClashKind::cuts_through;
   return a.most_outside > 1 ? ClashKind::pierces : ClashKind::protrudes;
 }
@@ -77,7 +77,7 @@ void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
       distance(a, pose_a, b, pose_b, ask, context, nullptr, probe != nullptr ? &teller : nullptr);
   result.distance = {d.lower, d.upper};
   bool within = d.upper <= request.clearance;
-  // The interval contains the clearance: compare exactly. This request ends when that is decided.
+  // The interval contains the clearance: compare exactly. This request ends when that comparison is decided.
   if (!within && d.lower <= request.clearance) {
     ask.within = request.clearance;
     within = distance(a, pose_a, b, pose_b, ask, context).within.value_or(false);
@@ -85,9 +85,9 @@ void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
   result.kind = within ? ClashKind::within_clearance : ClashKind::apart;
 }
 
-/// Decides the kind of contact of bodies that have a point in common.
+/// Decides the kind of contact of bodies that share a point.
 void decide_kind(QueryContext& query, const CollideResult& found, ClashResult& result) {
-  // Exact; gives up, with a reason, on bodies that are no solids and on faces cut into too many cells.
+  // Exact. Fails, with a reason, for bodies that are not solids and for faces cut into too many cells.
   const auto pieces = parting::surface_pieces(query, found, false, &result.reason);
   if (!pieces) return;
   result.pieces = *pieces;
@@ -96,7 +96,7 @@ void decide_kind(QueryContext& query, const CollideResult& found, ClashResult& r
   if (enters)
     result.interiors_overlap = Answer::yes;
   else
-    // Without one, interiors overlap only if surfaces coincide with both solids on the same side.
+    // Otherwise interiors overlap only if surfaces coincide with both solids on the same side.
     result.interiors_overlap = (*pieces)[0].on_same ? interiors_overlap(query, found) : Answer::no;
   result.shares_faces = (*pieces)[0].on_same && result.interiors_overlap == Answer::yes;
   if (result.interiors_overlap == Answer::yes) result.kind = overlapping_kind(*pieces);
@@ -105,11 +105,11 @@ void decide_kind(QueryContext& query, const CollideResult& found, ClashResult& r
 }
 
 double to_world_cube(double volume, int exponent) {
-  // In three steps: 2^(3 exponent) may be out of range where the product is not.
+  // In three steps: 2^(3 exponent) may be out of range even if the product is not.
   return std::ldexp(std::ldexp(std::ldexp(volume, exponent), exponent), exponent);
 }
 
-/// Returns a volume in the world's unit; what leaves the range of normal doubles is rounded outward.
+/// Returns a volume in world units. Values outside the range of normal doubles are rounded outward.
 ProvedInterval world_volume(const ProvedInterval& unit, int exponent) {
   constexpr double kLeast = std::numeric_limits<double>::min(), kMost = std::numeric_limits<double>::max();
   ProvedInterval v{to_world_cube(unit.lower, exponent), to_world_cube(unit.upper, exponent)};
@@ -124,7 +124,7 @@ ProvedInterval world_volume(const ProvedInterval& unit, int exponent) {
 void measure_overlap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                      const ClashRequest& request, QueryContext& query, const CollideResult& found,
                      ClashProbe* probe, ClashResult& result) {
-  // All of it in one frame, in which no coordinate exceeds 1/2.
+  // In one common frame, in which no coordinate exceeds 1/2.
   const UnitBodies bodies = parting::unit_bodies(query);
   if (request.depth || request.along) {
     parting::Parting parting(a, pose_a, b, pose_b, bodies);
@@ -138,7 +138,7 @@ void measure_overlap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const
     }
     if (request.along) result.along = finder.along(request.along->stableNormalized());
   }
-  // The faces of a body that intersects itself bound no single solid.
+  // The faces of a body that intersects itself do not bound a single solid.
   if (request.volume && !a.overlaps_itself() && !b.overlaps_itself())
     result.volume = world_volume(parting::shared_volume(bodies), bodies.frame.exponent);
 }
@@ -173,7 +173,7 @@ ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   const CollideResult found = collide(a, pose_a, b, pose_b, {}, context.query, unwatched);
   ClashResult result;
   const bool solids = a.closed() && b.closed();
-  // Step 2. If a body is open, it has no inside: without an intersecting pair the bodies count as disjoint.
+  // An open body has no interior: without an intersecting pair the bodies count as disjoint.
   if (found.relation == Relation::separate || (found.pairs.empty() && !solids)) {
     measure_gap(a, pose_a, b, pose_b, request, context, probe, result);
     result.interiors_overlap = found.interiors_overlap;
@@ -186,7 +186,7 @@ ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   if (result.interiors_overlap == Answer::no)
     write_no_overlap(request, result);
   else if (solids)
-    // Step 4, also where it is unknown whether interiors overlap.
+    // Step 4, also if it is unknown whether interiors overlap.
     measure_overlap(a, pose_a, b, pose_b, request, context.query, found, probe, result);
   return result;
 }

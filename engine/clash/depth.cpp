@@ -2,14 +2,15 @@
 /// (Cameron and Culley 1986). Steps:
 /// 1. Lower bound: convex sets inside both bodies, and the depth of their Minkowski difference
 ///    (minkowski.hpp).
-/// 2. Upper bound: the depth of the convex hulls. For two convex bodies that is all: both bounds agree up to
-///    rounding.
+/// 2. Upper bound: the depth of the convex hulls. For two convex bodies this suffices: both bounds agree up
+///    to rounding.
 /// 3. Otherwise search for shorter translations: along face normals, then by small rotations of the best
 ///    direction.
 /// 4. Raise the lower bound by pairs of balls inside the bodies (overlap_proof.hpp), and search where that
 ///    fails.
 /// 5. Prove the best translation with the distance query.
-/// Only lower bounds of steps 1 and 4 and the translation of step 5 are proven; the search is a heuristic.
+/// Only the lower bounds of steps 1 and 4 and the translation of step 5 are proven; the search is a
+/// heuristic.
 
 #include "engine/clash/depth.hpp"
 
@@ -36,15 +37,15 @@ Vector3d normal_of(const UnitBody& body, std::uint32_t triangle) {
   return 0.5 * (b - a).cross(c - a);
 }
 
-/// Directions with the areas of the faces that they are normal to; nearly equal directions are merged.
+/// Directions with the total area of the faces normal to them; nearly equal directions are merged.
 class Directions {
  public:
   void add(const Vector3d& normal) {
     const double area = normal.stableNorm();
-    // A face without area has no direction.
+    // A degenerate face has no direction.
     if (!(area > 0)) return;
     const Vector3d n = normal / area;
-    // Directions in one cell of a grid are merged: the first one stands for all, with the sum of the areas.
+    // Directions in one cell of a grid are merged into the first one, with the sum of the areas.
     std::array<int, 3> cell;
     for (int k = 0; k < 3; ++k)
       cell[static_cast<std::size_t>(k)] = static_cast<int>(std::lround(n[k] * kDirectionGrid));
@@ -52,9 +53,9 @@ class Directions {
     if (is_new) list_.push_back({n, 0});
     list_[known->second].second += area;
   }
-  /// Returns those of the largest areas.
+  /// Returns the directions of largest area.
   std::vector<Vector3d> largest(std::size_t count) {
-    // Stable: of equal areas the first found stays first.
+    // Stable: among equal areas the first found comes first.
     std::stable_sort(list_.begin(), list_.end(),
                      [](const auto& a, const auto& b) { return a.second > b.second; });
     std::vector<Vector3d> out;
@@ -84,18 +85,16 @@ double farthest(const UnitBody& body, const Vector3d& n) {
 DepthFinder::DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies,
                          Parting& parting, BoundsTeller* teller)
     : query_(query), result_(result), bodies_(bodies), parting_(parting), teller_(teller) {
-  // Sets of convex bodies are the bodies themselves, slightly shrunk: worth trying once for all queries
-  // below.
+  // The set of a convex body is the body itself, slightly shrunk: computed once for all queries below.
   for (const Side side : {Side::a, Side::b}) whole_[static_cast<int>(side)] = shrunken(side);
 }
 
-/// Returns a point of a body near x, in units, that was exactly located inside it. shift: an assumed
-/// translation of B.
+/// Returns a point of a body near x, in units, that was exactly located inside it, or nullopt if x is not
+/// inside. shift: an assumed translation of B.
 std::optional<Vector3d> DepthFinder::inside_point(Side side, const Vector3d& x, const Vector3d& shift) {
   // A shifted B contains x if B contains x - shift.
   const Vector3d world = bodies_.frame.to_world(side == Side::a ? x : Vector3d(x - shift));
-  // Located as it is after rounding to world coordinates; converted back, the point is the one that was
-  // tested.
+  // The point is located after rounding to world coordinates, and the rounded point is converted back.
   if (!world.allFinite() || locate(query_[side], world.data()) != Where::inside) return std::nullopt;
   return bodies_.frame.to_unit(world);
 }
@@ -112,12 +111,12 @@ std::optional<ConvexPoints> DepthFinder::shrunken(Side side) {
     area += share;
   }
   if (!(area > 0)) return std::nullopt;
-  // A convex body contains it.
+  // A convex body contains the centroid.
   const std::optional<Vector3d> inside = inside_point(side, centre / area, Vector3d::Zero());
   return inside ? shrunken_body(body, *inside) : std::nullopt;
 }
 
-/// Returns the lesser clearance of a point from both surfaces; 0 if it is not inside both bodies.
+/// Returns the smaller clearance of a point from both surfaces, or 0 if it is not inside both bodies.
 double DepthFinder::common_clearance(const Vector3d& x, const Vector3d& shift) {
   double least = kInfinity;
   for (const Side side : {Side::a, Side::b}) {
@@ -128,14 +127,14 @@ double DepthFinder::common_clearance(const Vector3d& x, const Vector3d& shift) {
   return least;
 }
 
-/// Returns the bounding box of the bodies' intersection, approximately, or a box that contains it. Corners of
-/// the intersection are points where faces of both intersect, and vertices of one body in the other.
+/// Returns a box that approximates or contains the bodies' intersection. Corners of the intersection are
+/// points where faces of both intersect, and vertices of one body inside the other.
 Eigen::AlignedBox3d DepthFinder::common_box(const Vector3d& shift) {
   Eigen::AlignedBox3d boxes[2], out;
   for (int side = 0; side < 2; ++side)
     for (const Vector3d& x : bodies_.body[side].points)
       boxes[side].extend(side == 0 ? x : Vector3d(x + shift));
-  // The contacts are known for the bodies where they are, only.
+  // The contacts are valid only for the unshifted bodies.
   if (!shift.isZero(0)) return boxes[0].intersection(boxes[1]);
   // Corners of the first kind.
   for (const SimplexPair& pair : result_.pairs) {
@@ -146,7 +145,7 @@ Eigen::AlignedBox3d DepthFinder::common_box(const Vector3d& shift) {
     for (int c = 0; c < contact.corner_count; ++c)
       out.extend(bodies_.frame.to_unit(contact.corners[static_cast<std::size_t>(c)].x));
   }
-  // Corners of the second kind. Points are located only where they would enlarge the box.
+  // Corners of the second kind. Vertices are located only if they would enlarge the box.
   for (const Side side : {Side::a, Side::b})
     for (const Vector3d& x : bodies_.body[static_cast<int>(side)].points)
       if (boxes[1 - static_cast<int>(side)].contains(x) && !out.contains(x) &&
@@ -155,7 +154,7 @@ Eigen::AlignedBox3d DepthFinder::common_box(const Vector3d& shift) {
   return out;
 }
 
-/// Returns the centres of a grid of cells in a box, as starts of the search for a deep point.
+/// Returns the centres of a grid of cells in a box, as starting points of the search for a deep point.
 std::vector<Vector3d> DepthFinder::starts(const Eigen::AlignedBox3d& box, int grid) {
   std::vector<Vector3d> out;
   if (box.isEmpty()) return out;
@@ -167,12 +166,13 @@ std::vector<Vector3d> DepthFinder::starts(const Eigen::AlignedBox3d& box, int gr
   return out;
 }
 
-/// Looks for the common point with the largest clearance: a grid, then a compass search from its best point.
+/// Searches for the common point with the largest clearance: on a grid, then by compass search from the best
+/// point.
 std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
   Vector3d best = Vector3d::Zero();
   double most = 0;
   const Eigen::AlignedBox3d box = common_box(shift);
-  // A finer grid only while no common point is found.
+  // The grid is refined only while no common point is found.
   for (int grid = kStartGrid; grid <= kFinestStartGrid && !(most > 0); grid *= 2)
     for (const Vector3d& x : starts(box, grid)) {
       const double clearance = common_clearance(x, shift);
@@ -220,29 +220,29 @@ std::optional<DepthFinder::Common> DepthFinder::common_sets(const Vector3d& shif
   std::optional<ConvexPoints> sets[2];
   for (const Side side : {Side::a, Side::b}) {
     const int i = static_cast<int>(side);
-    // A body that is not convex: the convex region around the common point. B's is found where B is, then
-    // moved.
+    // For a body that is not convex, the convex region around the common point. B's is computed at B's pose,
+    // then translated.
     sets[i] = whole_[i] ? whole_[i] : convex_about(bodies_.body[i], *inside_point(side, *x, shift), whole);
     if (!sets[i]) return std::nullopt;
   }
   return Common{std::move(*sets[0]), moved(std::move(*sets[1]), shift)};
 }
 
-/// Reports the bounds when `least` is the length of the shortest translation found so far, in units.
+/// Reports the bounds. `least`: length of the shortest translation found so far, in units.
 void DepthFinder::tell(double least) {
   if (teller_ == nullptr) return;
   const double upper = least < kInfinity ? bodies_.frame.length_to_world(least) : kInfinity;
   teller_->tell(parting_.asked() + grown_, told_lower_, upper);
 }
 
-/// Grows the Minkowski difference and reports its bounds: those of sets inside the bodies are lower bounds,
-/// those of the convex hulls upper bounds.
+/// Expands the Minkowski difference and reports its bounds: lower bounds from sets inside the bodies, upper
+/// bounds from the convex hulls.
 void DepthFinder::find_depth(MinkowskiDifference& difference, unsigned most_steps, bool is_inner) {
   if (teller_ == nullptr) {
     difference.find_depth(most_steps);
     return;
   }
-  // In chunks that grow, with a report after each.
+  // In chunks of increasing size, with a report after each.
   for (unsigned done = 0; done < most_steps;) {
     const auto look = static_cast<unsigned>(BoundsTeller::next_look(done));
     const unsigned steps = std::min(look, most_steps) - done;
@@ -251,7 +251,7 @@ void DepthFinder::find_depth(MinkowskiDifference& difference, unsigned most_step
     grown_ += grown;
     if (is_inner) told_lower_ = bodies_.frame.length_to_world(difference.depth_lower());
     tell(is_inner ? kInfinity : difference.depth_upper());
-    // Finished before the chunk was used up.
+    // Finished before the end of the chunk.
     if (grown < steps) return;
   }
 }
@@ -261,10 +261,10 @@ double DepthFinder::hull_width(const Vector3d& n) const {
   return farthest(bodies_.body[0], n) + farthest(bodies_.body[1], -n);
 }
 
-/// Returns the normals of the faces that meet the other body, and of the largest ones; B leaves a face of A
-/// along its normal, and takes its own faces the other way.
+/// Returns the normals of the faces that intersect the other body, and of the largest faces. B is separated
+/// from a face of A along its normal, and from A by its own faces against their normals.
 std::vector<Vector3d> DepthFinder::directions() {
-  // Faces in contact, and all faces, each by area. B leaves along normals of A and against its own.
+  // Faces in contact, and all faces, each with areas. Normals of B are negated.
   Directions in_contact, all;
   for (const SimplexPair& pair : result_.pairs) {
     in_contact.add(normal_of(bodies_.body[0], pair.a));
@@ -278,9 +278,9 @@ std::vector<Vector3d> DepthFinder::directions() {
   return out;
 }
 
-/// Looks for a shorter translation along n.
+/// Searches for a shorter translation along n.
 void DepthFinder::improve(const Vector3d& n, double& best, Vector3d& best_n) {
-  // At `width` the convex hulls are separated; bodies that are not convex may be so before.
+  // At `width` the convex hulls are separated; bodies that are not convex may be separated earlier.
   const double width = hull_width(n);
   if (!(width > 0)) return;
   // Only translations that are clearly shorter than the best one count.
@@ -293,20 +293,20 @@ void DepthFinder::improve(const Vector3d& n, double& best, Vector3d& best_n) {
   tell(best);
 }
 
-/// Rotates the direction by decreasing angles, as long as that shortens the translation.
+/// Rotates the direction by decreasing angles while that shortens the translation.
 void DepthFinder::refine(double& best, Vector3d& best_n) {
   unsigned tries = 0;
   for (double step = kFirstTurn; step > kLeastTurn && tries < kMostSteps;) {
-    // Two axes across the direction; small rotations towards each, both ways.
+    // Two axes normal to the direction; small rotations towards each, both ways.
     const Vector3d across = best_n.unitOrthogonal(), other = best_n.cross(across);
     bool shorter = false;
     for (const Vector3d& way : {across, other, Vector3d(-across), Vector3d(-other)}) {
       const Vector3d n = (best_n + step * way).normalized();
-      // Require a gain in proportion to the angle: a single query rejects a rotation without it.
+      // Require a gain proportional to the angle, so that a single query rejects a rotation without it.
       const double s = best * (1 - kTurnGain * step);
       ++tries;
       if (!parting_.is_apart(n, s)) continue;
-      // No samples: bisect below the length that was just found to separate.
+      // Without sampling: bisect below the length that was just found to separate.
       best = parting_.least_apart(n, s, 1);
       best_n = n;
       tell(best);
@@ -319,16 +319,16 @@ void DepthFinder::refine(double& best, Vector3d& best_n) {
 }
 
 /// Proves a lower bound on the depth, in units, for bodies that are not both convex, unless the `known` one
-/// is nearly as long as the translation. Looks for shorter translations where the proof fails.
+/// is nearly as long as the translation. Searches for shorter translations where the proof fails.
 double DepthFinder::raise_lower(double known, double& best, Vector3d& best_n) {
   OverlapProof proof(surface(Side::a), surface(Side::b), [this](Side side, const Vector3d& x) {
     return inside_point(side, x, Vector3d::Zero()).has_value();
   });
-  // Nothing to gain, or no common point to begin with. No depth exceeds 1 unit, the size of both bodies.
+  // Nothing to gain, or no common point to start from. No depth exceeds 1 unit, the size of both bodies.
   if (known >= kNarrowDepth * best || !proof.begin(common_, std::min(best, kUnitReach * 0.5))) return known;
   constexpr unsigned kPart = kMostRoomPoints / kRoomLooks;
   for (unsigned part = 0; part < kRoomLooks && proof.lower() < kNarrowDepth * best; ++part) {
-    // In turns: prove for a while, then search in the direction where the proof got stuck.
+    // Alternate between proving and searching in the direction where the proof got stuck.
     const unsigned looked = proof.grow(kPart);
     grown_ += looked;
     told_lower_ = std::max(told_lower_, bodies_.frame.length_to_world(proof.lower()));
@@ -337,7 +337,7 @@ double DepthFinder::raise_lower(double known, double& best, Vector3d& best_n) {
     if (proof.doubtful().norm() > 0) improve(proof.doubtful().normalized(), best, best_n);
     if (best < before) refine(best, best_n);
     tell(best);
-    // The proof cannot go on.
+    // The proof cannot continue.
     if (looked < kPart) break;
   }
   return std::max(known, proof.lower());
@@ -360,27 +360,28 @@ DepthFinder::Depth DepthFinder::depth() {
   find_depth(hulls, convex ? kMostDepthSteps : kRoughDepthSteps, false);
   double best = hulls.depth_upper();
   Vector3d best_n = hulls.direction();
-  // Steps 3 and 4, for bodies that are not convex: hulls are separated later than the bodies.
+  // Steps 3 and 4, for bodies that are not convex, which may be separated before their hulls are.
   if (!convex) {
     for (const Vector3d& n : directions()) improve(n, best, best_n);
     if (best < kInfinity) refine(best, best_n);
     lower = raise_lower(lower, best, best_n);
   }
   out.length.lower = bodies_.frame.length_to_world(lower);
-  if (!(best < kInfinity)) return out;
   // Step 5: prove the best translation, or else that of the convex hulls, which depends on no sampling.
-  std::optional<PartingMove> move = parting_.prove(best_n, best);
-  if (!move) move = parting_.prove(hulls.direction(), hulls.depth_upper());
-  if (!move) return out;
-  out.translation = move->translation;
-  out.length.upper = move->length;
+  std::optional<PartingMove> move;
+  if (best < kInfinity) move = parting_.prove(best_n, best);
+  if (best < kInfinity && !move) move = parting_.prove(hulls.direction(), hulls.depth_upper());
+  if (move) {
+    out.translation = move->translation;
+    out.length.upper = move->length;
+  }
   // The answer's bounds, even if the unproven ones reported before were narrower.
   if (teller_ != nullptr) teller_->settle(parting_.asked() + grown_, out.length.lower, out.length.upper);
   return out;
 }
 
 /// Proves overlap along n in steps: convex sets around a common point overlap for all translations up to the
-/// next step, where another common point is sought.
+/// next step, where another common point is searched.
 double DepthFinder::along_lower(const Vector3d& n) {
   double from = 0, lower = 0;
   for (unsigned step = 0; step < kMostWaySteps; ++step) {
@@ -388,7 +389,7 @@ double DepthFinder::along_lower(const Vector3d& n) {
     const std::optional<Common> sets = common_sets(from * n, WholeTriangles::yes);
     if (!sets) break;
     MinkowskiDifference difference(sets->a, sets->b);
-    // The hull must contain the origin first; then it grows only where the ray along n leaves it.
+    // The polytope must contain the origin first; then it is expanded only where the ray along n leaves it.
     difference.find_depth(kRoughDepthSteps);
     difference.follow(n);
     const double gain = difference.along_lower(n);
@@ -398,7 +399,7 @@ double DepthFinder::along_lower(const Vector3d& n) {
     lower = next;
     // Convex bodies: one step is enough.
     if (whole_[0] && whole_[1]) break;
-    // A little less than was proven, so that a common point still exists there.
+    // A little less than was proven, so that a common point still exists at the next step.
     from += kWayShare * gain;
   }
   return lower;

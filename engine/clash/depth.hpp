@@ -16,7 +16,7 @@ namespace lrb::parting {
 /// that are proven to separate. For convex bodies both agree up to rounding.
 class DepthFinder {
  public:
-  /// `query`: begun with the bodies. `result`: all pairs of intersecting simplices. Bodies must be closed.
+  /// `query`: begun with the bodies, which must be closed. `result`: all pairs of intersecting simplices.
   /// teller: null, or notified of bounds on the depth.
   DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies, Parting& parting,
               BoundsTeller* teller = nullptr);
@@ -26,7 +26,7 @@ class DepthFinder {
     Vector3d translation{0, 0, 0};
   };
   Depth depth();
-  /// `n`: of length about 1.
+  /// `n`: approximately of unit length.
   ProvedInterval along(const Vector3d& n);
 
  private:
@@ -56,11 +56,11 @@ class DepthFinder {
   const UnitBodies& bodies_;
   Parting& parting_;
   BoundsTeller* teller_;
-  double told_lower_ = 0;                      ///< of the depth, world; kept where there is a teller
-  std::uint64_t grown_ = 0;                    ///< steps in which hulls grew, where there is a teller
-  std::optional<ConvexPoints> whole_[2];       ///< of a body that is convex
-  std::optional<SurfaceDistance> surface_[2];  ///< made when first asked for
-  std::vector<Vector3d> common_;               ///< points of both bodies where they are, the deepest first
+  double told_lower_ = 0;                      ///< lower bound on the depth, world units; only with a teller
+  std::uint64_t grown_ = 0;                    ///< number of expansion steps; only with a teller
+  std::optional<ConvexPoints> whole_[2];       ///< the set of a convex body
+  std::optional<SurfaceDistance> surface_[2];  ///< built on first use
+  std::vector<Vector3d> common_;               ///< points of both bodies at their poses, the deepest first
 };
 
 }  // namespace lrb::parting

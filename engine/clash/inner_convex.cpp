@@ -1,8 +1,8 @@
 /// Convex sets inside a body, with proofs. Steps of convex_about() (Deits and Tedrake 2015, without
 /// ellipsoids):
-/// 1. Put a plane in front of the surface point that is nearest to the seed and not excluded yet; repeat.
+/// 1. Place a plane in front of the surface point that is nearest to the seed and not excluded yet; repeat.
 /// 2. Intersect the half-spaces: by duality their vertices are the facets of a convex hull.
-/// 3. Shrink the set towards the seed until every triangle is proven to lie beyond a plane that has the set
+/// 3. Shrink the set towards the seed until every triangle is proven to be beyond a plane that has the set
 ///    behind it.
 /// shrunken_body() begins with step 3, for bodies that are convex themselves.
 
@@ -35,19 +35,19 @@ class Planes {
   void add(const Vector3d& normal) { planes_.push_back(plane(normal)); }
   std::size_t size() const { return planes_.size(); }
 
-  /// Returns true if the last of the planes is proven to separate a triangle from the set.
+  /// Returns true if the plane added last is proven to separate a triangle from the set.
   bool last_parts(const Corners& triangle) const { return beyond(planes_.back(), triangle) > 0; }
-  /// Returns true if any of them is.
+  /// Returns true if any of the planes is.
   bool part(const Corners& triangle) const {
     return std::any_of(planes_.begin(), planes_.end(),
                        [&](const Plane& p) { return beyond(p, triangle) > 0; });
   }
-  /// Does the same for a triangle that may be subdivided. The midpoints of edges are rounded by u / 2 each
-  /// time; kConvexMargin allows for that.
+  /// Returns true if planes are proven to separate all parts of a triangle, which may be subdivided.
+  /// Midpoints of edges are rounded by u / 2 each time; kConvexMargin allows for that.
   bool part_split(const Corners& x, unsigned depth) const {
     // Cheapest first: single planes, then combinations of two.
     if (part(x) || part_by_two(x)) return true;
-    // No plane separates a corner that lies behind all of them, however small the parts are.
+    // No plane separates a corner that is behind all of them, however small the parts.
     if (depth == kMostSplits || is_entered(x)) return false;
     // Four parts at the midpoints of the edges: each may be separated by a different plane.
     const Corners middle = {0.5 * (x[0] + x[1]), 0.5 * (x[1] + x[2]), 0.5 * (x[2] + x[0])};
@@ -69,25 +69,25 @@ class Planes {
     return {normal, most + kConvexMargin * normal.cwiseAbs().sum()};
   }
 
-  /// Tries planes through the edge in which two of the planes intersect. A triangle beyond that edge may be
+  /// Tries planes through the line in which two of the planes intersect. A triangle beyond that line may be
   /// partly behind either of them.
   bool part_by_two(const Corners& x) const {
     for (std::size_t i = 0; i < planes_.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
-        double low = 0, high = 1;  // shares of the first normal with which all corners lie beyond
+        double low = 0, high = 1;  // range of the first normal's weight for which all corners are beyond
         // Each corner limits the weights for which it is beyond the combined plane.
         for (const Vector3d& corner : x) {
           const double a = planes_[i].normal.dot(corner) - planes_[i].most;
           const double b = planes_[j].normal.dot(corner) - planes_[j].most;
-          // Behind both planes: behind every combination, too.
+          // Behind both planes, and so behind every combination.
           if (a <= 0 && b <= 0) low = 2;
           if (a > 0 && b <= 0) low = std::max(low, b / (b - a));
           if (a <= 0 && b > 0) high = std::min(high, b / (b - a));
         }
         if (!(low < high)) continue;
         const double share = 0.5 * (low + high);
-        // The offset of the combined plane is computed anew: the proof does not depend on the rounding of
-        // weights.
+        // The offset of the combined plane is recomputed, so that the proof does not depend on the rounding
+        // of the weights.
         if (beyond(plane(share * planes_[i].normal + (1 - share) * planes_[j].normal), x) > 0) return true;
       }
     return false;
@@ -98,7 +98,7 @@ class Planes {
     for (const Vector3d& x : triangle) least = std::min(least, plane.normal.dot(x));
     return least - plane.most;
   }
-  /// Returns true if a corner lies behind all planes: subdivision does not help.
+  /// Returns true if a corner is behind all planes: subdivision does not help.
   bool is_entered(const Corners& triangle) const {
     return std::any_of(triangle.begin(), triangle.end(), [&](const Vector3d& x) {
       return std::none_of(planes_.begin(), planes_.end(),
@@ -116,18 +116,18 @@ Vector3d normal_of(const UnitBody& body, const std::array<std::uint32_t, 3>& t) 
 }
 
 ConvexPoints shrunk(const std::vector<Vector3d>& points, const Vector3d& centre, double share) {
-  // The centre is a point of the set: that it is inside the body is part of the proof.
+  // The centre is a point of the set: its location inside the body is part of the proof.
   ConvexPoints out{centre};
   for (const Vector3d& x : points) out.push_back(centre + (1 - share) * (x - centre));
   return out;
 }
 
-/// Returns true if a triangle is far from being a face of a convex body: vertices lie in front of it.
+/// Returns true if a triangle is clearly not a face of a convex body: vertices are in front of it.
 bool is_hollow(const UnitBody& body, const std::array<std::uint32_t, 3>& t) {
   const Vector3d &a = body.points[t[0]], &b = body.points[t[1]], &c = body.points[t[2]];
   const double area = (b - a).cross(c - a).norm();
   const double longest = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
-  // The normal of a sliver is unreliable: no evidence.
+  // The normal of a sliver is unreliable, so it is no evidence.
   if (!(area > kSliver * longest)) return false;
   const Vector3d n = normal_of(body, t);
   const double height = n.dot(a) + kHollow;
@@ -142,12 +142,12 @@ bool is_inside(const UnitBody& body, const ConvexPoints& set) {
   std::vector<Corners> left;
   for (const auto& t : body.triangles) {
     const Corners corners = {body.points[t[0]], body.points[t[1]], body.points[t[2]]};
-    // The plane that was added last may separate this triangle, too.
+    // The plane that was added last may separate this triangle as well.
     if (planes.size() > 0 && planes.last_parts(corners)) continue;
     // Its own plane, which is a supporting plane of a convex body.
     planes.add(normal_of(body, t));
     if (planes.last_parts(corners)) continue;
-    // Slivers have bad normals: retried below with all planes, as long as there are few.
+    // Slivers have inaccurate normals: retried below with all planes, if there are few.
     left.push_back(corners);
     if (left.size() > kMostHardTriangles) return false;
   }
@@ -155,14 +155,14 @@ bool is_inside(const UnitBody& body, const ConvexPoints& set) {
   return std::all_of(left.begin(), left.end(), [&](const Corners& x) { return planes.part(x); });
 }
 
-/// A half-space n . (x - seed) <= offset; `first`: the offset that it began with.
+/// A half-space n . (x - seed) <= offset. `first`: its initial offset.
 struct HalfSpace {
   Vector3d normal;
   double offset, first;
-  bool is_nudged = false;  ///< moved by as much as rounding may need, which happens once
+  bool is_nudged = false;  ///< moved once by the amount that rounding may require
 };
 
-/// A part of a triangle that no half-space excludes yet.
+/// A part of a triangle that is not excluded by any half-space yet.
 using Part = std::vector<Vector3d>;
 
 /// Clips a convex polygon to n . x <= most (Sutherland-Hodgman).
@@ -171,19 +171,19 @@ Part clipped(const Part& in, const Vector3d& n, double most) {
   for (std::size_t i = 0; i < in.size(); ++i) {
     const Vector3d &x = in[i], &y = in[(i + 1) % in.size()];
     const double dx = most - n.dot(x), dy = most - n.dot(y);
-    // Keep corners inside, and add the crossing point of an edge whose ends are on different sides.
+    // Keep corners inside, and add the intersection of an edge whose ends are on different sides.
     if (dx >= 0) out.push_back(x);
     if ((dx > 0 && dy < 0) || (dx < 0 && dy > 0)) out.push_back(x + dx / (dx - dy) * (y - x));
   }
   return out;
 }
 
-/// Puts a plane in front of the surface point that is nearest to the seed and not excluded yet, and repeats.
+/// Repeatedly places a plane in front of the surface point that is nearest to the seed and not excluded yet.
 /// The planes depend on the surface alone, not on its triangulation.
 class Inflation {
  public:
   Inflation(const UnitBody& body, const Vector3d& seed) : body_(body), seed_(seed) {
-    // Everything is seen from the seed, which becomes the origin.
+    // Coordinates are relative to the seed, which becomes the origin.
     for (const auto& t : body.triangles)
       parts_.push_back({body.points[t[0]] - seed, body.points[t[1]] - seed, body.points[t[2]] - seed});
   }
@@ -192,7 +192,7 @@ class Inflation {
     // Planes in front of points: independent of the triangulation.
     if (bound_by_points())
       if (std::optional<ConvexPoints> set = proved_set()) return set;
-    // Planes in front of whole triangles: smaller sets, but easier proofs.
+    // Planes in front of entire triangles: smaller sets, but easier proofs.
     if (whole == WholeTriangles::no) return std::nullopt;
     half_spaces_.clear();
     return bound_by_triangles() ? proved_set() : std::nullopt;
@@ -212,7 +212,7 @@ class Inflation {
     return true;
   }
 
-  /// Returns the intersection of the half-spaces, shrunk until it is proved to lie inside.
+  /// Returns the intersection of the half-spaces, shrunk until it is proven to be inside, or nullopt.
   std::optional<ConvexPoints> proved_set() const {
     const std::optional<std::vector<Vector3d>> corners = corners_of_intersection();
     if (!corners) return std::nullopt;
@@ -229,11 +229,11 @@ class Inflation {
     return std::nullopt;
   }
 
-  /// Returns the point of all parts that is nearest to the seed.
+  /// Returns the point of all remaining parts that is nearest to the seed.
   Vector3d nearest() const {
     Vector3d best = Vector3d::Zero();
     double least = kInfinity;
-    // A clipped part is a convex polygon: a fan of triangles.
+    // A clipped part is a convex polygon: visit its triangle fan.
     for (const Part& part : parts_)
       for (std::size_t i = 1; i + 1 < part.size(); ++i) {
         const Vector3d x = nearest_point(Vector3d::Zero(), part[0], part[i], part[i + 1]);
@@ -245,15 +245,14 @@ class Inflation {
     return best;
   }
 
-  /// Excludes the nearest point: moves a plane inward where that costs little, otherwise adds one. A plane
-  /// that moves for more than rounding moves by as much as may ever be lost, because other moves would
-  /// follow.
+  /// Excludes the nearest point: moves a plane inward if that costs little, otherwise adds one. A plane that
+  /// moves by more than rounding moves by the maximum that may be lost, because further moves would follow.
   bool put_plane() {
     const Vector3d x = nearest();
     const double distance = x.norm();
     // The surface is too close to the seed for any proof.
     if (!(distance > kLeastClearance)) return false;
-    // Among the planes that keep the share kLittleLost of their first offset, the one that loses least.
+    // Select the plane that loses least, among those that keep the share kLittleLost of their first offset.
     HalfSpace* moved = nullptr;
     for (HalfSpace& h : half_spaces_) {
       const double offset = h.normal.dot(x);
@@ -269,12 +268,12 @@ class Inflation {
       moved->is_nudged |= is_rounding;
       moved->offset = is_rounding ? nudged : kLittleLost * moved->first * (1 - kClipShare);
     } else {
-      // A new plane, perpendicular to the direction of the nearest point.
+      // A new plane, normal to the direction of the nearest point.
       if (half_spaces_.size() >= kMostHalfSpaces) return false;
       half_spaces_.push_back({x / distance, distance, distance, false});
       moved = &half_spaces_.back();
     }
-    // Remove what the planes exclude, with a tolerance, so that points on the plane are removed as well.
+    // Remove the excluded parts, with a tolerance, so that points on the plane are removed as well.
     std::vector<Part> left;
     for (const Part& part : parts_) {
       Part inside = clipped(part, moved->normal, moved->offset * (1 - kClipShare));
@@ -291,10 +290,11 @@ class Inflation {
     return d;
   }
 
-  /// Does the same triangle by triangle, each as a whole. The sets are smaller and depend on the
+  /// Bounds the set triangle by triangle, each as a whole. The sets are smaller and depend on the
   /// triangulation, but some proofs succeed only this way.
   bool bound_by_triangles() {
-    // Triangles by distance from the seed: near ones determine the planes, which often exclude far ones, too.
+    // Triangles by distance from the seed: near ones determine the planes, which often exclude far ones as
+    // well.
     std::vector<Near> near;
     for (std::uint32_t i = 0; i < body_.triangles.size(); ++i) {
       const auto& t = body_.triangles[i];
@@ -302,7 +302,7 @@ class Inflation {
           nearest_point(seed_, body_.points[t[0]], body_.points[t[1]], body_.points[t[2]]) - seed_;
       near.push_back({way.norm(), way, i});
     }
-    // Ties by index, so that the order is always the same.
+    // Ties by index, for a deterministic order.
     std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) {
       return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
     });
@@ -311,8 +311,8 @@ class Inflation {
     return true;
   }
 
-  /// Excludes a triangle: moves the half-space for which that costs least inward, if it costs little;
-  /// otherwise adds one.
+  /// Excludes a triangle: moves the half-space that loses least inward if the loss is small, otherwise adds a
+  /// half-space.
   bool keep_out(const Near& n) {
     if (!(n.distance > kLeastClearance)) return false;
     HalfSpace* best = nullptr;
@@ -334,9 +334,9 @@ class Inflation {
     }
     if (half_spaces_.size() >= kMostHalfSpaces) return false;
     const Vector3d normal = n.way / n.distance;
-    // In front of all of the triangle: by rounding a corner may be nearer than its nearest point.
+    // In front of the entire triangle: by rounding a corner may be nearer than the nearest point.
     const double offset = std::min(least(normal, n.triangle), n.distance);
-    // The direction was spoilt by rounding.
+    // The direction is inaccurate because of rounding.
     if (!(offset > 0.5 * n.distance)) return false;
     half_spaces_.push_back({normal, offset, offset, false});
     return true;
@@ -355,11 +355,11 @@ class Inflation {
     // The origin is inside the duals of a box. Four of them, -x, +x, -y and -z, are not coplanar.
     const std::size_t n = duals.size();
     if (!hull.begin({duals[n - 6], duals[n - 5], duals[n - 4], duals[n - 2]})) return std::nullopt;
-    // Exact insertion; duals of redundant half-spaces fall inside and change nothing.
+    // Exact insertion; duals of redundant half-spaces are inside and change nothing.
     for (const Vector3d& y : duals) hull.add(y);
     std::vector<Vector3d> corners;
     for (const PointHull::Facet& f : hull.facets()) {
-      // Not all around the origin: the intersection would be unbounded.
+      // The hull does not enclose the origin: the intersection would be unbounded.
       if (!(f.offset > 0)) return std::nullopt;
       // A facet's plane n . y = d is dual to the vertex n / d.
       corners.push_back(seed_ + f.normal / f.offset);
@@ -369,20 +369,20 @@ class Inflation {
 
   const UnitBody& body_;
   const Vector3d seed_;
-  std::vector<Part> parts_;  ///< seen from the seed
+  std::vector<Part> parts_;  ///< relative to the seed
   std::vector<HalfSpace> half_spaces_;
 };
 
 }  // namespace
 
 std::optional<ConvexPoints> shrunken_body(const UnitBody& body, const Vector3d& inside) {
-  // The work is quadratic: large bodies are not tried.
+  // The work is quadratic, so large bodies are not tried.
   if (static_cast<double>(body.points.size()) * static_cast<double>(body.triangles.size()) > kMostConvexWork)
     return std::nullopt;
   // Reject bodies that are clearly not convex, before the expensive proof.
   for (const auto& t : body.triangles)
     if (is_hollow(body, t)) return std::nullopt;
-  // The least share that can be proven gives the largest set.
+  // The least share for which the proof succeeds yields the largest set.
   for (const double share : kShrinks) {
     ConvexPoints set = shrunk(body.points, inside, share);
     if (is_inside(body, set)) return set;

@@ -1,9 +1,11 @@
 /// The expanding polytope algorithm (EPA; van den Bergen 2001) on the Minkowski difference of two convex
-/// sets, with an exact convex hull in place of a floating-point polytope. Steps:
+/// sets, with an exact convex hull as the polytope. Steps:
 /// 1. Begin with a tetrahedron of support points.
 /// 2. Take the facet nearest to the origin. The support point beyond it bounds the depth from above.
-/// 3. If that point is beyond the facet's plane, add it to the hull; otherwise the facet is final. Repeat.
-/// 4. The distance of the origin from the hull's boundary is the lower bound, computed with proven errors.
+/// 3. If that point is beyond the facet's plane, add it to the polytope; otherwise the facet is final.
+///    Repeat.
+/// 4. The distance of the origin from the polytope's boundary is the lower bound, computed with proven
+///    errors.
 
 #include "engine/clash/minkowski.hpp"
 
@@ -23,7 +25,7 @@ namespace {
 const Vector3d& farthest(const ConvexPoints& points, const Vector3d& n) {
   const Vector3d* best = &points[0];
   double most = -kInfinity;
-  // A linear scan; of equally far points the first is returned.
+  // A linear scan; of equally distant points the first is returned.
   for (const Vector3d& x : points) {
     const double d = n.dot(x);
     if (d > most) {
@@ -41,7 +43,7 @@ MinkowskiDifference::MinkowskiDifference(const ConvexPoints& a, const ConvexPoin
 }
 
 Vector3d MinkowskiDifference::support(const Vector3d& n) const {
-  // Support point of A - B: that of A along n, minus that of B against n.
+  // Support point of A - B: A's along n minus B's against n.
   return farthest(a_, n) - farthest(b_, -n);
 }
 
@@ -65,9 +67,9 @@ bool MinkowskiDifference::begin() {
       const Vector3d x = support(sign * Vector3d::Unit(k));
       consider(second, most, x, (x - first).norm());
     }
-  // All six are one point: no solid.
+  // All six coincide: not a solid.
   if (!(most > 0)) return false;
-  // Third point: the farthest from the line through both, in four directions across it.
+  // Third point: the farthest from the line through both, in four directions normal to it.
   const Vector3d along = (second - first).normalized();
   const Vector3d across = along.unitOrthogonal(), other = along.cross(across);
   most = 0;
@@ -83,16 +85,16 @@ bool MinkowskiDifference::begin() {
     const Vector3d x = support(n);
     consider(fourth, most, x, std::abs(normal.dot(x - first)));
   }
-  // Decided exactly: false if rounding left the four coplanar.
+  // Decided exactly: false if rounding left the four points coplanar.
   return hull_.begin({first, second, third, fourth});
 }
 
 bool MinkowskiDifference::grow(std::size_t facet) {
   PointHull::Facet& f = hull_.facets()[facet];
-  f.is_final = true;  // unless it is replaced
+  f.is_final = true;  // until it is replaced
   // A facet too thin for a normal cannot be improved.
   if (f.normal.isZero()) return false;
-  // Support point beyond the facet: a plane there separates the sets after a translation by `width` along n.
+  // Support point beyond the facet: a translation by `width` along the normal separates the sets.
   const Vector3d x = support(f.normal);
   const double width = f.normal.dot(x);
   if (width < upper_) {
@@ -130,22 +132,22 @@ void MinkowskiDifference::follow(const Vector3d& n) {
   if (!solid_) return;
   for (unsigned step = 0; step < kMostDepthSteps; ++step) {
     const std::vector<PointHull::Facet>& facets = hull_.facets();
-    // The facet through which the ray leaves the hull.
+    // The facet through which the ray leaves the polytope.
     std::size_t first = 0;
     for (std::size_t i = 1; i < facets.size(); ++i)
       if (exit_of(facets[i], n) < exit_of(facets[first], n)) first = i;
-    // Final, or no point beyond it: the hull cannot grow there.
+    // Final, or no point beyond it: the polytope cannot expand there.
     if (facets[first].is_final || !grow(first)) return;
   }
 }
 
-/// The hull's points are off by kDifferenceRounding, so that the true difference contains the hull up to a
-/// layer of this thickness.
+/// The polytope's points have errors of up to kDifferenceRounding, so the true difference contains the
+/// polytope except for a layer of this thickness.
 double MinkowskiDifference::depth_lower() const {
   const Vector3d origin = Vector3d::Zero();
   // If the origin is not strictly inside, the sets need not overlap. Exact.
   if (!solid_ || !hull_.holds_inside(origin)) return 0;
-  // The origin as a triangle without area, for the proven distance to each facet.
+  // The origin as a degenerate triangle, for the proven distance to each facet.
   const double* const point[3] = {origin.data(), origin.data(), origin.data()};
   double least = kInfinity;
   for (const PointHull::Facet& f : hull_.facets()) {
@@ -159,18 +161,18 @@ double MinkowskiDifference::depth_lower() const {
   return std::max(0.0, least - kDifferenceRounding);
 }
 
-/// If the hull P contains x = s n and a ball of radius r around the origin, the true difference contains (1 -
-/// e / r) P, where e is kDifferenceRounding: its support function is at least that of P less e, and that of P
-/// is at least r.
+/// Let the polytope P contain x = s n and a ball of radius r around the origin, and let e be
+/// kDifferenceRounding. The true difference contains (1 - e / r) P: its support function is at least P's less
+/// e, and P's is at least r.
 double MinkowskiDifference::along_lower(const Vector3d& n) const {
   const double radius = depth_lower();
   if (!(radius > 0)) return 0;
-  // Where the ray leaves the hull, rounded.
+  // The exit point of the ray from the polytope, rounded.
   double exit = kInfinity;
   for (const PointHull::Facet& f : hull_.facets()) exit = std::min(exit, exit_of(f, n));
   if (!(exit < kInfinity)) return 0;
   const double lost = kDifferenceRounding / radius;
-  // Step back, four times as far each time, until the point is exactly inside the hull.
+  // Step back by increasing amounts, until the point is exactly inside the polytope.
   for (double share = kDepthGain; share < 1; share *= 4) {
     const double s = exit * (1 - share);
     const Vector3d x = s * n;
@@ -180,8 +182,8 @@ double MinkowskiDifference::along_lower(const Vector3d& n) const {
   return 0;
 }
 
-// Incremental convex hull (beneath-beyond) with the exact orient3d: a new point replaces the facets that it
-// sees by a cone over their horizon. Each insertion tests all facets.
+// Incremental convex hull (beneath-beyond) with the exact orient3d: a new point replaces the facets visible
+// from it by a cone over their horizon. Each insertion tests all facets.
 
 int PointHull::side(const Facet& f, const Vector3d& x) const {
   return exact::orient3d(points_[f.v[0]].data(), points_[f.v[1]].data(), points_[f.v[2]].data(), x.data());
@@ -199,11 +201,11 @@ void PointHull::add_facet(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
 bool PointHull::begin(const std::array<Vector3d, 4>& corners) {
   points_.assign(corners.begin(), corners.end());
   facets_.clear();
-  // Orient the tetrahedron, so that all facets are counter-clockwise seen from outside.
+  // Orient the tetrahedron so that all facets are counter-clockwise seen from outside.
   const int turn =
       exact::orient3d(corners[0].data(), corners[1].data(), corners[2].data(), corners[3].data());
   if (turn == 0) return false;
-  if (turn > 0) std::swap(points_[1], points_[2]);  // now 3 lies behind 0, 1, 2
+  if (turn > 0) std::swap(points_[1], points_[2]);  // now 3 is behind 0, 1, 2
   add_facet(0, 1, 2);
   add_facet(0, 3, 1);
   add_facet(1, 3, 2);
@@ -213,7 +215,7 @@ bool PointHull::begin(const std::array<Vector3d, 4>& corners) {
 
 bool PointHull::add(const Vector3d& point) {
   std::vector<std::array<std::uint32_t, 2>> edges;
-  // Facets that see the point are moved to the end. Coplanar ones count as behind.
+  // Visible facets are moved to the end. Coplanar ones count as not visible.
   const auto seen =
       std::partition(facets_.begin(), facets_.end(), [&](const Facet& f) { return side(f, point) <= 0; });
   if (seen == facets_.end()) return false;

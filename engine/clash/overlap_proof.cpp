@@ -1,12 +1,12 @@
 /// Branch and bound over the translations of B; the proof is in overlap_proof.hpp. Steps:
-/// 1. Take the cube of translations that is nearest to 0. All shorter translations are proven.
-/// 2. Look for a point whose clearances in A and, moved back, in B add up to more than the cube's half
-///    diagonal: sample near known points, then climb to more clearance.
-/// 3. If there is one, the cube is proven; otherwise divide it into eight.
+/// 1. Take the cube of translations nearest to 0. All shorter translations are proven.
+/// 2. Search for a point whose clearances in A and, moved back, in B add up to more than the cube's half
+///    diagonal: sample near known points, then climb to larger clearance.
+/// 3. If such a point is found, the cube is proven; otherwise divide it into eight.
 ///
-/// Rounding. Clearances are proven for the doubles x and x - v as they are computed (the latter is rounded by
-/// less than kDifferenceRounding), and the bodies' points are within kUnitRounding of the exact ones;
-/// kRoomMargin covers both. Centres and half sizes of cubes are multiples of a power of two: exact.
+/// Rounding. Clearances are proven for the doubles x and x - v as computed (the latter is rounded by less
+/// than kDifferenceRounding), and the bodies' points are within kUnitRounding of the exact ones; kRoomMargin
+/// covers both. Centres and half sizes of cubes are multiples of a power of two, and therefore exact.
 
 #include "engine/clash/overlap_proof.hpp"
 
@@ -23,7 +23,8 @@ namespace {
 /// At least sqrt(3).
 constexpr double kDiagonal = 1.7320508076;
 constexpr double kRoundedDown = 1 - 0x1p-50;
-/// So that separating translations that are a power of two, up to rounding, give cubes of one size.
+/// Ensures that separating translations near a power of two yield cubes of the same size whatever the
+/// rounding.
 constexpr double kAboveMost = 1 + 0x1p-20;
 
 template <class Cube>
@@ -41,7 +42,7 @@ void OverlapProof::push(const Vector3d& middle, double half, const Common& near)
   // Distance of 0 from the cube, rounded down.
   const double least = (middle.array().abs() - half).max(0).matrix().norm() * kRoundedDown;
   if (least >= most_) return;
-  // A binary min-heap by that distance.
+  // Push to a binary min-heap by that distance.
   cubes_.push_back({least, middle, half, near});
   std::push_heap(cubes_.begin(), cubes_.end(), is_later<Cube>);
 }
@@ -63,52 +64,51 @@ bool OverlapProof::begin(const std::vector<Vector3d>& common, double most) {
   return first_ > 0;
 }
 
-/// If one of two balls without a point of the surface contains the centre of the other, both are on the same
-/// side of the surface.
+/// Returns true if x is inside. If one of two balls without surface points contains the centre of the other,
+/// both are on the same side of the surface.
 bool OverlapProof::is_in(Side side, const Vector3d& x, double radius, const Vector3d& known,
                          double known_radius) {
   if (!(radius > kRoomMargin)) return false;
-  // A ball test often replaces the exact point location, which is far slower.
+  // A ball test often avoids the exact point location, which is far slower.
   return (x - known).norm() < std::max(radius, known_radius) - kRoomMargin || is_inside_(side, x);
 }
 
-/// Evaluates x for the translation v. Returns false unless x is in A and x - v in B. near: a common point
-/// nearby.
+/// Evaluates x for the translation v. Returns false unless x is in A and x - v in B. near: a nearby common
+/// point.
 bool OverlapProof::look(const Vector3d& x, const Vector3d& v, const Common& near, Common& out) {
   ++points_;
   out.x = x;
   out.shift = v;
-  // B is moved by v: it contains x if the original B contains x - v.
+  // B is translated by v: it contains x if the original B contains x - v.
   out.of_b = x - v;
   out.clear_a = a_.at(out.x);
   out.clear_b = b_.at(out.of_b);
-  // Inside with certainty: by the balls of the nearby point, or located exactly.
+  // Inside with certainty: by the balls of the nearby point, or by exact location.
   return is_in(Side::a, out.x, out.clear_a, near.x, near.clear_a) &&
          is_in(Side::b, out.of_b, out.clear_b, near.of_b, near.clear_b);
 }
 
-/// Moves a point along the axes to where there is more clearance (compass search). It does not move away from
-/// the nearest points of the surfaces, because which of several equally near ones is found depends on the
-/// triangulation.
+/// Moves a point along the axes to larger clearance (compass search). It does not move away from the nearest
+/// points of the surfaces, because the choice among equally near ones depends on the triangulation.
 void OverlapProof::climb(double needed, bool thorough, Common& best) {
-  // Halve the step until there is room enough, or until steps are too small to matter.
+  // Halve the step until the clearance suffices, or until steps are too small to matter.
   for (double step = needed / 2; step > needed * kLeastClimb && !(best.room() > needed); step /= 2) {
-    // A large cube with little room is divided sooner than searched.
+    // A large cube with little clearance is divided rather than searched.
     if (!thorough && !(best.room() > needed * kNearlyEnough)) return;
     for (int k = 0; k < 3; ++k)
       for (const double sign : {1.0, -1.0}) {
         Common next;
         if (!look(best.x + sign * step * Vector3d::Unit(k), best.shift, best, next) || !has_more(next, best))
           continue;
-        // The first gain on an axis is taken.
+        // Take the first gain on an axis.
         best = next;
         break;
       }
   }
 }
 
-/// Returns start points of the search for a cube: the one of the cube that it is part of, those of the
-/// nearest proven cubes, and for a small cube also some of all and some of the first ones.
+/// Returns starting points of the search for a cube: its parent's, those of the nearest proven cubes, and for
+/// a small cube also samples of all known and of the initial points.
 std::vector<OverlapProof::Common> OverlapProof::seeds(const Cube& cube) const {
   // The kSeeds nearest translations, by insertion into a short sorted array.
   std::array<std::pair<double, const Common*>, kSeeds> nearest;
@@ -123,7 +123,7 @@ std::vector<OverlapProof::Common> OverlapProof::seeds(const Cube& cube) const {
   std::vector<Common> out{cube.near};
   for (const auto& [far, known] : nearest)
     if (known != nullptr) out.push_back(*known);
-  // Little is missing here: search more before dividing, from points spread over all that are known.
+  // The remaining gap is small: search more before dividing, from samples of all known points.
   if (is_small(cube))
     for (std::size_t i = 0; i < kOtherSeeds; ++i) {
       out.push_back(found_[i * found_.size() / kOtherSeeds]);
@@ -132,31 +132,31 @@ std::vector<OverlapProof::Common> OverlapProof::seeds(const Cube& cube) const {
   return out;
 }
 
-/// Searches from a seed for a point with as much room as needed.
+/// Searches from a seed for a point with the clearance needed.
 bool OverlapProof::find_room(const Cube& cube, double needed, const Common& seed, Common& best) {
   const Vector3d moved = cube.middle - seed.shift;
   bool found = false;
   Common start;
-  // From the seed's translation to the cube's: the point goes half of the way, stays with A, or follows B.
+  // From the seed's translation to the cube's, the point moves by half, stays with A, or follows B.
   for (const double share : {0.5, 0.0, 1.0}) {
     Common at;
     if (!look(seed.x + share * moved, cube.middle, seed, at)) continue;
     if (!found || has_more(at, start)) start = at;
     found = true;
-    // Promising enough to climb from.
+    // Good enough to climb from.
     if (start.room() > needed * kNearlyEnough) break;
   }
   if (!found) return false;
   climb(needed, is_small(cube), start);
-  // The best point is kept even if it is not enough: the cube's parts begin with it.
+  // The best point is kept even if it does not suffice: the cube's parts start from it.
   if (has_more(start, best)) best = start;
   return start.room() > needed;
 }
 
-/// Proves that the bodies overlap for a cube of translations. best: the point with the most room, if one was
-/// found.
+/// Proves that the bodies overlap for a cube of translations. best: set to the point with the largest
+/// clearance found.
 bool OverlapProof::prove(const Cube& cube, Common& best) {
-  // Half of the cube's diagonal: then the balls overlap for every translation in the cube.
+  // Half of the cube's diagonal: the balls then overlap for every translation in the cube.
   const double needed = cube.half * kDiagonal + kRoomMargin;
   for (const Common& seed : seeds(cube)) {
     if (find_room(cube, needed, seed, best)) {
@@ -164,7 +164,7 @@ bool OverlapProof::prove(const Cube& cube, Common& best) {
       found_.push_back(best);
       return true;
     }
-    // A large cube with a fair point: its parts need only half the room, so divide.
+    // A large cube with a fair point: its parts need only half the clearance, so divide.
     if (best.room() > needed * kNearlyEnough && !is_small(cube)) return false;
   }
   return false;
@@ -176,15 +176,15 @@ unsigned OverlapProof::grow(unsigned most_points) {
     // The cube nearest to 0 bounds the proven translations.
     const Cube cube = cubes_.front();
     lower_ = std::max(lower_, cube.least);
-    // Too small to be worth dividing: the proof ends here.
+    // Too small to be worth dividing: the proof ends.
     if (cube.half < kLeastCube) return points_ - before;
     std::pop_heap(cubes_.begin(), cubes_.end(), is_later<Cube>);
     cubes_.pop_back();
-    // The parent's point without its room: any point of this cube counts as better.
+    // The parent's point, with clearance 0: any point found for this cube counts as better.
     Common near = cube.near;
     near.clear_a = near.clear_b = 0;
     if (prove(cube, near)) continue;
-    // None was found: the parts begin with the parent's point.
+    // If none was found, the parts start from the parent's point.
     if (!(near.room() > 0)) near = cube.near;
     // Eight cubes of half the size.
     for (unsigned i = 0; i < 8; ++i) {

@@ -1,12 +1,13 @@
 #pragma once
 /// Proves that two bodies overlap after all translations that are short enough.
 ///
-/// If the open ball of radius r about x lies in A, and that of radius s about x - v in B, the interiors
-/// overlap after all translations of B that differ from v by less than r + s: B's ball then reaches into A's.
-/// Translations are divided into cubes, nearest to 0 first. For each, a point x is sought whose two balls are
-/// large enough for the entire cube; if none is found, the cube is divided into eight. All translations
-/// shorter than the nearest remaining cube are proven. The closer these come to the depth, the smaller are
-/// the cubes near separating translations; their number grows as the inverse of the difference to the depth.
+/// If the open ball of radius r about x is in A, and the open ball of radius s about x - v is in B, then the
+/// interiors overlap after all translations of B that differ from v by less than r + s, because B's ball then
+/// reaches into A's. Translations are divided into cubes, nearest to 0 first. For each cube, a point x is
+/// searched whose two balls are large enough for the entire cube; if none is found, the cube is divided into
+/// eight. All translations shorter than the nearest remaining cube are proven. The closer these are to the
+/// depth, the smaller are the cubes near separating translations; their number grows as the inverse of the
+/// difference to the depth.
 
 #include <functional>
 #include <vector>
@@ -24,15 +25,16 @@ class OverlapProof {
   OverlapProof(const SurfaceDistance& a, const SurfaceDistance& b, IsInside is_inside);
 
   /// Begins with common points of both bodies, the best first, and with all translations shorter than `most`,
-  /// which must be less than 2 and is best slightly above the depth. Returns false if no point is in both.
+  /// which must be less than 2 and should be slightly above the depth. Returns false if no point is in both
+  /// bodies.
   bool begin(const std::vector<Vector3d>& common, double most);
-  /// Goes on until about `most_points` more points have been tried, or no more can be proven. Returns the
-  /// number of points tried.
+  /// Continues until about `most_points` more points have been tried, or nothing more can be proven. Returns
+  /// the number of points tried.
   unsigned grow(unsigned most_points);
-  /// Returns a length: after all shorter translations of B the interiors overlap. Proven.
+  /// Returns a proven lower bound: after all shorter translations of B the interiors overlap.
   double lower() const { return lower_; }
-  /// Returns a translation near the shortest one that is not proven: it may separate the bodies. 0 if there
-  /// is none.
+  /// Returns a translation near the shortest one that is not proven, which may separate the bodies, or 0 if
+  /// no cube is left.
   Vector3d doubtful() const { return cubes_.empty() ? Vector3d(Vector3d::Zero()) : cubes_.front().middle; }
 
  private:
@@ -43,10 +45,10 @@ class OverlapProof {
     double room() const { return clear_a + clear_b; }
   };
   struct Cube {
-    double least;  ///< the length of the shortest translation in it, rounded down
+    double least;  ///< lower bound on the length of its translations
     Vector3d middle;
     double half;
-    Common near;  ///< of a translation nearby
+    Common near;  ///< of a nearby translation
   };
   void push(const Vector3d& middle, double half, const Common& near);
   bool look(const Vector3d& x, const Vector3d& v, const Common& near, Common& out);
@@ -60,10 +62,10 @@ class OverlapProof {
 
   const SurfaceDistance &a_, &b_;
   IsInside is_inside_;
-  /// Those to begin with, then those for the middles of the cubes that were proved.
+  /// The initial points, followed by those for the centres of the proven cubes.
   std::vector<Common> found_;
-  std::size_t first_ = 0;    ///< the number of those to begin with
-  std::vector<Cube> cubes_;  ///< a heap, the least first
+  std::size_t first_ = 0;    ///< number of initial points
+  std::vector<Cube> cubes_;  ///< a min-heap
   double most_ = 0, lower_ = 0;
   unsigned points_ = 0;
 };

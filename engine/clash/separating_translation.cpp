@@ -1,4 +1,4 @@
-/// Tries and proves translations of B that separate it from A. Trials use the exact any-pair query on the
+/// Tests and proves translations of B that separate it from A. Tests use the exact any-pair query on the
 /// rounded pose. Proofs add the distance query, with a margin above the rounding of the pose and of the
 /// corners.
 
@@ -16,7 +16,7 @@ namespace lrb::parting {
 Parting::Parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                  const UnitBodies& bodies)
     : a_(a), b_(b), pose_a_(pose_a), pose_b_(pose_b), frame_(bodies.frame) {
-  // Real faces alone, so that regions change nothing.
+  // Real faces only, so that the result does not depend on the regions.
   for (FaceId f = 0; f < b.real_face_count(); ++f)
     for (const VertexId v : b.face(f))
       reach_ = std::max(reach_, pose_b.apply(b.vertices()[v]).cwiseAbs().maxCoeff());
@@ -25,14 +25,14 @@ Parting::Parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
 Parting::Moved Parting::moved(const Vector3d& n, double s) const {
   Moved m{pose_b_, Vector3d::Zero()};
   for (int k = 0; k < 3; ++k) m.pose.t[k] += frame_.length_to_world(s * n[k]);
-  // What the pose really changes by, rounded once: the pose is rounded, too, so this is not s n.
+  // The actual displacement, rounded once. The pose is rounded as well, so this differs from s n.
   m.by = m.pose.t - pose_b_.t;
   return m;
 }
 
 bool Parting::is_apart(const Vector3d& n, double s) {
   const Moved m = moved(n, s);
-  // Coordinates could overflow. NaN fails, too.
+  // Coordinates could overflow. NaN is rejected as well.
   if (!m.pose.t.allFinite() || !(reach_ + m.by.cwiseAbs().maxCoeff() < kLargestMoved)) return false;
   ++asked_;
   // One intersecting pair is enough to reject a translation.
@@ -42,12 +42,12 @@ bool Parting::is_apart(const Vector3d& n, double s) {
   return collide(a_, pose_a_, b_, m.pose, request, query_, probe).relation == Relation::separate;
 }
 
-/// The query's corners of B are fl(q + t'), those of the contract fl(q + t), with the same q. They differ
-/// from a translation by t' - t by a rounding of each, u times coordinates of at most reach_ and reach_ +
-/// |by|; and m.by is t' - t rounded, off by u |by| in each coordinate. Together this is less than 2 u (2
+/// The query uses corners fl(q + t') of B, the contract fl(q + t), with the same q. They differ from a
+/// translation by t' - t by one rounding of each, which is u times coordinates of at most reach_ and reach_ +
+/// |by|. m.by is t' - t with an error of at most u |by| in each coordinate. The total is less than 2 u (2
 /// reach_ + 2 |by|) in length, u = 2^-53, plus the loss near underflow. Bodies that are farther apart than
-/// this are separate after the exact translation as well: between the two positions the surfaces do not
-/// intersect.
+/// this are separate after the exact translation as well, because the surfaces do not intersect between the
+/// two positions.
 bool Parting::is_proved(const Moved& m, double more) {
   if (!m.pose.t.allFinite() || !(reach_ + m.by.cwiseAbs().maxCoeff() < kLargestMoved)) return false;
   // 0x1p-51 is 4 u, from the derivation above; `more` is the caller's own error.
@@ -57,14 +57,14 @@ bool Parting::is_proved(const Moved& m, double more) {
   // The distance query decides whether the bodies are farther apart than the rounding.
   request.within = rounding;
   const DistanceResult result = distance(a_, pose_a_, b_, m.pose, request, distance_);
-  // Separate, not contained in each other, and not within the rounding.
+  // Separate, not contained in each other, and farther apart than the rounding.
   return result.relation == Relation::separate && result.within && !*result.within;
 }
 
 std::optional<PartingMove> Parting::prove(const Vector3d& n, double s) {
   // Rounding of world coordinates, in units.
   const double rounding = std::ldexp(0x1p-50 * (reach_ + frame_.length_to_world(s)), -frame_.exponent);
-  // Overshoot by a margin that grows by a factor of 8 until the proof succeeds.
+  // Add a margin that grows by a factor of 8 until the proof succeeds.
   for (double more = kPartingMargin + 2 * rounding; more < kMostPartingMargin; more *= 8) {
     const Moved m = moved(n, s + more);
     if (is_proved(m, 0)) return PartingMove{m.by, m.by.stableNorm() * (1 + 0x1p-50)};
@@ -79,7 +79,7 @@ std::optional<double> Parting::prove_along(const Vector3d& n, double s) {
     const Moved m = moved(n, s + more);
     Vector3d wanted;
     for (int k = 0; k < 3; ++k) wanted[k] = frame_.length_to_world((s + more) * n[k]);
-    // Deviation from the wanted translation. Products and the difference are rounded, by u times their size
+    // Deviation from the requested translation. Products and the difference are rounded by u times their size
     // each.
     if (is_proved(m, (m.by - wanted).norm() * 2 + 0x1p-50 * wanted.norm())) return s + more;
   }
@@ -97,7 +97,7 @@ double Parting::least_apart(const Vector3d& n, double most, int samples) {
     }
     met = s;
   }
-  // Bisection between the last sample that collides and the first that separates.
+  // Bisection between the last colliding and the first separating sample.
   while (apart - met > kPartingMargin) {
     const double middle = 0.5 * (met + apart);
     // No double lies between the two.

@@ -11,23 +11,25 @@ namespace lrb::parting {
 /// A translation after which two bodies are separate.
 struct PartingMove {
   Vector3d translation{0, 0, 0};  ///< world
-  double length = 0;              ///< at least the translation's, rounded up
+  double length = 0;              ///< at least the translation's length, rounded up
 };
 
 class Parting {
  public:
   Parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, const UnitBodies& bodies);
 
-  /// Returns true if the bodies are separate according to the exact query after B's pose is moved by `s`
-  /// times `n` (units).
+  /// Returns true if the exact query finds the bodies separate after B's pose is translated by `s` times `n`
+  /// (units).
   bool is_apart(const Vector3d& n, double s);
-  /// Proves that B moved along n by `s` or slightly more is separate from A. Returns nullopt if it cannot.
+  /// Proves that a translation of B along n by `s` or slightly more separates it from A. Returns nullopt if
+  /// the proof fails.
   std::optional<PartingMove> prove(const Vector3d& n, double s);
-  /// Proves that B moved by exactly s n, for `s` or a slightly larger s, is separate from A. Returns that s
-  /// (units), or nullopt if it cannot.
+  /// Proves that a translation of B by exactly s n, for `s` or a slightly larger s, separates it from A.
+  /// Returns that s (units), or nullopt if the proof fails.
   std::optional<double> prove_along(const Vector3d& n, double s);
-  /// Returns the least of some sampled distances along n, up to `most`, at which the bodies are separate,
-  /// refined by bisection; `most` if there is none. Usually finds the first separation, not always.
+  /// Returns the least of some sampled lengths along n, up to `most`, at which the bodies are separate,
+  /// refined by bisection, or `most` if no sample separates. Usually, but not always, finds the first
+  /// separation.
   double least_apart(const Vector3d& n, double most, int samples);
   /// Returns the number of queries.
   std::uint64_t asked() const { return asked_; }
@@ -35,7 +37,7 @@ class Parting {
  private:
   struct Moved {
     Pose pose;
-    Vector3d by;  ///< what it is moved by, rounded once
+    Vector3d by;  ///< the displacement, rounded once
   };
   Moved moved(const Vector3d& n, double s) const;
   bool is_proved(const Moved& m, double more);
@@ -44,7 +46,7 @@ class Parting {
   const Pose &pose_a_, &pose_b_;
   const UnitFrame& frame_;
   double reach_ = 0;         ///< the largest world coordinate of B
-  std::uint64_t asked_ = 0;  ///< queries
+  std::uint64_t asked_ = 0;  ///< number of queries
   QueryContext query_;
   DistanceContext distance_;
 };

@@ -6,31 +6,32 @@
 /// 4. Sum up with compensation (Neumaier 1974) and a bound on all errors.
 ///
 /// Errors, with u = 2^-53; coordinates are at most 1/2, and heights above the base at most 1. Let D be the
-/// diameter of the projected triangle that is clipped, and E that of the one that clips it.
+/// diameter of the projected triangle that is clipped, and E the diameter of the clipping triangle.
 ///
-/// Clipping. The distance of a point p from the line through a and b is a product of two differences, each
-/// within u of itself, less another, divided by the length of b - a: off by at most 8 u |p - a| <= 8 u (D +
-/// E). A point where an edge is cut is within 4 u D + u of the edge (the parameter is off by 4 u, the sum is
-/// rounded), and is that much farther from the line, because the distance is linear on the edge. So the
-/// computed polygon differs from the exact one by strips along the line, 8 u (D + E) + 4 u D + u wide and at
-/// most D long, and along the edges, 4 u D + u wide and at most 6 D long: in area by less than u D (7 + 36 D
-/// + 8 E). Three times, and once more along the edges where one triangle passes through the other: less than
-/// u D (27 + 132 D + 24 E). The height above the base is at most 1.
+/// Clipping. The distance of a point p from the line through a and b is a difference of two products of
+/// differences, each with a relative error of u, divided by the length of b - a. Its error is at most 8 u |p
+/// - a| <= 8 u (D + E). The computed intersection point of an edge with the line is within 4 u D + u of the
+/// edge (the error of the parameter is at most 4 u, and the sum is rounded), and is farther from the line by
+/// as much, because the distance is linear on the edge. So the computed polygon differs from the exact one by
+/// strips along the line, 8 u (D + E) + 4 u D + u wide and at most D long, and along the edges, 4 u D + u
+/// wide and at most 6 D long. Their area is less than u D (7 + 36 D + 8 E). There are three clipping lines,
+/// and the line where one triangle passes through the other adds its strips along the edges: in total less
+/// than u D (27 + 132 D + 24 E). The height above the base is at most 1.
 ///
-/// Heights. Over the triangle a, b, c with doubled projected area F, the height is that of the lowest corner
-/// plus those of the others above it, weighted by areas over F. Each area, and F, is off by 8 u E^2, so the
-/// height by 32 u E^2 / F times the range of heights. This counts over an area of at most F / 2 and at most
-/// that of the polygon. Where it is not known which of two triangles is lower, they differ by no more than
-/// these errors: they count twice.
+/// Heights. Over the triangle a, b, c with doubled projected area F, the height is the lowest corner's height
+/// plus the other corners' heights above it, weighted by areas over F. The error of each area, and of F, is
+/// at most 8 u E^2, so the error of the height is at most 32 u E^2 / F times the range of heights. It counts
+/// over an area of at most F / 2, and of at most the polygon's area. Where the lower of two triangles is
+/// ambiguous, they differ by at most these errors, which therefore count twice.
 ///
-/// Sums. A polygon's integral is a sum of fewer than 16 triangles of area at most D^2 / 2, each with a few
+/// Sums. A polygon's integral is a sum over fewer than 16 triangles of area at most D^2 / 2, each with a few
 /// roundings: less than 100 u D^2.
 ///
-/// A triangle that is nearly parallel to x, so that the sign of F is ambiguous (F < 16 u D^2), contributes
-/// only an error: its area is less than 16 u D^2.
+/// Parallel triangles. A triangle that is so nearly parallel to x that the sign of F is ambiguous (F < 16 u
+/// D^2) contributes only an error: its area is less than 16 u D^2.
 ///
-/// Corners. Each is off by u in each coordinate, by 2 u in length: the volume that a triangle sweeps when its
-/// corners move by 2 u is at most 2 u times its area, and 2 u more for its perimeter.
+/// Corners. The error of a corner is at most u in each coordinate, 2 u in length. The volume that a triangle
+/// sweeps when its corners move by 2 u is at most 2 u times its area, plus 2 u for its perimeter.
 
 #include <algorithm>
 #include <cmath>
@@ -59,15 +60,14 @@ struct Seen {
   double height[3];
   double area2 = 0;     ///< doubled
   double diameter = 0;  ///< rounded up
-  int sign = 0;         ///< 1: it faces up (+x); 0: ambiguous
+  int sign = 0;         ///< 1: faces up (+x); -1: down; 0: ambiguous
   Eigen::AlignedBox2d box;
 
   double range() const { return std::max({height[0], height[1], height[2]}) - least_height(); }
   double least_height() const { return std::min({height[0], height[1], height[2]}); }
 
   double height_at(const Vector2d& x) const {
-    // The height of the lowest corner plus weighted differences: the errors scale with the range of heights
-    // only.
+    // The lowest corner's height plus weighted differences: errors scale only with the range of heights.
     const double least = least_height();
     double sum = 0;
     for (int k = 0; k < 3; ++k) {
@@ -90,9 +90,9 @@ Seen see(const UnitBody& body, const std::array<std::uint32_t, 3>& t) {
   const Vector2d u = s.p[1] - s.p[0], v = s.p[2] - s.p[0];
   s.diameter = s.box.diagonal().norm() * (1 + 8 * kRounding);
   s.area2 = u.x() * v.y() - u.y() * v.x();
-  // Beyond this error bound the sign of the area is certain.
+  // Outside this error bound the sign of the area is certain.
   if (std::abs(s.area2) > kSideError * s.diameter * s.diameter) s.sign = s.area2 > 0 ? 1 : -1;
-  // Counter-clockwise from here on; `sign` keeps the orientation.
+  // Counter-clockwise from now on; `sign` stores the orientation.
   if (s.area2 < 0) {
     std::swap(s.p[1], s.p[2]);
     std::swap(s.height[1], s.height[2]);
@@ -101,8 +101,8 @@ Seen see(const UnitBody& body, const std::array<std::uint32_t, 3>& t) {
   return s;
 }
 
-/// A polygon: a triangle clipped by up to four lines. Convex up to rounding, which lets lines cut its sides
-/// more than twice: it has at most 4, 6, 9, 13 corners.
+/// A polygon: a triangle clipped by up to four lines. It is convex up to rounding, so a line may cut its
+/// boundary more than twice: it has at most 4, 6, 9, 13 corners.
 struct Polygon {
   Vector2d p[16];
   int size = 0;
@@ -119,7 +119,7 @@ Polygon clipped(const Polygon& in, const Value& value) {
   for (int i = 0; i < in.size; ++i) {
     const int j = (i + 1) % in.size;
     if (d[i] >= 0) out.add(in.p[i]);
-    // A change of sign: add the zero of the linear interpolation. A corner with value 0 is its own zero.
+    // A change of sign: add the zero of the linear interpolation. A corner with value 0 was added itself.
     if ((d[i] >= 0) != (d[j] >= 0) && d[i] != 0 && d[j] != 0)
       out.add(in.p[i] + d[i] / (d[i] - d[j]) * (in.p[j] - in.p[i]));
   }
@@ -128,7 +128,7 @@ Polygon clipped(const Polygon& in, const Value& value) {
 
 double area_of(const Polygon& polygon) {
   double sum = 0;
-  // A fan of triangles; relative coordinates keep the products small.
+  // Triangle fan; relative coordinates keep the products small.
   for (int i = 1; i + 1 < polygon.size; ++i) {
     const Vector2d u = polygon.p[i] - polygon.p[0], v = polygon.p[i + 1] - polygon.p[0];
     sum += 0.5 * (u.x() * v.y() - u.y() * v.x());
@@ -148,8 +148,8 @@ double integral(const Polygon& polygon, const Seen& t) {
   return sum;
 }
 
-/// A compensated sum with an error bound (Neumaier 1974). Its error is a few roundings of the sum, and their
-/// squares times the number of terms, of the terms.
+/// A compensated sum with an error bound (Neumaier 1974). Its error is a few roundings of the sum, plus u^2
+/// times the number of terms, relative to the sum of the terms' magnitudes.
 class Sum {
  public:
   void add(double value, double error) {
@@ -177,7 +177,7 @@ void add_pair(const Seen& a, const Seen& b, Sum& sum) {
   // Clip the smaller triangle: the error is proportional to its diameter.
   const bool a_is_less = a.diameter <= b.diameter;
   const Seen &small = a_is_less ? a : b, &large = a_is_less ? b : a;
-  // An ambiguous orientation: the area is so small that it counts as error only.
+  // An ambiguous orientation: the area is so small that it counts only as an error.
   for (const Seen* s : {&a, &b})
     if (s->sign == 0) {
       sum.add(0, kSideError * s->diameter * s->diameter);
@@ -194,17 +194,17 @@ void add_pair(const Seen& a, const Seen& b, Sum& sum) {
     });
   }
   double error = clip_error(small.diameter, large.diameter);
-  // Nothing in common, or less than the error.
+  // The projections intersect by less than the error, or not at all.
   if (polygon.size < 3) {
     sum.add(0, error);
     return;
   }
-  // The area in which the error of the heights counts, rounded up.
+  // The area over which the error of the heights counts, rounded up.
   const double area = std::max(0.0, area_of(polygon)) + 128 * kRounding * small.diameter * small.diameter;
   for (const Seen* s : {&a, &b})
     error += kHeightError * s->diameter * s->diameter * s->range() * std::min(0.5, area / s->area2) *
              (1 + 0x1p-20);
-  // The lower height counts: a's everywhere, corrected to b's where b is lower. Where both are equal, the
+  // Integrate the lower height: a's everywhere, corrected to b's where b is lower. Where both are equal, the
   // correction is 0.
   const Polygon under = clipped(polygon, [&](const Vector2d& x) { return a.height_at(x) - b.height_at(x); });
   const double value = integral(polygon, a) + (integral(under, b) - integral(under, a));
@@ -217,7 +217,7 @@ std::vector<Seen> seen_of(const UnitBody& body) {
   return out;
 }
 
-/// Returns a bound on how much the rounding of corners changes the volume.
+/// Returns an upper bound on the change of the volume by the rounding of corners.
 double rounding_of_corners(const UnitBody& body) {
   double sum = 0;
   for (const auto& t : body.triangles) {
@@ -239,7 +239,7 @@ class Strips {
 
   template <class Use>
   void each_near(const Seen& t, const Use& use) const {
-    // A pair is reported in the first strip that both boxes share, and in no other.
+    // A pair is reported only in the first strip that both boxes share.
     for (std::size_t k = first_of(t); k <= last_of(t); ++k)
       for (const std::uint32_t i : in_[k])
         if (k == std::max(first_of(t), first_of(triangles_[i]))) use(triangles_[i]);  // once for each pair
@@ -247,7 +247,7 @@ class Strips {
 
  private:
   std::size_t strip_at(double y) const {
-    // Clamped, so that rounding at the border does no harm.
+    // Clamped, so that rounding at the border is harmless.
     const double share = std::clamp(y + 0.5, 0.0, 1.0) * static_cast<double>(in_.size());
     return std::min(static_cast<std::size_t>(share), in_.size() - 1);
   }
@@ -262,12 +262,12 @@ class Strips {
 
 ProvedInterval shared_volume(const UnitBodies& bodies) {
   const std::vector<Seen> a = seen_of(bodies.body[0]), b = seen_of(bodies.body[1]);
-  // About as many strips as there are triangles in each, if they are evenly spread.
+  // If triangles are evenly distributed, there are about as many strips as triangles in each.
   const auto count = static_cast<std::size_t>(std::sqrt(static_cast<double>(b.size()))) + 1;
   const Strips strips(b, count);
   Sum sum;
   for (const Seen& t : a) strips.each_near(t, [&](const Seen& s) { add_pair(t, s, sum); });
-  // The rounding of all corners is added once, at the end.
+  // The error from the rounding of all corners is added once, at the end.
   return sum.interval(rounding_of_corners(bodies.body[0]) + rounding_of_corners(bodies.body[1]));
 }
 

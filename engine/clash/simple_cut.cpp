@@ -1,7 +1,7 @@
-/// Cells of a face that disjoint chains cut from border to border. Steps:
-/// 1. Link the segments to chains, by the names of their ends.
-/// 2. Sort the ends of chains on each edge of the face, with bounds on their errors.
-/// 3. Go around the border with a stack: the two ends of a chain enclose whole chains only, like brackets.
+/// Cells of a face that is cut by disjoint chains from border to border. Steps:
+/// 1. Link the segments to chains, by the identifiers of their ends.
+/// 2. Sort the ends of chains on each edge of the face, with error bounds.
+/// 3. Traverse the border with a stack: the two ends of a chain enclose only entire chains, like brackets.
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 
 namespace lrb::parting {
 
-/// The point is within 1e-13 of the extent of the edge that is cut, and two roundings, of the exact one
-/// (pair_contact.cpp). That edge is the face's own: this end is where an edge of the face pierces the other
+/// The point is within 1e-13 of the extent of the edge that is cut, plus two roundings, of the exact point
+/// (pair_contact.cpp). That edge is the face's own: at this end an edge of the face pierces the other
 /// triangle.
 SimpleCut::End SimpleCut::End::on_border(int edge, const Eigen::Vector3d& x, const double* const corners[3],
                                          SimplexId by) {
@@ -21,9 +21,9 @@ SimpleCut::End SimpleCut::End::on_border(int edge, const Eigen::Vector3d& x, con
   const Eigen::Vector3d way = to - from;
   const double length = way.stableNorm();
   End end{{by.value(), 0}, edge};
-  // Divided before the product, so that squares cannot overflow.
+  // Divide before the product, so that squares cannot overflow.
   end.share = (x - from).dot(way / length) / length;
-  // Where coordinates are larger than the edge, their rounding counts more.
+  // If coordinates are larger than the edge, their rounding dominates.
   const double size = std::max({from.cwiseAbs().maxCoeff(), to.cwiseAbs().maxCoeff(), 0x1p-1000});
   end.rounding = kShareRounding * (1 + size / length * 0x1p-8);
   return end;
@@ -102,9 +102,9 @@ bool SimpleCut::sort_border(const std::map<Key, std::uint32_t>& number,
   return true;
 }
 
-/// Assigns cells to the parts of the border, beginning at the face's first corner.
+/// Assigns cells to the parts of the border, starting at the face's first corner.
 bool SimpleCut::walk_round() {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> open;  // chains, and the cells outside of them
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> open;  // chains, with the cells outside them
   std::uint32_t cell = 0;
   cell_count_ = 1;
   // The part between the corner and the first end belongs to the current cell.
@@ -112,11 +112,11 @@ bool SimpleCut::walk_round() {
     cells_[edge].push_back(cell);
     for (const BorderEnd& end : border_[edge]) {
       if (!open.empty() && open.back().first == end.chain) {
-        // Second end of the innermost open chain: back to the cell outside of it.
+        // Second end of the innermost open chain: return to the cell outside it.
         cell = open.back().second;
         open.pop_back();
       } else {
-        // First end of a chain: a new cell lies behind it.
+        // First end of a chain: a new cell begins behind it.
         open.emplace_back(end.chain, cell);
         cell = cell_count_++;
       }
@@ -130,7 +130,7 @@ std::pair<int, double> SimpleCut::place_on_border(std::uint32_t cell) const {
   // A corner of the face needs no rounding.
   for (std::size_t edge = 0; edge < 3; ++edge)
     if (cells_[edge].front() == cell) return {static_cast<int>(edge), 0};
-  // Otherwise the middle of a part between two ends, or between an end and the corner.
+  // Otherwise the midpoint of a part between two ends, or between an end and the corner.
   for (std::size_t edge = 0; edge < 3; ++edge)
     for (std::size_t part = 1; part < cells_[edge].size(); ++part)
       if (cells_[edge][part] == cell) {

@@ -1,6 +1,6 @@
-/// Counts the pieces into which each of two surfaces is cut by the other; exact. For each surface:
+/// Counts the pieces into which each of two surfaces is cut by the other; exact. Steps for each surface:
 /// 1. Cut the triangles that intersect the other body into cells: by the chains of intersection segments
-///    (simple_cut.cpp), or in rational arithmetic (exact::CutFace) where the configuration is degenerate.
+/// 1. Cut the triangles that intersect the other body into cells: by the chains of intersection segments
 /// 2. Make a graph of the uncut triangles and the cells. Two nodes are connected if they share a part of an
 ///    edge that is not on the other surface. Its connected components, found by union-find, are the pieces.
 /// 3. Locate one point of each piece: inside the other solid, outside, or on its surface.
@@ -23,7 +23,7 @@
 namespace lrb::parting {
 namespace {
 
-/// Disjoint sets (union-find); the least member represents a set.
+/// Disjoint sets (union-find); a set is represented by its least member.
 class Groups {
  public:
   explicit Groups(std::size_t n) : leader_(n) { std::iota(leader_.begin(), leader_.end(), 0u); }
@@ -32,13 +32,13 @@ class Groups {
     return leader_.back();
   }
   std::uint32_t of(std::uint32_t i) {
-    // Path halving: every second element on the way to the root is linked to its grandparent.
+    // Path halving: each visited element is linked to its grandparent.
     while (leader_[i] != i) i = leader_[i] = leader_[leader_[i]];
     return i;
   }
   void join(std::uint32_t i, std::uint32_t j) {
     const std::uint32_t a = of(i), b = of(j);
-    // The least index represents a set, so the result does not depend on the order of unions.
+    // The least index represents a set, so that the result is independent of the order of unions.
     leader_[std::max(a, b)] = std::min(a, b);
   }
   std::uint32_t size() const { return static_cast<std::uint32_t>(leader_.size()); }
@@ -47,7 +47,7 @@ class Groups {
   std::vector<std::uint32_t> leader_;
 };
 
-/// Returns for each vertex the first vertex at the same position: those of seams occur twice.
+/// Returns for each vertex the first vertex at the same position: vertices on seams occur twice.
 std::vector<VertexId> places_of(const LrbRep& rep) {
   std::vector<VertexId> order(rep.vertices().size()), out(rep.vertices().size());
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = VertexId(i);
@@ -55,10 +55,10 @@ std::vector<VertexId> places_of(const LrbRep& rep) {
     const Eigen::Vector3d &x = rep.vertices()[a], &y = rep.vertices()[b];
     return std::lexicographical_compare(x.data(), x.data() + 3, y.data(), y.data() + 3);
   };
-  // Equal positions become neighbours, the first vertex in front because the sort is stable.
+  // Equal positions become adjacent, the first vertex in front because the sort is stable.
   std::stable_sort(order.begin(), order.end(), less);
   for (std::size_t i = 0; i < order.size(); ++i)
-    // A vertex equal to its predecessor takes over the predecessor's representative.
+    // A vertex equal to its predecessor inherits the predecessor's representative.
     out[order[i]] = i > 0 && !less(order[i - 1], order[i]) ? out[order[i - 1]] : order[i];
   return out;
 }
@@ -68,11 +68,11 @@ struct EdgeUse {
   VertexId from, to;  ///< by position, from < to
   SimplexId simplex;
   int edge;
-  bool reversed;  ///< the simplex has it from `to` to `from`
+  bool reversed;  ///< the simplex traverses it from `to` to `from`
 };
 
-/// A triangle that intersects the other body. Its cells come from the order along its border if it is as
-/// simple as nearly all are, otherwise from rational arithmetic.
+/// A triangle that intersects the other body. Its cells follow from the order along its border in the simple
+/// case, which is nearly always, otherwise from rational arithmetic.
 struct TouchedFace {
   std::vector<std::uint32_t> pairs;  ///< into the result
   std::optional<SimpleCut> simple;
@@ -98,10 +98,10 @@ class CutSurface {
         nodes_(body_.rep().real_simplex_count()),
         surface_(body_.rep().real_simplex_count()) {}
 
-  /// Sets `why` if it returns nothing.
+  /// Returns the counts of pieces, or nullopt if that fails; sets `why` then.
   std::optional<SurfacePieces> run(ClashReason& why) {
     const auto pieces = count_pieces();
-    // It failed on a face without area in the world, or on too many cells.
+    // The cause is a face that is degenerate in the world, or too many cells.
     if (!pieces) why = touches_flat_face() ? ClashReason::flat_face : ClashReason::many_cells;
     return pieces;
   }
@@ -110,8 +110,8 @@ class CutSurface {
   std::optional<SurfacePieces> count_pieces() {
     // Step 1: cut the triangles that intersect the other body.
     if (!cut_faces()) return std::nullopt;
-    // Step 2: visit every edge with all its uses (two, unless the edge is non-manifold), and connect what it
-    // joins.
+    // Step 2: visit every edge with all its uses (two, unless the edge is non-manifold), and connect the
+    // nodes at it.
     const std::vector<EdgeUse> uses = edge_uses();
     for (std::size_t i = 0; i < uses.size();) {
       std::size_t end = i + 1;
@@ -137,15 +137,15 @@ class CutSurface {
   SimplexId others(const SimplexPair& p) const { return side_ == Side::a ? p.b : p.a; }
 
   bool cut_faces() {
-    // All contacts of a triangle together.
+    // Group the contacts by triangle.
     for (std::uint32_t i = 0; i < result_.pairs.size(); ++i)
       touched_[own(result_.pairs[i])].pairs.push_back(i);
     for (auto& [s, face] : touched_) {
-      // Rational arithmetic is slow: only where the simple method declines.
+      // Rational arithmetic is slow: used only if the simple method fails.
       if (!only_rational_) face.simple = simple_cut(s, face);
       if (!face.simple) face.cut = rational_cut(s, face);
       if (!face.simple && !face.cut) return false;
-      // A node of the graph for each cell.
+      // One node of the graph for each cell.
       face.first_node = nodes_.size();
       for (std::size_t i = 0; i < face.cell_count(); ++i) nodes_.add();
     }
@@ -155,7 +155,7 @@ class CutSurface {
   std::optional<exact::CutFace> rational_cut(SimplexId s, const TouchedFace& face) {
     const double* corners[3];
     body_.world.corners(s, corners);
-    // Triangles in the face's plane cut by their outline only (collide/interiors.hpp).
+    // Triangles in the face's plane cut only by their outline (collide/interiors.hpp).
     FaceCutters cutters(corners, holder_);
     for (const std::uint32_t i : face.pairs) cutters.add(others(result_.pairs[i]));
     return exact::CutFace::make(corners, cutters.all(), kInteriorCellsPerFace);
@@ -174,17 +174,17 @@ class CutSurface {
       VertexId v[3] = {0, 0, 0};
       holder_.rep().simplex(t, v);
       SimpleCut::End ends[2];
-      // An end is where an edge of one triangle pierces the interior of the other. All else is degenerate.
+      // At an end an edge of one triangle pierces the interior of the other. All other cases are degenerate.
       for (std::size_t c = 0; c < 2; ++c) {
         const exact::ContactCorner& corner = contact.corners[c];
         const exact::Feature own = side_ == Side::a ? corner.on_a : corner.on_b;
         const exact::Feature other = side_ == Side::a ? corner.on_b : corner.on_a;
         if (own.dim == 1 && other.dim == 2) {
-          // An edge of this face ends the chain at its border: the end is named by the other triangle.
+          // An edge of this face ends the chain at the border: the end is identified by the other triangle.
           ends[c] = SimpleCut::End::on_border(own.index, corner.x, corners, t);
         } else if (own.dim == 2 && other.dim == 1) {
-          // Inside: named by the other surface's edge, so that the next segment of the chain has the same
-          // name.
+          // Inside: identified by the other surface's edge, so that the next segment of the chain has the
+          // same identifier.
           const auto [low, high] =
               std::minmax(holder_place_[v[other.index]], holder_place_[v[(other.index + 1) % 3]]);
           ends[c] = SimpleCut::End::inside(low, high);
@@ -201,10 +201,10 @@ class CutSurface {
     const LrbRep& rep = body_.rep();
     std::vector<EdgeUse> uses;
     for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
-      VertexId v[3] = {0, 0, 0};  // gcc 12 does not see that simplex() sets three
+      VertexId v[3] = {0, 0, 0};  // set by simplex(), which gcc 12 does not detect
       rep.simplex(s, v);
       for (int k = 0; k < 3; ++k) {
-        // The key does not depend on the direction; `reversed` stores it.
+        // The key is independent of the direction, which `reversed` stores.
         const VertexId from = place_[v[k]], to = place_[v[(k + 1) % 3]];
         uses.push_back({std::min(from, to), std::max(from, to), s, k, to < from});
       }
@@ -221,15 +221,14 @@ class CutSurface {
     for (const EdgeUse& use : uses) surface_.join(uses[0].simplex, use.simplex);
     const double *from = body_.world(uses[0].from), *to = body_.world(uses[0].to);
     bool is_free = false, any_touched = false;
-    // A triangle at this edge that intersects nothing proves that no point of the edge is on the other
-    // surface.
+    // If a triangle at this edge intersects nothing, no point of the edge is on the other surface.
     for (const EdgeUse& use : uses) (touched_.contains(use.simplex) ? any_touched : is_free) = true;
     // Case 1: no triangle here intersects the other body.
     if (!any_touched) {
       for (const EdgeUse& use : uses) nodes_.join(uses[0].simplex, use.simplex);
       return true;
     }
-    // Case 2: all triangles are uncut or simple, and see the same parts of the edge.
+    // Case 2: all triangles are uncut or simple, and have the same parts of the edge.
     if (const std::size_t parts = simple_parts(uses)) {
       for (std::size_t i = 0; i < parts; ++i) join_parts(uses, i);
       return true;
@@ -241,20 +240,20 @@ class CutSurface {
     // A rational point in each part of the edge.
     const auto samples = exact::sample_edge(from, to, cutting);
     if (!samples) return false;
-    // Parts are numbered along the edge: a simple face must have as many.
+    // Parts are numbered along the edge: a simple face must have the same number.
     for (const EdgeUse& use : uses)
       if (const auto face = touched_.find(use.simplex);
           face != touched_.end() && face->second.simple &&
           face->second.simple->part_count(use.edge) != samples->size())
         return false;
-    // Connect the nodes beside each part, unless that part is on the other surface.
+    // Connect the nodes beside each part, unless the part is on the other surface.
     for (std::size_t i = 0; i < samples->size(); ++i)
       if (is_free || locate(holder_, (*samples)[i]) != Where::on_surface) join_beside(uses, (*samples)[i], i);
     return true;
   }
 
-  /// Returns the number of parts into which an edge is cut if its triangles are all uncut or simple and agree
-  /// on it; 0 otherwise.
+  /// Returns the number of parts into which an edge is cut, or 0 unless its triangles are all uncut or simple
+  /// and agree on that number.
   std::size_t simple_parts(std::span<const EdgeUse> uses) const {
     std::size_t parts = 0;
     for (const EdgeUse& use : uses) {
@@ -275,20 +274,20 @@ class CutSurface {
     for (const EdgeUse& use : uses) nodes_.join(first, node_at(use, part));
   }
 
-  /// Returns the node beside a part of an edge, counted from the edge's lower end, at an uncut or simple
+  /// Returns the node beside a part of an edge, counted from the edge's lower end, in an uncut or simple
   /// triangle.
   std::uint32_t node_at(const EdgeUse& use, std::size_t part) const {
     const auto face = touched_.find(use.simplex);
     if (face == touched_.end()) return use.simplex.value();
     const SimpleCut& cut = *face->second.simple;
-    // The triangle runs along the edge the other way: count from its other end.
+    // The triangle traverses the edge in the other direction: count from its other end.
     const std::size_t own = use.reversed ? cut.part_count(use.edge) - 1 - part : part;
     return face->second.first_node + cut.cell_beside(use.edge, own);
   }
 
   /// Finds the triangles of the other body that intersect the interior of an edge in a point or in the end of
-  /// a segment. Returns true if there are none and an end of the edge touches nothing: then nothing touches
-  /// its interior.
+  /// a segment. Returns true if no triangle does and an end of the edge is free: then its entire interior is
+  /// free.
   bool find_cutting(std::span<const EdgeUse> uses, std::vector<std::array<const double*, 3>>& cutting,
                     bool ends_touched[2]) {
     for (const EdgeUse& use : uses)
@@ -307,7 +306,7 @@ class CutSurface {
         holder_.world.corners(others(result_.pairs[i]), corners.data());
         cutting.push_back(corners);
       }
-    // Without corners inside, only a contact along all of the edge is left, and that would include both ends.
+    // Without such corners, only a contact along the entire edge remains, which would include both ends.
     return cutting.empty() && !(ends_touched[0] && ends_touched[1]);
   }
 
@@ -330,12 +329,12 @@ class CutSurface {
     std::vector<bool> seen(nodes_.size(), false);
     const auto see = [&](std::uint32_t node, SimplexId s, const auto& where) {
       const std::uint32_t group = nodes_.of(node);
-      // One point decides for the whole piece, because no piece crosses the other surface.
+      // One point decides for the entire piece, because no piece crosses the other surface.
       if (seen[group]) return;
       seen[group] = true;
       const Where w = where();
       if (w == Where::inside) ++out.inside;
-      // Two or more pieces outside on one component mean that the other body goes through it.
+      // Two or more pieces outside on one component mean that the other body passes through it.
       if (w == Where::outside)
         out.most_outside = std::max(out.most_outside, ++outside[surface_.of(s.value())]);
       out.outside += w == Where::outside;
@@ -379,11 +378,11 @@ class CutSurface {
   const bool only_rational_;
   const std::vector<VertexId> place_, holder_place_;
   std::map<SimplexId, TouchedFace> touched_;
-  Groups nodes_;    ///< simplices that meet nothing, by their number, then cells
+  Groups nodes_;    ///< simplices in no contact, by their number, then cells
   Groups surface_;  ///< simplices
 };
 
-/// Returns why two bodies do not bound two solids; `none` if they do.
+/// Returns the reason why two bodies do not bound two solids, or `none` if they do.
 ClashReason reason_of_bodies(const LrbRep& a, const LrbRep& b) {
   return !a.closed()           ? ClashReason::a_open
          : !b.closed()         ? ClashReason::b_open
@@ -402,7 +401,7 @@ std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context
   if (why != ClashReason::none) return std::nullopt;
   std::vector<exact::PairContact> contacts;
   bool on_same = false, on_opposite = false;
-  // A reflection flips the normals of its body.
+  // A reflection reverses the normals of its body.
   const bool mirrored =
       is_reflection(context[Side::a].world.pose(), 3) != is_reflection(context[Side::b].world.pose(), 3);
   for (const SimplexPair& pair : result.pairs) {
@@ -411,7 +410,7 @@ std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context
     context[Side::b].world.corners(pair.b, b);
     // The exact intersection of each pair, used for both surfaces.
     contacts.push_back(exact::contact_of_triangles(a, b));
-    // Overlap of positive area, in a common plane: are the solids on the same side of it?
+    // Overlap of positive area in a common plane: are the solids on the same side of it?
     if (!contacts.back().coplanar || contacts.back().corner_count < 3) continue;
     (same_direction_3d(a, b) != mirrored ? on_same : on_opposite) = true;
   }

@@ -1,5 +1,5 @@
-/// Copies the triangles of both bodies into a common frame: centred on the box of both, scaled by a power of
-/// two so that coordinates are at most 1/2. Scaling is exact, so each coordinate is rounded once, by the
+/// Copies the triangles of both bodies into a common frame, centred on the box of both and scaled by a power
+/// of two so that coordinates are at most 1/2. Scaling is exact, so each coordinate is rounded once, by the
 /// subtraction.
 
 #include "engine/clash/unit_bodies.hpp"
@@ -17,14 +17,14 @@
 
 namespace lrb::parting {
 
-// Distance from a point to a surface by an AABB tree: split at medians, traversed depth-first with the
-// nearer child first. Distances of boxes prune; triangles give proven lower bounds of their distance.
+// Distance from a point to a surface by an AABB tree with median splits, traversed depth-first with the
+// nearer child first. Distances of boxes prune; triangles yield proven lower bounds of their distance.
 
 namespace {
 
-/// Triangles in a leaf.
+/// Maximum number of triangles in a leaf.
 constexpr std::uint32_t kLeafTriangles = 4;
-/// Covers a few roundings in the distance of a box.
+/// Covers the roundings in the distance of a box.
 constexpr double kBoxRounding = 1 - 0x1p-48;
 
 }  // namespace
@@ -33,7 +33,7 @@ SurfaceDistance::SurfaceDistance(const UnitBody& body) : body_(body), order_(bod
   std::iota(order_.begin(), order_.end(), 0u);
   std::vector<Vector3d> middles;
   middles.reserve(order_.size());
-  // Three times the centroids: good enough to compare.
+  // Three times the centroids, which suffices for comparison.
   for (const auto& t : body.triangles)
     middles.push_back(body.points[t[0]] + body.points[t[1]] + body.points[t[2]]);
   nodes_.reserve(order_.size());
@@ -63,17 +63,17 @@ std::uint32_t SurfaceDistance::build(std::uint32_t begin, std::uint32_t end,
   return index;
 }
 
-/// Along any direction n a triangle is at least as far as its nearest corner: the least n . (c - x) / |n|. In
-/// the direction of the nearest point this is the distance, and if rounding spoils n, it still is a lower
+/// Along any direction n the triangle is at least as far away as its nearest corner: the least n . (c - x) /
+/// |n|. In the direction of the nearest point this is the distance. If n is inaccurate, it is still a lower
 /// bound.
 double SurfaceDistance::bound(std::uint32_t triangle, const Vector3d& x) const {
   const auto& t = body_.triangles[triangle];
-  // Seen from x, which becomes the origin.
+  // Relative to x, which becomes the origin.
   const Vector3d a = body_.points[t[0]] - x, b = body_.points[t[1]] - x, c = body_.points[t[2]] - x;
   const SimplexPoint p = nearest_on_triangle(Vector3d::Zero(), a, b, c);
   const Vector3d n = p.weight[0] * a + p.weight[1] * b + p.weight[2] * c;
   const double length = n.norm();
-  // Slab bound: a plane through the origin, perpendicular to n, with the triangle in front of it.
+  // Slab bound: a plane through the origin, normal to n, with the triangle in front of it.
   const double slab = length > 0 ? std::min({n.dot(a), n.dot(b), n.dot(c)}) / length : 0;
   return slab > kClearanceMargin ? slab - kClearanceMargin : 0;
 }
@@ -84,14 +84,14 @@ double SurfaceDistance::at(const Vector3d& x) const {
     std::uint32_t node;
     double distance;
   };
-  constexpr std::size_t kDeepest = 64;  // halves of fewer than 2^32 triangles: one waits for each
+  constexpr std::size_t kDeepest = 64;  // depth of a tree of fewer than 2^32 triangles: one entry per level
   std::array<Waiting, kDeepest> stack;
   std::size_t size = 1;
   stack[0] = {0, 0};
   const auto distance = [&](std::uint32_t i) {
     return std::sqrt(nodes_[i].box.squaredExteriorDistance(x)) * kBoxRounding;
   };
-  // The nearer child is on top, so that `least` falls early.
+  // The nearer child is on top, so that `least` decreases early.
   while (size > 0) {
     const Waiting top = stack[--size];
     // The box is not nearer than the best triangle.
@@ -116,7 +116,7 @@ Vector3d as_vector(const double* x) {
   return {x[0], x[1], x[2]};
 }
 
-/// Copies the real triangles, in the world's coordinates.
+/// Copies the real triangles in world coordinates.
 UnitBody copy_body(QueryBody& body) {
   UnitBody out;
   const LrbRep& rep = body.rep();
@@ -135,7 +135,7 @@ UnitBody copy_body(QueryBody& body) {
       }
       triangle[k] = known.value();
     }
-    // A reflection turns triangles over: restore the outward orientation.
+    // A reflection reverses triangles: restore the outward orientation.
     if (mirrored) std::swap(triangle[1], triangle[2]);
     out.triangles.push_back(triangle);
   }
@@ -167,7 +167,7 @@ UnitBodies unit_bodies(QueryContext& context) {
     out.body[side] = copy_body(context.body[side]);
     for (const Vector3d& x : out.body[side].points) box.extend(x);
   }
-  // Halved first, because the sum or the difference may leave the range of doubles.
+  // Halved first, because the sum or the difference could overflow.
   out.frame.origin = 0.5 * box.min() + 0.5 * box.max();
   const double reach = (0.5 * box.max() - 0.5 * box.min()).maxCoeff();
   // 2^(ilogb + 1) exceeds the half extent, so that coordinates stay below 1/2.

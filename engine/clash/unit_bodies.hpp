@@ -17,17 +17,17 @@ using Eigen::Vector3d;
 
 struct UnitBody {
   std::vector<Vector3d> points;  ///< each coordinate within kUnitRounding of the exact one
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< outward, of mirrored bodies, too
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< outward, also for mirrored bodies
 };
 
-/// From the world's coordinates to the unit's: subtract `origin`, divide by 2^exponent.
+/// From world to unit coordinates: subtract `origin`, divide by 2^exponent.
 struct UnitFrame {
   Vector3d origin{0, 0, 0};
   int exponent = 0;
 
   Vector3d to_unit(const Vector3d& world) const;
   Vector3d to_world(const Vector3d& unit) const;
-  /// Returns a length in the world's unit. Exact, unless it leaves the range of doubles.
+  /// Returns a length in world units. Exact, unless it overflows or underflows.
   double length_to_world(double x) const;
 };
 
@@ -39,17 +39,15 @@ struct UnitBodies {
 /// Returns the bodies with which a context was begun. Both must have faces.
 UnitBodies unit_bodies(QueryContext& context);
 
-// The distance of a point from a body's surface.
-
-/// An AABB tree of the triangles of a body.
+/// An AABB tree of the triangles of a body, for the distance of a point from its surface.
 class SurfaceDistance {
  public:
   /// Keeps a reference to the body.
   explicit SurfaceDistance(const UnitBody& body);
 
   /// Returns the clearance of a point whose coordinates are at most 2: the open ball of that radius around it
-  /// contains no point of the surface; proven. It is less than the distance by kClearanceMargin and rounding,
-  /// for any triangulation of the surface.
+  /// is proven to contain no point of the surface. It is less than the distance by kClearanceMargin and
+  /// rounding, independently of the triangulation of the surface.
   double at(const Vector3d& x) const;
 
  private:

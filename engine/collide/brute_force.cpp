@@ -10,7 +10,7 @@ namespace {
 
 struct WorldBody {
   WorldBody(const LrbRep& r, const Pose& pose) : rep(r) {
-    // World coordinates by the same function as in the query: exact tests then see the same doubles.
+    // World coordinates by the same function as in the query: the exact tests get the same doubles.
     for (const auto& v : r.vertices()) x.push_back(pose.apply(v));
   }
   void corners(SimplexId s, const double* out[3]) const {
@@ -52,7 +52,8 @@ Relation relation_without_contact(const WorldBody& a, const WorldBody& b) {
   if (!a.rep.closed() || !b.rep.closed())
     return a.box().intersects(b.box()) ? Relation::undefined : Relation::separate;
   const std::size_t a_in_b = held(a, b), b_in_a = held(b, a);
-  // A inside B unless all of B, but not all of A, is inside the other: wholly enclosed bodies count first.
+  // A body that is entirely enclosed takes precedence: A is inside B unless all of B, but not all of A, is
+  // enclosed.
   if (a_in_b > 0 &&
       (a_in_b == a.rep.component_vertices().size() || b_in_a != b.rep.component_vertices().size()))
     return Relation::a_inside_b;
@@ -66,7 +67,7 @@ BruteForceResult brute_force(const LrbRep& a, const Pose& pose_a, const LrbRep& 
   BruteForceResult result;
   bool crosses = false;
   const double *ca[3], *cb[3];
-  // Every pair is tested exactly, without any culling: quadratic.
+  // Every pair is tested exactly, without culling: quadratic time.
   for (SimplexId s = 0; s < a.real_simplex_count(); ++s) {
     wa.corners(s, ca);
     for (SimplexId t = 0; t < b.real_simplex_count(); ++t) {

@@ -1,10 +1,10 @@
-/// A list of the simplex pairs that may intersect while B moves along a sweep, as Verlet's neighbour lists
-/// (1967) hold the pairs of particles within a margin.
+/// A list of the simplex pairs that may intersect while B moves along a sweep, as in Verlet's neighbour lists
+/// (1967), which contain the pairs of particles within a margin.
 ///
 /// 1. arrange() sorts the pairs that the tree kernel found, packs their simplices for eight-wide floats, and
 ///    computes the interval of the sweep in which each pair may intersect.
-/// 2. choose() selects the pairs whose interval contains B's position.
-/// 3. update() tests these pairs, eight at a time in floats, and exactly where floats are not certain.
+/// 2. choose() selects the pairs whose interval contains B's position in the sweep.
+/// 3. update() tests these pairs, eight at a time in floats, and exactly where floats do not decide.
 
 #include "engine/collide/candidate_cache.hpp"
 
@@ -18,35 +18,37 @@
 namespace lrb {
 
 // Chooses the kind and length of caches by hill climbing on measured times: the length is changed by a
-// constant factor, and the direction of change is reversed when the cost per query has risen. Caches that
-// cost more than queries from scratch shorten the next one, then lead to pauses of increasing length.
+// constant factor, and the direction of change is reversed when the cost per query has risen. A cache that
+// costs more than queries from scratch shortens the next one; repeated failures lead to pauses of increasing
+// length.
 
 namespace {
 
 constexpr double kFewestSteps = 2, kMostSteps = 64;
 constexpr double kLonger = 1.5;
-/// A cache that did not pay was made for too many steps: the next one is for this share of them.
+/// After a cache that did not pay, the number of steps is multiplied by this.
 constexpr double kMuchShorter = 0.4;
-/// One failure may be due to too long a cache, or to the clock: after this many in a row there is a pause.
+/// Number of successive failures before a pause. A single one may be due to too long a cache, or to the
+/// clock.
 constexpr std::uint32_t kMostFailures = 2;
-/// With every cache the remembered cost of the other kind is multiplied by this, so that it is tried again.
+/// The remembered cost of the other kind is multiplied by this with every cache, so that it is tried again
+/// eventually.
 constexpr double kForget = 0.95;
-/// The factor for queries in which only a fixed cache could be made and these did not pay.
+/// The same factor for queries in which only a fixed cache was possible and fixed caches did not pay.
 constexpr double kForgetSlowly = 0.99;
-/// Queries from scratch that take no longer than this, in seconds, are not worth the effort of watching B's
-/// motion.
+/// Queries from scratch that take no longer than this, in seconds, are not worth tracking B's motion.
 constexpr double kWorthWatching = 5e-7;
-/// Making a cache is given up after this many times a query from scratch: most caches that pay are found in
-/// two.
+/// Making a cache is given up after this many times the time of a query from scratch. Most caches that pay
+/// are made within twice that time.
 constexpr double kPatience = 3;
-/// No cache is for a motion longer than this share of B's radius, because it would hold much of both bodies;
-/// and none is made where that leaves fewer than kWorthTrying steps.
+/// A cache covers a motion of at most kLongestMotion of B's radius, because a longer one would contain many
+/// pairs of both bodies. No cache is made if that leaves fewer than kWorthTrying steps.
 constexpr double kLongestMotion = 1.0 / 16, kWorthTrying = 4;
-/// This many queries before the end of a pause, B's motion is watched again.
+/// Tracking of B's motion resumes this many queries before the end of a pause.
 constexpr std::uint32_t kToSeeMotion = 3;
 constexpr std::uint32_t kLongestPause = 64, kPauseFactor = 4, kFirstPause = 4;
-/// After a step for which a cache did not pay, steps shorter than this share of it are worth another try at
-/// once; others only after kPausesBetween pauses.
+/// After a cache did not pay, a step shorter than this share of the step then is worth another attempt at
+/// once; longer steps only after kPausesBetween pauses.
 constexpr double kShorter = 0.7;
 constexpr std::uint32_t kPausesBetween = 4;
 
@@ -54,13 +56,13 @@ constexpr std::uint32_t kPausesBetween = 4;
 
 bool CachePolicy::rests() {
   if (pause_ > 0) --pause_;
-  // A cache needs a few poses to foresee the motion: watch it for the last queries of a pause.
+  // A cache needs a few poses to extrapolate the motion: track it for the last queries of a pause.
   return pause_ >= kToSeeMotion;
 }
 
 void CachePolicy::build_took(Kind kind, double time) {
   kind_ = kind;
-  // The first cache has to allocate its memory, so its time does not count.
+  // The first cache also allocates its memory, so its time does not count.
   build_time_ = std::exchange(has_memory_, true) ? time : 0;
   step_time_ = 0;
   steps_ = 0;
@@ -84,16 +86,16 @@ void CachePolicy::rest() {
 }
 
 std::optional<CachePolicy::Plan> CachePolicy::next(bool is_steady, double step, double radius) {
-  // No query from scratch was timed yet: there is nothing to compare with.
+  // No query from scratch was timed yet: there is no basis for comparison.
   if (scratch_time_ == 0) return {};
   if (scratch_time_ < kWorthWatching) {
-    // Queries from scratch are so fast that watching the motion does not pay.
+    // Queries from scratch are so fast that tracking the motion does not pay.
     build_time_ = 0;
     pause_ = kLongestPause / kPauseFactor;
     return {};
   }
   if (build_time_ > 0) {
-    if (cost() >= 1 && !is_fresh_) return {};  // queries from scratch may take longer by now
+    if (cost() >= 1 && !is_fresh_) return {};  // queries from scratch may have become slower since
     // Rate the last cache before the next one is planned.
     take_stock();
     if (failures_ == kMostFailures) {
@@ -104,15 +106,15 @@ std::optional<CachePolicy::Plan> CachePolicy::next(bool is_steady, double step, 
       return {};
     }
   } else if (too_long_ > 0 && step >= kShorter * too_long_ && ++pauses_ < kPausesBetween) {
-    // Caches failed for steps like this one: wait for several pauses before the next try.
+    // Caches failed for steps like this one: wait for several pauses before the next attempt.
     pause_ = next_pause_;
     return {};
   }
   const double fixed_cost = aim(Kind::fixed).cost;
-  // The kind that cost less recently. A swept cache needs a steady motion.
+  // Choose the kind that cost less recently. A swept cache needs a steady motion.
   const Kind kind =
       is_steady && (fixed_cost >= 1 || aim(Kind::swept).cost <= fixed_cost) ? Kind::swept : Kind::fixed;
-  if (kind == Kind::fixed && fixed_cost >= 1) {  // until the motion is steady, or that cost is forgotten
+  if (kind == Kind::fixed && fixed_cost >= 1) {  // until the motion is steady, or that cost has decayed
     aim(kind).cost *= kForgetSlowly;
     return {};
   }
@@ -132,9 +134,9 @@ double CachePolicy::cost() const {
   return (build_time_ + step_time_) / ((1 + steps_) * scratch_time_);
 }
 
-/// Returns the factor for the number of steps that the next cache is for. The cost of a swept cache grows
-/// about as its length: the best length is found by trying. The cost of a fixed cache grows faster than its
-/// width: it is wide enough if B stays in it long enough to pay it off.
+/// Returns the factor for the number of steps of the next cache. The cost of a swept cache grows about as its
+/// length, so the best length is found by hill climbing. The cost of a fixed cache grows faster than its
+/// width: it is wide enough if B stays in it long enough to repay it.
 double CachePolicy::growth(Aim& used, double now) const {
   // Widen until the queries answered from the cache take as long as making it did.
   if (kind_ == Kind::fixed) return build_time_ > step_time_ ? kLonger : 1;
@@ -163,7 +165,7 @@ void CachePolicy::take_stock() {
   // Average the cost, but replace one that is unknown or did not pay.
   used.cost = used.cost > 0 && used.cost < 1 ? (used.cost + now) / 2 : now;
   build_time_ = 0;
-  // Let the other kind look cheaper over time, so that it is tried again.
+  // Decrease the other kind's cost over time, so that it is tried again.
   other.cost *= kForget;
 }
 
@@ -171,11 +173,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Factor on the defect: a gap is longer on B's axes than on A's by at most twice the defect, relatively, and
-/// a little.
+/// Factor on the defect: a gap is longer on B's axes than on A's by a relative error of at most twice the
+/// defect, plus rounding.
 constexpr double kGapDefects = 3;
 
-/// Pads to a multiple of eight with a pair that exists.
+/// Pads to a multiple of eight by repeating an existing pair.
 void fill_up(std::vector<CachedPair>& pairs, std::size_t count) {
   for (std::size_t i = count; i % 8 != 0; ++i) pairs[i] = pairs[0];
 }
@@ -187,7 +189,8 @@ std::size_t up_to_eights(std::size_t count) {
 }  // namespace
 
 void aim_at(const Sweep& sweep, double rounding, double unit, TreeKernel& k) {
-  // All that may displace B from the straight sweep: its width, rounding, and the defect of the rotation.
+  // All possible displacements of B from the straight sweep: its width, rounding, and the defect of the
+  // rotation.
   const double margin =
       sweep.width + rounding + kGapDefects * sweep.middle.defect * (sweep.length + sweep.width + rounding);
   k.margin = static_cast<float>(margin / unit) * kFloatUp;
@@ -226,7 +229,7 @@ void CandidateSimplices::write(SimplexId s) {
   // A segment is stored as a triangle that repeats its second corner.
   if (rep_->simplex_size() == 2) v[2] = v[1];
   const Vector3d x = rep_->vertices()[v[0]] * per_unit_;
-  // Coordinates relative to a nearby corner lose less when they are rounded to float.
+  // Coordinates relative to a nearby corner lose less precision when rounded to float.
   if (written_.empty()) origin_ = x;
   const Vector3d first = x - origin_;
   double longest_sq = 0;
@@ -238,7 +241,7 @@ void CandidateSimplices::write(SimplexId s) {
     for (int axis = 0; axis < 3; ++axis) to.edge[end][axis] = static_cast<float>(edge[axis]);
     longest_sq = std::max(longest_sq, edge.squaredNorm());
   }
-  // Rounded up: kFloatUp covers the conversion to float, kKernelTiny an underflow.
+  // Rounded up: kFloatUp covers the conversion to float, kKernelTiny underflow.
   to.longest = static_cast<float>(std::sqrt(longest_sq)) * kFloatUp + kKernelTiny;
   farthest_sq_ = std::max(farthest_sq_, first.squaredNorm());
   written_.push_back(to);
@@ -253,11 +256,12 @@ void CandidateCache::arrange(const LrbRep& a, const LrbRep& b, const TreeKernel&
   unit_ = query_unit(a.tree(), b.tree());
   rounding_ = rounding;
   is_swept_ = sweep.length > 0;
-  // Sort once: the answers taken from the cache are ascending without further sorting.
+  // Sort once: answers from the cache are then ascending without further sorting.
   order.sort(pairs_);
   place_pairs(a, b);
   find_spans(k, sweep);
-  // Keep intervals that overlap [-1, 1]. One that ends before it begins means that the pair never intersects.
+  // Keep intervals that overlap [-1, 1]. An interval that ends before it begins means that the pair is never
+  // in contact.
   if (is_swept_)
     drop_unless([](float from, float to) {
       return unsigned{from <= 1 + kSpanRounding} & unsigned{to >= -1 - kSpanRounding} &
@@ -266,7 +270,7 @@ void CandidateCache::arrange(const LrbRep& a, const LrbRep& b, const TreeKernel&
   else
     // At a fixed pose `from` is the displacement below which the pair cannot intersect.
     drop_unless([most = length_of(sweep.width)](float from, float) { return unsigned{from <= most}; });
-  // Reserve room for all pairs: queries from the cache allocate nothing.
+  // Allocate for all pairs here: queries from the cache allocate nothing.
   chosen_.resize(pairs_.size());
   chosen_places_.resize(up_to_eights(pairs_.size()));
   verdicts_.resize(chosen_places_.size() / 8);
@@ -294,8 +298,8 @@ void CandidateCache::find_spans(const TreeKernel& k, const Sweep& sweep) {
   kernel.is_swept = is_swept_;
   kernel.sweep_turn = k.sweep_turn;
   kernel.margin = k.margin;
-  // Cached corners of B are relative to of_[1].origin(), so the displacement of that origin is the constant
-  // part.
+  // Cached corners of B are relative to of_[1].origin(), so the constant term is the displacement of that
+  // origin.
   const Vector3d way = sweep.dm * of_[1].origin() + sweep.dt / unit_;
   for (int i = 0; i < 3; ++i) {
     kernel.sweep_t[i] = static_cast<float>(way[i]);
@@ -304,7 +308,7 @@ void CandidateCache::find_spans(const TreeKernel& k, const Sweep& sweep) {
   run_pair_kernel(kernel);
 }
 
-/// Drops pairs without branches, because which pairs are near cannot be predicted; choose() does the same.
+/// Drops pairs without branches, because the outcome cannot be predicted; choose() does the same.
 template <class Keep>
 void CandidateCache::drop_unless(Keep&& keep) {
   std::size_t kept = 0;
@@ -323,7 +327,7 @@ float CandidateCache::length_of(double distance) const {
   return static_cast<float>((distance + rounding_) / unit_) * kFloatUp;
 }
 
-/// Returns a point of the sweep on the scale of the spans.
+/// Returns a position in the sweep in the units of the pairs' intervals.
 float CandidateCache::position_of(const SweepPoint& where) const {
   return is_swept_ ? static_cast<float>(where.at) : length_of(where.off);
 }
@@ -342,8 +346,8 @@ std::size_t CandidateCache::choose(const SweepPoint& where) {
   return count;
 }
 
-/// If two maps of B are in the sweep, so is every linear interpolation of them. If no surfaces intersect on
-/// that path, none can have passed through another.
+/// If two maps of B are in the sweep, so is every linear interpolation between them. If no surfaces intersect
+/// on that path, none has passed through another.
 bool CandidateCache::none_between(const SweepPoint& here, const SweepPoint& there) const {
   const float x = position_of(here), y = position_of(there), spare = span_rounding();
   // Compare intervals, grown by their rounding: linear in the number of pairs, without any geometry.
@@ -364,8 +368,8 @@ PairKernel CandidateCache::kernel_at(const TreeKernel& k, const std::vector<Cach
   p.m_size = k.m_size;
   for (int i = 0; i < 3; ++i) {
     std::copy(std::begin(k.m_rows[i]), std::end(k.m_rows[i]), p.r[i]);
-    // Moves the offset to the cached origins. Computed in double and rounded to float once.
-    double t = k.t[i] - of_[0].origin()[i];  // origin of the frame of B's corners, seen from that of A's
+    // Offset between the cached origins, computed in double and rounded to float once.
+    double t = k.t[i] - of_[0].origin()[i];  // B's origin, relative to A's
     for (int j = 0; j < 3; ++j) t += k.m[j][i] * of_[1].origin()[j];
     p.t[i] = static_cast<float>(t);
   }

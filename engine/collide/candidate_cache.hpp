@@ -1,8 +1,8 @@
 #pragma once
-/// The candidate cache: the pairs of simplices that are near each other along a sweep of B, or about a fixed
-/// pose. They are kept so that it costs little to find out how they meet at a pose there: only those pairs
-/// are tested that may meet at that point of the sweep, or that are no further apart than B has moved from
-/// the fixed pose, and eight pairs at a time.
+/// The candidate cache: the pairs of simplices that may intersect along a sweep of B, or near a fixed pose
+/// (cf. Verlet's neighbour lists). At a pose in that range only some of them are tested, eight at a time:
+/// along a sweep the pairs that may intersect at that position, near a fixed pose the pairs no further apart
+/// than B has moved from it.
 
 #include <bit>
 #include <cstdint>
@@ -21,43 +21,42 @@
 
 namespace lrb {
 
-// Decides when a coherent query makes a candidate cache, and for how many steps: by the clock, comparing
-// what caches cost with what queries from scratch cost. The answers do not depend on it.
+// Decides when a coherent query makes a candidate cache, and for how many steps, from measured times: the
+// cost of caches against the cost of queries from scratch. The answers do not depend on it.
 
 class CachePolicy {
  public:
-  /// What a cache covers: a sweep of B, or the surroundings of a fixed pose. Each kind has a number of steps
-  /// that suits it.
+  /// The range of a cache: a sweep of B, or the neighbourhood of a fixed pose. The number of steps is tuned
+  /// for each kind separately.
   enum class Kind : std::uint8_t { swept, fixed };
 
-  /// Starts a query. Returns true while the policy pauses after caches that did not pay: B's motion need not
-  /// be watched then. For the last few queries of a pause returns false, because a cache can be made only
-  /// once the motion is known.
+  /// Starts a query. Returns true during a pause after caches that did not pay, when B's motion need not be
+  /// tracked. Returns false for the last few queries of a pause, because a cache can be made only once the
+  /// motion is known.
   bool rests();
-  /// Returns true during a pause: the query is to be answered from scratch.
+  /// Returns true during a pause: the query must be answered from scratch.
   bool must_wait() const { return pause_ > 0; }
 
   struct Plan {
     Kind kind;
-    double steps;  ///< number of steps that the cache is to serve for
+    double steps;  ///< number of steps for which the cache is made
   };
-  /// Returns the cache that should be made now, if any. is_steady: B's motion is steady
-  /// (RelativeMotion::is_kept()); step: how far B moves at a time; radius: B's (both in the mesh's unit).
-  /// Takes into account what the last cache cost.
+  /// Returns the cache to make now, or nullopt if none would pay, given the cost of the last one. is_steady:
+  /// see RelativeMotion::is_kept(). step: displacement of B per query; radius: of B; both in mesh units.
   std::optional<Plan> next(bool is_steady, double step, double radius);
-  /// The number of steps that caches are made for before it is known what suits.
+  /// Number of steps of the first caches, before it is tuned.
   static constexpr double kFirstSteps = 8;
 
-  /// Returns the time in seconds after which making a cache is given up.
+  /// Returns the time limit for making a cache, in seconds.
   double patience() const;
 
-  // Report the time that a whole query took, in seconds: one from scratch, one that made a cache, one
-  // answered from it.
+  // Report the time of an entire query in seconds: one from scratch, one that made a cache, one answered from
+  // it.
   void scratch_took(double time);
   void build_took(Kind kind, double time);
   void step_took(double time);
-  /// Ignores what the last cache cost, because it ended for reasons of its own; does so only once until the
-  /// next cache is accounted for.
+  /// Ignores the cost of the last cache, because it ended for other reasons than its length. Applies at most
+  /// once until the next cache is rated.
   void forgive() {
     if (!std::exchange(forgave_, true)) build_time_ = 0;
   }
@@ -65,28 +64,28 @@ class CachePolicy {
  private:
   struct Aim {
     double steps = kFirstSteps;
-    double cost = 0;  ///< recent cost of a query with such caches, in queries from scratch; 0: not known
-    /// The next cache is for more steps, as long as that makes queries faster; else for fewer.
+    double cost = 0;  ///< recent cost per query, relative to a query from scratch; 0: unknown
+    /// The next cache is for more steps while that makes queries faster; else for fewer.
     bool is_growing = true;
   };
   Aim& aim(Kind kind) { return aim_[static_cast<int>(kind)]; }
-  double cost() const;  ///< cost of a query with the current cache, in queries from scratch
+  double cost() const;  ///< cost of a query with the current cache, relative to a query from scratch
   double growth(Aim& used, double now) const;
   void take_stock();
   void rest();
 
-  Aim aim_[2] = {{}, {.cost = 0.6}};       ///< fixed caches are tried where swept ones cost more than this
-  bool has_memory_ = false;                ///< a cache has been made before
+  Aim aim_[2] = {{}, {.cost = 0.6}};       ///< fixed caches are tried if swept ones cost more than this
+  bool has_memory_ = false;                ///< a cache was made before
   Kind kind_ = Kind::swept;                ///< kind of the current cache
-  double build_time_ = 0, step_time_ = 0;  ///< times of making it, and of the steps since
+  double build_time_ = 0, step_time_ = 0;  ///< time to make it, and total time of the steps since
   std::uint32_t steps_ = 0;                ///< number of these steps
   double scratch_time_ = 0;
   bool is_fresh_ = false;                     ///< scratch_time_ is newer than the cache
   bool forgave_ = false;                      ///< forgive() was called since the last take_stock()
-  std::uint32_t failures_ = 0;                ///< number of caches in a row that did not pay
-  double too_long_ = 0;                       ///< a step for which a cache did not pay, mesh's unit
-  std::uint32_t pause_ = 0, next_pause_ = 4;  ///< queries from scratch before the next cache is tried
-  std::uint32_t pauses_ = 0;                  ///< number of pauses since the last try
+  std::uint32_t failures_ = 0;                ///< number of successive caches that did not pay
+  double too_long_ = 0;                       ///< a step length for which a cache did not pay, mesh units
+  std::uint32_t pause_ = 0, next_pause_ = 4;  ///< queries from scratch before the next attempt
+  std::uint32_t pauses_ = 0;                  ///< number of pauses since the last attempt
 };
 
 /// The simplices of one body that occur in cached pairs.
@@ -97,9 +96,9 @@ class CandidateSimplices {
   std::uint32_t place_of(SimplexId s);
   const CachedSimplex* data() const { return written_.data(); }
 
-  /// Returns the origin of their frame, a corner among them; query units.
+  /// Returns the origin of their frame, one of their corners; query units.
   const Eigen::Vector3d& origin() const { return origin_; }
-  /// Returns the radius of a ball about the origin that holds all first corners; query units.
+  /// Returns the radius of a ball about the origin that contains all first corners; query units.
   float radius() const;
 
  private:
@@ -110,47 +109,47 @@ class CandidateSimplices {
   };
   const LrbRep* rep_ = nullptr;
   double per_unit_ = 1;
-  std::vector<Slot> slots_;  ///< (simplices of the body) valid where `epoch` is the current one
+  std::vector<Slot> slots_;  ///< (simplices of the body) valid if `epoch` is the current one
   std::uint32_t epoch_ = 0;
   std::vector<CachedSimplex> written_;
   Eigen::Vector3d origin_{0, 0, 0};
   double farthest_sq_ = 0;
 };
 
-/// Makes a kernel that is set up at the middle of a sweep find all pairs that may meet in the sweep.
-/// `rounding`: of world coordinates; `unit`: the query's; both in the mesh's unit.
+/// Extends a kernel that is set up at the middle of a sweep so that it finds all pairs that may intersect in
+/// the sweep. `rounding`: bound for world coordinates; `unit`: the query's; both in mesh units.
 void aim_at(const Sweep& sweep, double rounding, double unit, TreeKernel& k);
 
 class CandidateCache {
  public:
   void clear() { pairs_.clear(); }
   void add(SimplexPair p) { pairs_.push_back(p); }
-  /// Returns the pairs; ascending, once they are arranged.
+  /// Returns the pairs, which are ascending after arrange().
   const std::vector<SimplexPair>& pairs() const { return pairs_; }
 
-  /// Sorts the pairs that were added, which must be all that may meet in the sweep, and drops those that turn
-  /// out not to. The kernel is the one that found them, at the middle of the sweep. `rounding`: of world
-  /// coordinates, mesh's unit.
+  /// Sorts the added pairs, which must include every pair that may intersect in the sweep, and drops those
+  /// that prove disjoint throughout. `k`: the kernel that found them, set up at the middle of the sweep.
+  /// `rounding`: bound for world coordinates, mesh units.
   void arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, const Sweep& sweep, double rounding,
                PairOrder& order);
 
-  /// Chooses the pairs that may meet with B at this point of the sweep. Returns their number.
+  /// Selects the pairs that may intersect with B at this position in the sweep. Returns their number.
   std::size_t choose(const SweepPoint& where);
 
-  /// Returns true if no pair may meet on the way from here to there, both in the sweep.
+  /// Returns true if no pair can intersect on the path between two positions in the sweep.
   bool none_between(const SweepPoint& here, const SweepPoint& there) const;
 
-  /// Stands for an observer of update() that does not look.
+  /// An observer of update() that ignores all events.
   struct Unseen {
     void operator()(SimplexPair, exact::Meet, bool) const {}
   };
-  /// Finds out how the chosen pairs meet at the pose of k; the others do not meet. Calls exact(pair) where
-  /// floats are not certain, and see(pair, meet, is_certain) for each chosen pair, in order. Returns true if
-  /// anything has changed since the last update.
+  /// Determines the Meet of each chosen pair at the pose of k; all other pairs are disjoint. Calls
+  /// exact(pair) where floats do not decide, and see(pair, meet, is_certain) for each chosen pair, in order.
+  /// Returns true if the set of intersecting pairs or a Meet changed since the last update.
   template <class Exact, class See = Unseen>
   bool update(const TreeKernel& k, Exact&& exact, See&& see = {});
 
-  /// Appends the pairs that meet, ascending.
+  /// Appends the intersecting pairs, ascending.
   void append_meeting(CollideResult& result) const;
 
  private:
@@ -168,23 +167,23 @@ class CandidateCache {
   float span_rounding() const { return is_swept_ ? kSpanRounding : 0; }
   PairKernel kernel_at(const TreeKernel& k, const std::vector<CachedPair>& pairs) const;
 
-  /// Spans of a sweep lie between -1 and 1, and are rounded by 2^-20 near these ends.
+  /// Interval ends of a sweep lie between -1 and 1, and are rounded by 2^-20 near these limits.
   static constexpr float kSpanRounding = 0x1p-16f;
 
   CandidateSimplices of_[2];
   std::vector<SimplexPair> pairs_;
   std::vector<CachedPair> places_;  ///< (|pairs_|, padded to a multiple of 8)
-  /// (|pairs_|, padded to a multiple of 8) where they may meet, see PairKernel.
+  /// (|pairs_|, padded to a multiple of 8) intervals in which they may intersect, see PairKernel.
   std::vector<float> from_, to_;
   bool is_swept_ = false;
-  double unit_ = 1;      ///< the query's unit, in the mesh's
-  double rounding_ = 0;  ///< allowed for in lengths, mesh's unit
+  double unit_ = 1;      ///< the query's unit, in mesh units
+  double rounding_ = 0;  ///< tolerance added to lengths, mesh units
 
-  std::vector<std::uint32_t> chosen_;      ///< indices of pairs, with room for all
+  std::vector<std::uint32_t> chosen_;      ///< indices of pairs; sized for all
   std::vector<CachedPair> chosen_places_;  ///< the same pairs, padded to a multiple of 8
   std::size_t chosen_count_ = 0;
   std::vector<PairVerdicts> verdicts_;     ///< (blocks of eight pairs)
-  std::vector<Meeting> meeting_, before_;  ///< ascending; now, and before the last update
+  std::vector<Meeting> meeting_, before_;  ///< ascending: at the last update, and at the one before
 };
 
 template <class Exact, class See>

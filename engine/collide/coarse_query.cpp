@@ -9,10 +9,10 @@
 namespace lrb {
 namespace {
 
-/// Factor from one tolerance of the ladder to the next. Smaller: more queries before the exact one; larger:
-/// coarser answers where a limit is reached.
+/// Factor between successive tolerances. Smaller: more queries before the exact one; larger: coarser answers
+/// when a limit is reached.
 constexpr double kLadderStep = 4;
-/// Levels with more than this share of the bodies' own faces are left out: the exact query costs hardly more.
+/// Steps with more than this share of the bodies' own faces are skipped: the exact query costs hardly more.
 constexpr double kWorthwhile = 0.6;
 
 }  // namespace
@@ -35,10 +35,10 @@ void check_request(const CollideRequest& request) {
 
 namespace {
 
-/// Returns the level of a body for a tolerance; null: the body itself. A limit in time leaves none to make
-/// levels.
+/// Returns the level of a body for a tolerance, or null for the body itself. Under a time limit only levels
+/// that exist already are used.
 const WrapperLevel* level_of(const LrbRep& rep, double tolerance, const CollideRequest& request) {
-  // Existing levels are used; making them takes milliseconds, which a time limit does not allow for.
+  // Building levels takes milliseconds, which a time limit does not allow for.
   return request.max_time > 0 && !rep.has_levels() ? nullptr : rep.levels().within(tolerance);
 }
 
@@ -46,10 +46,10 @@ std::uint32_t faces_of(const LrbRep& rep, const WrapperLevel* level) {
   return level == nullptr ? rep.real_face_count() : level->face_count;
 }
 
-/// Returns the levels for a tolerance, or the bodies where that is hardly more work.
+/// Returns the levels for a tolerance, or the bodies themselves if these are hardly more work.
 CoarseStep step_of(const LrbRep& a, const LrbRep& b, double tolerance, const CollideRequest& request) {
   const CoarseStep step{level_of(a, tolerance, request), level_of(b, tolerance, request)};
-  // The sum for both bodies decides: one level may be worth it beside the other body as it is.
+  // The sum over both bodies decides: one level may be worth it even if the other body is queried as it is.
   const double faces = static_cast<double>(faces_of(a, step.a)) + faces_of(b, step.b);
   return faces > kWorthwhile * (static_cast<double>(a.real_face_count()) + b.real_face_count()) ? CoarseStep{}
                                                                                                 : step;
@@ -62,7 +62,7 @@ bool is_limited(const CollideRequest& request) {
 }
 
 CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
-  // A surface that bounds nothing hides nothing: both bodies have to be queried as they are.
+  // Wrappers of a surface that is not closed or intersects itself need not enclose it: no levels.
   for (const LrbRep* rep : {&a, &b})
     if (!rep->closed() || rep->self_intersecting()) return {};
   return step_of(a, b, is_limited(request) ? std::numeric_limits<double>::max() : request.tolerance, request);
@@ -70,7 +70,7 @@ CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& re
 
 std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
   const CoarseStep first = first_step(a, b, request);
-  // Without limits one level is enough: that of the tolerance.
+  // Without limits the level of the tolerance is the only step.
   if (first.exact() || !is_limited(request)) return {first};
   std::vector<CoarseStep> steps;
   // Use powers of two, so that bodies of similar size share levels from pair to pair.

@@ -1,31 +1,36 @@
 #pragma once
-/// Queries that do no more than a scene needs: to a tolerance, or as far as a limit of tests or time allows.
+/// Queries to a tolerance, or within a limit of tests or time.
 ///
-/// How. The exact query is asked first, until a pair crosses: bodies that are apart it tells apart faster
-/// than wrappers could, and of bodies that cross it finds a pair at once, since it looks where boxes overlap
-/// most. So the relation is exact, and so is an answer of one pair. If little is left to do then
-/// (TrialRules), as where bodies hardly more than touch, it goes on to the end: wrappers meet in more pairs
-/// than such bodies. Else the list of all pairs is left to wrappers, whose faces are fewer: to the level that
-/// the tolerance allows or, within limits, to one level after another, coarsest first. Where surfaces of
-/// wrappers do not meet though the bodies do, one wrapper being in the other, and where no level is much
-/// smaller than the bodies, the exact query finds the pairs. The first question may take half of a limit;
-/// should it end without an answer, levels tell what they can.
+/// Steps:
+/// 1. Run the exact query until a pair crosses. It proves bodies separate faster than wrappers could, and
+///    finds a crossing pair early, because it descends where boxes overlap most. So the relation is exact,
+///    and so is an answer of one pair.
+/// 2. If little work is left (TrialRules), as when bodies barely cross, complete the exact query: wrappers
+///    would intersect in more pairs than such bodies.
+/// 3. Otherwise find all pairs between levels, which have fewer faces: at the level of the tolerance or,
+///    within limits, at one level after another, coarsest first.
+/// 4. Run the exact query if the wrappers' surfaces do not intersect though the bodies' do, because one
+///    wrapper is inside the other, or if no level is much smaller than the bodies.
 ///
-/// Whether the exact query goes on depends on the bodies and poses alone, not on the tolerance: so a finer
-/// tolerance never gives a larger error bound.
+/// Step 1 may use half of a limit. If it ends without an answer, the levels decide as much as they can.
 ///
-/// Why levels never call bodies separate that meet. Each wrapper encloses its body (wrapper.hpp), so
-/// bodies whose wrappers share no point share none. Two wrappers share no point if no two of their faces meet
-/// and no connected piece of either one's boundary has a point in the other: pairs of faces are found as the
-/// complete query finds them, and pieces are located exactly. But in the world, rounding moves hidden
-/// vertices and lids separately. Let x be a point in which the bodies meet as rounded. There are points p and
-/// q of the bodies as they would be without rounding, no further from x than a vertex of each is rounded.
-/// Move every vertex of the wrappers from its rounded place to its true one, and then wrapper B by p - q: now
-/// both wrappers hold p. If no two faces meet all the way, then a piece of one boundary lies in the other
-/// wrapper now, and did at the beginning, where it was looked for. So it is enough that faces which count as
-/// apart stay apart when vertices shift against each other by twice what both bodies are rounded:
-/// - the kernel vouches for this in all that it drops and in all that it calls certain (kWrapperSlack);
-/// - what it leaves open is tested exactly, and counts as apart only with wrapper_margin() between.
+/// Whether step 2 completes the query depends on the bodies and poses alone, not on the tolerance, so that a
+/// smaller tolerance never yields a larger error bound.
+///
+/// Correctness: levels never report intersecting bodies as separate. Each wrapper encloses its body
+/// (wrapper.hpp), so bodies share no point if their wrappers share none. Two wrappers share no point if no
+/// two of their faces intersect and no connected piece of either boundary has a point in the other wrapper.
+/// Pairs of faces are found as in the complete query, and pieces are located exactly.
+///
+/// It remains to account for rounding, which moves hidden vertices and lids independently of each other.
+/// Suppose that the rounded bodies share a point x. The exact bodies then have points p (of A) and q (of B)
+/// no further from x than a vertex of each is rounded. Move every vertex of the wrappers from its rounded to
+/// its exact position, and then wrapper B by p - q: now both wrappers contain p. If no two faces intersect
+/// during this motion, a piece of one boundary is inside the other wrapper at its end, and hence was at its
+/// beginning, where the location of pieces would have found it. So it suffices that faces that count as
+/// disjoint stay disjoint when vertices shift relative to each other by twice the rounding of both bodies:
+/// - The kernel guarantees this for every pair that it drops or decides (kWrapperSlack).
+/// - Undecided pairs are tested exactly, and count as disjoint only if wrapper_margin() separates them.
 
 #include <algorithm>
 #include <chrono>
@@ -49,19 +54,18 @@ struct CoarseStep {
   bool exact() const { return a == nullptr && b == nullptr; }
 };
 
-/// Returns whether there is a limit of tests or time.
+/// Returns true if the request has a limit of tests or time.
 bool is_limited(const CollideRequest& request);
 
-/// Returns the first step to be tried: the only one, or within limits the coarsest. Exact where no level is
-/// worth it.
+/// Returns the first step to try: the only one, or within limits the coarsest. Exact if no level is worth it.
 CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
 
-/// Returns the steps to be tried, coarsest first; the last is as fine as was asked for.
+/// Returns the steps to try, coarsest first; the last is as fine as requested.
 std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
 
-/// Returns whether the boundary of either wrapper has a piece in the other; nothing if `in_time()`, which is
-/// asked before each point is located, returns false. For wrappers whose faces do not meet. Calls see(side,
-/// vertex, where) for each point.
+/// Returns true if a piece of either wrapper's boundary is in the other wrapper, or nullopt if `in_time()`,
+/// which is called before each point location, returns false. For wrappers whose faces do not intersect.
+/// Calls see(side, vertex, where) for each point.
 template <class InTime, class See>
 std::optional<bool> wrappers_nested(QueryContext& ctx, InTime&& in_time, See&& see) {
   for (const Side side : {Side::a, Side::b}) {
@@ -76,72 +80,73 @@ std::optional<bool> wrappers_nested(QueryContext& ctx, InTime&& in_time, See&& s
   return false;
 }
 
-/// Work of a query with a limit in time between two readings of the clock, each of which takes as long as one
-/// to three tests. Less: queries with a limit in time do less; more: they miss it by more, on old processors
-/// above all.
+/// Work between two clock readings in a query with a time limit; a reading takes as long as one to three
+/// tests. Smaller: less work done within a limit; larger: limits are exceeded by more, especially on old
+/// processors.
 namespace between_looks {
 constexpr std::uint64_t kNodePairs = 16;  ///< one or two microseconds; four without AVX2
-constexpr unsigned kTests = 32;           ///< that are certain: less than a microsecond
-constexpr unsigned kUncertainTests = 8;   ///< about a microsecond; twenty where all are decided exactly
+constexpr unsigned kTests = 32;           ///< decided by the kernel: less than a microsecond
+constexpr unsigned kUncertainTests = 8;   ///< about a microsecond; twenty if all need exact arithmetic
 }  // namespace between_looks
 
-/// Rules of an exact query within limits. Clock: std::chrono::steady_clock, or one that a test turns.
+/// Rules of an exact query within limits. Clock: std::chrono::steady_clock, or a test's own clock.
 template <class Clock = std::chrono::steady_clock>
 struct LimitedRules {
   static constexpr bool kLimited = true, kWrappers = false, kTrial = false;
-  /// What is left to do with each pair when all are found: to sort it.
+  /// Time that each pair still costs after the traversal, for sorting.
   static constexpr std::chrono::nanoseconds kAfterwards{20};
 
   std::uint64_t max_tests = 0;
   bool has_deadline = false;
   typename Clock::time_point deadline;
   bool stopped = false;  ///< a limit was reached
-  unsigned done = 0;     ///< since the last look at the clock, in certain tests
+  unsigned done = 0;     ///< tests since the last clock reading, in units of certain tests
 
   bool time_is_up(std::size_t pairs = 0) {
     done = 0;
     return stopped |=
            has_deadline && Clock::now() + static_cast<std::int64_t>(pairs) * kAfterwards >= deadline;
   }
-  /// Asked only when there is a test to be done: the last one that is allowed may be the last one needed.
+  /// Called only when another test is due: the last test that is allowed may also be the last one needed.
   bool no_test_left(std::uint64_t tests, bool certain, std::size_t pairs) {
     if (max_tests > 0 && tests >= max_tests) stopped = true;
     if (stopped || !has_deadline) return stopped;
     done += certain ? 1 : between_looks::kTests / between_looks::kUncertainTests;
     return done >= between_looks::kTests && time_is_up(pairs);
   }
-  /// Returns how many node pairs the kernel may have done when it comes back.
+  /// Returns the number of node pairs after which the kernel must return.
   std::uint64_t most_node_pairs(std::uint64_t pairs) const {
     return has_deadline ? pairs + between_looks::kNodePairs : kNoLimit;
   }
 };
 
-/// Rules of the exact query that comes first, for all pairs: it gives up once a pair crosses, unless little
-/// is left to do. What is left is judged by the pairs of nodes that wait. There are few where bodies barely
-/// cross; more may wait where it took long to find a pair that crosses, since those lie deep in the trees.
+/// Rules of the first, exact query for all pairs: it gives up after a crossing pair, unless little work is
+/// left. The work left is estimated by the node pairs on the stack. These are few if bodies barely cross.
+/// More are allowed if the first crossing pair took long to find, because crossing pairs are then deep in the
+/// trees.
 template <class Clock = std::chrono::steady_clock>
 class TrialRules : public LimitedRules<Clock> {
  public:
   static constexpr bool kTrial = true;
-  /// How few pairs of nodes may wait, for a query to a tolerance, and within limits, where levels come one
-  /// after another and the exact query last. More: bodies that cross deeply pay for work that is given up;
-  /// fewer: bodies that barely cross pay for levels.
+  /// Maximum number of node pairs on the stack to continue: for a query to a tolerance, and within limits,
+  /// where levels are tried one after another and the exact query last. Larger: deeply intersecting bodies
+  /// waste work that is given up; smaller: barely crossing bodies waste work on levels.
   static constexpr std::uint32_t kFewToTolerance = 8, kFewWithinLimits = 24;
 
   std::uint32_t few_waiting = kFewToTolerance;
 
-  /// Told where the walk is, before what it found there is tested.
+  /// Records the state of the traversal, before its candidates are tested.
   void came_to(std::uint64_t node_pairs, std::uint32_t waiting) {
     node_pairs_ = node_pairs;
     waiting_ = waiting;
   }
-  /// Told of a pair that crosses. Returns true if the walk should end at once.
+  /// Records a crossing pair. Returns true if the traversal should end at once.
   bool crossed() {
     if (crossed_at_ == kNoLimit) crossed_at_ = node_pairs_;
     return gives_up(false);
   }
-  /// Returns true if a pair crosses and the answer should be left to levels. too_many: of pairs that were
-  /// found.
+  /// Returns true if a pair crosses and the levels should provide the answer. too_many: more pairs than the
+  /// limit were found.
   bool gives_up(bool too_many) {
     if (crossed_at_ == kNoLimit) return false;
     const bool much = waiting_ > few_waiting + crossed_at_ / 4 || node_pairs_ >= crossed_at_ + kMostMore;
@@ -156,7 +161,7 @@ class TrialRules : public LimitedRules<Clock> {
   }
 
  private:
-  /// Pairs of nodes after the first pair that crosses, and those between two looks at how many wait.
+  /// Maximum number of node pairs after the first crossing pair, and interval at which the stack is checked.
   static constexpr std::uint64_t kMostMore = 192, kBetween = 16;
 
   std::uint64_t node_pairs_ = 0, crossed_at_ = kNoLimit;
@@ -170,9 +175,9 @@ struct WrapperRules : LimitedRules<Clock> {
   static constexpr bool kWrappers = true;
 
   double margin = 0;
-  bool near = false;  ///< real faces do not meet, but come within the margin
+  bool near = false;  ///< real faces do not intersect, but are within the margin
 
-  /// Returns how to count a pair that does not meet, which the kernel could not tell.
+  /// Returns the Meet to record for a pair that is disjoint in exact arithmetic but undecided by the kernel.
   exact::Meet meet_of_near(QueryContext& ctx, SimplexId a, SimplexId b) {
     const double *ca[3], *cb[3];
     ctx[Side::a].world.corners(a, ca);
@@ -192,7 +197,7 @@ class CoarseQuery {
       : ctx_(ctx), request_(request), result_(result), probe_{probe} {}
 
   void run() {
-    // Looking at the clock takes as long as a pair of nodes.
+    // Reading the clock takes as long as a pair of nodes.
     if (request_.max_time > 0) began_ = Clock::now();
     result_.relation = Relation::unresolved;
     result_.error_bound = kInfinity;
@@ -208,11 +213,11 @@ class CoarseQuery {
   }
 
  private:
-  static constexpr double kLongest = 1e6;  ///< seconds: more does not fit the clock on every machine
-  /// Room is made for so many pairs where a level is walked: most answers have no more.
+  static constexpr double kLongest = 1e6;  ///< seconds: longer times overflow the clock on some machines
+  /// Capacity reserved for pairs when a level is traversed: most answers have no more.
   static constexpr std::size_t kLikelyPairs = 128;
 
-  /// Keeps contacts from the probe: those of a step are part of the answer only if it is the last.
+  /// Hides contacts from the probe: the contacts of a step belong to the answer only if it is the last step.
   struct WithoutContacts {
     static constexpr bool kEnabled = Probe::kEnabled;
     Probe& probe;
@@ -230,7 +235,7 @@ class CoarseQuery {
     void end(Phase phase, std::uint64_t count) { probe.end(phase, count); }
   };
 
-  /// Sorts the pairs that were found.
+  /// Sorts the pairs found.
   void sort(CollideResult& found) {
     in_phase(probe_, Phase::sort, [&] {
       ctx_.pair_order.sort(found);
@@ -238,7 +243,7 @@ class CoarseQuery {
     });
   }
 
-  /// Sets the limits of a step: all that is left, or as much as leaves half of it.
+  /// Sets the limits of a step: everything that is left, or half of it.
   void limit(LimitedRules<Clock>& rules, bool half) const {
     rules.max_tests = half ? (request_.max_tests + 1) / 2 : request_.max_tests;
     rules.has_deadline = request_.max_time > 0;
@@ -248,7 +253,7 @@ class CoarseQuery {
                                     std::chrono::duration<double>(half ? seconds / 2 : seconds));
   }
 
-  /// Walks what the bodies are set to. Returns false if a limit was reached before the end.
+  /// Traverses the trees selected for the bodies. Returns false if a limit was reached before the end.
   template <class Rules>
   bool walk(const CollideRequest& request, CollideResult& found, Rules& rules) {
     found.counters = std::move(result_.counters);
@@ -259,12 +264,12 @@ class CoarseQuery {
     return !rules.stopped;
   }
 
-  /// Returns what decide_relation() asks before it locates a point: whether there is time.
+  /// Returns the predicate for decide_relation() that stops point location when time is up.
   static auto in_time(LimitedRules<Clock>& rules) {
     return [&rules] { return !rules.has_deadline || !rules.time_is_up(); };
   }
 
-  /// Makes what was found the answer.
+  /// Makes `found` the answer.
   void answer(CollideResult& found, double error_bound, bool finished) {
     result_.pairs.swap(found.pairs);
     result_.meets.swap(found.meets);
@@ -286,8 +291,8 @@ class CoarseQuery {
     if (decide_relation_watched(ctx_, found, probe_, in_time(rules))) answer(found, error_bound, true);
   }
 
-  /// Asks the bodies as they are, until it has an answer of one pair, or one pair of many crosses. Returns
-  /// true if that is the whole answer: also where they do not cross, or little was left to do.
+  /// Queries the bodies themselves, until one pair is found that completes the answer, or one of many pairs
+  /// crosses. Returns true if the answer is complete, also if nothing crosses or if little work was left.
   bool first_walk_decides() {
     CollideResult found;
     TrialRules<Clock> rules;
@@ -314,7 +319,7 @@ class CoarseQuery {
     found.meets.assign(found.pairs.size(), exact::Meet::cross);
   }
 
-  /// Takes back all regions: those that were refined show real faces.
+  /// Coarsens all refined regions: these show real faces, which are not part of a level.
   void take_back(Side side) {
     Wrapper& wrapper = *ctx_[side].wrapper;
     if constexpr (Probe::kEnabled)
@@ -323,7 +328,7 @@ class CoarseQuery {
     wrapper.reset();
   }
 
-  /// Goes from level to level until a limit is reached or the answer is as fine as was asked for.
+  /// Tries level after level until a limit is reached or the answer is as fine as requested.
   void climb(const std::vector<CoarseStep>& steps) {
     for (std::size_t i = 0; i < steps.size() && !result_.finished; ++i) {
       if (steps[i].exact()) return ask_exactly(0);
@@ -332,7 +337,7 @@ class CoarseQuery {
     }
   }
 
-  /// Walks a level of each body. Returns false if a limit was reached before its end.
+  /// Traverses a level of each body. Returns false if a limit was reached before its end.
   bool walk_level(const CoarseStep& step, CollideResult& found, WrapperRules<Clock>& rules) {
     QueryBody &a = ctx_[Side::a], &b = ctx_[Side::b];
     step.a == nullptr ? a.query_body() : a.query_level(*step.a);
@@ -348,14 +353,14 @@ class CoarseQuery {
     return true;
   }
 
-  /// Returns how far a level is off its body in the world at most. Not a product where it would be 0 times
+  /// Returns an upper bound on the distance of a level's wrapper from its body in the world. Avoids 0 times
   /// infinity.
   static double off_body(const WrapperLevel* level, const Pose& pose) {
     return level == nullptr || level->bound == 0 ? 0 : level->bound * stretch(pose);
   }
 
-  /// Finds the pairs of a level, of bodies that cross. Returns false if a limit was reached before its end:
-  /// the answer then stays that of the level before.
+  /// Finds the pairs of a level of bodies that cross. Returns false if a limit was reached before its end;
+  /// the answer of the level before then remains.
   bool add_level(const CoarseStep& step, bool last) {
     CollideResult found;
     WrapperRules<Clock> rules;
@@ -365,13 +370,14 @@ class CoarseQuery {
     const bool nested = found.pairs.empty();
     const double bound = found.error_bound;
     answer(found, bound, last && !nested);
-    // That the pairs are better than was asked for is luck: with less tolerance the bound would be larger.
+    // The exact pairs are better than requested, but keep this level's bound: otherwise a smaller tolerance
+    // could report a larger bound.
     if (last && nested) ask_exactly(bound);
     return true;
   }
 
-  /// Finds out what a level tells of bodies of which nothing is known. Returns false if a limit was reached
-  /// before its end, or if there is no more to be found out.
+  /// Determines as much as a level proves while the relation is unresolved. Returns false if a limit was
+  /// reached before its end, or if the answer is complete.
   bool try_level(const CoarseStep& step, bool last) {
     CollideResult found;
     WrapperRules<Clock> rules;
@@ -379,7 +385,7 @@ class CoarseQuery {
     double bound = found.error_bound;
     found.relation = Relation::unresolved;
     if (found.pairs.empty() && !rules.near) {
-      // A wrapper in the other: nothing tells how far the bodies are from each other.
+      // If one wrapper is inside the other, nothing bounds the distance of the bodies.
       const std::optional<bool> nested = locate_wrappers(rules);
       if (!nested) return false;
       if (!*nested) found.relation = Relation::separate;
@@ -413,7 +419,7 @@ class CoarseQuery {
   const CollideRequest& request_;
   CollideResult& result_;
   WithoutContacts probe_;
-  typename Clock::time_point began_;  ///< only where time is limited
+  typename Clock::time_point began_;  ///< set only under a time limit
 };
 
 }  // namespace lrb

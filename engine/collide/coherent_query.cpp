@@ -4,7 +4,7 @@
 /// Steps of one query (answer()):
 /// 1. Update the motion of B relative to A. If it is not nearly rigid, query from scratch.
 /// 2. If B is within the cached sweep, test the cached pairs that may intersect at this pose.
-/// 3. Else, where one pair is enough, test whether the last pair still crosses.
+/// 3. Else, if one pair is enough, test whether the last pair still crosses.
 /// 4. Else make a new cache if the policy expects it to pay, or query from scratch.
 
 #include <algorithm>
@@ -23,11 +23,11 @@
 namespace lrb {
 namespace {
 
-/// Number of pairs to find before looking at the clock.
+/// Size of the candidate buffer: the number of pairs found between clock readings.
 constexpr std::size_t kAtATime = 256;
-/// The usual step is the longest of recent steps: from one query to the next it shrinks by the factor
-/// kForgetStep. A step more than kJump times as long is a jump, which says nothing about the steps to come,
-/// unless another one follows.
+/// The usual step is the maximum of recent steps, where each query multiplies earlier ones by kForgetStep. A
+/// step more than kJump times as long is a jump and does not predict the next steps, unless another jump
+/// follows.
 constexpr double kForgetStep = 0.7, kJump = 8;
 
 using Clock = std::chrono::steady_clock;
@@ -81,18 +81,18 @@ class CoherentQuery::Work {
   QueryContext context_;
   CollideResult result_;
   Statistics statistics_;
-  bool plain_;  ///< the request is one that a cache can answer
+  bool plain_;  ///< the request can be answered from a cache
   RelativeMotion motion_;
 
-  bool at_work_ = false;   ///< a call has begun and not ended
+  bool at_work_ = false;   ///< a call began and did not return
   double usual_step_ = 0;  ///< the longest recent step, apart from jumps
   bool jumped_ = false;
 
   bool has_cache_ = false;
-  Sweep sweep_;  ///< where the cache is complete
+  Sweep sweep_;  ///< the range for which the cache is complete
   CandidateCache cache_;
   SweepPoint where_;         ///< position in the sweep at the last query answered from the cache
-  bool has_answer_ = false;  ///< result_ holds the answer of the last query from this cache
+  bool has_answer_ = false;  ///< result_ is the answer of the last query from this cache
 
   CachePolicy policy_;
 };
@@ -109,19 +109,19 @@ CoherentQuery::Work::Work(const LrbRep& a, const LrbRep& b, const CollideRequest
 
 template <class Probe>
 const CollideResult& CoherentQuery::Work::collide(const Pose& pose_a, const Pose& pose_b, Probe& probe) {
-  // Requests that no cache can answer, and empty bodies, are passed on unchanged.
+  // Requests that a cache cannot answer, and empty bodies, are passed on unchanged.
   if (!plain_) {
     result_ = lrb::collide(a_, pose_a, b_, pose_b, request_, context_, probe);
     ++statistics_.from_scratch;
     return result_;
   }
   check_query(a_, pose_a, b_, pose_b);
-  if (std::exchange(at_work_, true)) {  // the last call ended with an exception, in an unknown state
+  if (std::exchange(at_work_, true)) {  // the last call threw an exception and left an unknown state
     has_cache_ = false;
     motion_.forget();
     result_.pairs.clear();
   }
-  // The counter of fallbacks runs on from query to query: the difference is this query's own.
+  // The counter of fallbacks is cumulative: the difference is this query's.
   const std::uint64_t fallbacks = exact::exact_fallbacks();
   clear(result_.counters);
   answer(pose_a, pose_b, probe);
@@ -136,7 +136,7 @@ void CoherentQuery::Work::answer(const Pose& pose_a, const Pose& pose_b, Probe& 
   context_.body[0].world.begin(a_, pose_a);
   context_.body[1].world.begin(b_, pose_b);
   if (policy_.rests()) {
-    // Paused: the motion is not even watched, so that a query costs no more than one without coherence.
+    // Paused: the motion is not tracked either, so that a query costs no more than one without coherence.
     motion_.forget();
     query_from_scratch(probe);
     return;
@@ -148,10 +148,10 @@ void CoherentQuery::Work::answer(const Pose& pose_a, const Pose& pose_b, Probe& 
   }
   const auto began = Clock::now();
   note_step(motion_.step());
-  // No point of B is further than where.off from its place in the sweep.
+  // No point of B is further than where.off from its position in the sweep.
   const SweepPoint where = has_cache_ ? motion_.along(sweep_) : SweepPoint{};
   if (policy_.must_wait()) {
-    // The last queries of a pause: the motion is watched again, but no cache is made.
+    // The last queries of a pause: the motion is tracked again, but no cache is made.
     query_from_scratch(probe);
     policy_.scratch_took(seconds_since(began));
   } else if (has_cache_ && where.off <= sweep_.width) {
@@ -172,12 +172,12 @@ void CoherentQuery::Work::answer(const Pose& pose_a, const Pose& pose_b, Probe& 
   }
 }
 
-/// Does what collide() does, but into the existing result.
+/// Queries from scratch into the existing result.
 template <class Probe>
 void CoherentQuery::Work::query_from_scratch(Probe& probe) {
   has_cache_ = false;
   ++statistics_.from_scratch;
-  // The poses are set; the wrappers begin with all regions included.
+  // The poses are set already; the wrappers begin with all regions included.
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
   result_.mode = request_.mode;
   // Clear the vectors one by one: they keep their memory.
@@ -196,7 +196,7 @@ void CoherentQuery::Work::query_from_scratch(Probe& probe) {
   show_opened();
 }
 
-/// Describes the contact where that was asked for.
+/// Describes the contact if requested.
 template <class Probe>
 void CoherentQuery::Work::describe(Probe& probe) {
   if (!request_.contacts && !request_.interiors_overlap) return;
@@ -254,7 +254,7 @@ void CoherentQuery::Work::tell_reset(Probe& probe) {
     }
 }
 
-/// Returns true if the pair found last time still crosses: where one pair is enough, it is as good as any.
+/// Returns true if the last pair still crosses: if one pair is enough, any crossing pair will do.
 template <class Probe>
 bool CoherentQuery::Work::still_crosses(Probe& probe) {
   // A pair that only touches is not reused: in first_pair mode another one may cross.
@@ -264,7 +264,7 @@ bool CoherentQuery::Work::still_crosses(Probe& probe) {
   const std::uint64_t fallbacks = exact::exact_fallbacks();
   const exact::Meet meet = test_simplices(context_, p.a, p.b);
   const TestedBy by = exact::exact_fallbacks() == fallbacks ? TestedBy::filter : TestedBy::expansions;
-  // The wrappers are left as they are: they show this pair already.
+  // The wrappers are unchanged, because they show this pair already.
   tell_kept(probe);
   if constexpr (Probe::kEnabled) tell_test(p, meet, by, probe);
   if (meet != exact::Meet::cross) {
@@ -288,7 +288,7 @@ void CoherentQuery::Work::note_step(double step) {
 }
 
 std::optional<CachePolicy::Plan> CoherentQuery::Work::next_plan() {
-  // The next step cannot be foreseen without a usual step, right after a jump, or from fewer than three
+  // The next step cannot be predicted without a usual step, right after a jump, or from fewer than three
   // poses.
   if (!(usual_step_ > 0) || jumped_ || !motion_.is_seen()) return {};
   if (use_ == CacheUse::as_it_pays) return policy_.next(motion_.is_kept(), usual_step_, motion_.radius());
@@ -310,7 +310,7 @@ bool CoherentQuery::Work::make_cache(const CachePolicy::Plan& plan, Probe& probe
   // Traverse on A's axes: A at the identity, B at the middle of the sweep.
   TreeKernel k = start_rigid_kernel(context_, Pose{}, {sweep_.middle.m, sweep_.middle.t}, kAtATime);
   aim_at(sweep_, rounding, query_unit(a_.tree(), b_.tree()), k);
-  // A margin that is not a number, as infinite widths and no defect make it, would count as none.
+  // Reject NaN as well, which infinite widths without a defect yield: the kernel would ignore such a margin.
   if (!(k.margin < std::numeric_limits<float>::infinity())) return false;
   bool complete = false;
   // Find all pairs within reach of the sweep, then drop those that cannot intersect anywhere in it.
@@ -338,7 +338,7 @@ bool CoherentQuery::Work::make_cache(const CachePolicy::Plan& plan, Probe& probe
   return true;
 }
 
-/// Walks the trees for the pairs to keep. Returns false if that takes too long, or if there are too many.
+/// Traverses the trees for the pairs to cache. Returns false if that takes too long or finds too many pairs.
 template <class Probe>
 bool CoherentQuery::Work::find_candidates(TreeKernel& k, Probe& probe) {
   const auto began = Clock::now();
@@ -356,7 +356,7 @@ bool CoherentQuery::Work::find_candidates(TreeKernel& k, Probe& probe) {
   return true;
 }
 
-/// Tests the chosen pairs of the cache. Returns true if anything has changed since the last time.
+/// Tests the chosen pairs of the cache. Returns true if the result changed since the last update.
 template <class Probe>
 bool CoherentQuery::Work::test_cached(const TreeKernel& k, Probe& probe) {
   std::uint64_t fallbacks = exact::exact_fallbacks();
@@ -380,15 +380,15 @@ bool CoherentQuery::Work::test_cached(const TreeKernel& k, Probe& probe) {
   });
 }
 
-/// Answers from the cache; B must be where it is complete.
+/// Answers from the cache. B must be within the range for which it is complete.
 template <class Probe>
 void CoherentQuery::Work::answer_from_cache(const SweepPoint& where, Probe& probe) {
-  if (has_answer_) tell_kept(probe);  // else the cache is new, and its regions were just reported
-  // Float tests use the pose of this query, not that of the sweep.
+  if (has_answer_) tell_kept(probe);  // otherwise the cache is new, and its regions were just reported
+  // Float tests use the current pose, not the pose of the sweep.
   const TreeKernel k = set_up_kernel(a_, context_.body[0].world.pose(), b_, context_.body[1].world.pose());
   const bool has_answer = std::exchange(has_answer_, true);
   const SweepPoint before = std::exchange(where_, where);
-  // Only pairs that may intersect at this point of the sweep are tested.
+  // Only pairs that may intersect at this position in the sweep are tested.
   const std::size_t tested = cache_.choose(where);
   bool changed = false;
   in_phase(probe, Phase::cached, [&] {
@@ -397,10 +397,10 @@ void CoherentQuery::Work::answer_from_cache(const SweepPoint& where, Probe& prob
   });
   result_.counters.face_tests += tested;
   statistics_.tests_saved += cache_.pairs().size() - tested;
-  // Otherwise result_ holds the same pairs already.
+  // Otherwise result_ has the same pairs already.
   if (changed || !has_answer) collect_answer();
   // The relation of solids is unchanged if no surfaces intersected in between. For open surfaces world boxes
-  // decide, which move with each pose.
+  // decide, which change with each pose.
   const bool solids = a_.closed() && b_.closed();
   if (!has_answer || tested > 0 || !cache_.none_between(before, where) || !solids)
     decide_relation_watched(context_, result_, probe, [] { return true; });
@@ -416,7 +416,7 @@ void CoherentQuery::Work::collect_answer() {
   // Ascending, because the cache is sorted.
   cache_.append_meeting(result_);
   if (request_.mode == Mode::all_pairs || result_.pairs.empty()) return;
-  // One pair is the answer: in first_pair mode one that crosses, if there is one.
+  // One pair is the answer: in first_pair mode a crossing one, if any.
   const auto crossing = request_.mode == Mode::any_pair
                             ? result_.meets.begin()
                             : std::find(result_.meets.begin(), result_.meets.end(), exact::Meet::cross);

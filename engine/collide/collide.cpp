@@ -10,11 +10,11 @@ namespace lrb {
 
 namespace {
 
-/// Throws InputError if a vertex of the body has a world coordinate that is not finite. Few poses come near
-/// overflow: only then are the vertices checked.
+/// Throws InputError if a vertex of the body has a world coordinate that is not finite. Only poses near
+/// overflow need this check of all vertices.
 void check_world(const LrbRep& rep, const Pose& pose, char name) {
   if (world_size(pose, rep.tree()) <= 0.5 * std::numeric_limits<double>::max()) return;
-  // Near overflow: look for a vertex to name in the message.
+  // Find a vertex to name in the message.
   const auto vertices = rep.vertices();
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const Eigen::Vector3d x = pose.apply(vertices[v]);
@@ -25,7 +25,8 @@ void check_world(const LrbRep& rep, const Pose& pose, char name) {
   }
 }
 
-/// inf - inf and NaN - NaN are NaN, which a sum propagates: one comparison checks twelve numbers.
+/// Returns true if all entries are finite. inf - inf and NaN - NaN are NaN, which a sum propagates, so one
+/// comparison checks twelve numbers.
 bool is_finite(const Pose& p) {
   return (p.r - p.r).sum() + (p.t - p.t).sum() == 0;
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// Defines collide() for any probe, at no cost beyond the probe's own: for code of ours, which is compiled
-/// with the engine's private headers. Users of the installed engine have <lrbscope/observe.hpp>.
+/// Defines collide() for any probe, at no cost beyond the probe's own, for code compiled with the engine's
+/// private headers. Users of the installed engine include <lrbscope/observe.hpp>.
 
 #include <algorithm>
 #include <cstdint>
@@ -19,9 +19,8 @@
 
 namespace lrb {
 
-/// Asks for body `a` at pose_a against body `b` at pose_b, as collide() in collide.hpp does. `context`:
-/// memory that a query needs and the next one can use again, one per thread. `probe`: see NullProbe.
-/// `result`: new, or emptied by clear().
+/// Collides body `a` at pose_a with body `b` at pose_b, as collide() in collide.hpp does. `context`: reusable
+/// buffers, one context per thread. `probe`: see NullProbe. `result`: new, or emptied by clear().
 template <class Probe>
 void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const CollideRequest& request, QueryContext& context, Probe& probe, CollideResult& result) {
@@ -65,7 +64,7 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   result.counters.exact_fallbacks = exact::exact_fallbacks() - fallbacks;
 }
 
-/// Does the same into a new result.
+/// Collides two bodies and returns a new result.
 template <class Probe>
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request, QueryContext& context, Probe& probe) {
@@ -74,14 +73,12 @@ CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, cons
   return result;
 }
 
-/// Does the same for a probe from outside the engine; null: none. Compiled once, in collide.cpp.
+/// Collides two bodies with a probe from outside the engine, or null. Compiled once, in collide.cpp.
 void collide_watched(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                      const CollideRequest& request, QueryContext& context, CollideProbe* probe,
                      CollideResult& result);
 
-// Passes what a query tells on to a CollideProbe.
-
-/// A CollideProbe as the query's templates take it.
+/// Adapts a CollideProbe to the static probe interface of the query templates.
 class Teller {
  public:
   static constexpr bool kEnabled = true;

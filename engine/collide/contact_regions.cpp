@@ -26,7 +26,7 @@ namespace {
 /// (v, v), an edge (v < w), or the interior of a simplex (kNull, s).
 using SurfaceFeature = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Merges vertices with equal coordinates, as along seams of textures: returns the first one requested.
+/// Merges vertices with equal coordinates, as along texture seams, into the first one requested.
 class Places {
  public:
   explicit Places(const LrbRep& rep) : rep_(rep) {}
@@ -72,8 +72,8 @@ void number_corners(const QueryContext& context, const CollideResult& result, Co
     ContactGraph::Piece piece{i, {}};
     for (int c = 0; c < contact.corner_count; ++c) {
       const exact::ContactCorner& corner = contact.corners[static_cast<std::size_t>(c)];
-      // Named by features of both surfaces: the pairs on both sides of an edge agree without comparing
-      // coordinates.
+      // Identified by features of both surfaces, so the pairs on both sides of an edge agree without
+      // comparing coordinates.
       const auto key = std::pair{surface_feature(of_a, result.pairs[i].a, corner.on_a),
                                  surface_feature(of_b, result.pairs[i].b, corner.on_b)};
       const auto [it, is_new] = number.try_emplace(key, static_cast<std::uint32_t>(graph.points.size()));
@@ -91,22 +91,22 @@ void find_curves_and_outlines(ContactGraph& graph) {
     for (std::size_t c = 0; piece.points.size() >= 3 && c < piece.points.size(); ++c)
       ++polygon_sides[ordered(piece.points[c], piece.points[(c + 1) % piece.points.size()])];
   for (const auto& [edge, count] : polygon_sides)
-    // A side between two polygons is inside the contact area.
+    // A side of two polygons is interior to the contact area.
     if (count % 2 != 0) graph.outlines.push_back(edge);
-  // Segments: those on the side of a polygon belong to its outline, and those of no length are points.
+  // Segments that are a side of a polygon belong to its outline, and segments of length 0 are points.
   for (const auto& piece : graph.pieces) {
     if (piece.points.size() != 2) continue;
     const Edge e = ordered(piece.points[0], piece.points[1]);
     if (e[0] != e[1] && !polygon_sides.contains(e)) graph.curves.push_back(e);
   }
-  // A segment along an edge comes from each pair at that edge: keep one.
+  // A segment along an edge occurs in each pair at that edge: keep one.
   std::sort(graph.curves.begin(), graph.curves.end());
   graph.curves.erase(std::unique(graph.curves.begin(), graph.curves.end()), graph.curves.end());
 }
 
 void label_components(ContactGraph& graph) {
   std::vector<std::uint32_t> leader(graph.points.size());
-  // Union-find with path halving. The smallest index is the leader, so that labels are in order of points.
+  // Union-find with path halving. The smallest index is the root, so that labels follow the order of points.
   std::iota(leader.begin(), leader.end(), 0u);
   const auto find = [&](std::uint32_t p) {
     while (leader[p] != p) p = leader[p] = leader[leader[p]];
@@ -119,7 +119,7 @@ void label_components(ContactGraph& graph) {
     }
   graph.component.assign(graph.points.size(), kNull);
   for (std::uint32_t p = 0; p < graph.points.size(); ++p) {
-    const std::uint32_t root = find(p);  // root <= p, so it has its label already, unless it is p
+    const std::uint32_t root = find(p);  // root <= p: its label is set already unless it is p
     graph.component[p] = root == p ? graph.component_count++ : graph.component[root];
   }
 }
@@ -146,7 +146,7 @@ class Chainer {
 
   std::vector<ContactLoop> run() {
     std::vector<ContactLoop> loops;
-    // Follow open chains first, from their ends. Only closed ones are left then.
+    // Follow open chains first, from their ends. The remaining ones are closed.
     for (const auto& [p, at] : edges_at_)
       for (const std::uint32_t e : at)
         if (at.size() != 2 && !used_[e]) loops.push_back(walk(p, e));
@@ -170,7 +170,7 @@ class Chainer {
       loop.points.push_back(points_[p]);
       // An end or a branch point: the chain is open.
       if (at.size() != 2) break;
-      // Two edges meet here: leave by the one that is unused.
+      // Two edges at this point: leave by the unused one.
       edge = used_[at[0]] ? at[1] : at[0];
     }
     return loop;
@@ -189,38 +189,39 @@ std::vector<ContactLoop> chain_edges(std::span<const std::array<std::uint32_t, 2
   return Chainer(edges, points).run();
 }
 
-// Describes a contact: the intersection of each pair, and the connected regions of these with loops, length,
-// area, centroid, normal and a depth estimate.
+// Describes a contact: the intersection of each pair, and its connected regions with loops, length, area,
+// centroid, normal and a depth estimate.
 //
-// 1. Compute the intersection of each pair exactly, and connect the pieces to a graph (contact_regions.hpp).
+// 1. Compute the intersection of each pair exactly, and build the graph of the pieces (contact_regions.hpp).
 // 2. Average centroid and normal of each component over its pieces of the highest dimension.
 // 3. Chain the edges of each component into loops.
-// 4. Estimate the depth from the vertices that each body encloses of the other, along the normal.
+// 4. Estimate the depth along the normal from the enclosed vertices of both bodies.
 
 namespace {
 
 using Eigen::Vector3d;
 
 /// Returns the power of two by which to divide points so that no product of two or three coordinates
-/// overflows or underflows, as an area times a coordinate does for bodies of size 1e-120 or 1e120.
+/// overflows or underflows, as the product of an area and a coordinate would for bodies of size 1e-120 or
+/// 1e120.
 double unit_for(std::span<const Vector3d> points) {
   double most = 0;
   for (const Vector3d& p : points) most = std::max(most, p.cwiseAbs().maxCoeff());
   return most > 0 ? std::ldexp(1.0, std::clamp(std::ilogb(most), -1022, 1023)) : 1;
 }
 
-/// Returns the unit normal of a real simplex in the world, out of the solid, also of one that is mirrored;
-/// zero for a degenerate one.
+/// Returns the outward unit normal of a real simplex in the world, also for a mirrored body; zero if
+/// degenerate.
 Vector3d world_normal(QueryBody& body, SimplexId s, bool mirrored) {
   const double* c[3];
   body.world.corners(s, c);
   const int dim = body.rep().dim();
   std::array<Vector3d, 3> x = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
   for (int k = 0; k < dim; ++k) x[k] = Vector3d(c[k][0], c[k][1], c[k][2]);
-  // Scaled to about 1: products of coordinates cannot overflow or vanish then.
+  // Scaled to about 1: products of coordinates then neither overflow nor underflow.
   const double unit = unit_for({x.data(), static_cast<std::size_t>(dim)});
   const auto at = [&](int k) { return Vector3d(x[k] / unit); };
-  // In 2D the solid lies on the left of a segment's direction, so the outside is on its right.
+  // In 2D the solid is on the left of a segment's direction, so the outside is on its right.
   const Vector3d along = at(1) - at(0);
   const Vector3d n = dim == 2 ? Vector3d(along.y(), -along.x(), 0) : along.cross(at(2) - at(0)).eval();
   // A reflection reverses the orientation of every triangle.
@@ -228,7 +229,7 @@ Vector3d world_normal(QueryBody& body, SimplexId s, bool mirrored) {
 }
 
 double polygon_area(const std::vector<Vector3d>& x) {
-  // A fan of triangles: the cross products add up to twice the vector area.
+  // Triangle fan: the cross products add up to twice the vector area.
   Vector3d twice = Vector3d::Zero();
   for (std::size_t i = 1; i + 1 < x.size(); ++i) twice += (x[i] - x[0]).cross(x[i + 1] - x[0]);
   return 0.5 * twice.norm();
@@ -265,7 +266,7 @@ double loop_length(const ContactLoop& loop) {
   return sum;
 }
 
-/// Builds the regions from the graph. Computes in `unit_`; results are scaled back at the end.
+/// Builds the regions from the graph. Computes in `unit_` and rescales the results at the end.
 class RegionMaker {
  public:
   RegionMaker(QueryContext& ctx, const CollideResult& result)
@@ -282,7 +283,7 @@ class RegionMaker {
     std::vector<ContactRegion> regions(graph_.component_count);
     std::vector<std::uint8_t> rank(graph_.component_count,
                                    0);  // 3: has polygons, 2: segments, 1: points only
-    // Assign pairs to regions. Only pieces of the highest dimension in a region are averaged.
+    // Assign pairs to regions. Averages use only a region's pieces of the highest dimension.
     for (const auto& piece : graph_.pieces)
       if (!piece.points.empty()) {
         const std::uint32_t r = graph_.component[piece.points[0]];
@@ -292,7 +293,7 @@ class RegionMaker {
     for (std::uint32_t r = 0; r < regions.size(); ++r) average(regions[r], rank[r]);
     add_loops(regions);
     for (std::uint32_t r = 0; r < regions.size(); ++r) {
-      // Regions of curves have the area that their loops span; coplanar ones have their own already.
+      // Regions of curves have the area spanned by their loops; coplanar ones have their area already.
       if (rank[r] == 2) regions[r].area = spanned_area(regions[r]);
       regions[r].depth_estimate = penetration(regions[r]);
     }
@@ -307,7 +308,7 @@ class RegionMaker {
     region.centroid *= unit_;
     region.length *= unit_;
     region.depth_estimate *= unit_;
-    // One factor after the other: the square of the unit can overflow or vanish by itself.
+    // Multiply twice: the square of the unit could overflow or underflow.
     region.area = region.area * unit_ * unit_;
   }
 
@@ -317,7 +318,7 @@ class RegionMaker {
     return x;
   }
 
-  /// Sets centroid, normal and coplanar area, over the pieces of the highest dimension in the region.
+  /// Sets centroid, normal and coplanar area from the region's pieces of the highest dimension.
   void average(ContactRegion& region, std::uint8_t rank) {
     double total = 0;
     Vector3d centre = Vector3d::Zero(), normal = Vector3d::Zero();
@@ -327,13 +328,13 @@ class RegionMaker {
       const Weight w = weigh(points_of(piece));
       total += w.value;
       centre += w.value * w.centre;
-      // Outward normals are about opposite in a contact: their difference points from A to B.
+      // Outward normals are roughly opposite in a contact: their difference points from A to B.
       normal += w.value * (world_normal(ctx_[Side::a], result_.pairs[i].a, mirrored_[0]) -
                            world_normal(ctx_[Side::b], result_.pairs[i].b, mirrored_[1]));
     }
     region.centroid =
         total > 0 ? Vector3d(centre / total) : graph_.points[graph_.pieces[region.pairs[0]].points[0]];
-    // Normals that cancel (surfaces that meet facing the same way) leave no meaningful direction.
+    // Normals that cancel (surfaces that intersect with the same orientation) leave no meaningful direction.
     if (normal.norm() > kContactNormalLeast * total) region.normal = normal.stableNormalized();
     if (rank == 3) region.area = total;
   }
@@ -349,7 +350,7 @@ class RegionMaker {
     }
   }
 
-  /// Returns the area that the closed loops span: the length of their vector area, each loop on its own.
+  /// Returns the sum over the closed loops of the length of each one's vector area.
   static double spanned_area(const ContactRegion& region) {
     double sum = 0;
     for (const ContactLoop& loop : region.loops)
@@ -370,7 +371,7 @@ class RegionMaker {
         a_reaches = std::max(a_reaches, region.normal.dot(graph_.points[p]));
         b_reaches = std::min(b_reaches, region.normal.dot(graph_.points[p]));
       }
-    // The enclosed parts are polyhedra: beside contact points only their vertices can be extreme.
+    // The enclosed parts are polyhedra: apart from contact points only vertices can be extreme.
     for (const VertexId v : a_in_b_.from(region.pairs))
       a_reaches = std::max(a_reaches, region.normal.dot(world(Side::a, v)));
     for (const VertexId v : b_in_a_.from(region.pairs))
@@ -406,7 +407,7 @@ void describe_contact(QueryContext& context, const CollideRequest& request, Coll
   if (request.interiors_overlap && result.relation == Relation::crossing)
     result.interiors_overlap = crossing_interiors_overlap(context, result);
   if (!request.contacts) return;
-  // First the intersection of each pair, then the connected regions that they form.
+  // The intersection of each pair, then the connected regions that they form.
   for (const SimplexPair& pair : result.pairs) result.contacts.push_back(contact_of(context, pair));
   result.regions = RegionMaker(context, result).run();
 }

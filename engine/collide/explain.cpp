@@ -52,8 +52,8 @@ void NearPoints::see(const Vector3d& of_a, const Vector3d& of_b) {
 
 namespace {
 
-/// Considers the closest points of the lines through two segments, if they are on the segments. (Otherwise a
-/// corner of one is closest to the other.)
+/// Adds the closest points of the lines through two segments if they are on the segments. (Otherwise the
+/// closest points of the segments include an end of one.)
 void see_edges(const Vector3d& p, const Vector3d& q, const Vector3d& r, const Vector3d& s, NearPoints& out) {
   // Closest points of two lines (Ericson 2005, section 5.1.8).
   const Vector3d d = q - p, e = s - r, w = p - r;
@@ -76,7 +76,7 @@ NearPoints nearest_points(int dim, const Corners& a, const Corners& b) {
     if (dim == 3) x += n.weight[2] * point(t[2]);
     return x;
   };
-  // Closest points of disjoint simplices include a corner, or lie on an edge of each.
+  // Closest points of disjoint simplices include a corner, or are on an edge of each.
   for (int i = 0; i < dim; ++i) {
     out.see(point(a[i]), on(point(a[i]), b));
     out.see(on(point(b[i]), a), point(b[i]));
@@ -134,11 +134,11 @@ namespace {
 
 using namespace explain;
 
-/// Locations of simplices in a tree.
+/// The leaf and the index of each simplex in a tree.
 struct Places {
   std::vector<std::uint32_t> parent;  ///< (nodes) the node above
-  std::vector<std::uint32_t> leaf;    ///< (simplices) the leaf that holds it
-  std::vector<std::uint8_t> place;    ///< (simplices) its place in that leaf
+  std::vector<std::uint32_t> leaf;    ///< (simplices) the leaf that contains it
+  std::vector<std::uint8_t> place;    ///< (simplices) its index in that leaf
 
   Places(const ObbTree& tree, std::uint32_t simplices)
       : parent(tree.nodes().size(), 0), leaf(simplices, 0), place(simplices, 0) {
@@ -161,7 +161,7 @@ struct Places {
 struct Path {
   std::vector<std::uint32_t> nodes;  ///< from the root to the leaf
   std::vector<int> child;            ///< (|nodes|) which child of its parent; kWhole: the root
-  int place;                         ///< of the simplex in its leaf
+  int place;                         ///< index of the simplex in its leaf
 
   Path(const ObbTree& tree, const Places& places, SimplexId s) : place(places.place[s]) {
     // Climb from the leaf to the root, then reverse.
@@ -185,14 +185,14 @@ class Way {
         path_{Path(tree(Side::a), places[0], out.pair.a), Path(tree(Side::b), places[1], out.pair.b)} {}
 
   void follow() {
-    // The roots have no parents: show their own boxes.
+    // The roots have no parents: add their own boxes.
     add_nodes({kWhole, kWhole});
     for (;;) {
       const std::array<std::uint32_t, 2> here = {node(0), node(1)};
-      // Let the query's own kernel do this pair of nodes.
+      // Run the query's kernel on this pair of nodes.
       const Stepper::Outcome outcome = stepper_.step({here[0], here[1]});
       if (outcome.parts_whole) {
-        if (at_[0] + at_[1] > 0) add_nodes({kWhole, kWhole});  // the roots' own are there already
+        if (at_[0] + at_[1] > 0) add_nodes({kWhole, kWhole});  // the roots' own boxes were added before
         return end_at_nodes();
       }
       // Two leaves: the simplices themselves are next.
@@ -218,8 +218,8 @@ class Way {
     return at_[s] + 1 < path_[s].nodes.size() ? path_[s].nodes[at_[s] + 1] : node(s);
   }
 
-  /// Adds the pair of nodes that the way has come to. `child`: which box of its parent was compared; kWhole:
-  /// the node's own, because only the other one was descended.
+  /// Adds the current pair of nodes. `child`: which box of its parent was compared; kWhole: the node's own
+  /// box, because only the other node was descended.
   void add_nodes(const std::array<int, 2>& child) {
     BoxPair pair;
     std::array<WorldBox, 2> box;
@@ -233,11 +233,12 @@ class Way {
     out_.nodes.push_back(pair);
   }
 
-  /// Returns which of the two nodes the query descends here. Sets goes_on_ to whether it reaches the next
+  /// Returns which of the two nodes the query descends here. Sets goes_on_ to true if it reaches the next
   /// pair of the path.
   std::array<bool, 2> moves_to(const Stepper::Outcome& outcome) {
     goes_on_ = false;
-    std::optional<std::array<bool, 2>> kind;  // of any pair of children: they all descend the same nodes
+    // Equal for all pairs of children, which descend the same nodes.
+    std::optional<std::array<bool, 2>> kind;
     for (const NodePair& c : outcome.children) {
       // Where a node differs from the current one, its tree was descended.
       kind = {c.a != node(0), c.b != node(1)};
@@ -245,8 +246,8 @@ class Way {
       if (on_way) goes_on_ = true;
     }
     if (kind) return *kind;
-    // No boxes overlapped, so that nothing shows which were compared. Assume the children of both nodes,
-    // unless one is a leaf.
+    // No boxes overlapped, so that the output does not show which were compared. Assume the children of every
+    // node that is not a leaf.
     const bool leaf_a = stepper_.is_leaf(Side::a, node(0)), leaf_b = stepper_.is_leaf(Side::b, node(1));
     return {!leaf_a, !leaf_b};
   }
@@ -257,7 +258,7 @@ class Way {
     compare_boxes(box_of(tree(Side::a), node(0), path_[0].place, ctx_[Side::a].world.pose()),
                   box_of(tree(Side::b), node(1), path_[1].place, ctx_[Side::b].world.pose()),
                   out_.face_boxes);
-    // The kernel returns only simplices that boxes and planes did not separate.
+    // The kernel returns only simplices that neither boxes nor planes separated.
     const auto found =
         std::find_if(outcome.candidates.begin(), outcome.candidates.end(),
                      [&](const Candidate& c) { return c.a == out_.pair.a && c.b == out_.pair.b; });
@@ -273,7 +274,7 @@ class Way {
   PairExplanation& out_;
   Stepper& stepper_;
   std::array<Path, 2> path_;
-  std::array<std::size_t, 2> at_ = {0, 0};  ///< places on the paths
+  std::array<std::size_t, 2> at_ = {0, 0};  ///< positions on the paths
   bool goes_on_ = false;
 };
 
@@ -312,11 +313,11 @@ void explain_faces(QueryContext& ctx, PairExplanation& out) {
   if (out.meet != exact::Meet::disjoint)
     out.contact = dim == 3 ? exact::contact_of_triangles(a.data(), b.data())
                            : exact::contact_of_segments(a.data(), b.data());
-  // Closest points, in doubles; faces that intersect have distance 0 whatever these say.
+  // Closest points, in doubles. Faces that intersect have distance 0 regardless.
   const NearPoints near = nearest_points(dim, a, b);
   out.nearest = {near.a, near.b};
   out.distance = out.meet == exact::Meet::disjoint ? std::sqrt(near.distance_sq) : 0;
-  // One unit in the last place of the largest coordinate shows how fine the doubles are there.
+  // One unit in the last place of the largest coordinate: the resolution of the doubles there.
   double most = 0;
   for (const Corners& corners : {a, b})
     for (int i = 0; i < dim; ++i) most = std::max(most, point(corners[i]).cwiseAbs().maxCoeff());
@@ -325,7 +326,7 @@ void explain_faces(QueryContext& ctx, PairExplanation& out) {
     const LrbRep& rep = ctx[side].rep();
     std::vector<RegionId>& regions = out.hidden_by[static_cast<int>(side)];
     const SimplexId s = side == Side::a ? out.pair.a : out.pair.b;
-    // Climb from the face outward through its regions, then list them from the outside inward.
+    // Climb from the face outward through its regions, then reverse the list.
     for (CellId c = rep.outer_cell(rep.face_of_simplex(s)); is_region(c); c = rep.parent(c.as_region()))
       regions.push_back(c.as_region());
     std::reverse(regions.begin(), regions.end());

@@ -1,5 +1,5 @@
 #pragma once
-/// What both explanations of answers are made of (explain.cpp, explain_walk.cpp). Private to engine/collide.
+/// Shared parts of the explanations in explain.cpp and explain_walk.cpp. Private to engine/collide.
 
 #include <array>
 #include <cstdint>
@@ -13,20 +13,20 @@
 
 namespace lrb::explain {
 
-/// Begins a query of two bodies. Throws as collide() does.
+/// Begins a query of two bodies. Throws InputError in the same cases as collide().
 void begin(QueryContext& ctx, const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
-/// Steps through the walk of two trees.
+/// Runs the dual traversal of two trees one pair of nodes at a time.
 class Stepper {
  public:
   explicit Stepper(QueryContext& ctx) : ctx_(ctx), k_(start_kernel(ctx, kCapacity)) {}
 
-  /// What came of one pair of nodes: pairs of children, or of simplices.
+  /// The outcome of one pair of nodes: pairs of children, or candidate pairs of simplices.
   struct Outcome {
     std::vector<NodePair> children;
     std::vector<Candidate> candidates;
-    std::uint64_t face_pairs;  ///< whose boxes meet
-    bool parts_whole;          ///< the nodes' own boxes are apart: nothing in them was compared
+    std::uint64_t face_pairs;  ///< pairs of faces whose boxes overlap
+    bool parts_whole;          ///< the nodes' own boxes are disjoint: nothing in them was compared
   };
 
   Outcome step(const NodePair& pair);
@@ -48,7 +48,7 @@ inline Eigen::Vector3d point(const double* x) {
   return {x[0], x[1], x[2]};
 }
 
-/// Two points, one of each of two simplices.
+/// The closest points of two simplices.
 struct NearPoints {
   Eigen::Vector3d a, b;
   double distance_sq = std::numeric_limits<double>::infinity();

@@ -55,19 +55,20 @@ class NearestPairs {
   std::vector<Found> found_;
 };
 
-/// Finds the two closest boxes among those that the traversal compares and rejects.
+/// Finds the two closest boxes among those that the traversal compared and rejected.
 class NearestBoxes {
  public:
   NearestBoxes(QueryContext& ctx, const Stepper& stepper) : ctx_(ctx), stepper_(stepper) {}
 
   void see(const NodePair& pair, const Stepper::Outcome& outcome) {
-    // The nodes' own boxes were disjoint: nothing in them was compared.
+    // The nodes' own boxes were disjoint: their contents were not compared.
     if (outcome.parts_whole) {
       const auto whole = [&](Side side, std::uint32_t node) { return boxes(side, node, false).front(); };
       return see(whole(Side::a, pair.a), whole(Side::b, pair.b), false);
     }
     const bool leaf_a = stepper_.is_leaf(Side::a, pair.a), leaf_b = stepper_.is_leaf(Side::b, pair.b);
-    // The pairs returned show which nodes were descended. If there are none, assume all that are no leaves.
+    // The returned pairs show which nodes were descended. If there are no pairs, assume every node that is
+    // not a leaf.
     bool down_a = !leaf_a, down_b = !leaf_b;
     if (!outcome.children.empty()) {
       down_a = outcome.children.front().a != pair.a;
@@ -78,7 +79,8 @@ class NearestBoxes {
                            of_b = boxes(Side::b, pair.b, down_b || faces);
     for (const Box& a : of_a)
       for (const Box& b : of_b) {
-        // A pair of children that was not returned was rejected. Faces have no such list: all are considered.
+        // A pair of children that was not returned was rejected. Faces have no such list, so all are
+        // considered.
         const auto met = [&](const NodePair& c) { return c.a == a.node && c.b == b.node; };
         if (faces || std::none_of(outcome.children.begin(), outcome.children.end(), met)) see(a, b, faces);
       }
@@ -117,7 +119,7 @@ class NearestBoxes {
   std::optional<PartedBoxes> nearest_;
 };
 
-/// Tries directions of planes between two bodies.
+/// Tests the normals of candidate separating planes of two bodies.
 class PlaneFinder {
  public:
   explicit PlaneFinder(QueryContext& ctx) : points_{points_of(ctx, Side::a), points_of(ctx, Side::b)} {}
@@ -138,7 +140,7 @@ class PlaneFinder {
           // The support point of this body along the normal.
           if (const double far = sign * normal.dot(x); far > at[side]) at[side] = far, plane.reach[side] = x;
       }
-      // Both offsets are rounded towards each other: a gap that remains is a proof.
+      // Both offsets are rounded towards each other: a gap that remains proves separation.
       plane.of_a = at[0] + kPlaneRounding * size_;
       plane.of_b = -at[1] - kPlaneRounding * size_;
       if (plane.gap() > 0 && (!best_ || plane.gap() > best_->gap())) best_ = plane;
@@ -164,8 +166,8 @@ class PlaneFinder {
   std::optional<PartingPlane> best_;
 };
 
-/// Tries the axes of the boxes round the bodies, the directions across an axis of each, the line between
-/// their middles, and the lines between the faces that are nearest to each other and across such boxes.
+/// Tries as normals: the axes of the root boxes, their cross products, the line between the boxes' centres,
+/// the axes of the closest rejected boxes, and the lines between the closest faces.
 std::optional<PartingPlane> find_plane(QueryContext& ctx, const WalkExplanation& walk) {
   PlaneFinder finder(ctx);
   const WorldBox a = box_of(ctx[Side::a].tree(), 0, kWhole, ctx[Side::a].world.pose()),
@@ -209,7 +211,7 @@ WalkExplanation explain_walk(const LrbRep& a, const Pose& pose_a, const LrbRep& 
   NearestPairs nearest(ctx);
   NearestBoxes nearest_boxes(ctx, stepper);
   std::vector<NodePair> now = {{0, 0}}, then;
-  // Breadth first, so that work is counted by depth. The set of visited pairs does not depend on the order.
+  // Breadth first, so that work is counted by depth. The set of visited pairs is independent of the order.
   for (; !now.empty(); now.swap(then)) {
     then.clear();
     WalkDepth depth;
@@ -220,7 +222,7 @@ WalkExplanation explain_walk(const LrbRep& a, const Pose& pose_a, const LrbRep& 
       out.leaf_pairs +=
           !outcome.parts_whole && stepper.is_leaf(Side::a, pair.a) && stepper.is_leaf(Side::b, pair.b);
       out.face_pairs += outcome.face_pairs;
-      // Closest boxes and faces are of interest only for bodies whose surfaces do not intersect.
+      // Closest boxes and faces are collected only if the surfaces do not intersect.
       if (out.result.pairs.empty()) nearest_boxes.see(pair, outcome);
       out.left += outcome.candidates.size();
       for (const Candidate& c : outcome.candidates) {

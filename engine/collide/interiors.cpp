@@ -36,7 +36,7 @@ SimplexId EnclosedVertices::simplex(std::uint32_t pair) const {
 
 bool EnclosedVertices::is_inside(VertexId v) {
   // Only edges of simplices in contact can cross the other surface, so that only their corners need to be
-  // located. All other vertices that are reached from inside are inside.
+  // located. All other vertices reached from an inside vertex are inside.
   return !near_.contains(v) || locate(holder_, body_.world(v)) == Where::inside;
 }
 
@@ -62,8 +62,8 @@ std::vector<VertexId> EnclosedVertices::from(std::span<const std::uint32_t> pair
 
 namespace {
 
-/// Returns true if two collinear segments of positive length point the same way: compares them along a
-/// coordinate in which the first advances.
+/// Returns true if two collinear segments of positive length have the same direction. Compares them along a
+/// coordinate in which the first has extent.
 bool same_direction_2d(const double* const a[2], const double* const b[2]) {
   const int k = a[0][0] != a[1][0] ? 0 : 1;
   return (a[0][k] < a[1][k]) == (b[0][k] < b[1][k]);
@@ -84,24 +84,25 @@ class Decider {
     if (between == Answer::yes) return between;
     for (const Side side : {Side::a, Side::b}) {
       group_pairs(side);
-      // Then the parts of the surfaces in no pair: one point each.
+      // Then one point of each part of the surfaces in no pair.
       if (free_patch_inside(side)) return Answer::yes;
     }
     for (const Side side : {Side::a, Side::b}) {
       group_pairs(side);
-      // Last the faces in pairs, cell by cell, in rational arithmetic.
+      // Last the cells of the faces in pairs, in rational arithmetic.
       if (const Answer answer = touched_face_inside(side); answer != Answer::no) return answer;
     }
     return between;
   }
 
  private:
-  /// Answers for coplanar faces that overlap in an area (2D: a length) and face the same way. Both solids lie
-  /// behind them, and a point there that is inside both proves it. Where none is found, rounding has folded a
-  /// body in the world (far from the origin thin walls become flat) and faces need not face outward any more:
-  /// unknown.
+  /// Answers for coplanar faces that overlap in an area (2D: a length) with the same orientation. Both solids
+  /// are behind them, and a nearby point inside both proves the overlap. If no such point is found, the
+  /// answer is unknown: rounding has folded a body in the world (far from the origin thin walls become flat),
+  /// so that its faces need not face outward.
   Answer between_coinciding_faces() {
-    // A reflection reverses orientations: if exactly one pose is one, equal orientations mean opposite sides.
+    // A reflection reverses orientations: if exactly one pose is a reflection, equal orientations mean
+    // opposite sides.
     const bool mirrored =
         is_reflection(ctx_[Side::a].world.pose(), dim_) != is_reflection(ctx_[Side::b].world.pose(), dim_);
     Answer answer = Answer::no;
@@ -113,7 +114,7 @@ class Decider {
           dim_ == 3 ? exact::contact_of_triangles(a, b) : exact::contact_of_segments(a, b);
       // Only contacts with area count (2D: with length).
       if (!contact.coplanar || contact.corner_count < dim_) continue;
-      // Opposite directions: the solids lie on different sides of the plane.
+      // Opposite directions: the solids are on different sides of the plane.
       if ((dim_ == 3 ? same_direction_3d(a, b) : same_direction_2d(a, b)) == mirrored) continue;
       if (inside_both_near(contact, a)) return Answer::yes;
       answer = Answer::unknown;
@@ -137,7 +138,7 @@ class Decider {
       const Eigen::Vector3d off = middle.rounded() + side * box.sizes().maxCoeff() * normal;
       const exact::RationalPoint ends[] = {middle, exact::RationalPoint(off.data())};
       for (const double share : kInteriorProbes) {
-        // Ever nearer to the plane: the body may be arbitrarily thin there.
+        // Decreasing distances from the plane: the body may be arbitrarily thin there.
         const double weights[] = {1 - share, share};
         const auto p = exact::RationalPoint::combination(ends, weights);
         if (locate(ctx_[Side::a], p) == Where::inside && locate(ctx_[Side::b], p) == Where::inside)
@@ -165,9 +166,9 @@ class Decider {
     for (const SimplexPair& p : result_.pairs) partners_[own(side, p)].push_back(own(other(side), p));
   }
 
-  /// Tests vertices of no touched face, one for each patch of the surface that touched faces leave connected.
-  /// Patches are joined through vertices that no touched face has; a patch without such a vertex is made of
-  /// faces all of whose corners are on touched faces: each of those faces is tested itself.
+  /// Tests one vertex of each patch of the surface that touched faces leave connected. Patches are connected
+  /// by vertices that belong to no touched face. A patch without such a vertex consists of faces whose
+  /// corners are all on touched faces; each of these faces is tested itself.
   bool free_patch_inside(Side side) {
     QueryBody &body = ctx_[side], &holder = ctx_[other(side)];
     const LrbRep& rep = body.rep();
@@ -191,7 +192,7 @@ class Decider {
         if (locate(holder, body.world(v[0])) == Where::inside) return true;
       } else if (!seen[*free]) {
         if (locate(holder, body.world(*free)) == Where::inside) return true;
-        // Depth-first search marks the patch, all of which is on the same side.
+        // Depth-first search marks the patch, which is entirely on the same side.
         patch.assign(1, *free);
         seen[*free] = true;
         for (; !patch.empty();) {
@@ -212,8 +213,8 @@ class Decider {
     QueryBody &body = ctx_[side], &holder = ctx_[other(side)];
     std::size_t cells = 0;
     for (const auto& [s, partners] : partners_) {
-      // One exact point in each cell. A cell does not cross the other surface: it is inside or outside as a
-      // whole.
+      // One exact point in each cell. A cell does not cross the other surface, so it is entirely inside or
+      // outside.
       const auto points = sample(body, s, holder, partners);
       if (!points || (cells += points->size()) > kInteriorCells) return Answer::unknown;
       for (const exact::RationalPoint& p : *points)
@@ -227,7 +228,7 @@ class Decider {
     const double* own_corners[3];
     body.world.corners(s, own_corners);
     if (dim_ == 3) {
-      // 3D: cells of the arrangement of cuts. Limits bound its cubic cost.
+      // 3D: cells of the arrangement of cuts. The cell limit bounds its cubic cost.
       FaceCutters cutters(own_corners, holder);
       for (const SimplexId t : partners) cutters.add(t);
       return exact::sample_cells(own_corners, cutters.all(), kInteriorCellsPerFace);
@@ -255,21 +256,21 @@ Answer interiors_overlap(QueryContext& context, const CollideResult& result) {
   return Decider(context, result).run();
 }
 
-// Proves that the interiors of two crossing bodies overlap: where two faces cross and no other face lies,
-// there are four wedges, one of which is inside both bodies.
+// Proves that the interiors of two crossing bodies overlap: where two faces cross away from all further
+// faces, they form four wedges, and one wedge is inside both bodies.
 
 namespace {
 
 using Corners = std::array<const double*, 3>;
 
-/// Finds a face of A and a face of B that cross where no other face of either surface lies. Parity changes
-/// across each of them there, so that one of the four wedges between them is inside both bodies.
+/// Finds a face of A and a face of B that cross at a place without further faces of either surface. Parity
+/// changes across each of the two faces, so that one of the four wedges between them is inside both bodies.
 class CrossingProof {
  public:
   CrossingProof(QueryContext& ctx, const CollideResult& result)
       : ctx_(ctx), result_(result), dim_(ctx[Side::a].rep().dim()) {
     for (const SimplexPair& p : result.pairs) {
-      // For each simplex all simplices of the other body that it intersects.
+      // For each simplex, all simplices of the other body that it intersects.
       partners_[0][p.a].push_back(p.b);
       partners_[1][p.b].push_back(p.a);
     }
@@ -289,8 +290,9 @@ class CrossingProof {
   }
 
  private:
-  /// Returns true if no other simplex of the body that meets the partner of `s` meets the inside of `s`.
-  /// (Sufficient: one that passes through the plane of `s` anywhere counts as if it did.)
+  /// Returns true if, apart from `s`, none of the simplices in `others`, those of the body that intersect the
+  /// partner of `s`, intersects the interior of `s`. Conservative: one that passes through the plane of `s`
+  /// anywhere counts as intersecting.
   bool is_alone(Side side, SimplexId s, const std::vector<SimplexId>& others) const {
     Corners face;
     ctx_[side].world.corners(s, face.data());
@@ -302,22 +304,22 @@ class CrossingProof {
     });
   }
 
-  /// Returns true if the triangle `other` does not meet the inside of `face`.
+  /// Returns true if the triangle `other` does not intersect the interior of `face`.
   static bool keeps_out(const Corners& face, const Corners& other) {
     std::vector<const double*> in_plane;
     bool above = false, below = false;
     for (const double* p : other) {
-      // On which side of the face's plane each corner lies, exactly.
+      // Exact side of each corner relative to the face's plane.
       const int side = exact::orient3d(face[0], face[1], face[2], p);
       above |= side > 0;
       below |= side < 0;
       if (side == 0) in_plane.push_back(p);
     }
-    // It passes through the plane, perhaps through the face.
+    // It passes through the plane, possibly through the face.
     if (above && below) return false;
     for (int k = 0; k < 3; ++k) {
-      // Otherwise only its corners in the plane can touch the face. Beyond the line of one edge they miss its
-      // interior.
+      // Otherwise only its corners in the plane can touch the face. If all are beyond the line of one edge,
+      // they miss its interior.
       const double *p = face[k], *q = face[(k + 1) % 3];
       const int inward = side_in_plane(face.data(), p, q, face[(k + 2) % 3]);
       const bool beyond = std::all_of(in_plane.begin(), in_plane.end(), [&](const double* x) {
@@ -328,9 +330,9 @@ class CrossingProof {
     return false;
   }
 
-  /// Does the same for segments: what is on the line of `face` must lie beyond one of its ends.
+  /// The 2D case, for segments: all points on the line of `face` must be beyond one of its ends.
   static bool keeps_out_2d(const Corners& face, const Corners& other) {
-    // A coordinate in which the segment has length orders the points on its line.
+    // A coordinate in which the segment has extent orders the points on its line.
     const int axis = face[0][0] != face[1][0] ? 0 : 1;
     const double low = std::min(face[0][axis], face[1][axis]), high = std::max(face[0][axis], face[1][axis]);
     bool above = false, below = false, before = true, after = true;

@@ -14,14 +14,14 @@
 
 namespace lrb {
 
-/// Finds the vertices of one body that lie strictly inside the other and are connected to given pairs.
+/// Finds the vertices of one body that are strictly inside the other and connected to given pairs.
 class EnclosedVertices {
  public:
-  /// Prepares the search for vertices of `side`. Finds nothing if the other body is not closed.
+  /// Prepares the search for vertices of `side`. Every search is empty if the other body is not closed.
   EnclosedVertices(QueryContext& context, Side side, const CollideResult& result);
 
-  /// Returns what is found by spreading over the surface from the simplices of some pairs (indices into
-  /// result.pairs), without crossing the other body's surface.
+  /// Returns the vertices found by a search over the surface that starts at the simplices of some pairs
+  /// (indices into result.pairs) and does not cross the other body's surface.
   std::vector<VertexId> from(std::span<const std::uint32_t> pairs);
 
  private:
@@ -35,8 +35,8 @@ class EnclosedVertices {
   std::unordered_set<VertexId> near_;  ///< corners of simplices in contact
 };
 
-/// Returns the side of the line p, q on which r lies, seen along the first axis on which the triangle `face`,
-/// in whose plane all of them lie, keeps its area.
+/// Returns the side of the line p q on which r lies, as the sign of an orientation. All three points are in
+/// the plane of the triangle `face`, which is projected along the first axis that keeps its area positive.
 inline int side_in_plane(const double* const face[3], const double* p, const double* q, const double* r) {
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -49,10 +49,8 @@ inline int side_in_plane(const double* const face[3], const double* p, const dou
   return 0;
 }
 
-// What cuts a face into cells, for whoever asks where the cells lie.
-
-/// Returns true if the normals of two coplanar triangles of positive area point the same way. Decides
-/// exactly: seen along an axis on which the first keeps its area, both then turn the same way.
+/// Returns true if the normals of two coplanar triangles of positive area have the same direction. Exact:
+/// projected along an axis that keeps the first one's area positive, both then have the same orientation.
 inline bool same_direction_3d(const double* const a[3], const double* const b[3]) {
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -65,9 +63,9 @@ inline bool same_direction_3d(const double* const a[3], const double* const b[3]
   return false;
 }
 
-/// Collects what cuts a face into cells that are each inside or outside of the holder or on its surface. Of
-/// the holder's triangles in the face's plane only the outline does: an edge with one of them on either side
-/// is left out, because both its sides are on the surface. Without this a fan of n triangles on another would
+/// Collects the triangles that cut a face into cells. Each cell is inside, outside or on the surface of the
+/// holder. Of the holder's triangles in the face's plane only the outline cuts: an edge between two of them
+/// is left out, because both its sides are on the surface. Otherwise a fan of n triangles on another would
 /// make n^2 cells.
 class FaceCutters {
  public:
@@ -90,7 +88,7 @@ class FaceCutters {
       flat_edges_[std::minmax(v[k], v[(k + 1) % 3])].push_back({c[k], c[(k + 1) % 3], c[(k + 2) % 3]});
   }
 
-  /// Returns the triangles, and the edges as triangles without area.
+  /// Returns the triangles, and the edges as degenerate triangles.
   std::vector<Corners> all() const {
     std::vector<Corners> r = triangles_;
     for (const auto& [ids, uses] : flat_edges_) {
@@ -107,30 +105,32 @@ class FaceCutters {
   const double* face_[3];
   QueryBody& holder_;
   std::vector<Corners> triangles_;
-  /// The triangles at an edge, each with its third corner.
+  /// For each edge its coplanar triangles, each with its third corner.
   std::map<std::pair<VertexId, VertexId>, std::vector<Corners>> flat_edges_;
 };
 
-/// Tells whether the interiors of two closed bodies that touch without crossing overlap. Exact where it
-/// answers yes or no.
+/// Returns whether the interiors of two closed bodies that touch without crossing overlap. The answers yes
+/// and no are exact.
 ///
-/// They overlap if and only if the surface of one has a point strictly inside the other, or the surfaces
-/// coincide somewhere facing the same way (if neither holds, each component of one interior lies wholly
-/// inside or outside the other; if it lies inside, its boundary does too, up to surfaces that coincide). So:
-/// - for coplanar pairs whose intersection has area, the same direction means yes;
-/// - a face in no pair lies on one side as a whole, and so does a connected patch of them: one vertex
-///   decides;
-/// - a face in pairs is cut into cells by its intersections: one exact rational point in each cell decides.
-/// Answers unknown for a body that is not closed or intersects itself, and if there are more than
-/// kInteriorCells cells.
+/// Claim: the interiors overlap if and only if the surface of one body has a point strictly inside the other,
+/// or the surfaces coincide somewhere with the same orientation. (Proof: otherwise each component of one
+/// interior is entirely inside or outside the other body. If one were inside, so would be its boundary,
+/// except where surfaces coincide with the same orientation: a contradiction.) This leaves three cases:
+/// - Coplanar pairs whose intersection has area: the same direction means yes.
+/// - A face in no pair is entirely on one side, and so is a connected patch of such faces: one vertex
+///   decides.
+/// - A face in pairs is cut into cells by its intersections: one exact rational point in each cell decides.
+///
+/// Returns unknown if a body is not closed or intersects itself, or if there are more than kInteriorCells
+/// cells.
 Answer interiors_overlap(QueryContext& context, const CollideResult& result);
 
-/// Does the same for closed bodies that cross: answers yes, with a proof, or unknown. Faces of a body that
-/// rounding has made flat in the world pass through the other's faces too, but nothing lies between them: a
-/// crossing counts only where no other face of either body lies. All pairs must be in `result`.
+/// Returns yes, with a proof, or unknown for closed bodies that cross. A crossing alone is no proof: faces of
+/// a body that rounding has flattened in the world cross the other's faces as well, but enclose no volume. So
+/// a crossing counts only where no further face of either body passes. All pairs must be in `result`.
 Answer crossing_interiors_overlap(QueryContext& context, const CollideResult& result);
 
-/// Returns whether a pose turns surfaces inside out, exactly. In the plane only what it does there counts.
+/// Returns true if a pose reverses orientation. Exact. In 2D only the map of the plane counts.
 inline bool is_reflection(const Pose& pose, int dim) {
   const Eigen::Matrix3d& r = pose.r;
   const double origin[3] = {0, 0, 0};

@@ -16,25 +16,24 @@
 namespace lrb {
 namespace {
 
-/// Radix sort is worth its passes for more pairs than this. A digit has about as many values as there are
-/// pairs: this takes fewer passes than shorter digits, and its tables are no longer than what is sorted, so
-/// that they fit the first cache. Boost's spreadsort, measured beside a sort by all digits on keys of 29 and
-/// 35 bits in random order and in runs, takes 0.6 to 0.8 times as long for 33 pairs, and 1.1 to 2.5 times for
-/// 100 to 100,000.
+/// Larger inputs than this are sorted by radix. A digit has about as many values as there are pairs: this
+/// takes fewer passes than shorter digits, and its tables are no longer than the input, so that they fit the
+/// L1 cache. Measured against Boost's spreadsort on keys of 29 and 35 bits, in random order and in runs:
+/// spreadsort takes 0.6 to 0.8 times as long for 33 pairs, and 1.1 to 2.5 times for 100 to 100,000.
 constexpr std::size_t kWorthDigits = 32;
 constexpr unsigned kLeastDigitBits = 6, kMostDigitBits = 11;
 constexpr unsigned kMeetBits = 1;
-/// Up to so many pairs are sorted by the digits of A's simplices alone, which are half of all: few pairs have
-/// the same simplex of A. Of more pairs, more have: 266,180 at identical poses, about 13 for each simplex,
-/// are sorted faster by all digits.
+/// Up to this number of pairs only the digits of A's simplices are sorted by radix, half of all digits,
+/// because few pairs share a simplex of A. Larger answers have longer groups: the 266,180 pairs of identical
+/// poses, about 13 for each simplex, are sorted faster by all digits.
 constexpr std::size_t kFewPairs = 4096;
-/// This is done only if at most so many pairs have the same simplex of A, on average over all numbers that
-/// A's digits can name.
+/// That is done only if at most this many pairs share a number of A's digits, on average over all numbers
+/// that these digits can represent.
 constexpr std::size_t kAlikeOnAverage = 8;
-/// Pairs with the same simplex of A are put in order one by one; by comparing if they are more than this.
+/// Longest group with the same simplex of A that is sorted by insertion rather than by std::sort.
 constexpr std::ptrdiff_t kFewAlike = 16;
 
-/// Sorts pairs whose numbers do not fit a key: those of bodies of billions of simplices.
+/// Sorts pairs whose numbers do not fit a 64-bit key: bodies of billions of simplices.
 void sort_by_comparing(CollideResult& result) {
   std::vector<std::pair<SimplexPair, exact::Meet>> found;
   for (std::size_t i = 0; i < result.pairs.size(); ++i) found.emplace_back(result.pairs[i], result.meets[i]);
@@ -48,18 +47,17 @@ void sort_by_comparing(CollideResult& result) {
   }
 }
 
-/// How a pair is packed into one number: its simplices in as many bits as they need, and how it meets in the
-/// last bit.
+/// Layout of a key: the pair's simplices in as many bits as they need, and its Meet in the lowest bit.
 struct Packing {
   unsigned bits_b, bits;
 };
 
-/// Returns the packing for some pairs; no bits if they are in order already, without repetitions.
+/// Returns the layout for some pairs, with 0 bits if they are strictly ascending already.
 Packing packing_of(std::span<const SimplexPair> pairs) {
-  std::uint32_t all_a = 0, all_b = 0;  // all bits that occur
+  std::uint32_t all_a = 0, all_b = 0;  // union of the bits that occur
   bool in_order = true;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    // One pass finds the widths of both indices and whether there is anything to sort.
+    // One pass finds the widths of both indices and whether the pairs are sorted.
     in_order &= i == 0 || pairs[i - 1] < pairs[i];
     all_a |= pairs[i].a;
     all_b |= pairs[i].b;
@@ -73,7 +71,7 @@ std::uint64_t key_of(const SimplexPair& p, unsigned bits_b) {
   return (std::uint64_t{p.a} << bits_b | p.b) << kMeetBits;
 }
 
-/// Puts keys in order that are in order but for their last bits.
+/// Sorts keys that are ascending except for their last bits.
 void sort_alike(std::vector<std::uint64_t>& keys, unsigned last_bits) {
   const auto end = keys.end();
   for (auto group = keys.begin(); group != end;) {
@@ -110,11 +108,11 @@ void PairOrder::sort(CollideResult& result) {
   if (packing.bits > 64) return sort_by_comparing(result);
   keys_.resize(result.pairs.size());
   for (std::size_t i = 0; i < keys_.size(); ++i)
-    // The lowest bit keeps how the pair intersects; it does not affect the order of pairs.
+    // The lowest bit stores the pair's Meet; it does not affect the order of pairs.
     keys_[i] = key_of(result.pairs[i], packing.bits_b) |
                static_cast<std::uint64_t>(result.meets[i] == exact::Meet::cross);
   sort_keys(packing.bits_b, packing.bits);
-  // Unpack. There may be fewer keys now: repetitions are gone.
+  // Unpack. There may be fewer keys now, because repetitions were removed.
   result.pairs.resize(keys_.size());
   result.meets.resize(keys_.size());
   for (std::size_t i = 0; i < keys_.size(); ++i) {
@@ -153,8 +151,8 @@ void PairOrder::sort_keys(unsigned bits_b, unsigned bits) {
   keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
 }
 
-/// Sorts by the bits from `first` to `end`, the last digit first: each pass keeps the order of the passes
-/// before it. How a pair meets needs no order.
+/// Sorts by the bits from `first` to `end`, the least significant digit first: each pass is stable. The bit
+/// of the Meet needs no order.
 void PairOrder::sort_by_digits(unsigned first, unsigned end) {
   // A digit has about as many values as there are keys, within limits.
   const unsigned most =
@@ -173,10 +171,10 @@ void PairOrder::sort_by_digits(unsigned first, unsigned end) {
     for (unsigned pass = 0; pass < passes; ++pass) ++places_[pass * values + digit(key, pass)];
   for (unsigned pass = 0; pass < passes; ++pass) {
     std::uint32_t* const place = places_.data() + pass * values;
-    // Exclusive prefix sums: where the first key with each value goes.
+    // Exclusive prefix sums: the index of the first key with each value.
     std::uint32_t before = 0;
     for (std::size_t v = 0; v < values; ++v) before += std::exchange(place[v], before);
-    // A stable scatter, so that earlier passes stay in effect.
+    // A stable scatter preserves the order of earlier passes.
     for (const std::uint64_t key : keys_) moved_[place[digit(key, pass)]++] = key;
     keys_.swap(moved_);
   }

@@ -1,19 +1,18 @@
 #pragma once
-/// The paper's query (section 4, "The 2-Body Collision Algorithm"), to the letter: the outermost faces of
-/// both wrappers are tested all against all; faces that meet are refined, and their new faces tested
-/// recursively.
+/// The paper's query (section 4, "The 2-Body Collision Algorithm"), to the letter: all outermost faces of one
+/// wrapper are tested against all of the other; faces that intersect are refined, and their new faces are
+/// tested recursively.
 ///
-/// It is not complete: a contact under lids that nothing touches is never reached (a ball in a bowl; a body
-/// that came in through the solid side). It is here to reproduce the paper's figures and to be seen failing.
+/// It is not complete: a contact under lids that are not touched is never reached (a ball in a bowl, or a
+/// body that entered through the solid side). It exists to reproduce the paper's figures and to show these
+/// failures.
 ///
-/// The text leaves open what "the new faces are recursively tested" means for a region that was refined
-/// before ("a region or even an individual face can only be refined once"). There are two readings, and both
-/// are kept:
-/// - Recursion::paper: what may happen only once is the recursion into a *pair* of regions (or of a real face
-///   and a region); the floor of a refined region is tested again when another region of the other body hits
-///   its lids.
-/// - Recursion::paper_strict: a region gives its floor once, when it is first refined; those faces are tested
-///   against the new faces (or the real face) of what hit, and never again.
+/// The paper does not define "the new faces are recursively tested" for a region that was refined before ("a
+/// region or even an individual face can only be refined once"). Two readings are implemented:
+/// - Recursion::paper: each *pair* of regions (or of a real face and a region) is recursed into at most once.
+///   The floor of a refined region is tested again when another region of the other body intersects its lids.
+/// - Recursion::paper_strict: the floor of a region is tested only when the region is first refined, against
+///   the new faces (or the real face) of the other body, and never again.
 
 #include <span>
 
@@ -79,7 +78,7 @@ class PaperQuery {
     return ctx_.visited[kind].insert(std::uint64_t{a} << 32 | b).second;
   }
 
-  /// Refines the region behind a face. Returns true if that had not happened before.
+  /// Refines the region behind a face. Returns true if it was not refined before.
   bool refine(Side side, FaceId f) {
     QueryBody& body = ctx_[side];
     const RegionId r = body.rep().inner_cell(f).as_region();
@@ -91,8 +90,8 @@ class PaperQuery {
     return is_new;
   }
 
-  /// Compares two faces as polygons, that is, all simplices of their fans. Counts as one face test, one
-  /// event.
+  /// Tests two faces as polygons, that is, all pairs of simplices of their fans. Counts as one face test and
+  /// one event.
   bool faces_meet(FaceId fa, FaceId fb) {
     exact::Meet best = exact::Meet::disjoint;
     SimplexPair which{ctx_[Side::a].rep().first_simplex(fa), ctx_[Side::b].rep().first_simplex(fb)};

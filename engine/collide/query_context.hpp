@@ -16,8 +16,8 @@
 
 namespace lrb {
 
-/// Tells which real vertices are joined by an edge of a real face. Derived from an LRB-rep when a query first
-/// needs it.
+/// The real vertices connected to each vertex by an edge of a real face. Built for an LRB-rep when a query
+/// first needs it.
 class SurfaceGraph {
  public:
   explicit SurfaceGraph(const LrbRep& rep);
@@ -30,8 +30,8 @@ class SurfaceGraph {
   std::vector<VertexId> neighbours_;
 };
 
-/// World coordinates of one body's vertices during one query: each vertex is moved at most once, when it is
-/// first needed.
+/// World coordinates of one body's vertices during one query. Each vertex is transformed at most once, when
+/// it is first needed.
 class WorldVertices {
  public:
   void begin(const LrbRep& rep, const Pose& pose) {
@@ -82,7 +82,7 @@ struct QueryBody {
   std::uint64_t wrapper_serial = 0;  ///< serial of the LRB-rep that the wrapper was made for
 
   const LrbRep& rep() const { return world.rep(); }
-  /// Return what is queried: the body, or a level of it.
+  /// Return the data that is queried: the body's, or a level's.
   const ObbTree& tree() const { return *tree_; }
   std::span<const VertexId> component_vertices() const { return component_vertices_; }
 
@@ -90,7 +90,7 @@ struct QueryBody {
     world.begin(rep, pose);
     begin_at_pose(mode);
   }
-  /// Begins at a pose that `world` knows already.
+  /// Begins at the pose that `world` has already.
   void begin_at_pose(WrapperMode mode) {
     query_body();
     if (!wrapper || wrapper_serial != rep().serial() || &wrapper->rep() != &rep() ||
@@ -112,12 +112,12 @@ struct QueryBody {
     component_vertices_ = level.component_vertices;
   }
 
-  /// Returns what is queried: 0 for the body, i + 1 for level i.
+  /// Returns 0 if the body is queried, i + 1 if its level i is.
   std::uint32_t walked() const {
     return level_ == nullptr ? 0 : static_cast<std::uint32_t>(level_ - rep().levels().all().data()) + 1;
   }
 
-  /// Returns the body's surface graph; made when first asked for, kept as long as the body stays the same.
+  /// Returns the body's surface graph. Built on the first call and kept while the body stays the same.
   const SurfaceGraph& surface_graph() {
     if (!graph_ || graph_serial_ != rep().serial()) {
       graph_ = std::make_unique<SurfaceGraph>(rep());
@@ -126,7 +126,7 @@ struct QueryBody {
     return *graph_;
   }
 
-  /// Returns the number of regions between a face and the outside along parents.
+  /// Returns the number of regions between a face and the outside, following parents.
   std::uint32_t depth_of(FaceId f) const {
     const CellId outer = rep().outer_cell(f);
     return is_region(outer) ? rep().depth(outer.as_region()) : 0;
@@ -143,20 +143,20 @@ struct QueryBody {
 class QueryContext {
  public:
   QueryBody body[2];
-  std::vector<NodePair> stack;  ///< of the kernel that runs: its stack, and after it those that were tested
+  std::vector<NodePair> stack;  ///< of the current kernel: pairs to visit, followed by those already tested
   std::vector<Candidate> candidates;
-  // In queries that are watched; NodeWatch knows what these are.
+  // Used only in observed queries; see NodeWatch.
   std::unordered_map<std::uint64_t, std::uint32_t> parents;
   std::vector<PartedPair> parted;
   std::vector<NodePair> parted_nodes;
-  AffineTerms affine;  ///< of the kernel that runs, if it has any
+  AffineTerms affine;  ///< of the current kernel, if its map is not rigid
   PairOrder pair_order;
   std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region, face x region, region x face
 
   QueryBody& operator[](Side s) { return body[static_cast<int>(s)]; }
 };
 
-/// Tests exactly how two simplices meet in the world frame.
+/// Tests exactly how two simplices intersect in the world frame.
 inline exact::Meet test_simplices(QueryContext& ctx, SimplexId a, SimplexId b) {
   const double *ca[3], *cb[3];
   ctx.body[0].world.corners(a, ca);
@@ -171,7 +171,7 @@ inline void count_face_test(bool real, std::uint32_t level, Counters& c) {
   ++c.face_tests_by_level[level];
 }
 
-/// Appends a pair to the answer.
+/// Appends a pair to the result.
 template <class Probe>
 void record_pair(CollideResult& result, Probe& probe, SimplexId a, SimplexId b, exact::Meet meet) {
   result.pairs.push_back({a, b});

@@ -2,9 +2,8 @@
 ///
 /// 1. locate(): reject points outside the root's box; shoot an axis-parallel ray in the direction that leaves
 ///    the box soonest; traverse the OBB tree along it; count crossings with exact predicates.
-/// 2. decide_without_points(): pairs that intersect decide the relation; so do disjoint boxes of open
-///    surfaces.
-/// 3. decide_by_enclosure(): else the components that lie inside the other body decide.
+/// 2. decide_without_points(): intersecting pairs decide the relation; so do disjoint boxes of open surfaces.
+/// 3. decide_by_enclosure(): otherwise the components inside the other body decide.
 
 #include "engine/collide/relation.hpp"
 
@@ -26,8 +25,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// The direction of a ray: along an axis of the world, or against it. The parity of crossings is the same in
-/// each.
+/// The direction of a ray: along a world axis, or opposite to it. The parity of crossings is the same for
+/// all.
 struct Direction {
   int axis = 0;
   bool backward = false;
@@ -42,8 +41,8 @@ struct Direction {
   }
 };
 
-/// Walks the tree along the ray from a point (doubles, or exact::RationalPoint) and counts the simplices that
-/// it crosses. `near` is the point rounded to doubles, for the boxes.
+/// Traverses the tree along the ray from a point (doubles, or exact::RationalPoint) and counts the simplices
+/// that it crosses. `near`: the point rounded to doubles, for box tests.
 template <class Point>
 class RayWalk {
  public:
@@ -76,10 +75,10 @@ class RayWalk {
   struct Frame {
     Matrix3d axes;
     Vector3d origin;
-    double grow;  ///< by how much boxes grow to cover all errors
+    double grow;  ///< margin of boxes, covers all errors
   };
 
-  /// A box along the world's axes.
+  /// An axis-aligned box in the world.
   struct Bounds {
     Vector3d centre, half;
   };
@@ -111,16 +110,15 @@ class RayWalk {
     return {f.origin + f.axes * centre, f.axes.cwiseAbs() * half + Vector3d::Constant(f.grow)};
   }
 
-  /// Returns true if the point is certainly not in a box.
+  /// Returns true if the point is proven to be outside a box.
   bool is_beside(const Bounds& b) const {
     bool beside = false;
     for (int k = 0; k < dim_; ++k) beside |= std::abs(b.centre[k] - p_[k]) > b.half[k];
     return beside;
   }
 
-  /// Returns true if the point certainly lies beyond a side of a node's whole box. A plane along a side
-  /// proves that, however its direction came about: the box may reach across it by what its half axes and
-  /// `grow` allow.
+  /// Returns true if the point is proven to be beyond a side of a node's own box. A separating plane is a
+  /// proof whatever its direction's errors: the box's extent along it is bounded by the half axes and `grow`.
   bool is_beside_oriented(const TreeNode& n, const Frame& f) const {
     Vector3d centre = f.origin, half[3];
     for (int i = 0; i < 3; ++i) {
@@ -132,7 +130,7 @@ class RayWalk {
     const auto is_beyond = [&](const Vector3d& d) {
       constexpr double kFarFromUnderflow = 0x1p-960;
       const double errors = f.grow * d.cwiseAbs().sum();
-      // So near to underflow products have no relative error bound.
+      // This near to underflow, products have no relative error bound.
       if (!(errors > kFarFromUnderflow)) return false;
       // Separating axis: the centre is further away along d than the box reaches.
       return std::abs(d.dot(way)) >
@@ -160,7 +158,7 @@ class RayWalk {
     direction_.see(point_, dim_, seen_);
   }
 
-  /// Returns true if the ray certainly misses a box.
+  /// Returns true if the ray is proven to miss a box.
   bool misses(const Bounds& b) const {
     bool missed = false;
     for (int k = 0; k < dim_; ++k) {
@@ -180,7 +178,7 @@ class RayWalk {
     }
     const Frame f = frame_of(n);
     for (std::uint32_t k = 0; k < n.count && !on_surface_; ++k)
-      // A box that the ray surely misses contains no crossing.
+      // A box that the ray misses contains no crossing.
       if (!misses(bounds_of(
               n, f, [&](int i) { return n.lo[i][k]; }, [&](int i) { return n.hi[i][k]; })))
         visit(n.first + k);
@@ -211,7 +209,7 @@ class RayWalk {
   const Point& point_;
   Vector3d p_;
   Direction direction_;
-  double seen_[3];  ///< the point, seen as direction_ says
+  double seen_[3];  ///< the point in the frame of direction_
   double margin_, turn_;
   int crossings_ = 0;
   bool on_surface_ = false;
@@ -243,13 +241,15 @@ bool decide_without_points(QueryContext& ctx, CollideResult& result) {
   const bool crosses =
       std::find(result.meets.begin(), result.meets.end(), exact::Meet::cross) != result.meets.end();
   result.relation = crosses ? Relation::crossing : Relation::touching;
-  // Closed bodies that cross overlap, unless rounding has made one flat: crossing_interiors_overlap() checks.
+  // Closed bodies that cross overlap, unless rounding flattened one of them: crossing_interiors_overlap()
+  // checks that.
   result.interiors_overlap = crosses && solids ? Answer::yes : Answer::unknown;
   return true;
 }
 
 void decide_by_enclosure(const Enclosed& a_in_b, const Enclosed& b_in_a, CollideResult& result) {
-  // Wholly enclosed bodies first. Surfaces do not intersect, so that one vertex stands for its component.
+  // Entirely enclosed bodies take precedence. The surfaces do not intersect, so that one vertex decides for
+  // its component.
   if (a_in_b.all())
     result.relation = Relation::a_inside_b;
   else if (b_in_a.all())

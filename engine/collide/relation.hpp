@@ -1,5 +1,5 @@
 #pragma once
-/// Finds how two bodies lie to each other, once the pairs that meet are known.
+/// Determines the relation of two bodies, once their intersecting pairs are known.
 
 #include "engine/collide/query_context.hpp"
 #include "engine/exact/locate.hpp"
@@ -7,29 +7,29 @@
 
 namespace lrb {
 
-/// Tells where a point of the world lies in a closed body, by the parity of an axis-parallel ray: exact, with
-/// ties broken symbolically (exact/locate.hpp), so that no ray is ever degenerate. Nested and overlapping
+/// Returns the location of a world point relative to a closed body, by the parity of ray crossings. Exact:
+/// ties are broken symbolically (exact/locate.hpp), so that no ray is degenerate. Nested and overlapping
 /// components count by parity.
 Where locate(QueryBody& body, const double* point);
 Where locate(QueryBody& body, const exact::RationalPoint& point);
 
-/// How many components of a body lie inside the other one.
+/// Number of components of a body inside the other body.
 struct Enclosed {
   std::size_t inside = 0, components = 0;
   bool all() const { return inside == components && components > 0; }
   bool some() const { return inside > 0; }
 };
 
-/// Decides the relation where pairs were found, or where inside has no meaning: there only boxes that are
-/// apart prove bodies separate. Returns false elsewhere.
+/// Decides the relation if pairs were found or if a body is not closed. A body that is not closed has no
+/// inside: only disjoint boxes prove it separate. Returns false if neither applies.
 bool decide_without_points(QueryContext& ctx, CollideResult& result);
-/// Decides the relation of closed bodies whose surfaces do not meet.
+/// Decides the relation of closed bodies whose surfaces do not intersect.
 void decide_by_enclosure(const Enclosed& a_in_b, const Enclosed& b_in_a, CollideResult& result);
 
-/// Sets result.relation from result.pairs or, if there are none, from the position of one vertex of each
-/// component. A body of which only some components are enclosed by the other still counts as inside, because
-/// the bodies are then not separate. Returns false, without a relation, if `in_time()`, which is asked before
-/// each point is located, does. Calls see(side, vertex, where) for each point.
+/// Sets result.relation from result.pairs or, if there are no pairs, from the location of one vertex of each
+/// component. A body counts as inside the other even if only some of its components are enclosed, because the
+/// bodies are then not separate. `in_time()` is called before each point location; once it returns false,
+/// this returns false and sets no relation. Calls see(side, vertex, where) for each point.
 template <class InTime, class See>
 bool decide_relation(QueryContext& ctx, CollideResult& result, InTime&& in_time, See&& see) {
   if (decide_without_points(ctx, result)) return true;
@@ -53,10 +53,10 @@ template <class InTime>
 bool decide_relation(QueryContext& ctx, CollideResult& result, InTime&& in_time) {
   return decide_relation(ctx, result, in_time, [](Side, VertexId, Where) {});
 }
-/// Does the same, however long it takes.
+/// Decides the relation without a time limit.
 void decide_relation(QueryContext& ctx, CollideResult& result);
 
-/// Does the same as a phase of its own, and tells the probe of each point.
+/// Decides the relation as a phase of its own, and reports each located point to the probe.
 template <class Probe, class InTime>
 bool decide_relation_watched(QueryContext& ctx, CollideResult& result, Probe& probe, InTime&& in_time) {
   bool decided = false;

@@ -23,14 +23,15 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kRemembered = 3;
-/// Half a sweep of n steps has at most this many times a step, divided by the deviation of B from where the
-/// two poses before had led to expect it: by then B will be off by no more than half of n steps.
+/// Half a sweep has at most n = kDeviation s / d steps, where s is the length of the last step and d its
+/// deviation from the step predicted by the two poses before. At the end of the sweep, after 2 n steps, the
+/// deviation 2 n^2 d is then at most n s / 2.
 constexpr double kDeviation = 0.25;
-/// For a sweep, in steps: how much longer it is than its steps at either end, and how wide it is at least;
-/// and how many times as wide it is as B is off it now, because the motion bends as much at the other end.
+/// Lengths relative to a step: extension of a sweep at either end, and its minimum width. kSpareWidth: width
+/// relative to the current deviation of B, because the path is curved as much at the other end.
 constexpr double kBeyondEnd = 0.125, kLeastWidth = 1.0 / 16, kSpareWidth = 1.25;
 
-/// Returns the motion that takes B from one pose to the other, on A's axes: x -> m x + t.
+/// Returns the motion x -> m x + t, on A's axes, that takes B from one pose to the other.
 RelativePose motion_between(const RelativePose& from, const RelativePose& to) {
   const Matrix3d m = to.m * from.m.transpose();
   return {m, to.t - m * from.t};
@@ -46,7 +47,7 @@ RelativePose::RelativePose(const Matrix3d& m_, const Vector3d& t_)
     : m(m_), t(t_), defect(rotation_defect(m_)) {}
 
 RelativeMotion::RelativeMotion(const LrbRep& a, const LrbRep& b) : a_(&a), b_(&b) {
-  // The root's ball encloses all of B.
+  // The root's bounding sphere contains all of B.
   const TreeNode& root = b.tree().nodes()[0];
   middle_ = Vector3d(root.origin[0], root.origin[1], root.origin[2]) * b.tree().unit();
   radius_ = static_cast<double>(root.radius) * b.tree().unit();
@@ -58,9 +59,9 @@ bool RelativeMotion::see(const Pose& pose_a, const Pose& pose_b) {
   last_ = now_;
   // B seen from A: x -> R_A^T (R_B x + t_B - t_A).
   now_ = {pose_a.r.transpose() * pose_b.r, pose_a.r.transpose() * (pose_b.t - pose_a.t)};
-  // R_A^T is the inverse only up to A's defect, which shifts points on A's axes by that share of their size.
+  // R_A^T is the inverse only up to A's defect, which shifts points on A's axes relative to their size.
   rounding_ = wrapper_margin(pose_a, a_->tree(), pose_b, b_->tree()) + 2 * defect_a * a_->tree().extent();
-  // A relative reflection is no rigid motion.
+  // A relative reflection is not a rigid motion.
   if (defect_a <= kRigid && now_.defect <= kRigid && now_.m.determinant() > 0) {
     seen_ = std::min(seen_ + 1, kRemembered);
     return true;
@@ -81,11 +82,11 @@ double RelativeMotion::motion(const RelativePose& from, const RelativePose& to) 
 }
 
 double RelativeMotion::step() const {
-  // Without an earlier pose nothing bounds the step.
+  // Without a previous pose nothing bounds the step.
   return seen_ < 2 ? std::numeric_limits<double>::infinity() : motion(last_, now_);
 }
 
-/// Returns the sweep from now on for twice this many steps, and a little more at both ends.
+/// Returns the sweep over the next 2 `steps` steps, extended a little at both ends.
 Sweep RelativeMotion::sweep_of(int steps) const {
   const RelativePose way = motion_between(last_, now_);
   Sweep s;
@@ -94,11 +95,12 @@ Sweep RelativeMotion::sweep_of(int steps) const {
   for (int i = 0; i < steps; ++i) end = after(way, end);
   s.middle = end;
   for (int i = 0; i < steps; ++i) end = after(way, end);
-  // Half the chord from now to the end, lengthened by kBeyondEnd steps at either end.
+  // Half the chord from now to the end, extended by kBeyondEnd steps at either end.
   const double longer = 1 + kBeyondEnd / steps;
   s.dm = (end.m - now_.m) * (longer / 2);
   s.dt = (end.t - now_.t) * (longer / 2);
-  // The Frobenius norm bounds the spectral norm: a scaled chord is no difference of two rotations.
+  // The Frobenius norm bounds the spectral norm. A scaled chord is not a difference of two rotations, so that
+  // turn_bound() does not apply.
   s.turn = s.dm.norm() * (1 + kWorldRounding);
   s.length = farthest(s.dm, s.dt, s.turn);
   return s;
@@ -113,12 +115,12 @@ bool RelativeMotion::is_kept() const {
 }
 
 double RelativeMotion::deviation() const {
-  // The distance of the current pose from the one extrapolated from the two poses before.
+  // Distance of the current pose from the one extrapolated from the two poses before.
   return motion(after(motion_between(earlier_, last_), last_), now_);
 }
 
-/// Returns half the number of steps for which B's motion can be foreseen. A deviation in one step becomes
-/// that deviation times half the square of their number in several.
+/// Returns half the number of steps for which B's motion is predictable. A deviation d in one step grows to
+/// n^2 / 2 d in n steps.
 double RelativeMotion::steady_steps() const {
   return kDeviation * motion(last_, now_) / deviation();
 }
@@ -128,7 +130,7 @@ Sweep RelativeMotion::ahead(double steps) const {
   Sweep ahead = sweep_of(half);
   // Extrapolation errors grow quadratically: n^2 / 2 deviations in n = 2 half steps.
   ahead.width = kLeastWidth * motion(last_, now_) + 2 * half * half * deviation();
-  // B is off the chord already, and will be about as far off at the other end.
+  // B deviates from the chord already, and will deviate about as much at the other end.
   ahead.width = std::max(ahead.width, kSpareWidth * along(ahead).off);
   return ahead;
 }
@@ -145,12 +147,12 @@ SweepPoint RelativeMotion::along(const Sweep& s) const {
   if (s.length == 0) return {0, motion(s.middle, now_)};
   const Matrix3d m = now_.m - s.middle.m;
   const Vector3d t = now_.t - s.middle.t;
-  // Least squares over B's points, as if they filled a ball.
+  // Least squares over B's points, approximated by a ball.
   const Vector3d way = (s.dm * middle_ + s.dt) / s.length, gone = (m * middle_ + t) / s.length;
   const double spread = radius_ / s.length * (radius_ / s.length) / 2;
   const double nearest = (gone.dot(way) + spread * m.cwiseProduct(s.dm).sum()) /
                          (way.squaredNorm() + spread * s.dm.squaredNorm());
-  const double at = nearest > -1 ? std::min(nearest, 1.0) : -1;  // also where overflow made it not a number
+  const double at = nearest > -1 ? std::min(nearest, 1.0) : -1;  // also -1 if overflow made it NaN
   // Whatever the fit, the residual is a valid bound: a poor fit only costs a new cache.
   const Matrix3d off_m = m - at * s.dm;
   return {at, farthest(off_m, t - at * s.dt, off_m.norm())};

@@ -1,24 +1,23 @@
 #pragma once
-/// The relative motion of B, seen from A, from one pose of the two bodies to the next: a bound on how far any
-/// point of B has moved, and where B will be if it goes on like this.
+/// Motion of B relative to A between successive poses: a bound on the displacement of any point of B, and an
+/// extrapolation of the motion.
 ///
-/// With (m, t) as in set_up_kernel(), the points of B on A's axes are m x + t. From one pose to another they
-/// move by at most |dm c + dt| + |dm| R, where c and R are the middle and the radius of B; turn_bound()
+/// With (m, t) as in set_up_kernel(), a point x of B is m x + t on A's axes. From one pose to another it
+/// moves by at most |dm c + dt| + |dm| R, where c and R are the centre and the radius of B; turn_bound()
 /// bounds |dm|.
 ///
-/// For parts of a motion, which are not between rotations, the same holds with the root of the sum of all
-/// squares.
+/// For a part of a motion, dm is not a difference of two rotations: its Frobenius norm bounds |dm| instead.
 ///
-/// Points that are equal in the world are not quite equal on A's axes: they may differ by on_a of
-/// set_up_kernel(). rounding() bounds this together with the rounding of world coordinates and of everything
-/// that is computed here (see wrapper_margin()).
+/// Points that are equal in the world may differ by on_a of set_up_kernel() on A's axes. rounding() bounds
+/// this, the rounding of world coordinates and the rounding of everything computed here (see
+/// wrapper_margin()).
 
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
 
 namespace lrb {
 
-/// The pose of B seen from A, and how far m is from a rotation.
+/// The pose of B on A's axes, and the deviation of m from a rotation.
 struct RelativePose {
   Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
   Eigen::Vector3d t = Eigen::Vector3d::Zero();
@@ -28,19 +27,19 @@ struct RelativePose {
   RelativePose(const Eigen::Matrix3d& m, const Eigen::Vector3d& t);
 };
 
-/// A part of the relative motion: B at the middle pose, displaced by -1 to 1 times (dm x + dt) on A's axes,
-/// and everything within `width` of that.
+/// A straight part of the relative motion: B at the middle pose, displaced by s (dm x + dt) on A's axes for
+/// -1 <= s <= 1, and all positions within `width` of that.
 struct Sweep {
   RelativePose middle;
   Eigen::Matrix3d dm = Eigen::Matrix3d::Zero();
   Eigen::Vector3d dt = Eigen::Vector3d::Zero();
-  double turn = 0;    ///< a bound on |dm|
-  double length = 0;  ///< a bound on how far any point of B moves from the middle to an end; 0: a fixed pose
-  double width = 0;   ///< B may be off by this much
+  double turn = 0;    ///< upper bound on |dm|
+  double length = 0;  ///< upper bound on the displacement of any point of B to an end; 0: a fixed pose
+  double width = 0;   ///< allowed deviation of B from the straight path
 };
 
-/// The position of B relative to a sweep: displaced from the middle by `at` times (dm x + dt), with no point
-/// of B further than `off` from there.
+/// Position of B in a sweep: displaced from the middle by `at` times (dm x + dt), with a deviation of at most
+/// `off` for any point of B.
 struct SweepPoint {
   double at = 0, off = 0;
 };
@@ -48,31 +47,32 @@ struct SweepPoint {
 class RelativeMotion {
  public:
   RelativeMotion() = default;
-  /// Follows two bodies, which must not be empty. Keeps references.
+  /// Tracks two bodies, which must not be empty. Keeps references.
   RelativeMotion(const LrbRep& a, const LrbRep& b);
 
-  /// Takes in the bodies' current poses. Returns false, and forgets everything, if they are further from a
-  /// rigid motion than kRigid.
+  /// Records the bodies' current poses. Returns false, and forgets all poses, if the motion deviates from a
+  /// rigid one by more than kRigid.
   bool see(const Pose& pose_a, const Pose& pose_b);
-  /// Forgets what was seen, because it tells nothing about what will come.
+  /// Forgets the recorded poses, because they do not predict the next one.
   void forget() { seen_ = 0; }
 
-  /// Returns the radius of B about its middle. Mesh's unit.
+  /// Returns the radius of B about its centre; mesh units.
   double radius() const { return radius_; }
-  /// Returns the bound on rounding (see above) for the current poses. Mesh's unit.
+  /// Returns the bound on rounding (see above) for the current poses; mesh units.
   double rounding() const { return rounding_; }
-  /// Returns an upper bound on how far any point of B has moved, on A's axes, since the pose before; infinite
-  /// if there was none. Mesh's unit.
+  /// Returns an upper bound on the displacement of any point of B, on A's axes, since the previous pose, or
+  /// infinity if there is no previous pose; mesh units.
   double step() const;
-  /// Tell whether enough poses in a row were seen to judge if B's motion is steady, and whether it is.
+  /// Return true if enough successive poses were recorded to judge whether B's motion is steady, and if it is
+  /// steady.
   bool is_seen() const;
   bool is_kept() const;
-  /// Returns the sweep of B over the next `steps` steps, or as many as can be foreseen, if its motion stays
-  /// steady.
+  /// Returns the sweep of B over the next `steps` steps, or fewer if the motion is predictable only for
+  /// fewer.
   Sweep ahead(double steps) const;
-  /// Returns the surroundings, up to `width`, of the current pose.
+  /// Returns the neighbourhood of the current pose up to `width`.
   Sweep about(double width) const;
-  /// Returns where B is relative to a sweep.
+  /// Returns the position of B in a sweep.
   SweepPoint along(const Sweep& s) const;
 
  private:
@@ -83,9 +83,9 @@ class RelativeMotion {
   Sweep sweep_of(int steps) const;
 
   const LrbRep *a_ = nullptr, *b_ = nullptr;
-  Eigen::Vector3d middle_{0, 0, 0};  ///< middle of B
+  Eigen::Vector3d middle_{0, 0, 0};  ///< centre of B
   double radius_ = 0;                ///< radius of B about it
-  int seen_ = 0;                     ///< number of poses seen in a row, three at most
+  int seen_ = 0;                     ///< number of successive poses recorded, at most three
   RelativePose now_, last_, earlier_;
   double rounding_ = 0;
 };

@@ -28,7 +28,8 @@ void clear(Counters& counters) {
 }
 
 void clear(CollideResult& result) {
-  // Reset all members by taking a new result, then move the emptied vectors back: they keep their memory.
+  // Reset all members by exchanging with a new result, then move the emptied vectors back: they keep their
+  // memory.
   CollideResult old = std::exchange(result, {});
   clear(old.counters);
   old.pairs.clear();

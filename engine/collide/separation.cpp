@@ -1,10 +1,10 @@
-/// Finds a certificate of separation: wrappers, as coarse as possible, whose boundaries are proved disjoint
-/// and of which neither contains a piece of the other.
+/// Finds a certificate of separation: wrappers, as coarse as possible, whose boundaries are proven disjoint,
+/// and where neither wrapper contains a piece of the other.
 ///
 /// 1. Start from the outermost wrappers.
-/// 2. Compare all pairs of boundary faces. Where two come within the margin, refine the larger of the regions
+/// 2. Compare all pairs of boundary faces. If two come within the margin, refine the larger of the regions
 ///    behind them.
-/// 3. Where a piece of one boundary lies in the other wrapper, refine there; then repeat step 2.
+/// 3. If a piece of one boundary is inside the other wrapper, refine there, then repeat step 2.
 /// 4. Coarsen every region that the proof does not need.
 
 #include "engine/collide/separation.hpp"
@@ -41,7 +41,7 @@ Corners relative_to(const double* origin, const double* const x[3], int dim) {
   return c;
 }
 
-/// Searches for a slab between two simplices. Any direction may be tried, however inaccurate it is.
+/// Searches for a slab that separates two simplices. Directions need not be accurate: each is verified.
 class SlabSearch {
  public:
   SlabSearch(int dim, const Corners& a, const Corners& b, double margin)
@@ -49,7 +49,7 @@ class SlabSearch {
 
   int directions() const { return dim_ == 3 ? 21 : 7; }
 
-  /// Returns true if there is a slab wider than the margin across a direction.
+  /// Returns true if a slab wider than the margin, normal to this direction, separates the two.
   bool parts(int direction) const {
     const Vector3d d = dim_ == 3 ? in_space(direction) : in_plane(direction);
     const double length_sq = d.squaredNorm();
@@ -57,12 +57,12 @@ class SlabSearch {
     if (!std::isnormal(length_sq)) return false;
     const double least = margin_ * std::sqrt(length_sq);
     if (!std::isnormal(least)) return false;
-    // Project all corners; the wider gap between the two intervals counts, whichever body comes first.
+    // Project all corners. The wider gap between the two intervals counts, whichever simplex comes first.
     const double a0 = d.dot(a_[0]), a1 = d.dot(a_[1]), a2 = d.dot(a_[2]);
     const double b0 = d.dot(b_[0]), b1 = d.dot(b_[1]), b2 = d.dot(b_[2]);
     const double w = std::max(std::min({b0, b1, b2}) - std::max({a0, a1, a2}),
                               std::min({a0, a1, a2}) - std::max({b0, b1, b2}));
-    // Both sides are scaled by |d|: no division is needed.
+    // Both sides are scaled by |d|, which avoids a division.
     return w > least;
   }
 
@@ -71,11 +71,11 @@ class SlabSearch {
   static Vector3d normal(const Corners& c) { return edge(c, 0).cross(edge(c, 1)); }
   Vector3d middles() const { return (b_[0] + b_[1] + b_[2]) - (a_[0] + a_[1] + a_[2]); }
 
-  /// Returns a direction to try: 0 the line between the centroids, 1-2 normals, 3-11 edge x edge, 12-17 in
-  /// each plane across its edges, 18-20 the axes.
+  /// Returns a direction to try: 0 the line between the centroids, 1-2 normals, 3-11 edge x edge, 12-17 the
+  /// edge normals in each plane, 18-20 the axes.
   Vector3d in_space(int i) const {
-    // Face normals and edge x edge are complete for disjoint triangles in general position; the rest are for
-    // coplanar and degenerate ones.
+    // Face normals and edge x edge are complete for disjoint triangles in general position; the others are
+    // for coplanar and degenerate ones.
     if (i == 0) return middles();
     if (i < 3) return normal(i == 1 ? a_ : b_);
     if (i < 12) return edge(a_, (i - 3) / 3).cross(edge(b_, (i - 3) % 3));
@@ -86,7 +86,7 @@ class SlabSearch {
   Vector3d in_plane(int i) const {
     if (i == 0) return middles();
     if (i > 4) return Vector3d::Unit(i - 5);
-    // 1 and 2: across each segment; 3 and 4: along it, for collinear ones.
+    // 1 and 2: normal to each segment; 3 and 4: along it, for collinear segments.
     const Vector3d e = edge(i % 2 != 0 ? a_ : b_, 0);
     return i < 3 ? Vector3d(-e.y(), e.x(), 0) : e;
   }
@@ -99,10 +99,10 @@ class SlabSearch {
 }  // namespace
 
 bool separated_by(double margin, int dim, const double* const a[3], const double* const b[3]) {
-  // Differences of nearby coordinates lose few digits, wherever in the world the simplices are.
+  // Differences of nearby coordinates lose few digits, even far from the origin.
   const Corners x = relative_to(a[0], a, dim), y = relative_to(a[0], b, dim);
   const SlabSearch search(dim, x, y, margin);
-  // One direction is a proof. The margin is far larger than the rounding of the projections.
+  // One direction suffices. The margin is far larger than the rounding of the projections.
   for (int i = 0; i < search.directions(); ++i)
     if (search.parts(i)) return true;
   return false;
@@ -112,7 +112,7 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-/// A body's wrapper in the world: the faces of its boundary with their boxes.
+/// A body's wrapper in the world: its boundary faces with their boxes.
 class WorldWrapper {
  public:
   WorldWrapper(QueryBody& body, double margin) : body_(body), wrapper_(body.rep()), margin_(margin) {
@@ -126,7 +126,7 @@ class WorldWrapper {
   bool is_there(std::size_t i) const { return wrapper_.on_boundary(faces_[i]); }
   const double* world(VertexId v) { return body_.world(v); }
 
-  /// Returns the region that a face of the boundary belongs to; kNull for a real face.
+  /// Returns the included region next to a boundary face, or kNull for a real face.
   RegionId region_at(FaceId f) const {
     // A pseudo face on the boundary has an included region on exactly one side; refining that region removes
     // it.
@@ -144,9 +144,9 @@ class WorldWrapper {
     add(rep().collector(r));
   }
 
-  /// Returns true if two faces of the boundaries are further apart than the margin.
+  /// Returns true if two boundary faces are further apart than the margin.
   bool apart(std::size_t i, WorldWrapper& other, std::size_t j) {
-    // Both boxes are grown by 2 margins: disjoint ones prove a gap of more than the margin.
+    // Both boxes are grown by 2 margins: if they are disjoint, the gap is wider than the margin.
     if (!boxes_[i].intersects(other.boxes_[j])) return true;
     const double *a[3], *b[3];
     // Polygons are compared as fans: every triangle with every triangle.
@@ -159,7 +159,7 @@ class WorldWrapper {
     return true;
   }
 
-  /// Returns true if a point of the world lies in the wrapper, or in one region of it.
+  /// Return whether a world point is in the wrapper, and in which region (kNull if in none).
   bool holds(const double* point) {
     // Parity of the crossings of an exact ray.
     const std::vector<FaceId> boundary = wrapper_.boundary();
@@ -177,7 +177,7 @@ class WorldWrapper {
     return static_cast<SimplexId>(Mesh::simplices_of(rep().face(f).size(), rep().dim()));
   }
 
-  /// Adds faces of the boundary. Some may come a second time, which does no harm.
+  /// Adds faces of the boundary. A face may be added twice, which is harmless.
   void add(std::span<const FaceId> faces) {
     for (const FaceId f : faces) {
       if (!wrapper_.on_boundary(f)) continue;
@@ -209,7 +209,7 @@ class WorldWrapper {
   QueryBody& body_;
   Wrapper wrapper_;
   double margin_;
-  std::vector<FaceId> faces_;  ///< the boundary's faces, and some that have been refined since
+  std::vector<FaceId> faces_;  ///< boundary faces, including some that were refined since
   std::vector<Box> boxes_;
 };
 
@@ -219,12 +219,13 @@ class SeparationFinder {
       : half_{WorldWrapper(ctx[Side::a], margin), WorldWrapper(ctx[Side::b], margin)} {}
 
   std::optional<Separation> run() {
-    // Refining in one test can make the other fail: repeat until both pass. Ends, because regions are finite.
+    // Refining in one test can make the other fail, so repeat until both pass. Terminates, because the number
+    // of regions is finite.
     do {
       if (!part_boundaries()) return std::nullopt;
     } while (open_what_holds_a_piece());
     if (stuck_) return std::nullopt;
-    // The wrappers are separate. Now coarsen them as far as they stay so.
+    // The wrappers are separate. Coarsen them while they stay separate.
     for (const int side : {0, 1}) take_back(side);
     Separation s;
     for (const int side : {0, 1}) {
@@ -235,14 +236,14 @@ class SeparationFinder {
   }
 
  private:
-  /// Refines until no faces meet. Returns false if real faces are too near.
+  /// Refines until no boundary faces are within the margin. Returns false if two real faces are.
   bool part_boundaries() {
-    // Every face of A is compared with every face of B once: whichever comes later does it.
+    // Every face of A is compared with every face of B once, when the later one of them is processed.
     while (done_[0] < half_[0].size() || done_[1] < half_[1].size()) {
-      // Refining appends the new faces to the lists, so that these are compared as well.
+      // Refining appends the new faces to the lists, so that they are compared as well.
       const int side = done_[0] < half_[0].size() ? 0 : 1;
       const std::size_t i = done_[side]++;
-      // Faces that have left the boundary since they were listed are skipped.
+      // Skip faces that have left the boundary since they were listed.
       for (std::size_t j = 0; j < done_[1 - side] && half_[side].is_there(i); ++j)
         if (half_[1 - side].is_there(j) && !half_[side].apart(i, half_[1 - side], j) &&
             !refine_one(side, i, j))
@@ -251,21 +252,21 @@ class SeparationFinder {
     return true;
   }
 
-  /// Refines the larger one of the regions behind two faces that come within the margin. Returns false if
-  /// both faces are real.
+  /// Refines the larger of the regions behind two faces within the margin. Returns false if both faces are
+  /// real.
   bool refine_one(int side, std::size_t i, std::size_t j) {
     const RegionId r = half_[side].region_at(half_[side].face(i)),
                    q = half_[1 - side].region_at(half_[1 - side].face(j));
     // Two real faces within the margin: no refinement can separate them.
     if (r == kNull && q == kNull) return false;
-    // Of two regions the larger one hides more empty space.
+    // The larger region hides more empty space.
     const bool first = q == kNull || (r != kNull && size_of(side, r) >= size_of(1 - side, q));
     first ? half_[side].refine(r) : half_[1 - side].refine(q);
     return true;
   }
   double size_of(int side, RegionId r) const { return std::abs(region_volume(half_[side].rep(), r)); }
 
-  /// Returns a vertex of a piece of one boundary that lies in the other wrapper; kNull if there is none.
+  /// Returns a vertex of a piece of one boundary inside the other wrapper, or kNull if no piece is.
   VertexId piece_inside(int inner) {
     const std::vector<FaceId> boundary = half_[inner].wrapper().boundary();
     // One vertex per piece is enough: the boundaries do not intersect, so that a piece is inside or outside
@@ -276,15 +277,15 @@ class SeparationFinder {
   }
   bool nested() { return piece_inside(0) != kNull || piece_inside(1) != kNull; }
 
-  /// Refines a region in which a piece lies. Returns true if there was one.
+  /// Refines a region that contains a piece of the other boundary. Returns true if it refined one.
   bool open_what_holds_a_piece() {
     for (const int inner : {0, 1}) {
       const VertexId v = piece_inside(inner);
       if (v == kNull) continue;
-      // v lies in a region of the other wrapper: refine that one. In the other solid: refine v's own wrapper.
+      // If v is in a region of the other wrapper, refine that region; if in the other solid, v's own wrapper.
       if (!open_down_to(1 - inner, half_[1 - inner].region_that_holds(half_[inner].world(v))) &&
           !refine_at(inner, v)) {
-        // Nothing is left to refine: there is no certificate.
+        // No region is left to refine: there is no certificate.
         stuck_ = true;
         return false;
       }
@@ -304,14 +305,13 @@ class SeparationFinder {
     return true;
   }
 
-  /// Refines a region of `side` that has the boundary vertex v, which lies in the other body's solid: v is
-  /// then not one of the body's own vertices, or the bodies are not separate. Returns false if there is no
-  /// such region.
+  /// Refines a region of `side` at the boundary vertex v, which is in the other body's solid: v is then not
+  /// one of the body's own vertices, because the bodies are separate. Returns false if no region has v.
   bool refine_at(int side, VertexId v) {
     for (std::size_t i = 0; i < half_[side].size(); ++i) {
       if (!half_[side].is_there(i)) continue;
       const FaceId f = half_[side].face(i);
-      // Any pseudo face at v will do: refining its region brings the boundary nearer to the body.
+      // Any pseudo face at v will do: refining its region moves the boundary towards the body.
       const auto corners = half_[side].rep().face(f);
       if (std::find(corners.begin(), corners.end(), v) == corners.end()) continue;
       const RegionId r = half_[side].region_at(f);
@@ -322,20 +322,20 @@ class SeparationFinder {
     return false;
   }
 
-  /// Takes back in every region that can be. Once is enough: wrappers only grow, so that a region that could
-  /// not come back in still cannot.
+  /// Coarsens every region that the proof does not need. One pass suffices: wrappers only grow, so that a
+  /// region that could not be restored still cannot.
   void take_back(int side) {
     const std::vector<RegionId> refined = half_[side].wrapper().excluded();
     // The latest refinement first.
     for (auto r = refined.rbegin(); r != refined.rend(); ++r) {
       const std::size_t before = half_[side].size();
-      // The lids that reappear are appended: only these need a test.
+      // The lids that reappear are appended, and only they need a test.
       half_[side].coarsen(*r);
       if (!are_clear(side, before) || nested()) half_[side].refine(*r);
     }
   }
 
-  /// Returns true if the faces of a boundary from the first-th on are apart from all of the other's.
+  /// Returns true if the boundary faces from index `first` on are separated from all of the other's.
   bool are_clear(int side, std::size_t first) {
     for (std::size_t i = first; i < half_[side].size(); ++i)
       for (std::size_t j = 0; j < half_[1 - side].size(); ++j)
@@ -346,7 +346,7 @@ class SeparationFinder {
   }
 
   WorldWrapper half_[2];
-  std::size_t done_[2] = {0, 0};  ///< number of faces of each that have been compared with those of the other
+  std::size_t done_[2] = {0, 0};  ///< number of faces of each that were compared with the other's
   bool stuck_ = false;
 };
 

@@ -1,15 +1,16 @@
 #pragma once
 /// The complete query: a dual traversal of the two OBB trees.
 ///
-/// Why it never misses. If real simplices s of A and t of B meet at a point of the world, then in every pair
-/// of tree nodes above them each node's bounds hold one of the two, so the bounds, grown by all errors,
-/// overlap. By induction the traversal, which drops a pair only when its bounds are proved apart, reaches the
-/// pair of leaves that hold s and t. There the pair (s, t) is dropped only when boxes or a plane are proved
-/// to separate the two; what is left is decided within proved bounds on float errors, or exactly. The proof
-/// uses neither the nesting of regions nor embedding: a poor LRB-rep can cost time, never a contact.
+/// Completeness. Suppose that real simplices s of A and t of B intersect at a point of the world. In every
+/// pair of tree nodes above them, the bounds of each node contain one of the two, so the bounds, grown by all
+/// errors, overlap. The traversal drops a pair of nodes only if its bounds are proven disjoint, so by
+/// induction it reaches the pair of leaves that contain s and t. There it drops the pair (s, t) only if boxes
+/// or a plane are proven to separate the two; the remaining pairs are decided within proven bounds on float
+/// errors, or exactly. The proof uses neither the nesting of regions nor their embedding: a poor LRB-rep can
+/// cost time, but never a contact.
 ///
-/// What "proved apart" has to cover is in set_up_kernel() for rotations (of whole nodes in kernel_whole.inl),
-/// in kernel_setup.hpp for all other maps.
+/// The errors that "proven disjoint" has to cover are listed in set_up_kernel() for rotations (for node OBBs
+/// in kernel_whole.inl), and in kernel_setup.hpp for all other maps.
 
 #include <algorithm>
 #include <bit>
@@ -25,10 +26,10 @@
 
 namespace lrb {
 
-// Runs the tree kernel one pair of nodes at a time and tells a probe what came of each. The kernel, the
-// order of pairs and the outcome are those of a query that nobody watches.
+// Runs the tree kernel one pair of nodes at a time and reports the outcome of each to a probe. The kernel,
+// the order of pairs and the outcomes are the same as in a query without a probe.
 
-/// Returns what the kernel does with a pair of nodes whose own boxes are not apart.
+/// Returns the kernel's action for a pair of nodes whose own boxes overlap.
 inline NodeStep step_of(const TreeKernel& k, const NodePair& pair) {
   const TreeNode &a = k.nodes_a[pair.a], &b = k.nodes_b[pair.b];
   const auto size = [&](const TreeNode& n, int side) {
@@ -54,7 +55,7 @@ class NodeWatch {
     parted_nodes_.resize(ctx.stack.size());
   }
 
-  /// Does what run_tree_kernel() does. May be called again, of another watch too, to go on.
+  /// Replaces run_tree_kernel(). May be called again, also on another NodeWatch, to continue.
   void run(TreeKernel& k) {
     const std::uint64_t most = k.most_node_pairs;
     if (k.node_pairs == 0) parents_.clear();
@@ -103,14 +104,15 @@ class NodeWatch {
 
   static std::uint64_t key_of(const NodePair& pair) { return std::uint64_t{pair.a} << 32 | pair.b; }
 
-  /// Returns what the probe returned for the pair above, and forgets it: each pair is visited once.
+  /// Returns the probe's value for the parent pair, or kNull without one, and erases it: each pair is visited
+  /// once.
   std::uint32_t take_parent(const NodePair& pair) {
     const auto found = parents_.extract(key_of(pair));
     return found.empty() ? kNull : found.mapped();
   }
 
   Probe& probe_;
-  std::unordered_map<std::uint64_t, std::uint32_t>& parents_;  ///< of pairs that wait: see take_parent()
+  std::unordered_map<std::uint64_t, std::uint32_t>& parents_;  ///< of waiting pairs: see take_parent()
   std::vector<PartedPair>& parted_;
   std::vector<NodePair>& parted_nodes_;
   bool all_;
@@ -132,15 +134,16 @@ template <class Probe>
       probe.refine(side, r, static_cast<std::uint32_t>(wrapper.rep().floor(r).size()));
 }
 
-/// Returns a kernel at the roots of what is queried of both bodies, at their poses. It uses the context's
-/// buffers, with room for `capacity` candidates.
+/// Returns a kernel at the roots of the queried trees, at the bodies' poses. Uses the context's buffers, with
+/// capacity for `capacity` candidates.
 TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity);
-/// Returns the same for other poses, set up by set_up_kernel() whatever the poses are.
+/// Returns such a kernel at other poses, set up by set_up_kernel() even if they are not rotations.
 TreeKernel start_rigid_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_b,
                               std::size_t capacity);
 
-/// Refines the wrapper of a body until a face shows: opens the regions that hide it, from the outside inward.
-/// Mostly there are none left. Returns the number of regions between the face and the outside.
+/// Refines the wrapper of a body until a face is on its boundary: refines the regions that hide it, from the
+/// outside inward. Usually the face is on the boundary already. Returns the number of regions between the
+/// face and the outside.
 template <class Probe>
 inline std::uint32_t show_face(QueryContext& ctx, Side side, FaceId f, CollideResult& result, Probe& probe) {
   const LrbRep& rep = ctx[side].rep();
@@ -150,11 +153,11 @@ inline std::uint32_t show_face(QueryContext& ctx, Side side, FaceId f, CollideRe
   return rep.depth(outer.as_region());
 }
 
-/// The rules of the exact query; coarse_query.hpp has others.
+/// The rules of the exact query; coarse_query.hpp defines others.
 struct ExactRules {
   static constexpr bool kLimited = false;   ///< may stop before the answer is complete
-  static constexpr bool kWrappers = false;  ///< what is walked stands for bodies that lie within it
-  static constexpr bool kTrial = false;     ///< may give up once a pair crosses
+  static constexpr bool kWrappers = false;  ///< the queried trees are wrappers that enclose the bodies
+  static constexpr bool kTrial = false;     ///< may give up after a crossing pair
 };
 
 template <class Probe, class Rules = ExactRules>
@@ -183,9 +186,9 @@ class TreeQuery {
   }
 
  private:
-  /// Returns the number of pairs of nodes.
+  /// Traverses the trees. Returns the number of node pairs.
   std::uint64_t walk() {
-    // A small buffer where one pair may be enough, so that little is searched beyond it.
+    // Use a small buffer if one pair may be enough, so that the traversal does not run far beyond it.
     const bool one_may_do = Rules::kTrial || mode_ != Mode::all_pairs;
     TreeKernel k = start_kernel(ctx_, one_may_do ? 64 : 1024);
     k.nearest_first = one_may_do;
@@ -210,8 +213,8 @@ class TreeQuery {
   }
 
   /// Tests a candidate. Returns true if the answer is complete. One pair is enough in any_pair mode, and in
-  /// first_pair mode if it crosses; a pair that only touches is kept while a crossing one is looked for, so
-  /// that the relation is exact in that mode too.
+  /// first_pair mode if it crosses. In first_pair mode a touching pair is kept while the search for a
+  /// crossing one continues, so that the relation is exact in that mode as well.
   bool test(const Candidate& c) {
     if constexpr (Rules::kLimited)
       if (rules_.no_test_left(result_.counters.face_tests, c.certainty != Certainty::none,
@@ -245,7 +248,8 @@ class TreeQuery {
     return mode_ == Mode::any_pair || (mode_ == Mode::first_pair && meet == exact::Meet::cross);
   }
 
-  /// Returns how a candidate meets. Most are certain: then no corner needs to be moved to the world.
+  /// Returns the Meet of a candidate. The kernel has decided most: then no corner is transformed to the
+  /// world.
   exact::Meet meet_of(const Candidate& c) {
     if (c.certainty == Certainty::cross) return exact::Meet::cross;
     if (c.certainty == Certainty::disjoint) return exact::Meet::disjoint;
@@ -253,7 +257,7 @@ class TreeQuery {
     return test_simplices(ctx_, c.a, c.b);
   }
 
-  /// Returns what decided a candidate. fallbacks: exact::exact_fallbacks() before that.
+  /// Returns the method that decided a candidate. fallbacks: exact::exact_fallbacks() before the test.
   TestedBy tested_by(const Candidate& c, std::uint64_t fallbacks) {
     if (c.certainty == Certainty::cross || c.certainty == Certainty::disjoint) return TestedBy::floats;
     if (exact::exact_fallbacks() != fallbacks) return TestedBy::expansions;
@@ -261,8 +265,8 @@ class TreeQuery {
     return shares ? TestedBy::shared_corners : TestedBy::filter;
   }
 
-  /// Returns true if the candidate's corners are corners of the other simplex too. Compares each with all
-  /// three without branches, because which one it is cannot be predicted.
+  /// Returns true if the candidate's marked corners are also corners of the other simplex. Compares each with
+  /// all three without branches, because the match cannot be predicted.
   bool shares_corners(const Candidate& c) {
     const double *own[3], *others[3];
     ctx_[Side::a].world.corners(c.a, c.side == Side::a ? own : others);
@@ -276,7 +280,7 @@ class TreeQuery {
     return shared != 0;
   }
 
-  /// Returns 1 if two points are equal bit by bit, else 0. Points that only differ in the sign of a zero are
+  /// Returns 1 if two points are equal bit by bit, else 0. Points that differ only in the sign of a zero are
   /// left to the exact test.
   static unsigned has_bits_of(const double* x, const double* y) {
     std::uint64_t difference = 0;

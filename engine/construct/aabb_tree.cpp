@@ -29,7 +29,7 @@ AabbTree::AabbTree(std::vector<Slot> slots, std::span<const Box> boxes)
   for (const Slot s : slots_)
     centres_[s] = boxes[s].min() / 2 + boxes[s].max() / 2;  // halved first: no overflow
   leaf_.resize(slots_.size());
-  // A leaf holds at least two slots unless there is only one, so there are no more nodes than slots.
+  // A leaf has at least two slots unless there is only one slot, so there are no more nodes than slots.
   nodes_.reserve(slots_.size());
   build(0, static_cast<std::uint32_t>(slots_.size()), kNull);
   boxes_.resize(slots_.size());
@@ -38,8 +38,8 @@ AabbTree::AabbTree(std::vector<Slot> slots, std::span<const Box> boxes)
     place_[slots_[i]] = i;
     boxes_[i] = boxes[slots_[i]];
   }
-  // Step 3: fit the boxes bottom up. Children have larger numbers than their parents, so one backward pass is
-  // enough.
+  // Step 3: fit the boxes bottom up. Children have larger indices than their parents, so one backward pass
+  // suffices.
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
     if (node.right == 0)
@@ -56,19 +56,20 @@ std::uint32_t AabbTree::build(std::uint32_t first, std::uint32_t last, std::uint
     for (std::uint32_t i = first; i < last; ++i) leaf_[i] = index;
     return index;
   }
-  // Split the axis in which the centroids, not the boxes, extend furthest.
+  // Split along the axis of largest extent of the centroids, not of the boxes.
   Box spread;
   for (std::uint32_t i = first; i < last; ++i) spread.extend(centres_[slots_[i]]);
   int axis = 0;
   spread.sizes().maxCoeff(&axis);
   const std::uint32_t middle = first + (last - first) / 2;
-  // Equal halves bound the depth by log2 n. Ties are broken by slot, so the tree is the same everywhere.
+  // Equal halves bound the depth by log2 n. Ties are broken by slot, so that the tree is deterministic.
   std::nth_element(slots_.begin() + first, slots_.begin() + middle, slots_.begin() + last,
                    [&](Slot s, Slot t) {
                      const double a = centres_[s][axis], b = centres_[t][axis];
                      return a != b ? a < b : s < t;
                    });
-  // Preorder: the left child follows its parent. The vector may move, so refer to the node by index.
+  // Preorder: the left child follows its parent. The vector may be reallocated, so refer to the node by
+  // index.
   build(first, middle, index);
   const std::uint32_t right = build(middle, last, index);
   nodes_[index].right = right;
@@ -76,7 +77,7 @@ std::uint32_t AabbTree::build(std::uint32_t first, std::uint32_t last, std::uint
 }
 
 void AabbTree::update(Slot s, const Box& box) {
-  // Refit upwards until an ancestor contains the box already. Boxes never shrink; fits() requests a rebuild
+  // Refit upwards until an ancestor already contains the box. Boxes never shrink; fits() requests a rebuild
   // when too many slots are empty.
   const std::uint32_t place = place_[s];
   boxes_[place] = box;

@@ -1,5 +1,5 @@
 #pragma once
-/// A dynamic AABB tree over a hull's triangles that follows the replacement of patches by caps.
+/// A dynamic AABB tree over the front's triangles, updated when caps replace patches.
 
 #include <cstdint>
 #include <span>
@@ -11,35 +11,36 @@
 
 namespace lrb::construct {
 
-/// Built anew when fits() says so. In between, a slot that gets a new triangle keeps its place in the tree,
-/// and the boxes above it grow as far as needed: caps lie close to the patches whose slots they take over.
+/// Must be rebuilt when fits() returns false. In between, a slot that gets a new triangle keeps its position
+/// in the tree, and the boxes above it grow as necessary: caps are close to the patches whose slots they
+/// reuse.
 class AabbTree {
  public:
   using Slot = HullMesh::Slot;
   using Box = Eigen::AlignedBox3d;
 
   explicit AabbTree(const HullMesh& hull);
-  /// Builds a tree over any slots; reads `boxes` (slot count) for those only.
+  /// Builds a tree over any slots. `boxes` (slot count): only those of the slots are read.
   AabbTree(std::vector<Slot> slots, std::span<const Box> boxes);
 
-  /// Returns true if the tree knows all of the hull's slots, and most of those that it was built over are in
-  /// use still.
+  /// Returns true if the tree covers all of the front's slots, and most of the slots it was built over are
+  /// still in use.
   bool fits(const HullMesh& hull) const {
     return place_.size() == hull.slot_count() && 2 * std::size_t{hull.triangle_count()} > slots_.size();
   }
 
   /// Grows the boxes above a slot that has a new triangle. Not called for slots that become empty: their
-  /// boxes stay, and the caller ignores them by looking at HullMesh::alive().
+  /// boxes stay, and the caller must check HullMesh::alive().
   void update(Slot s, const Box& box);
 
-  /// Calls visit(slot) for every slot whose box meets `box` (closed).
+  /// Calls visit(slot) for every slot whose box intersects `box` (closed).
   template <class Visit>
   void for_each_in(const Box& box, Visit&& visit) const {
     for_each_near(
         box, [](const Box&) { return true; }, visit);
   }
 
-  /// Does the same, but leaves out what lies in boxes of which near(box) is false.
+  /// Also culls boxes, of slots and of nodes, for which near(box) is false.
   template <class Near, class Visit>
   void for_each_near(const Box& box, Near&& near, Visit&& visit) const {
     if (nodes_.empty()) return;
@@ -62,7 +63,7 @@ class AabbTree {
 
  private:
   static constexpr std::uint32_t kLeafSize = 4;
-  // The depth of a tree that is halved at each step is 2 + log2 of the number of leaves.
+  // A tree that is halved at each level has a depth of 2 + log2 of the number of leaves.
   static constexpr int kMaxDepth = 64;
   struct Node {
     Box box;
@@ -74,10 +75,10 @@ class AabbTree {
   std::uint32_t build(std::uint32_t first, std::uint32_t last, std::uint32_t parent);
 
   std::vector<Slot> slots_;
-  std::vector<Box> boxes_;                ///< beside slots_
-  std::vector<Eigen::Vector3d> centres_;  ///< by slot, while building
-  std::vector<std::uint32_t> place_;      ///< (slots) the position of a slot in slots_
-  std::vector<std::uint32_t> leaf_;       ///< (|slots_|) the leaf of a position
+  std::vector<Box> boxes_;                ///< parallel to slots_
+  std::vector<Eigen::Vector3d> centres_;  ///< by slot, only while building
+  std::vector<std::uint32_t> place_;      ///< (slots) position of a slot in slots_
+  std::vector<std::uint32_t> leaf_;       ///< (|slots_|) leaf of a position
   std::vector<Node> nodes_;
 };
 

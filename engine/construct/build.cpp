@@ -8,7 +8,7 @@
 namespace lrb {
 namespace {
 
-/// Returns everything that prevents an LRB-rep from being built, on one line.
+/// Returns all reasons why an LRB-rep cannot be built, on one line.
 std::string refusal(const Mesh& mesh, const MeshReport& report) {
   // All obstacles at once, so that the user can fix them in one go.
   std::string text;
@@ -16,7 +16,7 @@ std::string refusal(const Mesh& mesh, const MeshReport& report) {
   return text;
 }
 
-/// `meeting`: the faces that meet others in more than they share.
+/// `meeting`: the faces that intersect others in more than shared vertices and edges.
 LrbRep build(const Mesh& mesh, const std::vector<FaceUse>& use, const std::vector<FaceId>& meeting,
              const BuildOptions& options) {
   // Step 1: the faces that intersect others. Do interiors of the body overlap, or do its faces only touch?
@@ -35,14 +35,14 @@ LrbRep build(const Mesh& mesh, const std::vector<FaceUse>& use, const std::vecto
 }  // namespace
 
 LrbRep build_lrb(const CheckedMesh& checked, const BuildOptions& options) {
-  // The mesh was examined before; its results are reused.
+  // The mesh was checked before; its results are reused.
   if (!checked.report().buildable()) throw InputError(refusal(checked.mesh(), checked.report()));
   Workers workers(options.threads);
   return build(checked.mesh(), checked.use(), checked.self_intersecting_faces(workers), options);
 }
 
 LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options) {
-  // Reject what cannot be built before the more expensive search for self-intersections.
+  // Reject meshes that cannot be built before the more expensive search for self-intersections.
   const MeshFindings found = examine(mesh);
   if (!found.report.buildable()) throw InputError(refusal(mesh, found.report));
   Workers workers(options.threads);

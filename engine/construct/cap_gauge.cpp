@@ -1,5 +1,5 @@
-// Estimates the deviation of a cap while it is being collapsed. Three tests for each collapse: at the new
-// vertex, above the covered vertices of the patch, and at sample points of each new triangle.
+// Estimates the deviation of a cap during its simplification. There are three tests for each collapse: at the
+// new vertex, above the covered vertices of the patch, and at sample points of each new triangle.
 
 #include "engine/construct/cap_gauge.hpp"
 
@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 void CapGauge::load(const HullMesh& hull, const Patch& patch, const CapSurface& cap, double most) {
   floor_.load(hull, patch, most);
   most_ = most;
-  // At first each face of the cap is a triangle of the floor, so it is near itself.
+  // Initially each face of the cap is a triangle of the floor.
   under_.resize(cap.faces().size());
   for (std::size_t f = 0; f < under_.size(); ++f) under_[f] = static_cast<int>(f);
   cover_.assign(cap.first_new(), -1);
@@ -30,13 +30,14 @@ void CapGauge::find_covered(const CapSurface& cap, const CapSurface::Star& star)
   ++marker_;
   for (const int f : star.faces) face_mark_[f] = marker_;
   covered_.clear();
-  // Old interior vertices: under a face of the star, or still in the cap and removed by this collapse.
+  // Old interior vertices: under a face of the star, or in the cap and removed by this collapse.
   for (int p = cap.ring_size(); p < cap.first_new(); ++p)
     if (cover_[p] >= 0 ? face_mark_[cover_[p]] == marker_ : p == star.u || (p == star.v && !cap.is_ring(p)))
       covered_.push_back(p);
 }
 
-/// Lays the rim and what is covered into the star's mean plane. Returns false if it has none.
+/// Projects the rim and the covered vertices onto the star's mean plane. Returns false if the star has no
+/// mean normal.
 bool CapGauge::flatten(const CapSurface& cap, const CapSurface::Star& star) {
   Vector3d outward = Vector3d::Zero();
   // The area-weighted normal of the star.
@@ -44,7 +45,7 @@ bool CapGauge::flatten(const CapSurface& cap, const CapSurface::Star& star) {
   const double length = outward.norm();
   if (!(length > 0)) return false;
   outward /= length;
-  // An orthonormal frame; the coordinate axis with the smallest component keeps the cross product stable.
+  // An orthonormal frame; the axis with the smallest component makes the cross product accurate.
   int least = 0;
   outward.cwiseAbs().minCoeff(&least);
   along_x_ = outward.cross(Vector3d::Unit(least)).normalized();
@@ -57,11 +58,11 @@ bool CapGauge::flatten(const CapSurface& cap, const CapSurface::Star& star) {
   return true;
 }
 
-/// Returns the rim edge whose triangle with `centre` holds q; if none does, the one that is nearest to doing
-/// so.
+/// Returns the rim edge whose triangle with `centre` contains q, or if no triangle does, the edge with the
+/// smallest violation.
 std::size_t CapGauge::sector(const Flat& q, const Flat& centre) const {
   std::size_t best = 0;
-  // Walk around the rim and reuse the cross product of each spoke with q.
+  // Traverse the rim, reusing the cross product of each spoke with q.
   double most = -std::numeric_limits<double>::infinity();
   const double qx = q.x - centre.x, qy = q.y - centre.y;
   double ax = flat_rim_[0].x - centre.x, ay = flat_rim_[0].y - centre.y;
@@ -94,14 +95,14 @@ bool CapGauge::may_stand(const CapSurface& cap, const CapSurface::Star& star, co
   // Test 2: the height of the new surface above each covered vertex.
   const Flat centre = flat(w);
   for (std::size_t i = 0; i < covered_.size(); ++i) {
-    // Height of the plane a, b, w above p. Comparing squares avoids the root in most cases.
+    // Height of the plane a, b, w above p. Comparing squares usually avoids the square root.
     const auto& r = star.rim[sector(flat_covered_[i], centre)];
     const Vector3d &a = cap.x(r.a), &p = cap.x(covered_[i]);
     const Vector3d normal = (cap.x(r.b) - a).cross(w - a);
     const double square = normal.squaredNorm(), height = normal.dot(w - p);  // times the normal's length
     const double left = most_ - cap.off(covered_[i]);
     if (!(square > 0) || height <= 0 || (left > 0 && height * height <= left * left * square)) continue;
-    // The vertex's own bound is not enough: look for a closer floor triangle.
+    // The vertex's own bound does not suffice: search for a closer floor triangle.
     if (!floor_.is_within(p + normal * (height / square), under)) return false;
   }
   return true;
@@ -109,13 +110,13 @@ bool CapGauge::may_stand(const CapSurface& cap, const CapSurface::Star& star, co
 
 bool CapGauge::is_near(const CapSurface& cap, const CapSurface::Star& star, const Vector3d& w) {
   const bool open = cap.is_ring(star.v);
-  // Test 3: five points of each new triangle, its spoke included.
+  // Test 3: five points of each new triangle, including its spoke.
   for (std::size_t k = 0; k < star.rim.size(); ++k) {
     const Vector3d &a = cap.x(star.rim[k].a), &b = cap.x(star.rim[k].b);
     int& under = under_[star.rim[k].face];
     if (!floor_.is_within((a + b + w) / 3, under) || !floor_.is_within(0.25 * (a + b) + 0.5 * w, under))
       return false;
-    if (open && k == 0) continue;  // this spoke is an edge already
+    if (open && k == 0) continue;  // this spoke exists already
     for (const double share : {0.5, 0.25, 0.75})
       if (!floor_.is_within(a + share * (w - a), under)) return false;
   }
@@ -132,7 +133,7 @@ void CapGauge::settle(CapSurface& cap, const CapSurface::Star& star, int w) {
   }
 }
 
-/// Raises what a face is off beyond its corners to what a vertex under it shows.
+/// Raises a face's excess deviation to the value shown by a vertex under it.
 void CapGauge::raise_extra(CapSurface& cap, int face, int covered) const {
   // The deviation shown by p: its height below the face, plus its own deviation.
   const auto& f = cap.faces()[face];
@@ -142,7 +143,7 @@ void CapGauge::raise_extra(CapSurface& cap, int face, int covered) const {
   double by_corners = 0;
   for (int i = 0; i < 3; ++i) by_corners += foot.weight[i] * cap.off(f.v[i]);
   const double over = height + cap.off(covered);
-  // Already accounted for by the interpolated corners and the excess.
+  // Already covered by the interpolated corners and the excess.
   if (over <= by_corners + f.extra) return;
   const double off = std::min(over, floor_.off(p + f.plane.n * height));
   if (off - by_corners > f.extra) cap.set_extra(face, off - by_corners);
@@ -190,7 +191,7 @@ void PatchFloor::load(const HullMesh& hull, const Patch& patch, double most) {
     Triangle t;
     std::array<double, 3> off;
     double radius_sq = 0;
-    // Deviation at the corners, the excess of the triangle included.
+    // Deviation at the corners, including the excess of the triangle.
     for (int i = 0; i < 3; ++i) {
       const HullMesh::Point& p = hull.point(hull[s].v[i]);
       t.x[i] = p.x;
@@ -205,7 +206,7 @@ void PatchFloor::load(const HullMesh& hull, const Patch& patch, double most) {
     t.radius = std::sqrt(radius_sq);
     set_weights(t);
     triangles_.push_back(t);
-    // Points outside this ball cannot be within the limit because of this triangle.
+    // Points outside this ball cannot be within the limit by this triangle.
     const double left = most - t.least, reach = left + t.radius;
     balls_.push_back({t.middle, left < 0 ? -1 : reach * reach});
   }
@@ -229,16 +230,16 @@ void PatchFloor::set_weights(Triangle& t) {
   t.weight = 1 / 3.;
 }
 
-/// Returns how far the triangle shows q to be off; if that is more than `most`, perhaps just that it is far.
+/// Returns the deviation of q according to the triangle, or possibly infinity if it exceeds `most`.
 double PatchFloor::off_by(const Triangle& t, const Vector3d& q, double most) {
   const Vector3d from_middle = q - t.middle;
   const double left = most - t.least, up = std::abs(t.normal.dot(from_middle));
-  // The distance is at least that from the plane.
+  // The distance is at least the distance from the plane.
   if (up > left) return kFar;
   const double b = t.to_b.dot(from_middle) + t.weight, c = t.to_c.dot(from_middle) + t.weight;
   // The foot is in the triangle: the distance is the height.
   if (b >= 0 && c >= 0 && b + c <= 1) return up + t.off + b * t.off_b + c * t.off_c;
-  // The distance beside the triangle is at least that from the line of each edge that the foot is beyond.
+  // The distance within the plane is at least the distance from each edge's line that the foot is beyond.
   const double beside = std::max(std::max(-b * t.height[1], -c * t.height[2]), (b + c - 1) * t.height[0]);
   if (beside * beside + up * up > left * left) return kFar;
   // Near an edge or a corner: the closest point (Ericson 2005).
@@ -258,7 +259,7 @@ double PatchFloor::off(const Vector3d& q) const {
 }
 
 bool PatchFloor::is_within(const Vector3d& q, int& first) const {
-  // Coherence: the triangle that answered the last query for this face usually answers the next.
+  // Coherence: the triangle that proved the last query for this face usually proves the next.
   if (shows(first, q)) return true;
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     if (!shows(t, q)) continue;

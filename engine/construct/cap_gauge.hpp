@@ -1,5 +1,5 @@
 #pragma once
-/// Measures how far a cap comes to stand off the body while it is made of a patch.
+/// Measures the deviation of a cap from the body while it is simplified.
 
 #include <array>
 #include <cstddef>
@@ -13,39 +13,39 @@
 
 namespace lrb::construct {
 
-// How far points over a patch are off the body.
+// The deviation of points over a patch from the body.
 
-/// A patch's triangles, with what is known of how far they are off the body themselves (HullMesh::Point::off,
-/// HullMesh::Triangle::extra). A point is off the body by no more than its distance from a triangle plus what
-/// the triangle is off at the nearest point.
+/// A patch's triangles with their own known deviation from the body (HullMesh::Point::off,
+/// HullMesh::Triangle::extra). The deviation of a point is at most its distance from a triangle plus the
+/// triangle's deviation at the nearest point.
 ///
-/// Estimates to guide the builder: what is proved of lids is proved afterwards (region_thickness()).
+/// These estimates guide the builder; the bounds of lids are proven afterwards (region_thickness()).
 class PatchFloor {
  public:
-  /// `most`: the limit that is_within() asks about; mesh's unit.
+  /// `most`: the limit of is_within(); mesh units.
   void load(const HullMesh& hull, const Patch& patch, double most);
 
-  /// Returns how far q is off, as the triangles of the patch show it.
+  /// Returns the deviation of q according to the triangles of the patch.
   double off(const Eigen::Vector3d& q) const;
-  /// Returns true if q is off by no more than the limit. Looks at the patch's triangle number `first` first,
-  /// and sets it to the one that shows it.
+  /// Returns true if the deviation of q is at most the limit. Tries the patch's triangle number `first`
+  /// first, and sets it to the triangle that proves it.
   bool is_within(const Eigen::Vector3d& q, int& first) const;
 
  private:
   struct Triangle {
     std::array<Eigen::Vector3d, 3> x;
     Eigen::Vector3d normal, middle;
-    Eigen::Vector3d to_b, to_c;    ///< by how much the weights of corners b and c grow along the triangle
-    double weight;                 ///< what they are in the middle; negative for a triangle without area
-    std::array<double, 3> height;  ///< of the corners over the opposite edges
-    double radius;                 ///< of a ball about the middle
-    double off, off_b, off_c;      ///< at the corners, `extra` included: a, and how much more b and c
-    double least;                  ///< the least at a corner
+    Eigen::Vector3d to_b, to_c;    ///< gradients of the weights of corners b and c in the triangle's plane
+    double weight;                 ///< these weights at the centroid; negative for a degenerate triangle
+    std::array<double, 3> height;  ///< of the corners above the opposite edges
+    double radius;                 ///< of a ball about the centroid
+    double off, off_b, off_c;      ///< deviation at corner a, `extra` included, and the increase to b and c
+    double least;                  ///< minimum over the corners
   };
-  /// Holds all points that a triangle may show to be within the limit.
+  /// Contains all points that a triangle can prove to be within the limit.
   struct Ball {
     Eigen::Vector3d middle;
-    double radius_sq;  ///< negative: there are none
+    double radius_sq;  ///< negative: empty
     bool holds(const Eigen::Vector3d& q) const { return (q - middle).squaredNorm() <= radius_sq; }
   };
 
@@ -60,26 +60,27 @@ class PatchFloor {
   double most_ = 0;
 };
 
-/// Tells which collapses keep a cap within a limit, and keeps what the cap's vertices and triangles are off
-/// up to date. It looks at the new vertex, at the patch's vertices that the new triangles cover, and at a few
-/// points of each new triangle: estimates, in floating point, to choose by; see PatchFloor.
+/// Checks which edge collapses keep a cap within a maximum deviation, and tracks the deviation of the cap's
+/// vertices and triangles. Samples the new vertex, the patch's vertices covered by the new triangles, and a
+/// few points of each new triangle. Computed in floating point: guides the builder, proves nothing; see
+/// PatchFloor.
 class CapGauge {
  public:
-  /// Starts with a cap that is the patch itself. `most`: the largest distance from the body; mesh's unit.
+  /// Starts with a cap that is the patch itself. `most`: maximum deviation from the body, mesh units.
   void load(const HullMesh& hull, const Patch& patch, const CapSurface& cap, double most);
 
-  /// Returns true if the fan from w over the star's rim is within the limit at w and over the patch's
+  /// Returns true if the fan from w over the star's rim is within the limit at w and above the patch's
   /// vertices that it covers.
   bool may_stand(const CapSurface& cap, const CapSurface::Star& star, const Eigen::Vector3d& w);
-  /// Returns true if it is at points in between, too.
+  /// Returns true if the fan is also within the limit at sample points in between.
   bool is_near(const CapSurface& cap, const CapSurface::Star& star, const Eigen::Vector3d& w);
   /// Prepares for settle(), before the star is replaced.
   bool prepare(const CapSurface& cap, const CapSurface::Star& star);
-  /// Notes that vertex w now stands over the star that was prepared last.
+  /// Updates the deviations after vertex w replaced the star that was prepared last.
   void settle(CapSurface& cap, const CapSurface::Star& star, int w);
 
-  /// Measures all new triangles anew: for caps that were changed by something else than collapses. Returns
-  /// false if one is beyond the limit.
+  /// Measures all new triangles again, after changes other than collapses. Returns false if one is beyond the
+  /// limit.
   bool measure_again(CapSurface& cap) const;
 
  private:
@@ -96,8 +97,8 @@ class CapGauge {
 
   PatchFloor floor_;
   double most_ = 0;
-  std::vector<int> under_;  ///< (faces) a triangle of the floor near to which a point of it was found to be
-  std::vector<int> cover_;  ///< (old vertices) the cap's face over one; -1: it is in the cap itself
+  std::vector<int> under_;  ///< (faces) floor triangle that last proved a point of it within the limit
+  std::vector<int> cover_;  ///< (old vertices) the cap's face above it; -1: it is in the cap itself
   std::vector<std::uint32_t> face_mark_;  ///< (faces) == marker_: in the star
   std::uint32_t marker_ = 0;
   std::vector<int> covered_;  ///< old vertices that the star covers or removes

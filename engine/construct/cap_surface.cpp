@@ -1,5 +1,5 @@
-// The surface of a cap under edge collapses: half-edge-like adjacency (the face across each edge) over local
-// vertex numbers. A collapse replaces the star of an edge by a fan from one vertex over the star's rim.
+// The surface of a cap under edge collapses, with half-edge-like adjacency (the face across each edge) over
+// local vertex numbers. A collapse replaces the star of an edge by a fan from one vertex over the star's rim.
 
 #include "engine/construct/cap_surface.hpp"
 
@@ -19,8 +19,8 @@ void CapSurface::load(const HullMesh& hull, const Patch& patch, VertexId first_i
 }
 
 void CapSurface::load_points(const HullMesh& hull, const Patch& patch) {
-  // The maps are never cleared: an entry is valid only if the local element refers back to it. Loading thus
-  // costs time in the size of the patch, not of the front.
+  // The maps are never cleared: an entry is valid only if the local element refers back to it. Loading
+  // therefore takes time proportional to the patch, not to the front.
   if (local_point_.size() < hull.point_count()) local_point_.resize(hull.point_count(), -1);
   points_.clear();
   corners_.clear();
@@ -52,12 +52,12 @@ void CapSurface::load_faces(const HullMesh& hull, const Patch& patch) {
     Face& face = faces_[f];
     for (int i = 0; i < 3; ++i) {
       face.v[i] = local_point_[t.v[i]];
-      // A neighbour outside the patch becomes -1 here, and the code of its ring edge below.
+      // A neighbour outside the patch becomes -1 now, and the code of its ring edge below.
       face.across[i] = local_face(patch, t.across[i]);
     }
     for (int i = 0; i < 3; ++i) {
       const int v = face.v[i];
-      if (face.across[i] < 0) {  // on the ring, the edge that starts at v is the v-th
+      if (face.across[i] < 0) {  // on the ring, edge v starts at vertex v
         face.across[i] = -1 - v;
         ring_face_[v] = f;
         face_of_[v] = f;
@@ -86,17 +86,17 @@ void CapSurface::load_surroundings(const HullMesh& hull, const Patch& patch) {
   for (int k = 0; k < ring_size_; ++k) {
     const HullMesh::Slot s = patch.outside[k];
     const int next = (k + 1) % ring_size_;
-    const int i = hull.index_of(s, patch.ring[next]);  // it runs against the ring
-    // The outer neighbour's third vertex and plane: they limit where vertices near the ring may go.
+    const int i = hull.index_of(s, patch.ring[next]);  // opposite to the direction of the ring
+    // The outer neighbour's third vertex and plane: they limit the positions of vertices near the ring.
     beyond_[k].tip = hull.x(hull[s].v[(i + 2) % 3]);
     const Eigen::Vector3d &a = hull.x(hull[s].v[0]), &b = hull.x(hull[s].v[1]), &c = hull.x(hull[s].v[2]);
     const Eigen::Vector3d normal = (b - a).cross(c - a);
-    // A triangle without area has no plane: its normal is zero.
+    // A degenerate triangle has no plane: its normal is zero.
     const double length = normal.norm();
     beyond_[k].plane.n = length > 0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d(0, 0, 0);
     beyond_[k].plane.d = beyond_[k].plane.n.dot(a);
     beyond_[k].plane.area = length / 2;
-    // Note the edges from this vertex to others of the ring that are neither ring edges nor in the patch.
+    // Record the edges from this vertex to others of the ring that are neither ring edges nor in the patch.
     hull.for_each_around(patch.ring[k], [&](HullMesh::Slot t, int j) {
       if (local_face(patch, t) >= 0) return;
       const int other = local(hull[t].v[(j + 1) % 3]);
@@ -123,14 +123,14 @@ bool CapSurface::find_star(int u, int v, Star& star) {
   star.rim.clear();
   star.since = 0;
   ++marker_;
-  // Step 1: find the triangle u, v, x by walking around u.
+  // Step 1: find the triangle u, v, x by traversing the fan of u.
   int first = face_of_[u];
   for (int i = index_of(first, u); faces_[first].v[(i + 1) % 3] != v; i = index_of(first, u)) {
     first = faces_[first].across[(i + 2) % 3];
     if (first == face_of_[u]) return false;  // u and v are no longer neighbours
   }
-  // Step 2: walk around u from the triangle u, v, x to the triangle u, y, v. Mark its neighbours and collect
-  // its rim.
+  // Step 2: traverse the fan of u from the triangle u, v, x to the triangle u, y, v. Mark its neighbours and
+  // collect its rim.
   int last = first;
   for (int f = first;;) {
     const int i = index_of(f, u);
@@ -138,7 +138,7 @@ bool CapSurface::find_star(int u, int v, Star& star) {
     const int a = t.v[(i + 1) % 3], b = t.v[(i + 2) % 3];
     star.faces.push_back(f);
     mark_[a] = marker_;
-    // The two triangles at the edge u, v vanish; all others leave one rim edge each.
+    // The two triangles at the edge u, v are removed; each other one contributes one rim edge.
     if (a != v && b != v) add_to_rim(star, {a, b, t.across[(i + 1) % 3], f});
     star.since = std::max(star.since, t.since);
     if (a == v) star.across_first = t.across[(i + 1) % 3];
@@ -152,13 +152,13 @@ bool CapSurface::find_star(int u, int v, Star& star) {
   // neighbours.
   if (is_ring(v)) {
     if (count_marked_neighbours_of_ring(v) != 2) return false;
-    // The fan from v has new edges to rim vertices. An edge between ring vertices may exist in the front
-    // already.
+    // The fan from v has new edges to rim vertices. An edge between ring vertices may already exist in the
+    // front.
     for (const auto& r : star.rim)
       if (is_ring(r.b) && r.b != v && &r != &star.rim.back() && chord_outside(r.b, v)) return false;
     return true;
   }
-  // Step 3: the same around v, and the rest of the rim.
+  // Step 3: the fan of v, and the rest of the rim.
   int common = 0;
   for (int f = last;;) {
     const int i = index_of(f, v);
@@ -173,7 +173,7 @@ bool CapSurface::find_star(int u, int v, Star& star) {
     f = t.across[(i + 2) % 3];
     if (f == last) break;
   }
-  // A rim of two edges would leave two triangles on the same three vertices.
+  // A rim of two edges would leave two triangles with the same three vertices.
   return common == 2 && star.rim.size() >= 3;
 }
 
@@ -195,7 +195,7 @@ bool CapSurface::is_behind_a_face_at(int u, int v) const {
 
 int CapSurface::count_marked_neighbours_of_ring(int r) const {
   int f = face_of_[r];
-  // A ring vertex has an open fan: start at its ring edge and go round until the other ring edge.
+  // A ring vertex has an open fan: traverse from its ring edge to the other ring edge.
   int i = index_of(f, r);
   int count = mark_[faces_[f].v[(i + 1) % 3]] == marker_;
   for (;;) {
@@ -207,7 +207,7 @@ int CapSurface::count_marked_neighbours_of_ring(int r) const {
 }
 
 int CapSurface::collapse_to_new(const Star& star, const Eigen::Vector3d& position) {
-  // The new vertex is placed by the caller; ids are provisional, see id().
+  // The caller has placed the new vertex; ids are provisional, see id().
   const int w = vertex_count();
   points_.push_back({position, next_id_++});
   face_of_.push_back(-1);
@@ -223,7 +223,6 @@ void CapSurface::collapse_onto_ring(const Star& star) {
 void CapSurface::move(int v, const Eigen::Vector3d& position) {
   // Only the planes of its fan change.
   points_[v].x = position;
-  // Step 1: retire the star's faces.
   ++version_;
   int f = face_of_[v];
   do {
@@ -234,7 +233,7 @@ void CapSurface::move(int v, const Eigen::Vector3d& position) {
   } while (f != face_of_[v]);
 }
 
-/// Replaces the star's triangles by a fan from w over its rim. New faces take the places of old ones.
+/// Replaces the star's triangles by a fan from w over its rim. New faces reuse the entries of old ones.
 void CapSurface::replace(const Star& star, int w) {
   ++version_;
   for (const int f : star.faces) {
@@ -243,8 +242,8 @@ void CapSurface::replace(const Star& star, int w) {
   }
   alive_ -= static_cast<int>(star.faces.size());
   const int count = static_cast<int>(star.rim.size());
-  // Step 2: one new face per rim edge, stored in the slot of the old face at that edge. Around a ring vertex
-  // the fan is open.
+  // One new face per rim edge, stored in the entry of the old face at that edge. Around a ring vertex the fan
+  // is open.
   const bool open = w == star.v;
   face_of_[star.u] = -1;
   if (!open) face_of_[star.v] = -1;
@@ -261,13 +260,13 @@ void CapSurface::replace(const Star& star, int w) {
     face.extra = 0;
     face.since = version_;
     face.refused = {};
-    // The neighbour beyond the rim, or the ring, refers back to it.
+    // The neighbour across the rim, or the ring, refers back to it.
     set_across(r.across, r.a, r.b, r.face);
     if (!is_ring(r.a)) face_of_[r.a] = r.face;
     if (!is_ring(r.b)) face_of_[r.b] = r.face;
   }
   alive_ += count;
-  // Step 3: an open fan also has the two edges at w itself.
+  // An open fan also has the two edges at w itself.
   if (open) {
     set_across(star.across_first, w, star.rim.front().a, star.rim.front().face);
     set_across(star.across_last, star.rim.back().b, w, star.rim.back().face);
@@ -276,8 +275,7 @@ void CapSurface::replace(const Star& star, int w) {
   }
 }
 
-/// Notes that face f now lies beyond the edge that runs a, b in f; `code` says what is on the other side of
-/// it.
+/// Makes face f the neighbour across its directed edge a, b, for the face or ring edge that `code` denotes.
 void CapSurface::set_across(int code, int a, int b, int f) {
   if (code < 0)
     ring_face_[-1 - code] = face_of_[a] = f;
@@ -285,15 +283,15 @@ void CapSurface::set_across(int code, int a, int b, int f) {
     faces_[code].across[index_of(code, b)] = f;
 }
 
-// Makes sure that a cap covers each polygon of the mesh wholly or not at all.
+// Ensures that a cap covers each polygon of the mesh entirely or not at all.
 
 bool CapSurface::keep_polygons_whole(const HullMesh& hull, const Patch& patch) {
   if (!hull.has_polygons()) return true;
-  // Mark the patch's triangles that remain in the cap.
+  // Mark the patch's triangles that are retained in the cap.
   std::vector<bool> stays(patch.slots.size(), false);
   for (const Face& f : faces_)
     if (f.alive && f.kept >= 0) stays[f.kept] = true;
-  // A kept triangle of a polygon, of which another triangle was covered.
+  // A retained triangle of a polygon with another triangle that was covered.
   const auto is_partial = [&](const Face& f) {
     if (!f.alive || f.kept < 0) return false;
     const auto unit = hull.unit(patch.slots[f.kept]);
@@ -326,17 +324,17 @@ bool CapSurface::are_neighbours(int a, int b) const {
   });
 }
 
-/// Replaces the edge a, b that face f (a, b, c) shares with a new face g (b, a, w) by the edge c, w, if w
-/// lies in front of f: the tetrahedron between them goes under the cap.
+/// Replaces the edge a, b that face f (a, b, c) shares with a new face g (b, a, w) by the edge c, w, if w is
+/// in front of f: the tetrahedron between them is then under the cap.
 bool CapSurface::flip_outward(int f, int i) {
   Face& face = faces_[f];
   const int g = face.across[i];
-  // Flipping needs a new triangle on the other side.
+  // Flipping requires a new triangle on the other side.
   if (g < 0 || faces_[g].kept >= 0) return false;
   Face& other = faces_[g];
   const int a = face.v[i], b = face.v[(i + 1) % 3], c = face.v[(i + 2) % 3];
   const int j = index_of(g, b), w = other.v[(j + 2) % 3];
-  // The flipped surface must lie in front of the old one: exact.
+  // The flipped surface must be in front of the old one. Exact.
   if (exact::orient3d(x(face.v[0]).data(), x(face.v[1]).data(), x(face.v[2]).data(), x(w).data()) <= 0)
     return false;
   // The new edge must not exist yet, neither in the cap nor in the front outside the patch.
@@ -357,7 +355,7 @@ bool CapSurface::flip_outward(int f, int i) {
   set_across(beyond_ca, c, a, g);
   face.plane = plane_of(b, c, w);
   other.plane = plane_of(c, a, w);
-  // a and b each lost a triangle: refer them to the one that they still have.
+  // a and b each lost a triangle: refer them to the remaining one.
   if (!is_ring(a)) face_of_[a] = g;
   if (!is_ring(b)) face_of_[b] = f;
   return true;

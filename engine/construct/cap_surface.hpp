@@ -1,5 +1,5 @@
 #pragma once
-/// A patch's triangles on their own, to be collapsed edge by edge into a cap.
+/// A copy of a patch's triangles, to be simplified into a cap by edge collapses.
 
 #include <array>
 #include <cstdint>
@@ -12,44 +12,44 @@
 
 namespace lrb::construct {
 
-/// A disk with a fixed ring, or a closed surface. Vertices have local numbers: first the ring in its order,
-/// then the patch's interior, then new vertices.
+/// A disk with a fixed ring, or a closed surface. Vertices have local numbers: first the ring in order, then
+/// the patch's interior, then new vertices.
 class CapSurface {
  public:
   struct Plane {
-    Eigen::Vector3d n;  ///< length 1, or 0 for a triangle without area
+    Eigen::Vector3d n;  ///< unit length, or 0 for a degenerate triangle
     double d;           ///< n.x = d on the plane
     double area;
   };
   struct Face {
     std::array<int, 3> v;
-    std::array<int, 3>
-        across;  ///< face over the edge v[i], v[i + 1]; beyond the ring: -1 - (index of the ring edge)
+    /// The face across the edge v[i], v[i + 1]; at the ring: -1 - (index of the ring edge).
+    std::array<int, 3> across;
     Plane plane;
-    int kept;  ///< the patch's triangle (index into Patch::slots) if it is still that one, else -1
+    int kept;  ///< index into Patch::slots if this is still that triangle, else -1
     bool alive;
     double extra;         ///< see HullMesh::Triangle
-    std::uint32_t since;  ///< the version of the surface that it came with
-    /// The version at which the collapse of the edge v[i], v[i + 1] was refused; 0: never.
+    std::uint32_t since;  ///< version of the surface at which it was created
+    /// The version at which the collapse of the edge v[i], v[i + 1] was rejected; 0: never.
     std::array<std::uint32_t, 3> refused;
   };
-  /// The triangles round an interior vertex u, or round an edge u, v, and the polygon around them.
+  /// The triangles around an interior vertex u, or around an edge u, v, and the boundary loop of these.
   struct Star {
     struct Rim {
-      int a, b;    ///< an edge on which a new triangle a, b, w would stand
-      int across;  ///< what lies beyond it
+      int a, b;    ///< an edge that would be the base of a new triangle a, b, w
+      int across;  ///< the triangle or ring edge across it
       int face;    ///< the star's triangle at it
     };
     int u = -1, v = -1;
     std::vector<int> faces;
     std::vector<Rim> rim;  ///< in order; an open chain from v back to v if v is on the ring
-    int across_first = -1,
-        across_last = -1;  ///< open chain: what lies beyond the edges v, rim.front().a and rim.back().b, v
-    /// The version that the newest of its triangles, and of those beyond the rim, came with.
+    /// Open chain: the triangles or ring edges across the edges v, rim.front().a and rim.back().b, v.
+    int across_first = -1, across_last = -1;
+    /// The creation version of the newest of its triangles, and of those across the rim.
     std::uint32_t since = 0;
   };
 
-  /// Loads a patch. `first_id`: the number in the complex of the first new vertex.
+  /// Loads a patch. `first_id`: number of the first new vertex in the complex.
   void load(const HullMesh& hull, const Patch& patch, VertexId first_id);
 
   int ring_size() const { return ring_size_; }
@@ -58,13 +58,13 @@ class CapSurface {
   bool is_ring(int v) const { return v < ring_size_; }
   bool is_used(int v) const { return face_of_[v] >= 0; }
   const Eigen::Vector3d& x(int v) const { return points_[v].x; }
-  /// Returns a vertex's number in the complex; for new vertices, the one that they have if all of them stay.
+  /// Returns a vertex's number in the complex; for a new vertex, its number if all new vertices remain.
   VertexId id(int v) const { return points_[v].id; }
-  /// Returns how far a vertex is off the body; see HullMesh::Point.
+  /// Returns the deviation of a vertex from the body; see HullMesh::Point.
   double off(int v) const { return points_[v].off; }
   void set_off(int v, double off) { points_[v].off = off; }
   void set_extra(int f, double extra) { faces_[f].extra = extra; }
-  /// Returns the hull's vertex that an old vertex is.
+  /// Returns the front's vertex of an old vertex.
   HullMesh::Corner corner(int v) const { return corners_[v]; }
 
   const std::vector<Face>& faces() const { return faces_; }
@@ -74,43 +74,43 @@ class CapSurface {
   const Plane& plane_beyond(int k) const { return beyond_[k].plane; }
   const Eigen::Vector3d& tip_beyond(int k) const { return beyond_[k].tip; }
   double patch_area() const { return patch_area_; }
-  /// Returns the number that a triangle of the hull has in the patch, or -1.
+  /// Returns the index of a triangle of the front in the patch, or -1.
   int local_face(const Patch& patch, HullMesh::Slot s) const {
     const int f = local_face_[s];
     return f >= 0 && static_cast<std::size_t>(f) < patch.slots.size() && patch.slots[f] == s ? f : -1;
   }
 
   /// Finds the star for collapsing the edge u, v (u interior) to a new vertex or, if v is on the ring, onto
-  /// v. Returns false if the collapse would not leave a surface (link condition), or if it would make an edge
-  /// between ring vertices that the hull has already.
+  /// v. Returns false if the result would not be a surface (link condition), or if the collapse would create
+  /// an edge between ring vertices that the front has already.
   bool find_star(int u, int v, Star& star);
-  /// Returns a number that grows with each change.
+  /// Returns a number that increases with each change.
   std::uint32_t version() const { return version_; }
-  /// Notes that the star's edge cannot be collapsed.
+  /// Records that the star's edge cannot be collapsed.
   void refuse(const Star& star) { faces_[star.faces[0]].refused[index_of(star.faces[0], star.u)] = version_; }
-  /// Returns true if that was noted, and neither the star nor the triangles around it have changed since.
+  /// Returns true if that was recorded, and neither the star nor the triangles around it have changed since.
   bool was_refused(const Star& star) const {
     return faces_[star.faces[0]].refused[index_of(star.faces[0], star.u)] >= star.since;
   }
   void forget_refused() {
     for (Face& f : faces_) f.refused = {};
   }
-  /// Returns true if v, a neighbour of u, lies behind the plane of a triangle at u that it is not a corner
-  /// of.
+  /// Returns true if v, a neighbour of u, is behind the plane of a triangle at u that does not have v as a
+  /// corner.
   bool is_behind_a_face_at(int u, int v) const;
   /// Collapses u and v into a new vertex at x. Returns its number.
   int collapse_to_new(const Star& star, const Eigen::Vector3d& x);
   void collapse_onto_ring(const Star& star);
 
-  /// A polygon of the mesh has one face in the complex, so its triangles must all stay or all be covered.
-  /// Covers those that stayed without the others, by flipping an edge outward. Returns false if that cannot
-  /// be done.
+  /// Ensures that the triangles of each polygon of the mesh are all retained or all covered, because a
+  /// polygon is one face of the complex. Covers those retained without the others, by flipping edges outward.
+  /// Returns false if that is impossible.
   bool keep_polygons_whole(const HullMesh& hull, const Patch& patch);
 
   /// Moves an interior vertex.
   void move(int v, const Eigen::Vector3d& x);
 
-  /// Calls visit(neighbour) for the vertices round an interior vertex.
+  /// Calls visit(neighbour) for the vertices around an interior vertex.
   template <class Visit>
   void for_each_neighbour(int u, Visit&& visit) const {
     int f = face_of_[u];
@@ -120,7 +120,7 @@ class CapSurface {
       f = faces_[f].across[(i + 2) % 3];
     } while (f != face_of_[u]);
   }
-  /// Calls visit(a, b) for the edges of the polygon round an interior vertex.
+  /// Calls visit(a, b) for the edges of the boundary loop around an interior vertex.
   template <class Visit>
   void for_each_rim_edge(int u, Visit&& visit) const {
     int f = face_of_[u];
@@ -155,12 +155,12 @@ class CapSurface {
 
   std::vector<HullMesh::Point> points_;
   std::vector<HullMesh::Corner> corners_;  ///< (old vertices)
-  /// (|points|) any face at the vertex; for a ring vertex that of its ring edge; -1: unused.
+  /// (|points|) any face at the vertex; for a ring vertex the face at its ring edge; -1: unused.
   std::vector<int> face_of_;
   std::vector<Face> faces_;
   std::vector<int> ring_face_;       ///< (|ring|) the face at the ring edge
   std::vector<Beyond> beyond_;       ///< (|ring|)
-  std::vector<bool> chords_;         ///< (|ring| x |ring|) true if the hull has this edge outside the patch
+  std::vector<bool> chords_;         ///< (|ring| x |ring|) true if the front has this edge outside the patch
   std::vector<std::uint32_t> mark_;  ///< (|points|)
   std::uint32_t marker_ = 0;
   VertexId next_id_ = 0;
@@ -168,7 +168,7 @@ class CapSurface {
   std::uint32_t version_ = 0;  ///< 1: as loaded
   double patch_area_ = 0;
 
-  // From the hull's numbers to local ones; an entry is valid if the local one points back to it.
+  // Maps from the front's numbers to local ones; an entry is valid if the local element refers back to it.
   std::vector<int> local_point_, local_face_;
 };
 

@@ -1,9 +1,9 @@
 // The builder in 2D. The front is a set of closed polylines, at first the mesh itself:
 // 1. Plan the outermost wrapper, so that no front grows beyond it.
 // 2. Passes: propose a cap over every short chain of segments, sort by added area per saved segment, and
-// apply them greedily where they are proven to keep the front embedded.
-// 3. Fit first (the allowed deviation grows from pass to pass), then simplify without a limit on the
-// deviation.
+//    apply them greedily where they are proven to keep the front embedded.
+// 3. Fit first (the maximum deviation grows from pass to pass), then simplify without a limit on the
+//    deviation.
 // 4. Bridge the pockets to the convex hull if too many segments are left.
 // 5. Fill each hole with one region, and close with the wrapper of step 1.
 
@@ -40,7 +40,7 @@ class ChainBuilder {
         frozen_(mesh.face_count(), false),
         boxes_(hull_.component_count()),
         passes_(options) {
-    // Segments that intersect others are never covered: embedding can only be proven for the others.
+    // Segments that intersect others are never covered: embedding can be proven only for the others.
     for (const FaceId f : meeting) frozen_[f] = true;
     for (Slot s = 0; s < hull_.slot_count(); ++s) boxes_[hull_[s].component].extend(box_of(hull_, s));
     find_nesting(mesh);
@@ -50,10 +50,10 @@ class ChainBuilder {
     plan_polygon();
     // Lean bodies skip the fitted levels and start with the largest savings.
     if (!options_.lean) fit();
-    // First only caps that save much, then those that still save something.
+    // First only caps that save much, then all that save enough to be worth a region.
     simplify(kCapWorth);
     simplify(kLastCapWorth);
-    // Bridging changes the shape, so chains that had no cap before may have one now.
+    // Bridging changes the shape, so that chains without a cap may have one now.
     if (outer_size() > max_outer_ && bridge()) simplify(kLastCapWorth);
     fill();
     const std::uint32_t outer = outer_size();
@@ -103,7 +103,7 @@ class ChainBuilder {
     const auto is_inside = [&](std::uint32_t inner, std::uint32_t outer) {
       return std::binary_search(holders[inner].begin(), holders[inner].end(), outer);
     };
-    // Step 3: the innermost hole around each solid component. It lies within all the others around it.
+    // Step 3: the innermost hole around each solid component. It is inside all others around it.
     const std::vector<std::uint32_t> holes = home_;
     for (std::uint32_t c = 0; c < count; ++c) {
       if (holes[c] != kNull) continue;
@@ -112,16 +112,16 @@ class ChainBuilder {
     }
   }
 
-  /// Plans the outermost wrapper first, so that all hulls stay inside it.
+  /// Plans the outermost wrapper first, so that all fronts stay inside it.
   void plan_polygon() {
     const auto points = outer_points();
-    // The front is still the mesh itself here, so the wrapper is as tight as it can be.
+    // The front is still the mesh itself, so the wrapper is as tight as possible.
     polygon_ = enclosing_polygon(points, max_outer_, kPolytopeDistance);
     Box box;
     for (const Vector3& p : polygon_) box.extend(p);
     for (std::size_t i = 0; i < polygon_.size(); ++i) {
       const Vector3 &a = polygon_[i], &b = polygon_[(i + 1) % polygon_.size()];
-      // The inward normal of a side. The front keeps a small distance, so that rounding cannot put it
+      // The inward normal of a side. The front keeps a small distance, so that rounding cannot move it
       // outside.
       const Vector3 n = Vector3(a.y() - b.y(), b.x() - a.x(), 0).normalized();
       bounds_.push_back({n, n.dot(a) + kHullDistance * box.sizes().maxCoeff()});
@@ -142,7 +142,7 @@ class ChainBuilder {
   void simplify(double worth) {
     for (;;) {
       const std::uint32_t before = hull_.segment_count();
-      // Simple enough already.
+      // Few enough segments.
       if (before <= max_outer_) return;
       pass(BuildStage::simplify, {worth});
       // Diminishing returns.
@@ -157,31 +157,31 @@ class ChainBuilder {
     VertexId start;  ///< of the chain
   };
 
-  /// Puts on the caps that add least area for each segment they save, on chains that do not overlap.
+  /// Applies the caps that add least area for each saved segment, on chains that do not overlap.
   void pass(BuildStage stage, const CapGoal& goal) {
-    // Step 1: an AABB tree over the front. It follows the caps of this pass.
+    // Step 1: an AABB tree over the front, updated with the caps of this pass.
     const std::vector<Slot> slots = hull_.alive_slots();
     std::vector<Box> slot_boxes(hull_.slot_count());
     for (const Slot s : slots) slot_boxes[s] = box_of(hull_, s);
     AabbTree tree(slots, slot_boxes);
     passes_.tell_begin(stage, hull_.segment_count(), goal.off);
     PassEnd end;
-    // Step 2: exclude frozen segments, and below everything that this pass has covered or made.
+    // Step 2: exclude frozen segments, and below all segments that this pass has covered or made.
     std::vector<bool> taken(hull_.slot_count(), false);
     for (const Slot s : slots) {
       taken[s] = hull_[s].face < frozen_.size() && frozen_[hull_[s].face];
       end.barred += taken[s];
     }
-    // Step 3: greedy selection. An earlier cap may have taken part of the chain, or may now be in the way.
+    // Step 3: greedy selection. An earlier cap may have taken part of the chain, or may be in the way now.
     for (const Proposal& p : find_proposals(slots, taken, goal)) {
       const auto chain = chain_of_untaken(p.cap, taken);
-      // The proof is made now, against the front as it is, not when the cap was proposed.
+      // Prove against the current front, not the front at the time of the proposal.
       const CapVerdict verdict =
           chain.empty() ? CapVerdict::overlaps : judge_chain_cap(hull_, tree, p.cap, boxes_);
       tell_cap(p, verdict, goal.off);
       if (verdict != CapVerdict::stands) continue;
       for (const Slot s : replace(p.cap, chain)) {
-        // New segments are not covered again in this pass, so that a region and the one on top differ in
+        // New segments are not covered again in this pass, so that a region and the one above it differ in
         // layer.
         taken[s] = true;
         tree.update(s, box_of(hull_, s));
@@ -194,16 +194,14 @@ class ChainBuilder {
     end_pass();
   }
 
-  /// Returns caps over all chains that are worth it, those that add least area for each segment they save
-  /// first.
+  /// Returns caps over all chains that are worth it, in ascending order of added area per saved segment.
   std::vector<Proposal> find_proposals(const std::vector<Slot>& slots, const std::vector<bool>& taken,
                                        const CapGoal& goal) const {
     std::vector<Proposal> proposals;
-    // The patch size counts vertices in 3D. Here a quarter of it, plus one, is the longest chain: O(longest)
+    // The patch size counts vertices in 3D. In 2D a quarter of it, plus one, is the longest chain: O(longest)
     // proposals for each segment.
     const std::uint32_t longest = std::max(options_.patch_interior / 4, 1u) + 1;
-    // All chains that start at each segment. They may not overlap taken segments, nor run around the whole
-    // loop.
+    // All chains that start at each segment. They must not overlap taken segments, nor cover the entire loop.
     for (const Slot s : slots) {
       std::uint32_t length = 1;
       std::optional<Proposal> refused;
@@ -224,7 +222,8 @@ class ChainBuilder {
     return proposals;
   }
 
-  /// Finds a cap over a chain; it stands if it is worth it, whatever else it may meet.
+  /// Finds a cap over a chain. Its verdict is `stands` if it is worth it, whether or not it intersects the
+  /// front.
   Proposal propose(Slot first, std::uint32_t length, const CapGoal& goal) const {
     CapVerdict why = CapVerdict::stands;
     // The geometry, without regard to the rest of the front.
@@ -234,13 +233,13 @@ class ChainBuilder {
     // It must save segments, and enough of them to be worth a region.
     if (cap->segments() >= length || cap->segments() > goal.worth * length)
       return {0, *cap, CapVerdict::too_many_faces, start};
-    // Fitting: the deviation must remain within this pass's limit.
+    // Fitting: the deviation must be within this pass's limit.
     if (goal.off > 0 && !measure_cap(hull_, *cap, goal.off)) return {0, *cap, CapVerdict::too_thick, start};
     // The price of a saved segment.
     return {cap->area / (length - cap->segments()), *cap, CapVerdict::stands, start};
   }
 
-  /// `most_off`: how far it may stand off the body, if that was measured; else 0.
+  /// Reports a proposal. `most_off`: maximum deviation of the cap, or 0 if it was not measured.
   void tell_cap(const Proposal& p, CapVerdict verdict, double most_off) const {
     if (!options_.probe) return;
     const ChainCap& cap = p.cap;
@@ -251,11 +250,11 @@ class ChainBuilder {
         {cap.segments(), cap.length, verdict, false, measured ? std::min(most_off, off_of(hull_, cap)) : -1});
   }
 
-  /// Returns the cap's chain if all of it is still there and free, else nothing.
+  /// Returns the cap's chain if all of it still exists and is free, otherwise an empty chain.
   std::vector<Slot> chain_of_untaken(const ChainCap& cap, const std::vector<bool>& taken) const {
     std::vector<Slot> chain;
     for (Slot s = cap.first; chain.size() < cap.length; s = hull_[s].next) {
-      // The links of taken slots may have changed, but the first taken one ends the walk.
+      // The links of taken slots may have changed, but the first taken one ends the traversal.
       if (taken[s]) return {};
       chain.push_back(s);
     }
@@ -263,7 +262,7 @@ class ChainBuilder {
   }
 
   std::vector<Slot> replace(const ChainCap& cap, const std::vector<Slot>& chain) {
-    // The chain becomes the floor of the new region: the region is on its outer side now.
+    // The chain becomes the floor of the new region, which is on its outer side now.
     const RegionId region = complex_.add_region(passes_.layer());
     for (const Slot s : chain) complex_.set_outer_cell(hull_[s].face, region);
     // The cap's polyline, with or without an apex. Front and complex number their vertices alike.
@@ -277,7 +276,7 @@ class ChainBuilder {
     return added;
   }
 
-  /// Puts the polyline in place of the chain, with the region behind it.
+  /// Replaces the chain by the polyline, with the region behind it.
   std::vector<Slot> add_segments(const std::vector<Slot>& chain, const std::vector<VertexId>& corners,
                                  RegionId region) {
     // Read the neighbours before the chain's slots are emptied.
@@ -301,7 +300,7 @@ class ChainBuilder {
 
   /// Makes regions of the pockets between a single outline and its convex hull.
   bool bridge() {
-    // Find all pockets first: bridging is accepted as a whole or not at all.
+    // Find all pockets first: bridging is accepted or rejected as a whole.
     passes_.tell_begin(BuildStage::bridge, hull_.segment_count());
     std::vector<ChainCap> caps;
     const CapVerdict verdict = find_bridge(caps);
@@ -316,10 +315,11 @@ class ChainBuilder {
     return stands;
   }
 
-  /// Finds the sides of the convex hull that are not the outline's own. Returns whether they may stand.
+  /// Finds the sides of the convex hull that are not the outline's own. Returns `stands` if all can be
+  /// accepted.
   CapVerdict find_bridge(std::vector<ChainCap>& caps) const {
     const std::vector<Slot> slots = outer_slots();
-    // Pockets between several outlines would connect them; that is not supported in 2D.
+    // Pockets between several outlines would connect them, which is not supported in 2D.
     for (const Slot s : slots)
       if (hull_[s].component != hull_[slots[0]].component) return CapVerdict::several_outlines;
     // Vertices are numbered along the outline, so that a hull side from i to j covers the chain between them.
@@ -351,7 +351,7 @@ class ChainBuilder {
     return caps.empty() ? CapVerdict::too_many_faces : CapVerdict::stands;
   }
 
-  /// Tells of a cap over the outer outlines as a whole, and how much of them it covers.
+  /// Reports a cap over all outer outlines, and the number of segments that it covers.
   void tell_whole_cap(std::uint32_t segments, std::uint32_t covered, CapVerdict verdict) const {
     if (!options_.probe) return;
     const std::vector<Slot> slots = outer_slots();
@@ -361,7 +361,7 @@ class ChainBuilder {
 
   void fill() {
     const std::uint32_t before = complex_.region_count(), faces = hull_.segment_count();
-    // What remains of each hole is one region with a floor but no lid.
+    // The remainder of each hole is one region with a floor but no lid.
     fill_voids(hull_, home_, passes_.layer(), complex_);
     if (complex_.region_count() == before) return;
     passes_.tell_begin(BuildStage::fill, faces);
@@ -369,7 +369,7 @@ class ChainBuilder {
     passes_.tell_end({.hull_faces = outer_size()});
   }
 
-  /// Puts the outermost wrapper around everything. Returns false if there can be none.
+  /// Puts the outermost wrapper around the front. Returns false if no wrapper is found.
   bool close() {
     const std::uint32_t outer = outer_size(), before = complex_.region_count();
     passes_.tell_begin(BuildStage::close, outer);
@@ -390,8 +390,8 @@ class ChainBuilder {
       return std::all_of(points.begin(), points.end(),
                          [&](const Vector3& p) { return holds_2d(polygon_, p); });
     };
-    // The planned polygon usually still contains the front. Rounding, or a bridge, may have spoiled that:
-    // plan again.
+    // The planned polygon usually still contains the front. Rounding or bridging may have moved the front
+    // outside: plan again.
     if (polygon_.empty() || !holds_all()) polygon_ = enclosing_polygon(points, max_outer_, kPolytopeDistance);
     if (polygon_.empty()) return CapVerdict::too_far_out;
     // The final confirmation is exact.
@@ -412,17 +412,17 @@ class ChainBuilder {
 
   void end_pass() { passes_.end_pass(complex_, hull_.segment_count()); }
 
-  static constexpr std::uint32_t kMostOuter = 8;  ///< segments of the outermost wrapper
-  /// Fitting ends when the hull has no more segments than this.
+  static constexpr std::uint32_t kMostOuter = 8;  ///< maximum number of segments of the outermost wrapper
+  /// Fitting ends when the front has no more segments than this.
   static constexpr std::uint32_t kFitDownTo = 16;
-  /// A pass that leaves a larger share of the segments is the last.
+  /// A pass that leaves more than this share of the segments is the last.
   static constexpr double kLeastGain = 0.95;
 
   const BuildOptions& options_;
   const std::uint32_t max_outer_;
   HullLoops hull_;
   ComplexBuilder complex_;
-  std::vector<bool> frozen_;         ///< (|real faces|) true for faces that meet others
+  std::vector<bool> frozen_;         ///< (|real faces|) true for faces that intersect others
   std::vector<Box> boxes_;           ///< (components)
   std::vector<std::uint32_t> home_;  ///< (components)
   std::vector<Vector3> polygon_;

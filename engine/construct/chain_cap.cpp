@@ -1,8 +1,8 @@
 // Caps over chains of segments in 2D.
-// find_cap(): the chord if the chain lies behind it, else two segments with an apex in front of all its
-// lines.
-// measure_cap(): samples the deviation, for fitting.
-// judge_chain_cap(): exact proof that the front stays embedded, as in embed_check.cpp.
+// - find_cap(): the chord if the chain is behind it, otherwise two segments with an apex in front of all
+//   lines of the chain.
+// - measure_cap(): samples the deviation, for fitting.
+// - judge_chain_cap(): exact proof that the front stays embedded, as in embed_check.cpp.
 
 #include "engine/construct/chain_cap.hpp"
 
@@ -37,14 +37,14 @@ HalfSpace in_front(const Vector3& a, const Vector3& b, const Vector3& origin, do
   return {n, n.dot(a - origin) + margin};
 }
 
-/// Returns true if p is strictly within the sector that a ray from `centre` through `from` sweeps
-/// counter-clockwise on its way to `to`.
+/// Returns true if p is strictly inside the sector between the rays from `centre` through `from` and,
+/// counter-clockwise, through `to`.
 bool in_sector(const Vector3& centre, const Vector3& from, const Vector3& to, const Vector3& p) {
   // Convex sector: inside both half-planes. Reflex sector: outside the closed complement. Exact in all cases.
   const int sector = turn(centre, from, to);
   if (sector > 0) return turn(centre, from, p) > 0 && turn(centre, p, to) > 0;
   if (sector < 0) return !(turn(centre, to, p) >= 0 && turn(centre, p, from) >= 0);
-  return turn(centre, from, p) > 0;  // straight on
+  return turn(centre, from, p) > 0;  // a straight angle
 }
 
 struct CheckedSegment {
@@ -56,7 +56,7 @@ struct CheckedSegment {
     box.extend(pb);
   }
   bool clear_of(const CheckedSegment& o) const {
-    // Disjoint boxes are exact proof, too: coordinates are compared as they are.
+    // Disjoint boxes are exact proof as well: coordinates are compared without rounding.
     if (!box.intersects(o.box)) return true;
     const double *pa[2] = {a->data(), b->data()}, *pb[2] = {o.a->data(), o.b->data()};
     const VertexId va[2] = {ia, ib}, vb[2] = {o.ia, o.ib};
@@ -70,7 +70,7 @@ CheckedSegment checked(const HullLoops& hull, Slot s) {
 
 bool region_holds(const HullLoops& hull, const std::vector<Slot>& chain,
                   const std::vector<CheckedSegment>& cap, const Vector3& p) {
-  // Parity of the crossings of an exact ray with the region's boundary, which is the chain and its cap.
+  // Parity of the crossings of an exact ray with the region's boundary, that is chain and cap.
   bool inside = false;
   const auto cast = [&](const Vector3& a, const Vector3& b) {
     const double* segment[2] = {a.data(), b.data()};
@@ -81,9 +81,9 @@ bool region_holds(const HullLoops& hull, const std::vector<Slot>& chain,
   return inside;
 }
 
-/// Returns how far q is off the body, as the chain's segments show it.
+/// Returns the deviation of q according to the chain's segments.
 double off_by_chain(const HullLoops& hull, const std::vector<Slot>& chain, const Vector3& q) {
-  // The triangle inequality bounds the deviation of q through any point of the chain: take the best one.
+  // The triangle inequality bounds the deviation of q via any point of the chain: take the least bound.
   double least = std::numeric_limits<double>::infinity();
   for (const Slot s : chain) {
     // Deviation at the foot: interpolated between the ends, plus the segment's own excess.
@@ -94,12 +94,11 @@ double off_by_chain(const HullLoops& hull, const std::vector<Slot>& chain, const
   return least;
 }
 
-/// Measures a segment over a chain at points in between its ends, whose `off` is known. Returns false if one
-/// is off by more than `most`.
+/// Measures the excess deviation of a segment over a chain at sample points; the deviation of its ends is
+/// known. Returns false if a point deviates by more than `most`.
 bool extra_of_segment(const HullLoops& hull, const std::vector<Slot>& chain, const Vector3& a, double off_a,
                       const Vector3& b, double off_b, double most, double& extra) {
-  // Seven sample points. The maximum between samples is not bounded: this is an estimate that guides the
-  // builder.
+  // Seven sample points. The maximum between samples is not bounded: this estimate only guides the builder.
   constexpr int kParts = 8;
   extra = 0;
   for (int i = 1; i < kParts; ++i) {
@@ -107,7 +106,7 @@ bool extra_of_segment(const HullLoops& hull, const std::vector<Slot>& chain, con
     const double off = off_by_chain(hull, chain, a + t * (b - a));
     // Written so that NaN is rejected.
     if (!(off <= most)) return false;
-    // Store only the excess over linear interpolation, because the ends have deviations of their own.
+    // Store only the excess over linear interpolation, because the ends have their own deviations.
     extra = std::max(extra, off - (1 - t) * off_a - t * off_b);
   }
   return true;
@@ -122,8 +121,8 @@ std::optional<Vector3> find_apex(const HullLoops& hull, const std::vector<Slot>&
   // In front of every line: the triangles from the apex to the segments then all have the same orientation.
   for (const Slot s : chain)
     half_spaces.push_back(in_front(hull.start(s), hull.end(s), centre, kPlacementMargin * radius));
-  // Where the outline is concave at an end, the neighbour rises in front of the chain: stay in front of its
-  // line, too, so that the new segment does not cut into it.
+  // If the outline is concave at an end, the neighbour rises in front of the chain: stay in front of its line
+  // as well, so that the new segment does not intersect it.
   const Slot before = hull[chain.front()].prev, after = hull[chain.back()].next;
   if (turn(hull.start(before), a, hull.end(chain.front())) < 0)
     half_spaces.push_back(in_front(hull.start(before), a, centre, kPlacementMargin * radius));
@@ -131,7 +130,7 @@ std::optional<Vector3> find_apex(const HullLoops& hull, const std::vector<Slot>&
     half_spaces.push_back(in_front(b, hull.end(after), centre, kPlacementMargin * radius));
   // Within the planned wrapper.
   for (const HalfSpace& h : bounds) half_spaces.push_back({h.n, h.d - h.n.dot(centre)});
-  // Project a point behind the chord: the apex is above the middle and as low as possible.
+  // Project a point behind the chord: the apex is above the midpoint and as low as possible.
   const Vector3 inward = Vector3(a.y() - b.y(), b.x() - a.x(), 0).normalized();
   auto apex = nearest_point(inward * radius, half_spaces, kPlacementSlack * radius);
   if (!apex) return std::nullopt;
@@ -154,7 +153,7 @@ std::optional<ChainCap> find_cap(const HullLoops& hull, Slot first, std::uint32_
   const std::vector<Slot> chain = chain_of(hull, first, length);
   const Vector3 &a = hull.start(chain.front()), &b = hull.end(chain.back());
   ChainCap cap{first, length, std::nullopt, 0, 0, {0, 0}};
-  // One loop: the chain's length, whether the chord is a valid cap, and the area by the shoelace formula.
+  // One loop: the chain's length, whether the chord is valid, and the area by the shoelace formula.
   double size = 0;
   bool chord = true;
   for (const Slot s : chain) {
@@ -163,7 +162,7 @@ std::optional<ChainCap> find_cap(const HullLoops& hull, Slot first, std::uint32_
     if (s != chain.front()) chord = chord && turn(a, b, hull.start(s)) > 0;
     cap.area -= cross_2d(hull.start(s) - a, hull.end(s) - a) / 2;
   }
-  // No chord: find an apex.
+  // The chord is not valid: find an apex.
   if (!chord) {
     why = CapVerdict::no_place;
     cap.apex = find_apex(hull, chain, bounds, size / 2);
@@ -187,7 +186,7 @@ bool measure_cap(const HullLoops& hull, ChainCap& cap, double most) {
   if (!cap.apex)
     return extra_of_segment(hull, chain, hull.x(first), hull.off(first), hull.x(last), hull.off(last), most,
                             cap.extra[0]);
-  // The apex first, because its deviation enters both segments.
+  // The apex first, because its deviation is used for both segments.
   cap.apex_off = off_by_chain(hull, chain, *cap.apex);
   return cap.apex_off <= most &&
          extra_of_segment(hull, chain, hull.x(first), hull.off(first), *cap.apex, cap.apex_off, most,
@@ -198,7 +197,7 @@ bool measure_cap(const HullLoops& hull, ChainCap& cap, double most) {
 
 double off_of(const HullLoops& hull, const ChainCap& cap) {
   const std::vector<Slot> chain = chain_of(hull, cap.first, cap.length);
-  // On each segment: the larger end, plus its excess.
+  // On each segment: the larger deviation of its ends, plus its excess.
   const double first = hull.off(hull[chain.front()].a), last = hull.off(hull[chain.back()].b);
   if (!cap.apex) return std::max(first, last) + cap.extra[0];
   return std::max(std::max(first, cap.apex_off) + cap.extra[0], std::max(cap.apex_off, last) + cap.extra[1]);
@@ -209,7 +208,7 @@ CapVerdict judge_chain_cap(const HullLoops& hull, const AabbTree& tree, const Ch
   const std::vector<Slot> chain = chain_of(hull, cap.first, cap.length);
   const Slot front = chain.front(), back = chain.back();
   const Vector3 &a = hull.start(front), &b = hull.end(back);
-  // Step 1: the new segments. The apex has no id yet, so it counts as shared with nothing.
+  // Step 1: the new segments. The apex has no id yet, so it is not shared.
   std::vector<CheckedSegment> added;
   if (cap.apex) {
     added.emplace_back(a, hull[front].a, *cap.apex, kNull);
@@ -219,25 +218,25 @@ CapVerdict judge_chain_cap(const HullLoops& hull, const AabbTree& tree, const Ch
   } else {
     added.emplace_back(a, hull[front].a, b, hull[back].b);
   }
-  // Step 2: at both ends, the cap must leave between the neighbour and the chain, on the outer side. There
-  // the outside is the sector from the incoming segment to the outgoing one.
+  // Step 2: at both ends, the cap must start between the neighbour and the chain, on the outer side: in the
+  // sector from the incoming segment to the outgoing one.
   if (!in_sector(a, hull.start(hull[front].prev), hull.end(front), *added.front().b) ||
       !in_sector(b, hull.start(back), hull.end(hull[back].next), *added.back().a))
     return CapVerdict::turns_inward;
   // Step 3: all segments in the box of chain and cap, found by the tree.
   Eigen::AlignedBox3d box = added.front().box;
   box.extend(added.back().box);
-  for (const Slot s : chain) box.extend(box_of(hull, s));  // another component may lie in between
+  for (const Slot s : chain) box.extend(box_of(hull, s));  // another component may be in between
   CapVerdict verdict = CapVerdict::stands;
   tree.for_each_in(box, [&](Slot s) {
     if (verdict != CapVerdict::stands || !hull.alive(s)) return;
     const CheckedSegment other = checked(hull, s);
-    // The chain itself is included: the cap may meet it in its two end points only.
+    // The chain itself is included: the cap may intersect it only in its two end points.
     for (const CheckedSegment& t : added)
       if (!t.clear_of(other)) verdict = CapVerdict::meets_hull;
     const std::uint32_t component = hull[s].component;
-    // Step 4: a component that is entirely within the box and free of the cap may be enclosed. One vertex
-    // decides.
+    // Step 4: a component that is entirely within the box and does not intersect the cap may be enclosed. One
+    // vertex decides.
     if (verdict == CapVerdict::stands && component != hull[front].component &&
         box.contains(boxes[component]) && region_holds(hull, chain, added, hull.start(s)))
       verdict = CapVerdict::holds_component;
@@ -246,7 +245,7 @@ CapVerdict judge_chain_cap(const HullLoops& hull, const AabbTree& tree, const Ch
 }
 
 HullLoops::HullLoops(const Mesh& mesh) : points_(mesh.vertices), off_(mesh.vertices.size(), 0) {
-  // Every vertex has exactly one outgoing segment, which follows the one that ends there.
+  // Every vertex has exactly one outgoing segment, which follows the incoming one.
   std::vector<Slot> leaving(points_.size(), kNull);
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     const auto c = mesh.face(f);

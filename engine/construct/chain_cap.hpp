@@ -1,5 +1,5 @@
 #pragma once
-/// Caps over chains of segments: finding one, and the proof that it may stand.
+/// Caps over chains of segments: their placement, and the proof that they can be accepted.
 
 #include <cstdint>
 #include <optional>
@@ -16,10 +16,10 @@
 
 namespace lrb::construct {
 
-// The outline that the chain builder works on: hull_mesh.hpp, one dimension down.
+// The front of the 2D builder: the counterpart of hull_mesh.hpp in one dimension less.
 
-/// Closed loops of segments with the solid on their left. Segments live in numbered slots; an empty slot is
-/// used again when a chain is replaced by its cap. Vertices are numbered as in the complex.
+/// Closed loops of segments with the solid on their left. Segments are stored in numbered slots; an empty
+/// slot is reused when a chain is replaced by its cap. Vertices are numbered as in the complex.
 class HullLoops {
  public:
   using Slot = std::uint32_t;
@@ -29,10 +29,11 @@ class HullLoops {
     Slot next = kNull, prev = kNull;
     FaceId face = kNull;  ///< the face of the complex; kNull: the slot is empty
     std::uint32_t component = kNull;
-    double extra = 0;  ///< how much further off the body than its ends it is somewhere; mesh's unit
+    double extra = 0;  ///< excess of its deviation from the body over that at its ends; mesh units
   };
 
-  /// Makes the loops of a mesh, which must be 2D and closed, every vertex with one segment in and one out.
+  /// Builds the loops of a 2D mesh, which must be closed, with one incoming and one outgoing segment at every
+  /// vertex.
   explicit HullLoops(const Mesh& mesh);
 
   Slot slot_count() const { return static_cast<Slot>(segments_.size()); }
@@ -44,7 +45,8 @@ class HullLoops {
   const Eigen::Vector3d& start(Slot s) const { return points_[segments_[s].a]; }
   const Eigen::Vector3d& end(Slot s) const { return points_[segments_[s].b]; }
   std::vector<Slot> alive_slots() const;
-  /// Returns how far a vertex is off the body: 0 for the mesh's own, else an estimate; mesh's unit.
+  /// Returns the deviation of a vertex from the body: 0 for the mesh's own vertices, else an estimate; mesh
+  /// units.
   double off(VertexId v) const { return off_[v]; }
 
   VertexId add_point(const Eigen::Vector3d& x, double off = 0);
@@ -52,7 +54,7 @@ class HullLoops {
   void set_component(Slot s, std::uint32_t component) { segments_[s].component = component; }
   /// Empties slots without closing the gap: place() must follow.
   void remove(std::span<const Slot> slots);
-  /// Fills an empty slot, or the next one after the last; join() must follow.
+  /// Fills an empty slot, or the one after the last; join() must follow.
   void place(Slot s, VertexId a, VertexId b, FaceId face, std::uint32_t component);
   void join(Slot first, Slot second) {
     segments_[first].next = second;
@@ -72,13 +74,13 @@ inline Eigen::AlignedBox3d box_of(const HullLoops& hull, HullLoops::Slot s) {
   return box;
 }
 
-/// A cap over the segment `first` and those that follow it, `length` in all.
+/// A cap over a chain of `length` segments that begins with `first`.
 struct ChainCap {
   HullLoops::Slot first = kNull;
   std::uint32_t length = 0;
-  std::optional<Eigen::Vector3d> apex;  ///< none if the cap is the chord
+  std::optional<Eigen::Vector3d> apex;  ///< nullopt if the cap is the chord
   double area = 0;                      ///< area between chain and cap; unit squared
-  /// What measure_cap() finds: how far the apex is off the body, and each segment beyond its ends.
+  /// Set by measure_cap(): deviation of the apex, and excess deviation of each segment over its ends.
   double apex_off = 0, extra[2] = {0, 0};
 
   std::uint32_t segments() const { return apex ? 2 : 1; }
@@ -87,23 +89,23 @@ struct ChainCap {
 /// Returns the slots of the chain, in order.
 std::vector<HullLoops::Slot> chain_of(const HullLoops& hull, HullLoops::Slot first, std::uint32_t length);
 
-/// Returns the chord if the chain's inner vertices are strictly behind it, else two segments whose apex is in
-/// front of the chain's lines (and, where the outline turns up at its ends, of its neighbours') and within
-/// `bounds`. Sets `why` to why it returns nothing: there is no such point, or the cap would add more than
-/// `area_limit` times the square of the chain's length.
+/// Returns the chord as a cap if the chain's inner vertices are strictly behind it, otherwise two segments
+/// whose apex is in front of the chain's lines (and of its neighbours' lines if the outline is concave at its
+/// ends) and within `bounds`. Returns nullopt, and sets `why`, if there is no such apex, or if the cap would
+/// add more than `area_limit` times the square of the chain's length.
 std::optional<ChainCap> find_cap(const HullLoops& hull, HullLoops::Slot first, std::uint32_t length,
                                  std::span<const HalfSpace> bounds, double area_limit, CapVerdict& why);
 
-/// Measures how far the cap is off the body, at a few points of each segment, by what is known of the chain:
-/// an estimate. Returns false if that is more than `most`.
+/// Estimates the deviation of the cap from the body at a few points of each segment, from the known deviation
+/// of the chain. Returns false if it exceeds `most`.
 bool measure_cap(const HullLoops& hull, ChainCap& cap, double most);
 
-/// Returns how far the cap stands off the body by what measure_cap() found: at its ends or between.
+/// Returns the maximum deviation of the cap, at its ends or in between, as measured by measure_cap().
 double off_of(const HullLoops& hull, const ChainCap& cap);
 
-/// Returns CapVerdict::stands if, exactly, the cap meets nothing of the hull and of the chain but the chain's
-/// ends, leaves these between the chain and its neighbours on the outer side, and no other component lies
-/// beneath it; else what is in the way. `boxes` (components).
+/// Returns CapVerdict::stands if, exactly, the cap intersects the front and the chain only in the chain's
+/// ends, leaves these ends between the chain and its neighbours on the outer side, and no other component is
+/// beneath it; otherwise returns the obstacle. `boxes` (components).
 CapVerdict judge_chain_cap(const HullLoops& hull, const AabbTree& tree, const ChainCap& cap,
                            std::span<const Eigen::AlignedBox3d> boxes);
 

@@ -1,6 +1,6 @@
 // The outermost wrapper: a convex polytope with few faces around the points.
 // 1. Reduce the points to those near their convex hull.
-// 2. Replace each by a small tetrahedron: the hull of these is the hull moved outward.
+// 2. Replace each by a small tetrahedron: the convex hull of the tetrahedra is the first hull moved outward.
 // 3. Simplify that hull outward with two settings (simplify_polytope()).
 // 4. Keep the candidate of least volume that contains all points, tested exactly. A box is the fallback.
 
@@ -30,19 +30,19 @@ namespace lrb::construct {
 
 // Bridging: replaces the front of a set of components by their convex hull.
 // 1. Compute the exact convex hull of the front's vertices.
-// 2. Compare triangles: those in both stay, other hull triangles are added, other front triangles are
-// covered.
-// 3. Verify that this makes the front simpler and keeps it embedded.
-// 4. The space between, split into pockets, becomes regions; the components become one.
+// 2. Compare triangles: those in both are retained, other hull triangles are added, other front triangles are
+//    covered.
+// 3. Verify that the front becomes simpler and stays embedded.
+// 4. The space in between, split into pockets, becomes regions; the components become one.
 
 namespace {
 
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// Returns the triangles of the convex hull of the slots' vertices; corners are the hull mesh's.
+/// Returns the triangles of the convex hull of the slots' vertices; corners are vertices of the front.
 std::vector<PointTriangle> convex_hull_of(const HullMesh& hull, const std::vector<Slot>& slots) {
-  // Each vertex once, in ascending order: the result depends on the set of slots only.
+  // Each vertex once, in ascending order: the result depends only on the set of slots.
   std::vector<Corner> corners;
   for (const Slot s : slots) corners.insert(corners.end(), hull[s].v.begin(), hull[s].v.end());
   std::sort(corners.begin(), corners.end());
@@ -63,18 +63,18 @@ PointTriangle smallest_first(const PointTriangle& t) {
 }
 
 CapVerdict judge(const HullMesh& hull, const std::vector<PointTriangle>& added) {
-  // A fresh tree: all of its slots are alive.
+  // A new tree: all of its slots are alive.
   const AabbTree tree(hull);
   std::vector<CheckedTriangle> checked;
   for (const PointTriangle& t : added)
     checked.emplace_back(hull.point(t[0]), hull.point(t[1]), hull.point(t[2]));
   for (std::size_t i = 0; i < checked.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)
-      // Triangles of a convex hull can overlap only through vertices in one plane, or vertices with equal
+      // Triangles of a convex hull can overlap only because of coplanar vertices, or vertices with equal
       // coordinates.
       if (!checked[i].clear_of(checked[j])) return CapVerdict::meets_itself;
-    // Against the whole front, covered triangles included: the lid may meet its floor in shared vertices and
-    // edges only.
+    // Against the entire front, including covered triangles: a lid may intersect its floor only in shared
+    // vertices and edges.
     bool clear = true;
     tree.for_each_in(checked[i].box, [&](Slot s) {
       const auto& v = hull[s].v;
@@ -85,13 +85,13 @@ CapVerdict judge(const HullMesh& hull, const std::vector<PointTriangle>& added) 
   return CapVerdict::stands;
 }
 
-/// The faces of the convex hull that are not the hull's own already, and what they cover.
+/// The faces of the convex hull that are not in the front, and the front's triangles that they cover.
 struct Bridge {
   std::vector<PointTriangle> added;
   std::vector<Slot> removed;
 };
 
-/// Finds them, among all faces of the convex hull, which are ascending. Triangles that are in both stay.
+/// Finds them. `convex`: all faces of the convex hull, ascending. Triangles in both are retained.
 Bridge find_bridge(const HullMesh& hull, const std::vector<Slot>& slots, std::vector<PointTriangle> convex) {
   Bridge bridge;
   std::vector<PointTriangle> kept;
@@ -101,7 +101,7 @@ Bridge find_bridge(const HullMesh& hull, const std::vector<Slot>& slots, std::ve
     if (std::binary_search(convex.begin(), convex.end(), t))
       kept.push_back(t);
     else
-      // It lies beneath the convex hull, as the floor of a pocket.
+      // It is beneath the convex hull, as the floor of a pocket.
       bridge.removed.push_back(s);
   }
   std::sort(kept.begin(), kept.end());
@@ -111,8 +111,8 @@ Bridge find_bridge(const HullMesh& hull, const std::vector<Slot>& slots, std::ve
   return bridge;
 }
 
-/// Returns true if the bridge covers some triangles of a polygon, but not all of them. In the complex a
-/// polygon is one face, which has one cell in front of it.
+/// Returns true if the bridge covers some triangles of a polygon, but not all. In the complex a polygon is
+/// one face, with one cell in front of it.
 bool splits_polygon(const HullMesh& hull, const Bridge& bridge) {
   // Each polygon with a covered triangle must have all of its triangles covered.
   std::vector<bool> removed(hull.slot_count(), false);
@@ -140,7 +140,7 @@ CapVerdict judge(const HullMesh& hull, const std::vector<Slot>& slots, std::size
 
 CapVerdict bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std::vector<bool>& joined,
                               std::uint16_t layer, ConstructProbe* probe) {
-  // Step 1: the convex hull over the chosen components.
+  // Step 1: the convex hull of the chosen components.
   std::vector<Slot> slots = hull.alive_slots();
   std::erase_if(slots, [&](Slot s) { return !joined[hull[s].component]; });
   std::vector<PointTriangle> convex = convex_hull_of(hull, slots);
@@ -157,7 +157,7 @@ CapVerdict bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std
                 static_cast<std::uint32_t>(bridge.removed.size()), verdict, false, -1});
   }
   if (verdict != CapVerdict::stands) return verdict;
-  // Step 4: relabel first, so that lids and remaining triangles share a component.
+  // Step 4: relabel first, so that lids and retained triangles share a component.
   const std::uint32_t component = hull[slots[0]].component;
   for (const Slot s : slots) hull.set_component(s, component);
   cover(hull, complex, make_sheet(hull, bridge.removed, bridge.added), layer, component, probe);
@@ -168,24 +168,23 @@ CapVerdict bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std
 // 1. Collapse edges outward, as for caps (progressive hulls, Sander et al. 2000).
 // 2. Take the convex hull of the result.
 // 3. Tighten: coordinate descent on the volume. One vertex at a time moves to its best position with the
-// points still behind its faces.
+//    points still behind its faces.
 // 4. Take the convex hull again, and repeat from 1 until there are few enough faces.
 
 namespace {
 
 using Vector3 = Eigen::Vector3d;
 
-/// The first step goes down to this many faces at once; from there each step takes away one face in
-/// kStepShare.
+/// The first step reduces the number of faces to this; each further step removes 1 / kStepShare of the faces.
 constexpr std::size_t kTightenFrom = 100, kStepShare = 4;
 /// Rounds of tightening after each step, and after the last one.
 constexpr int kRounds = 3, kLastRounds = 20;
 
-/// One step of simplification. Starts from a convex surface; `points` are to stay inside.
+/// One step of simplification, starting from a convex surface. `points` must stay inside.
 class PolytopeStep {
  public:
   PolytopeStep(const Mesh& convex, const std::vector<Vector3>& points) : points_(points), hull_(convex) {
-    // The whole closed surface is one patch: it has no ring, and every vertex is interior.
+    // The entire closed surface is one patch: it has no ring, and every vertex is interior.
     all_.slots = hull_.alive_slots();
     for (HullMesh::Corner v = 0; v < hull_.point_count(); ++v) all_.interior.push_back(v);
     surface_.load(hull_, all_, 0);
@@ -196,7 +195,7 @@ class PolytopeStep {
 
   void collapse(std::size_t wanted_faces, double depth) {
     const BodyBounds bounds(points_, kSwell);
-    // Cost only orders the collapses: the number of faces is limited, the volume is not.
+    // The cost only orders the collapses: the number of faces is limited, the volume is not.
     PatchCap::Limits limits;
     limits.volume = std::numeric_limits<double>::infinity();
     limits.faces = static_cast<int>(wanted_faces);
@@ -210,7 +209,7 @@ class PolytopeStep {
       double gain = 0;
       for (int v = 0; v < surface_.vertex_count(); ++v) {
         if (!surface_.is_used(v)) continue;
-        // Only the fan of v changes. The volume changes by that of the cone over its boundary loop.
+        // Only the fan of v changes, and the volume changes by the cone over its boundary loop.
         rim_.clear();
         surface_.for_each_rim_edge(v, [&](int a, int b) { rim_.push_back({surface_.x(a), surface_.x(b)}); });
         const auto w = place();
@@ -232,7 +231,7 @@ class PolytopeStep {
       if (!f.alive) continue;
       VertexId corners[3];
       for (int i = 0; i < 3; ++i) {
-        // Collapses leave unused vertices behind: copy only those with faces.
+        // Collapses leave unused vertices: copy only those with faces.
         VertexId& v = number[f.v[i]];
         if (v == kNull) {
           v = static_cast<VertexId>(mesh.vertices.size());
@@ -268,11 +267,12 @@ class PolytopeStep {
     return sixfold / 6;
   }
 
-  /// Returns the place where the cone over the rim has least volume. The volume falls against the sum of the
-  /// rim's area vectors, so a point far along that way is projected onto what is allowed.
+  /// Returns the position of least volume of the cone over the rim, or nullopt if none is feasible. The
+  /// volume decreases against the sum of the rim's area vectors, so a point far in that direction is
+  /// projected onto the feasible set.
   std::optional<Vector3> place() {
     Vector3 centre = Vector3::Zero(), area = Vector3::Zero();
-    // Work relative to the centre of the boundary loop, so that slack and depth scale with its radius.
+    // Coordinates relative to the centre of the boundary loop, so that slack and depth scale with its radius.
     for (const Edge& e : rim_) centre += e.a;
     centre /= static_cast<double>(rim_.size());
     double radius_sq = 0;
@@ -280,12 +280,12 @@ class PolytopeStep {
     for (const Edge& e : rim_) {
       area += (e.a - centre).cross(e.b - centre);
       radius_sq = std::max(radius_sq, (e.a - centre).squaredNorm());
-      // The faces over this edge must leave all points behind them.
+      // The faces over this edge must have all points behind them.
       for (const Vector3& n : touching_normals(e)) half_spaces_.push_back({n, n.dot(e.a - centre)});
     }
     // The volume is linear in w. Its gradient is the loop's area vector, so the best w is the extreme point
-    // of the allowed polyhedron against that vector. Projecting a far target approximates this linear
-    // programme, and it stays bounded where the linear programme is not.
+    // of the feasible polyhedron against that vector. Projecting a far target approximates this linear
+    // programme, and stays bounded where the linear programme is unbounded.
     const double radius = std::sqrt(radius_sq), length = area.norm();
     if (!(length > 0)) return std::nullopt;
     const auto w = nearest_point(area * (-kDepth * radius / length), half_spaces_, kPlacementSlack * radius);
@@ -294,8 +294,8 @@ class PolytopeStep {
   }
 
   /// Returns the normals of the two planes that contain the edge a, b and touch the points. All points are
-  /// behind a face a, b, w if for each of them w is in front of the plane a, b, p; of these planes the two
-  /// outermost count.
+  /// behind a face a, b, w if w is in front of the plane a, b, p for each point p; only the two outermost of
+  /// these planes matter.
   std::array<Vector3, 2> touching_normals(const Edge& e) const {
     const Vector3 along = e.b - e.a;
     std::array<Vector3, 2> normals = {Vector3::Zero(), Vector3::Zero()};
@@ -310,10 +310,10 @@ class PolytopeStep {
     return {normals[0].normalized(), normals[1].normalized()};
   }
 
-  static constexpr double kSwell = 0.4;  ///< see BodyBounds; here only to keep vertices from going far off
-  /// Depth of the point that is projected in tightening, in radii of the rim.
+  static constexpr double kSwell = 0.4;  ///< see BodyBounds; only keeps vertices from moving far away
+  /// Depth of the target that is projected in tightening, in radii of the rim.
   static constexpr double kDepth = 8;
-  static constexpr double kLeastGain = 1e-3;  ///< share of the volume for which another round is worthwhile
+  static constexpr double kLeastGain = 1e-3;  ///< least gain for another round, relative to the volume
 
   const std::vector<Vector3>& points_;
   HullMesh hull_;
@@ -328,17 +328,18 @@ class PolytopeStep {
 
 Mesh simplify_polytope(const Mesh& convex, std::uint32_t max_faces, double depth) {
   Mesh mesh = convex;
-  // Stop without success if a step removes no face.
+  // Fail if a step removes no face.
   for (std::size_t before = 0; mesh.face_count() > max_faces && mesh.face_count() != before;) {
     before = mesh.face_count();
-    // Large steps while there are many faces, where tightening costs much and matters little.
+    // Large steps while there are many faces, when tightening is expensive and gains little.
     const std::size_t step =
         before > kTightenFrom ? before - kTightenFrom : std::max<std::size_t>(2, before / kStepShare);
     const std::size_t wanted = std::max<std::size_t>(max_faces, before - step);
-    // The points that must stay inside are always the input's, so errors do not accumulate over the steps.
+    // The points that must stay inside are always the input's, so that errors do not accumulate over the
+    // steps.
     PolytopeStep fewer(mesh, convex.vertices);
     fewer.collapse(wanted, depth);
-    // Moving single vertices needs a convex start, and leaves a surface that may have dents.
+    // Tightening needs a convex start, and may leave a surface with dents.
     PolytopeStep tighter(convex_hull_mesh(fewer.result().vertices), convex.vertices);
     tighter.tighten(wanted == max_faces ? kLastRounds : kRounds);
     mesh = convex_hull_mesh(tighter.result().vertices);
@@ -348,16 +349,16 @@ Mesh simplify_polytope(const Mesh& convex, std::uint32_t max_faces, double depth
 
 namespace {
 
-/// Returns a number from 0 to 1, the same sequence on every machine.
+/// Returns a number in [0, 1); the same sequence on every machine.
 double fraction(Random& random) {
   return static_cast<double>(random.below(1u << 16)) * 0x1p-16;
 }
 
-/// Returns the points on the convex hull, and perhaps some within `distance` of it. All others are within
-/// that distance of the hull of those returned. (A perturbation brings the points into general position
-/// first, where Quickhull is fast.)
+/// Returns the points on the convex hull, and possibly some within `distance` of it. All other points are
+/// within that distance of the hull of those returned. (A perturbation first moves the points into general
+/// position, where Quickhull is fast.)
 std::vector<Vector3> outermost(std::span<const Vector3> points, double distance) {
-  // A fixed seed: the same points are kept on every machine.
+  // A fixed seed, so that the same points are kept on every machine.
   Random random(1);
   std::vector<Vector3> moved;
   for (const Vector3& p : points) {
@@ -376,14 +377,14 @@ std::vector<Vector3> outermost(std::span<const Vector3> points, double distance)
   return out;
 }
 
-/// Returns four points around each point: their hull holds every point with at least a quarter of `distance`
-/// to spare, and they are in general position.
+/// Returns four points around each point: their hull contains every point with a clearance of at least a
+/// quarter of `distance`, and they are in general position.
 std::vector<Vector3> tetrahedra_about(std::span<const Vector3> points, double distance) {
   static const Vector3 kCorners[4] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
   Random random(1);
   std::vector<Vector3> out;
-  // The regular tetrahedron has the inradius 0.577 distance. The jitter takes at most 0.173 of it, and the
-  // points that outermost() dropped 0.125, so that more than a quarter is left.
+  // The regular tetrahedron has an inradius of 0.577 distance. The jitter reduces it by at most 0.173, and
+  // the points that outermost() dropped by 0.125, so that more than a quarter remains.
   for (const Vector3& p : points)
     for (const Vector3& c : kCorners) {
       const double dx = fraction(random), dy = fraction(random), dz = fraction(random);
@@ -433,7 +434,7 @@ double volume_of(const Mesh& mesh) {
 
 bool holds(const Mesh& convex, const Vector3& point) {
   for (FaceId f = 0; f < convex.face_count(); ++f) {
-    // Exact, so rounding in the construction of the polytope cannot let a point through its faces.
+    // Exact, so that rounding in the construction of the polytope cannot leave a point outside.
     const auto c = convex.face(f);
     const auto at = [&](int i) { return convex.vertices[c[i]].data(); };
     if (exact::orient3d(at(0), at(1), at(2), point.data()) >= 0) return false;
@@ -443,7 +444,7 @@ bool holds(const Mesh& convex, const Vector3& point) {
 
 Mesh enclosing_polytope(std::span<const Vector3> points, std::uint32_t max_faces, double distance,
                         Workers& workers) {
-  // The fallback and the yardstick: the bounding box, grown by the distance.
+  // The fallback, and the volume to improve on: the bounding box, grown by the distance.
   Eigen::AlignedBox3d box;
   for (const Vector3& p : points) box.extend(p);
   distance *= box.sizes().maxCoeff();
@@ -457,10 +458,10 @@ Mesh enclosing_polytope(std::span<const Vector3> points, std::uint32_t max_faces
   if (convex.face_count() == 0) return best;
   double least = volume_of(best);
   std::array<Mesh, 2> simplified;
-  // Which depth gives the tighter polytope depends on the shape. Both run at the same time.
+  // Which depth yields the tighter polytope depends on the shape. Both are computed in parallel.
   workers.both([&] { simplified[0] = simplify_polytope(convex, max_faces, 2); },
                [&] { simplified[1] = simplify_polytope(convex, max_faces, 8); });
-  // The order of this loop is fixed, so the result does not depend on the number of threads.
+  // The order of this loop is fixed, so that the result does not depend on the number of threads.
   for (Mesh& polytope : simplified) {
     if (polytope.face_count() == 0 || volume_of(polytope) >= least) continue;
     if (!std::all_of(points.begin(), points.end(), [&](const Vector3& p) { return holds(polytope, p); }))

@@ -16,38 +16,37 @@
 
 namespace lrb::construct {
 
-// Bridging does what patches cannot: it closes holes, fills deep concavities, joins components.
-
-/// Covers the concavities of a set of components with the faces of their convex hull: the pockets between
-/// become regions of this layer, and the components become one. `joined` (components): which ones to cover.
-/// Does nothing and returns why if that would not make the surface simpler, or if faces of the convex hull
-/// would meet others (vertices in one plane). Tells `probe` of the cap and its regions, if there is one.
+/// Bridging does what patches cannot: it closes holes, fills deep concavities and connects components. Covers
+/// the concavities of a set of components with the faces of their convex hull: the pockets in between become
+/// regions of this layer, and the components become one. `joined` (components): the components to cover.
+/// Changes nothing, and returns the reason, if the front would not become simpler, or if faces of the convex
+/// hull would intersect others (coplanar vertices). Reports the cap and its regions to `probe`, if not null.
 CapVerdict bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std::vector<bool>& joined,
                               std::uint16_t layer, ConstructProbe* probe);
 
-/// Returns a convex polytope of at most `max_faces` triangles (12 if fewer are asked for: a box) around the
-/// points, which keep a distance of at least a quarter of `distance` times their largest extent from its
-/// faces (to rounding; confirm with holds()). Empty if the coordinates are too large for that.
+/// Returns a convex polytope of at most max(max_faces, 12) triangles around the points, or an empty mesh if
+/// the coordinates are too large. The points keep a distance of at least a quarter of `distance` times their
+/// largest extent from its faces (up to rounding; confirm with holds()).
 ///
-/// Moves the convex hull of the points outward, simplifies it (simplify_polytope()) in a few ways, of which
-/// the tightest wins, and makes the result convex. Jacobson, "Progressive Convex Hull Simplification", 2026,
-/// removes half-spaces instead; but there a plane costs up to four triangles, and here one.
+/// Moves the convex hull of the points outward, simplifies it in two ways (simplify_polytope()), makes the
+/// results convex, and keeps the tighter one. Jacobson, "Progressive Convex Hull Simplification",
+/// 2026, removes half-spaces instead, but a plane there costs up to four triangles, and here one.
 Mesh enclosing_polytope(std::span<const Eigen::Vector3d> points, std::uint32_t max_faces, double distance,
                         Workers& workers);
 
-/// Returns true if the point lies strictly behind all faces of a mesh of triangles. Exact.
+/// Returns true if the point is strictly behind all faces of a triangle mesh. Exact.
 bool holds(const Mesh& convex, const Eigen::Vector3d& point);
 
-/// Returns the volume behind a closed mesh of triangles; unit cubed.
+/// Returns the volume behind a closed triangle mesh; mesh units cubed.
 double volume_of(const Mesh& mesh);
 
-/// Returns a convex polytope of at most `max_faces` triangles around a convex mesh of triangles, to rounding,
-/// with a small volume. Empty if there is none to be found.
+/// Returns a convex polytope of at most `max_faces` triangles around a convex triangle mesh, up to rounding,
+/// with a small volume, or an empty mesh if none is found.
 ///
-/// In each step some edges collapse outward as in patches (patch_cap.hpp; `depth` as there). That asks for
-/// more than is needed, namely to stay in front of the faces that go; so afterwards vertices are moved one by
-/// one to where the volume is least as long as the mesh is behind the faces around them, and the whole is
-/// made convex again.
+/// In each step some edges collapse outward as in patches (patch_cap.hpp; `depth` is described there). This
+/// requires more than necessary: the new vertex is in front of all faces that are removed. Therefore each
+/// vertex is then moved to the position of least volume with the input still behind the faces around it, and
+/// the result is made convex again.
 Mesh simplify_polytope(const Mesh& convex, std::uint32_t max_faces, double depth);
 
 }  // namespace lrb::construct

@@ -24,7 +24,7 @@ class ComplexBuilder {
 
   VertexId add_vertex(const Eigen::Vector3d& p);
   RegionId add_region(std::uint16_t layer);
-  /// Adds a face. Its corners run counter-clockwise seen from the outer cell (2D: the inner cell is on the
+  /// Adds a face. Its corners are counter-clockwise seen from the outer cell (2D: the inner cell is on the
   /// left).
   FaceId add_real_face(std::span<const VertexId> corners, CellId outer);
   FaceId add_pseudo_face(std::span<const VertexId> corners, RegionId inner, CellId outer);
@@ -35,7 +35,7 @@ class ComplexBuilder {
   std::uint32_t region_count() const { return static_cast<std::uint32_t>(d_.region_layer.size()); }
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(d_.face_count()); }
 
-  /// Returns the arrays and leaves the builder empty. `closed`, `self_intersecting`: see LrbData.
+  /// Returns the arrays and empties the builder. `closed`, `self_intersecting`: see LrbData.
   LrbData finish(bool closed, bool self_intersecting);
 
  private:
@@ -44,11 +44,11 @@ class ComplexBuilder {
   LrbData d_;
 };
 
-// The regions that a builder makes of whole hulls when no cap shrinks them further, for HullMesh and
-// HullLoops alike. `home`: (components) the void in front of a component, itself for a void; kNull for the
-// outside.
+// The regions that a builder makes of entire fronts when caps no longer simplify them, for HullMesh and
+// HullLoops alike. `home`: (components) the void in front of a component, which is the component itself if it
+// bounds a void; kNull for the outside.
 
-/// Makes what is left of each void one region, which has only a floor.
+/// Makes the remainder of each void one region, which has only a floor.
 template <class Hull>
 void fill_voids(const Hull& hull, std::span<const std::uint32_t> home, std::uint16_t layer,
                 ComplexBuilder& complex) {
@@ -61,7 +61,7 @@ void fill_voids(const Hull& hull, std::span<const std::uint32_t> home, std::uint
   }
 }
 
-/// Makes `wrapper` the outermost wrapper: what lies between it and the outer hulls is one region.
+/// Makes `wrapper` the outermost wrapper: the space between it and the outer fronts is one region.
 template <class Hull>
 void enclose(const Hull& hull, std::span<const std::uint32_t> home, const Mesh& wrapper, std::uint16_t layer,
              ComplexBuilder& complex) {
@@ -78,7 +78,7 @@ void enclose(const Hull& hull, std::span<const std::uint32_t> home, const Mesh& 
   }
 }
 
-/// Counts the passes of a builder, and tells its probe of them. A region's layer is the number of the pass
+/// Counts the passes of a builder, and reports them to its probe. A region's layer is the number of the pass
 /// that made it; a pass that makes no region does not count, so that no layer is empty.
 class PassCounter {
  public:
@@ -86,21 +86,21 @@ class PassCounter {
 
   std::uint16_t layer() const { return static_cast<std::uint16_t>(pass_); }
 
-  /// Tells that a pass begins.
+  /// Reports the start of a pass.
   void tell_begin(BuildStage stage, std::uint32_t hull_faces, double most_off = 0) const {
     if (options_.probe) options_.probe->pass({stage, pass_, hull_faces, most_off});
   }
-  /// Tells that it ends.
+  /// Reports its end.
   void tell_end(const PassEnd& end) const {
     if (options_.probe) options_.probe->end_pass(end);
   }
-  /// Tells of the regions from number `first` on.
+  /// Reports the regions from number `first` on.
   void tell_regions(const ComplexBuilder& complex, std::uint32_t first) const {
     if (!options_.probe) return;
     for (RegionId r(first); r < complex.region_count(); ++r) options_.probe->region(r);
   }
 
-  /// Counts the pass, and reports it with the number of faces that the hull has left.
+  /// Counts the pass, and reports it with the number of faces in the front.
   void end_pass(const ComplexBuilder& complex, std::uint32_t hull_faces) {
     if (complex.region_count() == regions_) return;
     regions_ = complex.region_count();
@@ -110,8 +110,8 @@ class PassCounter {
 
  private:
   const BuildOptions& options_;
-  std::uint32_t pass_ = 0;     ///< the number of the next pass
-  std::uint32_t regions_ = 0;  ///< regions before it
+  std::uint32_t pass_ = 0;     ///< number of the next pass
+  std::uint32_t regions_ = 0;  ///< number of regions before it
 };
 
 }  // namespace lrb::construct

@@ -12,19 +12,20 @@
 
 namespace lrb::construct {
 
-/// Returns the indices of the points on the boundary of the convex hull, counter-clockwise, including those
-/// in the middle of its sides; no two of them are the same point. Ignores z. Exact. Fewer than three if all
-/// points are on one line. (Monotone chains: Andrew 1979.)
+/// Returns the indices of the points on the boundary of the convex hull, counter-clockwise, including points
+/// inside its sides; coincident points are returned once. Ignores z. Exact. Returns fewer than three if all
+/// points are collinear. (Monotone chains: Andrew 1979.)
 std::vector<std::uint32_t> convex_outline(std::span<const Eigen::Vector3d> points);
 
-/// Returns the corners, counter-clockwise, of a convex polygon of at most `max_sides` sides (4 if fewer are
-/// asked for: a box) that holds the points with at least half of `distance` times their largest extent to
-/// spare (to rounding; confirm with holds_2d()). Empty if coordinates are too large. Starts from the sides of
-/// the convex hull, moved outward, and leaves them out one by one, always the one that adds least area.
+/// Returns the corners, counter-clockwise, of a convex polygon of at most max(max_sides, 4) sides that
+/// contains the points, or an empty list if coordinates are too large. The points keep a distance of at least
+/// half of `distance` times their largest extent from its sides (up to rounding; confirm with holds_2d()).
+/// Starts from the sides of the convex hull, moved outward, and removes them one by one, always the one that
+/// adds least area.
 std::vector<Eigen::Vector3d> enclosing_polygon(std::span<const Eigen::Vector3d> points,
                                                std::uint32_t max_sides, double distance);
 
-/// Returns true if the point lies strictly inside a convex polygon with counter-clockwise corners. Exact.
+/// Returns true if the point is strictly inside a convex polygon with counter-clockwise corners. Exact.
 bool holds_2d(std::span<const Eigen::Vector3d> polygon, const Eigen::Vector3d& point);
 
 }  // namespace lrb::construct

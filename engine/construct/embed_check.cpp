@@ -1,10 +1,11 @@
 // Exact proof that a cap leaves the front (the current progressive hull) embedded:
 // 1. At each ring edge, the cap starts between the patch and the outer neighbour, on the outer side.
-// 2. New triangles meet each other only in shared vertices and edges.
-// 3. They meet the patch that they cover in the same way.
-// 4. They meet the rest of the front in the same way; an AABB tree and plane tests cull the pairs.
-// 5. No other component lies between patch and cap.
-// Every decision is an exact predicate. Floating point only culls, conservatively.
+// 2. New triangles intersect each other only in shared vertices and edges.
+// 3. They intersect the covered patch in the same way only.
+// 4. They intersect the rest of the front in the same way only; an AABB tree and plane tests cull the pairs.
+// 5. No other component is between patch and cap.
+//
+// Every decision is an exact predicate. Floating point is used only for conservative culling.
 
 #include "engine/construct/embed_check.hpp"
 
@@ -31,17 +32,17 @@ int side(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d)
   return exact::orient3d(a.data(), b.data(), c.data(), d.data());
 }
 
-/// Returns true if, turning about the edge a, b from the old triangle (a, b, p) through the space in front of
-/// it, one reaches the new triangle (a, b, w) before the neighbour (b, a, q).
+/// Returns true if a rotation about the edge a, b, from the old triangle (a, b, p) through the space in front
+/// of it, reaches the new triangle (a, b, w) before the neighbour (b, a, q).
 bool turns_outward(const Vector3& a, const Vector3& b, const Vector3& p, const Vector3& w, const Vector3& q) {
   // Measure angles about the edge from the old triangle. Three signs order w and q without computing angles.
   const int new_side = side(a, b, p, w), far_side = side(a, b, p, q);
   // w is at less than 180 degrees. q comes later if it is at 180 or more, or in front of the new triangle.
   if (new_side > 0) return far_side <= 0 || side(a, b, w, q) > 0;
   // w is at 180 degrees, so q must be beyond. (At 0 degrees it overlaps the patch, which the overlap test
-  // finds.)
+  // detects.)
   if (new_side == 0) return far_side < 0;
-  // w is at more than 180 degrees: q must be, too, and in front of the new triangle.
+  // w is at more than 180 degrees: q must be as well, and in front of the new triangle.
   return far_side < 0 && side(a, b, w, q) > 0;
 }
 
@@ -62,10 +63,10 @@ TriangleReach::TriangleReach(const CheckedTriangle& t)
     : box_(t.box), corner_(t.x[0][0], t.x[0][1], t.x[0][2]) {
   const Vector3 u = Vector3(t.x[1][0], t.x[1][1], t.x[1][2]) - corner_;
   const Vector3 v = Vector3(t.x[2][0], t.x[2][1], t.x[2][2]) - corner_;
-  // The unnormalised normal saves a square root: all terms of the plane test scale with it.
+  // The normal is not normalised, which saves a square root: all terms of the plane test scale with it.
   normal_ = u.cross(v);
-  // The normal has an error below 2^-50 |u| |v|, and so has a product with it, times the other factor. The
-  // slack of 2^-40 exceeds their sum by far.
+  // The error of the normal is below 2^-50 |u| |v|; the error of a product with it is below this times the
+  // other factor. The slack of 2^-40 far exceeds their sum.
   slack_ = 0x1p-40 * u.norm() * v.norm();
 }
 
@@ -79,33 +80,33 @@ bool TriangleReach::may_meet(const Box& other) const {
 }
 
 CapVerdict EmbedCheck::judge_cap(const Patch& patch, const CapSurface& cap) {
-  // Step 1 is local and cheap, and excludes most inward caps.
+  // Step 1 is local and cheap, and rejects most caps that turn inward.
   if (!ring_turns_outward(patch, cap)) return CapVerdict::turns_inward;
   added_.clear();
   obstacles_.clear();
   Box box;
-  // The checked triangles refer to these points, which therefore may not move: reserve first.
+  // The checked triangles refer to these points, which therefore must not be reallocated: reserve first.
   std::vector<HullMesh::Point> points;
   points.reserve(cap.vertex_count());
   for (int v = 0; v < cap.vertex_count(); ++v) points.push_back(point_of(cap, v));
   for (const auto& f : cap.faces()) {
-    // Kept triangles belong to the front already, so they need no test.
+    // Retained triangles belong to the front already, so they need no test.
     if (!f.alive || f.kept >= 0) continue;
     added_.emplace_back(points[f.v[0]], points[f.v[1]], points[f.v[2]]);
     box.extend(added_.back().box);
   }
   // Step 2. Quadratic, but a cap has at most a few dozen faces.
   if (added_meet_each_other()) return CapVerdict::meets_itself;
-  // Steps 3 and 4. The patch goes first in the list, so that the verdict can name the obstacle.
+  // Steps 3 and 4. The patch comes first in the list, so that the verdict can identify the obstacle.
   add_patch(patch);
   const std::size_t of_patch = obstacles_.size();
-  if (component_boxes_.size() > 1)  // another component may lie in between, under the cap and clear of it
+  if (component_boxes_.size() > 1)  // another component may be under the cap
     for (const CheckedTriangle& t : obstacles_) box.extend(t.box);
   // For a body of one component, the box of the new triangles suffices.
   gather_hull(patch, cap, box);
   const CapVerdict verdict = judge_added(of_patch);
   if (verdict != CapVerdict::stands || component_boxes_.size() < 2) return verdict;
-  // Step 5, only where there are several components.
+  // Step 5, only if there are several components.
   return encloses_component(patch, cap, box) ? CapVerdict::holds_component : CapVerdict::stands;
 }
 
@@ -115,8 +116,8 @@ CapVerdict EmbedCheck::judge_fan(const Patch& patch, const CapSurface& cap, cons
   added_.clear();
   obstacles_.clear();
   Box box;
-  // The same steps for a single collapse; the cap's own new faces are obstacles too. An enclosed component is
-  // not searched for: judge_cap() does that once, for the finished cap.
+  // The same steps for a single collapse; the cap's own new faces are obstacles as well. Enclosed components
+  // are not searched: judge_cap() does that once, for the finished cap.
   std::vector<HullMesh::Point> points;
   points.reserve(cap.vertex_count());
   for (int v = 0; v < cap.vertex_count(); ++v) points.push_back(point_of(cap, v));
@@ -125,7 +126,7 @@ CapVerdict EmbedCheck::judge_fan(const Patch& patch, const CapSurface& cap, cons
     added_.emplace_back(points[r.a], points[r.b], w);
     box.extend(added_.back().box);
   }
-  // This includes the star's faces, which the fan is about to cover: it may touch them in the rim only.
+  // This includes the star's faces, which the fan is about to cover: it may touch them only in the rim.
   for (const auto& f : cap.faces())
     if (f.alive && f.kept < 0) obstacles_.emplace_back(points[f.v[0]], points[f.v[1]], points[f.v[2]]);
   if (added_meet_each_other()) return CapVerdict::meets_itself;
@@ -142,28 +143,28 @@ void EmbedCheck::add_patch(const Patch& patch) {
   }
 }
 
-/// Looks at what the new triangles may meet only: the box of a cap that spans a good part of a component
-/// holds all that is nested in it.
+/// Gathers only triangles that the new triangles may intersect: the box of a cap over a large part of a
+/// component contains everything nested in it.
 void EmbedCheck::gather_hull(const Patch& patch, const CapSurface& cap, const Box& box) {
-  // Record the region of space that the verdict depends on: a later change outside it cannot invalidate the
+  // Record the region of space that the verdict depends on: later changes outside it cannot invalidate the
   // proof.
   seen_.extend(box);
   reach_.clear();
   for (const CheckedTriangle& t : added_) reach_.emplace_back(t);
-  // A box that no single new triangle can reach is culled with its whole subtree.
+  // A box that no new triangle can reach is culled with its entire subtree.
   const auto near = [&](const Box& other) {
     return std::any_of(reach_.begin(), reach_.end(),
                        [&](const TriangleReach& t) { return t.may_meet(other); });
   };
   tree_.for_each_near(box, near, [&](HullMesh::Slot s) {
-    // The tree keeps empty slots; the patch's own triangles are listed already.
+    // The tree retains empty slots; the patch's own triangles are in the list already.
     if (!hull_.alive(s) || cap.local_face(patch, s) >= 0) return;
     const auto& t = hull_[s];
     obstacles_.emplace_back(hull_.point(t.v[0]), hull_.point(t.v[1]), hull_.point(t.v[2]));
   });
 }
 
-/// Finds a triangle of each other component that lies in the box as a whole.
+/// Finds a triangle of each other component that is entirely in the box.
 void EmbedCheck::gather_strangers(const Patch& patch, const Box& box) {
   strangers_.clear();
   ++stamp_;
@@ -172,7 +173,7 @@ void EmbedCheck::gather_strangers(const Patch& patch, const Box& box) {
   tree_.for_each_in(box, [&](HullMesh::Slot s) {
     if (!hull_.alive(s)) return;
     const std::uint32_t component = hull_[s].component;
-    // One triangle per component is enough: it represents the whole component.
+    // One triangle per component suffices: it represents the entire component.
     if (component == own || met_[component] == stamp_) return;
     met_[component] = stamp_;
     // Only a component that is entirely within the box can be enclosed without crossing the boundary.
@@ -187,7 +188,7 @@ bool EmbedCheck::added_meet_each_other() const {
   return false;
 }
 
-/// Compares the new triangles with the obstacles; the first `of_patch` are the cap's own and the patch's.
+/// Tests the new triangles against the obstacles; the first `of_patch` are the cap's own and the patch's.
 CapVerdict EmbedCheck::judge_added(std::size_t of_patch) const {
   for (const CheckedTriangle& t : added_)
     for (std::size_t i = 0; i < obstacles_.size(); ++i)
@@ -195,8 +196,8 @@ CapVerdict EmbedCheck::judge_added(std::size_t of_patch) const {
   return CapVerdict::stands;
 }
 
-/// If one neighbour is outside, all of the patch's component is: it is connected and meets the region's
-/// boundary in the ring only.
+/// If one neighbour is outside, so is the patch's entire component, which is connected and intersects the
+/// region's boundary only in the ring.
 bool EmbedCheck::ring_turns_outward(const Patch& patch, const CapSurface& cap) const {
   const int size = cap.ring_size();
   for (int k = 0; k < size; ++k) {
@@ -225,22 +226,22 @@ bool EmbedCheck::rim_turns_outward(const CapSurface& cap, const CapSurface::Star
     return v[0] != a && v[0] != b ? v[0] : v[1] != a && v[1] != b ? v[1] : v[2];
   };
   for (const auto& r : star.rim) {
-    // The vertex opposite the rim edge: beyond the ring it belongs to the front, else to the cap.
+    // The vertex opposite the rim edge: beyond the ring it belongs to the front, otherwise to the cap.
     const Vector3& tip = r.across < 0 ? cap.tip_beyond(-1 - r.across) : cap.x(third(r.across, r.a, r.b));
     if (!turns_outward(cap.x(r.a), cap.x(r.b), cap.x(third(r.face, r.a, r.b)), w, tip)) return false;
   }
   return true;
 }
 
-/// Returns true if another component may lie in the region between patch and cap. If it does, it lies there
-/// as a whole.
+/// Returns true if another component may be in the region between patch and cap. If so, it is entirely
+/// inside.
 bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, const Box& box) {
-  // Step 1: the candidates, of which there are usually none.
+  // Step 1: the candidates; usually there are no candidates.
   gather_strangers(patch, box);
   Mesh region;
   for (const HullMesh::Slot stranger : strangers_) {
-    // Step 2, once: the boundary of the region, made of cap and patch. Its orientation does not matter for
-    // the parity of ray crossings, and triangles that are in both cancel.
+    // Step 2, once: the boundary of the region, that is cap and patch. Its orientation does not affect the
+    // parity of ray crossings, and triangles in both cancel.
     if (region.vertices.empty()) {
       for (int v = 0; v < cap.vertex_count(); ++v) region.vertices.push_back(cap.x(v));
       for (const auto& f : cap.faces()) {
@@ -249,7 +250,7 @@ bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, c
         for (int i = 0; i < 3; ++i) corners[i] = VertexId(static_cast<std::uint32_t>(f.v[i]));
         region.add_face(corners);
       }
-      // The patch is indexed separately: the point test needs no connectivity.
+      // The patch is indexed separately: point location needs no connectivity.
       for (const HullMesh::Slot s : patch.slots) {
         VertexId corners[3];
         for (int i = 0; i < 3; ++i) {
@@ -261,7 +262,7 @@ bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, c
     }
     std::vector<FaceId> faces(region.face_count());
     for (FaceId f = 0; f < faces.size(); ++f) faces[f] = f;
-    // Step 3: the component does not cross the boundary, so one vertex that is not on it decides.
+    // Step 3: the component does not cross the boundary, so one vertex that is not on the boundary decides.
     bool decided = false;
     for (const HullMesh::Corner c : hull_[stranger].v) {
       const PointSide where = point_side(region, faces, hull_.x(c));
@@ -270,7 +271,7 @@ bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, c
       decided = true;
       break;
     }
-    // All three vertices are on the boundary: assume the worst.
+    // All three vertices are on the boundary: assume that it is inside.
     if (!decided) return true;
   }
   return false;

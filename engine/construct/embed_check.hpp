@@ -1,5 +1,6 @@
 #pragma once
-/// Proves that a cap may stand: its new triangles meet, exactly, nothing but what they share with others.
+/// Proves, exactly, that a cap can be accepted: its new triangles intersect others only in shared vertices
+/// and edges.
 
 #include <array>
 #include <cstdint>
@@ -15,47 +16,47 @@
 
 namespace lrb::construct {
 
-/// A triangle of the complex; refers to its corners.
+/// A triangle of the complex; refers to the coordinates of its corners.
 struct CheckedTriangle {
   std::array<const double*, 3> x;
   std::array<VertexId, 3> id;
   Eigen::AlignedBox3d box;
 
   CheckedTriangle(const HullMesh::Point& a, const HullMesh::Point& b, const HullMesh::Point& c);
-  /// Returns true if the two triangles have nothing in common but shared vertices and edges.
+  /// Returns true if the two triangles intersect only in shared vertices and edges.
   bool clear_of(const CheckedTriangle& other) const;
 };
 
-/// Tells boxes that a triangle cannot meet by the triangle's own box and by its plane.
+/// Culls boxes that a triangle cannot intersect, by the triangle's own box and by its plane.
 class TriangleReach {
  public:
   explicit TriangleReach(const CheckedTriangle& t);
-  /// Returns false only if the triangle is surely outside the box.
+  /// Returns false only if the triangle is proven to be outside the box.
   bool may_meet(const Eigen::AlignedBox3d& other) const;
 
  private:
   Eigen::AlignedBox3d box_;
   Eigen::Vector3d corner_, normal_;
-  double slack_;  ///< for rounding, relative to distances from the corner
+  double slack_;  ///< rounding slack, relative to distances from the corner
 };
 
 class EmbedCheck {
  public:
   EmbedCheck(const HullMesh& hull, const AabbTree& tree) : hull_(hull), tree_(tree) {}
-  /// Sets the boxes of the components (in the hull's numbering), so that a cap over a patch of one never
-  /// hides another.
+  /// Sets the boxes of the components (in the front's numbering), so that a cap over a patch of one component
+  /// never encloses another.
   void set_component_boxes(std::vector<Eigen::AlignedBox3d> boxes) { component_boxes_ = std::move(boxes); }
 
-  /// Returns CapVerdict::stands if nothing meets the cap's new triangles, neither the hull outside the patch
-  /// nor the patch nor each other, and all of the hull outside the patch lies outside the region between
-  /// patch and cap; else what is in the way.
+  /// Returns CapVerdict::stands if the cap's new triangles intersect neither the front outside the patch nor
+  /// the patch nor each other, and the entire front outside the patch is outside the region between patch and
+  /// cap; otherwise returns the obstacle.
   CapVerdict judge_cap(const Patch& patch, const CapSurface& cap);
-  /// Does the same for a fan from w that is about to replace a star of the cap.
+  /// Checks a fan from w that is to replace a star of the cap. Returns as judge_cap().
   CapVerdict judge_fan(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
                        const HullMesh::Point& w);
 
-  /// Returns a box around all places at which the hull outside the patch was looked at, beyond the triangles
-  /// that share a vertex with the patch.
+  /// Returns a box around all space that the checks have read, apart from triangles that share a vertex with
+  /// the patch.
   const Eigen::AlignedBox3d& seen() const { return seen_; }
   void forget_seen() { seen_.setEmpty(); }
 
@@ -75,8 +76,8 @@ class EmbedCheck {
   Eigen::AlignedBox3d seen_;
   std::vector<CheckedTriangle> obstacles_, added_;
   std::vector<TriangleReach> reach_;       ///< of `added_`
-  std::vector<HullMesh::Slot> strangers_;  ///< triangles of other components met while gathering, one of each
-  std::vector<std::uint32_t> met_;         ///< (components) == stamp_: met while gathering
+  std::vector<HullMesh::Slot> strangers_;  ///< gathered triangles of other components, one of each
+  std::vector<std::uint32_t> met_;         ///< (components) == stamp_: found while gathering
   std::uint32_t stamp_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // Convex bounds of a body as half-spaces: a discrete oriented polytope with 26 fixed directions (k-DOP;
-// Klosowski et al. 1998), or the inside of a convex mesh.
+// Klosowski et al. 1998), or the interior of a convex mesh.
 
 #include "engine/construct/half_spaces.hpp"
 
@@ -16,9 +16,9 @@ namespace lrb::construct {
 BodyBounds::BodyBounds(std::span<const Eigen::Vector3d> points, double swell) {
   // The 26 directions of the 3 x 3 x 3 stencil: 6 axes, 12 edge diagonals, 8 corner diagonals.
   for (int i = 0; i < 27; ++i) {
-    if (i == 13) continue;  // the middle of the 27 is no direction
+    if (i == 13) continue;  // the centre of the stencil has no direction
     const Eigen::Vector3d n = Eigen::Vector3d(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1).normalized();
-    // The extent of the points along n. Its other end is the bound of -n, which is in the list too.
+    // The extent of the points along n. The upper end is the bound of -n, which is in the list as well.
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Eigen::Vector3d& p : points) {
       low = std::min(low, n.dot(p));
@@ -40,42 +40,42 @@ BodyBounds::BodyBounds(const Mesh& convex, double distance) {
 
 // Euclidean projection of a point onto a polyhedron given by half-spaces: a small convex quadratic programme,
 // solved incrementally after Seidel (1991), who solves linear programmes in this way. If the optimum of the
-// first i half-spaces violates the next one, the new optimum lies on the boundary plane of that one, by
-// convexity.
-// 1. 3D: take the half-spaces one by one and keep the point while it satisfies them.
-// 2. 2D: on a violated one's plane, do the same with the half-planes that the earlier half-spaces cut out.
-// 3. 1D: on a violated half-plane's line, intersect intervals and clamp.
+// first i half-spaces violates the next one, the new optimum is on that one's boundary plane, by convexity.
+// 1. 3D: add the half-spaces one by one and keep the point while it satisfies them.
+// 2. 2D: on the plane of a violated half-space, do the same with the half-planes cut out by the earlier
+//    half-spaces.
+// 3. 1D: on the line of a violated half-plane, intersect intervals and clamp.
 
 namespace {
 
 using Vector2 = Eigen::Vector2d;
 using Vector3 = Eigen::Vector3d;
 
-/// A plane with coordinates: origin (its point nearest to the target) and two axes of length 1.
+/// A plane with coordinates: its point nearest to the target, as the origin, and two orthonormal axes.
 struct Frame {
   Vector3 origin, x, y;
 };
 
 Frame frame_on(const HalfSpace& h, const Vector3& target) {
   Frame f;
-  // With the origin at the target's foot, distances to the target differ from those to the origin by a
-  // constant in quadrature: the nearest point on the plane is the one nearest to the origin.
+  // With the origin at the target's foot, squared distances to the target and to the origin differ by a
+  // constant: the nearest point on the plane is the one nearest to the origin.
   f.origin = target + h.n * (h.d - h.n.dot(target));
-  // The coordinate axis closest to the plane: its sine to n is at least sqrt(2/3), so the cross product is
-  // stable.
+  // The coordinate axis closest to the plane: its sine to n is at least sqrt(2/3), so that the cross product
+  // is accurate.
   int least = 0;
   h.n.cwiseAbs().minCoeff(&least);
   f.x = h.n.cross(Vector3::Unit(least)).normalized();
-  // Both factors have length 1 and are orthogonal, so y needs no normalisation.
+  // Both factors have unit length and are orthogonal, so y needs no normalisation.
   f.y = h.n.cross(f.x);
   return f;
 }
 
-/// The half-plane a.p >= b (a need not have length 1) in which a half-space cuts the frame's plane.
+/// The half-plane a.p >= b (a need not be of unit length) that a half-space cuts out of the frame's plane.
 struct HalfPlane {
   Vector2 a;
   double b;
-  bool parallel;  ///< parallel to the plane: holds all of it or nothing
+  bool parallel;  ///< parallel to the plane: contains all of it or nothing
 };
 
 HalfPlane cut(const HalfSpace& h, const Frame& f) {
@@ -84,8 +84,8 @@ HalfPlane cut(const HalfSpace& h, const Frame& f) {
   return {a, h.d - h.n.dot(f.origin), a.squaredNorm() < kParallelSineSq};
 }
 
-/// Returns the point nearest to the origin on the boundary line `edge` of a half-plane, within the
-/// half-spaces `before`.
+/// Returns the point nearest to the origin on the boundary line `edge` of a half-plane that is in the
+/// half-spaces `before`, or nullopt if they leave no point of it.
 std::optional<Vector2> nearest_on_line(const HalfPlane& edge, std::span<const HalfSpace> before,
                                        const Frame& frame, double slack) {
   // Parametrise the line by arc length from its point nearest to the origin: the optimum is the smallest |t|.
@@ -98,7 +98,7 @@ std::optional<Vector2> nearest_on_line(const HalfPlane& edge, std::span<const Ha
     const HalfPlane c = cut(h, frame);
     const double slope = c.a.dot(along), needed = c.b - c.a.dot(start);
     if (slope * slope < kParallelSineSq) {
-      // Parallel to the line: the whole line satisfies it, or none of it.
+      // Parallel to the line: the entire line satisfies it, or none of it.
       if (needed > slack) return std::nullopt;
     } else if (slope > 0) {
       low = std::max(low, needed / slope);
@@ -106,8 +106,8 @@ std::optional<Vector2> nearest_on_line(const HalfPlane& edge, std::span<const Ha
       high = std::min(high, needed / slope);
     }
   }
-  // Intervals that miss each other by less than `slack` count as one point: rounding could have caused the
-  // gap.
+  // Intervals that miss each other by less than `slack` count as one point, because rounding could have
+  // caused the gap.
   if (low > high + slack) return std::nullopt;
   // Clamp t = 0, the optimum without the other half-spaces, to the interval.
   const double t = low > 0 ? low : high < 0 ? high : 0;
@@ -143,7 +143,7 @@ std::optional<Vector3> nearest_point(const Vector3& target, std::span<const Half
     const HalfSpace& h = half_spaces[i];
     // In random order, half-space i is violated with probability at most 3 / i: expected linear time.
     if (h.n.dot(p) >= h.d - slack) continue;
-    // Violated: the optimum lies on this plane, subject to the half-spaces before it.
+    // Violated: the optimum is on this plane, subject to the half-spaces before it.
     const auto q = nearest_on_plane(h, half_spaces.first(i), target, slack);
     if (!q) return std::nullopt;
     p = *q;
@@ -164,9 +164,9 @@ std::optional<Vector3> nearest_point_worst_first(const Vector3& target, std::spa
       const double behind = half_spaces[i].d - half_spaces[i].n.dot(p);
       if (behind > most) most = behind, worst = i;
     }
-    // Nothing is violated: an optimum of a subset that satisfies all is the optimum of all.
+    // Nothing is violated: the optimum of a subset that satisfies all constraints is the optimum of all.
     if (worst == half_spaces.size()) return p;
-    // Keep the added ones in front, where the solver expects them.
+    // Keep the added ones in front, as the solver requires.
     std::swap(half_spaces[used], half_spaces[worst]);
     const auto q = nearest_on_plane(half_spaces[used], half_spaces.first(used), target, slack);
     if (!q) return std::nullopt;

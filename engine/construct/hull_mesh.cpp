@@ -12,16 +12,18 @@
 namespace lrb::construct {
 namespace {
 
-/// Splits a polygon into triangles with area if it is flat; else into its fan, which then defines its shape.
+/// Triangulates a polygon: if planar, without degenerate triangles, otherwise into its fan, which defines its
+/// shape.
 void triangulate(const Mesh& mesh, std::span<const VertexId> corners,
                  std::vector<std::array<VertexId, 3>>& triangles) {
   triangles.clear();
   if (corners.size() > 3) {
     const auto plane = spanning_corners(mesh, corners);
-    // Flat: a triangulation without degenerate triangles exists, and all triangulations have the same shape.
+    // Planar: a triangulation without degenerate triangles exists, and all triangulations have the same
+    // shape.
     if (plane && is_planar(mesh, corners, *plane)) return triangulate_convex(mesh, corners, triangles);
   }
-  // Not flat: the fan from the first corner is the polygon's shape by definition (see Mesh).
+  // Not planar: the fan from the first corner is the polygon's shape by definition (see Mesh).
   for (std::size_t i = 1; i + 1 < corners.size(); ++i)
     triangles.push_back({corners[0], corners[i], corners[i + 1]});
 }
@@ -55,8 +57,8 @@ void HullMesh::add_faces(const Mesh& mesh) {
 }
 
 void HullMesh::find_neighbours() {
-  // Counting sort of the directed edges by their start vertices. The counts are two entries ahead, so that
-  // filling the buckets leaves offsets[v] and offsets[v + 1] as the ends of bucket v.
+  // Counting sort of the directed edges by their start vertices. The counts are shifted by two entries, so
+  // that filling the buckets leaves offsets[v] and offsets[v + 1] as the ends of bucket v.
   std::vector<std::uint32_t> offsets(points_.size() + 2, 0);
   for (const Triangle& t : triangles_)
     for (const Corner v : t.v) ++offsets[v + 2];
@@ -66,8 +68,8 @@ void HullMesh::find_neighbours() {
   for (Slot s = 0; s < slot_count(); ++s)
     for (std::uint32_t i = 0; i < 3; ++i) edges[offsets[triangles_[s].v[i] + 1]++] = 3 * s + i;
   const auto end_of = [&](std::uint32_t edge) { return triangles_[edge / 3].v[(edge % 3 + 1) % 3]; };
-  // High-valence vertices: sort their buckets by end vertex, for binary search. Linear search at such a
-  // vertex would take quadratic time in all.
+  // High-valence vertices: sort their buckets by end vertex, for binary search. Linear search would take
+  // quadratic time at such a vertex.
   constexpr std::uint32_t kFew = 32;
   const auto at = [&](std::uint32_t e) { return edges.begin() + e; };
   for (Corner v = 0; v < points_.size(); ++v)
@@ -88,7 +90,7 @@ void HullMesh::find_neighbours() {
     }
     return NoId::kValue;
   };
-  // The neighbour over a -> b is the triangle with the edge b -> a. The mesh is closed, so there is one.
+  // The neighbour across a -> b is the triangle with the edge b -> a. The mesh is closed, so it exists.
   for (Slot s = 0; s < slot_count(); ++s) {
     for (std::uint32_t i = 0; i < 3; ++i) {
       const std::uint32_t opposite = last_edge(triangles_[s].v[(i + 1) % 3], triangles_[s].v[i]);
@@ -108,12 +110,12 @@ void HullMesh::split_fans() {
       const Corner old = triangles_[first].v[corner];
       Corner v = old;
       // The vertex is non-manifold: several fans touch in it. Later fans get copies with the same id, so that
-      // no walk around a vertex misses a triangle.
+      // traversals around a vertex miss no triangle.
       if (slot_of_[old] != kNull) {  // another fan has this vertex
         v = add_point(Eigen::Vector3d(points_[old].x), points_[old].id);
       }
       slot_of_[v] = first;
-      // Walk around the old vertex and renumber its corner in every triangle of the fan.
+      // Traverse the fan around the old vertex and renumber its corner in every triangle.
       Slot s = first;
       do {
         const int i = index_of(s, old);
@@ -127,7 +129,7 @@ void HullMesh::split_fans() {
 }
 
 void HullMesh::find_components() {
-  // Flood fill over edges with an explicit stack: the recursion would be as deep as the mesh is large.
+  // Flood fill over edges with an explicit stack: the recursion depth could equal the number of triangles.
   std::vector<Slot> stack;
   for (Slot first = 0; first < slot_count(); ++first) {
     if (triangles_[first].component != kNull) continue;

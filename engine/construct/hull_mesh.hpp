@@ -1,5 +1,5 @@
 #pragma once
-/// The surface that a builder works on: at first the mesh itself, then hulls that enclose more and more.
+/// The front of a builder: at first the mesh itself, then surfaces that enclose more and more.
 
 #include <array>
 #include <cstdint>
@@ -12,20 +12,20 @@
 
 namespace lrb::construct {
 
-/// A closed triangle surface with neighbours. Triangles live in numbered slots; a slot may be empty, and is
-/// used again when a patch is replaced by its cap. Every vertex has exactly one fan of triangles: a vertex of
-/// the mesh that joins several fans occurs here once for each of them.
+/// A closed triangle surface with adjacency. Triangles are stored in numbered slots; an empty slot is reused
+/// when a patch is replaced by its cap. Every vertex has exactly one fan of triangles: a vertex of the mesh
+/// with several fans occurs once for each fan.
 class HullMesh {
  public:
-  using Slot = std::uint32_t;    ///< a triangle
-  using Corner = std::uint32_t;  ///< a vertex of the hull
+  using Slot = std::uint32_t;    ///< index of a triangle
+  using Corner = std::uint32_t;  ///< index of a vertex of the front
 
   struct Triangle {
     std::array<Corner, 3> v;      ///< counter-clockwise seen from outside
-    std::array<Slot, 3> across;   ///< neighbour over the edge v[i], v[i + 1]
+    std::array<Slot, 3> across;   ///< neighbour across the edge v[i], v[i + 1]
     FaceId face = kNull;          ///< the face of the complex; kNull: the slot is empty
     std::uint32_t component = 0;  ///< component of the mesh's surface
-    /// How much further off the body than its corners the triangle is somewhere; an estimate, mesh's unit.
+    /// Excess of the triangle's deviation from the body over that at its corners; an estimate, mesh units.
     double extra = 0;
   };
 
@@ -33,13 +33,13 @@ class HullMesh {
   struct Point {
     Eigen::Vector3d x;
     VertexId id;
-    double off = 0;  ///< distance from the body: 0 for the mesh's own vertices, else an estimate; mesh's unit
-    double patience =
-        0;  ///< limit on a cap's distance from the body (CapGoal::off) from which one is tried here again
+    double off = 0;  ///< deviation from the body: 0 for the mesh's own vertices, else an estimate; mesh units
+    double patience = 0;  ///< limit CapGoal::off from which a cap is tried here again
   };
 
-  /// Makes the surface of a mesh, which must be closed, oriented, and manifold but for vertices with several
-  /// fans. Polygons become triangles; those of one polygon are in consecutive slots and have the same face.
+  /// Builds the surface of a mesh, which must be closed, oriented, and manifold except for vertices with
+  /// several fans. Polygons are triangulated; the triangles of one polygon are in consecutive slots and have
+  /// the same face.
   explicit HullMesh(const Mesh& mesh);
 
   Slot slot_count() const { return static_cast<Slot>(triangles_.size()); }
@@ -50,11 +50,11 @@ class HullMesh {
   const Triangle& operator[](Slot s) const { return triangles_[s]; }
   const Point& point(Corner v) const { return points_[v]; }
   const Eigen::Vector3d& x(Corner v) const { return points_[v].x; }
-  /// Number of triangles round it; 0: not in use.
+  /// Returns the number of triangles around a vertex; 0: not in use.
   std::uint32_t degree(Corner v) const { return degree_[v]; }
   Slot any_slot(Corner v) const { return slot_of_[v]; }
 
-  /// Returns the index of vertex v in triangle s (which must have it).
+  /// Returns the index of vertex v in triangle s, which must have it.
   int index_of(Slot s, Corner v) const {
     const auto& t = triangles_[s].v;
     return t[0] == v ? 0 : t[1] == v ? 1 : 2;
@@ -62,7 +62,7 @@ class HullMesh {
   /// Returns the index of the edge of triangle s that starts at `from`.
   int edge_from(Slot s, Corner from) const { return index_of(s, from); }
 
-  /// Calls visit(slot, index of v in it) for the triangles round v, counter-clockwise.
+  /// Calls visit(slot, index of v in it) for the triangles around v, counter-clockwise.
   template <class Visit>
   void for_each_around(Corner v, Visit&& visit) const {
     const Slot first = slot_of_[v];
@@ -83,9 +83,9 @@ class HullMesh {
                ? SlotRange{unit_first_[s], unit_first_[s] + unit_size_[s]}
                : SlotRange{s, s + 1};
   }
-  /// Returns true for a triangle that no patch may contain: one of a polygon with very many corners, or at a
-  /// vertex with very many triangles. A patch would have to take all of these, and costs the square of its
-  /// triangles.
+  /// Returns true for a triangle that no patch may contain, because it belongs to a polygon with very many
+  /// corners, or has a vertex with very many triangles. A patch would have to contain all of these, and its
+  /// cost is quadratic in its triangles.
   bool is_crowded(Slot s) const {
     constexpr std::uint32_t kMost = 512;
     const SlotRange polygon = unit(s);
@@ -100,15 +100,15 @@ class HullMesh {
 
   /// Removes triangles without closing the gap: add() must follow.
   void remove(std::span<const Slot> slots);
-  /// Fills an empty slot, or the next one after the last. Sets the triangle's neighbours as given; their side
-  /// is to be set with link().
+  /// Fills an empty slot, or the one after the last. Sets the triangle's neighbours as given; their side must
+  /// be set with link().
   void add(Slot s, const Triangle& t);
-  /// Makes t the neighbour of s over the edge of s that starts at `from`.
+  /// Makes t the neighbour of s across the edge of s that starts at `from`.
   void link(Slot s, Corner from, Slot t) { triangles_[s].across[index_of(s, from)] = t; }
   void set_component(Slot s, std::uint32_t component) { triangles_[s].component = component; }
 
   std::vector<Slot> alive_slots() const;
-  /// Returns six times the volume behind a closed set of triangles.
+  /// Returns six times the volume enclosed by a closed set of triangles.
   double volume_sixfold(std::span<const Slot> slots) const;
 
  private:
@@ -119,7 +119,7 @@ class HullMesh {
 
   std::vector<Triangle> triangles_;
   std::vector<Point> points_;
-  std::vector<Slot> slot_of_;          ///< (|points|) any triangle at the vertex; kNull if none
+  std::vector<Slot> slot_of_;          ///< (|points|) any triangle at the vertex; kNull: not in use
   std::vector<std::uint32_t> degree_;  ///< (|points|)
   std::vector<Slot> unit_first_;       ///< empty if all faces are triangles
   std::vector<std::uint32_t> unit_size_;

@@ -1,5 +1,5 @@
-// Applies a cap to the front. make_sheet() computes, without changing anything, the regions under the cap and
-// the neighbours across each of its edges; cover() then updates complex and front.
+// Applies a cap to the front. make_sheet() computes the regions under the cap and the neighbours across each
+// of its edges, without changing anything; cover() then updates complex and front.
 
 #include "engine/construct/hull_update.hpp"
 
@@ -16,9 +16,9 @@ namespace {
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// Numbers the corners of both sides of the sheet from 0, and finds its regions and neighbours.
+/// Computes the regions of a cap and the neighbours across its edges.
 void work_out(const HullMesh& hull, Sheet& sheet) {
-  // Step 1: compress the vertices of both sheets to 0 .. n - 1 for the local algorithms.
+  // Step 1: renumber the vertices of both surfaces to 0 .. n - 1 for the local algorithms.
   std::sort(sheet.removed.begin(), sheet.removed.end());
   std::vector<Corner> corners;
   for (const Slot slot : sheet.removed)
@@ -47,8 +47,8 @@ void work_out(const HullMesh& hull, Sheet& sheet) {
   }
   for (const PointTriangle& t : sheet.added) added.push_back(local(t));
   sheet.pieces = split_region(old, old_face, added, points);
-  // Step 3: the neighbour across each new edge: another new triangle, or at the boundary the one that was
-  // across the same edge of the covered triangle.
+  // Step 3: the neighbour across each new edge: another new triangle, or at the boundary the triangle that
+  // was across the same edge of the covered triangle.
   const EdgeIndex old_edges(old), added_edges(added);
   sheet.beyond.resize(added.size());
   for (std::size_t i = 0; i < added.size(); ++i) {
@@ -78,7 +78,7 @@ Sheet make_sheet(const HullMesh& hull, std::span<const Slot> removed, std::span<
 
 Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap) {
   Sheet sheet;
-  // Collapses leave unused vertices: number only those that remain, in order.
+  // Collapses leave unused vertices: number only the used ones, in order.
   std::vector<Corner> corners(cap.vertex_count(), kNull);
   for (int v = 0; v < cap.vertex_count(); ++v) {
     if (!cap.is_used(v)) continue;
@@ -93,7 +93,7 @@ Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap
   std::vector<bool> stays(patch.slots.size(), false);
   for (const auto& f : cap.faces()) {
     if (!f.alive) continue;
-    // Triangles that no collapse touched stay in the front.
+    // Triangles that no collapse changed stay in the front.
     if (f.kept >= 0) {
       stays[f.kept] = true;
     } else {
@@ -109,7 +109,7 @@ Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap
 
 std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sheet, std::uint16_t layer,
                         std::uint32_t component, ConstructProbe* probe) {
-  // Step 1: vertices and regions get their final numbers.
+  // Step 1: assign the final numbers of vertices and regions.
   const Corner first_new = hull.point_count();
   for (std::size_t i = 0; i < sheet.new_points.size(); ++i)
     hull.add_point(sheet.new_points[i], complex.add_vertex(sheet.new_points[i]),
@@ -121,7 +121,7 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
   for (std::size_t i = 0; i < removed.size(); ++i)
     complex.set_outer_cell(hull[removed[i]].face, RegionId(first_region + sheet.pieces.of_old[i]));
 
-  // Step 3: new triangles reuse the covered ones' slots, then append.
+  // Step 3: new triangles reuse the slots of the covered ones, then append.
   std::vector<Slot> slots;
   for (std::size_t i = 0; i < sheet.added.size(); ++i)
     slots.push_back(i < removed.size() ? removed[i]
@@ -151,14 +151,14 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
     t.component = component;
     if (!sheet.added_extra.empty()) t.extra = sheet.added_extra[i];
   }
-  // Step 5: swap them.
+  // Step 5: replace the covered triangles by the new ones.
   hull.remove(removed);
   for (std::size_t i = 0; i < slots.size(); ++i) hull.add(slots[i], triangles[i]);
   if (probe) tell(*probe, first_region, sheet.pieces);
   return slots;
 }
 
-// Splits the space between two sheets with a common boundary into regions:
+// Splits the space between two surfaces with a common boundary into regions:
 // 1. Union-find over triangles that bound the same piece of space along an edge.
 // 2. Number the pieces in the order of their first triangle.
 // 3. Merge pieces of volume <= 0, which are inner shells, into the largest piece.
@@ -169,24 +169,23 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{a} << 32 | b;
 }
 
-/// Joins triangles over edges; the old ones come first, then the added ones.
+/// Connects triangles over edges; the old ones come first, then the added ones.
 DisjointSets connect(std::span<const PointTriangle> old, std::span<const PointTriangle> added) {
   const auto old_count = static_cast<std::uint32_t>(old.size());
   DisjointSets sets(old.size() + added.size());
-  // A directed edge occurs at most once in each sheet.
+  // A directed edge occurs at most once in each surface.
   const EdgeIndex old_edges(old), added_edges(added);
   for (std::uint32_t i = 0; i < added.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t a = added[i][k], b = added[i][(k + 1) % 3];
-      // The same directed edge in both sheets: they touch here, and the space between them closes along the
-      // edge.
+      // The same directed edge in both surfaces: they touch, and the space between them ends at this edge.
       if (const std::uint32_t below = old_edges.find(a, b); below != kNull) sets.join(below, old_count + i);
-      // Otherwise the piece continues to the next triangle of the same sheet.
+      // Otherwise the piece continues to the next triangle of the same surface.
       else if (const std::uint32_t beside = added_edges.find(b, a); beside != kNull)
         sets.join(old_count + beside, old_count + i);
     }
   }
-  // The same for the old sheet; edges at which the sheets touch were handled above.
+  // Connect the old surface; edges at which the surfaces touch were handled above.
   for (std::uint32_t i = 0; i < old_count; ++i) {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t a = old[i][k], b = old[i][(k + 1) % 3];
@@ -200,8 +199,8 @@ DisjointSets connect(std::span<const PointTriangle> old, std::span<const PointTr
 std::vector<double> volumes_of(const RegionPieces& pieces, std::span<const PointTriangle> old,
                                std::span<const PointTriangle> added,
                                std::span<const Eigen::Vector3d> points) {
-  // Six times the volume by the divergence theorem: outer faces count positive, inner ones negative. Only
-  // signs and order are used.
+  // Six times the volume by the divergence theorem: outer faces count as positive, inner ones as negative.
+  // Only signs and order are used.
   const Eigen::Vector3d origin = points[added.empty() ? old[0][0] : added[0][0]];
   const auto volume = [&](const PointTriangle& t) {
     return (points[t[0]] - origin).dot((points[t[1]] - origin).cross(points[t[2]] - origin));
@@ -213,7 +212,7 @@ std::vector<double> volumes_of(const RegionPieces& pieces, std::span<const Point
 }
 
 void merge_shells(RegionPieces& pieces, const std::vector<double>& volumes) {
-  // An inner shell has no space of its own: its volume is part of the piece around it.
+  // An inner shell has no volume of its own: it belongs to the piece around it.
   const auto largest =
       static_cast<std::uint32_t>(std::max_element(volumes.begin(), volumes.end()) - volumes.begin());
   const auto stays = [&](std::uint32_t p) { return volumes[p] > 0 || p == largest; };

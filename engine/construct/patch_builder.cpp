@@ -1,8 +1,8 @@
-/// Builds the regions of a body in space, pass by pass:
-/// 1. Find which surfaces bound voids, and which faces must never be covered.
-/// 2. Fitted levels: patches of the hull are simplified to caps of a limited deviation (unless lean).
-/// 3. Simplification without a limit, until few enough faces are outermost.
-/// 4. Bridging of concavities, holes filled, and if there are still too many outer faces a closing wrapper.
+/// Builds the regions of a 3D body, pass by pass:
+/// 1. Find the surfaces that bound voids, and the faces that must never be covered.
+/// 2. Fitted levels: simplify patches of the front to caps of limited deviation (unless lean).
+/// 3. Simplify without a limit on the deviation, until there are few enough outer faces.
+/// 4. Bridge concavities, fill voids, and close with a wrapper if there are still too many outer faces.
 
 #include <algorithm>
 #include <cstdint>
@@ -51,8 +51,8 @@ std::vector<Component> components_of(const HullMesh& hull) {
   return out;
 }
 
-/// The components around each one, ascending. The first corner of a face that does not lie on the other's
-/// surface decides; where those of many faces do, the two have their surface in common.
+/// Returns the components around each one, ascending. The first corner of a face decides, unless it is on the
+/// other component's surface; if the corners of many faces are, the two have their surface in common.
 std::vector<std::vector<std::uint32_t>> find_holders(const Mesh& mesh,
                                                      const std::vector<Component>& components) {
   std::vector<std::uint32_t> component_of(mesh.face_count(), kNull);
@@ -76,8 +76,8 @@ std::vector<std::vector<std::uint32_t>> find_holders(const Mesh& mesh,
 }
 
 /// Returns the void in front of each component of the mesh's surface: (components) itself for a void, kNull
-/// where the outside is. `hull` is the mesh's own surface still. Exact, except that a component that
-/// crosses a void's wall is placed by one of its vertices.
+/// for the outside. `hull`: still the mesh's own surface. Exact, except that a component that crosses a
+/// void's wall is located by one of its vertices.
 std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const HullMesh& hull) {
   const std::uint32_t count = hull.component_count();
   std::vector<std::uint32_t> home(count, kNull);
@@ -97,30 +97,30 @@ std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const HullMesh& hull) 
       home[c] = c;
       continue;
     }
-    // Of the voids around it the innermost is in all others.
+    // The innermost void around it is inside all others.
     for (const std::uint32_t v : holders[c])
       if (is_void[v] && (home[c] == kNull || is_inside(v, home[c]))) home[c] = v;
   }
   return home;
 }
 
-// Finds the faces of a self-intersecting body that lie inside other components:
+// Finds the faces of a self-intersecting body that are inside other components:
 // 1. Connect the triangles that intersect nothing into sheets. A sheet is on one side of every component.
-// 2. Count for one vertex of each sheet how many solids cover the space in front of it, by exact rays.
+// 2. For one vertex of each sheet, count the solids that cover the space in front of it, by exact rays.
 // 3. A sheet with a positive count is buried.
 
-/// Returns the faces that lie within another component, of a mesh whose components cross. `meeting`: the
-/// faces that meet others in more than they share, ascending; they are not among those returned. `hull`: the
-/// mesh itself.
+/// Returns the faces that are inside another component, of a mesh whose components cross. `meeting`: the
+/// faces that intersect others in more than shared vertices and edges, ascending; they are not among those
+/// returned. `hull`: the mesh itself.
 ///
-/// A cap over them would stand inside the other component, where no hull is in its way any more, and could
-/// pass through what lies under that component's caps.
+/// A cap over such faces would be inside the other component, where no front stops it, and could pass through
+/// the faces under that component's caps.
 std::vector<FaceId> find_buried(const Mesh& mesh, const HullMesh& hull, const std::vector<FaceId>& meeting) {
   // Nothing can be buried in a body that does not cross itself, or that has a single component.
   if (meeting.empty() || hull.component_count() == 1) return {};
   const auto meets = [&](Slot s) { return std::binary_search(meeting.begin(), meeting.end(), hull[s].face); };
   std::vector<std::uint32_t> component_of(mesh.face_count(), kNull);
-  DisjointSets sheets(hull.slot_count());  // connected over edges; nothing passes through one
+  DisjointSets sheets(hull.slot_count());  // connected over edges; no sheet crosses a surface
   for (Slot s = 0; s < hull.slot_count(); ++s) {
     // Step 1. Intersecting triangles are the borders of sheets.
     component_of[hull[s].face] = hull[s].component;
@@ -132,8 +132,8 @@ std::vector<FaceId> find_buried(const Mesh& mesh, const HullMesh& hull, const st
   std::vector<int> signs;  // +1 for components that are solid, -1 for voids
   for (const Component& c : components_of(hull)) signs.push_back(volume_sign(mesh, c.faces) < 0 ? -1 : 1);
   enum class SheetKind : std::uint8_t { unknown, free, buried };
-  // Step 2. The space in front of a face is in a solid if more solids than voids contain it. Undecided where
-  // the first vertex is on another component's surface.
+  // Step 2. The space in front of a face is in a solid if more solids than voids contain it. Undecided if the
+  // first vertex is on another component's surface.
   const auto look_at = [&](Slot s) {
     // In front of a void's wall, the component itself counts as a void.
     int solids = signs[hull[s].component] < 0 ? -1 : 0;
@@ -145,8 +145,8 @@ std::vector<FaceId> find_buried(const Mesh& mesh, const HullMesh& hull, const st
     return solids > 0 ? SheetKind::buried : SheetKind::free;
   };
   std::vector<SheetKind> known(hull.slot_count(), SheetKind::unknown);  // at a sheet's leader
-  // A sheet with an undecided vertex is tried again from its next triangle. At worst, this is one query for
-  // each triangle.
+  // A sheet with an undecided vertex is tried again from its next triangle: at worst one query for each
+  // triangle.
   for (Slot s = 0; s < hull.slot_count(); ++s)
     if (SheetKind& sheet = known[sheets.leader(s)]; !meets(s) && sheet == SheetKind::unknown)
       sheet = look_at(s);
@@ -215,13 +215,13 @@ class PatchBuilder {
         box.sizes().maxCoeff(), kFitDownTo, [&] { return hull_.triangle_count(); },
         [&](std::uint32_t before, double off) {
           const std::size_t real = frozen_.size();
-          // Prices rise while fewer pseudo faces were spent than planned.
+          // Higher prices are accepted while fewer pseudo faces were used than planned.
           const double correction = fitting_correction(before, real, complex_.face_count() - real);
           pass(BuildStage::fit, {fitting_worth(before, real, correction), off});
         });
   }
 
-  /// Makes passes until they no longer help. `worth`: the largest share of triangles that a cap may have.
+  /// Makes passes until they gain too little. `worth`: see CapGoal.
   void simplify(double worth) {
     for (;;) {
       const std::uint32_t before = hull_.triangle_count();
@@ -233,9 +233,9 @@ class PatchBuilder {
 
   void pass(BuildStage stage, const CapGoal& goal) {
     const std::uint32_t triangles = hull_.triangle_count();
-    // From here on the front stays inside the planned wrapper.
+    // From now on the front stays inside the planned wrapper.
     if (triangles <= kPolytopeFrom) plan_polytope();
-    // On a small hull patches are small, so that there are still several.
+    // On a small front patches are small, so that there are still several.
     const std::uint32_t most =
         goal.off > 0 ? kFitPatch * options_.patch_interior / 4 : options_.patch_interior;
     const std::uint32_t interior = std::max(kLeastInterior, std::min(most, triangles / kLeastPatches));
@@ -262,7 +262,7 @@ class PatchBuilder {
   }
 
   bool bridge_pockets() {
-    // The convex hull of thousands of points that lie in one plane takes as many steps as their pairs.
+    // The convex hull of n points in one plane takes O(n^2) steps.
     for (Slot s = 0; s < hull_.slot_count(); ++s)
       if (hull_.alive(s) && hull_.is_crowded(s)) return tell_whole_cap(0, CapVerdict::too_crowded);
     std::vector<bool> joined(hull_.component_count());
@@ -271,7 +271,8 @@ class PatchBuilder {
     return bridge_concavities(hull_, complex_, joined, passes_.layer(), options_.probe) == CapVerdict::stands;
   }
 
-  /// Tells of a cap of so many faces over the outer hull as a whole. Returns whether it stands.
+  /// Reports a cap of `faces` faces over the entire outer front to the probe. Returns true if the cap was
+  /// accepted.
   bool tell_whole_cap(std::uint32_t faces, CapVerdict verdict) const {
     if (options_.probe) {
       Slot first = 0;
@@ -292,7 +293,7 @@ class PatchBuilder {
     passes_.tell_end({.hull_faces = outer_size()});
   }
 
-  /// Plans the outermost wrapper; from here on all hulls stay inside it.
+  /// Plans the outermost wrapper; from now on all fronts stay inside it.
   void plan_polytope() {
     if (polytope_.face_count() > 0) return;
     polytope_ = enclosing_polytope(outer_points(), options_.max_outer_faces, kPolytopeDistance, workers_);
@@ -307,7 +308,7 @@ class PatchBuilder {
     return box.sizes().maxCoeff();
   }
 
-  /// Puts the outermost wrapper around everything. Returns false if there can be none.
+  /// Puts the outermost wrapper around the front. Returns false if no wrapper is found.
   bool close() {
     const std::uint32_t outer = outer_size(), before = complex_.region_count();
     passes_.tell_begin(BuildStage::close, outer);
@@ -327,7 +328,7 @@ class PatchBuilder {
       return std::all_of(points.begin(), points.end(), [&](const auto& p) { return holds(polytope_, p); });
     };
     if (polytope_.face_count() == 0) return CapVerdict::too_far_out;
-    // Rounding or bridging may have moved the front outside: plan again around the front as it is.
+    // Rounding or bridging may have moved the front outside: plan again around the current front.
     if (!holds_all())
       polytope_ = enclosing_polytope(points, options_.max_outer_faces, kPolytopeDistance, workers_);
     if (polytope_.face_count() == 0) return CapVerdict::too_far_out;
@@ -336,20 +337,22 @@ class PatchBuilder {
 
   void end_pass() { passes_.end_pass(complex_, hull_.triangle_count()); }
 
-  /// Fitting ends when the hull has no more triangles than this.
+  /// Fitting ends when the front has no more triangles than this.
   static constexpr std::uint32_t kFitDownTo = 200;
-  /// Patches of caps that fit are larger, in quarters: a smaller share of their faces is at the ring, which
-  /// stays. Measured on five bodies and three seeds: hulls of 1 % fewer faces than at 4, in the same time.
+  /// Patch size of fitting caps, in quarters of the usual one: in larger patches a smaller share of the faces
+  /// is at the ring, which stays. Measured on five bodies and three seeds: fronts of 1 % fewer faces than at
+  /// 4, in the same time.
   static constexpr std::uint32_t kFitPatch = 5;
-  /// The outermost wrapper is planned when the hull has no more triangles than this: few enough for that to
-  /// be quick, and still close to the mesh.
+  /// The outermost wrapper is planned when the front has no more triangles than this: few enough to be quick,
+  /// and still close to the mesh.
   static constexpr std::uint32_t kPolytopeFrom = 30000;
-  /// A pass that leaves a larger share of the triangles is the last.
+  /// A pass that leaves more than this share of the triangles is the last.
   static constexpr double kLeastGain = 0.85;
-  static constexpr std::uint32_t kLeastPatches =
-      24;  ///< triangles of the hull per interior vertex of a patch
+  /// A patch has at most front triangles / kLeastPatches interior vertices, so that there are several
+  /// patches.
+  static constexpr std::uint32_t kLeastPatches = 24;
   static constexpr std::uint32_t kLeastInterior = 3;
-  static constexpr std::uint32_t kLeastTriangles = 16;  ///< lowest limit on the triangles of a patch
+  static constexpr std::uint32_t kLeastTriangles = 16;  ///< lower bound of the limit on a patch's triangles
 
   const BuildOptions& options_;
   Workers workers_;
@@ -359,8 +362,8 @@ class PatchBuilder {
   const std::vector<std::uint32_t> home_;  ///< (components) see find_nesting()
   BodyBounds bounds_;
   Random random_;
-  std::vector<bool>
-      frozen_;  ///< (|real faces|) true for faces that meet others or lie within other components
+  /// (|real faces|) true for faces that intersect others or are inside other components
+  std::vector<bool> frozen_;
   std::vector<Eigen::AlignedBox3d> component_boxes_;
   Mesh polytope_;  ///< empty until planned
   PassCounter passes_;

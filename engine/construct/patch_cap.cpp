@@ -1,5 +1,15 @@
-// Edge collapses that only move outward (progressive hulls: Sander, Gu, Gortler, Hoppe and Snyder 2000), with
-// a lazily updated priority queue: a popped candidate is evaluated again if its star has changed.
+// Simplifies a patch into its cap by edge collapses that only move the surface outward (progressive hulls:
+// Sander, Gu, Gortler, Hoppe and Snyder 2000).
+// 1. Propose a collapse for every edge with an interior end: to a new vertex, or onto its other end
+//    if that is on the ring.
+// 2. Pop the cheapest one from a priority queue; evaluate it again if its star has changed, and put it back
+//    if its cost has risen.
+// 3. Collapse the edge, and propose the edges around the new vertex. Repeat until no collapse is accepted.
+//
+// A collapse is rejected in find_star(), if the result would not be a surface; in measure_star(), for its
+// position, deviation, added volume or shape; or in confirm(), for its deviation in between or by an exact
+// test. A rejection, unless by EmbedCheck, is recorded in the surface and remains valid until the star or its
+// neighbours change.
 
 #include "engine/construct/patch_cap.hpp"
 
@@ -25,7 +35,7 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
   patch_ = &patch;
   limits_ = limits;
   cap_.forget_refused();
-  // A collapse that is impossible now may become possible after others: go round until nothing changes.
+  // A collapse that is rejected now may be accepted after others: repeat until nothing changes.
   for (std::uint32_t before = cap_.version() + 1; before != cap_.version();) {
     before = cap_.version();
     propose_all();
@@ -37,7 +47,7 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
       if (!cap_.is_used(c.u) || !cap_.is_used(c.v)) continue;
       const auto now = evaluate_again(c);
       if (!now) continue;
-      // Its cost has risen: put it back, others may be cheaper now.
+      // Its cost has risen: put it back, because others may be cheaper now.
       if (now->cost > c.cost) {
         queue_.push_back(*now);
         std::push_heap(queue_.begin(), queue_.end());
@@ -45,13 +55,13 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
       }
       if (confirm(*now) == CapVerdict::stands)
         collapse(*now);
-      else if (!limits_.check)  // what the check finds may change far from here
+      else if (!limits_.check)  // the check's verdict may change by events far away
         cap_.refuse(star_);
     }
   }
 }
 
-/// Collapses the edge whose star is in star_, and proposes what has become possible.
+/// Collapses the edge whose star is in star_, and proposes collapses that may have become possible.
 void PatchCap::collapse(const Candidate& c) {
   const bool onto_ring = cap_.is_ring(c.v);
   int w = c.v;
@@ -67,8 +77,8 @@ void PatchCap::collapse(const Candidate& c) {
   for (std::size_t k = 0; k < rim_.size(); ++k) {
     if (cap_.is_ring(rim_[k].a)) continue;
     propose(rim_[k].a, w);
-    // Lean bodies are built as they always were, which is by going on with the rim that was looked at last:
-    // the edges that are passed over wait for the next round.
+    // Lean bodies keep the order of earlier versions: they continue with the rim that was evaluated last. The
+    // edges that are skipped wait for the next round.
     if (!fits()) std::copy_n(star_.rim.begin(), std::min(rim_.size(), star_.rim.size()), rim_.begin());
   }
 }
@@ -103,35 +113,36 @@ void PatchCap::propose(int u, int v) {
 /// Evaluates the collapse of an edge; leaves the edge's star in star_.
 std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
   // Cheap rejection before the star is gathered.
-  if (fits() && cap_.is_ring(v) && cap_.is_behind_a_face_at(u, v)) return std::nullopt;  // four in five are
+  if (fits() && cap_.is_ring(v) && cap_.is_behind_a_face_at(u, v)) return std::nullopt;  // four in five
   if (!cap_.find_star(u, v, star_) || cap_.was_refused(star_)) return std::nullopt;
   return evaluate_star(u, v);
 }
 
-/// Returns the candidate as it is now, if it still is one; leaves the edge's star in star_.
+/// Returns the candidate's current state, or nullopt if it is rejected; leaves the edge's star in star_.
 std::optional<PatchCap::Candidate> PatchCap::evaluate_again(const Candidate& c) {
   if (!cap_.find_star(c.u, c.v, star_) || cap_.was_refused(star_)) return std::nullopt;
   return c.version < star_.since ? evaluate_star(c.u, c.v) : c;
 }
 
-/// Evaluates the collapse of the edge whose star is in star_; it rests on the star and on the triangles
-/// across its rim alone, so that a refusal holds until one of these changes.
+/// Evaluates the collapse of the edge whose star is in star_, and records a rejection. The result depends
+/// only on the star and the triangles across its rim, so a rejection remains valid until one of these
+/// changes.
 std::optional<PatchCap::Candidate> PatchCap::evaluate_star(int u, int v) {
   auto c = measure_star(u, v);
   if (!c) cap_.refuse(star_);
   return c;
 }
 
-/// Does that, but takes no note of refusals.
+/// Evaluates it without recording rejections.
 std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
-  // Step 1: centre and radius of the rim give the scale of all tolerances.
+  // Step 1: centre and radius of the rim set the scale of all tolerances.
   Vector3 centre = Vector3::Zero();
   for (const auto& r : star_.rim) centre += cap_.x(r.a);
   centre /= static_cast<double>(star_.rim.size());
   double radius_sq = 0;
   for (const auto& r : star_.rim) radius_sq = std::max(radius_sq, (cap_.x(r.a) - centre).squaredNorm());
   const double radius = std::sqrt(radius_sq);
-  // Step 2: the position of the fan's centre: the ring vertex as it is, or a new vertex.
+  // Step 2: the position of the fan's centre: the ring vertex, or a new vertex.
   Candidate c{0, u, v, cap_.version(), {}};
   if (cap_.is_ring(v)) {
     if (!ring_vertex_is_in_front(v, radius)) return refuse(CapVerdict::no_place);
@@ -157,9 +168,10 @@ std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
   return c;
 }
 
-/// Returns the place of the new vertex: projects a point limits_.depth radii behind the star's centre onto
-/// the planes' polyhedron, so that the vertex comes to lie above the middle of the star, as low as possible.
-/// (The lowest vertex by a linear program slides away sideways where the star is flat.)
+/// Returns the position of the new vertex, or nullopt if no position is feasible: projects a target,
+/// limits_.depth radii behind the star's centre, onto the polyhedron in front of the planes, so that the
+/// vertex is above the middle of the star and as low as possible. (The lowest vertex by a linear program
+/// drifts sideways where the star is flat.)
 std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   // The margin keeps the floating-point position strictly in front, so that the exact confirmation succeeds.
   const double margin = kPlacementMargin * radius, slack = kPlacementSlack * radius;
@@ -169,8 +181,8 @@ std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   if (!(length > 0)) return std::nullopt;
   collect_half_spaces(centre, margin);
   const Vector3 target = outward * (-limits_.depth * radius / length);
-  // Few of the planes are active, so the most violated one first is faster; lean builds keep the original
-  // order.
+  // Few of the planes are active, so adding the most violated one first is faster; lean builds keep the
+  // original order.
   const auto nearest = [&] {
     return fits() ? nearest_point_worst_first(target, half_spaces_, slack)
                   : nearest_point(target, half_spaces_, slack);
@@ -189,8 +201,8 @@ std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   return Vector3(*w + centre);
 }
 
-/// Collects the half-spaces in front of the star's planes and, where the surface turns up at the rim, in
-/// front of the neighbours' planes there.
+/// Collects the half-spaces in front of the star's planes and, where the surface is concave at the rim, in
+/// front of the neighbours' planes.
 void PatchCap::collect_half_spaces(const Vector3& centre, double margin) {
   half_spaces_.clear();
   // In front of the star itself.
@@ -200,7 +212,7 @@ void PatchCap::collect_half_spaces(const Vector3& centre, double margin) {
   }
   for (const auto& r : star_.rim) {
     const auto& own = cap_.faces()[r.face].plane;
-    // In front of the neighbour at a reflex rim edge, where the fan could cut into it.
+    // In front of the neighbour at a reflex rim edge, where the fan could intersect it.
     if (r.across < 0) {
       const auto& p = cap_.plane_beyond(-1 - r.across);
       if (own.n.dot(cap_.tip_beyond(-1 - r.across)) > own.d)
@@ -218,7 +230,7 @@ void PatchCap::collect_half_spaces(const Vector3& centre, double margin) {
 
 bool PatchCap::ring_vertex_is_in_front(int r, double radius) const {
   const Vector3& x = cap_.x(r);
-  // Triangles with the corner r vanish: no condition.
+  // Triangles with the corner r are removed: no condition.
   for (const int f : star_.faces) {
     const auto& face = cap_.faces()[f];
     if (face.v[0] == r || face.v[1] == r || face.v[2] == r) continue;
@@ -227,8 +239,8 @@ bool PatchCap::ring_vertex_is_in_front(int r, double radius) const {
   return true;
 }
 
-/// Returns the shape of the worst triangle between w and the rim: 1 for an equilateral one, 0 for one without
-/// area.
+/// Returns the shape of the worst triangle between w and the rim: 1 for an equilateral, 0 for a degenerate
+/// one.
 double PatchCap::shape_of_fan(const Vector3& w) const {
   double worst = std::numeric_limits<double>::infinity();
   // Quality: area over the sum of squared edges, scaled so that an equilateral triangle has 1.
@@ -240,7 +252,7 @@ double PatchCap::shape_of_fan(const Vector3& w) const {
   return worst * (2 * std::sqrt(3.0));
 }
 
-/// Returns CapVerdict::stands if the collapse may be made, else why not.
+/// Returns CapVerdict::stands if the collapse is accepted, otherwise the reason of the rejection.
 CapVerdict PatchCap::confirm(const Candidate& c) const {
   // Sample points first: cheaper than the exact tests.
   if (limits_.gauge && !limits_.gauge->is_near(cap_, star_, c.w)) return CapVerdict::too_thick;
@@ -248,7 +260,7 @@ CapVerdict PatchCap::confirm(const Candidate& c) const {
     const auto& v = cap_.faces()[f].v;
     if (v[0] == c.v && cap_.is_ring(c.v)) continue;
     if ((v[1] == c.v || v[2] == c.v) && cap_.is_ring(c.v)) continue;
-    // Strictly in front of every triangle that it covers, exactly.
+    // Strictly in front of every triangle that it covers. Exact.
     if (exact::PlaneSide(cap_.x(v[0]).data(), cap_.x(v[1]).data(), cap_.x(v[2]).data()).side(c.w.data()) <= 0)
       return CapVerdict::no_place;
   }
@@ -264,7 +276,7 @@ CapVerdict PatchCap::verdict_on_edge(int u, int v) {
 }
 
 CapVerdict PatchCap::what_holds_back() {
-  // Count the verdicts of all remaining edges, then report the most frequent one of the first non-empty
+  // Count the verdicts of all remaining edges, then return the most frequent one of the first non-empty
   // class.
   std::array<std::uint32_t, kWords<CapVerdict>.size()> edges{};
   for (int u = cap_.ring_size(); u < cap_.vertex_count(); ++u) {

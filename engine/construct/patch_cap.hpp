@@ -1,5 +1,5 @@
 #pragma once
-/// Turns a patch into its cap by edge collapses, cheapest first.
+/// Simplifies a patch into its cap by edge collapses, cheapest first.
 
 #include <cstdint>
 #include <optional>
@@ -13,15 +13,15 @@
 
 namespace lrb::construct {
 
-/// Collapses edges so that each surface lies in front of the one before (progressive hulls: Sander, Gu,
-/// Gortler, Hoppe and Snyder, "Silhouette Clipping", 2000, whose linear program is replaced by a projection:
+/// Collapses edges so that each surface is in front of the one before (progressive hulls: Sander, Gu,
+/// Gortler, Hoppe and Snyder, "Silhouette Clipping", 2000, with a projection instead of their linear program:
 /// see place()).
 class PatchCap {
  public:
   struct Limits {
-    double volume = 0;  ///< largest volume (strictly, cost) that one collapse may add; unit cubed
+    double volume = 0;  ///< maximum volume (strictly, cost) that one collapse may add; mesh units cubed
     int faces = 0;      ///< stop when the cap has no more faces than this
-    /// How far the point that is projected lies below the star's centre; in radii of the star.
+    /// Distance of the projected target below the star's centre, in radii of the star.
     double depth = 1;
     EmbedCheck* check = nullptr;  ///< if set, every collapse must pass it
     CapGauge* gauge = nullptr;    ///< if set, every collapse must stay within its limit
@@ -32,8 +32,8 @@ class PatchCap {
   /// Collapses edges of the loaded surface until no collapse is allowed any more.
   void simplify(const Patch& patch, const Limits& limits);
 
-  /// Returns why simplify() went no further: what forbids most of the collapses that are left. Limits that
-  /// were set come before what geometry forbids, because nearly every edge at the ring is of that kind.
+  /// Returns the reason that rejects most of the remaining collapses. Limits that were set take precedence
+  /// over geometry, because nearly every edge at the ring is rejected by geometry.
   CapVerdict what_holds_back();
 
  private:
@@ -77,7 +77,7 @@ class PatchCap {
   CapSurface::Star star_;
   std::vector<CapSurface::Star::Rim> rim_;  ///< a copy of the star's
   std::vector<HalfSpace> half_spaces_;
-  CapVerdict why_ = CapVerdict::stands;  ///< why measure_star() returned nothing
+  CapVerdict why_ = CapVerdict::stands;  ///< why measure_star() returned nullopt
 };
 
 }  // namespace lrb::construct

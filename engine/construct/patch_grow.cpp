@@ -8,8 +8,7 @@ namespace {
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// The number of new triangles that a candidate one reach away from the seed counts as on top: keeps patches
-/// round.
+/// Number of new triangles added to the cost of a candidate at one reach from the seed: keeps patches round.
 constexpr double kDistancePenalty = 1.0;
 
 }  // namespace
@@ -70,9 +69,9 @@ bool PatchGrower::grow(Corner seed, Patch& patch) {
   return true;
 }
 
-/// Adds the polygons at v that are not in the patch yet, if the patch remains a disk. It does exactly if its
-/// Euler characteristic stays what it is (or, from nothing, becomes 1): the new triangles are connected round
-/// v and share an edge with the patch.
+/// Adds the polygons at v that are not in the patch yet, if the patch remains a disk. The new triangles are
+/// connected around v and share an edge with the patch, so it remains a disk if and only if its Euler
+/// characteristic is unchanged (or, for the first star, becomes 1).
 bool PatchGrower::add_star(Corner v, Patch& patch) {
   // Mark first and undo on failure: the Euler characteristic is counted with the new triangles in place.
   const bool free = mark_star(v);
@@ -98,8 +97,8 @@ bool PatchGrower::add_star(Corner v, Patch& patch) {
   return true;
 }
 
-/// Marks the triangles of the polygons at v that are not in the patch yet as in it, and lists them in added_.
-/// Returns false if one of them is taken; the list may then end there.
+/// Marks the triangles of the polygons at v that are not in the patch yet, and lists them in added_. Returns
+/// false if one of them is taken; the list may then be incomplete.
 bool PatchGrower::mark_star(Corner v) {
   added_.clear();
   bool free = true;
@@ -107,7 +106,7 @@ bool PatchGrower::mark_star(Corner v) {
     if (!free || in_patch(s)) return;
     const auto unit = hull_.unit(s);
     for (Slot t = unit.first; t < unit.last && free; ++t) {
-      free = !taken_[t];  // what is taken stays where it is: no matter what comes after it
+      free = !taken_[t];  // taken triangles stay taken
       slot_stamp_[t] = stamp_;
       added_.push_back(t);
     }
@@ -119,8 +118,8 @@ void PatchGrower::unmark_star() {
   for (const Slot s : added_) slot_stamp_[s] = 0;
 }
 
-/// Counts the new triangles in at their corners. Returns how many of these are new; they are at the end of
-/// rim_.
+/// Adds the new triangles to the counts at their corners. Returns the number of new corners, which are at the
+/// end of rim_.
 std::size_t PatchGrower::add_corners() {
   const std::size_t before = rim_.size();
   for (const Slot s : added_) {
@@ -179,7 +178,7 @@ Corner PatchGrower::best_candidate(Corner seed, double reach_sq, const Patch& pa
 }
 
 void PatchGrower::find_ring(Patch& patch) const {
-  // Start at any boundary edge and turn round its end until the next one is reached.
+  // Start at any boundary edge and rotate about its end to the next one.
   Slot s = kNull;
   int i = 0;
   for (const Slot t : patch.slots)

@@ -1,5 +1,5 @@
 #pragma once
-/// Patches: disks of the hull's triangles, which a pass covers with caps.
+/// Patches: disks of the front's triangles, which a pass covers with caps.
 
 #include <cstdint>
 #include <vector>
@@ -22,24 +22,24 @@ struct GrowLimits {
   std::uint32_t triangles = 64;
 };
 
-/// Grows patches one after the other; triangles that are taken never become part of a patch again.
+/// Grows patches one after the other. Triangles that are taken never become part of a patch again.
 class PatchGrower {
  public:
   PatchGrower(const HullMesh& hull, const GrowLimits& limits);
 
   /// Grows a disk around the seed: first the star of the seed, then the star of the ring vertex that needs
-  /// the fewest new triangles (with a penalty on its distance from the seed), as long as the patch remains a
-  /// disk. Takes polygons of the mesh whole. Returns false if not even the seed's star can be taken.
+  /// the fewest new triangles (with a penalty on its distance from the seed), while the patch remains a disk.
+  /// Polygons of the mesh are added entirely. Returns false if the seed's star cannot be added.
   bool grow(HullMesh::Corner seed, Patch& patch);
   void take(HullMesh::Slot s) { taken_[s] = true; }
   bool is_taken(HullMesh::Slot s) const { return taken_[s]; }
 
-  /// Starts a batch: from here on, growth notes when it looks at triangles with a vertex of a patch that is
-  /// in the batch.
+  /// Starts a batch: from now on, growth records whether it reads triangles with a vertex of a patch in the
+  /// batch.
   void begin_batch();
   void add_to_batch(const Patch& patch);
-  /// Returns true if the last call of grow() looked at such triangles: its result may then depend on what
-  /// becomes of the batch.
+  /// Returns true if the last call of grow() read such triangles: its result may then depend on the caps of
+  /// the batch.
   bool met_batch() const { return met_batch_; }
 
  private:
@@ -60,7 +60,7 @@ class PatchGrower {
   GrowLimits limits_;
   std::vector<bool> taken_;                 ///< (slots)
   std::vector<std::uint32_t> slot_stamp_;   ///< == stamp_: in the patch that is growing
-  std::vector<std::uint32_t> point_stamp_;  ///< the same for vertices
+  std::vector<std::uint32_t> point_stamp_;  ///< == stamp_: a vertex of the patch that is growing
   std::vector<std::uint32_t> inside_;       ///< number of the patch's triangles at a vertex, if it is stamped
   std::vector<std::uint32_t> refused_;      ///< == stamp_: the vertex's star cannot be added
   std::uint32_t stamp_ = 0;

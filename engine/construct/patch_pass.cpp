@@ -1,6 +1,6 @@
 // A pass in batches: grow disjoint patches in order, make their caps in parallel, apply them in order. A cap
-// is made again if an earlier one of its batch changed space that its proof depended on, so the result is
-// that of the serial algorithm.
+// is made again if an earlier one of its batch changed space that its proof depends on, so the result is
+// identical to the serial algorithm.
 
 #include "engine/construct/patch_pass.hpp"
 
@@ -18,17 +18,17 @@ namespace {
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// Patches of a batch per thread. Longer batches would seldom come about before two of their patches touch.
+/// Patches per batch and thread. Batches rarely get longer before two of their patches touch.
 constexpr std::size_t kBatchPerThread = 32;
 
-/// See PatchCap::Limits::depth; where caps are to fit.
+/// See PatchCap::Limits::depth; for fitting caps.
 constexpr double kFittingDepth = 10;
 
-/// Where no cap was found, none is tried before it may be this many times as far off, at least. Smaller: more
-/// time, most of it in vain.
+/// Where no cap was found, the next attempt is made at a deviation limit larger by at least this factor.
+/// Smaller: more time, mostly without effect.
 constexpr double kPatience = 1.2;
-/// A pass of caps that fit ends when after this many patches fewer than one in kLeastCaps got a cap: the
-/// distance is too small for most of the hull.
+/// A pass of fitting caps ends when, after at least kTries patches, fewer than one in kLeastCaps got a cap:
+/// the deviation limit is too small for most of the front.
 constexpr std::size_t kTries = 32, kLeastCaps = 24;
 
 }  // namespace
@@ -43,7 +43,7 @@ PatchPass::PatchPass(HullMesh& hull, AabbTree& tree, ComplexBuilder& complex, co
   jobs_.resize(workers.count() == 1 ? 1 : kBatchPerThread * workers.count());
 }
 
-/// Takes the faces that no patch may have. Returns how many there are.
+/// Excludes the faces that no patch may contain. Returns their number.
 std::uint32_t PatchPass::bar_faces(PatchGrower& grower) const {
   std::uint32_t barred = 0;
   for (Slot s = 0; s < hull_.slot_count(); ++s) {
@@ -56,7 +56,7 @@ std::uint32_t PatchPass::bar_faces(PatchGrower& grower) const {
   return barred;
 }
 
-/// Returns the vertices in use at which a cap may be found, in random order, and counts those that wait.
+/// Returns the used vertices at which a cap may be found, in random order, and counts those that wait.
 std::vector<Corner> PatchPass::find_seeds(double off, Random& random, std::uint32_t& waiting) const {
   std::vector<Corner> seeds;
   for (Corner v = 0; v < hull_.point_count(); ++v) {
@@ -140,8 +140,8 @@ void PatchPass::make_cap(Job& job, const CapGoal& goal, Bench& bench) const {
   if (job.has_cap) job.sheet = make_sheet(hull_, job.patch, bench.cap);
 }
 
-/// Finds a cap, at first without looking at anything but the patch itself; if that cap turns out to hit
-/// something, tries again with a proof for each collapse.
+/// Finds a cap, at first with a single proof for the finished cap. If that fails because of an intersection,
+/// tries again with a proof for each collapse.
 void PatchPass::find_cap(Job& job, const CapGoal& goal, Bench& bench) const {
   job.has_cap = false;
   job.tries = 0;
@@ -162,8 +162,8 @@ void PatchPass::find_cap(Job& job, const CapGoal& goal, Bench& bench) const {
     job.tried[job.tries - 1].off = std::min(goal.off, off_of(bench.cap));
 }
 
-/// Simplifies the patch into a cap that is worth a region. Intersections with the hull are checked after each
-/// collapse if `careful`, otherwise not at all.
+/// Simplifies the patch into a cap that is worth a region. Intersections with the front are checked after
+/// each collapse if `careful`, otherwise not at all.
 CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& bench, bool careful) const {
   CapSurface& cap = bench.cap;
   cap.load(hull_, patch, static_cast<VertexId>(complex_.vertices().size()));
@@ -188,7 +188,7 @@ CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& b
   return CapVerdict::stands;
 }
 
-/// Returns how far the cap's new triangles stand off the body, as it was measured: an estimate.
+/// Returns the measured maximum deviation of the cap's new triangles from the body: an estimate.
 double PatchPass::off_of(const CapSurface& cap) {
   double most = 0;
   for (const CapSurface::Face& f : cap.faces())
@@ -205,10 +205,10 @@ void PatchPass::tell(const Job& job) const {
   for (std::size_t i = 0; i < job.tries; ++i) probe_->cap(job.tried[i]);
 }
 
-/// Returns how many times as far off a cap must be allowed to be before there may be one where there is none
-/// now. The faces that are needed fall about in proportion to the distance, so that is by how much those of
-/// the cap that was not worth it are too many. (Trying at each distance takes a third more time for the same
-/// hulls.)
+/// Returns the factor by which the deviation limit must grow before a cap may be found where none is now. The
+/// number of faces needed is about inversely proportional to the deviation, so the factor is the ratio of the
+/// rejected cap's faces to the number that would be worth it. (An attempt at each limit takes a third more
+/// time for the same fronts.)
 double PatchPass::patience(const Patch& patch, const CapSurface& cap, double worth) {
   return std::max(kPatience, cap.alive_faces() / (worth * static_cast<double>(patch.slots.size())));
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// One pass: patches all over the hull, and a cap on each.
+/// One pass: covers the front with patches, and each patch with a cap.
 
 #include <array>
 #include <cstdint>
@@ -23,28 +23,29 @@
 
 namespace lrb::construct {
 
-/// Gives the same result as taking one seed after the other: grow its patch, make its cap, put it on the
-/// hull.
+/// The result is the same as processing one seed after the other: grow its patch, make its cap, apply the cap
+/// to the front.
 ///
-/// Several threads do this in batches. Patches grow in order until one comes across a vertex of an earlier
-/// one of the batch; that one begins the next batch. So no patch of a batch, nor anything that its growth
-/// looked at, has anything in common with another. Then all caps are made at once, on the hull as it was, and
-/// put on it in order; a cap whose proof looked at a part of space where an earlier cap of the batch changed
-/// the hull is made again first.
+/// Several threads do this in batches. Patches grow in order until one reaches a vertex of an earlier patch
+/// of the batch; that one begins the next batch. So neither a patch of a batch, nor any triangle that its
+/// growth read, has a vertex in common with another. All caps are then made at once, on the unchanged front,
+/// and applied in order. A cap whose proof read a part of space in which an earlier cap of the batch changed
+/// the front is made again first.
 class PatchPass {
  public:
-  /// `frozen` (|real faces|): faces not to be covered. `component_boxes`: boxes of the hull's components, or
-  /// of parts of them that tell where the component is as a whole.
-  /// `tree`: over the hull; follows it. `probe` is told of patches, caps and regions; may be null.
+  /// `frozen` (|real faces|): faces that must not be covered. `component_boxes`: boxes of the front's
+  /// components, or of parts of them that determine where the component is. `tree`: over the front; kept up
+  /// to date. `probe`: null, or notified of patches, caps and regions.
   PatchPass(HullMesh& hull, AabbTree& tree, ComplexBuilder& complex, const BodyBounds& bounds,
             const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes,
             Workers& workers, ConstructProbe* probe);
 
-  /// Covers what it can with regions of this layer, taking seeds in random order. Returns how it went.
+  /// Covers the front with regions of this layer where possible, taking seeds in random order. Returns
+  /// statistics.
   PassEnd run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t layer, Random& random);
 
  private:
-  /// The memory that one worker needs to make caps.
+  /// The buffers that one worker needs to make caps.
   struct Bench {
     Bench(const HullMesh& hull, const AabbTree& tree, const BodyBounds& bounds,
           const std::vector<Eigen::AlignedBox3d>& component_boxes)
@@ -58,13 +59,13 @@ class PatchPass {
   };
   struct Job {
     Patch patch;
-    std::uint32_t no_patch = 0;  ///< vertices before this one's at which no patch could be grown
+    std::uint32_t no_patch = 0;  ///< earlier vertices at which no patch could be grown
     std::array<TriedCap, 2> tried;
     std::size_t tries = 0;
     bool has_cap = false;
-    double next_off = 0;       ///< if not: the limit at which one is to be tried again
-    Sheet sheet;               ///< the cap, if there is one
-    Eigen::AlignedBox3d seen;  ///< where the hull was looked at
+    double next_off = 0;       ///< if not: deviation limit of the next attempt
+    Sheet sheet;               ///< the cap, if has_cap
+    Eigen::AlignedBox3d seen;  ///< space in which the front was read
   };
 
   void grow_batch(PatchGrower& grower);
@@ -91,7 +92,7 @@ class PatchPass {
   std::vector<Job> jobs_;
   std::size_t batch_ = 0;       ///< number of jobs_ in use
   std::uint32_t no_patch_ = 0;  ///< vertices at which no patch could be grown since the last job
-  std::vector<Eigen::AlignedBox3d> changed_;  ///< where the batch has changed the hull so far
+  std::vector<Eigen::AlignedBox3d> changed_;  ///< space in which the batch has changed the front so far
 };
 
 }  // namespace lrb::construct

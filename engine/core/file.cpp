@@ -43,8 +43,8 @@ std::string escaped(std::string_view text, bool keep_high) {
   throw InputError(printable_name(path) + ": " + why);
 }
 
-/// Returns true if a FIFO has a name. A pipe without one, as <(...) and | make it, is filled by the process
-/// at its other end. Opening a named one blocks until somebody writes to it.
+/// Returns true if a FIFO has a name. Anonymous pipes, as created by <(...) and |, are filled by the process
+/// at the other end. Opening a named pipe blocks until a process writes to it.
 bool has_name(const char* fifo) {
   constexpr long kPipeFileSystem = 0x50495045;  // PIPEFS_MAGIC
   struct statfs where {};
@@ -93,7 +93,7 @@ std::string read_file(const std::string& path, std::uint64_t most) {
   // Reject large files before reading. Pipes have no size, so the limit is checked again after each chunk.
   const auto size = std::filesystem::file_size(path, ignored);
   if (!ignored && size > most) too_large(path, most);
-  if (!ignored) bytes.reserve(size + 1);  // pipes have no size and grow as they come
+  if (!ignored) bytes.reserve(size + 1);  // pipes have no size; the buffer grows with them
   static constexpr std::size_t kChunk = std::size_t{1} << 18;
   for (;;) {
     const std::size_t before = bytes.size();
@@ -133,13 +133,13 @@ std::string behind_links(const std::string& path) {
   return error ? path : real.string();
 }
 
-/// Returns a name beside the target, on the same file system, that no other process or thread uses.
+/// Returns an unused name beside the target, on the same file system, unique among processes and threads.
 std::string temporary_name(const std::string& target) {
   static std::atomic<unsigned> counter{0};
   return target + ".tmp-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
 }
 
-/// The temporary files that exist. Never destroyed, because threads may outlive main().
+/// The existing temporary files. Never destroyed, because threads may outlive main().
 struct Unfinished {
   std::mutex mutex;
   std::set<std::string> files;
@@ -151,7 +151,7 @@ Unfinished& unfinished() {
 }
 
 int create_temporary(const std::string& name) {
-  static constexpr mode_t kAll = 0666;  // less the umask
+  static constexpr mode_t kAll = 0666;  // minus the umask
   Unfinished& all = unfinished();
   // Register before creating: abandon_atomic_files() must not miss a file. Once it has the lock, none is
   // created.
@@ -184,13 +184,13 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(behind_li
     fail("create", reason);
   }
   if (exists && !temporary_.empty())
-    static_cast<void>(fchmod(file_, status.st_mode & 07777));  // keep the mode if we are allowed to
+    static_cast<void>(fchmod(file_, status.st_mode & 07777));  // keep the mode if permitted
 }
 
 AtomicFile::~AtomicFile() {
   if (file_ >= 0) close(file_);
   if (temporary_.empty()) return;
-  // Not committed: the target stays as it was.
+  // Not committed: the target is unchanged.
   const std::lock_guard lock(unfinished().mutex);
   unlink(temporary_.c_str());
   unfinished().files.erase(temporary_);
@@ -205,7 +205,7 @@ void AtomicFile::flush() {
   const char* at = buffer_.data();
   for (std::size_t left = buffer_.size(); left > 0;) {
     const ssize_t written = ::write(file_, at, left);
-    // A signal interrupted the call, or it wrote only a part: go on with the rest.
+    // Interrupted by a signal, or a partial write: continue with the rest.
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail("write", errno);
     at += written;

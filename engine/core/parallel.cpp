@@ -15,7 +15,7 @@ namespace lrb {
 
 struct Workers::Pool {
   explicit Pool(int threads) : arena(threads) {
-    // By default oneTBB starts no more threads than there are processors.
+    // By default oneTBB starts at most as many threads as there are processors.
     if (threads > tbb::info::default_concurrency())
       more.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   }
@@ -31,13 +31,13 @@ Workers::Workers(unsigned threads)
 Workers::~Workers() = default;
 
 void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsigned)>& work) {
-  // On one thread: a plain loop. The first exception leaves it, which is that of the lowest index.
+  // Single thread: a plain loop. The first exception ends it, which is that of the lowest index.
   if (!pool_ || n < 2) {
     for (std::size_t i = 0; i < n; ++i) work(i, 0);
     return;
   }
-  // Calls above the lowest index that has failed are skipped, those below it still run. The exception of the
-  // lowest index is therefore found whatever the schedule.
+  // Calls above the lowest failed index are skipped; those below it still run. Hence the exception of the
+  // lowest index is found regardless of the schedule.
   std::atomic<std::size_t> failed = n;
   std::exception_ptr failure;
   std::mutex one_at_a_time;

@@ -1,7 +1,6 @@
-// Workers on threads of the standard library, for the build that is checked by ThreadSanitizer: it sees
-// everything that these threads do, while it reports false races in a oneTBB that was not compiled for it.
-// Each call takes idle worker numbers from the pool, runs a thread for each, and gives the numbers back.
-// An atomic counter distributes the work.
+// Workers implemented with threads of the standard library, for builds with ThreadSanitizer, which reports
+// false races in a oneTBB that was compiled without it. Each call takes idle worker numbers from the pool,
+// runs a thread for each, and returns the numbers. An atomic counter distributes the work.
 
 #include <algorithm>
 #include <atomic>
@@ -16,12 +15,12 @@
 namespace lrb {
 
 struct Workers::Pool {
-  /// Makes a pool of idle worker numbers. 0 belongs to the thread that made the pool.
+  /// Creates a pool of idle worker numbers. Number 0 belongs to the thread that created the pool.
   explicit Pool(unsigned threads) {
     for (unsigned number = threads; number-- > 1;) free.push_back(number);
   }
 
-  /// Takes up to `wanted` idle numbers; fewer if nested or concurrent calls have them.
+  /// Takes up to `wanted` idle numbers; fewer if nested or concurrent calls use them.
   std::vector<unsigned> take(std::size_t wanted) {
     const std::lock_guard lock(mutex);
     std::vector<unsigned> taken;
@@ -39,7 +38,7 @@ struct Workers::Pool {
 
 namespace {
 
-/// The pool for which this thread works, and its number there.
+/// The pool that this thread works for, and its number there.
 thread_local std::pair<const void*, unsigned> current{nullptr, 0};
 
 /// Runs work(number) on a new thread for each number and on this one, and rethrows the first exception.
@@ -48,7 +47,7 @@ void run_on(const void* pool, const std::vector<unsigned>& numbers, const Work& 
   std::mutex mutex;
   std::exception_ptr failure;
   const auto run = [&](unsigned number) {
-    // Saved and restored, because calls may be nested, also of different pools.
+    // Saved and restored, because calls may be nested, even with different pools.
     const auto before = std::exchange(current, {pool, number});
     try {
       work(number);
@@ -80,10 +79,22 @@ Workers::~Workers() = default;
 void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsigned)>& work) {
   const std::vector<unsigned> helpers =
       pool_ && n > 1 ? pool_->take(std::min<std::size_t>(n, count_) - 1) : std::vector<unsigned>{};
-  // Each worker fetches the next index until none is left.
-  std::atomic<std::size_t> next{0};
+  // Each worker fetches the next index until none is left. Calls above the lowest index that has failed are
+  // skipped. Those below it were fetched before, so the exception of the lowest index is always found.
+  std::atomic<std::size_t> next{0}, failed{n};
+  std::exception_ptr failure;
+  std::mutex one_at_a_time;
   const auto take_part = [&](unsigned worker) {
-    for (std::size_t i = next++; i < n; i = next++) work(i, worker);
+    for (std::size_t i = next++; i < failed; i = next++) {
+      try {
+        work(i, worker);
+      } catch (...) {
+        const std::lock_guard lock(one_at_a_time);
+        if (i > failed) continue;
+        failed = i;
+        failure = std::current_exception();
+      }
+    }
   };
   const auto give_back = [&] {
     if (pool_) pool_->give_back(helpers);
@@ -95,6 +106,7 @@ void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsi
     throw;
   }
   give_back();
+  if (failure) std::rethrow_exception(failure);
 }
 
 void Workers::both(const std::function<void()>& one, const std::function<void()>& other) {

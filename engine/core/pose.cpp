@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kOf3x4 = 12, kOf4x4 = 16;
 constexpr std::size_t kRow = 4;  // numbers in a row
 
-/// Returns what is wrong with a matrix's numbers, row by row; empty: nothing.
+/// Returns the fault of a matrix in row-major order, or an empty string if it is valid.
 std::string fault_of(std::span<const double> n) {
   if (n.size() != kOf3x4 && n.size() != kOf4x4)
     return "has " + std::to_string(n.size()) + " numbers; give 12 (3 x 4) or 16 (4 x 4), row by row";
@@ -45,7 +45,7 @@ Expected<Pose> pose_of(const Eigen::MatrixXd& matrix) {
   if (matrix.cols() != 4 || (matrix.rows() != 3 && matrix.rows() != 4))
     return Refusal{"the pose is a matrix of " + std::to_string(matrix.rows()) + " x " +
                    std::to_string(matrix.cols()) + "; give one of 3 x 4 or 4 x 4"};
-  // Eigen stores columns; the common path reads rows.
+  // Eigen stores columns; the common path expects rows.
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = matrix;
   return pose_of_rows({rows.data(), static_cast<std::size_t>(rows.size())});
 }

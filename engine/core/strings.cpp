@@ -19,7 +19,7 @@ std::string lower_text(double x, int digits) {
   double shown = 0;
   std::from_chars(text.data(), text.data() + text.size(), shown);
   if (!(shown > x)) return text;
-  const double unit = std::pow(10.0, std::floor(std::log10(x)) - digits + 1);  // of the last digit
+  const double unit = std::pow(10.0, std::floor(std::log10(x)) - digits + 1);  // unit of the last digit
   return number_text(x - unit / 2, digits);
 }
 

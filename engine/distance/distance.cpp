@@ -1,7 +1,7 @@
 /// The distance query; distance.hpp names its sources. Steps:
 /// 1. Measure one pair of simplices for a first upper bound: the candidate of the previous step, or any pair.
 /// 2. Traverse both trees, best first: in float where that is accurate enough, otherwise in double.
-/// 3. Measure the pairs that are left, in double and, where needed, in integers.
+/// 3. Measure the remaining pairs, in double and, where needed, in integers.
 /// 4. Complete the answer: closest points and relation of the bodies.
 
 #include <algorithm>
@@ -24,18 +24,18 @@
 
 namespace lrb {
 
-// The traversal of two trees for a distance, in double: for poses that are not rotations, and for distant
-// bodies. Slower than the float kernel.
+// Best-first traversal of two trees in double, for poses that are not rotations and for distant bodies.
+// Slower than the float kernel.
 
 /// Traverses the trees of the bodies of `ctx` and measures the pairs of simplices that may be the closest.
 class WorldWalk {
  public:
   WorldWalk(QueryContext& ctx, NearestPairs& found);
 
-  /// Returns true if it was completed, or the request is answered; false after `max_steps` steps (0: no
-  /// limit). teller: null, or notified of bounds.
+  /// Returns true if the traversal was completed or the request is answered, false after `max_steps` steps
+  /// (0: no limit). teller: null, or notified of bounds.
   bool run(std::uint64_t max_steps, BoundsTeller* teller);
-  /// Returns a bound on the distances of all pairs that have not been measured.
+  /// Returns a lower bound on the distances of all unmeasured pairs.
   double rest() const;
   std::uint64_t steps() const { return steps_; }
   std::uint64_t box_tests() const { return box_tests_; }
@@ -44,7 +44,7 @@ class WorldWalk {
   using Vector3d = Eigen::Vector3d;
   using Matrix3d = Eigen::Matrix3d;
 
-  /// A box along the walk's axes.
+  /// A box along the traversal's axes.
   struct Box {
     Vector3d centre, half;
   };
@@ -54,10 +54,10 @@ class WorldWalk {
   };
   struct Body {
     const ObbTree* tree;
-    Matrix3d map;     ///< from the tree's units to the walk's axes
-    Vector3d origin;  ///< on the walk's axes
-    double margin;    ///< errors of coordinates
-    double turn;      ///< a bound on what the map does to lengths
+    Matrix3d map;     ///< from the tree's units to the traversal's axes
+    Vector3d origin;  ///< on the traversal's axes
+    double margin;    ///< error bound of coordinates
+    double turn;      ///< upper bound on the factor by which the map stretches lengths
   };
 
   Body body_of(const QueryBody& body, int exponent) const;
@@ -67,24 +67,24 @@ class WorldWalk {
   void see(const Waiting& parent, std::uint32_t a, std::uint32_t b, double bound, bool leaves);
 
   NearestPairs& found_;
-  int exponent_;   ///< a unit of the walk is 2^exponent_
-  Matrix3d axes_;  ///< rows: the walk's axes in the world
+  int exponent_;   ///< the unit of the traversal is 2^exponent_
+  Matrix3d axes_;  ///< rows: the traversal's axes in the world
   Body body_[2];
   std::vector<Waiting> waiting_;
   std::vector<Box> boxes_[2];
-  double dropped_ = std::numeric_limits<double>::infinity();  ///< the least bound of what was dropped
+  double dropped_ = std::numeric_limits<double>::infinity();  ///< least bound of the dropped pairs
   std::uint64_t steps_ = 0, box_tests_ = 0;
 };
 
 // Distances along a motion. Kept from the previous step:
-// - The pair of simplices that was closest. Measured at the new poses, it gives an upper bound and the
-//   direction of slabs before the traversal begins. If the surfaces intersected in it and still do, nothing
-//   is traversed.
-// - The relation of the bodies. If the surfaces were disjoint, and no points can have approached by as much
-//   as the distance was, they do not intersect anywhere on the path between the steps: one body contains the
-//   other now if it did then.
-// - Planes that separate pairs of nodes: as long as they do, these nodes are not expanded.
-// That no other pair is closer is proven anew in each step.
+// - The closest pair of simplices. Measured at the new poses, it gives an upper bound and the direction of
+//   slabs before the traversal begins. If the surfaces intersected in it and still do, nothing is traversed.
+// - The relation of the bodies. If the surfaces were disjoint, and no points can have approached by the whole
+//   distance since, the surfaces do not intersect anywhere on the path between the steps: one body contains
+//   the other now if and only if it did then.
+// - Planes that separate pairs of nodes: while they do, these nodes are not expanded.
+//
+// Each step proves again that every other pair is at least as far.
 
 class CoherentDistance::Work {
  public:
@@ -93,13 +93,13 @@ class CoherentDistance::Work {
   DistanceResult distance(const Pose& pose_a, const Pose& pose_b) {
     const PosePair now{pose_a, pose_b};
     const bool lies_as_before = request_.relation && is_relation_kept(now);
-    // A relation that is kept need not be computed.
+    // A relation that is known to be unchanged is not computed.
     DistanceRequest ask = request_;
     ask.relation = request_.relation && !lies_as_before;
     DistanceResult result = lrb::distance(a_, pose_a, b_, pose_b, ask, context_, &before_);
-    // Kept only if this step proves a positive distance, which an early stop may not.
+    // The relation holds only if this step proves a positive distance, which an early stop may not.
     if (lies_as_before) result.relation = result.lower > 0 ? relation_ : Relation::unresolved;
-    // Where the bounds of the next step begin.
+    // The starting point of the next step.
     before_.likely = {result.witness[0].simplex, result.witness[1].simplex};
     apart_ = result.lower;
     relation_ = result.relation;
@@ -109,8 +109,8 @@ class CoherentDistance::Work {
 
  private:
   bool is_relation_kept(const PosePair& now) const {
-    // Only for solids: the relation of open bodies is decided by boxes, which move with each pose. NaN or an
-    // unknown distance keeps nothing.
+    // Only for solids: the relation of open bodies is decided by boxes, which change with each pose. NaN or
+    // an unknown distance keeps nothing.
     return a_.closed() && b_.closed() && apart_ > 0 && std::isfinite(apart_) &&
            nearer_by(a_, b_, poses_, now, apart_) < apart_;
   }
@@ -118,9 +118,9 @@ class CoherentDistance::Work {
   const LrbRep &a_, &b_;
   const DistanceRequest request_;
   DistanceContext context_;
-  // Of the last answer:
+  // From the last answer:
   KnownFromBefore before_;
-  double apart_ = 0;  ///< the lower end
+  double apart_ = 0;  ///< the lower bound
   Relation relation_ = Relation::undefined;
   PosePair poses_;
 };
@@ -180,7 +180,7 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
       found.finish(0, true, result);
       return result;
     }
-  } else if (request.max_steps > 0 || request.within) {  // there must be an upper end, however early it stops
+  } else if (request.max_steps > 0 || request.within) {  // an early stop needs an upper bound as well
     // Step 1, otherwise: an early stop needs some upper bound, and any pair gives one.
     found.measure(a.tree().blocks()[0].simplex[0], b.tree().blocks()[0].simplex[0], 0);
   }
@@ -196,7 +196,7 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
     FloatWalk walk(context, found, request, tree, query_unit(a.tree(), b.tree()), !is_likely,
                    before != nullptr ? &before->far : nullptr);
     finished = walk.run(teller);
-    // Step 3. In the other traversal, pairs are measured as they are found.
+    // Step 3. The other traversal measures pairs as it finds them.
     if (!found.known_to_meet()) rest = walk.measure();
     walk.count(result.counters);
   } else {
@@ -206,7 +206,7 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
     result.counters.steps = walk.steps();
     result.counters.box_tests = walk.box_tests();
   }
-  // The probe sees the bounds before and after the exact measurements.
+  // The probe gets the bounds before and after the exact measurements.
   if (told && !found.known_to_meet())
     told->tell(result.counters.steps + found.measured(), found.lower(rest), found.upper());
   // Step 4.
@@ -233,25 +233,26 @@ std::vector<DistanceResult> distances(const LrbRep& a, const Pose& pose_a, const
   Workers workers(threads);
   std::vector<DistanceContext> contexts(workers.count());
   std::vector<DistanceResult> results(poses_b.size());
-  // Results do not depend on which worker computes which pose: contexts only lend memory.
+  // Results do not depend on which worker computes which pose: contexts are only buffers.
   workers.for_each(poses_b.size(), [&](std::size_t i, unsigned worker) {
     results[i] = distance(a, pose_a, b, poses_b[i], request, contexts[worker]);
   });
   return results;
 }
 
-// Best-first traversal in double, for maps that are not rotations and for distant bodies. Steps:
-// 1. Choose axes, orthonormal in the world, of which the first points from one body to the other: in that
+// Best-first traversal in double. Steps:
+// 1. Choose axes, orthonormal in the world, with the first axis pointing from one body to the other: in that
 //    direction the near sides of distant bodies differ most from their far sides.
-// 2. Enclose the boxes of a node in boxes along these axes. The distance of two such boxes is the root of
-//    the sum of the squares of the positive gaps.
-// 3. Expand the pair of nodes with the least bound, drop the pairs of children that are too far, and measure
-//    the pairs of simplices at the leaves.
+// 2. Enclose the boxes of a node in boxes along these axes. The distance of two such boxes is the root of the
+//    sum of the squares of the positive gaps.
+// 3. Expand the pair of nodes with the least bound, drop the pairs of children beyond the pruning distance,
+//    and measure the pairs of simplices at the leaves.
 //
-// Errors, with u = 2^-53 and S the size of a body's world coordinates. World coordinates are rounded by 4 u
-// S each, so that they are off by 7 u S along any axis. The map to the chosen axes, and origins there, are
-// off by 30 u S. The axes are orthonormal to 8 u. 4 kWorldRounding S is 128 u S. The nodes' own axes are
-// orthonormal to kFrameDefect: as in relation.cpp, kKernelRounding times the size of the node covers that.
+// Errors, with u = 2^-53 and S the size of a body's world coordinates. World coordinates are rounded by 4 u S
+// each, which is an error of at most 7 u S along any axis. The map to the chosen axes, and origins on them,
+// have errors of at most 30 u S. The axes are orthonormal to 8 u. The margin, 4 kWorldRounding S, is 128 u S.
+// The nodes' own axes are orthonormal to kFrameDefect: as in relation.cpp, kKernelRounding times the size of
+// the node covers that.
 
 namespace {
 
@@ -272,21 +273,21 @@ Matrix scaled(const Matrix& x, int exponent) {
 
 /// Returns x 2^exponent, rounded down.
 double scaled_down(double x, int exponent) {
-  // ldexp() rounds only near underflow; there one step down makes up for it. Overflow becomes the largest
+  // ldexp() rounds only near underflow; one step down compensates for that. Overflow becomes the largest
   // double.
   constexpr double kSmall = 0x1p-1000;
   const double y = std::min(std::ldexp(x, exponent), std::numeric_limits<double>::max());
   return y < kSmall ? std::max(0.0, std::nextafter(y, 0.0)) : y;
 }
 
-/// Returns axes of which the first points along `way`; the world's axes if it has no direction.
+/// Returns axes whose first one points along `way`, or the world's axes if `way` has no direction.
 Matrix3d axes_along(const Vector3d& way) {
   const double length = way.stableNorm();
   if (!(length > 0) || !std::isfinite(length)) return Matrix3d::Identity();
   // Householder reflection that maps the x axis to `way`. It is symmetric, so its first row is `way`.
   const Vector3d mirror = Vector3d::UnitX() - way / length;
   constexpr double kNearlyX = 1e-6;
-  // Almost along x: the mirror's normal would consist of rounding errors, and the world's axes do as well.
+  // Almost along x: the mirror's normal would consist of rounding errors, and the world's axes serve as well.
   if (mirror.squaredNorm() < kNearlyX) return Matrix3d::Identity();
   return Matrix3d::Identity() - 2 / mirror.squaredNorm() * mirror * mirror.transpose();
 }
@@ -297,7 +298,7 @@ WorldWalk::WorldWalk(QueryContext& ctx, NearestPairs& found) : found_(found), ax
   const auto size_of = [](const QueryBody& body) { return world_size(body.world.pose(), body.tree()); };
   // The unit is a power of two above all coordinates: scaling is exact, and squares cannot overflow.
   exponent_ = exponent_above(std::max(size_of(ctx.body[0]), size_of(ctx.body[1])));
-  // The axes are still the world's here, so this returns the position of a body's root in the world.
+  // The axes are still the world's at this point, so this returns the position of a body's root in the world.
   const auto middle_of = [&](const QueryBody& body) -> Vector3d {
     const Body b = body_of(body, exponent_);
     const double* at = b.tree->nodes()[0].origin;
@@ -314,7 +315,7 @@ WorldWalk::Body WorldWalk::body_of(const QueryBody& body, int exponent) const {
   const int unit = std::ilogb(body.tree().unit());
   Body out;
   out.tree = &body.tree();
-  // The tree's unit is a power of two, too: one exact scaling does for both.
+  // The tree's unit is a power of two as well: one exact scaling covers both.
   out.map = axes_ * scaled(pose.r, unit - exponent);
   out.origin = axes_ * scaled(pose.t, -exponent);
   out.margin = 4 * kWorldRounding * std::ldexp(world_size(pose, body.tree()) + kWorldUnderflow, -exponent);
@@ -329,7 +330,7 @@ void WorldWalk::boxes_of(const Body& body, const TreeNode& node, std::vector<Box
   // An oriented box fits into half extents |R| h along the chosen axes.
   const Matrix3d axes = body.map * frame, sizes = axes.cwiseAbs();
   const Vector3d origin = body.map * Vector3d(node.origin[0], node.origin[1], node.origin[2]) + body.origin;
-  // Rounding of coordinates, and the defect of the node's axes.
+  // Covers the rounding of coordinates and the defect of the node's axes.
   const double grow = body.margin + kKernelRounding * body.turn * static_cast<double>(node.radius);
   out.clear();
   for (std::uint32_t k = 0; k < node.count; ++k) {
@@ -356,21 +357,21 @@ double WorldWalk::gap_between(const Box& a, const Box& b) {
 }
 
 void WorldWalk::see(const Waiting& parent, std::uint32_t a, std::uint32_t b, double bound, bool leaves) {
-  // Children lie in their parents, so the parents' bound holds, too.
+  // Children are inside their parents, so the parents' bound is valid for them.
   bound = std::max(bound, parent.bound);
   if (bound > 0 && bound >= std::ldexp(found_.dropped_from(), -exponent_)) {
-    // The nearest dropped pair bounds all of them from below.
+    // dropped_ bounds all dropped pairs from below.
     dropped_ = std::min(dropped_, bound);
     return;
   }
   if (leaves) {
     const SimplexId of_a = body_[0].tree->blocks()[body_[0].tree->nodes()[parent.a].first].simplex[a];
     const SimplexId of_b = body_[1].tree->blocks()[body_[1].tree->nodes()[parent.b].first].simplex[b];
-    // If contact is not excluded, the exact query decides about the surfaces as a whole.
+    // If contact is not excluded, the exact query decides for the surfaces as a whole.
     if (!found_.measure(of_a, of_b, scaled_down(bound, exponent_))) found_.surfaces_meet();
     return;
   }
-  // A binary min-heap.
+  // Push to a binary min-heap.
   waiting_.push_back({bound, a, b});
   std::push_heap(waiting_.begin(), waiting_.end(),
                  [](const Waiting& x, const Waiting& y) { return x.bound > y.bound; });
@@ -380,7 +381,7 @@ void WorldWalk::open(const Waiting& pair) {
   const TreeNode &a = body_[0].tree->nodes()[pair.a], &b = body_[1].tree->nodes()[pair.b];
   const auto size = [&](int side, const TreeNode& n) { return n.radius * body_[side].turn; };
   const bool leaves = a.is_leaf && b.is_leaf;
-  // Expand both nodes, but not one that is a leaf or much smaller than the other.
+  // Expand both nodes, except one that is a leaf or much smaller than the other.
   const bool open_a = leaves || (!a.is_leaf && (b.is_leaf || size(1, b) <= kMuchLarger * size(0, a)));
   const bool open_b = leaves || (!b.is_leaf && (a.is_leaf || size(0, a) <= kMuchLarger * size(1, b)));
   boxes_of(body_[0], a, boxes_[0]);
@@ -395,7 +396,7 @@ void WorldWalk::open(const Waiting& pair) {
   };
   if (!open_a) boxes_[0] = {whole(boxes_[0])};
   if (!open_b) boxes_[1] = {whole(boxes_[1])};
-  // Every pair of boxes; at leaves these are boxes of simplices.
+  // Every pair of boxes; in leaves these are the boxes of simplices.
   for (std::uint32_t i = 0; i < boxes_[0].size(); ++i)
     for (std::uint32_t j = 0; j < boxes_[1].size(); ++j) {
       const double bound = gap_between(boxes_[0][i], boxes_[1][j]);
@@ -411,7 +412,7 @@ bool WorldWalk::run(std::uint64_t max_steps, BoundsTeller* teller) {
   const auto later = [](const Waiting& x, const Waiting& y) { return x.bound > y.bound; };
   while (!waiting_.empty()) {
     const double bound = waiting_.front().bound;
-    // The least bound of all is too large: so are the others.
+    // The least bound of all is beyond the pruning distance.
     if (bound > 0 && bound >= std::ldexp(found_.dropped_from(), -exponent_)) return true;
     // The request is answered already.
     if (found_.is_near_enough() || found_.known_to_meet()) return true;
@@ -425,7 +426,7 @@ bool WorldWalk::run(std::uint64_t max_steps, BoundsTeller* teller) {
     const double upper = found_.upper();
     if (upper < kInfinity) found_.allow_width(upper > kVeryFar * found_.size() ? kFarWidth * upper : 0);
     if (teller != nullptr && steps_ >= look) {
-      // Each report looks at all measured pairs, so they become rarer as the work grows.
+      // Each report visits all measured pairs, so reports become rarer as the work grows.
       teller->tell(steps_, found_.lower(rest()), upper);
       look = BoundsTeller::next_look(steps_);
     }
@@ -434,7 +435,8 @@ bool WorldWalk::run(std::uint64_t max_steps, BoundsTeller* teller) {
 }
 
 double WorldWalk::rest() const {
-  // What was not measured was dropped or is under a waiting pair, of which the first is the nearest.
+  // Every unmeasured pair was dropped or is below a waiting pair; the heap's top has the least bound of
+  // those.
   double least = dropped_;
   if (!waiting_.empty()) least = std::min(least, waiting_.front().bound);
   return least < kInfinity ? scaled_down(least, exponent_) : kInfinity;

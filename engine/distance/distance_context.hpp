@@ -16,20 +16,20 @@ class BoundsTeller {
  public:
   explicit BoundsTeller(BoundsProbe& probe) : probe_(probe) {}
 
-  /// Reports the intersection of these bounds with all that were reported before, if that is new.
+  /// Reports the intersection of these bounds with all reported before, if it is narrower.
   void tell(std::uint64_t work, double lower, double upper) {
     const Bounds now{std::max(work, known_.work), std::max(lower, known_.lower),
                      std::min(upper, known_.upper)};
     if (now.lower == known_.lower && now.upper == known_.upper) return;
     put(now);
   }
-  /// Reports the bounds of the answer, even if some that were reported before were narrower.
+  /// Reports the bounds of the answer, even if bounds reported before were narrower.
   void settle(std::uint64_t work, double lower, double upper) {
     if (lower == known_.lower && upper == known_.upper) return;
     put({std::max(work, known_.work), lower, upper});
   }
 
-  /// Returns the work count of the next report. Intervals grow geometrically, so that reports are few.
+  /// Returns the work count of the next report. Intervals grow geometrically, to limit the number of reports.
   static std::uint64_t next_look(std::uint64_t work) { return work + 1 + work / 16; }
 
  private:
@@ -42,46 +42,46 @@ class BoundsTeller {
   Bounds known_{0, 0, std::numeric_limits<double>::infinity()};
 };
 
-// One distance query, with memory that later queries reuse. Internal: users of the installed engine include
+// One distance query, with buffers that later queries reuse. Internal: users of the installed engine include
 // distance.hpp.
 
-/// Memory of a query; one for each thread.
+/// Buffers of a query; one for each thread.
 struct DistanceContext {
   QueryContext query;
   std::vector<WaitingNodes> waiting;
   std::vector<NearPair> near;
   std::vector<MeasuredPair> pairs;
   std::vector<NodeEnd> ends[2];
-  std::uint32_t turn = 0;  ///< the last that was used in `ends`
+  std::uint32_t turn = 0;  ///< the last one used in `ends`
 };
 
 /// Results of earlier steps of a motion.
 struct KnownFromBefore {
-  /// A simplex of A and one of B that are likely to be the closest, or to intersect; kNull: none.
+  /// A simplex of A and one of B that are likely to be the closest, or to intersect; kNull: unknown.
   std::array<SimplexId, 2> likely = {kNull, kNull};
   FarPairs far;
 };
 
-/// Answers as distance() in distance.hpp does. before: null, or the results of earlier steps, which are
-/// updated. probe: null, or notified when bounds tighten.
+/// Computes the distance as distance() in distance.hpp does. before: null, or the results of earlier steps,
+/// which are updated. probe: null, or notified when bounds tighten.
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                         const DistanceRequest& request, DistanceContext& context,
                         KnownFromBefore* before = nullptr, BoundsProbe* probe = nullptr);
 
 /// Returns true if floats are accurate enough for the distance: the poses are rotations, the bodies are not
-/// far from each other, and rounding of their coordinates does not outweigh their sizes.
+/// too far from each other, and the rounding of their coordinates is small relative to their sizes.
 bool suits_floats(const TreeKernel& tree);
 
 /// Traverses two trees in float and measures the remaining pairs in double.
 class FloatWalk {
  public:
-  /// `tree`: accepted by suits_floats(). unit: query_unit(). descend: no pair is known that is likely to be
-  /// the closest. far: null, or the planes of earlier steps of a motion.
+  /// `tree`: accepted by suits_floats(). unit: query_unit(). descend: find a first pair by descent, because
+  /// none is known that is likely to be the closest. far: null, or the planes of earlier steps of a motion.
   FloatWalk(DistanceContext& context, NearestPairs& found, const DistanceRequest& request,
             const TreeKernel& tree, double unit, bool descend, FarPairs* far);
 
-  /// Returns true if the traversal was completed, or found that the surfaces intersect. teller: null, or
-  /// notified of bounds.
+  /// Returns true if the traversal was completed, or if the surfaces were found to intersect. teller: null,
+  /// or notified of bounds.
   bool run(BoundsTeller* teller);
   /// Measures the pairs that may be the closest. Returns a lower bound on the distances of all others.
   double measure();

@@ -30,7 +30,7 @@ Kernel best_kernel() {
 }  // namespace
 
 void run_distance_kernel(DistanceKernel& k) {
-  // Chosen at the first call.
+  // Selected at the first call.
   static const Kernel best = best_kernel();
   best(k);
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// The inner loop of the distance query: the best-first traversal of two OBB trees in eight-wide float
-/// arithmetic. Every error is bounded, so that a pair of simplices is dropped only if it is proven not to be
-/// closer than the best pair found.
+/// arithmetic. Every error is bounded: a pair of simplices is dropped only if it is proven not to be closer
+/// than the best pair found.
 ///
 /// Contains only plain structures: this header is compiled once per instruction set (cmake/kernels.cmake).
 
@@ -20,8 +20,8 @@ struct WaitingNodes {
   std::uint32_t a, b;
 };
 
-/// The end of a node's projection on the direction: upper for A, lower for B. Valid if `turn` equals
-/// DistanceKernel::turn.
+/// The end of a node's projection on the direction: the upper end for A, the lower end for B. Valid if `turn`
+/// equals DistanceKernel::turn.
 struct NodeEnd {
   float end;
   std::uint32_t turn;
@@ -30,43 +30,42 @@ struct NodeEnd {
 /// A pair of simplices that may be the closest.
 struct NearPair {
   SimplexId a, b;
-  float lower;  ///< a bound on its distance, query units
+  float lower;  ///< lower bound on its distance, query units
 };
 
 /// A pair of nodes that a plane separated at an earlier step of a motion, by more than the distance of the
 /// bodies.
 struct FarNodes {
   std::uint32_t a, b;
-  float direction[3];  ///< across the plane, on A's axes; of length 1
-  /// Width of the slab between everything under them, less the offset of the nodes' origins along it.
+  float direction[3];  ///< normal of the plane, on A's axes; unit length
+  /// Width of the slab between their contents, less the offset of the nodes' origins along it.
   float width;
-  float turned;  ///< DistanceKernel::least_turned of then
+  float turned;  ///< DistanceKernel::least_turned at that step
 };
 
 enum class KernelStop : std::uint8_t {
-  done,      ///< no pair of nodes that waits can be nearer than the bound allows
+  done,      ///< no waiting pair of nodes can be within the pruning distance
   room,      ///< the buffers must grow
-  limit,     ///< most_node_pairs are reached
-  enough,    ///< `upper` is no more than `enough`
-  doubtful,  ///< two simplices could not be proved apart: ask whether the bodies meet
+  limit,     ///< most_node_pairs was reached
+  enough,    ///< `upper` is at most `enough`
+  doubtful,  ///< two simplices were not proven disjoint: the exact query must decide
 };
 
-/// One walk. Lengths are in query units: TreeKernel.
+/// State of one traversal. Lengths are in query units; see TreeKernel.
 struct DistanceKernel {
   TreeKernel tree;  ///< the bodies, set up for rotations, without a stack
-  float upper;      ///< the distance is no more than this
-  float spare;      ///< pairs are dropped that are no nearer than the lesser of upper - spare, ...
-  float share;      ///< ... and upper (1 - share)
-  float widest;     ///< ... but pairs are dropped, too, that are further apart than this
-  float enough;     ///< stop where `upper` is no more than this; -1: never
-  bool descend;     ///< go straight down to a pair of simplices first: there is no good upper end yet
+  float upper;      ///< upper bound on the distance
+  float spare;      ///< pruning distance: the lesser of upper - spare ...
+  float share;      ///< ... and upper (1 - share) ...
+  float widest;     ///< ... but at most this
+  float enough;     ///< stop when `upper` is at most this; -1: never
+  bool descend;     ///< descend to a pair of simplices first, because no good upper bound is known
   bool begun;       ///< set by the kernel
-  bool apart;       ///< the bodies are known not to meet: do not stop as `doubtful`
+  bool apart;       ///< the surfaces are known to be disjoint: do not stop as `doubtful`
 
-  /// Direction of the slabs, from A to B, on A's axes and on B's: of length 1, or 0 if it is not known.
+  /// Direction of the slabs, from A to B, on A's axes and on B's: unit length, or 0 if unknown.
   float direction[2][3];
-  float ahead;  ///< how far B's root's origin is ahead of A's in that direction, less all errors of what is
-                ///< compared along it
+  float ahead;  ///< offset of the roots' origins from A to B along it, less the errors of all comparisons
   /// Ends of the projections of A's and of B's nodes on that direction, relative to their root's origin.
   NodeEnd* ends[2];
   std::uint32_t turn;  ///< NodeEnd::turn of this direction
@@ -81,9 +80,9 @@ struct DistanceKernel {
   std::uint32_t waiting_size, waiting_capacity;
   NearPair* near;
   std::uint32_t near_size, near_capacity;
-  SimplexId best_a, best_b;  ///< the pair that gave `upper`; kNull: none of this walk
+  SimplexId best_a, best_b;  ///< the pair that gave `upper`; kNull: none in this traversal
 
-  std::uint64_t triangle_pairs;  ///< compared in floats
+  std::uint64_t triangle_pairs;  ///< pairs compared in floats
   KernelStop stop;
 };
 
@@ -97,11 +96,11 @@ inline float dropped_from(const DistanceKernel& k) {
   return least < k.widest ? least : k.widest;
 }
 
-/// Runs until there is a reason to stop. May be called again to go on.
+/// Runs until there is a reason to stop. May be called again to continue.
 void run_distance_kernel(DistanceKernel& k);
 
-/// Returns a number of the kernel's, such as a length in query units, as a float that is not less, or not
-/// more and at least 0.
+/// Returns a value of the kernel, such as a length in query units, as a float that is not larger, but at
+/// least 0.
 inline float rounded_down(double x) {
   return std::max(0.0F, static_cast<float>(x) * (2 - kFloatUp) - kKernelTiny);
 }

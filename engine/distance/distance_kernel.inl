@@ -5,16 +5,16 @@
 // 1. Descend along the nearest boxes to a first pair of leaves, for an upper bound.
 // 2. Pop the pair of nodes with the least bound. Stop when that bound exceeds the pruning distance.
 // 3. Bound the pairs of children: first by slabs, then by box distances, then by cached projections and
-//    planes. Push the pairs that are near enough.
+//    planes. Push the pairs within the pruning distance.
 // 4. At leaves, bound the distances of triangles, eight pairs at a time, and lower the upper bound.
 //
 // Box distances. On the axes of a node, which are orthonormal up to kFrameDefect, the boxes of the other node
 // are enclosed in boxes along these axes, grown by Between::error. The distance of two such boxes is
-//     sqrt(sum of the squares of the positive gaps)
-// and it bounds the distance of the points in them: kernel_setup.cpp shows that on these axes a difference of
-// points of two bodies is off by no more than the error, however large it is. kDistanceRounding covers the
-// effect of the frames' defect and of the rounding of squares and sums (2^-21 and a few 2^-24) on lengths. Of
-// the distances on A's axes and on B's the larger counts.
+//     sqrt(sum of the squares of the positive gaps),
+// a lower bound on the distance of the points in them: kernel_setup.cpp shows that on these axes the error of
+// a difference of points of two bodies is at most Between::error, however large the difference is.
+// kDistanceRounding covers the effect on lengths of the frames' defect and of the rounding of squares and
+// sums (2^-21 and a few 2^-24). The larger of the distances on A's axes and on B's axes counts.
 //
 // Slabs. Along the direction between the closest points known so far, boxes and triangles are separated by at
 // least the gap between their projections. For distant bodies this is nearly the distance, and it takes one
@@ -27,7 +27,7 @@
 namespace lrb {
 namespace {
 
-/// Pushes a pair of nodes to a binary min-heap that is ordered by `bound`.
+/// Pushes a pair of nodes to a binary min-heap ordered by `bound`.
 inline void push_waiting(DistanceKernel& k, const WaitingNodes& pair) {
   std::uint32_t at = k.waiting_size++;
   // Sift up: parents with a larger bound move down into the hole.
@@ -61,7 +61,7 @@ inline float dot3(const float* x, const float* y) {
   return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 }
 
-/// Normalises `way`, given on a node's axes, and writes it on the axes of its body. Returns false if it is
+/// Normalises `way`, which is on a node's axes, and writes it on the axes of its body. Returns false if it is
 /// too short.
 inline bool direction_of(const TreeNode& n, const float* way, float* direction) {
   // Above this length the sum of squares, 2^-120, is a normal float.
@@ -78,28 +78,30 @@ struct Dropping {
   float length, square;
 
   explicit Dropping(const DistanceKernel& k) : length(dropped_from(k)) {
-    // Not positive if the tolerance exceeds the upper bound: then only bounds of 0 or less are kept.
+    // Not positive if the tolerance exceeds the upper bound: then only bounds of at most 0 are kept.
     length = length > 0 ? length : 0;
-    // A computed length may be off by kDistanceRounding: allow for twice that, and for underflow.
+    // A computed length has a relative error of up to kDistanceRounding: allow for twice that, and for
+    // underflow.
     square = length * length * ((1 + 2 * kDistanceRounding) * (1 + 2 * kDistanceRounding)) + kKernelTiny;
   }
 };
 
-/// Squared distances of eight boxes from one with the same axes, and the largest signed gap along any axis.
+/// Squared distances of eight boxes from one box with the same axes, and the largest signed gap along any
+/// axis.
 struct BoxGaps {
   Float8 square{}, most = splat(-__builtin_inff());
 
   void see(const Float8* centre, const Float8* half, const float* other_centre, const float* other_half) {
     Float8 sum{};
     for (int i = 0; i < 3; ++i) {
-      // Signed gap of the projections on axis i; negative where they overlap.
+      // Signed gap of the projections on axis i; negative if they overlap.
       const Float8 gap = abs8(centre[i] - splat(other_centre[i])) - (half[i] + splat(other_half[i]));
       // Only positive gaps add to the distance.
       const Float8 ahead = larger(gap, Float8{});
       most = larger(gap, most);
       sum += ahead * ahead;
     }
-    // Both nodes' axes give a lower bound: the larger one counts.
+    // Both nodes' axes give a lower bound: keep the larger one.
     square = larger(sum, square);
   }
 
@@ -153,8 +155,8 @@ inline Float8 reach_of(const float* direction, const Boxes& boxes, float sign) {
   return along(direction, boxes.centre) + splat(sign) * half;
 }
 
-/// Returns the bounds (WaitingNodes::bound) of slabs: the squared width, but at least the parent's bound.
-/// Slabs without width give the parent's.
+/// Returns the bounds (WaitingNodes::bound) from slabs: the squared width, but at least the parent's bound.
+/// Slabs without width yield the parent's bound.
 inline Float8 bound_of_slab(Float8 width, float parent) {
   // Rounded down. NaN compares false, which leaves the parent's bound.
   const Float8 sure = width * splat(1 - 2 * kDistanceRounding);
@@ -170,20 +172,21 @@ inline Ends ends_of(const Boxes& a, const Boxes& b, const Ahead& ahead) {
   return {reach_of(ahead.on_a, a, 1), reach_of(ahead.on_b, b, -1) + splat(ahead.between)};
 }
 
-/// Returns the same for triangles, all on A's axes.
+/// Ends of triangles, all on A's axes.
 inline Ends ends_of(const Corners& a, const Corners& b, const Ahead& ahead) {
-  // A triangle is the hull of its corners: the extremes of three dot products are its ends.
+  // A triangle is the convex hull of its corners: the extremes of three dot products are its ends.
   Float8 on_a[3], on_b[3];
   for (int corner = 0; corner < 3; ++corner) {
     on_a[corner] = along(ahead.on_a, a.x[corner]);
     on_b[corner] = along(ahead.on_a, b.x[corner]);
   }
-  // B's corners contain the offset of the nodes already: only the errors are subtracted.
+  // B's corners include the offset of the nodes already: only the errors are subtracted.
   return {larger(larger(on_a[0], on_a[1]), on_a[2]),
           smaller(smaller(on_b[0], on_b[1]), on_b[2]) - splat(ahead.errors)};
 }
 
-/// Calls keep(i, lanes, bounds) for each box of A: `lanes` are the boxes of B that may be near enough.
+/// Calls keep(i, lanes, bounds) for each box of A. `lanes`: the boxes of B that may be within the pruning
+/// distance.
 template <class Keep>
 inline void compare_boxes(DistanceKernel& k, const TreeNode& na, const Boxes& a, const TreeNode& nb,
                           const Boxes& b, const Between& w, const Ends& ends, float parent, Keep&& keep) {
@@ -198,9 +201,10 @@ inline void compare_boxes(DistanceKernel& k, const TreeNode& na, const Boxes& a,
     rows |= static_cast<std::uint32_t>(mask[i] != 0) << i;
   }
   if (rows == 0) return;
-  // Pass 2: box distances, only where slabs left pairs. Only now are boxes turned to the other node's axes.
+  // Pass 2: box distances, only if slabs left pairs. Rotating the boxes to the other node's axes is deferred
+  // until now.
   const Turned at = turn_a<false>(a, w), bt = turn_b<false>(b, w);
-  // The rows with pairs left; `rows & rows - 1` clears the lowest one.
+  // The rows with remaining pairs; `rows & rows - 1` clears the lowest one.
   for (; rows != 0; rows &= rows - 1) {
     const int i = __builtin_ctz(rows);
     const Float8 bound = bounds_of(row_of(a, at, i), b, bt, slabs[i]);
@@ -209,8 +213,8 @@ inline void compare_boxes(DistanceKernel& k, const TreeNode& na, const Boxes& a,
   }
 }
 
-/// Returns the end of a node's triangles or child boxes along the kernel's direction: upper for A, lower for
-/// B.
+/// Returns the end of a node's triangles or child boxes along the kernel's direction: the upper end for A,
+/// the lower end for B.
 template <Side kSide>
 inline float find_end(const DistanceKernel& k, const TreeNode& n) {
   constexpr int kOf = static_cast<int>(kSide);
@@ -218,7 +222,7 @@ inline float find_end(const DistanceKernel& k, const TreeNode& n) {
   const TreeNode& root = *(kSide == Side::a ? k.tree.nodes_a : k.tree.nodes_b);
   const LeafBlock* const blocks = kSide == Side::a ? k.tree.blocks_a : k.tree.blocks_b;
   double offset = 0;
-  float direction[3];  // B's is reversed, so that both sides look for a maximum
+  float direction[3];  // B's is reversed, so that both sides need a maximum
   // Offset from the root in double: it may be much larger than the node.
   for (int i = 0; i < 3; ++i) {
     offset += (n.origin[i] - root.origin[i]) * static_cast<double>(k.direction[kOf][i]);
@@ -228,7 +232,7 @@ inline float find_end(const DistanceKernel& k, const TreeNode& n) {
   const float start = static_cast<float>(offset) * ratio;
   Float8 most;
   if (n.is_leaf) {
-    // Leaf: project the corners of the triangles. Absent ones repeat the first.
+    // Leaf: project the corners of the triangles. Unused lanes repeat the first.
     Float8 corner[3];
     for (int c = 0; c < 3; ++c) {
       const auto& x = blocks[n.first].corner[c];
@@ -237,14 +241,14 @@ inline float find_end(const DistanceKernel& k, const TreeNode& n) {
     }
     most = larger(larger(corner[0], corner[1]), corner[2]) * splat(ratio);
   } else {
-    // Inner node: project the child boxes. Absent ones have negative extents and never give the maximum.
+    // Inner node: project the child boxes. Unused lanes have negative extents and never give the maximum.
     most = reach_of(direction, decode(n, ratio), 1);
   }
   // B's direction was reversed: its maximum is subtracted.
   return kSide == Side::a ? start + largest_of(most) : start - largest_of(most);
 }
 
-/// Returns the same, cached for each node until the direction changes: `turn` is the direction's version.
+/// Returns find_end(), cached for each node until the direction changes: `turn` is the direction's version.
 template <Side kSide>
 inline float end_of(DistanceKernel& k, std::uint32_t node) {
   // Entries of other versions are stale.
@@ -262,10 +266,10 @@ inline FarNodes& far_slot(const DistanceKernel& k, std::uint32_t a, std::uint32_
   return k.far[(mixed ^ mixed >> 15) & (k.far_slots - 1)];
 }
 
-/// Returns true if the slab that separated two nodes earlier is still wide enough to drop them. Along its
-/// direction n, everything under A's node reaches as far from the node's origin as it did then, and so does
-/// everything under B's, up to the rotation since then: from M y to M' y, a shift of at most |M' - M| |y|.
-/// Only the offset of the origins is computed again, with errors as in turn_to().
+/// Returns true if the slab that separated two nodes at an earlier step is still wide enough to drop them.
+/// Along its direction n, the contents of A's node reach as far from the node's origin as they did then. So
+/// do the contents of B's node, up to the rotation since then: from M y to M' y, a shift of at most |M' - M|
+/// |y|. Only the offset of the origins is recomputed, with errors as in turn_to().
 inline bool is_known_far(const DistanceKernel& k, std::uint32_t a, std::uint32_t b, float least) {
   const FarNodes& far = far_slot(k, a, b);
   // The slot may have been overwritten by another pair.
@@ -283,12 +287,12 @@ inline bool is_known_far(const DistanceKernel& k, std::uint32_t a, std::uint32_t
   const float errors = 2 * (k.tree.slack + kKernelRounding * (k.tree.m_size * whole)) * sizes + kKernelTiny;
   // `turned` sums the changes of M, so by the triangle inequality the difference bounds |M' - M|.
   const float turn = (k.turned - far.turned) * radius_b * kFloatUp;
-  // Rounded down twice as much as a length needs.
+  // Rounded down by twice the factor that a length needs.
   return (dot3(n, x) + far.width - turn - errors) * (1 - 2 * kDistanceRounding) > least;
 }
 
-/// Caches for the next steps a plane that separates everything under two nodes, across a way that is given on
-/// the axes of A's node, if its slab is wider than the pruning distance.
+/// Caches for the next steps a plane that separates the contents of two nodes, if its slab is wider than the
+/// pruning distance. `way`: the plane's normal, of any length, on the axes of A's node.
 template <class Of>
 inline void keep_far(DistanceKernel& k, const WaitingNodes& pair, const TreeNode& na, const TreeNode& nb,
                      const Of& a, const Of& b, const Between& w, const float* way) {
@@ -296,7 +300,7 @@ inline void keep_far(DistanceKernel& k, const WaitingNodes& pair, const TreeNode
   // Any direction is valid; the one between close points gives the widest slab.
   if (!direction_of(na, way, direction)) return;
   const Ends ends = ends_of(a, b, Ahead(na, w, direction));
-  // Gap between the extremes of both projections. Absent children never are the extremes.
+  // Gap between the extremes of both projections. Unused lanes are never the extremes.
   const float width = -largest_of(-ends.of_b) - largest_of(ends.of_a);
   // Worth storing only if it would drop the pair now, by twice the margin of is_known_far().
   if (!(width * (1 - 4 * kDistanceRounding) > dropped_from(k))) return;
@@ -311,13 +315,13 @@ inline void keep_far(DistanceKernel& k, const WaitingNodes& pair, const TreeNode
   far.turned = k.least_turned;
 }
 
-/// Pushes a pair of nodes, unless their projections or a cached plane show that it is too far.
+/// Pushes a pair of nodes, unless their projections or a cached plane prove that it is too far.
 inline void wait_for(DistanceKernel& k, std::uint32_t a, std::uint32_t b, float bound,
                      const Dropping& dropping) {
-  // Slab along the kernel's direction between all that is under the nodes. Both ends are usually cached.
+  // Slab along the kernel's direction between the contents of the nodes. Both ends are usually cached.
   const float slab = (end_of<Side::b>(k, b) - end_of<Side::a>(k, a) + k.ahead) * (1 - 2 * kDistanceRounding);
   if (slab > 0 && slab * slab > bound) bound = slab * slab;
-  // The plane that an earlier step of a motion stored is tried last.
+  // Last test: the plane stored by an earlier step of a motion.
   if (bound > dropping.square || (k.far != nullptr && is_known_far(k, a, b, dropping.length))) return;
   push_waiting(k, {bound, a, b});
 }
@@ -339,18 +343,18 @@ inline void distance_both(DistanceKernel& k, const TreeNode& na, const TreeNode&
                bound[j], dropping);
     }
   });
-  // No pair of children was pushed: cache a plane across the line between the nodes' origins.
+  // No pair of children was pushed: cache a plane normal to the line between the nodes' origins.
   if (k.far == nullptr || k.waiting_size != waited) return;
   keep_far(k, pair, na, nb, a, b, w, w.t);
 }
 
-/// Expands one node only: its boxes against the whole box of the other.
+/// Expands one node only: its boxes against the node box of the other.
 template <bool kDescendA>
 inline void distance_one(DistanceKernel& k, const TreeNode& na, const TreeNode& nb,
                          const WaitingNodes& pair) {
   const Between w = between<false>(k.tree, na, nb);
   BoxGaps gaps;
-  // A's boxes turned to B's axes against B's whole box, then B's whole box on A's axes.
+  // A's boxes rotated to B's axes against B's node box, then B's node box on A's axes.
   if constexpr (kDescendA) {
     const Boxes a = decode(na, k.tree.ratio_a);
     const Whole b = whole_of(nb, k.tree.ratio_b), on_a = turn_whole_b<false>(b, w);
@@ -358,7 +362,7 @@ inline void distance_one(DistanceKernel& k, const TreeNode& na, const TreeNode& 
     gaps.see(on_b.centre, on_b.half, b.centre, b.half);
     gaps.see(a.centre, a.half, on_a.centre, on_a.half);
   } else {
-    // The same with the roles exchanged.
+    // The roles are exchanged.
     const Boxes b = decode(nb, k.tree.ratio_b);
     const Whole a = whole_of(na, k.tree.ratio_a), on_b = turn_whole_a<false>(a, w);
     const Turned on_a = turn_b<false>(b, w);
@@ -369,7 +373,7 @@ inline void distance_one(DistanceKernel& k, const TreeNode& na, const TreeNode& 
   const Float8 bound = gaps.bound(splat(pair.bound));
   k.tree.box_tests += opened.count;
   const Dropping dropping(k);
-  // Children that are not too far; NaN keeps them.
+  // Children within the pruning distance; NaN counts as within.
   std::uint32_t lanes = ~bits(greater(bound, splat(dropping.square))) & present(opened);
   for (; lanes != 0; lanes &= lanes - 1) {
     const int c = __builtin_ctz(lanes);
@@ -378,14 +382,14 @@ inline void distance_one(DistanceKernel& k, const TreeNode& na, const TreeNode& 
   }
 }
 
-/// Pairs of simplices of two blocks, with the bounds of their boxes. There is room for eight more after the
-/// last.
+/// Pairs of simplices of two blocks, with the bounds of their boxes. Arrays have eight spare entries after
+/// the largest possible list.
 struct BoundedList {
   std::uint8_t a[72], b[72];
   float bound[72];
   std::uint32_t size = 0;
 
-  /// Moves the nearest eight of the remaining pairs to the front, and drops those farther than `most`.
+  /// Moves the closest eight of the remaining pairs to the front, and drops those beyond `most`.
   void select_eight(std::uint32_t begin, float most) {
     // Compact: the upper bound may have fallen since the last call.
     std::uint32_t end = begin;
@@ -399,7 +403,7 @@ struct BoundedList {
         if (bound[i] < bound[least]) least = i;
       swap(front, least);
     }
-    // Pad with simplex 0: unused lanes of the last eight compute with valid data.
+    // Pad with simplex 0: unused lanes of the last group then compute with valid data.
     __builtin_memset(a + size, 0, 8);
     __builtin_memset(b + size, 0, 8);
   }
@@ -436,7 +440,7 @@ inline void turn_to(DistanceKernel& k, const float* direction) {
   const float whole = k.tree.m_size * (a.radius * k.tree.ratio_a + b.radius * k.tree.ratio_b + offsets);
   const float errors = 2 * (k.tree.slack + kKernelRounding * whole) * sizes + kKernelTiny;
   k.ahead = static_cast<float>(ahead) - errors;
-  // A new version: all cached NodeEnd are stale now.
+  // A new version: all cached NodeEnd become stale.
   ++k.turn;
 }
 
@@ -456,21 +460,21 @@ inline void take_over(DistanceKernel& k, const Distances& d, const BoundedList& 
       k.upper = d.upper[lane];
       k.best_a = block_a.simplex[list.a[begin + lane]];
       k.best_b = block_b.simplex[list.b[begin + lane]];
-      // Better points give a better direction for slabs.
+      // Closer points give a better direction for slabs.
       const float way[3] = {d.way[0][lane], d.way[1][lane], d.way[2][lane]};
       look_ahead(k, na, way);
     }
-  // Pass 2: collect the pairs that are to be measured in double.
+  // Pass 2: collect the pairs to measure in double.
   const Dropping dropping(k);
   for (std::uint32_t lane = 0; lane < count; ++lane) {
-    // The bound of the boxes holds for the triangles, too, and may be larger than theirs.
+    // The bound of the boxes is valid for the triangles as well, and may be larger than theirs.
     const float box = list.bound[begin + lane];
     const float by_box = box > 0 ? __builtin_sqrtf(box) * (1 - kDistanceRounding) : 0;
     const float lower = d.lower[lane] > by_box ? d.lower[lane] : by_box;
     if (lower > dropping.length) continue;
     k.near[k.near_size++] = {block_a.simplex[list.a[begin + lane]], block_b.simplex[list.b[begin + lane]],
                              lower};
-    // Contact is not excluded: stop, so that the caller asks the exact query.
+    // Contact is not excluded: stop, so that the caller runs the exact query.
     if (!(lower > 0) && !k.apart) k.stop = KernelStop::doubtful;
   }
 }
@@ -483,7 +487,7 @@ inline void distance_leaves(DistanceKernel& k, const TreeNode& na, const TreeNod
   corners_of(k.tree, na, nb, w, a, b);
   BoundedList list;
   const Boxes boxes_a = decode(na, k.tree.ratio_a), boxes_b = decode(nb, k.tree.ratio_b);
-  // Slabs of the triangles themselves, which are tighter than those of their boxes.
+  // Slabs of the triangles, which are tighter than the slabs of their boxes.
   const Ends ends = ends_of(a, b, Ahead(na, w, k.direction[0]));
   // Pass 1: list the pairs whose bounds are small enough.
   compare_boxes(k, na, boxes_a, nb, boxes_b, w, ends, pair.bound,
@@ -495,7 +499,7 @@ inline void distance_leaves(DistanceKernel& k, const TreeNode& na, const TreeNod
                     list.bound[list.size++] = bound[j];
                   }
                 });
-  // Pass 2: eight pairs at a time, nearest boxes first: each eight lowers the bound for the next.
+  // Pass 2: eight pairs at a time, closest boxes first: each eight lower the bound for the next.
   float nearest = __builtin_inff(), way[3] = {w.t[0], w.t[1], w.t[2]};
   for (std::uint32_t begin = 0, count = 8; list.size > 0 && count == 8; begin += 8) {
     list.select_eight(begin, Dropping(k).square);
@@ -505,7 +509,7 @@ inline void distance_leaves(DistanceKernel& k, const TreeNode& na, const TreeNod
     const Distances d(pick(a, list.a + begin), pick(b, list.b + begin), w);
     take_over(k, d, list, begin, count, na, nb);
     if (k.far == nullptr) continue;
-    // The closest points in these leaves are across the best separating plane.
+    // The line between the closest points in these leaves is normal to the best separating plane.
     for (std::uint32_t lane = 0; lane < count; ++lane)
       if (d.upper[lane] < nearest) {
         nearest = d.upper[lane];
@@ -517,8 +521,8 @@ inline void distance_leaves(DistanceKernel& k, const TreeNode& na, const TreeNod
   keep_far(k, pair, na, nb, a, b, w, way);
 }
 
-/// Which nodes of a pair are expanded: both, unless only one is a leaf or one is much larger. Of leaves:
-/// both.
+/// Decides which nodes of a pair are expanded: both, unless only one is a leaf or one is much larger. Two
+/// leaves are both expanded.
 struct Opening {
   bool a, b, leaves;
 
@@ -545,7 +549,7 @@ inline void distance_step(DistanceKernel& k, const WaitingNodes& pair) {
     distance_both(k, a, b, pair);
 }
 
-/// Follows the nearest boxes down to a first pair of leaves, so that the traversal starts with an upper
+/// Follows the closest boxes down to a first pair of leaves, so that the traversal starts with an upper
 /// bound.
 inline void descend_to_first_pair(DistanceKernel& k) {
   WaitingNodes at = k.waiting[0];
@@ -556,18 +560,18 @@ inline void descend_to_first_pair(DistanceKernel& k) {
     ++k.tree.node_pairs;
     if (Opening(k, a, b).leaves) {
       distance_leaves(k, a, b, at);
-      // The boxes overlap all the way down: the surfaces are likely to intersect, so ask the exact query.
+      // The boxes overlap at every depth: the surfaces probably intersect, so stop for the exact query.
       if (!(at.bound > 0) && !k.apart) k.stop = KernelStop::doubtful;
       return;
     }
     // Expand into an empty heap above the real one, follow its best pair, and discard the others: the
-    // traversal starts at the pair that was at the top and finds them again.
+    // traversal starts at the top pair and finds them again.
     WaitingNodes* const heap = k.waiting;
     k.waiting += bottom;
     k.waiting_size = 0;
     distance_step(k, at);
     if (k.waiting_size > 0) at = k.waiting[0];
-    // No child is near enough: there is nothing to descend to.
+    // No child is within the pruning distance.
     const bool is_stuck = k.waiting_size == 0;
     k.waiting = heap;
     k.waiting_size = bottom;
@@ -587,7 +591,7 @@ void LRB_DISTANCE_KERNEL_NAME(DistanceKernel& k) {
     if (k.descend) descend_to_first_pair(k);
     if (k.stop == KernelStop::doubtful) return;
   }
-  // The first pair has the least bound of all: if it is too far, so are the others.
+  // The top pair has the least bound: if it is too far, so are all others.
   while (k.waiting_size != 0 && !(k.waiting[0].bound > Dropping(k).square)) {
     if (k.upper <= k.enough) {
       k.stop = KernelStop::enough;
@@ -602,7 +606,7 @@ void LRB_DISTANCE_KERNEL_NAME(DistanceKernel& k) {
       k.stop = KernelStop::limit;
       return;
     }
-    // Expanded pairs count as steps.
+    // Each expanded pair counts as a step.
     ++k.tree.node_pairs;
     distance_step(k, pop_waiting(k));
     if (k.stop == KernelStop::doubtful) return;

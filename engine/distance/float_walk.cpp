@@ -1,8 +1,8 @@
-/// Runs the float kernel and measures in double what it leaves:
-/// 1. Convert the bounds of the request to floats, rounded so that the kernel drops no pair that matters.
-/// 2. Run the kernel. When it stops, grow its buffers, ask the exact query about contact, or report; then
+/// Runs the float kernel and measures the remaining pairs in double:
+/// 1. Convert the bounds of the request to floats, rounded so that the kernel drops no relevant pair.
+/// 2. Run the kernel. When it stops, grow its buffers, decide contact by the exact query, or report; then
 ///    resume.
-/// 3. Measure the pairs that are left, nearest first.
+/// 3. Measure the remaining pairs, closest first.
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +20,7 @@ constexpr float kNothing = std::numeric_limits<float>::infinity();
 /// Returns the approximate direction from A to B, in A's frame.
 Eigen::Vector3d direction_of(const DistanceContext& context, const NearestPairs& found,
                              const TreeKernel& tree) {
-  // If a pair has been measured, the direction between its closest points: the transpose takes it to A's
-  // axes.
+  // If a pair was measured, the direction between its closest points, mapped to A's axes by the transpose.
   const Eigen::Vector3d way = context.query.body[0].world.pose().r.transpose() * found.way();
   if (way.squaredNorm() > 0) return way.normalized();
   // Otherwise the direction between the origins of the roots.
@@ -38,10 +37,10 @@ Eigen::Vector3d direction_of(const DistanceContext& context, const NearestPairs&
 
 bool suits_floats(const TreeKernel& tree) {
   constexpr float kTooRough = 0x1p-10F;
-  // The kernel takes rotations only; from a slack of kTooRough on, rounding outweighs the shapes.
+  // The kernel supports rotations only; from a slack of kTooRough on, rounding outweighs the shapes.
   if (tree.affine != nullptr || !(tree.slack < kTooRough)) return false;
   for (int axis = 0; axis < 3; ++axis)
-    // Too far apart to tell near sides from far ones. NaN fails, too.
+    // Too far apart to distinguish near sides from far ones. NaN is rejected as well.
     if (!(std::abs(tree.t[axis]) < kFarForFloats)) return false;
   return true;
 }
@@ -73,7 +72,7 @@ FloatWalk::FloatWalk(DistanceContext& context, NearestPairs& found, const Distan
   k_.waiting_size = 1;
 }
 
-/// Makes room for the projections of all nodes. Entries of other directions need not be cleared, because each
+/// Allocates the projections of all nodes. Entries of other directions need not be cleared, because each
 /// direction has its own number.
 void FloatWalk::begin_ends() {
   constexpr std::uint32_t kLastTurn = 0xf0000000;
@@ -102,18 +101,18 @@ void FloatWalk::give_room() {
   k_.near_capacity = static_cast<std::uint32_t>(context_.near.size());
 }
 
-/// Descends to a first pair, as the kernel does at its start, and stops there. Returns true if nothing is
-/// left to do.
+/// Descends to a first pair, as the kernel does at its start, and stops there. Returns true if the query is
+/// finished.
 bool FloatWalk::descend_alone() {
   give_room();
-  k_.waiting_size = 0;  // nothing is left to walk
+  k_.waiting_size = 0;  // leave nothing to traverse
   run_distance_kernel(k_);
-  // Put the pair of roots back for the traversal.
+  // Restore the pair of roots for the traversal.
   k_.waiting[0] = {-kNothing, 0, 0};
   k_.waiting_size = 1;
   context_.turn = k_.turn;
   if (k_.stop == KernelStop::doubtful) {
-    // Contact is possible: the exact query decides, and the kernel need not ask again.
+    // Contact is possible: the exact query decides, once for the entire traversal.
     if (found_.surfaces_meet()) return true;
     k_.apart = true;
   }
@@ -121,7 +120,7 @@ bool FloatWalk::descend_alone() {
 }
 
 void FloatWalk::tell(BoundsTeller& teller) const {
-  // The least bound of the pairs that were dropped, wait, or are to be measured.
+  // The least bound of all pairs that were dropped, wait, or will be measured.
   double lower = dropped();
   for (std::uint32_t i = 0; i < k_.near_size; ++i)
     lower = std::min(lower, static_cast<double>(k_.near[i].lower) * unit_);
@@ -142,7 +141,7 @@ bool FloatWalk::run(BoundsTeller* teller) {
     run_distance_kernel(k_);
     context_.turn = k_.turn;
     if (k_.stop == KernelStop::doubtful) {
-      // Contact is possible: ask once, and go on if there is none.
+      // Contact is possible: decide it once, and continue if the surfaces are disjoint.
       if (found_.surfaces_meet()) return true;
       k_.apart = true;
     } else if (k_.stop == KernelStop::limit && k_.tree.node_pairs < most) {
@@ -162,7 +161,7 @@ double FloatWalk::waiting_lower() const {
   return bound > 0 ? std::sqrt(static_cast<double>(bound)) * (1 - kDistanceRounding) * unit_ : 0;
 }
 
-/// Returns a bound on the distances of all pairs that are not among the near ones; world.
+/// Returns a lower bound on the distances of all pairs that are not in `near`; world units.
 double FloatWalk::dropped() const {
   return std::min(waiting_lower(), static_cast<double>(dropped_from(k_)) * unit_);
 }
@@ -170,12 +169,11 @@ double FloatWalk::dropped() const {
 double FloatWalk::measure() {
   NearPair* const end = context_.near.data() + k_.near_size;
   const float limit = dropped_from(k_);
-  // The upper bound may have fallen since these pairs were collected: leave out the ones that are too far
-  // now.
+  // The upper bound may have fallen since these pairs were collected: remove the ones beyond it.
   NearPair* const last = std::partition(context_.near.data(), end,
                                         [limit](const NearPair& pair) { return pair.lower <= limit; });
   k_.near_size = static_cast<std::uint32_t>(last - context_.near.data());
-  // Nearest first; ties by index, so that the order does not depend on the traversal.
+  // Closest first; ties by index, so that the order does not depend on the traversal.
   std::sort(context_.near.data(), last, [](const NearPair& x, const NearPair& y) {
     return x.lower != y.lower ? x.lower < y.lower : x.a != y.a ? x.a < y.a : x.b < y.b;
   });
@@ -184,7 +182,7 @@ double FloatWalk::measure() {
   double rest = dropped();
   for (const NearPair* pair = context_.near.data(); pair != last; ++pair) {
     const double lower = static_cast<double>(pair->lower) * unit_;
-    // The pairs are sorted: all from here on are at least this far.
+    // The pairs are sorted: all remaining ones are at least this far.
     if (lower >= found_.dropped_from()) return std::min(rest, lower);
     if (found_.is_near_enough()) return std::min(rest, lower);
     found_.measure(pair->a, pair->b, lower);

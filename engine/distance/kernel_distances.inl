@@ -33,10 +33,10 @@ struct Edges {
   }
 };
 
-/// Finds close points of eight pairs of triangles: the vectors between them and their squared lengths. Cases
-/// edge-edge and vertex-face as in Ericson, "Real-Time Collision Detection", 5.1. Whatever is rounded, the
-/// points lie in their triangles, so that no length is below the distance by more than the errors of the
-/// corners. That it is the least is not guaranteed.
+/// Finds close points of eight pairs of triangles: the vectors between them and their squared lengths. The
+/// cases edge-edge and vertex-face are as in Ericson, "Real-Time Collision Detection", 5.1. Whatever is
+/// rounded, the points are in their triangles, so each length is at least the distance, up to the errors of
+/// the corners. Whether it is the minimum is not guaranteed.
 struct NearestPoints {
   Float8 way[3] = {}, square = splat(__builtin_inff());  ///< from A to B
 
@@ -55,18 +55,19 @@ struct NearestPoints {
     // Closest points of two segments (Ericson 5.1.9, after Lumelsky 1985).
     subtract(b.x[j], a.x[i], between);
     const Float8 uv = dot8(u, v), uw = dot8(u, between), vw = dot8(v, between);
-    // The denominator is |u|^2 |v|^2 sin^2 of the angle. It is about 0 for parallel edges: any clamped s will
-    // do.
+    // The denominator is |u|^2 |v|^2 sin^2 of the angle, which is about 0 for parallel edges: any clamped s
+    // will do then.
     const Float8 sine = of_a.square[i] * of_b.square[j] - uv * uv;
     Float8 s = clamp_share((of_b.square[j] * uw - uv * vw) / sine);
-    // The closest point of the other segment to the one just found, in turn; both stay on their segments.
+    // Alternate projections: the closest point of the other segment, then of this one. Both stay on their
+    // segments.
     const Float8 t = clamp_share((uv * s - vw) * of_b.per_square[j]);
     s = clamp_share((uv * t + uw) * of_a.per_square[i]);
     for (int x = 0; x < 3; ++x) d[x] = between[x] + t * v[x] - s * u[x];
     keep(d, dot8(d, d), splat(1));
   }
 
-  /// Corners of `points` over the faces of `t`.
+  /// Projects the corners of `points` on the faces of `t`.
   void corners_to_face(const Corners& t, const Edges& of, const Corners& points, Float8 turn) {
     const Float8* u = of.along[0];
     Float8 v[3];
@@ -79,7 +80,8 @@ struct NearestPoints {
       subtract(point, t.x[0], w);
       const Float8 uw = dot8(u, w), vw = dot8(v, w);
       const Float8 s = (vv * uw - uv * vw) * per_area, rest = (uu * vw - uv * uw) * per_area;
-      // Elsewhere an edge is closer, and edge_to_edge() finds it. A face without area gives NaN: not inside.
+      // Outside the face an edge is closer, found by edge_to_edge(). A face without area yields NaN: not
+      // inside.
       const Lanes inside =
           both(both(greater(s, Float8{}), greater(rest, Float8{})), greater(splat(1), s + rest));
       for (int x = 0; x < 3; ++x) d[x] = w[x] - s * u[x] - rest * v[x];
@@ -97,8 +99,8 @@ struct NearestPoints {
 
 /// Returns lower bounds on the distances of eight pairs: the width of the slab between them along a direction
 /// of any length. Any direction is valid, however it was found: only the errors of the corners count, 2 error
-/// |d|_1, which leaves room for the rounding of the products as in Normal. A direction of length 0 gives NaN,
-/// which proves nothing.
+/// |d|_1, which includes the rounding of the products as in Normal. A direction of length 0 yields NaN, which
+/// proves nothing.
 inline Float8 slab(const Float8* direction, const Corners& a, const Corners& b, const Between& w) {
   // Scale by the largest coordinate, so that neither products nor squares leave the range of floats.
   const Float8 scale = splat(1) / larger(larger(abs8(direction[0]), abs8(direction[1])), abs8(direction[2]));
@@ -111,7 +113,7 @@ inline Float8 slab(const Float8* direction, const Corners& a, const Corners& b, 
     low[side] = smaller(smaller(x, y), z);
     high[side] = larger(larger(x, y), z);
   }
-  // The slab may be on either side: the direction may be reversed. Negative if the projections overlap.
+  // Either triangle may come first along the direction. Negative if the projections overlap.
   const Float8 gap = larger(low[1] - high[0], low[0] - high[1]);
   const Float8 errors = splat(2 * w.error) * (abs8(d[0]) + abs8(d[1]) + abs8(d[2])) + splat(kKernelTiny);
   // Divide by the length last; the factor covers the rounding of the root and of the quotient.
@@ -120,21 +122,21 @@ inline Float8 slab(const Float8* direction, const Corners& a, const Corners& b, 
 
 /// Float bounds on the distances of eight pairs, query units.
 struct Distances {
-  Float8 lower, upper;  ///< lower: 0 where nothing is proved
-  Float8 way[3];        ///< between the points that gave `upper`
+  Float8 lower, upper;  ///< lower: 0 if nothing is proven
+  Float8 way[3];        ///< vector between the points that gave `upper`
 
-  /// Upper bound: each coordinate of the difference of two points is off by at most 2 error, as in Normal, so
-  /// that 4 error covers its length.
+  /// Error of the upper bound: each coordinate of the difference of two points has an error of at most 2
+  /// error, as in Normal, so that 4 error covers its length.
   Distances(const Corners& a, const Corners& b, const Between& w) {
-    // Upper bound: the closest points that were found.
+    // Upper bound: the distance of the closest points found.
     const Edges of_a(a), of_b(b);
     const NearestPoints nearest(a, of_a, b, of_b);
     upper = (root8(nearest.square) + splat(4 * w.error)) * splat(1 + kDistanceRounding);
     for (int x = 0; x < 3; ++x) way[x] = nearest.way[x];
-    // Lower bound: first the slab across these points. For disjoint triangles it is as wide as the distance,
-    // up to rounding.
+    // Lower bound: first the slab normal to the line between these points. For disjoint triangles it is as
+    // wide as the distance, up to rounding.
     lower = larger(slab(way, a, b, w), Float8{});
-    // Then the normals of both faces, which are accurate where the points are too close to give a direction.
+    // Then the normals of both faces, which are accurate if the points are too close to define a direction.
     const Edges* const of[2] = {&of_a, &of_b};
     for (const Edges* t : of) {
       Float8 n[3];

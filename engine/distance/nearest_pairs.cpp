@@ -1,7 +1,9 @@
-/// Narrows a distance from the pairs that the traversal could not drop, by increasingly expensive means:
+/// Narrows the distance interval using the pairs that the traversal did not drop, by increasingly expensive
+/// means:
 /// 1. Bound each pair in double, with proven rounding errors (pair_bounds.hpp).
-/// 2. If the interval is still too wide or contains 0, ask the exact query whether the surfaces intersect.
-/// 3. If they do not, measure the pairs that matter in integers (exact/pair_distance.hpp).
+/// 2. If the interval is still too wide or contains 0, decide by the exact query whether the surfaces
+///    intersect.
+/// 3. If they do not, measure the relevant pairs in integers (exact/pair_distance.hpp).
 /// 4. Complete the answer: decision on `within`, relation of the bodies, closest points.
 
 #include "engine/distance/nearest_pairs.hpp"
@@ -39,7 +41,7 @@ Eigen::Vector3d NearestPairs::way() const {
 }
 
 double NearestPairs::dropped_from() const {
-  // Pairs that are nearer by less than the allowed width need not be found.
+  // Pairs that would improve the upper bound by less than the allowed width need not be found.
   const double asked =
       upper() - std::max({request_.tolerance, upper() * request_.relative_tolerance, allowed_});
   // Without an upper bound, `asked` is NaN or infinite: then no pair may be dropped by it.
@@ -61,9 +63,9 @@ void NearestPairs::corners(SimplexId a, SimplexId b, const double** of_a, const 
   ctx_[Side::b].world.corners(b, of_b);
 }
 
-/// Takes over a pair's upper bound if it is the least so far.
+/// Adopts a pair's upper bound if it is the least so far.
 void NearestPairs::see(const MeasuredPair& pair, const PairBounds& bounds) {
-  // Only a smaller bound replaces the best pair: of equally near ones the first stays.
+  // Only a smaller bound replaces the best pair: the first of equally close ones remains.
   if (best_simplex_[0] != kNull && !(bounds.upper < best_.upper)) return;
   best_ = bounds;
   best_simplex_[0] = pair.a;
@@ -89,7 +91,7 @@ bool NearestPairs::measure(SimplexId a, SimplexId b, double lower) {
     pairs_.push_back({a, b, std::max(apart, lower)});
     return true;
   }
-  // General case: closest points, and the best slab across them.
+  // General case: closest points, and the best slab along the direction between them.
   PairBounds bounds = bound_distance(of_a, of_b, dim_);
   if (!std::isfinite(bounds.upper)) {  // too large, or too small, for doubles
     // Exact distances need disjoint simplices: without a positive bound, exclude contact first.
@@ -97,7 +99,7 @@ bool NearestPairs::measure(SimplexId a, SimplexId b, double lower) {
     corners(a, b, of_a, of_b);
     bounds = measured_exactly(of_a, of_b);
   }
-  // Both lower bounds hold; rounding must not lift them above the upper one.
+  // Both lower bounds are valid; rounding must not raise them above the upper one.
   pairs_.push_back({a, b, std::min(std::max(bounds.lower, lower), bounds.upper)});
   see(pairs_.back(), bounds);
   // Not positive: contact is not excluded.
@@ -105,7 +107,7 @@ bool NearestPairs::measure(SimplexId a, SimplexId b, double lower) {
 }
 
 bool NearestPairs::surfaces_meet() {
-  // At most one exact query for each distance.
+  // At most one exact query for each distance query.
   if (asked_) return meet_;
   asked_ = true;
   // One intersecting pair is enough.
@@ -126,7 +128,7 @@ bool NearestPairs::pair_meets(const std::array<SimplexId, 2>& pair) {
   return true;
 }
 
-/// Records an intersecting pair; the witness is one of the points that the two simplices share.
+/// Records an intersecting pair; the witness is a point shared by the two simplices.
 void NearestPairs::take_contact(SimplexId a, SimplexId b, exact::Meet meet) {
   meet_ = true;
   met_ = meet == exact::Meet::cross ? Relation::crossing : Relation::touching;
@@ -150,18 +152,18 @@ double NearestPairs::least_lower() const {
   return least;
 }
 
-/// Measures exactly where doubles left too wide an interval. `rest`: a lower bound for all unmeasured pairs.
+/// Measures pairs exactly if doubles left too wide an interval. `rest`: lower bound for all unmeasured pairs.
 void NearestPairs::narrow(double rest) {
   // Exact arithmetic is needed if the interval is too wide, or if contact is not excluded.
   const double least = std::min(least_lower(), rest);
   const bool is_wide = !(upper() - least <= width()) || !(least > 0);
   if (!is_wide || surfaces_meet()) return;
-  // Least lower bound first; ties by index, so that the order is always the same.
+  // Least lower bound first; ties by index, for a deterministic order.
   std::sort(pairs_.begin(), pairs_.end(), [](const MeasuredPair& x, const MeasuredPair& y) {
     return x.lower != y.lower ? x.lower < y.lower : x.a != y.a ? x.a < y.a : x.b < y.b;
   });
   for (MeasuredPair& pair : pairs_) {
-    // Pairs from here on are far enough to be within the allowed width of the upper bound.
+    // All remaining pairs are within the allowed width of the upper bound.
     if (pair.lower > 0 && pair.lower >= upper() - width()) break;
     const double *of_a[3], *of_b[3];
     corners(pair.a, pair.b, of_a, of_b);
@@ -190,7 +192,7 @@ void NearestPairs::decide_within(double rest, bool finished, DistanceResult& res
     result.within = true;
     return;
   }
-  // All measured pairs are farther: the answer is no if the unmeasured ones are, too.
+  // All measured pairs are farther: the answer is no if the unmeasured ones are farther as well.
   if (finished || rest > most) result.within = false;
 }
 
@@ -223,10 +225,10 @@ void NearestPairs::write_relation(DistanceResult& result) {
   if (meet_) {
     result.relation = met_;
   } else if (!(result.lower > 0)) {
-    // The bounds still contain 0: the query stopped early, or the tolerance left room for 0.
+    // The bounds still contain 0: the query stopped early, or within a tolerance that includes 0.
     result.relation = Relation::unresolved;
   } else if (request_.relation) {
-    // Disjoint surfaces: one vertex of each component is located in the other body.
+    // Disjoint surfaces: locate one vertex of each component in the other body.
     CollideResult none;
     decide_relation(ctx_, none);
     result.relation = none.relation;
@@ -234,7 +236,7 @@ void NearestPairs::write_relation(DistanceResult& result) {
 }
 
 void NearestPairs::finish(double rest, bool finished, DistanceResult& result) {
-  // Only for a complete traversal: after an early stop, `rest` may be what limits the interval.
+  // Only after a complete traversal: after an early stop, `rest` may be the limiting bound.
   if (!meet_ && finished && !request_.within) narrow(rest);
   if (request_.within && !meet_) decide_within(rest, finished, result);
   result.meet = meet_;

@@ -1,5 +1,5 @@
 #pragma once
-/// The pairs of simplices that a distance query has measured, and the answer that follows from them.
+/// The pairs of simplices that a distance query has measured, and the answer derived from them.
 
 #include <algorithm>
 #include <limits>
@@ -11,7 +11,7 @@
 
 namespace lrb {
 
-/// A pair of simplices and a bound on its distance, world.
+/// A pair of simplices and a lower bound on its distance, world units.
 struct MeasuredPair {
   SimplexId a, b;
   double lower;
@@ -23,35 +23,35 @@ Witness witness_of(const LrbRep& rep, SimplexId simplex, const exact::Feature& o
 
 class NearestPairs {
  public:
-  /// Begins a query of the bodies that `ctx` has been begun with. `pairs`: memory that can be used again.
+  /// Begins a query of the bodies of `ctx`. `pairs`: a reusable buffer.
   NearestPairs(QueryContext& ctx, const DistanceRequest& request, std::vector<MeasuredPair>& pairs);
 
   double upper() const { return best_.upper; }
   /// Returns a lower bound on the distance, given that the distances of unmeasured pairs are at least `rest`.
   double lower(double rest) const { return std::max(0.0, std::min({least_lower(), rest, upper()})); }
-  /// Returns how many pairs were measured.
+  /// Returns the number of measured pairs.
   std::uint64_t measured() const { return counters_.pairs_in_doubles + counters_.pairs_exact; }
-  /// Returns the vector between the points that gave upper(), from A to B; 0 if there are none yet.
+  /// Returns the vector between the points that gave upper(), from A to B, or 0 if no pair was measured.
   Eigen::Vector3d way() const;
-  /// Returns the size of the larger body in the world: a bound on its radius.
+  /// Returns an upper bound on the radius of the larger body in the world.
   double size() const { return size_; }
 
-  /// Accepts a slab as measurement of a pair whose distance equals that of the closest one up to rounding.
-  /// upper() may then be too large in its last digits, depending on the order of the pairs, so that more
-  /// steps need not give a narrower interval, as distance() promises.
+  /// Accepts a slab as the measurement of a pair whose distance equals the least one up to rounding. The last
+  /// digits of upper() then depend on the order of the pairs, so that more steps may not narrow the interval
+  /// as distance() promises.
   void spare_equal_pairs() { spares_ = true; }
-  /// Allows intervals of this width, because the traversal is not more accurate.
+  /// Allows intervals of this width, for a traversal that is not more accurate.
   void allow_width(double width) { allowed_ = width; }
   /// Returns the pruning distance: pairs at least this far need not be measured.
   double dropped_from() const;
-  /// Measures a pair in double; `lower` is a known bound. Returns true if the pair is proven disjoint.
+  /// Measures a pair in double. `lower`: a known lower bound. Returns true if the pair is proven disjoint.
   bool measure(SimplexId a, SimplexId b, double lower);
   /// Returns true if the request is answered: the distance is at most `within`.
   bool is_near_enough() const { return request_.within && upper() <= *request_.within; }
 
-  /// Returns true if the simplices intersect, exactly: then the surfaces do.
+  /// Returns true if the two simplices, and so the surfaces, intersect. Exact.
   bool pair_meets(const std::array<SimplexId, 2>& pair);
-  /// Returns true if the surfaces intersect, exactly. Computed at the first call.
+  /// Returns true if the surfaces intersect. Exact; computed at the first call.
   bool surfaces_meet();
   bool known_apart() const { return asked_ && !meet_; }
   bool known_to_meet() const { return meet_; }
@@ -78,7 +78,7 @@ class NearestPairs {
   int dim_;
   double size_ = 0, allowed_ = 0;
   SimplexId best_simplex_[2] = {kNull, kNull};
-  PairBounds best_;  ///< of the pair that has the least upper end
+  PairBounds best_;  ///< of the pair with the least upper bound
   bool spares_ = false, asked_ = false, meet_ = false;
   Relation met_ = Relation::touching;
   DistanceCounters counters_;

@@ -1,21 +1,22 @@
 /// Bounds the distance of two simplices in double. Steps:
 /// 1. Find the closest points among edge-edge pairs (Ericson, "Real-Time Collision Detection", 5.1.9, after
 ///    Lumelsky 1985) and vertex-plane pairs. Their distance is the upper bound.
-/// 2. The lower bound is the width of a slab between the simplices: for any direction n they are separated by
-///    at least
-///     (least n . b over the corners of B - largest n . a over those of A) / |n|.
-/// This holds whatever errors n has; only the rounding of the products counts. The best n is the direction
-/// between the closest points. Their difference loses digits where the simplices are close to each other, so
-/// n is also computed from the edges of the closest features: the normal of both edges or of the face, or the
-/// direction across the edge.
+/// 2. Find a lower bound as the width of a slab between the simplices. For any direction n they are separated
+///    by at least
+///     (least n . b over the corners of B - largest n . a over the corners of A) / |n|.
 ///
-/// Errors. Let R be the largest coordinate of any corner, relative to A's first corner, and u = 2^-53.
-/// Coordinates are off by at most u R each (one subtraction). A product n . x is off by u R |n|_1 for that,
-/// and by 3 u R |n|_1 for its three products and two sums. The difference of two is off by twice that, and by
-/// rounding: less than 16 u R |n|_1. The vector between two points at given parameters of their edges is off
-/// by 20 u R in each coordinate: 4 u R for the vector between corners, 6 u R for each of two edges times a
-/// parameter, 4 u R for two sums. Its length is off by 35 u R. The two parameters of a face may add up to 1 +
-/// u, which makes 4 u R more. kPairRounding is 64 u.
+/// This bound is valid whatever errors n has; only the rounding of the products counts. The best n is the
+/// direction between the closest points. Their difference loses digits if the simplices are close to each
+/// other, so n is also computed from the edges of the closest features: the common normal of both edges, the
+/// normal of the face, or the normal of one edge towards the other point.
+///
+/// Errors. Let R be the largest coordinate of any corner, relative to A's first corner, and u = 2^-53. The
+/// error of a coordinate is at most u R (one subtraction). It adds u R |n|_1 to the error of a product n . x,
+/// whose three products and two sums add 3 u R |n|_1. The difference of two products has at most twice that
+/// error, plus its own rounding: less than 16 u R |n|_1. The vector between two points at given parameters of
+/// their edges has an error of at most 20 u R in each coordinate: 4 u R for the vector between corners, 6 u R
+/// for each of two edges times a parameter, 4 u R for two sums. The error of its length is at most 35 u R.
+/// The two parameters of a face may add up to 1 + u, which adds 4 u R. kPairRounding is 64 u.
 
 #include "engine/distance/pair_bounds.hpp"
 
@@ -36,26 +37,26 @@ double clamp_share(double x) {
   return x > 0 ? std::min(x, 1.0) : 0;  // NaN: 0
 }
 
-/// Two points, by the features that they are on and their parameters along these features' edges.
+/// Two points, by the features that contain them and their parameters along these features' edges.
 struct Nearest {
   double square = kInfinity;
-  Vector3d way{0, 0, 0};  ///< from the point of A to that of B
+  Vector3d way{0, 0, 0};  ///< from the point of A to the point of B
   exact::Feature on[2];
   double share[2][2] = {};
 };
 
 constexpr double kPairUp = 1 + 0x1p-51, kPairDown = 1 - 0x1p-50;
 
-/// Returns true if squares of lengths, and squares of their products, neither overflow nor vanish.
+/// Returns true if squares of lengths, and their products, neither overflow nor underflow.
 bool is_in_range(double length) {
   return length > 0x1p-200 && length < 0x1p200;
 }
 
 /// Returns the width of the slab between two simplices along a direction of any length, rounded down; at
-/// least 0. low, high: the ends of their projections, in double. reach: the largest of the coordinates that
-/// these were computed from.
+/// least 0. low, high: the ends of their projections, in double. reach: the largest coordinate from which
+/// these were computed.
 double slab_width(const Vector3d& direction, const double (&low)[2], const double (&high)[2], double reach) {
-  // The slab may be on either side of A.
+  // Either simplex may come first along the direction.
   const double gap = std::max(low[1] - high[0], low[0] - high[1]);
   // A quarter of kPairRounding is 16 u: the error bound of a difference of products, derived above.
   const double sure = gap - 0.25 * kPairRounding * reach * direction.cwiseAbs().sum();
@@ -89,7 +90,7 @@ class Pair {
   const Nearest& nearest() const { return nearest_; }
   double upper() const { return (std::sqrt(nearest_.square) + kPairRounding * reach_) * kPairUp; }
 
-  /// Returns the lower end, and writes the direction that gave it.
+  /// Returns the lower bound, and writes the direction that gave it.
   double lower(Vector3d& direction) const {
     double most = 0;
     const auto see = [&](const Vector3d& n) {
@@ -98,11 +99,11 @@ class Pair {
       most = wide;
       direction = n;
     };
-    // Candidates, the most promising first. The vector between the closest points: best where it is long.
+    // Candidates, the most promising first. The vector between the closest points: best if it is long.
     see(nearest_.way);
-    // The normal of the closest features: accurate also where the points nearly coincide.
+    // The normal of the closest features: accurate even if the points nearly coincide.
     see(across_features());
-    // Last, the faces' normals, as long as the interval is wider than rounding explains.
+    // Last, the faces' normals, if the interval is wider than rounding explains.
     if (n_ == 3)
       for (const auto& edge : edge_)
         if (most < upper() - 2 * kPairRounding * reach_) see(edge[0].cross(edge[1]));
@@ -117,10 +118,11 @@ class Pair {
     const Vector3d &u = edge_[0][i], &v = edge_[1][j];
     const Vector3d way = x_[1][j] - x_[0][i];
     const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(way), vw = v.dot(way);
-    // Minimise over both lines and clamp. Parallel edges give NaN or anything: every s is as good then.
+    // Minimise over both lines and clamp. Parallel edges yield NaN or any value: every s is equally good
+    // then.
     double s = clamp_share((vv * uw - uv * vw) / (uu * vv - uv * uv));
-    // Project that point on to the other edge, and back: each time the best point of a segment for the other
-    // one.
+    // Project that point on the other edge, and back: each time the closest point of a segment to the other
+    // point.
     const double t = clamp_share((uv * s - vw) / vv);
     s = clamp_share((uv * t + uw) / uu);
     const Vector3d d = way + t * v - s * u;
@@ -136,11 +138,11 @@ class Pair {
     return {1, static_cast<std::uint8_t>(k)};
   }
 
-  /// Vertices of the other simplex above the face of `side`.
+  /// Projects the vertices of the other simplex on the face of `side`.
   void corners_to_face(int side) {
     const Vector3d &u = edge_[side][0], v = -edge_[side][2], &first = x_[side][0];
     const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), area = uu * vv - uv * uv;
-    // The squared doubled area. A face without area is left to its edges.
+    // The squared doubled area. A face without area is covered by its edges.
     if (!(area > 0)) return;
     for (int k = 0; k < 3; ++k) {
       const Vector3d way = x_[1 - side][k] - first;
@@ -162,7 +164,7 @@ class Pair {
     }
   }
 
-  /// Returns a normal of the closest features that stays accurate where they nearly touch.
+  /// Returns a normal of the closest features that stays accurate if they nearly touch.
   Vector3d across_features() const {
     const exact::Feature &a = nearest_.on[0], &b = nearest_.on[1];
     // A face: its own normal.
@@ -173,7 +175,7 @@ class Pair {
       const Vector3d n = edge_[0][a.index].cross(edge_[1][b.index]);
       if (n.squaredNorm() > 0) return n;
     }
-    // A vertex and an edge, or parallel edges. Two vertices have only their difference.
+    // A vertex and an edge, or parallel edges. For two vertices there is only their difference.
     const Vector3d* along = a.dim == 1 ? &edge_[0][a.index] : b.dim == 1 ? &edge_[1][b.index] : nullptr;
     if (along == nullptr) return nearest_.way;
     // 2D: the normal of the edge. 3D: the difference without its component along the edge (Gram-Schmidt).
@@ -228,12 +230,12 @@ PairBounds bound_distance(const double* const* a, const double* const* b, int n)
   Pair pair(a, b, n);
   PairBounds out;
   out.upper = kInfinity;
-  // Squares would overflow or vanish: the caller needs exact arithmetic.
+  // Squares would overflow or underflow: the caller needs exact arithmetic.
   if (!pair.is_in_range()) return out;
   pair.find();
   const Nearest& nearest = pair.nearest();
   out.upper = pair.upper();
-  // The lower bound may exceed the upper one only by rounding.
+  // Only rounding can raise the lower bound above the upper one.
   out.lower = std::min(pair.lower(out.direction), out.upper);
   for (int side = 0; side < 2; ++side) {
     out.on[side] = nearest.on[side];

@@ -1,7 +1,7 @@
 // The intersection of two triangles of which at least one has no area. All in rational arithmetic, because
 // such pairs are rare.
 // 1. Replace each triangle by its convex hull: a triangle, a segment or a point. Test these exactly.
-// 2. Clip the hull of lower dimension, a segment or a point, by the other one (Cyrus and Beck 1978).
+// 3. Return the end points of the remaining part, each with the features that contain it.
 // 3. Return the ends of the part that is left, each with the features on which it lies.
 
 #include <algorithm>
@@ -59,10 +59,10 @@ bool on_segment(const RationalVec& x, const RationalVec& p, const RationalVec& q
   return !part.empty;
 }
 
-/// Returns the feature of least dimension of triangle t, which may be degenerate, that contains the point x
+/// Returns the feature of lowest dimension of triangle t, which may be degenerate, that contains the point x
 /// of t.
 Feature feature_of(const RationalVec& x, const double* const t[3]) {
-  // Corners before edges before the inside: the first match is the feature of least dimension.
+  // Corners before edges before the interior: the first match is the feature of lowest dimension.
   for (int i = 0; i < 3; ++i) {
     if (x == to_rational(t[i])) return corner(i);
   }
@@ -75,9 +75,8 @@ Feature feature_of(const RationalVec& x, const double* const t[3]) {
 bool in_one_plane(const Hull& a, const Hull& b) {
   std::vector<const double*> p(a.corner, a.corner + a.dim + 1);
   p.insert(p.end(), b.corner, b.corner + b.dim + 1);
-  // Three points always lie in one plane, so the test begins with the fourth.
-  for (std::size_t i = 3; i < p.size();
-       ++i) {  // at most a triangle first and two more points, or two segments
+  // Any three points are coplanar, so the test begins with the fourth.
+  for (std::size_t i = 3; i < p.size(); ++i) {  // at most a triangle and two more points, or two segments
     if (orient3d(p[0], p[1], p[2], p[i]) != 0) return false;
   }
   return true;
@@ -120,14 +119,14 @@ PairContact contact_of_degenerate(const double* const a[3], const double* const 
 
 namespace {
 
-/// Sides of the corners of one triangle on the edges of another: side[i][k] is that of corner k on the
-/// directed edge i, +1 inside.
+/// Sides of the corners of one triangle relative to the edges of another: side[i][k] is the side of corner k
+/// relative to the directed edge i, +1 inside.
 struct EdgeSides {
   int side[3][3];
 };
 
 EdgeSides edge_sides(const double* const edges[3], const double* const corners[3], const Axes& axes) {
-  // The projection may reverse the triangle. `turn` makes +1 the inner side of each edge.
+  // The projection may reverse the orientation. `turn` makes +1 the inner side of each edge.
   const int turn = orient_axes(edges[0], edges[1], edges[2], axes.x, axes.y);
   EdgeSides r;
   for (int i = 0; i < 3; ++i) {
@@ -138,9 +137,9 @@ EdgeSides edge_sides(const double* const edges[3], const double* const corners[3
   return r;
 }
 
-/// Finds where corner k lies in the triangle of the edges; returns false if it is outside.
+/// Locates corner k in the triangle of the edges. Returns false if it is outside.
 bool locate_corner(const EdgeSides& s, int k, Feature& f) {
-  // Strictly outside one edge is outside the triangle. The zeros count the edges on which the corner lies.
+  // Strictly outside one edge: outside the triangle. The zeros count the edges that contain the corner.
   int zeros = 0, zero_edge = 0;
   for (int i = 0; i < 3; ++i) {
     if (s.side[i][k] < 0) return false;
@@ -159,8 +158,8 @@ bool on_edge(const Feature& f, int edge) {
   return f.dim == 1 ? f.index == edge : f.dim == 0 && (f.index == edge || f.index == (edge + 1) % 3);
 }
 
-/// Returns true if two corners of the polygon are known to be neighbours: corners of a convex polygon that
-/// lie on one edge of either triangle are, because the line of that edge supports the polygon.
+/// Returns true if two corners of the polygon are known to be adjacent: both lie on one edge of either
+/// triangle, whose line supports the convex polygon.
 bool are_neighbours(const ContactCorner& p, const ContactCorner& q) {
   for (int i = 0; i < 3; ++i) {
     if (on_edge(p.on_a, i) && on_edge(q.on_a, i)) return true;
@@ -169,9 +168,9 @@ bool are_neighbours(const ContactCorner& p, const ContactCorner& q) {
   return false;
 }
 
-/// Sorts the corners into an order around the polygon.
+/// Orders the corners around the polygon.
 void order_round(PairContact& r) {
-  // Selection: move a neighbour of the previous corner to place i. There are at most six corners.
+  // Selection sort: move a neighbour of the previous corner to position i. There are at most six corners.
   for (int i = 1; i < r.corner_count; ++i) {
     const auto from = r.corners.begin() + i;
     const auto end = r.corners.begin() + r.corner_count;
@@ -185,7 +184,7 @@ ContactCorner at_corner(const double* p, Feature on_a, Feature on_b) {
   return {as_vector(p), on_a, on_b};
 }
 
-/// Returns true if edge i of a and edge j of b cross in a point that is no corner of either.
+/// Returns true if edge i of a and edge j of b cross in their interiors.
 bool edges_cross(const EdgeSides& b_in_a, const EdgeSides& a_in_b, int i, int j) {
   return b_in_a.side[i][j] * b_in_a.side[i][(j + 1) % 3] < 0 &&
          a_in_b.side[j][i] * a_in_b.side[j][(i + 1) % 3] < 0;
@@ -199,17 +198,16 @@ Feature end_or_inside(int side_of_0, int side_of_1) {
   return side_of_0 == 0 ? corner(0) : side_of_1 == 0 ? corner(1) : Feature{1, 0};
 }
 
-/// Finds where a point p, which is on the line of segment s, lies on s; returns false if it is beyond the
-/// ends.
+/// Locates a point p of the line of segment s on s. Returns false if it is beyond the ends.
 bool locate_on_segment(const double* p, const double* const s[2], Feature& f) {
-  // The ends first, so that the feature of least dimension is reported.
+  // The ends first, so that the feature of lowest dimension is reported.
   for (int i = 0; i < 2; ++i) {
     if (p[0] == s[i][0] && p[1] == s[i][1]) {
       f = corner(i);
       return true;
     }
   }
-  // p is on the line of s, so it is on s exactly if it is in the bounding box of s.
+  // p is on the line of s, so it is on s if and only if it is in the bounding box of s.
   for (int k = 0; k < 2; ++k) {
     const auto [low, high] = std::minmax(s[0][k], s[1][k]);
     if (p[k] < low || p[k] > high) return false;
@@ -218,11 +216,11 @@ bool locate_on_segment(const double* p, const double* const s[2], Feature& f) {
   return true;
 }
 
-/// Intersects two segments (or points) on one line: collects the ends of each that lie on the other.
+/// Intersects two collinear segments (or points): collects the ends of each that are on the other.
 PairContact contact_on_one_line(const double* const a[2], const double* const b[2]) {
   PairContact r;
   r.coplanar = true;
-  // An end that both segments have in common is found twice and added once.
+  // A common end of both segments is found twice and added once.
   const auto add = [&](const double* p, Feature on_a, Feature on_b) {
     for (int i = 0; i < r.corner_count; ++i) {
       const Eigen::Vector3d& x = r.corners[static_cast<std::size_t>(i)].x;
@@ -246,7 +244,7 @@ PairContact contact_on_one_line(const double* const a[2], const double* const b[
 PairContact contact_in_plane(const double* const a[3], const double* const b[3]) {
   PairContact r;
   r.coplanar = true;
-  // Step 1: 18 signs in a projection that keeps the triangles' area.
+  // Step 1: 18 signs in a projection in which the triangles have area.
   const Axes axes = axes_for(a[0], a[1], a[2]);
   const EdgeSides b_in_a = edge_sides(a, b, axes), a_in_b = edge_sides(b, a, axes);
   Feature f;
@@ -255,7 +253,7 @@ PairContact contact_in_plane(const double* const a[3], const double* const b[3])
   for (int k = 0; k < 3; ++k) {
     if (locate_corner(a_in_b, k, f)) append(r, at_corner(a[k], corner(k), f));
   }
-  for (int k = 0; k < 3; ++k) {  // a corner of both has been added already
+  for (int k = 0; k < 3; ++k) {  // a corner of both was added above
     if (locate_corner(b_in_a, k, f) && f.dim != 0) append(r, at_corner(b[k], f, corner(k)));
   }
   for (int i = 0; i < 3; ++i) {
@@ -277,10 +275,9 @@ PairContact contact_of_segments(const double* const a[2], const double* const b[
   // All four ends are on one line.
   if (a0 == 0 && a1 == 0 && b0 == 0 && b1 == 0) return contact_on_one_line(a, b);
   PairContact r;
-  // One segment lies strictly on one side of the other's line. A segment that is a point ends here at the
-  // latest.
+  // One segment is strictly on one side of the other's line. Segments of length zero end here at the latest.
   if (a0 * a1 > 0 || b0 * b1 > 0) return r;
-  // The lines cross in one point, which lies on both segments. No zero among the signs: a proper crossing.
+  // The lines cross in one point, which is on both segments. No sign is zero: a proper crossing.
   r.meet = a0 * a1 < 0 && b0 * b1 < 0 ? Meet::cross : Meet::touch;
   const Feature on_a = end_or_inside(a0, a1), on_b = end_or_inside(b0, b1);
   // Copy the coordinates of an end if the point is one. Otherwise compute the crossing.

@@ -1,13 +1,13 @@
 #pragma once
-/// Floating-point expansions: numbers held exactly as sums of doubles of increasing magnitude that do not
-/// overlap (no two have a bit of the same weight), with zeros left out. After Dekker (1971) and Shewchuk,
-/// "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates" (1997), of which only
-/// the theorems are used.
+/// Floating-point expansions: exact numbers represented as sums of non-overlapping doubles of increasing
+/// magnitude (no two have a bit of the same weight), with zeros omitted. After Dekker (1971) and Shewchuk,
+/// "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates" (1997); only the
+/// theorems are used.
 ///
-/// Everything here is exact as long as no operation overflows and no error term falls below 2^-1074. For sums
-/// of products of k factors this holds if each factor is 0 or has a magnitude in [2^-lo, 2^hi] with k * (lo +
-/// 53) <= 1074 and k * (hi + 1) + 30 <= 1023 (the 30 is for Dekker's split and the length of the sum).
-/// Arithmetic must be binary64, round to nearest even, without contraction.
+/// All operations are exact as long as none overflows and no error term falls below 2^-1074. For sums of
+/// products of k factors this holds if each factor is 0 or has a magnitude in [2^-lo, 2^hi] with k * (lo +
+/// 53) <= 1074 and k * (hi + 1) + 30 <= 1023 (30: for Dekker's split and the length of the sum). Arithmetic
+/// must be binary64, round to nearest even, without contraction.
 
 #include <algorithm>
 #include <array>
@@ -21,8 +21,8 @@ namespace lrb::exact {
 
 static_assert(FLT_EVAL_METHOD == 0, "expansions need arithmetic rounded to double after each operation");
 
-/// Sets x = fl(a + b) and y to what was rounded away: x + y = a + b exactly. For any a, b whose sum does not
-/// overflow.
+/// Sets x = fl(a + b) and y to the rounding error, so that x + y = a + b exactly (Knuth's TwoSum). For any a,
+/// b whose sum does not overflow.
 inline void two_sum(double a, double b, double& x, double& y) {
   x = a + b;
   const double b_virtual = x - a;
@@ -30,7 +30,7 @@ inline void two_sum(double a, double b, double& x, double& y) {
   y = (a - a_virtual) + (b - b_virtual);
 }
 
-/// Does the same if |a| >= |b| (or a = 0 = b).
+/// Sets x and y as two_sum() does (Dekker's FastTwoSum). Requires |a| >= |b|, or a = b = 0.
 inline void fast_two_sum(double a, double b, double& x, double& y) {
   x = a + b;
   y = b - (x - a);
@@ -75,7 +75,7 @@ struct Expansion {
     if (size == 0) return 0;
     return component[static_cast<std::size_t>(size - 1)] > 0 ? 1 : -1;
   }
-  /// Returns the value to within one unit in the last place: adds the components from the smallest up.
+  /// Returns the value to within one unit in the last place: adds the components in ascending order.
   double estimate() const {
     double sum = 0;
     for (int i = 0; i < size; ++i) sum += (*this)[i];
@@ -147,7 +147,7 @@ Expansion<M + N> sum(const Expansion<M>& e, const Expansion<N>& f) {
   return r;
 }
 
-/// Returns e * f for a short f, exactly.
+/// Returns e * f exactly, for an f of at most two components.
 template <int M>
 Expansion<4 * M> product(const Expansion<M>& e, const Expansion<2>& f) {
   if (f.size == 2) return sum(scale(e, f[0]), scale(e, f[1]));
@@ -158,17 +158,16 @@ Expansion<4 * M> product(const Expansion<M>& e, const Expansion<2>& f) {
   return r;
 }
 
-// Determinants in 64-bit fixed point: exact, almost without branches, and about ten times faster than
-// expansions. They serve points whose coordinates share an exponent range, as those of neighbouring faces
-// nearly always do.
+// Determinants in 64-bit fixed point: exact, almost branch-free, and about ten times faster than expansions.
+// For points whose coordinates share an exponent range, as those of neighbouring faces nearly always do.
 
 __extension__ using Int128 = __int128;
 __extension__ using UInt128 = unsigned __int128;
 
-/// Turns the coordinates of N points along one axis into integers below 2^62 in magnitude, by multiplying
-/// them by a common power of two, which changes no sign of a determinant. Returns false if they do not fit:
-/// if the highest and the lowest bit set in any of them are 62 or more places apart, or one of them is
-/// denormal or almost.
+/// Converts the coordinates of N points along one axis to integers below 2^62 in magnitude, by multiplication
+/// by a common power of two, which does not change the sign of a determinant. Returns false if they do not
+/// fit: if the highest and the lowest bit set in any of them are 62 or more positions apart, or one of them
+/// is (almost) denormal.
 template <std::size_t N>
 bool to_fixed_point(const std::array<double, N>& x, std::array<std::int64_t, N>& r) {
   constexpr int kMantissaBits = 52, kExponentBias = 1023, kExponentMask = 2047;
@@ -189,7 +188,7 @@ bool to_fixed_point(const std::array<double, N>& x, std::array<std::int64_t, N>&
   return true;
 }
 
-/// Returns the sign of (b - a) x (c - a) in the given coordinates, all below 2^62, so that differences are
+/// Returns the sign of (b - a) x (c - a) in the given coordinates. These are below 2^62, so differences are
 /// below 2^63 and products below 2^126.
 inline int orient2d_fixed(const std::array<std::int64_t, 3>& x, const std::array<std::int64_t, 3>& y) {
   const Int128 left = Int128{x[1] - x[0]} * (y[2] - y[0]);
@@ -197,7 +196,7 @@ inline int orient2d_fixed(const std::array<std::int64_t, 3>& x, const std::array
   return (left > right) - (left < right);
 }
 
-/// Returns the sign of det[b - a; c - a; d - a]; p[k] holds the points' coordinates on axis k.
+/// Returns the sign of det[b - a; c - a; d - a]; p[k] contains the points' coordinates on axis k.
 inline int orient3d_fixed(const std::array<std::array<std::int64_t, 4>, 3>& p) {
   std::array<std::int64_t, 3> u, v, w;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -205,7 +204,7 @@ inline int orient3d_fixed(const std::array<std::array<std::int64_t, 4>, 3>& p) {
     v[k] = p[k][2] - p[k][0];
     w[k] = p[k][3] - p[k][0];
   }
-  // The determinant is at most twice the volume of the points' box, so it is below 2^190 and can be held as
+  // The determinant is at most twice the volume of the points' box, hence below 2^190, and is represented as
   // high * 2^64 + low, where high fits 128 bits. Partial sums of high may wrap, hence unsigned.
   UInt128 high = 0, low = 0;
   for (std::size_t k = 0; k < 3; ++k) {

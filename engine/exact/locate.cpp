@@ -1,11 +1,11 @@
-// The crossing of a ray in direction +x with one face, for point location by parity. The start is moved by
-// (0, eps, eps^2), symbolically (Edelsbrunner and Muecke 1990, "Simulation of Simplicity"): no ray then hits
-// an edge, a corner, or a face edge-on.
+// Intersection of a ray in direction +x with one face, for point location by parity. The origin is perturbed
+// symbolically by (0, eps, eps^2) (Edelsbrunner and Muecke 1990, "Simulation of Simplicity"), so that no ray
+// passes through an edge or a corner, or within a face's plane.
 // 1. Reject faces whose bounding box the ray misses.
-// 2. Look along x: sides of the point on the three edges. Strictly on both sides: a miss.
+// 2. Project along x: sides of the point relative to the three edges. Strictly on both sides: a miss.
 // 3. Test exactly whether the point is on the face.
-// 4. Replace zero sides by those of the moved point. All equal: the ray's line crosses the face.
-// 5. The side of the plane decides whether the crossing is ahead of the point or behind it.
+// 4. Replace zero sides by those of the perturbed point. All equal: the ray's line crosses the face.
+// 5. The side of the plane decides whether the crossing is ahead of the origin or behind it.
 
 #include "engine/exact/locate.hpp"
 
@@ -20,7 +20,7 @@
 namespace lrb::exact {
 
 RationalPoint::Coordinates::Coordinates(RationalVec coordinates) : x(std::move(coordinates)) {
-  // The conversion is off by an ulp at most. Step outwards until the doubles provably enclose the coordinate.
+  // The conversion has an error of at most one ulp. Widen until the doubles provably enclose the coordinate.
   for (std::size_t k = 0; k < 3; ++k) {
     low[k] = high[k] = x[k].convert_to<double>();
     while (to_rational(low[k]) > x[k]) low[k] = std::nextafter(low[k], -kInfinity);
@@ -65,7 +65,7 @@ namespace {
 
 constexpr int kX = 0, kY = 1, kZ = 2;
 
-/// The predicates of a query point: here for doubles, below for rational coordinates.
+/// The predicates of a query point: for doubles here, for rational coordinates below.
 struct DoubleProbe {
   const double* p;
 
@@ -80,7 +80,7 @@ struct RationalProbe {
   const RationalPoint::Coordinates& p;
 
   int compare(int axis, double x) const {
-    // The enclosing doubles decide nearly always. Rational numbers are compared only inside that interval.
+    // The enclosing doubles nearly always decide. Rational numbers are compared only inside that interval.
     if (surely_below(axis, x)) return -1;
     if (surely_above(axis, x)) return 1;
     const Rational& own = p.x[static_cast<std::size_t>(axis)];
@@ -106,11 +106,11 @@ bool in_box_of_segment(const Probe& p, const double* a, const double* b, int dim
   return true;
 }
 
-/// Returns true if a point in the plane of a triangle, or any point where the triangle has no area, is on the
-/// triangle.
+/// Returns true if the point is on the triangle. The point must be in the triangle's plane, or the triangle
+/// must have no area.
 template <class Probe>
 bool on_flat_triangle(const Probe& p, const double* const t[3]) {
-  // Closed triangle: not strictly outside any edge, in a projection that keeps its area.
+  // Closed triangle: not strictly outside any edge, in a projection in which it has area.
   const Axes axes = axes_for(t[0], t[1], t[2]);
   if (axes.turn != 0) {
     return p.orient(t[0], t[1], axes.x, axes.y) != -axes.turn &&
@@ -124,10 +124,10 @@ bool on_flat_triangle(const Probe& p, const double* const t[3]) {
          p.orient(a, b, kZ, kX) == 0;
 }
 
-/// Returns true if the ray, its start included, misses the triangle's box.
+/// Returns true if the ray, including its origin, misses the triangle's box.
 template <class Probe>
 bool passes_box(const Probe& p, const double* const t[3]) {
-  // Strict comparisons: a start level with a face of the box is left to the exact test.
+  // Strict comparisons: an origin level with a face of the box is left to the exact test.
   for (int k : {kY, kZ}) {
     if (p.surely_below(k, std::min({t[0][k], t[1][k], t[2][k]}))) return true;
     if (p.surely_above(k, std::max({t[0][k], t[1][k], t[2][k]}))) return true;
@@ -135,10 +135,11 @@ bool passes_box(const Probe& p, const double* const t[3]) {
   return p.surely_above(kX, std::max({t[0][kX], t[1][kX], t[2][kX]}));
 }
 
-/// Returns the side of the line a, b, seen along x, on which the moved point lies; `side` is that of the
-/// point itself. The determinant changes with eps by -(b_z - a_z), and with eps^2 by b_y - a_y.
+/// Returns the side of the perturbed point relative to the line a, b, projected along x; `side` is that of
+/// the point itself. The derivatives of the determinant with respect to eps and eps^2 are -(b_z - a_z) and
+/// b_y - a_y.
 int moved_side(int side, const double* a, const double* b) {
-  // Nonzero sides do not change under an infinitesimal motion. Otherwise the first nonzero derivative
+  // Nonzero sides do not change under the infinitesimal perturbation. Otherwise the first nonzero derivative
   // decides.
   if (side != 0) return side;
   if (a[kZ] != b[kZ]) return b[kZ] < a[kZ] ? 1 : -1;
@@ -155,19 +156,20 @@ RayHit ray_triangle(const Probe& p, const double* const t[3]) {
     left |= s[i] > 0;
     right |= s[i] < 0;
   }
-  // In the projection along x, the point is strictly outside the triangle, and so is the moved point.
+  // In the projection along x, the point is strictly outside the triangle, and so is the perturbed point.
   if (left && right) return RayHit::misses;
-  // The point itself is on the plane: on the triangle, or the moved ray misses it.
+  // The point itself is in the plane: it is on the triangle, or the perturbed ray misses the triangle.
   const int side = p.side(t);
   if (side == 0 && on_flat_triangle(p, t)) return RayHit::on_face;
   if (side == 0) return RayHit::misses;
-  // turn = 0: the edge is a point when seen along x, so the triangle is seen edge-on and has no inside.
+  // turn = 0: the projection of the edge along x is a point, so the triangle is seen edge-on and has no
+  // interior.
   const int turn = moved_side(s[0], t[0], t[1]);
   if (turn == 0 || moved_side(s[1], t[1], t[2]) != turn || moved_side(s[2], t[2], t[0]) != turn) {
     return RayHit::misses;
   }
-  // Seen along x, the triangle turns as the x component of its normal does: the plane lies ahead if p is
-  // behind it.
+  // Seen along x, the triangle's orientation is the sign of the x component of its normal: the plane is ahead
+  // if p is behind it.
   return side == -turn ? RayHit::crosses : RayHit::misses;
 }
 
@@ -180,7 +182,7 @@ RayHit ray_segment(const Probe& p, const double* const s[2]) {
   if (p.surely_above(kX, std::max(s[0][kX], s[1][kX]))) return RayHit::misses;
   const int left = p.orient(lower, upper, kX, kY);
   if (left == 0 && in_box_of_segment(p, lower, upper, 2)) return RayHit::on_face;
-  // The moved point is above every end that p is level with: the interval is closed below and open above.
+  // The perturbed point is above every end level with p: the interval is closed below and open above.
   const bool spans = p.compare(kY, lower[kY]) >= 0 && p.compare(kY, upper[kY]) < 0;
   return spans && left > 0 ? RayHit::crosses : RayHit::misses;
 }

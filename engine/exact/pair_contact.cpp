@@ -1,9 +1,10 @@
 // The intersection of two triangles with exact combinatorics (interval overlap, Moeller 1997; by orientation
 // signs alone, as in Guigue and Devillers 2003).
 // 1. Sides of each triangle's corners on the other's plane. All strictly on one side: disjoint.
-// 2. If the planes cross in a line L, each triangle covers a span of L. The contact is the spans' overlap.
+// 2. If the planes cross in a line L, each triangle covers an interval (span) of L. The contact is the
+//    overlap.
 // 3. Each end of the overlap gets its feature on both triangles, and coordinates.
-// 4. Coplanar and degenerate triangles have functions of their own.
+// 4. Coplanar and degenerate triangles are handled separately.
 
 #include <algorithm>
 #include <cmath>
@@ -16,16 +17,16 @@
 
 namespace lrb::exact {
 
-// The point in which a plane, or a line in 2D, cuts a segment p, q. With hp and hq the signed heights of the
+// The intersection of a plane, or a line in 2D, with a segment p, q. With hp and hq the signed heights of the
 // ends, it is p + t (q - p) with t = hp / (hp - hq).
 // 1. Compute both heights in doubles, each with a bound on its error.
-// 2. If the errors are small beside hp - hq, interpolate in doubles.
+// 2. If the errors are small relative to hp - hq, interpolate in doubles.
 // 3. Otherwise compute the point in rational numbers and round it once.
 
 namespace {
 
-/// A determinant in doubles and a bound on its error, derived as in plane_side.hpp and predicates.hpp
-/// (underflow is included; overflow makes the bound infinite or not a number).
+/// A determinant in doubles with an error bound, derived as in plane_side.hpp and predicates.hpp (covers
+/// underflow; overflow makes the bound infinite or NaN).
 struct Approximate {
   double value, error;
 };
@@ -52,9 +53,9 @@ Approximate area(const double* a, const double* b, const double* c, int x, int y
   return {left - right, 5 * 0x1p-53 * (std::fabs(left) + std::fabs(right)) + kTiny};
 }
 
-/// Finds the parameter t = hp / (hp - hq) at which a height changes from hp to hq, of opposite sign, through
-/// 0. Returns false unless t is accurate, that is, unless the errors are small beside hp - hq: with E the sum
-/// of both errors, |error of t| <= 2 E / (|hp - hq| - E), plus three roundings.
+/// Computes the parameter t = hp / (hp - hq) of the zero between two heights of opposite sign. Returns false
+/// unless t is accurate, that is, unless the errors are small relative to hp - hq: with E the sum of both
+/// errors, |error of t| <= 2 E / (|hp - hq| - E), plus three roundings.
 bool parameter(const Approximate& hp, const Approximate& hq, double& t) {
   constexpr double kGoodEnough = 0x1p-45;  // 3e-14: then 2 E / (...) + 3 roundings stays under 1e-13
   // The comparison is written so that NaN (an overflow) fails it.
@@ -65,10 +66,10 @@ bool parameter(const Approximate& hp, const Approximate& hq, double& t) {
   return true;
 }
 
-/// Finds the point p + t (q - p). Returns false if a difference of coordinates overflows.
+/// Computes the point p + t (q - p). Returns false if a difference of coordinates overflows.
 bool interpolate(const double* p, const double* q, double t, int dim, Eigen::Vector3d& r) {
   r.setZero();
-  // Start from the nearer end, so that the result is as good near q as near p.
+  // Start from the closer end, so that the result is as accurate near q as near p.
   for (int k = 0; k < dim; ++k) r[k] = t <= 0.5 ? p[k] + t * (q[k] - p[k]) : q[k] + (1 - t) * (p[k] - q[k]);
   return r.allFinite();
 }
@@ -91,7 +92,7 @@ Eigen::Vector3d cut_by_line(const double* p, const double* q, const double* a, c
                             int dim) {
   double s = 0;
   Eigen::Vector3d r;
-  // The same two paths with areas in place of volumes.
+  // The same two paths, with areas instead of volumes.
   if (parameter(area(a, b, p, x, y), area(a, b, q, x, y), s) && interpolate(p, q, s, dim, r)) return r;
   const RationalVec rp = to_rational(p, dim), rq = to_rational(q, dim);
   const RationalVec ra = to_rational(a, dim), rb = to_rational(b, dim);
@@ -101,23 +102,22 @@ Eigen::Vector3d cut_by_line(const double* p, const double* q, const double* a, c
 
 namespace {
 
-/// Whether a point is at the low or the high end of a triangle's span on L. Neither: strictly inside the
-/// span.
+/// Whether a point is the low or the high end of a triangle's span on L. Neither: strictly inside the span.
 struct Place {
   bool low, high;
 };
 
-/// Returns the feature of least dimension of the triangle that contains a point of L.
+/// Returns the feature of lowest dimension of the triangle that contains a point of L.
 Feature feature_on(const Span& span, const Sides& sides, const Place& place) {
-  // Inside the span: L passes through the triangle's inside, or runs along its edge (low, high).
+  // Inside the span: L passes through the triangle's interior, or along its edge (low, high).
   if (!place.low && !place.high)
     return sides.strictly_mixed() ? Feature{2, 0} : edge_between(span.low, span.high);
-  // At an end: a corner that lies in the other plane, or the point in which an edge from the tip crosses it.
+  // At an end: a corner in the other plane, or the point in which an edge from the tip crosses that plane.
   const int end = place.low ? span.low : span.high;
   return sides.s[end] == 0 ? corner(end) : edge_between(span.tip, end);
 }
 
-/// Returns a point of L that ends the span of at least one triangle.
+/// Returns a point of L that is an end of the span of at least one triangle.
 ContactCorner corner_on_line(const CrossingPlanes& c, const Sides& a_sides, const Sides& b_sides,
                              const Place& on_a, const Place& on_b) {
   ContactCorner r;
@@ -144,19 +144,19 @@ PairContact contact_on_line(const double* const a[3], const Sides& a_sides, cons
   const int high_b_low_a = c.order(c.on_a.low, c.on_b.high);
   const int high_a_low_b = -c.order(c.on_a.high, c.on_b.low);
   if (high_b_low_a < 0 || high_a_low_b < 0) return r;
-  // The triangles' relative interiors cover open intervals of L only if the other plane cuts them in two.
+  // The triangles' relative interiors cover open intervals of L only if the other plane divides them.
   const bool through = a_sides.strictly_mixed() && b_sides.strictly_mixed();
   r.meet = through && high_b_low_a > 0 && high_a_low_b > 0 ? Meet::cross : Meet::touch;
   // Signs of (b's low - a's low) and (b's high - a's high) along L.
   const int lows = c.order(c.on_a.low, c.on_b.low), highs = c.order(c.on_a.high, c.on_b.high);
-  // The lower end of the intersection is the greater of the two low ends. It can be a high end too, and both
+  // The lower end of the intersection is the greater of the two low ends. It can also be a high end, and both
   // ends of one triangle if its span is a point.
   const Place low_on_a{lows <= 0, (lows <= 0 && c.on_a.is_point()) || (lows >= 0 && high_a_low_b == 0)};
   const Place low_on_b{lows >= 0, (lows >= 0 && c.on_b.is_point()) || (lows <= 0 && high_b_low_a == 0)};
   const Place high_on_a{(highs >= 0 && c.on_a.is_point()) || (highs <= 0 && high_b_low_a == 0), highs >= 0};
   const Place high_on_b{(highs <= 0 && c.on_b.is_point()) || (highs >= 0 && high_a_low_b == 0), highs <= 0};
   append(r, corner_on_line(c, a_sides, b_sides, low_on_a, low_on_b));
-  // The overlap is a single point if a span is one, or if the spans only share an end.
+  // The overlap is a single point if a span is one, or if the spans share only an end.
   const bool is_point = c.on_a.is_point() || c.on_b.is_point() || high_b_low_a == 0 || high_a_low_b == 0;
   if (!is_point) append(r, corner_on_line(c, a_sides, b_sides, high_on_a, high_on_b));
   return r;

@@ -1,6 +1,7 @@
 // The distance of two disjoint simplices, exactly (Ericson, "Real-Time Collision Detection", 2005, 5.1).
 // 1. Scale all coordinates by one power of two, so that they become integers.
-// 2. Candidates: corner to edge, corner to the inside of a triangle, inside of an edge to inside of an edge.
+// 2. Candidates: corner to edge, corner to interior of a triangle, interior of an edge to interior of an
+//    edge.
 // Each squared distance is a fraction of two integers; every comparison is a sign of an integer.
 // 3. Take the least squared distance, and enclose its root in two neighbouring doubles.
 
@@ -40,13 +41,13 @@ bool less(const Fraction& x, const Fraction& y) {
   return x.num * y.den < y.num * x.den;
 }
 
-/// Returns a fraction of [0, 1], within 2^-53.
+/// Returns a fraction in [0, 1] as a double, within 2^-53.
 double as_share(const Fraction& f) {
   constexpr unsigned kBits = 62;
   return std::ldexp(static_cast<cpp_int>((f.num << kBits) / f.den).convert_to<double>(), -int{kBits});
 }
 
-/// A point of a simplex: from the feature's corner (a face's first) along its edges.
+/// A point of a simplex: offset from the feature's first corner along its edges.
 struct Spot {
   Feature on;
   Fraction along[2];
@@ -57,7 +58,7 @@ struct Nearest {
   Spot spot[2];
 };
 
-/// The exponent of the last mantissa bit of the number for which it is smallest, among those seen.
+/// The smallest exponent of a last mantissa bit among the numbers seen.
 struct LastBit {
   int exponent = std::numeric_limits<int>::max();
   static constexpr int kMantissaBits = 53;
@@ -79,14 +80,14 @@ struct LastBit {
 
 class Pair {
  public:
-  /// `also`: a number that the same power of two must turn into an integer.
+  /// `also`: another number that must be an integer after scaling.
   Pair(const double* const* a, const double* const* b, int n, double also = 0) : n_(n) {
     const double* const* const given[2] = {a, b};
     last_.see(also);
     for (const auto* simplex : given)
       for (int k = 0; k < n; ++k)
         for (int axis = 0; axis < n; ++axis) last_.see(simplex[k][axis]);
-    // All coordinates are 0: any power of two will do.
+    // All coordinates are 0: any power of two is valid.
     if (last_.exponent == std::numeric_limits<int>::max()) last_.exponent = 0;
     for (int side = 0; side < 2; ++side)
       for (int k = 0; k < n; ++k)
@@ -106,21 +107,21 @@ class Pair {
   Whole3 edge(int side, int k) const { return minus(corner(side, k + 1), corner(side, k)); }
 
   void find() {
-    // Every corner against the boundary and the inside of the other simplex. A foot on a triangle's boundary
-    // is found by its edges, so the inside is open.
+    // Every corner against the boundary and the interior of the other simplex. Feet on a triangle's boundary
+    // are found by its edges, so the interior is open.
     for (int side = 0; side < 2; ++side)
       for (int k = 0; k < n_; ++k) {
         for (int j = 0; j < edges(); ++j) corner_to_edge(side, k, j);
         if (n_ == 3) corner_to_face(side, k);
       }
-    if (n_ != 3) return;  // segments that do not meet are nearest at an end
+    if (n_ != 3) return;  // disjoint segments are closest at an end
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) edge_to_edge(i, j);
   }
 
-  /// `spot`: of the simplex of `side`, and of the other one.
+  /// `spot`: on the simplex of `side`; `other`: on the other one.
   void see(Fraction square, int side, Spot spot, Spot other) {
-    // Of equal distances the first one found is kept, so that the result is reproducible.
+    // Of equal distances the first one is kept, so that the result is reproducible.
     if (found_ && !less(square, nearest_.square)) return;
     found_ = true;
     nearest_.square = std::move(square);
@@ -134,11 +135,11 @@ class Pair {
 
   void corner_to_edge(int side, int k, int j) {
     const Whole3 way = minus(corner(side, k), corner(1 - side, j)), along = edge(1 - side, j);
-    // The foot of the perpendicular is at / length along the edge. An edge of length 0 takes the first
+    // The foot of the perpendicular is at at / length along the edge. An edge of length 0 takes the first
     // branch.
     const cpp_int at = dot(way, along), length = dot(along, along);
     const Spot here{feature(0, k), {}};
-    // Voronoi regions of the edge (Ericson 2005, 5.1.2): its first end, its second end, its inside.
+    // Voronoi regions of the edge (Ericson 2005, 5.1.2): first end, second end, interior.
     if (at <= 0) {
       see({dot(way, way), 1}, side, here, {feature(0, j), {}});
     } else if (at >= length) {
@@ -173,7 +174,7 @@ class Pair {
     // Parallel edges: the distance is also attained at an end of one of them.
     if (sine == 0) return;
     const cpp_int uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, way), vw = dot(v, way);
-    // The closest points of the two lines. They count only strictly inside both edges; ends are handled
+    // The closest points of the two lines. They are valid only strictly inside both edges; ends are handled
     // above.
     const cpp_int s = uv * vw - vv * uw, t = uu * vw - uv * uw;
     if (s <= 0 || t <= 0 || s >= sine || t >= sine) return;
@@ -188,13 +189,13 @@ class Pair {
   Nearest nearest_;
 };
 
-/// Sets two doubles that enclose sqrt(square) 2^exponent: equal if the root is a double, else neighbours.
+/// Sets two doubles that enclose sqrt(square) 2^exponent: equal if the root is a double, else adjacent.
 void enclose_root(const Fraction& square, int exponent, double& lower, double& upper) {
   if (square.num == 0) {
     lower = upper = 0;
     return;
   }
-  constexpr int kBits = 130, kMantissaBits = 53;  // of the fraction, so that its root has 64 or more
+  constexpr int kBits = 130, kMantissaBits = 53;  // of the fraction, so that its root has at least 64
   int shift = kBits - static_cast<int>(msb(square.num)) + static_cast<int>(msb(square.den));
   // An even shift, because the root of 2^shift must be a power of two.
   shift += shift & 1;
@@ -212,7 +213,7 @@ void enclose_root(const Fraction& square, int exponent, double& lower, double& u
   const auto scaled = [scale](const cpp_int& x) { return std::ldexp(x.convert_to<double>(), scale); };
   lower = scaled(low);
   upper = is_exact ? lower : scaled(low + 1);
-  constexpr int kLeastNormal = -1022;  // below, scaling rounds
+  constexpr int kLeastNormal = -1022;  // below it, scaling rounds
   if (scale + kMantissaBits - 1 < kLeastNormal) {
     lower = std::max(0.0, std::nextafter(lower, -1.0));
     upper = std::nextafter(upper, 1.0);
@@ -220,7 +221,7 @@ void enclose_root(const Fraction& square, int exponent, double& lower, double& u
   if (std::isinf(lower)) lower = std::numeric_limits<double>::max();
 }
 
-/// Returns the coordinates of a point of a simplex in doubles.
+/// Returns a point of a simplex in doubles.
 Eigen::Vector3d place(const Spot& spot, const double* const* corners, int n) {
   const auto at = [&](int k) {
     const double* x = corners[k % n];

@@ -1,5 +1,6 @@
 #pragma once
-/// Sides of a plane for several points: the plane's part of orient3d and of its error bound is computed once.
+/// Sides of several points relative to one plane: the plane's part of orient3d and of its error bound is
+/// computed once.
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,7 @@
 
 namespace lrb::exact {
 
-/// The plane through three points. Refers to them: they must outlive it.
+/// The plane through three points. Refers to the points, which must outlive it.
 ///
 /// Error bound. Let e = 2^-53. With u = b - a, v = c - a, w = d - a the determinant is the sum of six terms
 /// such as (u_y v_z) w_x. Barring underflow, each computed term is the exact one times at most eight factors
@@ -17,11 +18,11 @@ namespace lrb::exact {
 /// magnitudes. The computed P comes from the same operations and is at least (1 - e)^8 times the exact sum.
 /// Hence the error is at most 8 e (1 + 20 e) P_computed, and 9 e P_computed, rounded, exceeds that.
 ///
-/// Underflow: differences never do. The six inner products lose at most 2^-1075 each, times a component of w:
-/// under 2^-1072 |w|, which 9 e * kTinyProduct * |w| exceeds (where kTinyProduct vanishes in the rounding of
-/// the sum that it is added to, the loss is below e^2 of that sum, and the step from 8 e to 9 e covers it).
-/// The outer products lose 2^-1073 in all, which kTinySum exceeds. Overflow makes the bound infinite or not a
-/// number, and the comparison with it false.
+/// Underflow. Differences never underflow. The six inner products lose at most 2^-1075 each, times a
+/// component of w: under 2^-1072 |w|, which 9 e * kTinyProduct * |w| exceeds. (If kTinyProduct vanishes in
+/// the rounding of the sum that it is added to, the loss is below e^2 of that sum, and the step from 8 e to 9
+/// e covers it.) The outer products lose 2^-1073 in total, which kTinySum exceeds. Overflow makes the bound
+/// infinite or NaN, and the comparison with it false.
 class PlaneSide {
  public:
   PlaneSide(const double* a, const double* b, const double* c) : a_(a), b_(b), c_(c) {
@@ -43,14 +44,14 @@ class PlaneSide {
     return orient3d_exact(a_, b_, c_, d);
   }
 
-  /// Returns twice the triangle's area times the height of d over the plane, rounded. Good for choosing
-  /// between points, not for deciding anything.
+  /// Returns twice the triangle's area times the height of d over the plane, rounded. For choosing between
+  /// points only, not for decisions.
   double rough_height(const double* d) const {
     return (normal_[0] * (d[0] - a_[0]) + normal_[1] * (d[1] - a_[1])) + normal_[2] * (d[2] - a_[2]);
   }
 
-  /// Returns true if the points are certainly not on one line: a component of (b - a) x (c - a), which has
-  /// only four rounding errors, is larger than its error.
+  /// Returns true if the points are certainly not collinear: a component of (b - a) x (c - a), which has only
+  /// four rounding errors, is larger than its error bound.
   bool surely_has_area() const {
     return std::fabs(normal_[0]) > kMinorError * size_[0] || std::fabs(normal_[1]) > kMinorError * size_[1] ||
            std::fabs(normal_[2]) > kMinorError * size_[2];
@@ -71,11 +72,11 @@ class PlaneSide {
   double normal_[3], size_[3];
 };
 
-// Two triangles with area whose planes cross in a line L, where each has corners on both sides of the
-// other's plane, or on it: the points in which they meet L, and the order of these points along L. Private
-// to engine/exact.
+// Two triangles with area whose planes cross in a line L, each with corners on both sides of the other's
+// plane, or in it: their intersections with L, and the order of these points along L. Private to
+// engine/exact.
 
-/// The sides of a plane on which a triangle's corners lie.
+/// The sides of a triangle's corners relative to a plane.
 struct Sides {
   int s[3];
   bool all_strictly_same() const { return s[0] != 0 && s[0] == s[1] && s[0] == s[2]; }
@@ -87,19 +88,19 @@ inline Sides sides_of(const PlaneSide& plane, const double* const t[3]) {
   return {{plane.side(t[0]), plane.side(t[1]), plane.side(t[2])}};
 }
 
-/// The part of L in a triangle: from the point of L on the edge (tip, low) to that on the edge (tip, high),
-/// in the direction of normal(a) x normal(b). tip, low and high are numbers of corners. The tip lies strictly
-/// on side `side` of the other plane; low and high do not. One of them that lies in the other plane is itself
-/// the point on L.
+/// The part of L in a triangle: from the intersection of L with the edge (tip, low) to that with the edge
+/// (tip, high), in the direction of normal(a) x normal(b). tip, low and high are corner numbers. The tip is
+/// strictly on side `side` of the other plane; low and high are not. If one of them is in the other plane, it
+/// is itself the point on L.
 struct Span {
   int tip, low, high;
   int side;
   bool is_point() const { return low == high; }
 };
 
-/// Returns the span of a triangle on L; `is_b`: it is the second of the two triangles. Seen from the front of
-/// b, triangle a runs along L against the direction of normal(a) x normal(b) on the positive side, and with
-/// it on the negative side; the case of b is the mirror image.
+/// Returns the span of a triangle on L; `is_b`: it is the second triangle. Seen from the front of b, the
+/// edges of triangle a run along L against the direction of normal(a) x normal(b) on the positive side, and
+/// along it on the negative side. For b the directions are reversed.
 inline Span span_of(const Sides& sides, bool is_b) {
   for (int i = 0; i < 3; ++i) {
     const int q = (i + 1) % 3, r = (i + 2) % 3;
@@ -107,7 +108,7 @@ inline Span span_of(const Sides& sides, bool is_b) {
     if (side == 0 || sides.s[q] == side || sides.s[r] == side) continue;
     return (side > 0) == is_b ? Span{i, q, r, side} : Span{i, r, q, side};
   }
-  // Two corners lie on one side and the third in the plane: L meets the triangle in that corner only.
+  // Two corners are on one side and the third is in the plane: L intersects the triangle in that corner only.
   const int zero = sides.s[0] == 0 ? 0 : sides.s[1] == 0 ? 1 : 2;
   const int tip = (zero + 1) % 3;
   return {tip, zero, zero, sides.s[tip]};
@@ -123,9 +124,9 @@ struct CrossingPlanes {
                  const Sides& b_sides)
       : a(a_corners), b(b_corners), on_a(span_of(a_sides, false)), on_b(span_of(b_sides, true)) {}
 
-  /// Returns the sign of Y - X along L, where X is the point of L on the edge (tip, a_end) of a and Y that on
-  /// the edge (tip, b_end) of b. The lines of the two edges are in one plane exactly if X = Y; elsewhere the
-  /// orientation keeps its sign, and one example fixes it.
+  /// Returns the sign of Y - X along L, where X is the point of L on the edge (tip, a_end) of a and Y the one
+  /// on the edge (tip, b_end) of b. The lines of the two edges are coplanar if and only if X = Y. Elsewhere
+  /// the orientation has a constant sign, which one example determines.
   int order(int a_end, int b_end) const {
     return on_a.side * on_b.side * orient3d(a[on_a.tip], a[a_end], b[on_b.tip], b[b_end]);
   }

@@ -73,10 +73,10 @@ bool all_in_range(const std::array<double, N>& x) {
 }
 
 /// Returns the coordinates of up to four points along one axis as integers: multiplied by a common power of
-/// two, which changes no sign of a determinant.
+/// two, which does not change the sign of a determinant.
 template <std::size_t N>
 std::array<cpp_int, N> scaled_to_integers(const std::array<double, N>& x) {
-  // Pass 1: write each coordinate as an integer of 53 bits times a power of two, and find the least exponent.
+  // Pass 1: write each coordinate as a 53-bit integer times a power of two, and find the least exponent.
   constexpr int kMantissaBits = 53;
   std::array<std::int64_t, N> mantissa{};
   std::array<int, N> exponent{};
@@ -167,7 +167,7 @@ std::uint64_t exact_fallbacks() {
 
 int orient2d_exact(const double* a, const double* b, const double* c, int x, int y) {
   if (floating_only) return orient2d_floating(a, b, c, x, y);
-  // Points with equal coordinates on one axis, and points that coincide, are on one line.
+  // Equal coordinates on one axis, or coincident points: collinear.
   if (a[x] == b[x] && a[x] == c[x]) return 0;
   if (a[y] == b[y] && a[y] == c[y]) return 0;
   if ((a[x] == b[x] && a[y] == b[y]) || (b[x] == c[x] && b[y] == c[y]) || (a[x] == c[x] && a[y] == c[y]))
@@ -185,11 +185,11 @@ int orient2d_exact(const double* a, const double* b, const double* c, int x, int
 
 int orient3d_exact(const double* a, const double* b, const double* c, const double* d) {
   if (floating_only) return orient3d_floating(a, b, c, d);
-  // All four points in a plane across an axis: coplanar.
+  // All four points in a plane perpendicular to an axis: coplanar.
   for (int k = 0; k < 3; ++k) {
     if (a[k] == b[k] && a[k] == c[k] && a[k] == d[k]) return 0;
   }
-  // Two coincident points leave at most three different ones, and those are coplanar.
+  // Two coincident points leave at most three distinct ones, which are coplanar.
   if (same_point(a, d) || same_point(b, d) || same_point(c, d)) return 0;
   if (same_point(a, b) || same_point(b, c) || same_point(a, c)) return 0;
   ++fallback_count;

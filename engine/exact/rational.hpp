@@ -13,7 +13,7 @@
 namespace lrb::exact {
 
 using Rational = boost::multiprecision::cpp_rational;
-/// x, y, z, as values: no expression template can refer to a temporary that is gone.
+/// Values, so that no expression template refers to a destroyed temporary.
 using RationalVec = std::array<Rational, 3>;
 
 /// Returns the double's exact value.
@@ -49,29 +49,28 @@ inline RationalVec between(const RationalVec& a, const RationalVec& b, const Rat
   return r;
 }
 
-/// Returns (b - a) x (c - a) in the coordinates x and y: orient2d's determinant.
+/// Returns (b - a) x (c - a) in the coordinates x and y: the determinant of orient2d.
 inline Rational area_determinant(const RationalVec& a, const RationalVec& b, const RationalVec& c, int x,
                                  int y) {
   const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
   return (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
 }
 
-/// Returns det[b - a; c - a; d - a]: orient3d's determinant.
+/// Returns det[b - a; c - a; d - a]: the determinant of orient3d.
 inline Rational volume_determinant(const RationalVec& a, const RationalVec& b, const RationalVec& c,
                                    const RationalVec& d) {
   return area_determinant(a, b, c, 1, 2) * (d[0] - a[0]) + area_determinant(a, b, c, 2, 0) * (d[1] - a[1]) +
          area_determinant(a, b, c, 0, 1) * (d[2] - a[2]);
 }
 
-// Clips a segment by linear conditions, exactly. Private to engine/exact, because it includes Boost.
+// Exact clipping of a segment by linear conditions.
 
-/// A part of a segment, as an interval of its parameter, which runs from 0 to 1.
+/// A part of a segment, as an interval of its parameter in [0, 1].
 struct RationalInterval {
   Rational low = 0, high = 1;
   bool empty = false;
 
-  /// Keeps the part where f >= 0, for a function f that is linear along the segment, given its values at both
-  /// ends.
+  /// Keeps the part where f >= 0. f is linear along the segment and given by its values at both ends.
   void keep_positive(const Rational& at_start, const Rational& at_end) {
     if (at_start < 0 && at_end < 0) empty = true;
     if (empty || (at_start >= 0 && at_end >= 0)) return;
@@ -80,13 +79,14 @@ struct RationalInterval {
     if (at_end < 0 && t < high) high = t;
     empty = low > high;
   }
+  /// Keeps the part where f = 0.
   void keep_zero(const Rational& at_start, const Rational& at_end) {
     keep_positive(at_start, at_end);
     keep_positive(-at_start, -at_end);
   }
 };
 
-// The contents of a RationalPoint. Private to engine/exact, because it includes Boost.
+// The contents of a RationalPoint.
 
 struct RationalPoint::Coordinates {
   RationalVec x;

@@ -1,9 +1,9 @@
-// The cells into which cuts divide a face, and a sample point in each cell. The method is the slab
-// decomposition of an arrangement of segments (Dobkin and Lipton 1976), all in rational coordinates.
+// The cells into which cuts divide a face, with a sample point in each. Slab decomposition of an arrangement
+// of segments (Dobkin and Lipton 1976), in rational coordinates.
 // 1. Intersect the face with each other triangle, clip the result to the face, and project it: the cuts.
-// 2. Sort the abscissas of all end points and crossings of cuts. Between two of them lies a slab.
+// 2. Sort the abscissas of all end points and crossings of cuts. Two successive ones bound a slab.
 // 3. In a slab no cut ends or crosses another: the cuts that span it divide it into trapezoids (gaps).
-// 4. Unite the gaps of neighbouring slabs that open to each other: the cells.
+// 4. Unite the gaps of adjacent slabs that open to each other: the cells.
 // 5. Lift the centre of one gap of each cell back to the plane of the face.
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace lrb::exact {
 /// A named namespace, because CutFace::Parts has members of these types.
 namespace cutting {
 
-/// Largest number of gaps per requested cell. End points and crossings of cuts divide cells into gaps, and
+/// Maximum number of gaps per requested cell. End points and crossings of cuts divide cells into gaps, and
 /// the time grows with the number of gaps. Larger: faces with a hundred cuts are decided as well, in minutes
 /// each.
 constexpr std::size_t kGapsPerCell = 16;
@@ -51,13 +51,13 @@ class CutTriangle {
       exact_[i] = to_rational(tri[i]);
       corner_[i] = project(exact_[i]);
     }
-    // The edges are cuts too: they bound the outermost gaps, so that no gap lies outside the triangle.
+    // The edges are cuts as well: they bound the outermost gaps, so that no gap is outside the triangle.
     for (std::size_t i = 0; i < 3; ++i) add(corner_[i], corner_[(i + 1) % 3]);
   }
 
   void cut_by(const double* const other[3]) {
     const Sides sides = sides_of(plane_, other);
-    // All corners lie strictly on one side of the plane: no cut.
+    // All corners are strictly on one side of the plane: no cut.
     if (sides.all_strictly_same()) return;
     std::vector<Planar> points;
     // Collect the points of the other triangle's boundary in this plane: corners on it, and crossings of its
@@ -81,9 +81,9 @@ class CutTriangle {
     return {p[static_cast<std::size_t>(axes_.x)], p[static_cast<std::size_t>(axes_.y)]};
   }
 
-  /// Returns the point of the triangle's plane that has this projection.
+  /// Returns the point of the triangle's plane with this projection.
   RationalPoint lift(const Planar& p) const {
-    // Barycentric coordinates survive the projection, because it is affine and one to one on the plane.
+    // Barycentric coordinates are preserved, because the projection is affine and injective on the plane.
     const Rational area = cross(corner_[0], corner_[1], corner_[2]);
     const Rational u = cross(corner_[0], p, corner_[2]) / area, v = cross(corner_[0], corner_[1], p) / area;
     RationalVec r;
@@ -117,8 +117,8 @@ class CutTriangle {
   void add(const Planar& p, const Planar& q) {
     if (p == q) return;  // a point cuts nothing
     Cut cut = p < q ? Cut{p, q} : Cut{q, p};
-    // Two faces that share an edge contribute the same cut twice. Dropping one pays, because the time is
-    // cubic in the number of cuts.
+    // Two faces that share an edge contribute the same cut twice. Removing duplicates is worthwhile, because
+    // the time is cubic in the number of cuts.
     if (std::find(cuts_.begin(), cuts_.end(), cut) == cuts_.end()) cuts_.push_back(std::move(cut));
   }
 
@@ -129,9 +129,9 @@ class CutTriangle {
   std::vector<Cut> cuts_;
 };
 
-/// Adds the abscissa at which two cuts cross (the ends of overlapping cuts are events anyway).
+/// Adds the abscissa of the crossing of two cuts (ends of overlapping cuts are events anyway).
 void add_crossing(const Cut& a, const Cut& b, std::vector<Rational>& events) {
-  // No crossing if both ends of b lie strictly on one side of a, or if the cuts are collinear.
+  // No crossing if both ends of b are strictly on one side of a, or if the cuts are collinear.
   const Rational b_from = cross(a.from, a.to, b.from), b_to = cross(a.from, a.to, b.to);
   if (b_from * b_to > 0 || (b_from == 0 && b_to == 0)) return;
   // The same with a and b exchanged. The cuts are not parallel here, so a_from - a_to is not 0.
@@ -142,7 +142,7 @@ void add_crossing(const Cut& a, const Cut& b, std::vector<Rational>& events) {
 
 std::vector<Rational> events_of(const std::vector<Cut>& cuts) {
   std::vector<Rational> events;
-  // Test all pairs of cuts: quadratic, which is small beside the sorting of cuts in each slab.
+  // Test all pairs of cuts: quadratic, small compared with sorting the cuts in each slab.
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     events.push_back(cuts[i].from.x);
     events.push_back(cuts[i].to.x);
@@ -153,9 +153,10 @@ std::vector<Rational> events_of(const std::vector<Cut>& cuts) {
   return events;
 }
 
-/// A cut that spans a slab. The layers of a slab run upwards. Of coincident cuts only the first is listed.
+/// A cut that spans a slab. The layers of a slab are in ascending order. Of coincident cuts only the first is
+/// listed.
 struct Layer {
-  Rational y;  ///< at the slab's middle
+  Rational y;  ///< at the centre of the slab
   std::size_t cut;
 };
 
@@ -176,17 +177,17 @@ std::vector<Layer> layers_between(const std::vector<Cut>& cuts, const Rational& 
   return layers;
 }
 
-/// A trapezoid of a slab, between two cuts; the gaps of one cell are linked to the first of them.
+/// A trapezoid of a slab, between two cuts. The gaps of one cell are linked to the first of them.
 struct Gap {
   std::size_t below, above;
   Planar middle;
   std::size_t link;
 };
 
-/// The slabs from left to right, and which of their gaps belong to one cell.
+/// The slabs from left to right, with their gaps grouped into cells.
 class Slabs {
  public:
-  /// Divides the projection into slabs; gives up at more than `limit` gaps.
+  /// Divides the projection into slabs; stops at more than `limit` gaps.
   Slabs(const std::vector<Cut>& cuts, std::size_t limit) : cuts_(cuts) {
     events_ = events_of(cuts);
     std::size_t previous = 0;
@@ -204,9 +205,9 @@ class Slabs {
 
   bool whole() const { return whole_; }
 
-  /// Returns the first gap of the cell that borders on the cut `edge`, one of the triangle's, at a point of
-  /// it that is on no other cut. Near such a point there is but one cell, and every slab that reaches the
-  /// point has a gap of it along the edge; a vertical edge ends the first slab or the last.
+  /// Returns the first gap of the cell that borders on the cut `edge` (an edge of the triangle) at a point
+  /// that is on no other cut. Near such a point there is only one cell, and every slab that reaches the point
+  /// has a gap of it along the edge; a vertical edge bounds the first slab or the last.
   std::size_t gap_beside(std::size_t edge, const Planar& p) const {
     const bool vertical = cuts_[edge].is_vertical();
     // Find a slab that contains p, then the gap of that slab that touches the edge at p.
@@ -248,7 +249,7 @@ class Slabs {
   };
 
   void add_gaps(const Rational& left, const Rational& right) {
-    // Consecutive cuts bound a gap. Its centre is off all cuts, because the gap is convex and has an inside.
+    // Consecutive cuts bound a gap. Its centre is on no cut, because the gap is convex and has an interior.
     const std::vector<Layer> layers = layers_between(cuts_, left, right);
     for (std::size_t i = 0; i + 1 < layers.size(); ++i) {
       const Planar middle{(left + right) / 2, (layers[i].y + layers[i + 1].y) / 2};
@@ -271,13 +272,13 @@ class Slabs {
     return r;
   }
 
-  /// Unites gaps across x, where the slab of the gaps [left, middle) borders on that of [middle, end): gaps
-  /// that open to each other there belong to one cell. Both lists run upwards, so one pass through both finds
+  /// Unites gaps across x, where the slab of the gaps [left, middle) borders on the slab of [middle, end):
+  /// gaps that open to each other belong to one cell. Both lists are in ascending order, so one merge finds
   /// all such pairs.
   void join_neighbours(std::size_t left, std::size_t middle, const Rational& x) {
     const std::vector<Opening> l = openings(left, middle, x), r = openings(middle, gaps_.size(), x);
     const std::vector<const Cut*> walls = walls_at(x);
-    // A merge of two sorted lists of intervals on the line at x: linear in the number of gaps.
+    // Merge of two sorted lists of intervals on the line at x: linear in the number of gaps.
     for (std::size_t i = 0, j = 0; i < l.size() && j < r.size();) {
       const Rational &low = std::max(l[i].low, r[j].low), &high = std::min(l[i].high, r[j].high);
       // The openings overlap in more than a point, and no vertical cut closes the overlap: one cell.
@@ -285,7 +286,7 @@ class Slabs {
         const std::size_t a = first_of(left + i), b = first_of(middle + j);
         gaps_[std::max(a, b)].link = std::min(a, b);
       }
-      // Advance past the opening that ends first: no later opening of the other side can overlap it.
+      // Advance past the opening that ends first: it cannot overlap any later opening of the other side.
       if (l[i].high <= r[j].high)
         ++i;
       else
@@ -293,7 +294,7 @@ class Slabs {
     }
   }
 
-  /// Returns the vertical cuts at x, upwards.
+  /// Returns the vertical cuts at x in ascending order.
   std::vector<const Cut*> walls_at(const Rational& x) const {
     std::vector<const Cut*> walls;
     for (const Cut& c : cuts_) {
@@ -303,7 +304,7 @@ class Slabs {
     return walls;
   }
 
-  /// Returns true if the walls cover everything from low to high.
+  /// Returns true if the walls cover the interval from low to high.
   static bool walled_off(const std::vector<const Cut*>& walls, Rational low, const Rational& high) {
     // Move `low` up over the walls that begin at or below it. The walls are sorted, so one pass is enough.
     for (const Cut* c : walls) {
@@ -313,7 +314,7 @@ class Slabs {
   }
 
   const std::vector<Cut>& cuts_;
-  std::vector<Rational> events_;        ///< where slabs begin and end
+  std::vector<Rational> events_;        ///< abscissas of the slab boundaries
   std::vector<std::size_t> first_gap_;  ///< (slabs + 1)
   std::vector<Gap> gaps_;
   bool whole_ = false;
@@ -326,7 +327,7 @@ using namespace cutting;
 struct CutFace::Parts {
   CutTriangle triangle;
   std::unique_ptr<Slabs> slabs;
-  std::vector<std::size_t> cells;  ///< the first gap of each
+  std::vector<std::size_t> cells;  ///< the first gap of each cell
 
   Parts(const double* const tri[3], const Axes& axes) : triangle(tri, axes) {}
 };
@@ -339,7 +340,7 @@ std::optional<CutFace> CutFace::make(const double* const tri[3],
   const auto parts = std::make_shared<Parts>(tri, axes);
   for (const auto& other : others) {
     parts->triangle.cut_by(other.data());
-    // The triangle's own three edges do not count against the limit.
+    // The triangle's own edges do not count against the limit.
     if (parts->triangle.cuts().size() > limit + 3) return std::nullopt;
   }
   parts->slabs = std::make_unique<Slabs>(parts->triangle.cuts(), kGapsPerCell * limit);
@@ -361,8 +362,8 @@ std::size_t CutFace::cell_beside(int edge, const RationalPoint& p) const {
 
 namespace {
 
-/// Adds the parameters at which the line of the segment p, q intersects the edge lines of a triangle that
-/// lies in the same plane as the segment. Returns false if the triangle has no area.
+/// Adds the parameters at which the line of the segment p, q intersects the edge lines of a triangle that is
+/// coplanar with the segment. Returns false if the triangle has no area.
 bool add_shares_in_plane(const RationalVec& p, const RationalVec& q, const double* const t[3],
                          std::vector<Rational>& shares) {
   const Axes axes = axes_for(t[0], t[1], t[2]);
@@ -420,7 +421,7 @@ std::optional<std::vector<RationalPoint>> sample_cells(const double* const tri[3
   CutTriangle triangle(tri, axes);
   for (const auto& other : others) {
     triangle.cut_by(other.data());
-    // Give up early: the time below is cubic in the number of cuts.
+    // Stop early: the time below is cubic in the number of cuts.
     if (triangle.cuts().size() > limit + 3) return std::nullopt;  // 3: its own edges
   }
   const Slabs slabs(triangle.cuts(), kGapsPerCell * limit);
@@ -443,7 +444,7 @@ std::optional<std::vector<RationalPoint>> sample_cells_2d(
   };
   for (const auto& other : others) {
     const int side0 = orient2d(seg[0], seg[1], other[0]), side1 = orient2d(seg[0], seg[1], other[1]);
-    // The other segment lies strictly on one side of this one's line: no cut.
+    // The other segment is strictly on one side of this one's line: no cut.
     if (side0 * side1 > 0) continue;
     const RationalVec p = to_rational(other[0], 2), q = to_rational(other[1], 2);
     // Collinear: the ends of the other segment cut this one.

@@ -1,5 +1,5 @@
 #pragma once
-/// The point in which a plane or a line cuts a segment, rounded to double. Private to engine/exact.
+/// Intersection of a segment with a plane or a line, rounded to double. Private to engine/exact.
 
 #include <cstdint>
 
@@ -9,17 +9,17 @@
 
 namespace lrb::exact {
 
-/// Returns the point in which the segment p, q meets the plane of triangle t. p must not lie in the plane,
-/// nor q on p's side of it. Each coordinate is within 1e-13 |q - p| + one rounding of the exact point's.
+/// Returns the intersection of the segment p, q with the plane of triangle t. p must not be in the plane, nor
+/// q on p's side of it. Each coordinate is within 1e-13 |q - p| plus one rounding of the exact point.
 Eigen::Vector3d cut_by_plane(const double* p, const double* q, const double* const t[3]);
 
-/// Returns the point in which the segment p, q meets the line through a and b, all seen in coordinates x and
-/// y. Fills the first `dim` coordinates of the result and sets the others to 0. p must not lie on the line,
-/// nor q strictly on p's side of it. Same accuracy.
+/// Returns the intersection of the segment p, q with the line through a and b, in the projection to
+/// coordinates x and y. Fills the first `dim` coordinates of the result and sets the others to 0. p must not
+/// be on the line, nor q strictly on p's side of it. Same accuracy.
 Eigen::Vector3d cut_by_line(const double* p, const double* q, const double* a, const double* b, int x, int y,
                             int dim);
 
-// The building blocks of pair contacts. Private to engine/exact.
+// Building blocks of pair contacts.
 
 inline Feature corner(int i) {
   return {0, static_cast<std::uint8_t>(i)};
@@ -37,33 +37,32 @@ inline void append(PairContact& r, const ContactCorner& c) {
   r.corners[r.corner_count++] = c;
 }
 
-/// Intersects two triangles with area that lie in one plane: a polygon, a segment, a point or nothing.
+/// Intersects two coplanar triangles with area: a polygon, a segment, a point or nothing.
 PairContact contact_in_plane(const double* const a[3], const double* const b[3]);
 
 /// Intersects two triangles of which at least one has no area: a segment, a point or nothing.
 PairContact contact_of_degenerate(const double* const a[3], const double* const b[3]);
 
-// Triangles that lie in one plane, and triangles whose corners lie on one line. Private to engine/exact.
+// Coplanar triangles, and triangles with collinear corners.
 
-/// What a triangle's corners span, exactly: the triangle, a segment or a point.
+/// The convex hull of a triangle's corners, exactly: the triangle, a segment or a point.
 struct Hull {
-  const double* corner[3];  ///< the first dim + 1; a segment's are the lexicographic extremes of the three
+  const double* corner[3];  ///< the first dim + 1; of a segment, the lexicographic extremes of the three
   int dim;
 };
 
 Hull hull_of(const double* const t[3]);
 
-/// A pair of coordinates to project to, such that three points that are not on one line stay off one line.
+/// A pair of coordinates such that the projections of three points are collinear only if the points are.
 struct Axes {
   int x, y;
-  int turn;  ///< orientation of the projected points, -1 or +1
+  int turn;  ///< orientation of the projected points, -1 or +1; 0: collinear
 };
 
-/// Returns axes for three points; turn = 0 if they are on one line.
+/// Returns axes for three points; turn = 0 if they are collinear.
 Axes axes_for(const double* a, const double* b, const double* c);
 
-/// Returns true if two hulls share a point. They may have any dimensions, but two triangles must lie in one
-/// plane.
+/// Returns true if two hulls intersect. They may have any dimensions, but two triangles must be coplanar.
 bool hulls_meet(const Hull& a, const Hull& b);
 
 }  // namespace lrb::exact

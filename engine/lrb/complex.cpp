@@ -1,8 +1,8 @@
-// A set of oriented faces is closed if its boundary, a sum of oriented edges, is zero (the boundary operator
-// of homology). Edges are numbered once:
-// 1. The edge that starts at each corner, as a pair of vertices, with its direction.
-// 2. Corners sorted by edge: a counting sort by the first vertex, a sort by the second within each vertex.
-// 3. Runs of equal pairs get one number.
+// Closedness of a set of oriented faces: its boundary, a sum of oriented edges, is zero (the boundary
+// operator of homology). Edges are numbered once:
+// 1. Take the edge that starts at each corner, as a pair of vertices with a direction.
+// 2. Sort the corners by edge: a counting sort by the first vertex, a sort by the second within each vertex.
+// 3. Number the runs of equal pairs.
 // Then each face adds its directions to the sums of its edges, and only the edges touched are tested.
 
 #include "engine/lrb/complex.hpp"
@@ -21,8 +21,8 @@ BoundarySum::BoundarySum(const LrbRep& rep) : rep_(rep) {
   const std::size_t corners = d.face_vertices.size();
   edge_of_corner_.resize(corners);
   direction_.resize(corners);
-  // The ends of the edge that starts at each corner. In 2D an "edge" is a vertex, which a segment leaves or
-  // enters.
+  // The ends of the edge that starts at each corner. In 2D an "edge" is a vertex at which a segment starts or
+  // ends.
   std::vector<std::pair<VertexId, VertexId>> ends(corners);
   for (FaceId f = 0; f < rep.face_count(); ++f) {
     const auto face = rep.face(f);
@@ -40,11 +40,12 @@ BoundarySum::BoundarySum(const LrbRep& rep) : rep_(rep) {
   for (const auto& end : ends) ++offsets[end.first];
   std::exclusive_scan(offsets.begin(), offsets.end(), offsets.begin(), 0u);
   for (std::uint32_t c = 0; c < corners; ++c) order[offsets[ends[c].first]++] = c;
-  // The counting sort has moved each offset to the end of its vertex' range, which is the start of the next.
+  // The counting sort has moved each offset to the end of its vertex's range, which is the start of the next.
   for (std::size_t v = 0, begin = 0; v + 1 < offsets.size(); begin = offsets[v++])
     std::sort(order.begin() + begin, order.begin() + offsets[v],
               [&](auto x, auto y) { return std::pair(ends[x].second, x) < std::pair(ends[y].second, y); });
-  // Equal pairs are adjacent now: number the runs. One corner per edge is kept, to name the edge.
+  // Equal pairs are adjacent now: number the runs. One corner per edge is stored, to identify the edge in
+  // messages.
   for (std::size_t k = 0; k < corners; ++k) {
     if (k == 0 || ends[order[k]] != ends[order[k - 1]]) corner_of_edge_.push_back(order[k]);
     edge_of_corner_[order[k]] = static_cast<std::uint32_t>(corner_of_edge_.size() - 1);
@@ -61,13 +62,13 @@ void BoundarySum::change(FaceId f, int sign) {
 }
 
 bool BoundarySum::take_closed(VertexId open_at[2]) {
-  // Edges not touched have sum 0. Every touched sum is reset, also after the first open edge is found.
+  // Edges not touched have sum 0. Every touched sum is reset, even after the first open edge is found.
   bool closed = true;
   for (const std::uint32_t e : touched_) {
     if (sum_[e] != 0 && closed) {
       closed = false;
       const auto& d = rep_.data();
-      // Name the edge: the face of its corner is found by binary search in the offsets.
+      // Identify the edge: find the face of its corner by binary search in the offsets.
       const std::uint32_t c = corner_of_edge_[e];
       const auto f = static_cast<FaceId>(std::upper_bound(d.face_offsets.begin(), d.face_offsets.end(), c) -
                                          d.face_offsets.begin() - 1);
@@ -83,11 +84,11 @@ bool BoundarySum::take_closed(VertexId open_at[2]) {
 }
 
 std::vector<VertexId> piece_vertices(const LrbRep& rep, std::span<const FaceId> faces) {
-  // Union-find over vertices: the corners of one face are in one piece.
+  // Union-find over vertices: the corners of one face are in one component.
   DisjointSets pieces(rep.vertices().size());
   for (const FaceId f : faces)
     for (const VertexId v : rep.face(f)) pieces.join(rep.face(f)[0], v);
-  // The leader of a set is a vertex of its piece. Each is listed when its first face comes.
+  // The leader of a set is a vertex of its component. Each is listed at its first face.
   std::vector<VertexId> out;
   std::vector<bool> seen(rep.vertices().size(), false);
   for (const FaceId f : faces) {
@@ -130,8 +131,8 @@ std::vector<Across> real_neighbours(const LrbRep& rep) {
   std::vector<Across> out(rep.real_simplex_count(), Across{kNull, kNull, kNull});
   for (std::size_t begin = 0, end = 0; begin < borders.size(); begin = end) {
     while (end < borders.size() && borders[end].key == borders[begin].key) ++end;
-    // Link each group in a cycle. On a manifold surface a group is a pair, and the two simplices get each
-    // other.
+    // Link each group in a cycle. On a manifold surface a group is a pair, and the two simplices are linked
+    // to each other.
     for (std::size_t i = begin; i < end && end - begin > 1; ++i) {
       const Border& next = borders[i + 1 < end ? i + 1 : begin];
       out[borders[i].simplex][borders[i].which] = next.simplex;

@@ -11,10 +11,10 @@
 namespace lrb {
 namespace {
 
-/// Made like PNG's: a byte beyond ASCII and line ends reveal a file that was transferred as text.
+/// As in PNG, a non-ASCII byte and line ends reveal a file that was transferred as text.
 constexpr std::string_view kMagic("\x89LRB\r\n\x1a\n", 8);
 
-/// The first versions that hold the hash and the tree, and levels.
+/// The first versions that contain the hash and the tree, and levels of detail.
 constexpr std::uint32_t kFirstWithTree = 2, kFirstWithLevels = 3;
 
 class Writer {
@@ -82,7 +82,7 @@ class Reader {
   std::size_t at_ = kMagic.size();
 };
 
-/// Writes a flag for the presence of levels, then the parts that take long to compute.
+/// Writes a flag for the presence of levels of detail, then the parts that take long to compute.
 void write_levels(const LrbRep& rep, Writer& w) {
   w.value(static_cast<std::uint32_t>(rep.has_levels()));
   if (!rep.has_levels()) return;
@@ -120,7 +120,7 @@ std::optional<StoredLevels> read_levels(Reader& r) {
 }  // namespace
 
 std::uint64_t lrb_checksum(std::string_view bytes, std::uint32_t version) {
-  // Since version 2 by words, at the speed of memory; version 1 byte by byte (FNV-1a).
+  // Since version 2 by words, at memory bandwidth; in version 1 byte by byte (FNV-1a).
   if (version >= kFirstWithTree) return fnv64_of_words(bytes.data(), bytes.size());
   Fnv64 h;
   h.add_bytes(bytes.data(), bytes.size());
@@ -130,7 +130,7 @@ std::uint64_t lrb_checksum(std::string_view bytes, std::uint32_t version) {
 void save_lrb(const LrbRep& rep, const std::string& path) {
   const LrbData& d = rep.data();
   Writer w;
-  // Header, then the complex, then data derived from it, then the checksum of everything before.
+  // Header, then the complex, then data derived from it, then the checksum of everything before it.
   w.bytes().append(kMagic);
   w.value(kLrbFileVersion);
   w.value(static_cast<std::uint32_t>(d.dim));
@@ -143,13 +143,13 @@ void save_lrb(const LrbRep& rep, const std::string& path) {
   w.array(d.inner_cell);
   w.array(d.outer_cell);
   w.array(d.region_layer);
-  // Derived data: stored because it takes longer to compute than to read.
+  // Derived data: stored because computing it takes longer than reading it.
   w.value(rep.hash());
   w.array(rep.tree().nodes());
   w.array(rep.tree().blocks());
   write_levels(rep, w);
   w.value(lrb_checksum(w.bytes()));
-  // Written as a whole, so that no reader finds half a file.
+  // Written atomically, so that no reader finds an incomplete file.
   write_file(path, w.bytes());
 }
 
@@ -162,7 +162,7 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
     throw InputError(printable_name(name) +
                      ": byte 0: this is not a .lrb file; build one with `lrbscope build MESH -o FILE.lrb`");
   Reader r(bytes, name);
-  // The version comes first: it decides the checksum and the fields that follow.
+  // The version comes first: it determines the checksum and the fields that follow.
   const auto version = r.value<std::uint32_t>();
   if (version > kLrbFileVersion)
     throw InputError(printable_name(name) + ": byte 8: the file has version " + std::to_string(version) +
@@ -189,7 +189,7 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
   d.inner_cell = r.array<CellId>();
   d.outer_cell = r.array<CellId>();
   d.region_layer = r.array<std::uint16_t>();
-  // Derived data, as far as the version has it. Missing parts are computed.
+  // Derived data, as far as the version contains it. Missing parts are computed.
   const bool with_tree = version >= kFirstWithTree;
   const auto hash = with_tree ? r.value<std::uint64_t>() : 0;
   auto nodes = with_tree ? r.array<TreeNode>() : std::vector<TreeNode>();

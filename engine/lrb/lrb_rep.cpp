@@ -64,11 +64,11 @@ void check(const LrbData& d) {
   for (FaceId f = 0; f < faces; ++f) check_face(d, f);
 }
 
-/// Returns the area of a face (2D: its length), for comparing lids; unit squared (2D: unit).
+/// Returns the area of a face (2D: its length), to compare lids; mesh units squared (2D: mesh units).
 double face_size(const LrbData& d, FaceId f) {
   const auto c = d.face(f);
   if (d.dim == 2) return (d.vertices[c[1]] - d.vertices[c[0]]).norm();
-  // Vector area of the fan, times 2. It underestimates polygons that are not planar, which affects only the
+  // Twice the vector area of the fan. It underestimates polygons that are not planar, which affects only the
   // choice of parents.
   Eigen::Vector3d twice = Eigen::Vector3d::Zero();
   for (std::size_t i = 1; i + 1 < c.size(); ++i)
@@ -78,11 +78,11 @@ double face_size(const LrbData& d, FaceId f) {
 
 }  // namespace
 
-/// The levels, once there are any.
+/// The levels of detail, once they exist.
 struct LrbRep::MadeLevels {
   std::mutex making;
   std::unique_ptr<const WrapperLevels> owner;
-  std::atomic<const WrapperLevels*> made{nullptr};  ///< what `owner` holds
+  std::atomic<const WrapperLevels*> made{nullptr};  ///< points to *owner
 
   const WrapperLevels& keep(WrapperLevels levels) {
     owner = std::make_unique<const WrapperLevels>(std::move(levels));
@@ -91,7 +91,7 @@ struct LrbRep::MadeLevels {
   }
 };
 
-/// Whether a body without regions overlaps itself, once that has been found out.
+/// The result of overlaps_itself() for a body without regions, once computed.
 struct LrbRep::FoundOverlap {
   std::once_flag once;
   bool value = false;
@@ -115,22 +115,22 @@ SimplexView LrbRep::simplices() const {
           }};
 }
 
-/// Derives everything but the tree and the hash.
+/// Derives everything except the tree and the hash.
 void LrbRep::derive() {
-  // All that follows indexes without checks, so validation comes first.
+  // The code below indexes without checks, so validation comes first.
   check(d_);
   link_faces_to_regions();
   find_parents();
   find_components();
-  // The leading faces that are simplices themselves share their numbers with the simplices: no table is
-  // needed for them. In 2D these are all faces.
+  // The leading faces that are simplices themselves share their numbers with the simplices, so they need no
+  // table. In 2D these are all faces.
   const auto simplex_size = static_cast<std::size_t>(d_.dim);
   while (whole_faces_ < face_count() && d_.face(FaceId(whole_faces_)).size() == simplex_size) ++whole_faces_;
   // Otherwise a table from simplex to face covers all simplices, including the leading ones.
   if (whole_faces_ < face_count())
     for (FaceId f = 0; f < face_count(); ++f)
       face_of_simplex_.insert(face_of_simplex_.end(), Mesh::simplices_of(d_.face(f).size(), 3), f);
-  // Unique in the process. Copies keep the serial, so caches made for one copy serve the others.
+  // Unique in the process. Copies keep the serial, so caches for one copy serve the others.
   static std::atomic<std::uint64_t> next_serial{1};
   serial_ = next_serial++;
   levels_ = std::make_shared<MadeLevels>();
@@ -138,7 +138,7 @@ void LrbRep::derive() {
 }
 
 bool LrbRep::overlaps_itself() const {
-  // The builder has determined the flag for bodies with regions.
+  // For bodies with regions the builder has determined the flag.
   if (region_count() > 0) return d_.self_intersecting;
   std::call_once(overlap_->once, [this] {
     // Without regions there are no pseudo faces, so the face arrays are those of the mesh.
@@ -157,7 +157,7 @@ const WrapperLevels& LrbRep::levels(unsigned threads) const {
   // Double-checked locking: this acquire pairs with the release in keep().
   if (const WrapperLevels* const made = levels_->made.load(std::memory_order_acquire)) return *made;
   const std::lock_guard<std::mutex> lock(levels_->making);
-  // Another thread may have made the levels while this one waited for the lock.
+  // Another thread may have created the levels while this one waited for the lock.
   if (const WrapperLevels* const made = levels_->made.load(std::memory_order_relaxed)) return *made;
   return levels_->keep(WrapperLevels(*this, threads));
 }
@@ -215,7 +215,7 @@ void LrbRep::link_faces_to_regions() {
   std::vector<std::uint32_t> next_lid(collector_offsets_.begin(), collector_offsets_.end() - 1),
       next_floor(regions);
   for (RegionId r = 0; r < regions; ++r) next_floor[r] = next_lid[r] + lid_count_[r];
-  // Pass 2: fill the slices. Faces arrive in ascending order, so both parts of a slice are ascending.
+  // Pass 2: fill the slices. Faces are visited in ascending order, so both parts of a slice are ascending.
   for (FaceId f = 0; f < face_count(); ++f) {
     if (is_region(inner_cell(f))) collector_faces_[next_lid[inner_cell(f)]++] = f;
     if (is_region(outer_cell(f))) collector_faces_[next_floor[outer_cell(f)]++] = f;
@@ -228,7 +228,7 @@ void LrbRep::find_parents() {
   for (RegionId r = 0; r < regions; ++r) {
     layer_count_ = std::max(layer_count_, d_.region_layer[r] + 1u);
     // Accumulate the lid area shared with each outer neighbour, then take the largest.
-    std::map<CellId, double> shared;  // ordered: ties go to the smaller id on every machine
+    std::map<CellId, double> shared;  // ordered, so that ties go to the smaller id on every machine
     for (const FaceId lid : lids(r)) shared[outer_cell(lid)] += face_size(d_, lid);
     double most = -1;
     for (const auto& [cell, size] : shared)
@@ -254,14 +254,14 @@ void LrbRep::find_parents() {
 }
 
 void LrbRep::find_components() {
-  // Only real faces count: pieces that lids connect are still separate pieces of the body.
+  // Only real faces count: components connected only by lids are still separate.
   std::vector<FaceId> real(d_.real_face_count);
   std::iota(real.begin(), real.end(), FaceId{0});
   component_vertices_ = piece_vertices(*this, real);
 }
 
 std::uint32_t LrbRep::simplex_count() const {
-  // A fan of n corners has n - 2 triangles, so the sum over all faces is the number of corners less 2 |F|.
+  // A fan of n corners has n - 2 triangles, so the sum over all faces is the number of corners minus 2 |F|.
   return d_.dim == 2 ? face_count() : static_cast<std::uint32_t>(d_.face_vertices.size()) - 2 * face_count();
 }
 
@@ -279,7 +279,7 @@ std::size_t LrbRep::memory_bytes() const {
 }
 
 std::uint64_t hash_of(const LrbData& d) {
-  // A fixed order of fields. The name is left out, so that renaming a body keeps its hash.
+  // A fixed order of fields. The name is excluded, so that renaming a body keeps its hash.
   Fnv64 h;
   h.add_value(static_cast<std::uint32_t>(d.dim));
   h.add_array(d.vertices);
@@ -293,13 +293,14 @@ std::uint64_t hash_of(const LrbData& d) {
   return h.value();
 }
 
-// Volumes by the divergence theorem: a closed surface encloses the sum of the signed cones from any one point
-// over its faces. A face is taken as its fan. All in floating point; see kVolumeRounding for its tolerance.
+// Volumes by the divergence theorem: a closed surface encloses the sum of the signed cones from any point
+// over its faces, each taken as its fan. In floating point; kVolumeRounding is the tolerance.
 
 namespace {
 
 /// Returns the volume of the cone from `origin` over a face (2D: the area of the triangle), positive if the
-/// face looks away from it. The origin is near the faces, so that bodies far from zero keep their digits.
+/// face is oriented away from it. The origin is close to the faces, so that bodies far from zero keep their
+/// precision.
 double cone(const LrbRep& rep, FaceId f, const Eigen::Vector3d& origin) {
   const auto corners = rep.face(f);
   const auto at = [&](std::size_t i) -> Eigen::Vector3d { return rep.vertices()[corners[i]] - origin; };
@@ -317,7 +318,7 @@ double size_of(const LrbRep& rep, FaceId f) {
     return rep.vertices()[corners[i]] - rep.vertices()[corners[0]];
   };
   if (rep.dim() == 2) return side(1).norm();
-  // The vector area of the fan, times 2.
+  // Twice the vector area of the fan.
   Eigen::Vector3d sum(0, 0, 0);
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) sum += side(i).cross(side(i + 1));
   return sum.norm() / 2;
@@ -327,7 +328,7 @@ double size_of(const LrbRep& rep, FaceId f) {
 
 double enclosed_volume(const LrbRep& rep, std::span<const FaceId> outward, std::span<const FaceId> inward) {
   if (outward.empty() && inward.empty()) return 0;
-  // Any origin gives the same result on a closed surface. One on the surface keeps the terms small.
+  // Any origin gives the same result for a closed surface. One on the surface keeps the terms small.
   const Eigen::Vector3d origin = rep.vertices()[rep.face(outward.empty() ? inward[0] : outward[0])[0]];
   double sum = 0;
   for (const FaceId f : outward) sum += cone(rep, f, origin);

@@ -1,21 +1,23 @@
-// The distance from a point to one real face is convex, so over a piece of a lid it is largest at one of the
-// piece's corners; and the distance to all real faces is no more than that to any one of them. So a lid is
-// cut into pieces, each of which has a real face near it, and the lid's bound is the largest distance from a
-// piece's corner to the piece's face. Which face a piece has and where it is cut decides only how tight the
-// bound is, so a search in floats may choose them; the distances are computed in double.
+// One-sided Hausdorff distance from the lids of a region to the real faces, by branch and bound.
 //
-// Pieces are cut, worst first, until the bound is within kTight of a distance that some point of the lids
-// really has. Which face is near is found by walking from the face that the piece has to its neighbours, and
-// in the tree only where the walk ends at a larger distance than any found so far, because that would raise
-// the value that the bound is compared with. On 100,000 faces this is one walk in 28, and takes a quarter of
-// the time of searching the tree for each piece. A piece that hangs over the border of its face is cut
-// there: its other part is nearer another face. So a flat lid over a floor of many coplanar faces takes as
-// many pieces as there are faces under it.
+// Bound. The distance to one real face is convex, so over a piece of a lid it is largest at one of the
+// piece's corners. The distance to all real faces is at most that to any one of them. A lid is therefore
+// divided into pieces, each of which is assigned a nearby real face, and the lid's bound is the largest
+// distance from a piece's corner to the piece's face. The choice of faces and cuts only affects how tight the
+// bound is, so it may be made in floats; the distances are computed in double.
 //
-// Rounding. A cut puts a new corner on an edge, up to 2^-50 beside it (in units, in which coordinates are
-// about 1 at most): a point of the piece is then that far from a point of the two new ones, at the same place
-// by their corners' weights. A piece is the outcome of at most kMostCuts cuts, so it stands for points at
-// most 2^-42 away; kThicknessRounding covers that and the rounding of distances.
+// Search. Pieces are cut, worst first, until the bound is within kTight of the distance of an actual point of
+// the lids. A nearby face is found by walking from the face of the piece to adjacent faces. The tree is
+// searched only if the walk ends at a larger distance than any found so far, because that would raise the
+// value that the bound is compared with. With 100,000 faces this is one walk in 28, and takes a quarter of
+// the time of searching the tree for each piece. A piece that extends beyond the border of its face is cut
+// there, because the other part is closer to another face. A flat lid over a floor of many coplanar faces
+// therefore takes as many pieces as there are faces under it.
+//
+// Rounding. A cut places a new corner on an edge with an error of at most 2^-50 (in units, in which
+// coordinates are at most about 1). A point of the piece then has that distance to the point of the two new
+// pieces with the same barycentric coordinates. A piece results from at most kMostCuts cuts, so it represents
+// points at most 2^-42 away; kThicknessRounding covers that and the rounding of distances.
 
 #include "engine/lrb/thickness.hpp"
 
@@ -34,10 +36,10 @@
 namespace lrb {
 namespace {
 
-/// Writes the squared distances from p (units) to the boxes of a node's children, in float: only the order of
-/// the search and its choice of the nearest simplex depend on them.
+/// Writes the squared distances from p (units) to the boxes of a node's children, in float. They only
+/// determine the order of the search and which simplex it chooses.
 void box_distances_sq(const TreeNode& node, const Eigen::Vector3d& p, float out[kTreeWidth]) {
-  // The difference is taken in double: close to a small node far from zero, floats would lose all digits.
+  // The difference is computed in double: close to a small node far from zero, floats would lose all digits.
   const float from_origin[3] = {static_cast<float>(p.x() - node.origin[0]),
                                 static_cast<float>(p.y() - node.origin[1]),
                                 static_cast<float>(p.z() - node.origin[2])};
@@ -56,7 +58,7 @@ void box_distances_sq(const TreeNode& node, const Eigen::Vector3d& p, float out[
   }
 }
 
-/// Writes the children whose distance is below a limit to `order`, nearest first. Returns their number.
+/// Writes the children whose distance is below a limit to `order`, closest first. Returns their number.
 std::uint32_t sort_below(const float d[kTreeWidth], std::uint32_t children, double limit_sq,
                          std::uint32_t order[kTreeWidth]) {
   std::uint32_t count = 0;
@@ -90,11 +92,11 @@ double NearestFace::distance(const Eigen::Vector3d& p, SimplexId s) const {
   return std::sqrt(nearest_point(p, s).distance_sq);
 }
 
-/// A nearer point can lie beyond a border only where the nearest one so far lies on it: there it crosses.
+/// A closer point can be beyond a border only if the closest point so far is on that border.
 NearFace NearestFace::walk(const Eigen::Vector3d& p, SimplexId from,
                            const std::vector<Across>& neighbours) const {
-  // Greedy descent on the surface. The distance falls at each step, so the walk ends; it can end in a local
-  // minimum, which callers allow for.
+  // Greedy descent on the surface. The distance decreases at each step, so the walk terminates. It may end in
+  // a local minimum, which callers account for.
   const int corners = rep_.dim();
   SimplexPoint nearest = nearest_point(p, from);
   for (bool moves = true; moves;) {
@@ -102,7 +104,7 @@ NearFace NearestFace::walk(const Eigen::Vector3d& p, SimplexId from,
     const SimplexPoint here = nearest;
     const Across& across = neighbours[from];
     for (int e = 0; e < corners; ++e) {
-      // Border e is opposite corner e + 2 (2D: is end e). The closest point lies on it if the weight there is
+      // Border e is opposite corner e + 2 (2D: is end e). The closest point is on it if the weight there is
       // 0.
       const bool on_border = here.weight[corners == 3 ? (e + 2) % 3 : 1 - e] == 0;
       if (!on_border || across[e] == kNull) continue;
@@ -113,11 +115,11 @@ NearFace NearestFace::walk(const Eigen::Vector3d& p, SimplexId from,
   return {from, std::sqrt(nearest.distance_sq)};
 }
 
-/// Goes down to the nearest boxes first. On a stack of its own: a tree from a file may be as high as it
-/// likes.
+/// Visits the closest boxes first. Uses an explicit stack, because the height of a tree from a file is
+/// unbounded.
 NearFace NearestFace::find(const Eigen::Vector3d& p, NearFace known) {
-  // Depth-first branch and bound (Roussopoulos et al. 1995): nearest boxes first, subtrees beyond the best
-  // distance pruned.
+  // Depth-first branch and bound (Roussopoulos et al. 1995): closest boxes first, subtrees beyond the best
+  // distance are pruned.
   const ObbTree& tree = rep_.tree();
   NearFace best = known;
   double best_sq = known.distance * known.distance;
@@ -126,7 +128,7 @@ NearFace NearestFace::find(const Eigen::Vector3d& p, NearFace known) {
   while (!stack_.empty()) {
     const Branch branch = stack_.back();
     stack_.pop_back();
-    // The best distance may have fallen since the branch was pushed.
+    // The best distance may have decreased since the branch was pushed.
     if (!(static_cast<double>(branch.distance_sq) < best_sq)) continue;
     const TreeNode& node = tree.nodes()[branch.node];
     float d[kTreeWidth];
@@ -134,7 +136,7 @@ NearFace NearestFace::find(const Eigen::Vector3d& p, NearFace known) {
     box_distances_sq(node, p, d);
     const std::uint32_t count = sort_below(d, node.count, best_sq, order);
     if (node.is_leaf == 0) {
-      // Pushed in reverse, so that the nearest child is popped first.
+      // Pushed in reverse, so that the closest child is popped first.
       for (std::uint32_t i = count; i-- > 0;) stack_.push_back({node.first + order[i], d[order[i]]});
       continue;
     }
@@ -153,42 +155,43 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The bound may be this many times a distance that was found. 1.05: 2 to 7 % more faces for a tolerance (six
-/// real meshes), in about the same time, for most cuts are those at the borders of faces.
+/// Maximum ratio of the bound to a distance found. 1.05: 2 to 7 % more faces for a tolerance (six real
+/// meshes), in about the same time, because most cuts are at the borders of faces.
 constexpr double kTight = 1.01;
-/// Distances below this (in units) count as this, because bounds below it need not be tight.
+/// Smaller distances (in units) count as this, because bounds below it need not be tight.
 constexpr double kSmall = 1e-6;
-/// Cuts that lead to one piece, and pieces of one region, after which the bound is not refined any more.
+/// Maximum number of cuts that lead to one piece, and of pieces of one region, after which the bound is no
+/// longer refined.
 constexpr std::uint32_t kMostCuts = 256;
 constexpr std::size_t kMostPieces = 20000;
-/// A piece this many times as long as its face is halved, no matter where the face ends.
+/// Ratio of the lengths of a piece and its face above which the piece is bisected, wherever the face ends.
 constexpr double kMuchLonger = 4;
 /// A triangle, or in 2D a segment (two corners).
 using Simplex = std::array<Vector3d, 3>;
 
-/// Part of a lid.
+/// A part of a lid.
 struct Piece {
   Simplex x;
-  std::array<double, 3> off;                              ///< of each corner from the face
+  std::array<double, 3> off;                              ///< distance of each corner to the face
   SimplexId face = kNull;                                 ///< a real simplex
-  double most = std::numeric_limits<double>::infinity();  ///< the largest of `off`
+  double most = std::numeric_limits<double>::infinity();  ///< the maximum of `off`
   std::uint32_t cuts = 0;
 };
 
-/// A place in the list of pieces.
+/// An entry of the queue of pieces.
 struct Waiting {
-  double most;  ///< the piece's
+  double most;  ///< maximum distance of the piece
   std::uint32_t piece;
   bool operator<(const Waiting& other) const { return most < other.most; }
 };
 
-/// Where a piece is to be cut: between two of its corners.
+/// The position of a cut between two corners of a piece.
 struct Cut {
   int from, to;
   double share;  ///< position on the segment from `from` to `to`, 0 to 1
 };
 
-/// Returns the longest edge of the first `corners` corners, halved, and its squared length.
+/// Returns the cut that bisects the longest edge among the first `corners` corners, and its squared length.
 std::pair<Cut, double> longest_edge(const Simplex& x, int corners) {
   Cut longest{0, 1, 0.5};
   double length_sq = 0;
@@ -198,7 +201,8 @@ std::pair<Cut, double> longest_edge(const Simplex& x, int corners) {
   return {longest, length_sq};
 }
 
-/// Returns the direction, in a simplex, that leads out of it over its e-th border (an edge; in 2D an end).
+/// Returns the direction, within a simplex, that leads out of it across its e-th border (an edge; 2D: an
+/// end).
 Vector3d border_normal(const Simplex& t, int corners, int e) {
   // 2D: the direction from the other end to this one.
   if (corners == 2) return t[e] - t[1 - e];
@@ -209,8 +213,8 @@ Vector3d border_normal(const Simplex& t, int corners, int e) {
   return square > 0 ? Vector3d(edge * (edge.dot(other) / square) - other) : Vector3d(0, 0, 0);
 }
 
-/// Returns the cut by the border of a face beyond which the piece's corner `worst` lies, if another corner is
-/// on the near side of it; else a cut whose share is 0.
+/// Returns the cut along the border of a face that separates the piece's corner `worst` from another corner.
+/// Returns a cut with share 0 if no corner is on the near side of that border.
 Cut cut_at_border(const Simplex& piece, int worst, const Simplex& face, int corners) {
   Cut best{0, 1, 0};
   double furthest = 0;
@@ -220,9 +224,10 @@ Cut cut_at_border(const Simplex& piece, int worst, const Simplex& face, int corn
     const double beyond = outward.dot(piece[worst] - face[e]);
     if (!(beyond > furthest)) continue;
     furthest = beyond;
-    // Forget the cut at an earlier border: only the border that is exceeded most is considered.
+    // Discard the cut at an earlier border: only the border that is exceeded most is considered.
     best.share = 0;
-    // Cut towards the corner deepest on the near side, where the edge between the two passes the border.
+    // Cut towards the corner deepest on the near side, at the crossing of the edge between the two and the
+    // border.
     double least = 0;
     for (int k = 0; k < corners; ++k) {
       const double there = outward.dot(piece[k] - face[e]);
@@ -231,7 +236,7 @@ Cut cut_at_border(const Simplex& piece, int worst, const Simplex& face, int corn
       best = {worst, k, beyond / (beyond - there)};
     }
   }
-  constexpr double kAside = 1e-3;  // nearer an end than this, a cut gains nothing
+  constexpr double kAside = 1e-3;  // closer to an end than this, a cut gains nothing
   return best.share > kAside && best.share < 1 - kAside ? best : Cut{0, 1, 0};
 }
 
@@ -248,8 +253,8 @@ class RegionMeter {
     heap_.clear();
     pieces_.clear();
     most_ = found_ = 0;
-    // Lower bound: the lids' corners are points of the lids. It controls only where the search stops, so its
-    // rounding cannot make the result too small.
+    // Lower bound: the corners of the lids. It only controls when the search stops, so its rounding cannot
+    // make the result too small.
     for (const FaceId f : rep_.lids(r))
       for (const VertexId v : rep_.face(f)) found_ = std::max(found_, near_[v].distance);
     // Upper bound: initial pieces, one per simplex of a lid, then refinement.
@@ -264,7 +269,7 @@ class RegionMeter {
 
   Simplex corners_of(const VertexId v[3]) const { return {x_[v[0]], x_[v[1]], x_[v[2]]}; }
 
-  /// Cuts a lid into pieces. Returns false if no real face is at a finite distance from it, as in a damaged
+  /// Divides a lid into pieces. Returns false if no real face has a finite distance to it, as in a damaged
   /// file.
   bool add_lid(FaceId f) {
     const std::size_t count = Mesh::simplices_of(rep_.face(f).size(), rep_.dim());
@@ -273,7 +278,7 @@ class RegionMeter {
       rep_.simplex(SimplexId(rep_.first_simplex(f) + i), v);
       Piece piece;
       piece.x = corners_of(v);
-      // Candidates: the faces near the corners. try_face() keeps the one with the least bound.
+      // Candidates: the faces near the corners. try_face() keeps the one with the smallest bound.
       for (int k = 0; k < corners_; ++k)
         if (near_[v[k]].simplex != kNull) try_face(piece, near_[v[k]].simplex);
       if (piece.face == kNull) return false;
@@ -291,7 +296,7 @@ class RegionMeter {
       // A face is better if all its corner distances are below the current bound: stop at the first that is
       // not.
       off[k] = nearest_.distance(piece.x[k], s);
-      if (!(off[k] < piece.most)) return;  // also if it overflows
+      if (!(off[k] < piece.most)) return;  // also on overflow
       most = std::max(most, off[k]);
     }
     piece.face = s, piece.off = off, piece.most = most;
@@ -303,8 +308,7 @@ class RegionMeter {
     return middle / corners_;
   }
 
-  /// Searches for a better face for a piece that has one already. Returns true if the piece is within the
-  /// limit then.
+  /// Searches for a better face for a piece. Returns true if the piece is within the limit then.
   bool is_settled(Piece& piece) {
     if (piece.most > limit()) {
       // The face near the centroid often bounds the entire piece better.
@@ -332,9 +336,9 @@ class RegionMeter {
     std::push_heap(heap_.begin(), heap_.end());
   }
 
-  /// Cuts the worst piece that waits until it is within the limit, or there are too many.
+  /// Cuts the worst waiting piece until it is within the limit, or the limit on cuts or pieces is reached.
   void cut_worst() {
-    // Best-first branch and bound: the heap's top has the largest upper bound of all open pieces.
+    // Best-first branch and bound: the top of the heap has the largest upper bound of all open pieces.
     for (std::size_t cuts = 0; !heap_.empty(); ++cuts) {
       const Waiting worst = heap_.front();
       Piece& piece = pieces_[worst.piece];
@@ -344,7 +348,7 @@ class RegionMeter {
       }
       std::pop_heap(heap_.begin(), heap_.end());
       heap_.pop_back();
-      // Split; keep one part in the slot of the whole. add() may reallocate pieces_, so `piece` is not used
+      // Split; store one part in the slot of the whole. add() may reallocate pieces_, so `piece` is not used
       // after it.
       Piece part = divide(piece, choose_cut(piece));
       if (!is_settled(piece)) wait(worst.piece);
@@ -379,7 +383,7 @@ class RegionMeter {
     // lids).
     const auto [longest, length_sq] = longest_edge(piece.x, corners_);
     if (length_sq > kMuchLonger * kMuchLonger * longest_edge(face, corners_).second) return longest;
-    // Otherwise separate the worst corner along the border of the face; bisect if no such cut exists.
+    // Otherwise separate the worst corner along the border of the face; bisect if there is no such cut.
     const auto worst = std::max_element(piece.off.begin(), piece.off.begin() + corners_) - piece.off.begin();
     const Cut at_border = cut_at_border(piece.x, static_cast<int>(worst), face, corners_);
     return at_border.share > 0 ? at_border : longest;
@@ -390,17 +394,17 @@ class RegionMeter {
   const std::vector<Across>& neighbours_;
   const std::vector<NearFace>& near_;
   NearestFace nearest_;
-  const int corners_;  ///< of a piece and of a real simplex
+  const int corners_;  ///< number of corners of a piece and of a real simplex
   std::vector<Piece> pieces_;
-  std::vector<Waiting> heap_;  ///< pieces whose bound is still above the limit, worst first
-  double most_ = 0;            ///< bound of the pieces that are done
-  double found_ = 0;           ///< largest distance that some point of the lids has
+  std::vector<Waiting> heap_;  ///< pieces with a bound above the limit, worst first
+  double most_ = 0;            ///< bound of the finished pieces
+  double found_ = 0;           ///< largest distance of an actual point of the lids
 };
 
-/// Returns a real simplex near each vertex: one of its own where it has one.
+/// Returns a real simplex near each vertex: one that contains the vertex if there is one.
 std::vector<NearFace> near_vertices(const LrbRep& rep, const std::vector<Vector3d>& x, Workers& workers) {
   std::vector<NearFace> near(x.size());
-  // A vertex of a real simplex lies on it: distance 0.
+  // A vertex of a real simplex is on it: distance 0.
   for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
     VertexId v[3];
     rep.simplex(s, v);

@@ -14,28 +14,27 @@ namespace lrb {
 /// Returns the vertices of an LRB-rep in units (ObbTree::unit()).
 std::vector<Eigen::Vector3d> vertices_in_units(const LrbRep& rep);
 
-/// A real simplex and a distance from it.
+/// A real simplex with its distance from a point.
 struct NearFace {
   SimplexId simplex = kNull;
   double distance = std::numeric_limits<double>::infinity();  ///< units; see NearestFace::distance()
 };
 
-/// Finds which real simplex is near a point. Works in units. One for each thread.
+/// Finds real simplices close to points. Works in units. Use one per thread.
 class NearestFace {
  public:
-  /// `vertices`: those of the LRB-rep, in units; must outlive this.
+  /// `vertices`: those of the LRB-rep, in units; must outlive this object.
   NearestFace(const LrbRep& rep, const std::vector<Eigen::Vector3d>& vertices) : rep_(rep), x_(vertices) {}
 
-  /// Returns the nearest real simplex but for the rounding of floats, or `known` if nothing is nearer.
-  /// Searches the tree.
+  /// Returns the closest real simplex, up to the rounding of floats, or `known` if none is closer. Searches
+  /// the tree.
   NearFace find(const Eigen::Vector3d& p, NearFace known = {});
 
-  /// Returns a real simplex that is no further than `from`: goes from each simplex to a neighbour that is
-  /// nearer, as long as there is one. Takes a tenth of find()'s time where `from` is near. `neighbours`:
-  /// real_neighbours().
+  /// Returns a real simplex no further than `from`: moves to an adjacent simplex that is closer as long as
+  /// there is one. Takes a tenth of the time of find() if `from` is close. `neighbours`: real_neighbours().
   NearFace walk(const Eigen::Vector3d& p, SimplexId from, const std::vector<Across>& neighbours) const;
 
-  /// Returns the distance from p to a simplex: never less than the true one but for rounding, which
+  /// Returns the distance from p to a simplex, never below the true one except for rounding, which
   /// kThicknessRounding covers.
   double distance(const Eigen::Vector3d& p, SimplexId s) const;
 

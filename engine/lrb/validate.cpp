@@ -38,7 +38,7 @@ class Validator {
   ValidateReport run() {
     check_cells();
     check_derived();
-    // Embedding and wrapper states run at the same time. The second validator has its own boundary sum and
+    // Embedding and wrapper states run concurrently. The second validator has its own boundary sum and
     // report, and needs only the volumes computed so far.
     Validator states(rep_, options_, workers_);
     states.volume_ = volume_;
@@ -57,7 +57,7 @@ class Validator {
  private:
   void append(const ValidateReport& states) {
     report_.states = states.states;
-    // violation() counts each message that was kept. The violations beyond the limit are added by number.
+    // violation() counts each message that was kept. Violations beyond the limit are added by number.
     for (const std::string& text : states.violations) violation(text);
     report_.violation_count += states.violation_count - states.violations.size();
   }
@@ -67,21 +67,21 @@ class Validator {
     if (report_.violation_count++ < options_.max_messages) report_.violations.push_back(text);
   }
 
-  /// Checks what a file stores beside the complex.
+  /// Checks the derived data stored in files.
   void check_derived() {
-    // The bounds of the query's tree: the completeness of queries rests on them.
+    // The bounds of the OBB tree: the completeness of queries depends on them.
     const bool tree_holds = rep_.tree().bounds_hold(rep_.simplices());
     if (!tree_holds) violation("the query's tree has bounds that do not hold its faces");
     if (hash_of(rep_.data()) != rep_.hash()) violation("the stored hash is not that of the complex");
-    // The thickness of regions is measured with the tree, so its bounds must be right first.
+    // The thickness of regions is measured with the tree, so its bounds must be checked first.
     if (tree_holds && rep_.has_levels()) check_levels(rep_.levels());
   }
 
-  /// Checks what is taken on trust of levels from a file; the rest was checked when they were read.
+  /// Checks the data of levels of detail that are trusted when a file is read.
   void check_levels(const WrapperLevels& levels) {
     if (levels.needed().empty()) return;
     // Computed again. The stored tolerance may be larger than the thickness (it covers all hidden regions),
-    // never smaller.
+    // but never smaller.
     const std::vector<double> thickness = region_thickness(rep_);
     for (RegionId r = 0; r < rep_.region_count(); ++r)
       if (levels.needed()[r] < thickness[r])
@@ -113,15 +113,15 @@ class Validator {
     report_.volume_solid = enclosed_volume(rep_, real);
     report_.volume_outer = enclosed_volume(rep_, rep_.outermost_faces());
     const double noise = kVolumeRounding * std::abs(report_.volume_outer);
-    // A region is bounded by its lids, and by its floor seen from the other side.
+    // A region is bounded by its lids, and by its floor reversed.
     for (RegionId r = 0; r < rep_.region_count(); ++r) {
       for (const FaceId f : rep_.lids(r)) sum_.add(f);
       for (const FaceId f : rep_.floor(r)) sum_.add_reversed(f);
       check_closed("region " + std::to_string(r));
       volume_.push_back(region_volume(rep_, r));
       report_.volume_regions += volume_.back();
-      // Where a solid overlaps itself, its volume counts twice, and a region around it may have to make up
-      // for that.
+      // Where a solid overlaps itself its volume counts twice, which a region around it may have to
+      // compensate.
       if (volume_.back() < -noise && !rep_.self_intersecting())
         violation("region " + std::to_string(r) + " has the negative volume " +
                   std::to_string(volume_.back()));
@@ -165,11 +165,11 @@ class Validator {
     judge(soup, pairs);
   }
 
-  /// The number of simplices at one vertex from which comparing all of them with each other takes too long.
+  /// Returns true if a vertex has so many simplices that testing all pairs of them takes too long.
   bool has_hubs() const {
     if (rep_.dim() == 2) return false;
     std::vector<std::uint32_t> degree(rep_.vertices().size(), 0);
-    // Counts simplices per vertex and stops at the first high-valence one.
+    // Count simplices per vertex and stop at the first high-valence one.
     VertexId v[3] = {};
     for (SimplexId s = 0; s < rep_.simplex_count(); ++s) {
       rep_.simplex(s, v);
@@ -179,8 +179,8 @@ class Validator {
     return false;
   }
 
-  /// Checks the same, but searches differently for pairs that may meet. (A simplex without area is convex,
-  /// too.)
+  /// Runs the same check with a different search for pairs that may intersect. (A degenerate simplex also
+  /// counts as convex.)
   void check_embedding_with_hubs() {
     // One face per simplex, so that face numbers of this mesh are simplex numbers.
     Mesh simplices;
@@ -203,12 +203,12 @@ class Validator {
     judge(rep_, pairs);
   }
 
-  /// Two simplices of the complex.
+  /// Two simplices of the complex, with the result of their test.
   struct Pair {
     SimplexId s, t;
     bool good = false;
   };
-  /// Corners of a simplex.
+  /// The corners of a simplex.
   struct Corners {
     VertexId id[3];
     const double* x[3];
@@ -221,7 +221,7 @@ class Validator {
     return c;
   }
 
-  /// Tests many pairs at the same time, then reports on them in order; empties the list.
+  /// Tests many pairs in parallel, then reports on them in order; empties the list.
   void judge(const LrbRep& soup, std::vector<Pair>& pairs) {
     // Pass 1, on all threads: exact tests. Each thread writes only to its own pairs.
     workers_.for_each((pairs.size() + kPairsShared - 1) / kPairsShared, [&](std::size_t i, unsigned) {
@@ -242,8 +242,8 @@ class Validator {
   }
 
   void judge_meeting(FaceId f, FaceId g, const double* const* cf, const double* const* cg) {
-    // Two real faces: a fault of the mesh. Face and lid over it: a region of no thickness, which is allowed.
-    // Everything else breaks the embedding.
+    // Two real faces: a fault of the mesh. A face and a lid over it: a region of zero thickness, which is
+    // allowed. Everything else violates the embedding.
     if (rep_.is_real(f) && rep_.is_real(g)) {
       ++report_.real_pairs_meeting;
     } else if (touches_from_behind(f, g, cf, cg) || touches_from_behind(g, f, cg, cf)) {
@@ -256,7 +256,7 @@ class Validator {
   }
 
   /// Returns true if the lid hides the face and no corner of the face is in front of the lid's plane. Such a
-  /// face touches the lid from behind: the region between the two has no thickness there.
+  /// face touches the lid from behind: the region between the two has zero thickness there.
   bool touches_from_behind(FaceId lid, FaceId face, const double* const* cl, const double* const* cf) const {
     if (!hides(lid, face)) return false;
     for (int k = 0; k < rep_.dim(); ++k) {
@@ -270,8 +270,8 @@ class Validator {
 
   bool hides(FaceId lid, FaceId face) const {
     if (rep_.is_real(lid)) return false;
-    // Walks outward from the cell in front of the face to the cell behind the lid, along parents only. The
-    // constructor rejects cycles of parents, so the loop ends.
+    // Walk outward from the cell in front of the face to the cell behind the lid, along parents only. The
+    // constructor rejects cycles of parents, so the loop terminates.
     CellId c = rep_.outer_cell(face);
     while (is_region(c) && c != rep_.inner_cell(lid)) c = rep_.parent(c.as_region());
     return is_region(c);
@@ -282,13 +282,13 @@ class Validator {
     if (rep_.region_count() == 0 || !rep_.closed()) return;
     std::mt19937_64 random(options_.seed);
     for (std::uint32_t state = 0; state < options_.wrapper_states; ++state) {
-      // Vary the share of excluded regions from almost none to all, so that states near both ends occur.
+      // Vary the fraction of excluded regions from almost none to all, so that states near both ends occur.
       const double share = std::pow(std::generate_canonical<double, 53>(random), 2);
       Wrapper w(rep_);
       double volume = report_.volume_outer;
       for (RegionId r = 0; r < rep_.region_count(); ++r)
         if (std::generate_canonical<double, 53>(random) < share) {
-          // Any set of regions is a legal state. Its volume does not depend on the order of refinement.
+          // Any set of regions is a valid state. Its volume does not depend on the order of refinement.
           w.refine(r);
           volume -= volume_[r];
         }
@@ -302,8 +302,8 @@ class Validator {
     std::vector<bool> touched(rep_.vertices().size(), false);
     std::vector<FaceId> as_is, reversed;
     for (const FaceId f : boundary) {
-      // Where the region in front of a face is included but the cell behind it is not, the boundary of the
-      // wrapper shows the back of the face.
+      // If the region in front of a face is included but the cell behind it is not, the boundary of the
+      // wrapper contains the reversed face.
       const bool outward = w.included(rep_.inner_cell(f));
       outward ? sum_.add(f) : sum_.add_reversed(f);
       (outward ? as_is : reversed).push_back(f);
@@ -312,11 +312,11 @@ class Validator {
     // Closedness: the oriented boundary faces must cancel along every edge.
     const std::string name = "wrapper state " + std::to_string(report_.states);
     check_closed(name);
-    // Volume: the boundary's must be that of the included cells, up to rounding.
+    // Volume: that of the boundary must equal that of the included cells, up to rounding.
     if (std::abs(enclosed_volume(rep_, as_is, reversed) - volume) >
         kVolumeRounding * std::abs(report_.volume_outer))
       violation(name + " encloses a volume other than that of its cells");
-    // A self-intersecting solid has vertices inside itself that are outside by parity.
+    // A self-intersecting solid has vertices in its interior that are outside by parity.
     if (!rep_.self_intersecting()) check_enclosure(boundary, touched, name, random);
   }
 
@@ -324,17 +324,17 @@ class Validator {
                        const std::string& name, std::mt19937_64& random) {
     for (int sample = 0; sample < kEnclosureSamples; ++sample) {
       const FaceId f = static_cast<FaceId>(random() % rep_.real_face_count());
-      // Vertices of the boundary itself may lie on it; all others must be inside.
+      // Vertices of the boundary itself may be on it; all others must be inside.
       const VertexId v = rep_.face(f)[0];
       if (touched[v]) continue;
       if (!holds(boundary, v)) violation(name + " leaves real vertex " + std::to_string(v) + " outside");
     }
   }
 
-  /// Returns true if the vertex lies behind the boundary or on it.
+  /// Returns true if the vertex is behind the boundary or on it.
   bool holds(const std::vector<FaceId>& boundary, VertexId v) const {
-    // Parity of the crossings of an exact ray. Orientation does not matter for parity, so reversed faces need
-    // no care.
+    // Parity of the crossings of an exact ray. Parity does not depend on orientation, so reversed faces are
+    // not treated separately.
     const double* p = rep_.vertices()[v].data();
     bool inside = false, on_face = false;
     const auto note = [&](exact::RayHit hit) {

@@ -18,17 +18,18 @@
 namespace lrb {
 namespace {
 
-/// Up to this many corners, it is quicker to look at all of them. Measured: 2.4 ns a corner; the tree takes 8
-/// to 15 us for bodies of 1,400 to 2,600 corners, 53 us for one of 49,000.
+/// Number of corners up to which transforming all of them is faster. Measured: 2.4 ns per corner; the tree
+/// takes 8 to 15 us for bodies of 1,400 to 2,600 corners, 53 us for one of 49,000.
 constexpr std::size_t kFewCorners = 16384;
 
-/// Finds the real corner whose world coordinate on one axis, times `sign`, is greatest.
+/// Finds the real corner whose world coordinate on one axis, times `sign`, is largest.
 ///
-/// With d the axis' row of the rotation, a child's box (centre frame coordinates y in [lo, hi]) bounds d . x
-/// by d . origin + sum_i max(g_i lo_i, g_i hi_i), g = frame d. Two terms are added to that: kKernelRounding
-/// |d| radius, because a node's axes are orthonormal only to kFrameDefect (x - origin = frame^T (1 - E) y +
-/// ..., |E| <= kFrameDefect, which takes sqrt 3 of the 8 kFrameDefect that there are); and the rounding of
-/// world coordinates, of which Pose::apply and this sum take less than 16 u of the 32 u in kWorldRounding.
+/// With d the axis's row of the rotation, a child's box (frame coordinates y in [lo, hi]) bounds d . x by d .
+/// origin + sum_i max(g_i lo_i, g_i hi_i), g = frame d. Two error terms are added:
+/// - kKernelRounding |d| radius, because a node's axes are orthonormal only to kFrameDefect: x - origin =
+///   frame^T (1 - E) y + ..., |E| <= kFrameDefect, which takes sqrt 3 of the available 8 kFrameDefect;
+/// - the rounding of world coordinates: Pose::apply() and this sum take less than 16 u of the 32 u in
+///   kWorldRounding.
 class Search {
  public:
   Search(const LrbRep& rep, const Pose& pose, int axis, double sign)
@@ -41,12 +42,12 @@ class Search {
     slack_ = kWorldRounding * size + kWorldUnderflow;
   }
 
-  /// Searches, beginning with a vertex known to be far out; kNull: with none.
+  /// Runs the search, starting with the vertex `first`; kNull: none.
   void run(VertexId first) {
     if (first != kNull) look_at(first);
     visit(0);
   }
-  /// Returns false if a corner is as far out as `limit`, times the sign, as soon as one is found.
+  /// Returns false as soon as a corner reaches `limit` (times the sign), true if none does.
   bool stays_below(double limit, VertexId first) {
     enough_ = limit;
     run(first);
@@ -77,9 +78,9 @@ class Search {
       // Best bound first: the vertex found there prunes most of the others.
       const auto k = static_cast<std::uint32_t>(std::max_element(bound.begin(), bound.begin() + node.count) -
                                                 bound.begin());
-      // No child that is left can reach further; or the caller's limit is reached.
+      // No remaining child can reach further, or the caller's limit is reached.
       if (!(bound[k] > best_) || best_ >= enough_) return;
-      // Visited.
+      // Mark as visited.
       bound[k] = -kInfinity;
       if (node.is_leaf)
         look_at_simplex(rep_.tree().blocks()[node.first].simplex[k]);
@@ -89,7 +90,7 @@ class Search {
   }
 
   void bounds(const TreeNode& n, std::array<double, kTreeWidth>& out) const {
-    // The terms that all children share, and all rounding errors.
+    // The terms shared by all children, and all rounding errors.
     double middle = t_ + slack_ + kKernelRounding * d_.cwiseAbs().sum() * n.radius;
     double g[3];
     for (int i = 0; i < 3; ++i) {
@@ -108,13 +109,13 @@ class Search {
   const Pose& pose_;
   int axis_;
   double sign_;
-  Eigen::Vector3d d_;  ///< from units to the mesh's unit
+  Eigen::Vector3d d_;  ///< from units to mesh units
   double t_, slack_;
   double best_ = -kInfinity, enough_ = kInfinity;
   VertexId vertex_ = kNull;
 };
 
-/// Returns true if no coordinate, and no term on the way to one, can overflow.
+/// Returns true if no coordinate, and no term in its computation, can overflow.
 bool stays_finite(const LrbRep& rep, const Pose& pose) {
   return world_size(pose, rep.tree()) <= 0.25 * std::numeric_limits<double>::max();
 }
@@ -123,8 +124,8 @@ Eigen::AlignedBox3d everything() {
   return {Eigen::Vector3d::Constant(-kInfinity), Eigen::Vector3d::Constant(kInfinity)};
 }
 
-/// Returns the world box of a body whose corners are known to be finite in the world, by looking at all of
-/// them.
+/// Returns the world AABB of a body whose world coordinates are known to be finite, by transforming all
+/// corners.
 Eigen::AlignedBox3d box_of_corners(const LrbRep& rep, const Pose& pose) {
   Eigen::AlignedBox3d box;
   for (FaceId f = 0; f < rep.real_face_count(); ++f)
@@ -134,8 +135,7 @@ Eigen::AlignedBox3d box_of_corners(const LrbRep& rep, const Pose& pose) {
 
 }  // namespace
 
-/// If two boxes are disjoint along an axis, any two of their corners lie there in the same order as the
-/// boxes.
+/// If two boxes are disjoint along an axis, any two of their corners have the order of the boxes there.
 bool world_boxes_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   if (a.tree().empty() || b.tree().empty()) return true;
   const bool in_range = stays_finite(a, pose_a) && stays_finite(b, pose_b);
@@ -153,12 +153,12 @@ bool world_boxes_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
       if (box_a.max()[axis] < box_b.min()[axis] || box_b.max()[axis] < box_a.min()[axis]) return true;
       continue;
     }
-    // The intervals have a coordinate in common.
+    // The intervals share a coordinate.
     if (of_a[axis] == of_b[axis]) continue;
-    // Which body would be in front: that of any corner.
+    // The only possible order of the bodies, given by any two corners.
     const double sign = of_a[axis] < of_b[axis] ? 1 : -1;
     Search top_of_a(a, pose_a, axis, sign), bottom_of_b(b, pose_b, axis, -sign);
-    // Ends at A's first corner beyond B's; B is searched only if there is none.
+    // Stops at A's first corner beyond B's; B is searched only if there is none.
     if (top_of_a.stays_below(sign * of_b[axis], first_a) &&
         bottom_of_b.stays_below(-sign * top_of_a.coordinate(), first_b))
       return true;
@@ -171,7 +171,7 @@ Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, ExtremeVertic
   if (rep.tree().empty()) return box;
   if (!stays_finite(rep, pose)) return everything();
   for (int axis = 0; axis < 3; ++axis) {
-    // All of a 2D body lies at one height, so any corner tells it.
+    // A 2D body is at one height, so any corner gives it.
     const bool level = rep.dim() == 2 && pose.r(axis, 0) == 0 && pose.r(axis, 1) == 0;
     if (level) {
       box.min()[axis] = box.max()[axis] = pose.apply(rep.vertices()[rep.face(0)[0]])[axis];
@@ -179,7 +179,7 @@ Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, ExtremeVertic
     }
     for (const bool high : {false, true}) {
       const auto slot = static_cast<std::size_t>(2 * axis + high);
-      // The extreme vertex of the last pose is a good lower bound to begin with.
+      // The extreme vertex of the last pose is a good initial bound.
       Search search(rep, pose, axis, high ? 1 : -1);
       search.run(last != nullptr ? last->vertex[slot] : kNull);
       (high ? box.max() : box.min())[axis] = search.coordinate();

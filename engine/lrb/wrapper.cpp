@@ -19,10 +19,10 @@ Wrapper::Wrapper(const LrbRep& rep, WrapperMode mode)
       discarded_stamp_(mode == WrapperMode::unregularised ? rep.face_count() : 0, 0) {}
 
 void Wrapper::reset() {
-  // Raising the epoch makes all stamps outdated at once: O(1) in the number of regions and faces.
+  // Incrementing the epoch invalidates all stamps at once: O(1) in the number of regions and faces.
   order_.clear();
   excluded_count_ = 0;
-  if (++epoch_ == 0) {  // after 2^32 resets the stamps of the first epoch would look current
+  if (++epoch_ == 0) {  // after 2^32 resets the stamps of the first epoch would be valid again
     std::fill(region_stamp_.begin(), region_stamp_.end(), 0);
     std::fill(discarded_stamp_.begin(), discarded_stamp_.end(), 0);
     epoch_ = 1;
@@ -38,8 +38,8 @@ bool Wrapper::refine_face(FaceId f) {
   // A pseudo face on the boundary hides the region behind it.
   const RegionId r = rep_->inner_cell(f).as_region();
   if (mode_ == WrapperMode::regularised) return refine(r);
-  // Unregularised: the first refined lid excludes the region and so exposes its floor. Each further lid only
-  // disappears.
+  // Unregularised: the first refined lid excludes the region and thus exposes its floor. Each further lid is
+  // only removed.
   if (included(r)) {
     order_.push_back(r);
     region_stamp_[r] = epoch_;
@@ -51,12 +51,12 @@ bool Wrapper::refine_face(FaceId f) {
 
 bool Wrapper::coarsen(RegionId r) {
   if (included(r)) return false;
-  // Epochs start at 1, so stamp 0 means "included" at any time.
+  // Epochs start at 1, so stamp 0 always means "included".
   region_stamp_[r] = 0;
   --excluded_count_;
   if (mode_ == WrapperMode::unregularised)
     for (const FaceId lid : rep_->lids(r)) discarded_stamp_[lid] = 0;
-  // The region refined last is usually the first to be taken back.
+  // The region refined last is usually the first to be included again.
   const auto last = std::find(order_.rbegin(), order_.rend(), r);
   order_.erase(std::next(last).base());
   return true;
@@ -70,13 +70,13 @@ bool Wrapper::on_boundary(FaceId f) const {
   // Boundary of a union of cells: exactly one side of the face is included.
   if (mode_ == WrapperMode::regularised)
     return included(rep_->inner_cell(f)) != included(rep_->outer_cell(f));
-  // A face is on the boundary once the cell in front of it is not included, unless it is a lid that was
+  // A face is on the boundary if the cell in front of it is not included, unless it is a lid that was
   // discarded itself.
   return !included(rep_->outer_cell(f)) && (rep_->is_real(f) || discarded_stamp_[f] != epoch_);
 }
 
 std::vector<FaceId> Wrapper::boundary() const {
-  // A boundary face borders on the outside or on an excluded region, so these lists contain all of them.
+  // A boundary face is adjacent to the outside or to an excluded region, so these lists contain all of them.
   std::vector<FaceId> faces;
   const auto add = [&](std::span<const FaceId> some) {
     for (const FaceId f : some)
@@ -98,18 +98,18 @@ std::vector<FaceId> Wrapper::boundary() const {
 
 namespace {
 
-/// From one level to the next the number of faces grows by this factor at most, where regions are small
-/// enough. Smaller: more levels to make and keep; larger: a tolerance between two levels costs that many
-/// faces more.
+/// Maximum growth factor of the number of faces from one level to the next, if regions are small enough.
+/// Smaller: more levels to create and store. Larger: a tolerance between two levels costs more additional
+/// faces.
 constexpr double kLevelStep = 4.0 / 3;
 /// The same for levels with at most kFewFaces, or kSmallShare of the body's own: these take little memory,
 /// even if there are many.
 constexpr double kFewFaces = 2048, kSmallShare = 1.0 / 16, kSmallStep = 1.1;
-/// A wrapper with a larger share of the body's own faces is no level: the exact query costs hardly more. Also
-/// limits what all levels take together: between two and three times as many faces as a large body has, up
-/// to six times as many as a small one.
+/// Maximum fraction of the body's own faces for a level: for more, the exact query costs hardly more. Also
+/// limits the total size of all levels: between two and three times as many faces as a large body has, up to
+/// six times as many as a small one.
 constexpr double kMostFaces = 0.5;
-/// More levels than kLevelStep makes of the largest body: a file with more was not written by lrbscope.
+/// More levels than kLevelStep gives for the largest body: a file with more was not written by lrbscope.
 constexpr std::size_t kMostLevels = 256;
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -120,11 +120,10 @@ bool can_have_levels(const LrbRep& rep) {
   return rep.region_count() > 0 && why_no_levels(rep).empty();
 }
 
-/// Returns, for each region, the largest thickness among the region and all that it hides. Passes values
-/// outward until none grows.
+/// Returns, for each region, the largest thickness of the region and of all regions that it hides.
 std::vector<double> needed_tolerances(const LrbRep& rep, unsigned threads) {
-  // Worklist: raise every region outside r to at least r's value. Values only grow and are taken from a
-  // finite set, so this ends, with the same result in any order.
+  // Worklist algorithm: raise every region outside r to at least r's value. Values only grow and are taken
+  // from a finite set, so this terminates, with the same result in any order.
   std::vector<double> needed = region_thickness(rep, threads);
   std::vector<RegionId> work(rep.region_count());
   std::iota(work.begin(), work.end(), RegionId{0});
@@ -142,7 +141,7 @@ std::vector<double> needed_tolerances(const LrbRep& rep, unsigned threads) {
   return needed;
 }
 
-/// Throws InputError if a region could be included without something that it hides.
+/// Throws InputError if a region could be included without a region that it hides.
 void check_needed(const LrbRep& rep, const std::vector<double>& needed) {
   if (needed.size() != (can_have_levels(rep) ? rep.region_count() : 0)) refuse("are not for its regions");
   for (RegionId r = 0; r < needed.size(); ++r) {
@@ -151,7 +150,7 @@ void check_needed(const LrbRep& rep, const std::vector<double>& needed) {
     if (rep.lids(r).empty() && needed[r] != kInfinity)
       refuse("include region " + std::to_string(r) + ", which has no lid");
     for (const FaceId lid : rep.lids(r)) {
-      // The order that needed_tolerances() establishes; without it a wrapper would have a cavity around r.
+      // The order established by needed_tolerances(); without it a wrapper would have a cavity around r.
       const CellId over = rep.outer_cell(lid);
       if (is_region(over) && needed[over] < needed[r])
         refuse("include region " + std::to_string(over) + " without region " + std::to_string(r) +
@@ -161,13 +160,13 @@ void check_needed(const LrbRep& rep, const std::vector<double>& needed) {
 }
 
 /// Finds the faces that bound the wrapper of a tolerance. A region needs no larger tolerance than the regions
-/// that hide it. So a face is on the boundary from the tolerance that includes the cell behind it up to the
-/// tolerance that includes the cell in front of it.
+/// that hide it. Hence a face is on the boundary from the tolerance that includes the cell behind it up to
+/// the tolerance that includes the cell in front of it.
 class Boundaries {
  public:
   Boundaries(const LrbRep& rep, std::span<const double> needed) : rep_(rep), needed_(needed) {}
 
-  /// Returns the faces at each of some descending tolerances.
+  /// Returns the faces at each of several descending tolerances.
   std::vector<std::vector<FaceId>> faces(std::span<const double> tolerances) const {
     std::vector<std::vector<FaceId>> out(tolerances.size());
     const auto count_from = [&](double x) {  // number of values that are at least x
@@ -184,7 +183,7 @@ class Boundaries {
     return out;
   }
 
-  /// Returns the number of faces at each of some ascending tolerances.
+  /// Returns the number of faces at each of several ascending tolerances.
   std::vector<std::uint32_t> face_counts(std::span<const double> tolerances) const {
     const auto place = [&](CellId cell) {
       return std::lower_bound(tolerances.begin(), tolerances.end(), need(cell)) - tolerances.begin();
@@ -201,7 +200,7 @@ class Boundaries {
   }
 
  private:
-  /// The solid is in every wrapper, the outside in none.
+  /// Returns the tolerance that includes a cell: 0 for the solid, infinite for the outside.
   double need(CellId cell) const { return is_region(cell) ? needed_[cell] : cell == kSolid ? 0 : kInfinity; }
 
   const LrbRep& rep_;
@@ -210,18 +209,18 @@ class Boundaries {
 
 /// Returns the bounds of the levels that are worth their memory, coarsest first.
 std::vector<double> choose_bounds(const LrbRep& rep, std::span<const double> needed) {
-  // Candidates: every tolerance at which some region joins the wrapper.
+  // Candidates: every tolerance at which some region is added to the wrapper.
   std::vector<double> bounds;
   std::copy_if(needed.begin(), needed.end(), std::back_inserter(bounds),
                [](double x) { return x < kInfinity; });
   std::sort(bounds.begin(), bounds.end());
   bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
   const std::vector<std::uint32_t> faces = Boundaries(rep, needed).face_counts(bounds);
-  // Walk from the coarsest candidate to finer ones, and choose one before the face count grows beyond the
-  // step.
+  // Go from the coarsest candidate to finer ones, and choose one before the face count grows beyond the step.
   std::vector<std::size_t> chosen;
   const auto choose = [&](std::size_t i) {
-    while (!chosen.empty() && faces[chosen.back()] >= faces[i]) chosen.pop_back();  // finer for no more faces
+    // Drop coarser levels that have no fewer faces.
+    while (!chosen.empty() && faces[chosen.back()] >= faces[i]) chosen.pop_back();
     chosen.push_back(i);
   };
   const double few = std::max(kFewFaces, kSmallShare * rep.real_face_count());
@@ -237,7 +236,7 @@ std::vector<double> choose_bounds(const LrbRep& rep, std::span<const double> nee
     if (!chosen.empty()) choose(i + 1);
     if (is_beyond(i)) choose(i);
   }
-  // Candidate i + 1 is the finest with few enough faces; i has wrapped around if all have, so that it is 0.
+  // Candidate i + 1 is the finest with few enough faces; if all have, i has wrapped around, and it is 0.
   if (!chosen.empty()) choose(i + 1);
   std::vector<double> out;
   out.reserve(chosen.size());
@@ -245,10 +244,10 @@ std::vector<double> choose_bounds(const LrbRep& rep, std::span<const double> nee
   return out;
 }
 
-/// Fills in a level but for its tree. Returns the simplices that the tree holds.
+/// Sets the members of a level except its tree. Returns the simplices of the tree.
 std::vector<SimplexId> outline(const LrbRep& rep, double bound, std::span<const FaceId> faces,
                                WrapperLevel& level) {
-  // Everything but the tree follows from the list of boundary faces.
+  // Everything except the tree follows from the list of boundary faces.
   level.bound = bound;
   level.face_count = static_cast<std::uint32_t>(faces.size());
   level.component_vertices = piece_vertices(rep, faces);
@@ -294,16 +293,16 @@ WrapperLevels::WrapperLevels(const LrbRep& rep, std::vector<double> needed, std:
     : needed_(std::move(needed)) {
   check_needed(rep, needed_);
   if (stored.size() > (needed_.empty() ? 0 : kMostLevels)) refuse("are too many");
-  if (needed_.empty()) return;  // a body without levels, whose file has an empty list of them
+  if (needed_.empty()) return;  // a body without levels, whose file contains an empty list of them
   std::vector<double> bounds;
-  // Bounds must be finite and strictly descending; within() relies on the order.
+  // Bounds must be finite and strictly descending; within() depends on the order.
   for (const StoredLevel& from : stored) {
     if (!(from.bound >= 0 && from.bound < (bounds.empty() ? kInfinity : bounds.back())))
       refuse("are not in order");
     bounds.push_back(from.bound);
   }
-  // The faces are derived again rather than read, so that a file cannot leave any out. Each stored tree is
-  // checked to contain exactly these simplices.
+  // The faces are derived again rather than read, so that a file cannot omit any. Each stored tree is checked
+  // to contain exactly these simplices.
   const std::vector<std::vector<FaceId>> faces = Boundaries(rep, needed_).faces(bounds);
   levels_.resize(bounds.size());
   for (std::size_t i = 0; i < bounds.size(); ++i) {

@@ -1,7 +1,7 @@
-// Boundary loops, as in a half-edge structure that is built for the purpose:
+// Boundary loops, with a half-edge structure built for the purpose:
 // 1. Sort the sides (half-edges) of all faces by edge. Edges with one side are open; two opposite sides are
 //    twins.
-// 2. The successor of an open side: rotate around its end through twins until the next open side.
+// 2. Successor of an open side: rotate around its end through twins to the next open side.
 // 3. Follow successors. Whenever a vertex repeats, the part since its first visit is cut off as a loop.
 // 4. Measure each loop: length, box, exact planarity.
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace lrb {
 namespace {
 
-/// A side of a face is named by the corner at which it starts, an index into Mesh::face_vertices.
+/// A side of a face is identified by the corner at which it starts, an index into Mesh::face_vertices.
 class LoopFinder {
  public:
   LoopFinder(const Mesh& mesh, const std::vector<FaceUse>& use)
@@ -39,13 +39,13 @@ class LoopFinder {
     }
     seen_.assign(next_.size(), false);
     place_.assign(mesh_.vertices.size(), kNull);
-    // Chains that are interrupted first, from their start. The open sides not visited by then form cycles.
+    // Open chains first, from their start. The open sides not visited by then form cycles.
     for (const std::uint32_t side : open_)
       if (!has_predecessor[side]) follow(side);
     for (const std::uint32_t side : open_)
       if (!seen_[side]) follow(side);
     for (BoundaryLoop& loop : loops_) measure(loop);
-    // Longest first. The stable sort keeps ties in the order in which they were found.
+    // Longest first. The stable sort keeps ties in the order of discovery.
     std::stable_sort(loops_.begin(), loops_.end(),
                      [](const auto& a, const auto& b) { return a.length > b.length; });
     return std::move(loops_);
@@ -69,7 +69,7 @@ class LoopFinder {
   void add_sides(FaceId f) {
     const auto corners = mesh_.face(f);
     const std::uint32_t first = mesh_.face_offsets[f];
-    // Faces with fewer than three different corners cover no area; their sides cancel and are ignored.
+    // Faces with fewer than three distinct corners cover no area; their sides cancel and are ignored.
     std::vector<VertexId> different(corners.begin(), corners.end());
     std::sort(different.begin(), different.end());
     if (std::unique(different.begin(), different.end()) - different.begin() < 3) return;
@@ -77,7 +77,7 @@ class LoopFinder {
     for (std::uint32_t i = 0; i < n; ++i) {
       const VertexId a = corners[i];
       std::uint32_t k = (i + 1) % n;
-      if (a == corners[k]) continue;  // a corner named twice in a row: no side
+      if (a == corners[k]) continue;  // a corner listed twice in a row: no side
       sides_.push_back({std::uint64_t{std::min(a, corners[k])} << 32 | std::max(a, corners[k]), first + i});
       // Skip repetitions of the end corner: the next side starts at the last of them.
       while (corners[k] == corners[(k + 1) % n]) k = (k + 1) % n;
@@ -96,10 +96,10 @@ class LoopFinder {
 
   bool is_open(std::uint32_t side) const { return std::binary_search(open_.begin(), open_.end(), side); }
 
-  /// Turns about the end of an open side, through the faces there, to the open side that leaves it; kNull if
-  /// the faces do not lead to one.
+  /// Rotates around the end of an open side, through the adjacent faces, to the next open side. Returns kNull
+  /// if the faces do not lead to one.
   std::uint32_t next_open(std::uint32_t from) const {
-    // The maps next_ and twin_ are injective and `from` is no twin, so the rotation cannot run in a circle.
+    // The maps next_ and twin_ are injective and `from` has no twin, so the rotation cannot cycle.
     std::uint32_t side = next_[from];
     while (!is_open(side)) {
       if (twin_[side] == kNull) return kNull;
@@ -108,7 +108,7 @@ class LoopFinder {
     return side;
   }
 
-  /// Follows a rim to its end or round to its beginning, and cuts off a loop whenever a vertex comes again.
+  /// Follows a boundary to its end or back to its start, and cuts off a loop whenever a vertex repeats.
   void follow(std::uint32_t first) {
     std::vector<VertexId> row = {start(first)};
     place_[row[0]] = 0;
@@ -123,8 +123,8 @@ class LoopFinder {
         row.push_back(end);
         continue;
       }
-      // A vertex of the chain comes again: the part since its first visit is a loop. The rest goes on from
-      // that vertex.
+      // A vertex of the chain repeats: the part since its first visit is a loop. The rest continues from that
+      // vertex.
       BoundaryLoop& loop = loops_.emplace_back();
       loop.is_loop = true;
       loop.face = face_of(side);
@@ -132,7 +132,7 @@ class LoopFinder {
       for (std::size_t i = place_[end] + std::size_t{1}; i < row.size(); ++i) place_[row[i]] = kNull;
       row.resize(place_[end] + std::size_t{1}, VertexId(0));
     }
-    // Reset only the entries used. A row of one vertex is left when everything was cut off as loops.
+    // Reset only the entries used. If everything was cut off as loops, one vertex remains.
     for (const VertexId v : row) place_[v] = kNull;
     if (row.size() < 2) return;
     BoundaryLoop& rest = loops_.emplace_back();
@@ -157,12 +157,12 @@ class LoopFinder {
 
   const Mesh& mesh_;
   std::vector<SideOfEdge> sides_;
-  std::vector<std::uint32_t> next_;  ///< (corners) the side after this one in its face; kNull: no side
-  std::vector<std::uint32_t>
-      twin_;  ///< (corners) the other face's side of an edge that has just two, opposite
+  std::vector<std::uint32_t> next_;  ///< (corners) the next side of its face; kNull: no side
+  /// (corners) the opposite side of a manifold edge, in the other face; kNull: none
+  std::vector<std::uint32_t> twin_;
   std::vector<std::uint32_t> open_, successor_;
   std::vector<bool> seen_;
-  std::vector<std::uint32_t> place_;  ///< (|V|) in the row that is followed; kNull: not in it
+  std::vector<std::uint32_t> place_;  ///< (|V|) index in the chain being followed; kNull: not in it
   std::vector<BoundaryLoop> loops_;
 };
 

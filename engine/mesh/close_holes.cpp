@@ -1,13 +1,12 @@
 // Hole filling with proof:
-// 1. Find the boundary loops. Reverse each to the direction of its fill, and choose an axis of projection for
-//    it.
-// 2. Fill planar loops that contain planar loops of the other orientation as rings: bridges join them to one
-//    polygon, which is triangulated by ear clipping.
-// 3. Fill all others alone. Candidates: minimum-area triangulation (Klincsek 1980; used for holes by Barequet
-//    and Sharir 1995), ear clipping, fan about the centroid.
+// 1. Find the boundary loops. Reverse each to the direction of its fill, and choose its axis of projection.
+// 2. Fill planar loops that contain planar loops of the opposite orientation as rings: bridges join them to
+//    one polygon, which is triangulated by ear clipping.
+// 3. Fill all others individually. Candidates: minimum-area triangulation (Klincsek 1980; used for holes by
+//    Barequet and Sharir 1995), ear clipping, fan around the centroid.
 // 4. Candidates are tried in rounds. A round adds the current candidate of each hole to a copy of the mesh,
-//    finds all intersections at once, and keeps candidates greedily in order. The others go on to their next
-//    candidate.
+//    finds all intersections at once, and accepts candidates greedily in order. The others proceed to their
+//    next candidate.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -31,9 +30,9 @@ Edge edge_of(VertexId v, VertexId w) {
   return {std::min(v, w), std::max(v, w)};
 }
 
-/// A lid that is tried: what it closes, the ways to make it that are left, and the one that is tried now.
+/// A fill in progress: the holes that it fills, its candidates, and the current one.
 struct Attempt {
-  std::vector<std::size_t> holes;  ///< the first is the one round the others
+  std::vector<std::size_t> holes;  ///< the first one encloses the others
   std::vector<std::optional<Lid>> ways;
   std::size_t way = 0;
   const Lid& lid() const { return *ways[way]; }
@@ -42,7 +41,7 @@ struct Attempt {
 class HoleCloser {
  public:
   explicit HoleCloser(const CheckedMesh& mesh) : checked_(mesh), mesh_(mesh.mesh()), use_(mesh.use()) {
-    // Holes are the boundary loops; edges_ lists all edges that a fill must not create a second time.
+    // Holes are the boundary loops; edges_ contains all edges that a fill must not duplicate.
     for (BoundaryLoop& loop : find_boundary_loops(mesh_, use_)) out_.holes.push_back({std::move(loop)});
     for (FaceId f = 0; f < mesh_.face_count(); ++f) {
       const auto corners = mesh_.face(f);
@@ -57,7 +56,7 @@ class HoleCloser {
     // Rings before single holes: a disk over an outer loop would block the ring.
     for (std::size_t i = 0; i < out_.holes.size(); ++i) look_at(i);
     try_all(rings());
-    // Holes that no ring has closed.
+    // Holes not filled by a ring.
     std::vector<Attempt> alone;
     for (std::size_t i = 0; i < out_.holes.size(); ++i)
       if (views_[i] && !is_closed(i)) alone.push_back(attempt_for(i));
@@ -71,13 +70,13 @@ class HoleCloser {
  private:
   bool is_closed(std::size_t i) const { return out_.holes[i].state <= HoleState::closed_as_ring; }
 
-  /// Fills in the rim as its lid has to run, and how to see it.
+  /// Computes the loop in the direction of its fill, and its projection.
   void look_at(std::size_t i) {
     Hole& hole = out_.holes[i];
-    // The fill's faces pass the boundary edges in the opposite direction to the faces along the loop.
+    // The fill's faces traverse the boundary edges opposite to the faces along the loop.
     rims_.emplace_back(hole.loop.vertices.rbegin(), hole.loop.vertices.rend());
     views_.emplace_back();
-    // Each check that passes moves the state on: it always states why the hole is still open.
+    // Each check that passes advances the state, which thus always states why the hole is still open.
     if (!hole.loop.is_loop || !hole.loop.box.sizes().allFinite()) return;
     hole.state = HoleState::no_area;
     if (!spanning_corners(mesh_, rims_[i])) return;
@@ -85,7 +84,7 @@ class HoleCloser {
     views_[i] = lids::view_of(mesh_, rims_[i]);
   }
 
-  /// Returns an attempt for each flat hole that has flat holes in it which run the other way round.
+  /// Returns an attempt for each planar hole that contains planar holes of opposite orientation.
   std::vector<Attempt> rings() const {
     // Assign each hole to the smallest one around it.
     std::vector<std::vector<std::size_t>> inner(rims_.size());
@@ -96,7 +95,7 @@ class HoleCloser {
       if (inner[i].empty()) continue;
       std::vector<std::vector<VertexId>> holes;
       for (const std::size_t k : inner[i]) holes.push_back(rims_[k]);
-      // Connect the inner loops to the outer one by bridges; the result is one polygon that may visit
+      // Connect the inner loops to the outer one by bridges. The result is one polygon that may visit
       // vertices twice.
       const auto rim = lids::bridge_holes(mesh_, rims_[i], std::move(holes), *views_[i]);
       if (!rim) continue;
@@ -108,17 +107,18 @@ class HoleCloser {
     return out;
   }
 
-  /// Returns the smallest hole round a flat one, in its plane and running the other way.
+  /// Returns the smallest hole around a planar one, coplanar and of opposite orientation; nullopt if there is
+  /// none.
   std::optional<std::size_t> home_of(std::size_t i) const {
     if (!views_[i] || !out_.holes[i].loop.planar) return std::nullopt;
     const auto size = [&](std::size_t k) { return out_.holes[k].loop.box.diagonal().norm(); };
     std::optional<std::size_t> home;
     for (std::size_t k = 0; k < rims_.size(); ++k) {
-      // Swapped projections mean the same plane axis and opposite orientation.
+      // Swapped projections: the same axis and opposite orientation.
       const bool opposite = views_[k] && views_[i]->x == views_[k]->y && views_[i]->y == views_[k]->x;
       if (!opposite || !out_.holes[k].loop.planar || (home && size(*home) <= size(k))) continue;
-      // Exact tests: in the same plane, and inside the polygon. Boundary loops may touch, so one vertex
-      // decides only up to the later proof.
+      // Exact tests: coplanar, and inside the polygon. Boundary loops may touch, so the test of one vertex is
+      // preliminary; the final proof decides.
       if (is_planar(mesh_, rims_[i], *spanning_corners(mesh_, rims_[k])) &&
           lids::lies_inside(mesh_, rims_[k], rims_[i][0], *views_[k]))
         home = k;
@@ -126,7 +126,7 @@ class HoleCloser {
     return home;
   }
 
-  /// No second edge between two vertices: it would have four faces.
+  /// Returns a predicate that rejects second edges between two vertices: they would have four faces.
   lids::EdgeAllowed allowed() const {
     return [this](VertexId v, VertexId w) { return v != w && !edges_.contains(edge_of(v, w)); };
   }
@@ -134,7 +134,7 @@ class HoleCloser {
   Attempt attempt_for(std::size_t i) const {
     Attempt a;
     a.holes = {i};
-    // A planar polygon has the same area in any triangulation, so only curved loops are optimised.
+    // All triangulations of a planar polygon have the same area, so only non-planar loops are optimised.
     if (!out_.holes[i].loop.planar) a.ways.push_back(lids::least_area(mesh_, rims_[i], allowed()));
     a.ways.push_back(lids::cut_corners(mesh_, rims_[i], *views_[i], allowed()));
     // A triangle needs no extra vertex.
@@ -142,11 +142,11 @@ class HoleCloser {
     return a;
   }
 
-  /// Tries the candidates of each attempt, one after the other, until one is accepted or none is left.
+  /// Tries the candidates of each attempt in order until one is accepted or none is left.
   void try_all(std::vector<Attempt> attempts) {
     while (!attempts.empty()) {
-      // Skip candidates that do not exist or whose inner edges are taken by now. Every round advances each
-      // attempt, so the loop ends.
+      // Skip candidates that do not exist or whose inner edges are no longer free. Every round advances each
+      // attempt, so the loop terminates.
       for (Attempt& a : attempts)
         while (a.way < a.ways.size() && !(a.ways[a.way] && edges_are_free(a.lid()))) ++a.way;
       std::erase_if(attempts, [](const Attempt& a) { return a.way == a.ways.size(); });
@@ -154,9 +154,9 @@ class HoleCloser {
     }
   }
 
-  /// Returns the edges of a lid that join two vertices of its rim, without being a part of it.
+  /// Returns the edges of a fill that connect two vertices of its loop and are not part of the loop.
   static Edges inner_edges(const Lid& lid) {
-    // An edge of two triangles is an inner edge; one of the boundary loop occurs once. A bridge counts as
+    // An edge of two triangles is an inner edge; an edge of the boundary loop occurs once. A bridge counts as
     // inner. Spokes of a fan end at a new vertex and cannot coincide with existing edges.
     Edges once, twice;
     for (const auto& t : lid.triangles)
@@ -172,19 +172,19 @@ class HoleCloser {
     return std::none_of(inner.begin(), inner.end(), [&](const Edge& e) { return edges_.contains(e); });
   }
 
-  /// The intersections found for one candidate: with itself, with a face of the mesh, with other candidates.
+  /// The intersections of one candidate: with itself, with a face of the mesh, with other candidates.
   struct Meetings {
     bool itself = false;
     std::optional<FaceId> face;
     std::vector<std::size_t> lids;
   };
 
-  /// Adds the current candidates of all attempts at once, finds their intersections, and keeps the valid
-  /// ones. Of two that intersect, the earlier one is kept.
+  /// Adds the current candidates of all attempts at once, finds their intersections, and accepts the valid
+  /// ones. If two of them intersect, the earlier one is accepted.
   void try_round(std::vector<Attempt>& attempts) {
     // Pass 1: add the candidates of all attempts to a copy of the mesh.
     Mesh trial = out_.mesh;
-    std::vector<std::size_t> owner;  // of new faces: the attempt
+    std::vector<std::size_t> owner;  // for each new face: its attempt
     for (std::size_t i = 0; i < attempts.size(); ++i) {
       add(attempts[i].lid(), trial);
       owner.resize(trial.face_count() - out_.mesh.face_count(), i);
@@ -218,7 +218,7 @@ class HoleCloser {
     }
   }
 
-  /// The face in the way is of a lid: names that lid's hole.
+  /// The obstructing face belongs to a fill: reports the hole of that fill instead.
   void blame_lid(Hole& hole, FaceId face) const {
     hole.state = HoleState::meets_lid;
     for (std::size_t i = 0; i < out_.holes.size(); ++i)
@@ -235,12 +235,12 @@ class HoleCloser {
     const auto standing = static_cast<std::uint32_t>(out_.mesh.face_count());
     std::vector<Meetings> out(attempts);
     find_self_intersections(
-        // Pairs have f < g, so g is new if either is. Pairs of old faces are faults of the input.
+        // Pairs have f < g, so g is new if either is. Pairs of existing faces are faults of the input.
         trial, use, [&](FaceId, FaceId g) { return g >= standing; },
         [&](FaceId f, FaceId g) {
           Meetings& of_g = out[owner[g - standing]];
           if (f < standing) {
-            // The smallest face number is reported, whatever the order of the search.
+            // The smallest face number is reported, independent of the order of the search.
             of_g.face = of_g.face ? std::min(*of_g.face, f) : f;
           } else if (owner[f - standing] == owner[g - standing]) {
             of_g.itself = true;
@@ -254,7 +254,7 @@ class HoleCloser {
 
   static void add(const Lid& lid, Mesh& mesh) {
     const auto middle = static_cast<VertexId>(mesh.vertices.size());
-    // The fan's centre becomes a new vertex, which takes the place of kMiddle.
+    // The centre of a fan becomes a new vertex, which replaces kMiddle.
     if (lid.middle) mesh.vertices.push_back(*lid.middle);
     for (std::array<VertexId, 3> t : lid.triangles) {
       std::replace(t.begin(), t.end(), lids::kMiddle, middle);
@@ -277,9 +277,9 @@ class HoleCloser {
   const CheckedMesh& checked_;
   const Mesh& mesh_;
   const std::vector<FaceUse>& use_;
-  Edges edges_;                                      ///< those that faces have
-  std::vector<std::vector<VertexId>> rims_;          ///< (holes) as their lids have to run
-  std::vector<std::optional<lids::LidView>> views_;  ///< (holes) empty: it cannot be closed
+  Edges edges_;                                      ///< edges of existing faces
+  std::vector<std::vector<VertexId>> rims_;          ///< (holes) in the direction of the fill
+  std::vector<std::optional<lids::LidView>> views_;  ///< (holes) nullopt: cannot be filled
   ClosedHoles out_;
 };
 

@@ -11,13 +11,13 @@
 namespace lrb {
 namespace {
 
-/// Returns a vertex that a face names twice, kNull if there is none.
+/// Returns a vertex that a face lists twice, or kNull if there is none.
 VertexId repeated_corner(std::span<const VertexId> corners, std::vector<VertexId>& sorted) {
   if (corners.size() == 3) {  // nearly every face is a triangle
     if (corners[0] == corners[1] || corners[0] == corners[2]) return corners[0];
     return corners[1] == corners[2] ? corners[1] : kNull;
   }
-  // Polygons: sort a copy and look for equal neighbours, O(n log n).
+  // Polygons: sort a copy and find equal neighbours, O(n log n).
   sorted.assign(corners.begin(), corners.end());
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
@@ -35,7 +35,7 @@ FaceUse check_segment(const Mesh& mesh, FaceId f, MeshReport& report) {
 
 FaceUse check_polygon(const Mesh& mesh, FaceId f, MeshReport& report) {
   const auto corners = mesh.face(f);
-  // Exact: no three corners span a plane, so the face has no area.
+  // Exact: if no three corners span a plane, the face has no area.
   const auto triple = spanning_corners(mesh, corners);
   if (!triple) {
     note(report, MeshFault::zero_area_face, f);
@@ -52,7 +52,7 @@ FaceUse check_polygon(const Mesh& mesh, FaceId f, MeshReport& report) {
 FaceUse check_face(const Mesh& mesh, FaceId f, const std::vector<bool>& finite,
                    std::vector<VertexId>& scratch, MeshReport& report) {
   const auto corners = mesh.face(f);
-  // Indices first: everything below reads the vertices.
+  // Indices first: all checks below read the vertices.
   for (const VertexId v : corners) {
     if (v < mesh.vertices.size()) continue;
     note(report, MeshFault::index_out_of_range, f, v);
@@ -63,21 +63,21 @@ FaceUse check_face(const Mesh& mesh, FaceId f, const std::vector<bool>& finite,
   if (!std::all_of(corners.begin(), corners.end(), [&](VertexId v) { return finite[v]; }))
     return FaceUse::topology;
   const FaceUse use = mesh.dim == 2 ? check_segment(mesh, f, report) : check_polygon(mesh, f, report);
-  // A repeated corner makes triangles of the face degenerate, so it never counts as convex.
+  // A repeated corner makes triangles of the face degenerate, so the face never counts as convex.
   return twice == kNull ? use : std::min(use, FaceUse::area);
 }
 
-/// Sorts faces by their sorted corners: equal ones become neighbours, the earlier one first.
+/// Faces ordered by their sorted corners: equal faces become neighbours, in the order of their numbers.
 class CornerSets {
  public:
   CornerSets(const Mesh& mesh, const std::vector<FaceUse>& use) : offsets_(mesh.face_offsets) {
     sorted_ = mesh.face_vertices;
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
-      // The sorted corners identify the set, whatever the first corner and the direction.
+      // The sorted corners identify the set, independent of the first corner and the direction.
       std::sort(sorted_.begin() + offsets_[f], sorted_.begin() + offsets_[f + 1]);
       if (use[f] != FaceUse::nothing && offsets_[f] != offsets_[f + 1]) order_.push_back(f);
     }
-    // Ties by face number: the earliest of several equal faces comes first.
+    // Ties by face number: the first of several equal faces comes first.
     std::sort(order_.begin(), order_.end(), [&](FaceId f, FaceId g) {
       const auto a = set(f), b = set(g);
       const auto difference = std::lexicographical_compare_three_way(a.begin(), a.end(), b.begin(), b.end());
@@ -111,7 +111,7 @@ void note(MeshReport& report, MeshFault fault, std::uint32_t first, std::uint32_
   const std::array<std::uint32_t, 2> element = {first, second};
   auto& kept = finding.first;
   // Once `most` elements are kept, the first `most` are sorted and smaller ones are appended. At 2 `most`
-  // they are sorted and cut again: amortised O(log most) per element.
+  // they are sorted and truncated again: amortised O(log most) per element.
   const std::size_t most = report.kept;
   if (kept.size() >= most && !(element < kept[most - 1])) return;
   kept.push_back(element);
@@ -137,7 +137,7 @@ std::vector<FaceUse> check_faces(const Mesh& mesh, MeshReport& report) {
 void check_duplicates(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report) {
   const CornerSets sets(mesh, use);
   const auto& order = sets.order();
-  // Runs of equal sets: each later face is a duplicate of the first in its run.
+  // Runs of equal sets: each later face is a duplicate of the first one in its run.
   for (std::size_t first = 0, i = 1; i < order.size(); ++i) {
     if (sets.same(order[first], order[i]))
       note(report, MeshFault::duplicate_face, order[first], order[i]);
@@ -147,7 +147,7 @@ void check_duplicates(const Mesh& mesh, const std::vector<FaceUse>& use, MeshRep
 }
 
 void check_vertices(const Mesh& mesh, MeshReport& report) {
-  // Vertices that no face refers to. Those merged into others are not reported.
+  // Unused vertices. Those merged into others are not reported.
   std::vector<bool> used(mesh.vertices.size());
   for (const VertexId v : mesh.face_vertices)
     if (v < used.size()) used[v] = true;
@@ -161,13 +161,13 @@ void check_vertices(const Mesh& mesh, MeshReport& report) {
     if (!used[v]) note(report, MeshFault::unused_vertex, v);
     if (x[v].allFinite()) order.push_back(v);
   }
-  // Equal points become neighbours by lexicographic order, the smallest index first.
+  // Lexicographic order makes equal points neighbours, the smallest index first.
   std::sort(order.begin(), order.end(), [&](VertexId v, VertexId w) {
     for (int axis = 0; axis < 3; ++axis)
       if (x[v][axis] != x[w][axis]) return x[v][axis] < x[w][axis];
     return v < w;
   });
-  // Runs of equal points, as with faces. The comparison takes 0 and -0 as equal, as the sort does.
+  // Runs of equal points, as with faces. 0 and -0 are equal in the comparison, as in the sort.
   for (std::size_t first = 0, i = 1; i < order.size(); ++i) {
     if (x[order[first]] == x[order[i]])
       note(report, MeshFault::duplicate_vertex, order[first], order[i]);

@@ -1,7 +1,7 @@
 // Broad phase among the faces of one mesh: self-traversal of a bounding volume hierarchy.
-// 1. Usual meshes: a tree of axis-aligned boxes (face_pairs.hpp).
-// 2. Meshes whose boxes overlap too much, by large faces, high-valence vertices or a sample of the boxes: a
-//    tree whose nodes have an oriented box as well. The faces of a high-valence vertex form one subtree.
+// 1. Usual meshes: an AABB tree (face_pairs.hpp).
+// 2. Meshes whose AABBs overlap too much, because of large faces, high-valence vertices, or according to a
+//    sample: a tree whose nodes have an OBB as well. The faces of a high-valence vertex form one subtree.
 //    Pairs within it are found by their directions from that vertex (hubs.hpp), all other pairs by the
 //    traversal.
 #include "engine/mesh/face_pairs.hpp"
@@ -28,15 +28,15 @@ Box box_of_all(const std::vector<Box>& boxes) {
   return all;
 }
 
-/// Halves a range by the centres' longest extent.
+/// Splits a range at the median along the longest extent of the centres. Returns the index of the median.
 template <class Item, class Centre>
 std::size_t halve(std::vector<Item>& items, std::size_t first, std::size_t last, Centre centre) {
   Box spread;
   for (std::size_t i = first; i < last; ++i) spread.extend(centre(items[i]));
   int axis = 0;
-  // Halve before subtracting, against overflow.
+  // Divide before subtracting, to avoid overflow.
   (spread.max() / 2 - spread.min() / 2).maxCoeff(&axis);
-  // Median split: the depth is logarithmic whatever the distribution.
+  // Median split: the depth is logarithmic for any distribution.
   const std::size_t middle = first + (last - first) / 2;
   const auto at = [&](std::size_t i) { return items.begin() + static_cast<std::ptrdiff_t>(i); };
   std::nth_element(at(first), at(middle), at(last),
@@ -52,14 +52,14 @@ FacePairs::FacePairs(const Mesh& mesh, const std::vector<FaceUse>& use)
       is_large_(mesh.face_count(), false),
       cube_(box_of_all(boxes_)),
       hubs_(mesh, use) {
-  // Faces with very many corners get small triangles and a tree of their own (is_large()); 3D only.
+  // Faces with very many corners are triangulated into a tree of their own (is_large()); 3D only.
   bool any_large = false;
   for (FaceId f = 0; mesh.dim == 3 && f < mesh.face_count(); ++f) {
     is_large_[f] = use[f] >= FaceUse::area && mesh.face(f).size() > kFewNeighbours;
     any_large = any_large || is_large_[f];
   }
   const bool known_to_be_crowded = any_large || !hubs_.hubs.empty();
-  // Try axis-aligned boxes first unless they are known to fail. The sample below needs that tree.
+  // Try AABBs first unless they are known to fail. The sample below needs that tree.
   if (!known_to_be_crowded) tree_.emplace(boxes_);
   if (known_to_be_crowded || (mesh.dim == 3 && boxes_are_crowded())) {
     tree_.reset();
@@ -67,14 +67,14 @@ FacePairs::FacePairs(const Mesh& mesh, const std::vector<FaceUse>& use)
   }
 }
 
-/// Returns true if axis-aligned boxes overlap far more boxes than those of their neighbours, judged by a
-/// sample spread over the mesh. Long narrow faces close to each other have such boxes, and large faces close
-/// in front of each other.
+/// Returns true if AABBs overlap far more boxes than those of their neighbours, estimated from a sample
+/// across the mesh. This happens for long narrow faces close to each other, and for large faces close in
+/// front of each other.
 bool FacePairs::boxes_are_crowded() const {
   constexpr std::uint32_t kSamples = 256, kMost = 64;
   const auto faces = static_cast<std::uint32_t>(boxes_.size());
   if (faces <= kSamples) return false;
-  // Evenly spaced sample. Each count is cut off, so that the sample itself takes bounded time.
+  // Evenly spaced sample. Each count is limited, which bounds the time of the sample.
   std::uint64_t meeting = 0;
   for (std::uint32_t i = 0; i < kSamples; ++i)
     meeting +=
@@ -86,7 +86,7 @@ std::vector<FacePairs::Unit> FacePairs::units() const {
   std::vector<Unit> units;
   std::vector<bool> at_hub(boxes_.size(), false);
   for (std::uint32_t h = 0; h < hubs_.hubs.size(); ++h) {
-    // One unit per high-valence vertex, placed at the centre of all its faces.
+    // One unit per high-valence vertex, at the centre of all its faces.
     Box box;
     for (const FaceId f : hubs_.hubs[h].faces) {
       at_hub[f] = true;
@@ -94,7 +94,7 @@ std::vector<FacePairs::Unit> FacePairs::units() const {
     }
     if (!box.isEmpty()) units.push_back({box.min() / 2 + box.max() / 2, h, kNull});
   }
-  // One unit for each other face that takes part.
+  // One unit for each other usable face.
   for (FaceId f = 0; f < boxes_.size(); ++f)
     if (!at_hub[f] && !boxes_[f].isEmpty()) units.push_back({centre_of(f), kNull, f});
   return units;
@@ -113,22 +113,22 @@ std::uint32_t FacePairs::add_node() {
   return index;
 }
 
-/// Computes the boxes of a node, once all faces below it have been put in order.
+/// Computes the boxes of a node after all faces beneath it have been placed.
 void FacePairs::close_node(std::uint32_t index) {
   Node& node = nodes_[index];
   node.last = static_cast<std::uint32_t>(order_.size());
   std::vector<Eigen::Vector3d> points;
   for (std::uint32_t i = node.first; i < node.last; ++i) {
-    // All corners below the node, collected for each node: O(n log n) in total.
+    // All corners beneath the node, collected for each node: O(n log n) in total.
     node.box.extend(boxes_[order_[i]]);
     for (const VertexId v : mesh_.face(order_[i])) points.push_back(cube_(mesh_.vertices[v]));
   }
   node.slim = OrientedBox::about(points);
 }
 
-/// Parents before children, left before right.
+/// Builds a subtree in preorder. Returns its index.
 std::uint32_t FacePairs::build_units(std::vector<Unit>& units, std::size_t first, std::size_t last) {
-  // A hub on its own: a subtree whose inner pairs the traversal skips.
+  // The faces of one high-valence vertex: a subtree whose inner pairs the traversal skips.
   if (last - first == 1 && units[first].hub != kNull) {
     std::vector<FaceId> faces = hubs_.hubs[units[first].hub].faces;
     const std::uint32_t index = build_hub(faces, 0, faces.size());
@@ -139,12 +139,12 @@ std::uint32_t FacePairs::build_units(std::vector<Unit>& units, std::size_t first
   const auto is_small = [&](const Unit& u) { return u.hub == kNull && !is_large_[u.face]; };
   const auto begin = units.begin() + static_cast<std::ptrdiff_t>(first),
              end = units.begin() + static_cast<std::ptrdiff_t>(last);
-  // A leaf has one unit, or a few small faces. A large face is alone in its leaf, so that its own oriented
-  // box is tested.
+  // A leaf has one unit, or a few small faces. A large face is alone in its leaf, so that its own OBB is
+  // tested.
   if (last - first == 1 || (last - first <= kLeafFaces && std::all_of(begin, end, is_small))) {
     for (std::size_t i = first; i < last; ++i) order_.push_back(units[i].face);
   } else {
-    // The left child is built first and so follows its parent; only the right one needs an index.
+    // The left child is built first and thus follows its parent; only the right one needs an index.
     const std::size_t middle = halve(units, first, last, [](const Unit& u) { return u.centre; });
     build_units(units, first, middle);
     const std::uint32_t right = build_units(units, middle, last);
@@ -156,7 +156,7 @@ std::uint32_t FacePairs::build_units(std::vector<Unit>& units, std::size_t first
 
 std::uint32_t FacePairs::build_hub(std::vector<FaceId>& faces, std::size_t first, std::size_t last) {
   const std::uint32_t index = add_node();
-  // Same rule for leaves as in build_units().
+  // The rule for leaves is that of build_units().
   const bool is_leaf = last - first == 1 || (last - first <= kLeafFaces &&
                                              std::none_of(faces.begin() + static_cast<std::ptrdiff_t>(first),
                                                           faces.begin() + static_cast<std::ptrdiff_t>(last),
@@ -183,7 +183,7 @@ void FacePairs::for_each(const Visit& visit, Workers& workers) const {
     return;
   }
   if (nodes_.empty()) return;
-  // Pairs within a hub by direction; all others by traversing the tree against itself.
+  // Pairs at one high-valence vertex by direction; all others by traversing the tree against itself.
   for (const Hubs::Hub& hub : hubs_.hubs)
     for_each_pair_at(
         mesh_, hub, [&](FaceId f, FaceId g) { try_pair(f, g, visit); }, workers);
@@ -196,14 +196,14 @@ void FacePairs::try_pair(FaceId f, FaceId g, const Visit& visit) const {
 
 void FacePairs::within(std::uint32_t n, const Visit& visit, Workers& workers) const {
   const Node& node = nodes_[n];
-  // Found by for_each_pair_at() already.
+  // Handled by for_each_pair_at().
   if (node.of_one_hub) return;
   if (node.right == 0) {
     for (std::uint32_t i = node.first; i < node.last; ++i)
       for (std::uint32_t j = i + 1; j < node.last; ++j) try_pair(order_[i], order_[j], visit);
     return;
   }
-  // A pair lies in the left child, in the right child, or across: three disjoint tasks.
+  // A pair is in the left child, in the right child, or across: three disjoint tasks.
   const auto left_side = [&] { within(n + 1, visit, workers); };
   const auto right_side = [&] { within(node.right, visit, workers); };
   const auto across = [&] { between(n + 1, node.right, visit); };
@@ -219,8 +219,7 @@ void FacePairs::within(std::uint32_t n, const Visit& visit, Workers& workers) co
 void FacePairs::between(std::uint32_t m, std::uint32_t n, const Visit& visit) const {
   descend(
       nodes_, m, n,
-      // The cheap test first; separating axes of the oriented boxes (Gottschalk et al. 1996) only if it
-      // fails.
+      // The cheap test first; the separating axes of the OBBs (Gottschalk et al. 1996) only if it fails.
       [](const Node& a, const Node& b) { return !a.box.intersects(b.box) || surely_apart(a.slim, b.slim); },
       [&](const Node& a, const Node& b) {
         for (std::uint32_t i = a.first; i < a.last; ++i)

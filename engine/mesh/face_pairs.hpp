@@ -1,5 +1,5 @@
 #pragma once
-/// The pairs of a mesh's faces that may meet, without looking at all of them.
+/// Broad phase among the faces of one mesh: the pairs that may intersect, in less than quadratic time.
 
 #include <algorithm>
 #include <cstdint>
@@ -18,13 +18,13 @@
 
 namespace lrb {
 
-// Finds all pairs of boxes of one set that meet: descends a balanced tree of boxes against itself.
+// All pairs of intersecting boxes of one set: traversal of a balanced AABB tree against itself.
 
 using Box = Eigen::AlignedBox3d;
 
-/// Descends two nodes of a tree and calls at_leaves(a, b) for every two leaves, one below node m and one
-/// below n, except below nodes of which apart(a, b) says that they hold no pair. A node has the items [first,
-/// last); `right` is its right child (0: it is a leaf), and its left child follows it.
+/// Descends two nodes of a tree and calls at_leaves(a, b) for each pair of leaves beneath m and n, and prunes
+/// pairs of nodes for which apart(a, b) is true. A node has the items [first, last); `right` is its right
+/// child (0: leaf), and its left child follows it.
 template <class Node, class Apart, class AtLeaves>
 void descend(const std::vector<Node>& nodes, std::uint32_t m, std::uint32_t n, const Apart& apart,
              const AtLeaves& at_leaves) {
@@ -34,7 +34,7 @@ void descend(const std::vector<Node>& nodes, std::uint32_t m, std::uint32_t n, c
   if (a_is_leaf && b_is_leaf) {
     at_leaves(a, b);
   } else if (b_is_leaf || (!a_is_leaf && a.last - a.first >= b.last - b.first)) {
-    // Descends the node with more items, so that both reach their leaves at about the same depth.
+    // Descend the node with more items, so that both reach their leaves at about the same depth.
     descend(nodes, m + 1, n, apart, at_leaves);
     descend(nodes, a.right, n, apart, at_leaves);
   } else {
@@ -45,14 +45,14 @@ void descend(const std::vector<Node>& nodes, std::uint32_t m, std::uint32_t n, c
 
 class BoxTree {
  public:
-  /// Builds the tree. Leaves out empty boxes, which meet nothing.
+  /// Builds the tree. Empty boxes intersect nothing and are omitted.
   explicit BoxTree(const std::vector<Box>& boxes) : boxes_(boxes) {
     for (std::uint32_t i = 0; i < boxes.size(); ++i)
       if (!boxes[i].isEmpty()) items_.push_back(i);
     if (!items_.empty()) build(0, static_cast<std::uint32_t>(items_.size()));
   }
 
-  /// Returns how many other boxes the i-th one meets, counted as far as `most`.
+  /// Returns the number of other boxes that intersect the i-th one. Stops counting at about `most`.
   std::uint32_t count_meeting(std::uint32_t i, std::uint32_t most) const {
     std::uint32_t count = 0;
     std::vector<std::uint32_t> stack;
@@ -73,12 +73,12 @@ class BoxTree {
     return count;
   }
 
-  /// Calls visit(i, j), i < j, once for every two boxes that meet (closed sets), in no order to rely on.
+  /// Calls visit(i, j), i < j, once for each pair of intersecting boxes (closed sets), in unspecified order.
   template <class Visit>
   void for_each_pair(Visit&& visit) const {
     if (!nodes_.empty()) within(0, visit);
   }
-  /// Does the same, with calls from several threads at once.
+  /// The same, with concurrent calls from several threads.
   template <class Visit>
   void for_each_pair(Visit&& visit, Workers& workers) const {
     if (!nodes_.empty()) within_shared(0, visit, workers);
@@ -90,7 +90,7 @@ class BoxTree {
   struct Node {
     Box box;
     std::uint32_t first, last;  ///< items
-    std::uint32_t right;        ///< the right child; the left one follows its parent. 0: leaf
+    std::uint32_t right;        ///< right child; the left one follows its parent. 0: leaf
   };
 
   std::uint32_t build(std::uint32_t first, std::uint32_t last) {
@@ -105,7 +105,7 @@ class BoxTree {
     const std::uint32_t middle = first + (last - first) / 2;
     std::nth_element(items_.begin() + first, items_.begin() + middle, items_.begin() + last,
                      [&](std::uint32_t i, std::uint32_t j) {
-                       // Halve before adding, against overflow.
+                       // Divide before adding, to avoid overflow.
                        const double a = boxes_[i].min()[axis] / 2 + boxes_[i].max()[axis] / 2;
                        const double b = boxes_[j].min()[axis] / 2 + boxes_[j].max()[axis] / 2;
                        return a != b ? a < b : i < j;
@@ -161,30 +161,32 @@ class BoxTree {
   std::vector<Node> nodes_;
 };
 
-/// Takes about n log n steps for n faces, plus the number of pairs that do meet.
+/// The pairs of faces that may intersect, in about O(n log n) time for n faces, plus the number of pairs
+/// found.
 ///
-/// Most meshes need no more than a tree of boxes along the axes. Where thousands of faces meet in one vertex,
-/// where one face has thousands of corners, or where large faces lie close in front of each other, very many
-/// such boxes overlap. Then the faces of a hub are compared by their
-/// directions from it (hubs.hpp), and all others in a tree whose nodes have a box that is turned to fit as
-/// well: needles from two apexes to a common ring overlap in boxes along the axes, and do not in turned ones.
+/// An AABB tree is sufficient for most meshes. Very many AABBs overlap if thousands of faces share one
+/// vertex, if one face has thousands of corners, or if large faces are close in front of each other. Then the
+/// faces of a high-valence vertex are compared by their directions from it (hubs.hpp), and all others in a
+/// tree whose nodes have an OBB as well: for example, needles from two apexes to a common ring overlap as
+/// AABBs, but not as OBBs.
 class FacePairs {
  public:
   using Visit = std::function<void(FaceId, FaceId)>;
 
-  /// Faces that are not at least FaceUse::area are left out.
+  /// Omits faces with a use below FaceUse::area.
   FacePairs(const Mesh& mesh, const std::vector<FaceUse>& use);
   FacePairs(const FacePairs&) = delete;
   FacePairs& operator=(const FacePairs&) = delete;
 
-  /// Calls visit(f, g), f < g, once for every two faces whose boxes along the axes meet, but for pairs that
-  /// are proved to have nothing in common except perhaps one corner by index. In no order to rely on, and
-  /// from several threads at once if `workers` has them.
+  /// Calls visit(f, g), f < g, once for each pair of faces with intersecting AABBs, except for pairs proven
+  /// to share nothing but perhaps one corner by index. In unspecified order, and concurrently if `workers`
+  /// has several threads.
   void for_each(const Visit& visit, Workers& workers) const;
 
-  const std::vector<Box>& boxes() const { return boxes_; }  ///< (|F|) empty for faces left out
+  const std::vector<Box>& boxes() const { return boxes_; }  ///< (|F|) empty for omitted faces
   const UnitCube& cube() const { return cube_; }
-  /// Returns true if a face has so many corners that it should be searched through a tree of its own.
+  /// Returns true if a face has very many corners (more than kFewNeighbours) and thus needs a tree of its own
+  /// triangles.
   bool is_large(FaceId f) const { return is_large_[f]; }
 
  private:
@@ -192,10 +194,10 @@ class FacePairs {
     Box box;
     OrientedBox slim;
     std::uint32_t first = 0, last = 0;  ///< into order_
-    std::uint32_t right = 0;            ///< child; the left one follows its parent. 0: leaf
-    bool of_one_hub = false;            ///< pairs within the hub are found by other means
+    std::uint32_t right = 0;            ///< right child; the left one follows its parent. 0: leaf
+    bool of_one_hub = false;            ///< its inner pairs are found by for_each_pair_at()
   };
-  /// What stays together in the tree: the faces of a hub, or one face.
+  /// An indivisible item of the tree: the faces of a high-valence vertex, or one face.
   struct Unit {
     Eigen::Vector3d centre;
     std::uint32_t hub;  ///< kNull: one face
@@ -220,9 +222,9 @@ class FacePairs {
   std::vector<bool> is_large_;  ///< (|F|)
   UnitCube cube_;
   Hubs hubs_;
-  std::vector<FaceId> order_;  ///< by leaves of the tree
+  std::vector<FaceId> order_;  ///< in the order of the tree's leaves
   std::vector<Node> nodes_;
-  std::optional<BoxTree> tree_;  ///< in place of the nodes, where boxes along the axes are enough
+  std::optional<BoxTree> tree_;  ///< replaces the nodes if AABBs are sufficient
 };
 
 }  // namespace lrb

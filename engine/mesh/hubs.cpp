@@ -12,10 +12,10 @@
 namespace lrb {
 namespace {
 
-/// The box of all directions in which a convex face lies from its corner v: an arc of at most half a turn
-/// between the directions to the neighbouring corners. At chord length c it is nowhere farther from its chord
-/// than 1 - sqrt(1 - c^2 / 4), which is at most c^2 / 4. A coordinate of a computed direction is off by less
-/// than 2^-50: differences of doubles and the scaling to length 1 are relative errors of a few 2^-53.
+/// Returns a box of all directions from corner v to points of a convex face: an arc of at most half a circle
+/// between the directions to the adjacent corners. For chord length c the distance between arc and chord is
+/// at most 1 - sqrt(1 - c^2 / 4) <= c^2 / 4. A coordinate of a computed direction has an error below 2^-50:
+/// differences of doubles and the normalisation have relative errors of a few 2^-53.
 Box directions(const Mesh& mesh, FaceId f, VertexId v) {
   constexpr double kRoom = 0x1p-45;
   const auto corners = mesh.face(f);
@@ -25,7 +25,8 @@ Box directions(const Mesh& mesh, FaceId f, VertexId v) {
   // Directions to both neighbours of v in the face: the ends of the arc.
   const Eigen::Vector3d p = (mesh.vertices[corners[(at + 1) % n]] - centre).stableNormalized(),
                         q = (mesh.vertices[corners[(at + n - 1) % n]] - centre).stableNormalized();
-  const auto is_direction = [](const Eigen::Vector3d& d) {  // neither overflow nor a neighbour in v's place
+  const auto is_direction = [](const Eigen::Vector3d& d) {  // excludes overflow and neighbours that coincide
+                                                            // with v
     return d.allFinite() && std::abs(d.squaredNorm() - 1) < 0x1p-40;
   };
   // No usable direction: a box around the entire sphere, which overlaps all others.
@@ -42,7 +43,7 @@ Box directions(const Mesh& mesh, FaceId f, VertexId v) {
 
 Hubs::Hubs(const Mesh& mesh, const std::vector<FaceUse>& use) {
   if (mesh.dim == 2) return;
-  // Valence of each vertex among convex faces. For others the argument about arcs does not hold.
+  // Valence of each vertex among convex faces. The argument about arcs does not apply to others.
   std::vector<std::uint32_t> degree(mesh.vertices.size(), 0);
   for (FaceId f = 0; f < mesh.face_count(); ++f)
     if (use[f] == FaceUse::convex)
@@ -56,7 +57,7 @@ Hubs::Hubs(const Mesh& mesh, const std::vector<FaceUse>& use) {
   if (hubs.empty()) return;
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     if (use[f] != FaceUse::convex) continue;
-    // Each face goes to the hub of highest valence among its corners, where most of its pairs are.
+    // Each face is assigned to its corner of highest valence, where most of its pairs are.
     VertexId best = kNull;
     for (const VertexId v : mesh.face(f))
       if (degree[v] > kFewNeighbours &&
@@ -68,7 +69,7 @@ Hubs::Hubs(const Mesh& mesh, const std::vector<FaceUse>& use) {
 
 void for_each_pair_at(const Mesh& mesh, const Hubs::Hub& hub,
                       const std::function<void(FaceId, FaceId)>& visit, Workers& workers) {
-  // Pairs of arcs by a tree of boxes on the unit sphere.
+  // Pairs of arcs by an AABB tree of boxes on the unit sphere.
   std::vector<Box> arcs;
   arcs.reserve(hub.faces.size());
   for (const FaceId f : hub.faces) arcs.push_back(directions(mesh, f, hub.vertex));
@@ -76,16 +77,16 @@ void for_each_pair_at(const Mesh& mesh, const Hubs::Hub& hub,
                               workers);
 }
 
-// Oriented boxes along the principal axes of points, and the separating axis test of two of them (Gottschalk,
-// Lin and Manocha 1996, "OBBTree"), with room for rounding so that "apart" is proven.
+// Oriented boxes along the principal axes of points, and their separating axis test (Gottschalk, Lin and
+// Manocha 1996, "OBBTree"), with a margin for rounding, so that a separation is proven.
 
 namespace {
 
-/// Room for rounding, in the unit cube. Scaled positions are off by 2^-52; axes that the eigenvalue solver
-/// found are perpendicular to within a few units in the last place; a sum of three products of numbers below
-/// 2 is off by less than 2^-49. Together that is below 2^-46: a position is within kRoom of its box, and each
-/// value that surely_apart() computes is within kRoom of the exact one. For nearly parallel axes a cross
-/// product has hardly any length, and then nothing exceeds the room.
+/// Margin for rounding, in the unit cube. Scaled positions have errors of 2^-52, the axes of the eigenvalue
+/// solver are perpendicular to a few units in the last place, and a sum of three products of numbers below 2
+/// has an error below 2^-49. In total that is below 2^-46: a position is within kRoom of its box, and each
+/// value computed by surely_apart() is within kRoom of the exact one. For nearly parallel axes the cross
+/// product is close to 0, and then nothing exceeds the margin.
 constexpr double kRoom = 0x1p-40;
 
 int exponent_of(double x) {
@@ -102,9 +103,9 @@ Eigen::Matrix3d principal_axes(std::span<const Eigen::Vector3d> points) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& p : points) covariance += weight * (p - mean) * (p - mean).transpose();
   const Eigen::Matrix3d axes = eigenvectors_of_symmetric(covariance).transpose();
-  // The axes must be orthonormal to rounding. If the solver failed, fall back to the coordinate axes.
+  // The axes must be orthonormal to rounding. If the solver failed, use the coordinate axes.
   const double defect = (axes * axes.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  return defect < 0x1p-48 ? axes : Eigen::Matrix3d::Identity();  // not a number: false
+  return defect < 0x1p-48 ? axes : Eigen::Matrix3d::Identity();  // NaN: false
 }
 
 }  // namespace
@@ -153,8 +154,8 @@ bool surely_apart(const OrientedBox& a, const OrientedBox& b) {
     if (std::abs(seen_by_a[i]) > a.half[i] + size.row(i).dot(b.half) + kRoom) return true;
     if (std::abs(seen_by_b[i]) > b.half[i] + size.col(i).dot(a.half) + kRoom) return true;
   }
-  // Cross products of an axis of a with one of b: 9 axes. They are not normalised, which only makes the test
-  // more cautious.
+  // Cross products of an axis of a and one of b: 9 axes. Without normalisation, which only makes the test
+  // more conservative.
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     for (int m = 0; m < 3; ++m) {  // the direction a.axes[i] x b.axes[m], in coordinates of a
@@ -174,17 +175,17 @@ TriangleTree::TriangleTree(const Mesh& mesh, const UnitCube& cube, std::vector<T
   build(mesh, cube, 0, static_cast<std::uint32_t>(triangles_.size()), leaf_size);
 }
 
-/// Parents before children, left before right.
+/// Builds a subtree in preorder. Returns its index.
 std::uint32_t TriangleTree::build(const Mesh& mesh, const UnitCube& cube, std::uint32_t first,
                                   std::uint32_t last, std::uint32_t leaf_size) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
-  // Fit an oriented box to the corners of all triangles below the node.
+  // Fit an oriented box to the corners of all triangles beneath the node.
   std::vector<Eigen::Vector3d> points;
   for (std::uint32_t i = first; i < last; ++i)
     for (const VertexId v : triangles_[i]) points.push_back(cube(mesh.vertices[v]));
   nodes_.push_back({OrientedBox::about(points), first, last, 0});
   if (last - first <= leaf_size) return index;
-  // Halve it along its own longest axis.
+  // Split it along its own longest axis.
   int axis = 0;
   nodes_[index].box.half.maxCoeff(&axis);
   const Eigen::Vector3d along = nodes_[index].box.axes.row(axis);

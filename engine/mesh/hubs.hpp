@@ -1,5 +1,5 @@
 #pragma once
-/// Vertices in which very many faces meet.
+/// High-valence vertices, and bounding volumes for meshes that contain them.
 
 #include <array>
 #include <cstdint>
@@ -16,11 +16,11 @@
 
 namespace lrb {
 
-/// More faces at a vertex than this, or more corners of a face, and comparing all with all takes too long.
+/// Maximum number of faces at a vertex, or of corners of a face, for comparing all pairs of them.
 inline constexpr std::uint32_t kFewNeighbours = 64;
 
-/// The hubs of a mesh in space: vertices with more than kFewNeighbours faces that are planar and convex. Each
-/// such face belongs to at most one hub, that with the most faces (then the smallest number).
+/// The hubs of a 3D mesh: vertices with more than kFewNeighbours planar convex faces. Each such face belongs
+/// to at most one hub, the one with the most faces (ties: smallest number).
 struct Hubs {
   struct Hub {
     VertexId vertex;
@@ -31,22 +31,22 @@ struct Hubs {
   Hubs(const Mesh& mesh, const std::vector<FaceUse>& use);
 };
 
-/// Calls visit(f, g), f < g, for all pairs of a hub's faces that may have more in common than the hub, and
-/// for a few others; from several threads at once if `workers` has them.
+/// Calls visit(f, g), f < g, for all pairs of a hub's faces that may share more than the hub, and for a few
+/// others; concurrently if `workers` has several threads.
 ///
-/// Two convex faces with a corner v in common that meet in another point x, too, have the whole way from v to
-/// x in common. So they do exactly if the arcs meet that they cut out of a small sphere about v, and boxes of
-/// these arcs tell nearly all pairs apart.
+/// If two convex faces share a corner v and another point x, they share the segment from v to x. They do so
+/// if and only if the arcs in which they intersect a small sphere around v intersect. Boxes of these arcs
+/// separate nearly all other pairs.
 void for_each_pair_at(const Mesh& mesh, const Hubs::Hub& hub,
                       const std::function<void(FaceId, FaceId)>& visit, Workers& workers);
 
-// Boxes that are turned to fit: for needles and flat pieces, whose boxes along the axes are mostly empty.
+// Oriented boxes, for needles and flat pieces, whose AABBs are mostly empty.
 
-/// Positions moved and scaled so that all of them lie in the cube [-1, 1]^3.
+/// Maps positions to the cube [-1, 1]^3 by translation and scaling.
 ///
-/// The scales are powers of two. The first one is exact but for coordinates that are smaller than the largest
-/// one by a factor of 2^1000 and lose less than 2^-1074. The difference from the middle is rounded once,
-/// relative to itself, so that a scaled position is off by less than 2^-52 on each axis.
+/// The scales are powers of two. The first one is exact except for coordinates smaller than the largest one
+/// by a factor of 2^1000, which lose less than 2^-1074. The difference from the centre is rounded once,
+/// relative to itself, so a scaled position has an error below 2^-52 on each axis.
 class UnitCube {
  public:
   explicit UnitCube(const Eigen::AlignedBox3d& box);
@@ -61,35 +61,36 @@ class UnitCube {
   };
 
   Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
-  Scale first_, last_;  ///< before the middle is subtracted, and after
+  Scale first_, last_;  ///< before and after the subtraction of the centre
 };
 
-/// A box along three axes of its own, in the unit cube.
+/// An oriented box in the unit cube.
 struct OrientedBox {
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< rows, of length 1 and perpendicular to rounding
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< rows, of unit length and perpendicular up to
+                                                       ///< rounding
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();    ///< in coordinates of the cube
-  Eigen::Vector3d half = Eigen::Vector3d::Zero();      ///< half the sizes, with room for rounding
+  Eigen::Vector3d half = Eigen::Vector3d::Zero();      ///< half extents, with a margin for rounding
 
-  /// Fits a box to points of the unit cube (at least one), along their principal axes.
+  /// Fits a box along the principal axes of at least one point of the unit cube.
   static OrientedBox about(std::span<const Eigen::Vector3d> points);
 };
 
-/// Returns true if what one box was fitted to has no point in common with what the other was fitted to: some
-/// direction separates the boxes by more than rounding can account for. False proves nothing.
+/// Returns true if the point sets of two boxes are proven disjoint: some direction separates the boxes by
+/// more than rounding. False proves nothing.
 bool surely_apart(const OrientedBox& a, const OrientedBox& b);
 
-// The triangles of one face with very many corners, in a tree of boxes that are turned to fit.
+// The triangles of one face with very many corners, in a tree of oriented boxes.
 
 class TriangleTree {
  public:
   using Triangle = std::array<VertexId, 3>;
 
-  /// Builds a tree over at least one triangle; `cube` scales the mesh's vertices. Leaves hold up to
-  /// `leaf_size`.
+  /// Builds a tree over at least one triangle; `cube` scales the mesh's vertices. Leaves have up to
+  /// `leaf_size` triangles.
   TriangleTree(const Mesh& mesh, const UnitCube& cube, std::vector<Triangle> triangles,
                std::uint32_t leaf_size);
 
-  /// Returns true if test(s, t) holds for a triangle s of one tree and t of the other. Does not call it for
+  /// Returns true if test(s, t) is true for a triangle s of one tree and t of the other. Does not call it for
   /// triangles that are surely apart.
   template <class Test>
   static bool any_pair(const TriangleTree& a, const TriangleTree& b, Test& test) {
@@ -100,7 +101,7 @@ class TriangleTree {
   struct Node {
     OrientedBox box;
     std::uint32_t first = 0, last = 0;  ///< into triangles_
-    std::uint32_t right = 0;            ///< child; the left one follows its parent. 0: leaf
+    std::uint32_t right = 0;            ///< right child; the left one follows its parent. 0: leaf
   };
 
   std::uint32_t build(const Mesh& mesh, const UnitCube& cube, std::uint32_t first, std::uint32_t last,

@@ -1,8 +1,8 @@
 // Merging of coincident vertices along open edges:
-// 1. Number the different positions of vertices. Sides of faces are sorted by the positions of their ends.
+// 1. Number the distinct positions of vertices. Sort the sides of faces by the positions of their ends.
 // 2. A side is open if no other side at the same positions has the same (merged) vertices.
 // 3. Merge the ends of open sides that match one to one in opposite directions, until nothing changes.
-// 4. Then merge all open sides at each position once. If that changed anything, go back to step 3.
+// 4. Then merge all open sides at each position once. If that changed anything, return to step 3.
 // 5. Replace each merged vertex by the smallest of its set.
 #include <algorithm>
 #include <array>
@@ -16,11 +16,11 @@
 namespace lrb {
 namespace {
 
-/// A side of a face (2D: an end of a segment), by the places of its ends and by its vertices there.
+/// A side of a face (2D: an end of a segment), by the positions of its ends and by its vertices there.
 struct PlacedSide {
-  std::array<std::uint32_t, 2> place;  ///< smaller, larger (2D: the same twice)
-  std::array<VertexId, 2> vertex;      ///< at the one, at the other
-  bool forward;                        ///< it runs from the first to the second (2D: it leaves the place)
+  std::array<std::uint32_t, 2> place;  ///< smaller, larger position (2D: the same twice)
+  std::array<VertexId, 2> vertex;      ///< vertices at these positions
+  bool forward;  ///< runs from the first to the second (2D: the segment starts at the position)
 };
 
 class CornerJoiner {
@@ -31,13 +31,13 @@ class CornerJoiner {
     find_places();
     for (FaceId f = 0; f < mesh_.face_count(); ++f) add_sides(f);
     out_.before = out_.after = static_cast<std::uint32_t>(std::count(used_.begin(), used_.end(), true));
-    // All vertices have different positions: nothing can be merged.
+    // All vertices have distinct positions: nothing can be merged.
     if (places_ == mesh_.vertices.size()) return out_;
     std::sort(sides_.begin(), sides_.end(),
               [](const PlacedSide& a, const PlacedSide& b) { return a.place < b.place; });
     out_.open_before = count_open();
-    // Pairs to a fixed point first, since each merge may make further sides unambiguous. Each round merges
-    // sets, so this ends.
+    // Pairs to a fixed point first, because each merge may make further sides unambiguous. Each round merges
+    // sets, so the loop terminates.
     do {
       while (join_groups(true)) {
       }
@@ -48,7 +48,7 @@ class CornerJoiner {
   }
 
  private:
-  /// The vertices at a side's ends, as joined so far, and its index.
+  /// The representatives of the vertices at a side's ends, and its index.
   using NamedSide = std::pair<std::array<std::uint32_t, 2>, std::size_t>;
 
   void find_places() {
@@ -71,7 +71,7 @@ class CornerJoiner {
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const VertexId v = corners[i], w = corners[(i + 1) % corners.size()];
       used_[v] = true;
-      // Sides between vertices in one position have no length and are skipped.
+      // Sides between coincident vertices have no length and are skipped.
       const std::uint32_t p = place_[v], q = place_[w];
       if (mesh_.dim == 2)
         sides_.push_back({{p, p}, {v, v}, i == 0});
@@ -80,8 +80,8 @@ class CornerJoiner {
     }
   }
 
-  /// Calls visit(open) for each place of sides: those that share their vertices, as joined so far, with no
-  /// other side there.
+  /// Calls visit(open) for each pair of positions with sides. open: the sides whose (merged) vertices no
+  /// other side there shares.
   template <class Visit>
   void for_each_place(Visit visit) {
     std::vector<NamedSide> there;
@@ -89,12 +89,12 @@ class CornerJoiner {
     for (std::size_t i = 0, end = 0; i < sides_.size(); i = end) {
       there.clear();
       for (; end < sides_.size() && sides_[end].place == sides_[i].place; ++end)
-        // Names change as sets are merged, so they are looked up at each visit.
+        // Representatives change as sets are merged, so they are looked up at each visit.
         there.push_back({{sets_.leader(sides_[end].vertex[0]), sets_.leader(sides_[end].vertex[1])}, end});
       std::sort(there.begin(), there.end());
       open.clear();
       for (std::size_t k = 0; k < there.size(); ++k)
-        // Open: the only side with these two vertices at this place.
+        // Open: the only side with these two vertices at these positions.
         if ((k == 0 || there[k - 1].first != there[k].first) &&
             (k + 1 == there.size() || there[k + 1].first != there[k].first))
           open.push_back(&sides_[there[k].second]);
@@ -108,8 +108,8 @@ class CornerJoiner {
     return static_cast<std::uint32_t>(count);
   }
 
-  /// Joins the open sides of each place: only where there are two in opposite directions, or all. Returns
-  /// true if any were joined.
+  /// Merges the open sides at each pair of positions: if only_pairs, only where there are exactly two in
+  /// opposite directions. Returns true if any were merged.
   bool join_groups(bool only_pairs) {
     bool any = false;
     for_each_place([&](const std::vector<const PlacedSide*>& open) {
@@ -127,16 +127,16 @@ class CornerJoiner {
       if (can_be_used(f))
         for (std::uint32_t i = mesh_.face_offsets[f]; i < mesh_.face_offsets[f + 1]; ++i)
           mesh_.face_vertices[i] = VertexId(sets_.leader(mesh_.face_vertices[i]));
-    // Vertices that are not the leader of their set are no longer referred to.
+    // Vertices that do not represent their set are no longer referenced.
     for (VertexId v = 0; v < used_.size(); ++v)
       if (used_[v] && sets_.leader(v) != v) mesh_.joined.push_back(v);
     out_.after = out_.before - static_cast<std::uint32_t>(mesh_.joined.size());
   }
 
   Mesh& mesh_;
-  DisjointSets sets_;  ///< of vertices that have become one
+  DisjointSets sets_;  ///< sets of merged vertices
   std::vector<bool> used_;
-  std::vector<VertexId> place_;  ///< (|V|)
+  std::vector<VertexId> place_;  ///< (|V|) number of the position
   std::size_t places_ = 0;
   std::vector<PlacedSide> sides_;
   JoinedCorners out_;

@@ -1,7 +1,7 @@
-// Triangulations of a polygon in space, seen in a projection along one axis:
+// Triangulations of a polygon in 3D, in a projection along one axis:
 // 1. cut_corners(): ear clipping (Meisters 1975), best-shaped ear first, with exact orientation tests.
 // 2. least_area(): minimum-area triangulation by dynamic programming (Klincsek 1980), O(n^3).
-// 3. fan_about_middle(): a fan about the centroid of the vertices.
+// 3. fan_about_middle(): a fan around the centroid of the vertices.
 // 4. bridge_holes(): merges holes into the outer polygon along the shortest visible bridges, for ear
 //    clipping.
 #include "engine/mesh/lid_triangles.hpp"
@@ -39,11 +39,11 @@ class CornerCutter {
 
   std::optional<Lid> run() {
     Lid lid;
-    // Cut the best ear. Values are cached: cutting an ear changes the triangles of its two neighbours only.
+    // Cut the best ear. Values are cached: cutting an ear changes only the triangles of its two neighbours.
     while (rim_.size() > 3) {
       std::size_t best = find_best();
       // No cached ear is left. Vertices that blocked others may be gone, so evaluate all once more.
-      if (worth_[best] <= 0) {  // what was in the way may have been cut off
+      if (worth_[best] <= 0) {
         std::fill(worth_.begin(), worth_.end(), kUnknown);
         best = find_best();
         if (worth_[best] <= 0) return std::nullopt;
@@ -51,7 +51,7 @@ class CornerCutter {
       lid.triangles.push_back({at(best, -1), rim_[best], at(best, +1)});
       erase(best);
     }
-    // The last triangle must be oriented as the rest.
+    // The last triangle must have the orientation of the others.
     if (turn(mesh_, view_, rim_[0], rim_[1], rim_[2]) <= 0) return std::nullopt;
     lid.triangles.push_back({rim_[0], rim_[1], rim_[2]});
     return lid;
@@ -65,7 +65,7 @@ class CornerCutter {
   }
 
   void erase(std::size_t i) {
-    // The diagonal has changed the angles at both neighbours.
+    // The new diagonal changes the angles at both neighbours.
     rim_.erase(rim_.begin() + static_cast<std::ptrdiff_t>(i));
     worth_.erase(worth_.begin() + static_cast<std::ptrdiff_t>(i));
     worth_[i % rim_.size()] = worth_[(i + rim_.size() - 1) % rim_.size()] = kUnknown;
@@ -77,9 +77,9 @@ class CornerCutter {
     return static_cast<std::size_t>(std::max_element(worth_.begin(), worth_.end()) - worth_.begin());
   }
 
-  /// Returns 0 for a corner that cannot be cut off, else how good its triangle is.
+  /// Returns the quality of the ear's triangle, or 0 if the corner cannot be cut off.
   double worth(std::size_t i) const {
-    // Not an ear: a reflex or straight corner, or a diagonal that may not be added.
+    // Not an ear: a reflex or straight corner, or a diagonal that is not allowed.
     const VertexId a = at(i, -1), b = rim_[i], c = at(i, +1);
     if (a == c || turn(mesh_, view_, a, b, c) <= 0 || (rim_.size() > 3 && !allowed_(a, c))) return 0;
     // Not an ear: another vertex is in the closed triangle. A second visit of a corner (end of a bridge) is
@@ -89,23 +89,23 @@ class CornerCutter {
           turn(mesh_, view_, b, c, v) >= 0 && turn(mesh_, view_, c, a, v) >= 0)
         return 0;
     const auto& x = mesh_.vertices;
-    // Shape: height over the longest edge, 0 for needles, 0.87 for equilateral triangles.
+    // Shape: height divided by the longest edge, 0 for needles, 0.87 for equilateral triangles.
     const double longest = std::max({(x[a] - x[b]).norm(), (x[b] - x[c]).norm(), (x[c] - x[a]).norm()});
     const double area = (x[b] - x[a]).cross(x[c] - x[a]).norm();
     const double shape = area / longest / longest;
-    // An ear is proven by exact tests, so it never counts as impossible for numerical reasons.
+    // Ears are proven by exact tests, so numerical errors must not exclude one.
     return std::isfinite(shape) && shape > 0 ? shape : std::numeric_limits<double>::min();
   }
 
   const Mesh& mesh_;
   const LidView& view_;
   const EdgeAllowed& allowed_;
-  std::vector<VertexId> rim_;  ///< what is left
+  std::vector<VertexId> rim_;  ///< the remaining polygon
   std::vector<double> worth_;
 };
 
-/// Returns true if the open segment from a to b passes through or touches the closed one from c to d, which
-/// may share ends with it.
+/// Returns true if the open segment from a to b crosses or touches the closed one from c to d, which may
+/// share ends with it.
 bool is_blocked(const Mesh& mesh, const LidView& view, VertexId a, VertexId b, VertexId c, VertexId d) {
   // An end of cd in the interior of ab counts as touching.
   const auto between = [&](VertexId v) {
@@ -115,7 +115,7 @@ bool is_blocked(const Mesh& mesh, const LidView& view, VertexId a, VertexId b, V
     return (x[v][k] > std::min(x[a][k], x[b][k])) && (x[v][k] < std::max(x[a][k], x[b][k]));
   };
   if (between(c) || between(d)) return true;
-  // A common end: apart from the cases above the segments have only that end in common.
+  // A common end: except for the cases above, the segments share only that end.
   if (a == c || a == d || b == c || b == d) return false;
   // Proper crossing: each segment has its ends on both sides of the other.
   return turn(mesh, view, a, b, c) * turn(mesh, view, a, b, d) < 0 &&
@@ -129,11 +129,11 @@ bool is_blocked_by(const Mesh& mesh, const LidView& view, VertexId a, VertexId b
   return false;
 }
 
-/// Returns true if the way to b leaves the polygon's i-th corner into the polygon.
+/// Returns true if the segment from the polygon's i-th corner to b starts into the polygon.
 bool leaves_inward(const Mesh& mesh, const LidView& view, std::span<const VertexId> rim, std::size_t i,
                    VertexId b) {
   // Local cone test (O'Rourke, Computational Geometry in C): left of both edges at a convex corner, left of
-  // one at a reflex one.
+  // one at a reflex corner.
   const VertexId before = rim[(i + rim.size() - 1) % rim.size()], v = rim[i],
                  after = rim[(i + 1) % rim.size()];
   const bool left_of_in = turn(mesh, view, before, v, b) > 0, left_of_out = turn(mesh, view, v, after, b) > 0;
@@ -141,14 +141,14 @@ bool leaves_inward(const Mesh& mesh, const LidView& view, std::span<const Vertex
 }
 
 struct Bridge {
-  std::size_t hole = 0, from = 0, to = 0;  ///< which hole; corner of the polygon, corner of the hole
+  std::size_t hole = 0, from = 0, to = 0;  ///< number of the hole; corner of the polygon, corner of the hole
   double length_sq = 0;
 };
 
 /// Holes with more corner pairs than this are not closed, to bound the running time.
 constexpr std::size_t kMostBridges = 4'000'000;
 
-/// Returns the shortest bridge that passes between all edges.
+/// Returns the shortest bridge that intersects no edge, or nullopt if there is none.
 std::optional<Bridge> find_bridge(const Mesh& mesh, std::span<const VertexId> rim,
                                   const std::vector<std::vector<VertexId>>& holes, const LidView& view) {
   // All pairs of a corner of the polygon and a corner of a hole, shortest first. The stable sort keeps ties
@@ -163,8 +163,7 @@ std::optional<Bridge> find_bridge(const Mesh& mesh, std::span<const VertexId> ri
         bridges.push_back({h, i, k, (mesh.vertices[rim[i]] - mesh.vertices[holes[h][k]]).squaredNorm()});
   std::stable_sort(bridges.begin(), bridges.end(),
                    [](const Bridge& a, const Bridge& b) { return a.length_sq < b.length_sq; });
-  // The first pair that is visible: it starts into the polygon and passes no edge of the polygon or of any
-  // hole.
+  // The first visible pair: it starts into the polygon and intersects no edge of the polygon or of any hole.
   for (const Bridge& bridge : bridges) {
     const VertexId a = rim[bridge.from], b = holes[bridge.hole][bridge.to];
     const auto in_way = [&](const auto& hole) { return is_blocked_by(mesh, view, a, b, hole); };
@@ -199,12 +198,12 @@ std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, c
   const std::size_t n = rim.size();
   if (n > kMostForLeastArea) return std::nullopt;
   const auto x = [&](std::size_t i) -> const Vector3d& { return mesh.vertices[rim[i]]; };
-  // Twice the area, which orders triangulations the same way. Triangles without area are excluded, exactly.
+  // Twice the area, which orders triangulations equally. Triangles without area are excluded exactly.
   const auto area = [&](std::size_t i, std::size_t k, std::size_t j) {
     if (exact::collinear3d(x(i).data(), x(k).data(), x(j).data())) return kInfinity;
     return (x(k) - x(i)).cross(x(j) - x(i)).norm();
   };
-  // cost[i n + j]: the least area between the rim from i to j and the edge that joins them (Klincsek 1980).
+  // cost[i n + j]: minimum area between the polygon from i to j and the edge that closes it (Klincsek 1980).
   std::vector<double> cost(n * n, 0);
   std::vector<std::size_t> third(n * n, 0);
   // By increasing length of the part, so that both smaller parts are known.
@@ -215,7 +214,7 @@ std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, c
       // The edge from the first to the last vertex is a side of the polygon, not a diagonal.
       if (span + 1 < n && !allowed(rim[i], rim[j])) continue;
       for (std::size_t k = i + 1; k < j; ++k) {
-        // The parts alone cost too much: no need to compute the triangle.
+        // The parts alone cost too much: skip the triangle.
         const double rest = cost[i * n + k] + cost[k * n + j];
         if (!(rest < best)) continue;
         const double sum = rest + area(i, k, j);
@@ -223,7 +222,7 @@ std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, c
       }
     }
   if (!(cost[n - 1] < kInfinity)) return std::nullopt;
-  // Backtracking: split each part at its best third vertex. An explicit stack instead of recursion.
+  // Backtracking: split each part at its best third vertex, with an explicit stack instead of recursion.
   Lid lid;
   std::vector<std::array<std::size_t, 2>> open = {{0, n - 1}};
   while (!open.empty()) {
@@ -241,7 +240,7 @@ std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, c
 Lid fan_about_middle(const Mesh& mesh, std::span<const VertexId> rim) {
   Lid lid;
   Vector3d middle = Vector3d::Zero();
-  // Divide before adding, against overflow.
+  // Divide before adding, to avoid overflow.
   for (const VertexId v : rim) middle += mesh.vertices[v] / static_cast<double>(rim.size());
   lid.middle = middle;
   for (std::size_t i = 0; i < rim.size(); ++i)
@@ -257,7 +256,7 @@ std::optional<std::vector<VertexId>> bridge_holes(const Mesh& mesh, std::vector<
     if (!bridge) return std::nullopt;
     const std::vector<VertexId>& hole = holes[bridge->hole];
     const auto from = static_cast<std::ptrdiff_t>(bridge->from);
-    // Walk the polygon to the bridge, around the hole back to the bridge's end, and on: both ends occur
+    // Follow the polygon to the bridge, around the hole back to the bridge's end, and on: both ends occur
     // twice.
     std::vector<VertexId> joined(rim.begin(), rim.begin() + from + 1);
     for (std::size_t i = 0; i <= hole.size(); ++i) joined.push_back(hole[(bridge->to + i) % hole.size()]);
@@ -278,12 +277,12 @@ bool lies_inside(const Mesh& mesh, std::span<const VertexId> rim, VertexId point
     const VertexId a = rim[i], b = rim[(i + 1) % rim.size()];
     const bool a_above = x[a][view.y] > height, b_above = x[b][view.y] > height;
     const int side = turn(mesh, view, a, b, point);
-    // On the edge: within its bounding box as well as on its line.
+    // On the edge: on its line and within its bounding box.
     if (side == 0 && std::min(x[a][view.x], x[b][view.x]) <= x[point][view.x] &&
         x[point][view.x] <= std::max(x[a][view.x], x[b][view.x]) &&
         std::min(x[a][view.y], x[b][view.y]) <= height && height <= std::max(x[a][view.y], x[b][view.y]))
       return false;
-    // An edge upward passes right of the point if the point is on its left, and vice versa.
+    // An upward edge passes right of the point if the point is on its left, and vice versa.
     if (a_above != b_above && (side > 0) == b_above) inside = !inside;
   }
   return inside;

@@ -19,8 +19,8 @@ CheckedMesh check(Mesh mesh, std::size_t kept) {
   return {std::move(mesh), kept};
 }
 
-/// Neither uses nor topology change: a face has the same corners as before, its fan the same triangles, and
-/// all neighbours in the component turn with it. Nor does what meets what.
+/// Uses and topology do not change: each face keeps its corner set, its fan keeps its triangles, and the
+/// entire component is reversed. Intersections do not change either.
 std::uint32_t CheckedMesh::turn_outward() {
   const auto turned = static_cast<std::uint32_t>(found_.inside_out.size());
   turn_faces(mesh_, found_.inside_out);
@@ -50,7 +50,7 @@ std::vector<FaceId> CheckedMesh::self_intersecting_faces(Workers& workers) const
 namespace {
 
 /// Reverses a face. A triangle keeps its first corner and a quad starts at its third, so that the triangles
-/// of its fan keep their numbers; those of larger polygons are numbered from the other end.
+/// of its fan keep their numbers; those of larger polygons are numbered in reverse.
 void turn(Mesh& mesh, FaceId f) {
   const auto first = mesh.face_vertices.begin() + mesh.face_offsets[f];
   const auto last = mesh.face_vertices.begin() + mesh.face_offsets[f + 1];
@@ -58,12 +58,12 @@ void turn(Mesh& mesh, FaceId f) {
     std::reverse(first, last);
     return;
   }
-  // Reversing all but the first corner flips the orientation and keeps the fan's apex.
+  // Reversing all except the first corner flips the orientation and keeps the fan's apex.
   std::reverse(first + 1, last);
   if (last - first == 4) std::rotate(first, first + 2, last);
 }
 
-/// Returns true if the directed edges (2D: ends of segments) cancel: the boundary of the faces, as a sum, is
+/// Returns true if the directed edges (2D: ends of segments) cancel: the boundary of the sum of the faces is
 /// empty.
 bool is_cycle(const Mesh& mesh, const std::vector<FaceUse>& use) {
   // Signed count of each edge: +1 from the smaller to the larger vertex.
@@ -71,7 +71,7 @@ bool is_cycle(const Mesh& mesh, const std::vector<FaceUse>& use) {
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     if (use[f] == FaceUse::nothing) return false;
     const auto c = mesh.face(f);
-    // 2D: the boundary of a segment is its start less its end.
+    // 2D: the boundary of a segment is its start minus its end.
     if (mesh.dim == 2) {
       ++sum[{c[0], c[0]}];
       --sum[{c[1], c[1]}];
@@ -85,7 +85,7 @@ bool is_cycle(const Mesh& mesh, const std::vector<FaceUse>& use) {
          std::all_of(sum.begin(), sum.end(), [](const auto& edge) { return edge.second == 0; });
 }
 
-/// Returns for each component whether it is a sheet: has an open edge, and lies in one plane. Exact.
+/// Returns for each component whether it is a sheet: it has an open edge and is planar. Exact.
 std::vector<bool> find_sheets(const Mesh& mesh, const MeshFindings& found) {
   // Only components with an open edge can be sheets.
   std::vector<bool> sheet = found.topology.component_open;
@@ -120,13 +120,13 @@ MeshFindings examine(const Mesh& mesh, std::size_t kept) {
   found.use = check_faces(mesh, report);
   check_duplicates(mesh, found.use, report);
   check_vertices(mesh, report);
-  // Neighbourhood of faces: components, closedness, genus.
+  // Adjacency of faces: components, closedness, genus.
   found.topology = analyse_topology(mesh, found.use, report);
   report.components = found.topology.components;
   report.closed = found.topology.closed;
   report.bounds_solid = report.closed || is_cycle(mesh, found.use);
   report.genus = found.topology.genus;
-  // Orientation of closed components by nesting depth; each is named by its first face.
+  // Orientation of closed components by nesting depth; each is identified by its first face.
   found.inside_out = wrongly_facing_components(mesh, found.use, found.topology);
   for (const auto& faces : found.inside_out) note(report, MeshFault::inside_out, faces.front());
   // Open components that lie in one plane bound nothing.
@@ -173,7 +173,7 @@ constexpr std::array<FaultText, kMeshFaultCount> kFaults = {{
 #undef MESH_FAULT
 }};
 
-/// The kinds of things that the two numbers of an offender name.
+/// The kinds of elements that the two numbers of a finding refer to.
 enum class Offender : std::uint8_t {
   none,
   vertex,
@@ -257,7 +257,7 @@ std::string_view noun(Offender kind, int dim) {
   }
 }
 
-/// Returns a fault's text. In the plane, vertices are what edges are in space.
+/// Returns a fault's text. In 2D, vertices take the role of edges.
 std::string_view text_of(MeshFault fault, int dim) {
   if (dim == 2) {
     switch (fault) {
@@ -288,10 +288,10 @@ std::string_view text_of(MeshFault fault, int dim) {
   return kFaults[static_cast<std::size_t>(fault)].text;
 }
 
-/// Returns what to do about open edges, which depends on whether there is a hole at all.
+/// Returns the advice on open edges, which depends on whether there is a hole at all.
 std::string advice_on_openings(const MeshReport& report) {
   const std::uint32_t sheets = report.sheets, open = report.open_components;
-  // Only sheets: closing them would make a body of no volume.
+  // Only sheets: closing them would create a body without volume.
   if (sheets > 0 && sheets == open)
     return sheets == 1 ? "this is a sheet: it bounds nothing"
                        : "these are " + std::to_string(sheets) + " sheets: they bound nothing";
@@ -306,7 +306,7 @@ std::string line_for(const Mesh& mesh, MeshFault fault, const MeshReport& report
   const Help help = help_for(fault);
   std::string line = mesh.name.empty() ? "mesh" : mesh.name;
   line.append(": ").append(text_of(fault, mesh.dim));
-  // Number of findings, then the first affected elements in the order of the file.
+  // Number of findings, then the first affected elements in file order.
   if (help.offender != Offender::none) {
     line.append(" (").append(std::to_string(finding.count)).append(finding.count == 1 ? " time" : " times");
     line.append("): ").append(noun(help.offender, mesh.dim)).append(" ");

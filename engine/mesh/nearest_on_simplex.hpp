@@ -1,19 +1,19 @@
 #pragma once
-/// The nearest point of a triangle or a segment.
+/// The closest point of a triangle or a segment.
 
 #include <Eigen/Core>
 
 namespace lrb {
 
-/// A point of a simplex by the weights of its corners, which are at least 0 and add up to 1 but for rounding.
+/// A point of a simplex by barycentric coordinates, which are at least 0 and add up to 1 up to rounding.
 struct SimplexPoint {
   double weight[3];
-  double distance_sq;  ///< from the point that it was looked for from
+  double distance_sq;  ///< squared distance from the query point
 };
 
-/// Returns the point of the segment a, b nearest to p, up to rounding. The distance is that of a point of the
-/// segment, so it is never less than the true one (up to rounding of the result). The same holds for
-/// triangles.
+/// Returns the point of the segment a, b closest to p, up to rounding. The distance is that of an actual
+/// point of the segment, so it is never below the true one (up to rounding of the result). The same applies
+/// to triangles.
 inline SimplexPoint nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                        const Eigen::Vector3d& b) {
   const Eigen::Vector3d ab = b - a, ap = p - a;
@@ -24,8 +24,8 @@ inline SimplexPoint nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Ve
   return {{1 - t, t, 0}, (ap - t * ab).squaredNorm()};
 }
 
-/// Returns the nearest point of a triangle (Ericson, "Real-Time Collision Detection", 5.1.5), which may be
-/// one without area.
+/// Returns the closest point of a triangle, possibly without area (Ericson, "Real-Time Collision Detection",
+/// 5.1.5).
 inline SimplexPoint nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                         const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;

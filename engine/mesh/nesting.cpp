@@ -1,8 +1,8 @@
 // Orientation of closed components by nesting depth:
 // 1. Candidates: component A is in B if a vertex of A is inside B (ray parity, all components in one
 //    traversal).
-// 2. Candidates whose surfaces cross are dropped, because neither is then entirely inside the other.
-// 3. A component inside an even number of others must have positive volume, at odd depth negative.
+// 2. Candidates whose surfaces cross are discarded, because neither is entirely inside the other.
+// 3. A component inside an even number of others must have positive volume, at odd depth negative volume.
 
 #include "engine/mesh/nesting.hpp"
 
@@ -20,8 +20,9 @@
 
 namespace lrb {
 
-// Sign of an enclosed volume, exactly: a sum of determinants (divergence theorem), first in doubles with an
-// error bound, then in integers if the bound cannot decide. Doubles become integers by a common power of two.
+// Exact sign of an enclosed volume: a sum of determinants (divergence theorem), first in doubles with an
+// error bound, then in integers if the bound cannot decide. Doubles are scaled to integers by a common power
+// of two.
 
 namespace {
 
@@ -40,14 +41,14 @@ void for_each_simplex(const Mesh& mesh, std::span<const FaceId> faces, Visit vis
   }
 }
 
-/// Returns the sign computed in doubles, if the sum is beyond what rounding can have done to it; else 0.
-/// Volumes do not depend on the origin, and an origin on the body keeps the terms small.
+/// Returns the sign computed in doubles if the sum exceeds its error bound, otherwise 0. Volumes do not
+/// depend on the origin, and an origin on the body keeps the terms small.
 ///
 /// Error, with u = 2^-53 and n terms (products of three differences): a difference has relative error u, a
-/// term three of those and two of its own, and adding n terms up to n - 1; together below (n + 8) u times the
-/// sum of the terms' absolute values. The bound is twice that, which covers the rounding of that very sum,
-/// and underflow too: with differences below kLarge it changes a term by at most 2^-1075 kLarge, all 2^35
-/// terms by less than 2^-800, and the bound is above 2^-750 where the sum is above kTiny.
+/// term has three of those and two of its own, and summation of n terms up to n - 1. The total is below (n +
+/// 8) u times the sum of the terms' absolute values. The bound is twice that, which covers the rounding of
+/// that sum itself and underflow: with differences below kLarge, underflow changes a term by at most 2^-1075
+/// kLarge, and all 2^35 terms by less than 2^-800, while the bound is above 2^-750 if the sum is above kTiny.
 int sign_by_doubles(const Mesh& mesh, std::span<const FaceId> faces) {
   const Eigen::Vector3d& origin = mesh.vertices[mesh.face(faces[0])[0]];
   double sum = 0, size = 0, n = 0, largest = 0;
@@ -107,8 +108,8 @@ int sign_by_integers(const Mesh& mesh, std::span<const FaceId> faces) {
   const IntegerPoints at(mesh, faces);
   cpp_int sum = 0;
   for_each_simplex(mesh, faces, [&](VertexId a, VertexId b, VertexId c) {
-    // Scaling does not change the sign, so the shift need not be undone. The origin is zero: no differences
-    // are needed.
+    // Scaling does not change the sign, so the shift need not be undone. The origin is zero, so no
+    // differences are needed.
     const cpp_int xy = at(a, 0) * at(b, 1) - at(a, 1) * at(b, 0);
     if (mesh.dim == 2) {
       sum += xy;
@@ -153,7 +154,7 @@ class Nesting {
   }
 
   std::vector<std::vector<FaceId>> wrongly_facing() {
-    // Depth is the number of components around. The sign of the volume is exact.
+    // Depth: number of enclosing components. The sign of the volume is exact.
     std::vector<Pair> nested = find_nested();
     drop_crossing(nested);
     for (const Pair& p : nested) ++depth_[p.first];
@@ -165,12 +166,12 @@ class Nesting {
   }
 
  private:
-  /// Finds which components lie in which others. One lies in another if one of its vertices does. A vertex on
-  /// the other's surface does not decide, so the next one is tried. If all tried vertices are on it, the two
-  /// count as sharing their surface, and neither is a void of the other.
+  /// Finds the nested pairs of components. A component is inside another if one of its vertices is. A vertex
+  /// on the other's surface does not decide, so the next one is tried. If all tried vertices are on it, the
+  /// two count as sharing their surface, and neither is a void of the other.
   std::vector<Pair> find_nested() const {
     std::vector<Pair> nested;
-    // Nesting takes two components.
+    // Nesting requires two components.
     if (std::count(usable_.begin(), usable_.end(), true) < 2) return nested;
     // Only usable components take part in the search.
     std::vector<std::uint32_t> surface = topology_.component_of_face;
@@ -179,19 +180,19 @@ class Nesting {
     const SideFinder finder(mesh_, std::move(surface));
     for (std::uint32_t inner = 0; inner < faces_.size(); ++inner) {
       if (!usable_[inner]) continue;
-      // A bounded number of vertices is tried, so the cost per component is bounded.
+      // A bounded number of vertices is tried, which bounds the cost per component.
       const std::vector<VertexId> tried = first_corners(inner);
       const auto point = [&](std::size_t i) {
         return i < tried.size() ? &mesh_.vertices[tried[i]] : nullptr;
       };
       for (const std::uint32_t outer : finder.around(inner, point))
-        // Necessary for nesting, and cheap: discards components that only reach into each other.
+        // Necessary for nesting, and cheap: discards components that only partially overlap.
         if (boxes_[outer].contains(boxes_[inner])) nested.emplace_back(inner, outer);
     }
     return nested;
   }
 
-  /// Corners of a component's first faces, a few of each.
+  /// Returns corners of a component's first faces, a few of each.
   std::vector<VertexId> first_corners(std::uint32_t component) const {
     static constexpr std::size_t kFaces = 16, kOfEach = 8;
     std::vector<VertexId> corners;
@@ -203,6 +204,7 @@ class Nesting {
     return corners;
   }
 
+  /// Removes pairs of components whose surfaces cross.
   void drop_crossing(std::vector<Pair>& nested) const {
     if (nested.empty()) return;
     // Sorted for binary search: the filter below runs for every pair of faces with overlapping boxes.
@@ -233,7 +235,7 @@ class Nesting {
   std::vector<std::vector<FaceId>> faces_;  ///< (components)
   std::vector<Box> boxes_;                  ///< (components)
   std::vector<bool> usable_;                ///< closed, all coordinates finite
-  std::vector<std::uint32_t> depth_;        ///< number of components around each
+  std::vector<std::uint32_t> depth_;        ///< number of enclosing components of each
 };
 
 }  // namespace

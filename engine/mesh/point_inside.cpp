@@ -1,5 +1,5 @@
 // Point location by ray parity. The exact ray predicate resolves degenerate hits by Simulation of Simplicity
-// (Edelsbrunner and Muecke 1990), so each face either is crossed or not.
+// (Edelsbrunner and Muecke 1990), so each face is either crossed or not.
 #include "engine/mesh/point_inside.hpp"
 
 #include <algorithm>
@@ -12,7 +12,8 @@
 namespace lrb {
 namespace {
 
-/// Calls visit(hit) for each triangle of the face's fan (2D: for the segment) until it returns false.
+/// Calls visit(hit) for each triangle of the face's fan (2D: for the segment) until it returns false. Returns
+/// false if it did.
 template <class Visit>
 bool cast_at_face(const Mesh& mesh, FaceId f, const Eigen::Vector3d& p, Visit visit) {
   const auto corners = mesh.face(f);
@@ -31,7 +32,7 @@ bool cast_at_face(const Mesh& mesh, FaceId f, const Eigen::Vector3d& p, Visit vi
 }  // namespace
 
 PointSide point_side(const Mesh& mesh, std::span<const FaceId> faces, const Eigen::Vector3d& p) {
-  // Every crossing toggles the side. A hit on the surface itself ends the count.
+  // Every crossing toggles the side. A point on the surface itself ends the count.
   bool inside = false;
   const auto count = [&](exact::RayHit hit) {
     inside ^= hit == exact::RayHit::crosses;
@@ -52,7 +53,7 @@ SideFinder::SideFinder(const Mesh& mesh, std::vector<std::uint32_t> surface_of_f
   if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
 }
 
-/// Parents before children, left before right; halves by the boxes' centres.
+/// Builds a subtree in preorder, by median splits of the boxes' centres. Returns its index.
 std::uint32_t SideFinder::build(std::uint32_t first, std::uint32_t last) {
   constexpr std::uint32_t kLeafSize = 4;
   const auto index = static_cast<std::uint32_t>(nodes_.size());
@@ -75,12 +76,12 @@ std::uint32_t SideFinder::build(std::uint32_t first, std::uint32_t last) {
 }
 
 std::vector<SideFinder::Side> SideFinder::sides(const Eigen::Vector3d& p) const {
-  // The ray runs to +x. It starts an infinitely small step beside p, which closed boxes have room for.
+  // The ray runs to +x. Its origin is perturbed infinitesimally from p, which closed boxes account for.
   const auto is_on_ray = [&](const Eigen::AlignedBox3d& box) {
     return box.max().x() >= p.x() && box.min().y() <= p.y() && p.y() <= box.max().y() &&
            (mesh_.dim == 2 || (box.min().z() <= p.z() && p.z() <= box.max().z()));
   };
-  // One parity per surface that the ray's boxes reach. on_surface is final.
+  // One parity for each surface with a box on the ray. on_surface is final.
   std::map<std::uint32_t, PointSide> found;
   const auto cast = [&](FaceId f) {
     PointSide& side = found.try_emplace(surface_of_face_[f], PointSide::outside).first->second;
@@ -92,7 +93,7 @@ std::vector<SideFinder::Side> SideFinder::sides(const Eigen::Vector3d& p) const 
       return true;
     });
   };
-  // Traverse only nodes that the ray reaches: O(log n + hits) for usual meshes.
+  // Traverse only nodes on the ray: O(log n + hits) for usual meshes.
   std::vector<std::uint32_t> stack;
   if (!nodes_.empty()) stack.push_back(0);
   while (!stack.empty()) {
@@ -108,7 +109,7 @@ std::vector<SideFinder::Side> SideFinder::sides(const Eigen::Vector3d& p) const 
     for (std::uint32_t i = node.first; i < node.last; ++i)
       if (is_on_ray(boxes_[order_[i]])) cast(order_[i]);
   }
-  // Only surfaces that the point is in or on are returned. The map lists them in ascending order.
+  // Return only surfaces that the point is in or on. The map lists them in ascending order.
   std::vector<Side> out;
   for (const auto& [surface, side] : found)
     if (side != PointSide::outside) out.push_back({surface, side});

@@ -13,27 +13,26 @@ namespace lrb {
 
 enum class PointSide { outside, inside, on_surface };
 
-/// Locates a point relative to a closed set of faces (fans of triangles; 2D: segments), by the
-/// parity of an exact ray.
+/// Locates a point relative to a closed set of faces (fans of triangles; 2D: segments), by the parity of an
+/// exact ray.
 PointSide point_side(const Mesh& mesh, std::span<const FaceId> faces, const Eigen::Vector3d& p);
 
-/// Finds on which sides of many closed surfaces a point lies, in one walk along a ray through a tree of
-/// boxes.
+/// Locates points relative to many closed surfaces, in one traversal of an AABB tree along a ray.
 class SideFinder {
  public:
-  /// `surface_of_face` (|F|): the surface that a face belongs to; kNull: none.
+  /// `surface_of_face` (|F|): the surface of each face; kNull: none.
   SideFinder(const Mesh& mesh, std::vector<std::uint32_t> surface_of_face);
 
   struct Side {
     std::uint32_t surface;
     PointSide side;
   };
-  /// The surfaces that the point is in or on, ascending. It is outside all others.
+  /// Returns the surfaces that the point is in or on, ascending. It is outside all others.
   std::vector<Side> sides(const Eigen::Vector3d& p) const;
 
-  /// The surfaces that hold another one as a whole, ascending, given points of it of which the first that is
-  /// not on the surface in question decides; a surface that has all of them on it does not hold it.
-  /// next_point(i): the i-th of them, or nullptr after the last.
+  /// Returns the surfaces that enclose the surface `inner`, ascending, given points of it. For each surface
+  /// the first point that is not on it decides; a surface that contains all of the points on it does not
+  /// enclose `inner`. next_point(i): the i-th point, or nullptr after the last.
   template <class NextPoint>
   std::vector<std::uint32_t> around(std::uint32_t inner, NextPoint next_point) const {
     std::vector<std::uint32_t> holders, open;
@@ -55,7 +54,7 @@ class SideFinder {
   struct Node {
     Eigen::AlignedBox3d box;
     std::uint32_t first, last;  ///< into order_
-    std::uint32_t right;        ///< child; the left one follows its parent. 0: leaf
+    std::uint32_t right;        ///< right child; the left one follows its parent. 0: leaf
   };
 
   std::uint32_t build(std::uint32_t first, std::uint32_t last);
@@ -63,7 +62,7 @@ class SideFinder {
   const Mesh& mesh_;
   std::vector<std::uint32_t> surface_of_face_;
   std::vector<Eigen::AlignedBox3d> boxes_;  ///< (|F|)
-  std::vector<FaceId> order_;               ///< by leaves of the tree
+  std::vector<FaceId> order_;               ///< in the order of the tree's leaves
   std::vector<Node> nodes_;
 };
 

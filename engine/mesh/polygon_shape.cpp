@@ -1,6 +1,6 @@
 // Exact tests of a polygon's shape, and triangulations without degenerate triangles.
 // 1. Convexity: project along an axis close to the normal. All turns must have the same sign, and the sides
-//    must change between left-to-right and right-to-left twice, which excludes polygons that wind more than
+//    must change twice between left-to-right and right-to-left, which excludes polygons that wind more than
 //    once.
 // 2. Triangulations: no triangle has all three corners on one straight side.
 #include "engine/mesh/polygon_shape.hpp"
@@ -19,10 +19,10 @@ const double* point(const Mesh& mesh, VertexId v) {
   return mesh.vertices[v].data();
 }
 
-/// Returns the axes, beginning with the one nearest to the polygon's normal (Newell's, of the polygon scaled
-/// to size 1).
+/// Returns the axes in order of decreasing component of the polygon's normal (Newell's method, on the polygon
+/// scaled to size 1).
 std::array<int, 3> axes_by_normal(const Mesh& mesh, std::span<const VertexId> corners) {
-  // Scaled by the largest coordinate, against overflow. Rounding only affects which axis is tried first.
+  // Scaled by the largest coordinate, to avoid overflow. Rounding only affects which axis is tried first.
   double size = 0;
   for (const VertexId v : corners) size = std::max(size, mesh.vertices[v].cwiseAbs().maxCoeff());
   const Eigen::Vector3d origin = mesh.vertices[corners[0]] / size;
@@ -34,14 +34,14 @@ std::array<int, 3> axes_by_normal(const Mesh& mesh, std::span<const VertexId> co
   return axes;
 }
 
-/// Returns the sign of the order of two points of the plane, by x and then by y.
+/// Returns the sign of the lexicographic order of two points in 2D.
 int order(const double* a, const double* b) {
   for (int i = 0; i < 2; ++i)
     if (a[i] != b[i]) return a[i] < b[i] ? 1 : -1;
   return 0;
 }
 
-/// Returns the corners without coordinate `axis`; consecutive equal ones once.
+/// Returns the corners projected along `axis`; runs of equal ones once.
 std::vector<Eigen::Vector2d> seen_along(int axis, const Mesh& mesh, std::span<const VertexId> corners) {
   std::vector<Eigen::Vector2d> seen;
   for (const VertexId v : corners) {
@@ -52,10 +52,10 @@ std::vector<Eigen::Vector2d> seen_along(int axis, const Mesh& mesh, std::span<co
   return seen;
 }
 
-/// How the outline of a plane polygon runs.
+/// Turns of a 2D polygon.
 struct Round {
-  bool left = false, right = false;  ///< it turns that way somewhere
-  /// Number of changes in the order (by x, then y) in which its sides run; 2 if it goes round once.
+  bool left = false, right = false;  ///< there is a turn in that direction
+  /// Number of changes in the lexicographic direction of its sides; 2 if it winds once.
   int changes = 0;
 
   bool has_turns() const { return left || right; }
@@ -85,8 +85,9 @@ bool fan_has_area(const Mesh& mesh, std::span<const VertexId> corners) {
   return true;
 }
 
-/// The corners in order, beginning with a proper one, and where the first and last other proper ones are.
-/// Corners in the middle of a straight side are not proper. The ring is empty if fewer than three are proper.
+/// The corners, rotated so that a proper one comes first, and the indices of the first and last of the other
+/// proper ones. Corners inside a straight side are not proper. The ring is empty if fewer than three are
+/// proper.
 struct ProperRing {
   std::vector<VertexId> ring;
   std::size_t first = 0, last = 0;
@@ -94,12 +95,12 @@ struct ProperRing {
 
 ProperRing proper_ring(const Mesh& mesh, std::span<const VertexId> corners) {
   const std::size_t n = corners.size();
-  // Proper corners are those where the polygon turns. Three of them are needed for an area.
+  // Proper corners are those where the polygon turns. An area requires three of them.
   std::vector<std::size_t> proper;
   for (std::size_t i = 0; i < n; ++i)
     if (!is_straight(mesh, corners[(i + n - 1) % n], corners[i], corners[(i + 1) % n])) proper.push_back(i);
   if (proper.size() < 3) return {};
-  // Rotate so that the first proper corner is corner 0; the other numbers shift accordingly.
+  // Rotate so that the first proper corner is corner 0; the other indices shift accordingly.
   ProperRing out{{corners.begin(), corners.end()}, proper[1] - proper[0], proper.back() - proper[0]};
   std::rotate(out.ring.begin(), out.ring.begin() + static_cast<std::ptrdiff_t>(proper[0]), out.ring.end());
   return out;
@@ -136,7 +137,7 @@ bool is_convex(const Mesh& mesh, std::span<const VertexId> corners) {
 void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
                         std::vector<std::array<VertexId, 3>>& triangles) {
   triangles.clear();
-  // The plain fan if it has no degenerate triangle, which is nearly always so.
+  // The plain fan, if it has no degenerate triangle (nearly always).
   const ProperRing p =
       corners.size() == 3 || fan_has_area(mesh, corners) ? ProperRing{} : proper_ring(mesh, corners);
   if (p.ring.empty()) {
@@ -147,9 +148,9 @@ void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
   const auto add = [&](std::size_t i, std::size_t j, std::size_t k) {
     triangles.push_back({p.ring[i], p.ring[j], p.ring[k % p.ring.size()]});
   };
-  // Corner 0 sees all sides but the two that it lies on: those make a fan. The two are seen from the corner
-  // next to their far end; where that is the far end of the other one, the second is seen from the first
-  // corner of the first.
+  // Corner 0 sees all sides except the two that contain it: those sides form a fan. The other two are seen
+  // from the corner next to their far end. If that is the far end of the other one, the second is seen from
+  // the first corner of the first.
   for (std::size_t i = p.first + 1; i + 1 < p.last; ++i) add(0, i, i + 1);
   const bool one_side_between = p.last == p.first + 1;
   for (std::size_t i = one_side_between ? 1 : 0; i < p.first; ++i) add(p.first + 1, i, i + 1);
@@ -159,8 +160,8 @@ void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
 
 namespace {
 
-/// Chords of a polygon that run through its inside. Corners are numbered from a proper one on; number n is
-/// corner 0 again.
+/// Chords through the interior of a polygon. Corners are numbered from a proper one; number n is corner 0
+/// again.
 class Chords {
  public:
   Chords(const Mesh& mesh, std::span<const VertexId> ring) : side_(ring.size(), 0) {
@@ -170,9 +171,10 @@ class Chords {
           side_[i - 1] + (is_straight(mesh, ring[i - 1], ring[i], ring[(i + 1) % ring.size()]) ? 0 : 1);
   }
 
-  /// A corner between i and j, as near to the middle as may be, from which neither way to i nor to j runs
-  /// along a straight side with corners in its middle. The chord from i to j must be such a one; then there
-  /// is one: beyond the first side's end and before the last one's start, or next to i, or next to j.
+  /// Returns a corner between i and j, as close to the median as possible, whose chords to i and to j are
+  /// sides without inner corners or run through the interior. Requires that the chord from i to j is such a
+  /// chord. Then there is one: beyond the end of the first side and before the start of the last one, or next
+  /// to i, or next to j.
   std::size_t middle(std::size_t i, std::size_t j) const {
     // Binary searches in the ascending numbers: the end of the side that starts at i, and the start of the
     // side that ends at j.
@@ -193,14 +195,14 @@ class Chords {
 
 void triangulate_by_halves(const Mesh& mesh, std::span<const VertexId> corners,
                            std::vector<std::array<VertexId, 3>>& triangles) {
-  // Without proper corners fall back to the fan.
+  // Without proper corners use the fan.
   const ProperRing p = proper_ring(mesh, corners);
   const std::size_t n = p.ring.size();
   if (n == 0) return triangulate_convex(mesh, corners, triangles);
   triangles.clear();
   const Chords chords(mesh, p.ring);
-  // The polygon is cut in two, and each part by the triangle on its chord that reaches to the middle of its
-  // rim. No triangle is without area: its corners are not on one side.
+  // The polygon is divided in two. Each part is divided by the triangle on its chord whose apex is the median
+  // of its boundary. All triangles have area, because their corners are not on one side.
   const std::size_t half = chords.middle(0, n);
   std::vector<std::array<std::size_t, 2>> todo = {{0, half}, {half, n}};
   while (!todo.empty()) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Exact answers about the shape of one polygon in space.
+/// Exact tests of the shape of one polygon in 3D, and its triangulations.
 
 #include <array>
 #include <optional>
@@ -10,24 +10,25 @@
 
 namespace lrb {
 
-/// Returns three corners that span a plane; nothing if all corners lie on one line (the polygon has no area).
+/// Returns three corners that span a plane, or nullopt if all corners are collinear (the polygon has no
+/// area).
 std::optional<std::array<VertexId, 3>> spanning_corners(const Mesh& mesh, std::span<const VertexId> corners);
 
-/// Returns true if all corners lie in the plane of these three.
+/// Returns true if all corners are in the plane of these three.
 bool is_planar(const Mesh& mesh, std::span<const VertexId> corners, const std::array<VertexId, 3>& plane);
 
-/// Returns true if the polygon is convex, seen along the axis nearest to its normal. Corners in the middle of
-/// a straight side are allowed, sides that turn back are not. For a polygon with area.
+/// Returns true if the polygon is convex in the projection along the axis closest to its normal. Corners
+/// inside a straight side are allowed, sides that reverse direction are not. The polygon must have area.
 bool is_convex(const Mesh& mesh, std::span<const VertexId> corners);
 
-/// Splits a planar convex polygon with area into triangles: the fan from the first corner, unless corners in
-/// the middle of straight sides would give that fan triangles without area; then others that all have area.
-/// (Corners that lie in one place can still make triangles without area.)
+/// Triangulates a planar convex polygon with area: by the fan from the first corner, unless corners inside
+/// straight sides would give it degenerate triangles; then by other triangles, which all have area.
+/// (Coincident corners can still lead to degenerate triangles.)
 void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
                         std::vector<std::array<VertexId, 3>>& triangles);
 
-/// Splits a polygon with very many corners in the same way into triangles of all sizes, few of them large and
-/// none longer than the part of the rim that it cuts off, so that boxes around them overlap little.
+/// Triangulates a polygon with very many corners into triangles of all sizes. Few of them are large, and none
+/// is longer than the part of the boundary that it cuts off, so that their boxes overlap little.
 void triangulate_by_halves(const Mesh& mesh, std::span<const VertexId> corners,
                            std::vector<std::array<VertexId, 3>>& triangles);
 

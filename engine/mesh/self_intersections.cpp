@@ -1,8 +1,8 @@
 // Self-intersections of a mesh, exactly:
-// 1. Polygons become triangles: exact ones for planar convex faces, the fan for others.
+// 1. Triangulate polygons: exactly for planar convex faces, by the fan for others.
 // 2. FacePairs finds the pairs of faces whose bounds overlap.
 // 3. Each pair is decided by exact tests of its triangles. A face with very many corners has a tree of its
-//    triangles, so that a pair of such faces does not cost the product of their triangle counts.
+//    triangles, so that a pair of such faces does not take the product of their triangle counts.
 #include "engine/mesh/self_intersections.hpp"
 
 #include <algorithm>
@@ -24,18 +24,17 @@ namespace {
 
 using Triangle = std::array<VertexId, 3>;
 
-/// Returns true if two triangles lie in one plane, face the same way and share more than points and lines.
+/// Returns true if two coplanar triangles have the same orientation and overlap in an area.
 bool cover_each_other(const double* const a[3], const double* const b[3]) {
-  // The triangles are coplanar. Project along the first axis that leaves a its area; orientations are the
-  // same in the projection.
+  // Project along the first axis along which a keeps an area; the projection preserves relative orientation.
   for (int x = 0; x < 3; ++x) {
     const int y = (x + 1) % 3;
     const int turn = exact::orient_axes(a[0], a[1], a[2], x, y);
     if (turn == 0) continue;
     // Opposite orientation: the solids are on different sides of the plane and only touch.
     if (exact::orient_axes(b[0], b[1], b[2], x, y) != turn) return false;
-    // Separating axis theorem in 2D: if the interiors of two convex polygons are disjoint, the line of a
-    // side of one of them separates them.
+    // Separating axis theorem in 2D: if the interiors of two convex polygons are disjoint, the line of a side
+    // of one of them separates them.
     const auto parted = [&](const double* const p[3], const double* const q[3]) {
       for (int i = 0; i < 3; ++i) {
         bool beyond = true;
@@ -58,14 +57,14 @@ bool overlap_3d(const double* const a[3], const double* const b[3]) {
   return cover_each_other(a, b);
 }
 
-/// Returns true if two segments, which have the solid on their left, cross, or overlap on one line and run
-/// the same way.
+/// Returns true if two segments, with the solid on their left, cross, or overlap on one line in the same
+/// direction.
 bool overlap_2d(const double* const a[2], const double* const b[2]) {
-  // Not on one line: only a proper crossing counts.
+  // Not collinear: only a proper crossing counts.
   if (exact::orient2d(a[0], a[1], b[0]) != 0 || exact::orient2d(a[0], a[1], b[1]) != 0)
     return exact::meet_segments(a, b) == exact::Meet::cross;
-  // On one line, compare as intervals on an axis along which a has an extent. Different directions have the
-  // solid on different sides. Open intervals: a shared end is no overlap.
+  // Collinear: compare as intervals on an axis along which a has an extent. Opposite directions have the
+  // solid on different sides. Open intervals: a shared end is not an overlap.
   const int k = a[0][0] != a[1][0] ? 0 : 1;
   const bool forward = a[0][k] < a[1][k];
   if (forward != (b[0][k] < b[1][k])) return false;
@@ -90,16 +89,17 @@ class Ring {
   std::uint32_t place(VertexId v) const {
     return std::lower_bound(places_.begin(), places_.end(), std::array<std::uint32_t, 2>{v, 0})->at(1);
   }
-  std::vector<std::array<std::uint32_t, 2>> places_;  ///< (vertex, place in the face), ascending
+  std::vector<std::array<std::uint32_t, 2>> places_;  ///< (vertex, index in the face), ascending
 };
 
 /// A face with very many corners.
 struct LargeFace {
   TriangleTree tree;
-  std::optional<Ring> ring;  ///< of a planar convex one: its triangles' sides are not all its own
+  std::optional<Ring> ring;  ///< of a planar convex face: sides of its triangles need not be sides of the
+                             ///< face
 };
 
-/// The faces as triangles with area (2D: as segments), and the pairs of them that may meet.
+/// The faces as triangles with area (2D: as segments), and the pairs of them that may intersect.
 class Pieces {
  public:
   Pieces(const Mesh& mesh, const std::vector<FaceUse>& use) : mesh_(mesh), pairs_(mesh, use) {
@@ -108,13 +108,14 @@ class Pieces {
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
       offsets_.push_back(static_cast<std::uint32_t>(triangles_.size()));
       if (use[f] < FaceUse::area || mesh.dim == 2) continue;
-      // Only proper faces take part. Segments are used as they are.
+      // Only usable faces take part. Segments are used unchanged.
       pairs_.is_large(f) ? add_large(f, use[f]) : add_triangles(f, use[f]);
     }
     offsets_.push_back(static_cast<std::uint32_t>(triangles_.size()));
   }
 
-  /// Calls visit(f, g), f < g, for the pairs that may meet; on several threads if there are.
+  /// Calls visit(f, g), f < g, for the pairs that may intersect; concurrently if `workers` has several
+  /// threads.
   void for_each_pair(const FacePairs::Visit& visit, Workers& workers) const {
     pairs_.for_each(visit, workers);
   }
@@ -126,8 +127,8 @@ class Pieces {
       const double* const pb[2] = {point(b[0]), point(b[1])};
       return !exact::meet_only_in_shared_2d(pa, a.data(), pb, b.data());
     }
-    // Triangles of a large face may share a chord of it with the other face, which the index test would
-    // excuse.
+    // A triangle of a large face may share a chord of that face with the other face, which the index test
+    // would permit.
     const bool large = pairs_.is_large(f) || pairs_.is_large(g);
     return any_pair(f, g, [&](const Triangle& s, const Triangle& t) {
       const auto a = points(s), b = points(t);
@@ -176,7 +177,7 @@ class Pieces {
     }
   }
 
-  /// A polygon that is not flat is its fan.
+  /// Adds the fan of a polygon that is not planar and convex.
   void add_fan(std::span<const VertexId> corners, std::vector<Triangle>& out) const {
     for (std::size_t i = 1; i + 1 < corners.size(); ++i)
       if (!exact::collinear3d(point(corners[0]), point(corners[i]), point(corners[i + 1])))
@@ -223,8 +224,8 @@ class Pieces {
     return a != nullptr && b != nullptr && TriangleTree::any_pair(*a, *b, test);
   }
 
-  /// The triangles have a side in common that is no side of one of the faces, but a chord through its inside:
-  /// there the faces meet, though the triangles do no more than share a side.
+  /// Returns true if the triangles share a side that is not a side of both faces but an interior chord of
+  /// one: the faces then intersect, although the triangles only share a side.
   bool share_a_chord(FaceId f, const Triangle& s, FaceId g, const Triangle& t) const {
     // Corners in common, by index.
     VertexId shared[3];
@@ -234,8 +235,8 @@ class Pieces {
     return count == 2 && !(is_side(f, shared[0], shared[1]) && is_side(g, shared[0], shared[1]));
   }
 
-  /// Two corners of one triangle of a face are neighbours in the face. (A face that is not planar and convex
-  /// is its fan, and all sides of the fan count as its own.)
+  /// Returns true if two corners of a triangle are adjacent in the face. (A face that is not planar and
+  /// convex is its fan, and all sides of the fan count as its own.)
   bool is_side(FaceId f, VertexId v, VertexId w) const {
     if (pairs_.is_large(f)) {
       // Binary search in the sorted corners: a linear search for every triangle would be quadratic.
@@ -295,8 +296,8 @@ std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<
   std::vector<std::atomic<bool>> meets(mesh.face_count());
   pieces.for_each_pair(
       [&](FaceId f, FaceId g) {
-        // Skips the exact test if both faces are known. Flags only change from false to true, so races
-        // between threads do no harm.
+        // Skip the exact test if both faces are known. Flags only change from false to true, so races between
+        // threads are harmless.
         if (!(meets[f] && meets[g]) && pieces.meet_outside_shared(f, g)) meets[f] = meets[g] = true;
       },
       workers);

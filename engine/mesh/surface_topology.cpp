@@ -1,9 +1,9 @@
 // Topology of a polygon mesh by sorting and union-find, in O(n log n):
 // 1. Sort all sides of faces by edge (2D: ends of segments by vertex).
-// 2. Join the faces at each edge to components, and the corners of these faces to fans around the edge's
+// 2. Unite the faces at each edge to components, and the corners of these faces to fans around the edge's
 //    vertices.
-// 3. Judge each edge: closed manifold edges have two sides in opposite directions.
-// 4. Judge each vertex: manifold vertices have one fan.
+// 3. Classify each edge: closed manifold edges have two sides in opposite directions.
+// 4. Classify each vertex: manifold vertices have one fan.
 // 5. Genus by Euler's formula, if the surface is closed and manifold.
 #include <algorithm>
 #include <span>
@@ -14,12 +14,12 @@
 namespace lrb {
 namespace {
 
-/// One side of a face at an edge (in 2D: one end of a segment at a vertex).
+/// One side of a face at an edge (2D: one end of a segment at a vertex).
 struct SideUse {
   std::uint64_t key;  ///< the edge: smaller vertex, larger vertex (2D: the vertex)
   FaceId face;
-  std::uint32_t corner;  ///< the corner at which the side starts, index into Mesh::face_vertices
-  bool forward;          ///< it runs from the smaller to the larger vertex (2D: it leaves the vertex)
+  std::uint32_t corner;  ///< corner at which the side starts, index into Mesh::face_vertices
+  bool forward;  ///< runs from the smaller to the larger vertex (2D: the segment starts at the vertex)
 };
 
 bool has_different_corners(std::span<const VertexId> corners, int needed) {
@@ -37,7 +37,7 @@ class Analysis {
         faces_(mesh.face_count()),
         corners_(mesh.face_vertices.size()),
         fans_(mesh.vertices.size(), 0) {
-    // Faces that cannot be used keep kNull as their component.
+    // Unusable faces keep kNull as their component.
     out_.component_of_face.assign(mesh.face_count(), kNull);
     all_usable_ = true;
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
@@ -50,7 +50,7 @@ class Analysis {
   }
 
   SurfaceTopology run() {
-    // Components first, because judging an edge marks its component.
+    // Components first, because classifying an edge marks its component.
     for_each_edge([&](std::span<const SideUse> edge) { join(edge); });
     number_components();
     for_each_edge([&](std::span<const SideUse> edge) { judge(edge); });
@@ -66,13 +66,13 @@ class Analysis {
   void add_sides(FaceId f) {
     const auto corners = mesh_.face(f);
     const std::uint32_t first = mesh_.face_offsets[f];
-    out_.component_of_face[f] = f;  // for now: a face in use
+    out_.component_of_face[f] = f;  // preliminary: marks a usable face
     ++faces_used_;
-    // Each corner starts as a fan of its own. Every join of two fans lowers the count.
+    // Each corner starts as a fan of its own. Every union of two fans decrements the count.
     for (const VertexId v : corners) ++fans_[v];
     for (std::uint32_t i = 0; i < corners.size(); ++i) {
       const VertexId a = corners[i], b = corners[(i + 1) % corners.size()];
-      // 2D: the key is the vertex. The first end leaves it (the segment starts there), the second enters it.
+      // 2D: the key is the vertex. The segment starts at its first end.
       if (mesh_.dim == 2)
         sides_.push_back({a, f, first + i, i == 0});
       else if (a != b)
@@ -88,7 +88,7 @@ class Analysis {
     }
   }
 
-  /// Returns the corner of the same face after this one.
+  /// Returns the next corner of the same face.
   std::uint32_t next_corner(const SideUse& s) const {
     return s.corner + 1 == mesh_.face_offsets[s.face + 1] ? mesh_.face_offsets[s.face] : s.corner + 1;
   }
@@ -101,7 +101,7 @@ class Analysis {
     }
   }
 
-  /// Joins the fans of two faces at an edge: they are in one fan at both of its ends.
+  /// Unites the fans of two faces at an edge, at both of its ends.
   void join_fans(const SideUse& s, const SideUse& t) {
     // The corners of both faces at the smaller and at the larger vertex of the edge.
     const std::uint32_t low_s = s.forward ? s.corner : next_corner(s),
@@ -116,7 +116,7 @@ class Analysis {
     for (FaceId f = 0; f < mesh_.face_count(); ++f) {
       auto& number = out_.component_of_face[f];
       if (number == kNull) continue;
-      const std::uint32_t leader = faces_.leader(f);  // the smallest face of its set, so already numbered
+      const std::uint32_t leader = faces_.leader(f);  // the smallest face of its set, hence already numbered
       number = leader == f ? out_.components++ : out_.component_of_face[leader];
     }
     out_.component_closed.assign(out_.components, true);
@@ -132,13 +132,13 @@ class Analysis {
     if (edge.size() == 2) return note(report_, MeshFault::flipped_face, edge[0].face, edge[1].face);
     if (edge.size() == 1) out_.component_open[out_.component_of_face[edge[0].face]] = true;
     const MeshFault fault = edge.size() == 1 ? MeshFault::open_edge : MeshFault::non_manifold_edge;
-    // The key is the edge: its vertices are the upper and the lower 32 bits.
+    // The key is the edge: the upper and lower 32 bits are its vertices.
     if (mesh_.dim == 2) return note(report_, fault, static_cast<VertexId>(edge[0].key));
     note(report_, fault, static_cast<VertexId>(edge[0].key >> 32), static_cast<VertexId>(edge[0].key));
   }
 
-  /// Returns true if no vertex joins two fans. (In 2D the vertices take the role of edges, and are judged as
-  /// such.)
+  /// Returns true if every vertex has at most one fan. (In 2D vertices take the role of edges and are
+  /// classified as such.)
   bool judge_fans() {
     if (mesh_.dim == 2) return true;
     bool manifold = true;
@@ -162,9 +162,9 @@ class Analysis {
   MeshReport& report_;
   SurfaceTopology out_;
   std::vector<SideUse> sides_;
-  DisjointSets faces_;               ///< joined over edges
-  DisjointSets corners_;             ///< corners of all faces, joined round their vertex: each set is a fan
-  std::vector<std::uint32_t> fans_;  ///< (|V|) fans at a vertex: corners less joins
+  DisjointSets faces_;               ///< united over edges
+  DisjointSets corners_;             ///< corners of all faces, united around their vertex: each set is a fan
+  std::vector<std::uint32_t> fans_;  ///< (|V|) number of fans at a vertex: corners minus unions
   bool all_usable_ = false;
   std::int64_t vertices_used_ = 0, edges_ = 0, faces_used_ = 0;
 };

@@ -10,8 +10,8 @@
 
 namespace lrb {
 
-/// Gives points that are equal (to the bit, but 0 and -0 count as equal) one vertex, numbered in order of
-/// first appearance. Nothing is snapped: points an ulp apart stay apart, and check_mesh will find the gap.
+/// Merges equal points (bitwise, except that 0 and -0 are equal) to vertices, numbered in order of first
+/// appearance. There is no tolerance: points an ulp apart stay distinct, and check_mesh() reports the gap.
 class VertexMerger {
  public:
   explicit VertexMerger(std::vector<Eigen::Vector3d>& vertices) : vertices_(vertices), slots_(64, kNull) {}
@@ -31,14 +31,14 @@ class VertexMerger {
     std::uint64_t h = 0;
     for (int i = 0; i < 3; ++i) {
       h ^= std::bit_cast<std::uint64_t>(v[i] + 0.0);  // -0 + 0 is 0
-      h *= 0x9e3779b97f4a7c15u;                       // 2^64 over the golden ratio: spreads neighbouring keys
+      h *= 0x9e3779b97f4a7c15u;  // 2^64 divided by the golden ratio: disperses neighbouring keys
       h ^= h >> 32;
     }
     return h;
   }
 
-  /// Returns the slot of v, or the free slot where it belongs. The number of slots is a power of two, at most
-  /// half of them used.
+  /// Returns the slot of v, or the free slot for it. The number of slots is a power of two, and at most half
+  /// of them are used.
   VertexId& find(const Eigen::Vector3d& v) {
     const std::size_t mask = slots_.size() - 1;
     for (std::size_t i = hash(v) & mask;; i = (i + 1) & mask)

@@ -1,16 +1,18 @@
-/// The search in one piece of both motions, by conservative advancement (Mirtich 1996; Tang, Kim and Manocha,
-/// "C2A", 2009).
+/// The search for a first contact in one piece of both motions, by conservative advancement (Mirtich 1996;
+/// Tang, Kim and Manocha, "C2A", 2009).
 ///
 /// 1. Find all pairs of simplices that may intersect in a time interval, by one traversal with B swept. If
 ///    there are too many, halve the interval.
-/// 2. Advance each pair while a slab is proved to separate it. The least time reached is proved free.
-/// 3. Where pairs stop, query the bodies exactly a little later. If they intersect, that is the contact.
+/// 2. Advance each pair while a slab is proven to separate it. The bodies are separate up to the least time
+///    reached.
+/// 3. Where pairs stop, run the exact query slightly later. If bodies intersect then, that is the contact.
 /// 4. Else advance by shorter steps, sample more densely, or prove by continuity that a pair has passed.
-/// 5. Else lengthen the interval until the bodies are sure to stay separate again. What lies before is
+/// 5. Else lengthen the interval until the bodies are proven to stay separate again. The time before that is
 ///    reported as ambiguous (`doubtful`).
 ///
-/// Time is called free only if find_swept_pairs(), PairMotion::parted_for() or a distance proved it, contact
-/// only if the exact query or PairMotion::has_passed() did. All else decides only the amount of work.
+/// Bodies are reported as separate only if find_swept_pairs(), PairMotion::parted_for() or a distance proves
+/// it, and as in contact only if the exact query or PairMotion::has_passed() proves it. All other decisions
+/// affect only the amount of work.
 
 #include "engine/motion/contact_search.hpp"
 
@@ -26,27 +28,28 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The search is no coarser for a wider tolerance: where bodies come into each other, long spans hold many
-/// pairs.
+/// Largest tolerance used for steps, even if the request's is wider: while bodies penetrate each other, long
+/// intervals contain many pairs.
 constexpr double kWidestStep = 1e-6;
-/// From so many pairs on, shorter spans are looked at, unless they are hardly longer than the tolerance.
+/// Maximum number of pairs for which an interval is not halved. An interval of at most kHardlyLonger
+/// tolerances is never halved.
 constexpr std::uint64_t kFewPairs = 128;
 constexpr double kHardlyLonger = 64;
-/// In spans shorter than this share of a piece, each that has too many pairs doubles how many may be: where
-/// long faces pass each other, halves have no fewer, however short they are.
+/// In intervals shorter than this share of a piece, the maximum number of pairs is doubled after each
+/// failure: if long faces pass each other, shorter intervals contain no fewer pairs.
 constexpr double kShortShare = 0x1p-10;
-/// A pair stops when it comes no further than this many tolerances in a step, and a pair that is stuck when
-/// it comes no further than that many.
+/// A pair stops when a step advances it by at most kLeastStep tolerances; for a stuck pair the limit is
+/// kLeastStuckStep.
 constexpr double kLeastStep = 0x1p-3, kLeastStuckStep = 0x1p-20;
 constexpr int kMostStepsOfPair = 256;
-/// Factor between the lengths of the intervals in which the end of an ambiguity is searched; and the share of
-/// that length for which the bodies must then be proved separate.
+/// Factor between the lengths of the intervals in which the end of an ambiguity is searched, and share of
+/// that length for which the bodies must then be proven separate.
 constexpr double kLonger = 4, kGoesOn = 0.25;
 /// Accuracy to which the end of an ambiguous interval is found, relative to its length.
 constexpr double kNarrow = 0x1p-10;
 constexpr std::uint64_t kMostStuckPairs = 1 << 20;
 constexpr int kProbes = 8;
-/// After so many distances in a piece of the motions, pairs are looked at if there are not too many.
+/// Number of distances in a piece after which single pairs are followed instead, if there are not too many.
 constexpr std::uint64_t kMostDistances = 512;
 
 /// Returns t + step, rounded down.
@@ -60,18 +63,19 @@ double later(double t, double step) {
 void FirstContactSearch::search_piece(const MovingBody& a, const MovingBody& b, double end) {
   a_ = &a;
   b_ = &b;
-  // For scaled or sheared bodies the swept kernel culls nothing: these advance by distances.
+  // For scaled or sheared bodies the swept kernel culls nothing: use distances instead.
   is_swept_ = suits_sweeps(a, b);
   is_swept_ ? search_swept(end) : search_by_distance(end);
 }
 
-/// Returns false if there are more pairs than that, or than steps that are left; these are spent then.
+/// Collects the pairs of an interval. Returns false if there are more than `most`, or more than steps are
+/// left, which are used up then.
 bool FirstContactSearch::find_pairs(TimeSpan span, std::uint64_t most) {
   ++result_.counters.spans;
   // A pair costs one step: never collect more pairs than there are steps left.
   const std::uint64_t left = most_ - std::min(most_, spent_);
   const bool found_all = find_swept_pairs(query(), *a_, *b_, span, std::min(most, left), context_.pairs);
-  // If the steps that are left were the limit, the search ends here.
+  // If the remaining steps were the limit, the search ends.
   spent_ = !found_all && left < most ? most_ : spent_ + 1 + context_.pairs.size();
   result_.counters.pairs += context_.pairs.size();
   if (request_.history) result_.history.push_back({span, context_.pairs.size(), free_until_});
@@ -107,15 +111,15 @@ void FirstContactSearch::search_swept(double end) {
     if (free_until_ >= span.end) continue;
     // A pair has stopped: a contact, or bodies too close for steps of this length.
     free_until_ = look_closer(free_until_, end);
-    // The bodies are still close: go on with short intervals.
+    // The bodies are still close: continue with short intervals.
     width = kHardlyLonger * step_tolerance();
     if (!is_done_) tell(free_until_);
   }
 }
 
-/// Returns for how long after t the bodies are proved apart, by their distance.
+/// Returns the length of time after t for which the distance proves the bodies separate, or 0.
 double FirstContactSearch::parted_by_distance(double t) {
-  // A rough distance is enough: any lower bound gives a valid step.
+  // An approximate distance is enough: any lower bound yields a valid step.
   DistanceRequest rough;
   rough.relative_tolerance = 0.25;
   rough.relation = false;
@@ -124,25 +128,26 @@ double FirstContactSearch::parted_by_distance(double t) {
       distance(*rep_[0], a_->at(t).pose, *rep_[1], b_->at(t).pose, rough, context_.distance);
   const DistanceCounters& work = at.counters;
   spent_ += 1 + work.pairs_in_doubles / 8 + kStepsOfExact * work.pairs_exact + work.steps / kNodePairsOfStep;
-  // The distance is that of poses in doubles; the exact motions may differ from them now and later.
+  // The distance is of poses in doubles; the exact motions may deviate from them now and later.
   const double gap = at.lower - 2 * (a_->rounding() + b_->rounding()) * kWorldUp;
-  // No two points approach faster than by relative travel and both rotations.
+  // Two points approach no faster than the relative travel plus both rotations.
   const double speed = ((b_->travel() - a_->travel()).norm() + a_->spin() + b_->spin()) * kWorldUp;
   // Conservative advancement (Mirtich 1996).
   return gap > 0 ? gap / speed * (1 - kWorldRounding) : 0;
 }
 
-/// Returns true if each simplex of one body can be compared with each of the other.
+/// Returns true if the bodies are small enough to follow all pairs of simplices.
 bool FirstContactSearch::suits_all_pairs() const {
   const std::uint64_t pairs = std::uint64_t{rep_[0]->real_simplex_count()} * rep_[1]->real_simplex_count();
   return pairs <= kMostStuckPairs && pairs <= (most_ - std::min(most_, spent_)) / 4;
 }
 
-/// A distance does not say which way a gap lies: bodies that slide along each other go on by no more than
-/// their gap at a time. If that takes long, all pairs of small bodies are looked at, which need not.
+/// Advances by distances. A distance has no direction: bodies that slide along each other advance by at most
+/// their gap per step. If that takes many steps, all pairs of small bodies are followed instead, because
+/// their slabs have a direction.
 void FirstContactSearch::search_by_distance(double end) {
   for (std::uint64_t steps = 0; free_until_ < end && !is_over(); ++steps) {
-    // Many small steps: follow single pairs, whose slabs have a direction, instead.
+    // Many small steps: follow single pairs instead.
     if (steps == kMostDistances && suits_all_pairs()) {
       is_swept_ = true;
       return search_swept(end);
@@ -150,21 +155,21 @@ void FirstContactSearch::search_by_distance(double end) {
     const double parted = parted_by_distance(free_until_);
     free_until_ = std::min(end, later(free_until_, parted));
     tell(free_until_);
-    // The gap is closed within a fraction of the tolerance: contact, or nearly.
+    // The gap closes within a fraction of the tolerance: contact, or nearly.
     if (parted < kLeastStep * step_tolerance() && free_until_ < end)
       free_until_ = look_closer(free_until_, end);
   }
 }
 
-/// Moves a pair on from the states at the span's begin for as long as it is parted, and steps are at least
-/// this long.
+/// Advances a pair from the states at the interval's start while it is proven separate and steps are at least
+/// `least`. Returns the time reached.
 double FirstContactSearch::advance(SimplexPair pair, const PieceState& at_a, const PieceState& at_b,
                                    TimeSpan span, double least) {
   PairMotion moving(*a_, *b_, pair);
   moving.place(at_a, at_b);
   if (is_long()) moving.look_at_axes();
   double t = span.begin;
-  // The direction that separated the pair before often separates this one, too.
+  // The direction that separated the previous pair often separates this one as well.
   Vector3d n = hint_;
   for (int i = 0;; ++i) {
     ++result_.counters.steps;
@@ -182,19 +187,19 @@ double FirstContactSearch::advance(SimplexPair pair, const PieceState& at_a, con
     const double before = t;
     t = std::min(span.end, later(t, parted));
     if (t >= span.end) hint_ = n;
-    // Steps towards a contact shrink quickly: stop once they are negligible, or too short for t to change.
+    // Steps towards a contact shrink quickly: stop once they are negligible, or too short to change t.
     if (t >= span.end || parted < least || t == before || i >= kMostStepsOfPair) return t;
     if (is_spent()) return t;
     moving.place(a_->at(t), b_->at(t));
   }
 }
 
-/// Returns until when all pairs that were found in a span are proved not to meet.
+/// Returns the time up to which all pairs found in an interval are proven separate.
 double FirstContactSearch::advance_all(TimeSpan span, double least) {
   const PieceState at_a = a_->at(span.begin), at_b = b_->at(span.begin);
   double until = span.end;
   for (const SimplexPair& pair : context_.pairs) {
-    // Out of steps: nothing is proved about the remaining pairs.
+    // Out of steps: nothing is proven about the remaining pairs.
     if (is_spent()) return span.begin;
     // Later pairs need not advance beyond the least time so far.
     until = advance(pair, at_a, at_b, {span.begin, until}, least);
@@ -203,7 +208,7 @@ double FirstContactSearch::advance_all(TimeSpan span, double least) {
 }
 
 /// Handles a time t up to which the bodies are separate and beyond which no pair advances: finds a contact
-/// right after t, or returns the time up to which there is none, apart from ambiguous intervals.
+/// right after t, or returns the time up to which there is no contact except in ambiguous intervals.
 double FirstContactSearch::look_closer(double t, double end) {
   const double soon = std::min(end, std::max(t + step_tolerance() / 2, std::nextafter(t, 2)));
   // A contact half a tolerance later: the interval is narrow enough.
@@ -211,17 +216,17 @@ double FirstContactSearch::look_closer(double t, double end) {
     contact_in({t, soon}, *pair);
     return t;
   }
-  // No contact then: shorter steps may lead past it.
+  // No contact then: shorter steps may lead past t.
   const double until = advance_stuck({t, soon});
   if (until >= soon || meets_right_after({until, soon}) || has_passed({t, soon})) return until;
-  // All proofs have failed here: determine how long the ambiguity lasts.
+  // All proofs failed: determine the end of the ambiguity.
   return look_further(until, end);
 }
 
-/// Asks the exact query at a few times right after the span's begin. Returns true, and notes the contact, if
-/// it finds one: bodies that pass each other in less than the tolerance do.
+/// Runs the exact query at a few times right after the interval's start. Returns true, and records the
+/// contact, if one is found, as for bodies that pass each other in less than the tolerance.
 bool FirstContactSearch::meets_right_after(TimeSpan span) {
-  // Sample much more densely than the tolerance, and denser towards the begin.
+  // Sample far more densely than the tolerance, and increasingly towards the start.
   for (const double share : {0x1p-24, 0x1p-16, 0x1p-8}) {
     const double t = std::max(span.begin + share * step_tolerance(), std::nextafter(span.begin, 2));
     if (t >= span.end) return false;
@@ -233,14 +238,14 @@ bool FirstContactSearch::meets_right_after(TimeSpan span) {
   return false;
 }
 
-/// Returns until when bodies are proved not to meet, in steps as short as need be. Keeps the pairs that do
-/// not come to the span's end.
+/// Returns the time up to which the bodies are proven separate, in steps as short as necessary. Stores the
+/// pairs that do not reach the interval's end.
 double FirstContactSearch::advance_stuck(TimeSpan span) {
   const double least = kLeastStuckStep * step_tolerance();
   context_.stuck.clear();
   double until = span.end;
   if (!is_swept_) {
-    // By distances: up to kMostStepsOfPair steps of no less than `least`.
+    // By distances: at most kMostStepsOfPair steps, each of at least `least`.
     double t = span.begin, parted = span.end - t;
     for (int i = 0; i < kMostStepsOfPair && t < until && parted >= least; ++i) {
       parted = parted_by_distance(t);
@@ -248,12 +253,12 @@ double FirstContactSearch::advance_stuck(TimeSpan span) {
     }
     return t;
   }
-  // Fails only if steps run out: then nothing is proved.
+  // Fails only if steps run out: then nothing is proven.
   if (!find_pairs(span, kNoLimit)) return span.begin;
   const PieceState at_a = a_->at(span.begin), at_b = b_->at(span.begin);
   for (const SimplexPair& pair : context_.pairs) {
     if (is_spent()) return span.begin;
-    // Each pair is followed over the full interval, because has_passed() needs all that are stuck.
+    // Each pair is followed over the full interval, because has_passed() needs all stuck pairs.
     const double gone = advance(pair, at_a, at_b, span, least);
     if (gone < span.end) context_.stuck.push_back(pair);
     until = std::min(until, gone);
@@ -261,7 +266,7 @@ double FirstContactSearch::advance_stuck(TimeSpan span) {
   return until;
 }
 
-/// Returns true, and notes the contact, if one of the pairs that are stuck is proved to have met in the span.
+/// Returns true, and records the contact, if a stuck pair is proven to have intersected in the interval.
 bool FirstContactSearch::has_passed(TimeSpan span) {
   const double time = (span.end - span.begin) * kWorldUp;
   for (const SimplexPair& pair : context_.stuck) {
@@ -279,10 +284,10 @@ bool FirstContactSearch::has_passed(TimeSpan span) {
   return false;
 }
 
-/// Looks for the end of the time after t in which the bodies are as near each other as rounding.
+/// Searches for the end of the time after t in which the gap between the bodies is within rounding.
 double FirstContactSearch::look_further(double t, double end) {
   // Lengthen the interval by kLonger each time, until the bodies are in contact at its end, have passed
-  // through each other, or are sure to stay separate for a while.
+  // through each other, or are proven to stay separate for a while.
   for (double width = tolerance_; !is_over(); width *= kLonger) {
     const TimeSpan span{t, end - t > width ? std::max(t + width, std::nextafter(t, 2)) : end};
     if (auto pair = meets_at(span.end)) {
@@ -292,14 +297,14 @@ double FirstContactSearch::look_further(double t, double end) {
     if (is_swept_) {
       const bool found_all = find_pairs(span, kMostStuckPairs);
       if (is_spent()) return t;
-      // Any of the pairs may have passed through: test them all.
+      // Any pair may have passed through: test all.
       context_.stuck = context_.pairs;
       if (has_passed(span)) return t;
       // An incomplete list cannot prove that the bodies stay separate.
       if (!found_all && span.end < end) continue;
     }
     if (span.end < end && !goes_on_from(span)) continue;
-    // The ambiguity ends within this interval: narrow its end, then sample it for a contact.
+    // The ambiguity ends within this interval: narrow down its end, then sample it for a contact.
     const TimeSpan shortest = shortened(span, width / kLonger);
     if (!found_between(shortest)) doubt(shortest);
     return shortest.end;
@@ -307,22 +312,22 @@ double FirstContactSearch::look_further(double t, double end) {
   return t;
 }
 
-/// Returns the shortest span, by halves, after which bodies are sure to go on, given one after which they
-/// are, or nothing remains, and a length of spans after which they are not.
+/// Returns the shortest interval, by bisection, after which the bodies are proven to stay separate. span: an
+/// interval after which they are, or that reaches the end. too_short: a length after which they are not.
 TimeSpan FirstContactSearch::shortened(TimeSpan span, double too_short) {
-  // Bisection: `doubtful` is too short, span.end is long enough.
+  // Invariant: `doubtful` is too short, span.end is long enough.
   double doubtful = std::min(span.begin + too_short, span.end);
   while (span.end - doubtful > std::max(tolerance_, kNarrow * (span.end - span.begin)) && !is_over()) {
     const double middle = doubtful + (span.end - doubtful) / 2;
     if (!(middle > doubtful && middle < span.end)) break;
-    // goes_on_from() looks at the pairs that were found last.
+    // goes_on_from() uses the pairs found last.
     if (is_swept_ && !find_pairs({span.begin, middle}, kMostStuckPairs)) break;
     (goes_on_from({span.begin, middle}) ? span.end : doubtful) = middle;
   }
   return span;
 }
 
-/// Returns true if the pairs that may meet in a span are sure not to right after it.
+/// Returns true if the pairs that may intersect in an interval are proven separate right after it.
 bool FirstContactSearch::goes_on_from(TimeSpan span) {
   const double wanted = kGoesOn * (span.end - span.begin);
   // Without pairs the distance must prove it.
@@ -337,8 +342,8 @@ bool FirstContactSearch::goes_on_from(TimeSpan span) {
   });
 }
 
-/// Asks the exact query at a few times within a doubtful span. Returns true, and notes the contact, if it
-/// finds one.
+/// Runs the exact query at a few times within an ambiguous interval. Returns true, and records the contact,
+/// if one is found.
 bool FirstContactSearch::found_between(TimeSpan span) {
   double before = span.begin;
   for (int i = 1; i < kProbes; ++i) {
@@ -354,11 +359,11 @@ bool FirstContactSearch::found_between(TimeSpan span) {
   return false;
 }
 
-/// Notes a contact at the end of a span; first looks for an earlier one, by halves.
+/// Records a contact at the end of an interval; first searches for an earlier one by bisection.
 void FirstContactSearch::contact_at_last(TimeSpan span, SimplexPair pair) {
   double none = span.begin;
   tell(span.begin, span.end);
-  // Bisection on the exact query. Contact need not be monotone in t, so that the begin of the span stays t0.
+  // Contact need not be monotone in t, so the start of the interval remains t0.
   while (span.end - none > tolerance_ / 2 && !is_spent()) {
     const double middle = none + (span.end - none) / 2;
     if (!(middle > none && middle < span.end)) break;
@@ -403,7 +408,7 @@ void FirstContactSearch::write_features(double t, SimplexPair pair) {
   result_.witness = {witness_of(*rep_[0], pair.a, at.on[0], at.point[0]),
                      witness_of(*rep_[1], pair.b, at.on[1], at.point[1])};
   const double length = at.direction.stableNorm();
-  // The closest points coincide up to rounding: there is no normal.
+  // The closest points coincide up to rounding: the normal is unknown.
   if (!(length > 0)) return;
   result_.normal = at.direction / length;
   if (result_.normal.dot(moving.ahead()) < 0) result_.normal = -result_.normal;

@@ -1,6 +1,6 @@
 #pragma once
-/// One search for a first contact, with memory that the next one can use again: for code of ours. Users of
-/// the installed engine have first_contact.hpp.
+/// One search for a first contact, with reusable buffers. Internal: users of the installed engine include
+/// first_contact.hpp.
 
 #include <limits>
 #include <optional>
@@ -12,21 +12,21 @@
 
 namespace lrb {
 
-/// Pairs of nodes that count as one step, and steps that one comparison in integers counts as.
+/// Number of node pairs that count as one step, and number of steps that one exact test counts as.
 inline constexpr std::uint64_t kNodePairsOfStep = 16, kStepsOfExact = 16;
 
-/// Memory of a search; one for each thread.
+/// Buffers of a search; one for each thread.
 struct FirstContactContext {
   DistanceContext distance;
   std::vector<SimplexPair> pairs, stuck;
 };
 
-/// Answers as first_contact() in first_contact.hpp does. probe: null, or told what is known.
+/// Finds the first contact as first_contact() in first_contact.hpp does. probe: null, or notified of bounds.
 FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                  const Motion& motion_b, const FirstContactRequest& request,
                                  FirstContactContext& context, FirstContactProbe* probe = nullptr);
 
-/// One search. free_until(): the bodies are proved not to meet from 0 to there, but in what is doubtful.
+/// One search. The bodies are proven separate from 0 to free_until_, except in the intervals of `doubtful`.
 class FirstContactSearch {
  public:
   FirstContactSearch(const LrbRep& a, const Motion& motion_a, const LrbRep& b, const Motion& motion_b,
@@ -38,8 +38,8 @@ class FirstContactSearch {
   QueryContext& query() { return context_.distance.query; }
   bool is_over() const { return is_done_ || is_spent() || is_out_of_steps(); }
   bool is_spent() const { return spent_ >= most_; }
-  /// Returns true if so many steps were taken, and so many of each pair, that longer ones are worth their
-  /// while.
+  /// Returns true if the search has taken many steps, and many for each pair, so that more expensive but
+  /// longer steps are worth their cost.
   bool is_long() const {
     const FirstContactCounters& c = result_.counters;
     return c.steps > most_ / 8 && c.steps > 8 * c.pairs;
@@ -80,16 +80,16 @@ class FirstContactSearch {
   const FirstContactRequest& request_;
   FirstContactContext& context_;
   FirstContactProbe* probe_;
-  ContactBounds told_;                      ///< last
-  std::optional<DistanceContext> to_tell_;  ///< memory of the distances that are told
+  ContactBounds told_;                      ///< last reported bounds
+  std::optional<DistanceContext> to_tell_;  ///< buffers for the reported distances
   FirstContactResult result_;
-  const MovingBody *a_ = nullptr, *b_ = nullptr;  ///< in the piece that is searched
+  const MovingBody *a_ = nullptr, *b_ = nullptr;  ///< in the current piece
   double free_until_ = 0;
-  Eigen::Vector3d hint_{0, 0, 0};  ///< the direction that parted a pair last
-  bool is_swept_ = true;           ///< sweeps find the pairs; else distances tell how long there are none
+  Eigen::Vector3d hint_{0, 0, 0};  ///< the last direction that separated a pair
+  bool is_swept_ = true;           ///< sweeps find the pairs; otherwise advance by distances
   bool is_done_ = false;
-  double tolerance_;                    ///< the request's, but no less than doubles can resolve
-  std::uint64_t spent_ = 0, most_ = 0;  ///< steps as first_contact.hpp counts them, and the most there may be
+  double tolerance_;                    ///< the request's, but at least the resolution of doubles
+  std::uint64_t spent_ = 0, most_ = 0;  ///< steps as counted by first_contact.hpp, and their maximum
 };
 
 }  // namespace lrb

@@ -1,9 +1,9 @@
-/// The frame of the search for a first contact; contact_search.cpp has the search within one piece of both
+/// The outer loop of the search for a first contact; contact_search.cpp searches within one piece of both
 /// motions.
 ///
 /// 1. Query the bodies exactly at t = 0. If they intersect, the search ends there.
 /// 2. Search one interval of t after another in which both motions stay in one piece.
-/// 3. Derive the outcome from the contact found, or from the ambiguous intervals and the steps that are left.
+/// 3. Derive the outcome from the contact found, or from the ambiguous intervals and the remaining steps.
 
 #include <algorithm>
 #include <cmath>
@@ -21,22 +21,23 @@ namespace lrb {
 
 namespace {
 
-/// Returns the maximum number of steps of a search (first_contact.hpp). Far more than any search needs,
-/// except along clearances that are small relative to the path.
+/// Returns the maximum number of steps of a search (first_contact.hpp). It is far more than needed, except
+/// along clearances that are small relative to the path.
 std::uint64_t most_steps(const LrbRep& a, const Motion& motion_a, const LrbRep& b, const Motion& motion_b) {
   constexpr double kSteps = 8192, kStepsOfSimplex = 512, kMostParts = 0x1p20, kMost = 0x1p40;
   double parts = 0;
   for (const Motion* motion : {&motion_a, &motion_b})
     for (const Motion::Piece& piece : motion->pieces())
-      // Half a piece for each body, so that `parts` is the mean of both plus the number of full turns.
+      // Half a piece for each body, so that `parts` is the mean number of pieces plus the number of full
+      // turns.
       parts += 0.5 + std::min(piece.turn.stableNorm() / (2 * std::numbers::pi), kMostParts);
   const double simplices = 1.0 * a.real_simplex_count() + b.real_simplex_count();
   return static_cast<std::uint64_t>(std::min((kSteps + kStepsOfSimplex * simplices) * parts, kMost));
 }
 
-/// Returns an interval of t below which rounding hides all motion. With S as motion_bounds.hpp has it, places
-/// are off by 8 u (1 + 2^-10 |turn|) S or more, u = 2^-53, and move by no more than 2 (1 + |turn|) S in a
-/// piece: by as much as that in 2^-61 of the piece or more.
+/// Returns an interval of t below which rounding hides all motion. With S as in motion_bounds.hpp and u =
+/// 2^-53, positions have an error bound of at least 8 u (1 + 2^-10 |turn|) S, and move by at most 2 (1 +
+/// |turn|) S in a piece: moving by the error bound takes at least 2^-61 of the piece.
 double least_tolerance(const Motion& motion_a, const Motion& motion_b) {
   double shortest = 1;
   for (const Motion* motion : {&motion_a, &motion_b})
@@ -73,13 +74,13 @@ bool FirstContactSearch::is_out_of_steps() const {
   return request_.max_steps > 0 && work() >= request_.max_steps;
 }
 
-/// Tells the probe that the bodies do not meet before t0, and have met by t1, if that is news.
+/// Reports to the probe that the bodies are separate before t0 and in contact by t1, unless reported before.
 void FirstContactSearch::tell(double t0, double t1) {
   if (probe_ == nullptr) return;
   ContactBounds now{work(), std::min(t0, 1.0), t1, 0, 0};
-  // Report only news.
+  // Report only changes.
   if (told_.work > 0 && now.t0 == told_.t0 && now.t1 == told_.t1) return;
-  // Separate memory: the context of the search is not disturbed.
+  // Separate buffers: the context of the search must not change.
   if (!to_tell_) to_tell_.emplace();
   DistanceRequest rough;
   rough.relative_tolerance = 0.01;
@@ -92,12 +93,12 @@ void FirstContactSearch::tell(double t0, double t1) {
   probe_->bounds(now);
 }
 
-/// Asks the exact query, and leaves the bodies of its context at their poses.
+/// Runs the exact query, and leaves the bodies of its context at their poses.
 std::optional<SimplexPair> FirstContactSearch::meets_at(double t) {
   ++result_.counters.exact_queries;
   const Pose pose_a = motion_[0]->at(t), pose_b = motion_[1]->at(t);
   check_query(*rep_[0], pose_a, *rep_[1], pose_b);
-  // The poses remain set afterwards: write_start() and meets_at_start() read them.
+  // The poses remain set: write_start() and meets_at_start() read them.
   query().body[0].begin(*rep_[0], pose_a, WrapperMode::regularised);
   query().body[1].begin(*rep_[1], pose_b, WrapperMode::regularised);
   CollideRequest any;
@@ -106,14 +107,14 @@ std::optional<SimplexPair> FirstContactSearch::meets_at(double t) {
   CollideResult found;
   NullProbe probe;
   TreeQuery<NullProbe>(query(), any, found, probe).run();
-  // Count the work in the steps that first_contact.hpp defines.
+  // Count the work in steps as defined in first_contact.hpp.
   spent_ += 1 + found.counters.face_tests + kStepsOfExact * found.counters.exact_fallbacks +
             found.counters.node_pairs / kNodePairsOfStep;
   if (found.pairs.empty()) return std::nullopt;
   return found.pairs[0];
 }
 
-/// Writes where and how a pair intersects at t = 0.
+/// Writes the position and kind of the intersection of a pair at t = 0.
 void FirstContactSearch::write_start(SimplexPair pair) {
   const double *of_a[3], *of_b[3];
   query()[Side::a].world.corners(pair.a, of_a);
@@ -147,20 +148,20 @@ bool FirstContactSearch::meets_at_start() {
 
 FirstContactResult FirstContactSearch::run() {
   check_request(request_);
-  // Reject world coordinates that are not finite at either end; meets_at() checks those in between.
+  // Reject world coordinates that are not finite at either end; meets_at() checks the times in between.
   for (const double t : {0.0, 1.0}) check_query(*rep_[0], motion_[0]->at(t), *rep_[1], motion_[1]->at(t));
   // A body without faces never collides.
   if (rep_[0]->tree().empty() || rep_[1]->tree().empty()) return result_;
   const bool at_once = meets_at_start();
   tell(0, at_once ? 0 : std::numeric_limits<double>::infinity());
   if (at_once) return result_;
-  // Merge both lists of pieces: search each interval of t in which neither motion changes its piece.
+  // Merge both lists of pieces: search each interval of t in which both motions stay in one piece.
   const std::vector<Motion::Piece>*const of_a = &motion_[0]->pieces(), *const of_b = &motion_[1]->pieces();
   for (std::size_t i = 0, j = 0; i < of_a->size() && j < of_b->size() && !is_over();) {
     const MovingBody a(*rep_[0], (*of_a)[i]), b(*rep_[1], (*of_b)[j]);
     const double end_a = a.piece().end, end_b = b.piece().end;
     search_piece(a, b, std::min(end_a, end_b));
-    // Go on with the piece that ends later, or with the next of both if they end together.
+    // Continue with the piece that ends later, or with the next of both if they end together.
     i += end_a <= end_b;
     j += end_b <= end_a;
   }
@@ -169,7 +170,7 @@ FirstContactResult FirstContactSearch::run() {
 
 FirstContactResult FirstContactSearch::finish() {
   if (!is_done_) {
-    // If nothing is proved up to t = 1, the steps ran out: the remaining time is ambiguous.
+    // If the proof does not reach t = 1, the steps ran out: the remaining time is ambiguous.
     result_.finished = free_until_ >= 1;
     if (!result_.finished) doubt({free_until_, 1});
     if (!result_.finished) result_.unresolved = Unresolved::steps;
@@ -179,7 +180,7 @@ FirstContactResult FirstContactSearch::finish() {
       result_.t1 = result_.doubtful.back().end;
     }
   }
-  // The gapless proof of separation ends at the first ambiguous interval.
+  // The uninterrupted proof of separation ends at the first ambiguous interval.
   if (!result_.doubtful.empty()) result_.t0 = result_.doubtful[0].begin;
   result_.grazing = result_.grazing || (result_.finished && !result_.doubtful.empty());
   if (result_.grazing && result_.unresolved == Unresolved::nothing) result_.unresolved = Unresolved::rounding;
@@ -211,7 +212,7 @@ std::vector<FirstContactResult> first_contacts(const LrbRep& a, const Motion& mo
   Workers workers(threads);
   std::vector<FirstContactContext> contexts(workers.count());
   std::vector<FirstContactResult> results(motions_b.size());
-  // Searches are independent, each worker has its own context: results do not depend on the threads.
+  // Searches are independent, and each worker has its own context: results do not depend on the threads.
   workers.for_each(motions_b.size(), [&](std::size_t i, unsigned worker) {
     results[i] = first_contact(a, motion_a, b, motions_b[i], request, contexts[worker]);
   });

@@ -1,7 +1,7 @@
 /// Motions by rotation about a fixed axis at constant speed plus constant translation, piece by piece.
 ///
-/// Poses are computed in long double, whose functions round alike on every processor (core/random.hpp),
-/// and rounded to double once. motion_bounds.hpp bounds the error.
+/// Poses are computed in long double, with functions that round identically on every processor
+/// (core/random.hpp), and rounded to double once. motion_bounds.hpp bounds the error.
 
 #include <algorithm>
 #include <cmath>
@@ -31,10 +31,10 @@ Matrix rotation_by(const Vector& turn) {
   return Eigen::AngleAxis<Real>(angle, turn / angle).toRotationMatrix();
 }
 
-/// Returns the rotation vector of a matrix that is nearly a rotation, of length pi at most.
+/// Returns the rotation vector, of length at most pi, of a matrix that is nearly a rotation.
 Eigen::Vector3d logarithm(const Matrix& m) {
   Eigen::Quaternion<Real> q(m);
-  // The matrix is only nearly a rotation; its quaternion must have length 1.
+  // The matrix is only nearly a rotation; normalise its quaternion.
   q.normalize();
   Vector axis = q.vec();
   const Real sine = axis.norm();
@@ -56,7 +56,7 @@ void check_rotation(const Eigen::Matrix3d& r, const char* which) {
         " pose is no rotation: give one whose columns are of length 1 and at right angles to 0.001");
 }
 
-/// Returns the piece that leads from one pose to another.
+/// Returns the piece between two poses.
 Motion::Piece piece_between(const Pose& start, const Pose& end) {
   Motion::Piece piece;
   piece.r = start.r;
@@ -135,14 +135,14 @@ Motion Motion::key_frames(std::span<const KeyFrame> frames) {
 }
 
 PieceState state_of(const Motion::Piece& piece, double t) {
-  // s is 0 at the begin of the piece and 1 at its end.
+  // s is 0 at the start of the piece and 1 at its end.
   const Real s = (static_cast<Real>(t) - static_cast<Real>(piece.begin)) /
                  (static_cast<Real>(piece.end) - static_cast<Real>(piece.begin));
   const Vector from = piece.from.cast<Real>(), to = piece.to.cast<Real>();
   const Vector at = from + s * (to - from);
   PieceState state;
   if (piece.turn.isZero(0)) {
-    // No rotation: skip products with the identity, so that the doubles of the pose stay as they are.
+    // Without rotation: skip products with the identity, so that the doubles of the pose remain unchanged.
     state.turned = piece.r;
     state.pose.r = piece.first.r.isIdentity(0)
                        ? piece.r
@@ -169,8 +169,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Calls see(origin, radius), in the body's unit, for balls that together enclose the body: those of the
-/// nodes two levels below the root. Tighter than the root's own ball, at constant cost.
+/// Calls see(origin, radius), in mesh units, for balls that together enclose the body: those of the nodes two
+/// levels below the root. Tighter than the root's ball, at constant cost.
 template <class See>
 void for_each_ball(const ObbTree& tree, See&& see) {
   const auto nodes = tree.nodes().data();
@@ -191,11 +191,11 @@ void for_each_ball(const ObbTree& tree, See&& see) {
 
 MovingBody::MovingBody(const LrbRep& rep, const Motion::Piece& piece) : rep_(&rep), piece_(&piece) {
   const double time = piece.end - piece.begin, angle = piece.turn.stableNorm() * kWorldUp;
-  // Velocities per unit of t. Rotation leaves the travel alone.
+  // Velocities per unit of t. The rotation does not affect the travel.
   travel_ = (piece.to - piece.from) / time;
   rate_ = piece.turn / time;
   stretch_ = stretch({piece.r, {0, 0, 0}});
-  // Rates that serve as bounds are rounded up.
+  // Rates used as bounds are rounded up.
   turn_rate_ = angle / time * kWorldUp;
   spin_ = angle > 0 ? stretch_ * farthest_from_axis() * kWorldUp : 0;
   // In the terms of motion_bounds.hpp: size = X, turned = N X + P, path = Q.
@@ -203,13 +203,13 @@ MovingBody::MovingBody(const LrbRep& rep, const Motion::Piece& piece) : rep_(&re
   const double frobenius = std::sqrt(3.0) * stretch(piece.first);
   const double turned = stretch_ * (frobenius * size + piece.first.t.stableNorm());
   const double path = std::max(piece.from.stableNorm(), piece.to.stableNorm());
-  // 8 u (1 + 2^-10 |turn|), the bound derived there, for places; four times that for velocities.
+  // 8 u (1 + 2^-10 |turn|), the bound derived there, for positions; four times that for velocities.
   const double share = kMotionRounding * (1 + 0x1p-10 * angle);
   rounding_ = share * (turned + path) * kWorldUp + kWorldUnderflow;
   velocity_rounding_ = 4 * share * (angle * turned + 2 * path) / time * kWorldUp + kWorldUnderflow;
 }
 
-/// Returns a bound on |w x z|.
+/// Returns an upper bound on |w x z|.
 double MovingBody::farthest_from_axis() const {
   const double size = stretch(piece_->first);
   double most = 0;
@@ -218,7 +218,7 @@ double MovingBody::farthest_from_axis() const {
     // Rounding of z and of the cross product.
     const double rounding =
         4 * kMotionRounding * (2 * size * rep_->tree().extent() + piece_->first.t.stableNorm());
-    // The speed of the ball's centre, and at most |w| times the radius more at its rim.
+    // The speed of the ball's centre, plus at most |w| times the radius.
     most = std::max(most, rate_.cross(z).stableNorm() + turn_rate_ * (size * radius + rounding));
   });
   return most * kWorldUp;
@@ -233,7 +233,7 @@ MovingBody::Spin MovingBody::spin_of(const Vector3d& x) const {
   if (!(turn_rate_ > 0)) return {Vector3d::Zero(), 0};
   const Vector3d z = piece_->first.r * x + piece_->first.t;
   Spin spin{rate_.cross(z), 0};
-  // Rounding of z and of the cross product, which the bound on the acceleration has to include.
+  // Rounding of z and of the cross product, which the bound on the acceleration must include.
   const double rounding = 4 * kMotionRounding * turn_rate_ * (z.norm() + piece_->first.t.norm());
   spin.acceleration = stretch_ * turn_rate_ * (spin.velocity.norm() + rounding) * kWorldUp;
   return spin;
@@ -242,9 +242,9 @@ MovingBody::Spin MovingBody::spin_of(const Vector3d& x) const {
 double MovingBody::share_along(const Vector3d& n) const {
   if (!(turn_rate_ > 0)) return 1;
   const Vector3d across = (piece_->r.transpose() * n).cross(piece_->turn.stableNormalized());
-  // Products, and the axis, are off by less than 16 u |r| |n|.
+  // The error of the products and of the axis is less than 16 u |r| |n|.
   const double share = across.norm() / (stretch_ * n.norm()) * kWorldUp + kWorldRounding;
-  return share < 1 ? share : 1;  // not a number: 1
+  return share < 1 ? share : 1;  // NaN: 1
 }
 
 }  // namespace lrb

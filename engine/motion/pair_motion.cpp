@@ -1,8 +1,8 @@
 /// Conservative advancement of one pair of simplices, and a proof that a pair has passed through.
 ///
-/// - parted_for(): bound the motion of each pair of corners along a direction by a quadratic of t; the least
+/// - parted_for(): bounds the motion of each pair of corners along a direction by a quadratic of t; the least
 ///   first root is the time for which the slab separates the simplices.
-/// - has_passed(): a topological argument on the Minkowski difference, see there.
+/// - has_passed(): a continuity argument on the Minkowski difference, explained there.
 
 #include "engine/motion/pair_motion.hpp"
 
@@ -22,19 +22,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Roots are taken back by this share, which covers their rounding: 8 u, u = 2^-53.
+/// Roots are reduced by this factor, which covers their rounding: 8 u, u = 2^-53.
 constexpr double kRootDown = 1 - 0x1p-40;
 
-/// Returns the largest d up to which c + v d - k d^2 / 2 is more than 0, for c > 0 and k >= 0, rounded down.
+/// Returns the largest d up to which c + v d - k d^2 / 2 > 0, for c > 0 and k >= 0, rounded down.
 double first_root(double c, double v, double k) {
-  // Linear motion: it never reaches 0, or at -c / v.
+  // Linear motion: the root is -c / v, or there is no root.
   if (!(k > 0)) return v >= 0 ? kInfinity : c / -v * kRootDown;
-  // Of the two forms of the quadratic formula, take the one without cancellation for this sign of v.
+  // Of the two forms of the quadratic formula, use the one without cancellation for this sign of v.
   const double root = std::sqrt(v * v + 2 * k * c);
   return (v >= 0 ? (v + root) / k : 2 * c / (root - v)) * kRootDown;
 }
 
-/// A direction across n.
+/// Returns a unit direction perpendicular to n.
 Vector3d across(const Vector3d& n) {
   int least = 0;
   // The axis on which n is shortest is never parallel to n.
@@ -42,7 +42,7 @@ Vector3d across(const Vector3d& n) {
   return n.cross(Vector3d::Unit(least)).normalized();
 }
 
-/// Two coordinates of the difference of two corners, and how far B's is ahead.
+/// A difference of two corners, projected along d: see has_passed().
 struct Difference {
   double u, v;
 };
@@ -51,7 +51,7 @@ double cross(const Difference& x, const Difference& y) {
   return x.u * y.v - x.v * y.u;
 }
 
-/// Returns true if a triangle in the plane holds the origin, and does so however its corners move by `way`.
+/// Returns true if a 2D triangle contains the origin, even if each of its corners moves by up to `way`.
 bool holds_origin(const Difference* k, double way) {
   double sign = 0;
   for (int i = 0; i < 3; ++i) {
@@ -61,7 +61,7 @@ bool holds_origin(const Difference* k, double way) {
     const double most = std::abs(x.u) + std::abs(x.v) + std::abs(y.u) + std::abs(y.v);
     // Moving both ends by `way` changes this by less than the first term; the second covers rounding.
     if (!(std::abs(turn) > 2 * way * (most + way) + kPairRounding * most * most)) return false;
-    // The origin is inside if it lies on the same side of all three edges.
+    // The origin is inside if it is on the same side of all three edges.
     if (i > 0 && (turn > 0) != (sign > 0)) return false;
     sign = turn;
   }
@@ -95,7 +95,7 @@ void PairMotion::place(const PieceState& a, const PieceState& b) {
     for (int k = 0; k < n_; ++k) {
       Corner& corner = corner_[side][k];
       corner.x = state.pose.apply(corner.in_body);
-      // Velocity: the common travel, and r E (w x z) by rotation (motion_bounds.hpp).
+      // Velocity: the common travel, plus r E (w x z) from rotation (motion_bounds.hpp).
       corner.v = body_[side]->travel();
       if (turns) corner.v += state.turned * corner.spin;
       // The largest coordinate difference, to which rounding errors are relative.
@@ -104,10 +104,10 @@ void PairMotion::place(const PieceState& a, const PieceState& b) {
   }
 }
 
-/// Returns how far a product of n and a difference of two corners may be off, once for now and once for
-/// later.
+/// Returns an error bound of the product of n and a difference of two corners, covering positions both now
+/// and later.
 double PairMotion::places_rounding(const Vector3d& n) const {
-  // First the rounding of the product, then the places of both bodies, now and later.
+  // The rounding of the product, then the errors of both bodies' positions, now and later.
   return 0.25 * kPairRounding * reach_ * n.cwiseAbs().sum() +
          2 * n.norm() * kWorldUp * (body_[0]->rounding() + body_[1]->rounding());
 }
@@ -121,7 +121,7 @@ double PairMotion::parted_for(const Vector3d& n) const {
   for (int side = 0; side < 2; ++side)
     for (int k = 0; k < n_; ++k) {
       const Corner& corner = corner_[side][k];
-      // Relative to A's first corner: differences of nearby points are accurate, far from the origin as well.
+      // Relative to A's first corner: differences of nearby points are accurate even far from the origin.
       ahead[side][k] = n.dot(corner.x - corner_[0][0].x);
       speed[side][k] = n.dot(corner.v);
       low[side] = std::min(low[side], ahead[side][k]);
@@ -131,7 +131,7 @@ double PairMotion::parted_for(const Vector3d& n) const {
   const double sign = low[1] - high[0] >= low[0] - high[1] ? 1 : -1;
   const double rounding = places_rounding(n);
   const double speed_rounding = length * (body_[0]->velocity_rounding() + body_[1]->velocity_rounding());
-  // Centripetal acceleration is across the axis: a direction near the axis sees little of it.
+  // Centripetal acceleration is perpendicular to the axis: it is small along directions near the axis.
   const double share_a = looks_at_axes_ ? body_[0]->share_along(n) : 1;
   const double share_b = looks_at_axes_ ? body_[1]->share_along(n) : 1;
   double least = kInfinity;
@@ -161,13 +161,13 @@ PairBounds PairMotion::bounds() const {
   return bound_distance(x[0], x[1], n_);
 }
 
-/// Velocity is an affine function of position, so that it can be interpolated between a feature's corners.
+/// Velocity is an affine function of position, so it can be interpolated between a feature's corners.
 Vector3d PairMotion::velocity_at(int side, const exact::Feature& on, const Vector3d& point) const {
   const Corner* const corner = corner_[side];
   const int first = on.dim == 2 ? 0 : on.index;
   const Corner &from = corner[first], &to = corner[(first + 1) % n_];
   const Vector3d along = to.x - from.x, way = point - from.x;
-  // A vertex, or an edge without length.
+  // A vertex, or a degenerate edge.
   if (on.dim == 0 || !(along.squaredNorm() > 0)) return from.v;
   // Linear interpolation along the edge.
   if (on.dim == 1) return from.v + way.dot(along) / along.squaredNorm() * (to.v - from.v);
@@ -184,35 +184,36 @@ double PairMotion::approach_speed(const PairBounds& at, const Vector3d& n) const
   return -n.dot(velocity_at(1, at.on[1], at.point[1]) - velocity_at(0, at.on[0], at.point[0]));
 }
 
-/// Returns the direction along which differences are looked at in has_passed(), of length 1: that of the
-/// motion, across which there is least of it, unless it goes along the slab.
+/// Returns the unit direction of projection in has_passed(): the direction of motion, because there is least
+/// motion perpendicular to it, or n if the motion is nearly parallel to the slab.
 Vector3d PairMotion::look_along(const Vector3d& n) const {
   constexpr double kLeastCosine = 1e-3;
   const Vector3d way = body_[1]->travel() - body_[0]->travel();
   return std::abs(way.dot(n)) > kLeastCosine * way.norm() * n.norm() ? way.normalized() : n.normalized();
 }
 
-/// Simplices intersect if the origin is in their Minkowski difference, the convex hull of the differences
-/// b - a of their corners, nine or (2D) four points. Let three of these (2D: two) be ahead along n
-/// before, and behind now, and let the triangle (segment) between them, seen along some direction d that is
-/// not across n, hold the origin before and however its corners move meanwhile. Then it holds the origin all
-/// the while, seen along d, and the point of the triangle that hides the origin, or is hidden by it, moves
-/// continuously along that line from ahead to behind: at some time it is the origin.
+/// Proves by continuity that the simplices have intersected. They intersect if the origin is in their
+/// Minkowski difference, the convex hull of the differences b - a of their corners: nine points, in 2D four.
+/// Suppose that three of these points (2D: two) are ahead along n before, and behind now. Project the
+/// triangle (segment) between them along some direction d that is not perpendicular to n. Suppose that the
+/// projection contains the origin before, and still does so for every possible motion of the corners since.
+/// Then the line through the origin along d intersects the triangle at all times, and their common point
+/// moves continuously along the line from ahead to behind: at some time it is the origin.
 bool PairMotion::has_passed(const PairMotion& before, const Vector3d& n, double time) const {
   const Vector3d d = look_along(n);
-  // Seen along d, a difference has the coordinates u and v.
+  // u and v span the plane of projection.
   const Vector3d u = n_ == 3 ? across(d) : Vector3d(-d.y(), d.x(), 0), v = d.cross(u);
   const double sure = places_rounding(n), sure_before = before.places_rounding(n);
   const Vector3d travel = body_[1]->travel() - body_[0]->travel();
   const double aside = std::abs(u.dot(travel)) + std::abs(v.dot(travel)) + 4 * kWorldRounding * travel.norm();
-  // How far any difference may move across d meanwhile: travel, both rotations, and rounding.
+  // Upper bound on the motion of any difference perpendicular to d: travel, both rotations, and rounding.
   const double moved = (time * aside + body_[0]->turned_by(time) + body_[1]->turned_by(time)) * kWorldUp +
                        2 * (body_[0]->rounding() + body_[1]->rounding()) + kPairRounding * reach_;
   Difference turned[9];
   int count = 0;
   for (int i = 0; i < n_; ++i)
     for (int j = 0; j < n_; ++j) {
-      // Keep corner differences that were surely ahead along n, and are surely behind now.
+      // Keep corner differences that are proven ahead along n before, and behind now.
       const Vector3d was = before.corner_[1][j].x - before.corner_[0][i].x;
       if (!(n.dot(was) > sure_before) || !(n.dot(corner_[1][j].x - corner_[0][i].x) < -sure)) continue;
       turned[count++] = {u.dot(was), v.dot(was)};
@@ -234,21 +235,21 @@ bool PairMotion::has_passed(const PairMotion& before, const Vector3d& n, double 
   return false;
 }
 
-// One dual traversal for a whole time interval: B is swept along its first-order motion relative to A, and
-// all that differs from this, second-order terms, A's rotation and rounding, becomes the margin of the
+// One dual traversal for an entire time interval: B is swept along its first-order motion relative to A. All
+// deviations from this, that is second-order terms, A's rotation and rounding, become the margin of the
 // kernel.
 
 namespace {
 
 using Eigen::Matrix3d;
 
-/// Largest angle, in radians, by which B may turn from the middle of a span for its turning to be followed
-/// straight.
+/// Largest rotation angle of B from the middle of an interval, in radians, for which its rotation is
+/// linearised.
 constexpr double kStraight = 1;
-/// Bodies that are further from rotations than this are not swept by the kernel for rotations.
+/// Largest deviation from rotations for which bodies are swept by the kernel for rotations.
 constexpr double kNearlyRigid = 0x1p-6;
 constexpr std::size_t kBuffer = 192;
-constexpr std::uint64_t kPatience = 64;  // pairs of nodes for each pair of simplices that is asked for
+constexpr std::uint64_t kPatience = 64;  // node pairs for each pair of simplices that is allowed
 
 Matrix3d cross_matrix(const Vector3d& w) {
   Matrix3d m;
@@ -256,14 +257,14 @@ Matrix3d cross_matrix(const Vector3d& w) {
   return m;
 }
 
-/// Returns the sweep of B over `half` a span to either side of its middle, on A's axes. What A and B are
-/// displaced by at a contact, seen from the middle, is the difference of their displacements in the world,
-/// turned to A's axes.
+/// Returns the sweep of B over `half` an interval to either side of its middle, on A's axes. The relative
+/// displacement of A and B at a contact, seen from the middle, is the difference of their displacements in
+/// the world, rotated to A's axes.
 Sweep sweep_of(const MovingBody& a, const PieceState& at_a, const MovingBody& b, const PieceState& at_b,
                double half) {
   Sweep sweep;
   const Matrix3d to_a = at_a.pose.r.transpose();
-  // B seen from A at the middle of the interval; both travels become one relative travel.
+  // B seen from A at the middle of the interval; both travels are combined into one relative travel.
   sweep.middle = {to_a * at_b.pose.r, to_a * (at_b.pose.t - at_a.pose.t)};
   const Vector3d travel = b.travel() - a.travel();
   sweep.dt = half * (to_a * travel);
@@ -283,7 +284,7 @@ Sweep sweep_of(const MovingBody& a, const PieceState& at_a, const MovingBody& b,
     // A large angle: allow for B's rotation in any direction.
     sweep.width += b.turned_by(half);
   }
-  // From the world to A's axes; A need not be exactly a rotation.
+  // From the world to A's axes; A need not be an exact rotation.
   const double to_a_size = stretch(at_a.pose);
   sweep.width *= to_a_size * kWorldUp;
   sweep.length = (half * travel.norm() + turning) * to_a_size * kWorldUp;
@@ -300,7 +301,7 @@ bool suits_sweeps(const MovingBody& a, const MovingBody& b) {
 bool find_swept_pairs(QueryContext& ctx, const MovingBody& a, const MovingBody& b, TimeSpan span,
                       std::uint64_t most, std::vector<SimplexPair>& pairs) {
   const double middle = span.begin + (span.end - span.begin) / 2;
-  // The larger half, rounded up: both ends of the interval are covered.
+  // The larger half, rounded up, so that both ends of the interval are covered.
   const double half = std::max(span.end - middle, middle - span.begin) * kWorldUp;
   const PieceState at_a = a.at(middle), at_b = b.at(middle);
   // Set up the kernel at the poses of the middle, then widen it to the sweep.
@@ -308,16 +309,16 @@ bool find_swept_pairs(QueryContext& ctx, const MovingBody& a, const MovingBody& 
   ctx.body[1].begin(b.rep(), at_b.pose, WrapperMode::regularised);
   TreeKernel k = start_rigid_kernel(ctx, at_a.pose, at_b.pose, kBuffer);
   const Sweep sweep = sweep_of(a, at_a, b, at_b, half);
-  // The bodies in doubles are off their exact places at the middle and at t.
+  // Covers the errors of the bodies' positions in doubles, at the middle and at t.
   const double rounding = wrapper_margin(at_a.pose, a.rep().tree(), at_b.pose, b.rep().tree()) +
                           2 * rotation_defect(at_a.pose.r) * a.rep().tree().extent() +
                           4 * (a.rounding() + b.rounding()) + kWorldRounding * sweep.length;
   aim_at(sweep, rounding, query_unit(a.rep().tree(), b.rep().tree()), k);
-  // A list that would be too long is useless: bound the traversal as well.
+  // A list beyond the limit is useless: bound the traversal as well.
   if (most != kNoLimit) k.most_node_pairs = kPatience * most;
   pairs.clear();
   while (!is_done(k)) {
-    // Empty the kernel's buffer; give up as soon as there are too many pairs or node pairs.
+    // Empty the kernel's buffer; give up once there are too many pairs or node pairs.
     k.out_size = 0;
     run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i) pairs.push_back({k.out[i].a, k.out[i].b});

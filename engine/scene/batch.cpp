@@ -20,7 +20,7 @@ struct Workspace::Memory {
   ClashResult clash;
   FirstContactResult contact;
 
-  // One context serves all questions: each query sets what it reads, so that only memory is left to the next.
+  // One context serves all queries: each query initialises what it reads, so that only memory is reused.
   DistanceContext& of_distance() { return context.distance; }
   QueryContext& of_collision() { return context.distance.query; }
 };
@@ -34,7 +34,7 @@ Expected<CollideResult&> collide(const LrbRep& a, const Pose& pose_a, const LrbR
                                  const CollideRequest& request, Workspace& workspace,
                                  CollideProbe* probe) try {
   Workspace::Memory& memory = workspace.memory();
-  // Emptied, not replaced: it keeps its memory from the last query.
+  // Cleared, not replaced, to reuse its memory.
   clear(memory.collision);
   collide_watched(a, pose_a, b, pose_b, request, memory.of_collision(), probe, memory.collision);
   return memory.collision;
@@ -86,7 +86,7 @@ Expected<FirstContactResult&> first_contact(const LrbRep& a, const Motion& motio
 
 namespace {
 
-/// Answer into `answer`; collide_into() reuses its memory.
+/// Write to `answer`, whose memory collide_into() reuses.
 void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const CollideRequest& request, QueryContext& context, Expected<CollideResult>& answer) try {
   // An earlier answer keeps the memory of its vectors.
@@ -129,14 +129,14 @@ class Batch::Work {
   /// Calls ask(i, workspace) for i = 0 .. n - 1.
   template <class Ask>
   void for_each(std::size_t n, const Ask& ask) {
-    // Each worker has a workspace of its own: queries share no memory and need no locks.
+    // Each worker has its own workspace: queries share no memory and need no locks.
     workers_.for_each(n, [&](std::size_t i, unsigned worker) { ask(i, workspaces_[worker]); });
   }
 
-  /// Does the same for pairs, those of the same two bodies after one another.
+  /// The same for pairs; those of the same two bodies are processed consecutively.
   template <class Ask>
   void for_each(std::span<const PosedPair> pairs, const Ask& ask) {
-    // Only the order of work changes: answers are written to the index of their question.
+    // Only the order of work changes: answers are written to the index of their query.
     const std::vector<std::size_t> order = order_by_bodies(pairs);
     for_each(pairs.size(), [&](std::size_t k, Workspace& workspace) { ask(order[k], workspace); });
   }

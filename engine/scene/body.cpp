@@ -1,5 +1,5 @@
-// Bodies from matrices, arrays, meshes, LRB-reps and files. Every path checks its input, makes an LRB-rep,
-// and collects notes on what was changed and what cannot be queried. Errors in arrays name the element.
+// Bodies from matrices, arrays, meshes, LRB-reps and files. Every path checks its input, creates an LRB-rep,
+// and collects notes on changes and on unsupported queries. Errors in arrays name the element.
 
 #include <chrono>
 #include <filesystem>
@@ -26,11 +26,11 @@ const BodyOptions& default_body_options() {
 // 1. Reject meshes that cannot be queried at all.
 // 2. Orient components outwards, if requested and needed.
 // 3. Build the regions and prove the cells closed (validate_cells()).
-// 4. If the mesh cannot have regions or the proof fails, keep the real faces only and note the reason.
+// 4. If the mesh cannot have regions or the proof fails, keep only the real faces and note the reason.
 
 namespace {
 
-/// Returns a mesh's findings on one line, after its name.
+/// Returns a mesh's findings on one line, without its name.
 std::string joined(const Mesh& mesh, const std::vector<std::string>& lines) {
   const std::string name = mesh.name + ": ";
   std::string out;
@@ -59,7 +59,7 @@ bool can_be_built(const CheckedMesh& mesh, bool turn) {
 
 bool is_lrb_file(const std::string& path) {
   std::error_code ignored;
-  // Only regular files: bytes read from a pipe are gone, and opening a named pipe would block.
+  // Only regular files: bytes read from a pipe are lost, and opening a named pipe would block.
   if (!std::filesystem::is_regular_file(path, ignored)) return false;
   constexpr std::size_t kEnough = 64;  // bytes: more than any magic
   std::ifstream in(path, std::ios::binary);
@@ -116,7 +116,7 @@ MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     return {std::move(rep), std::move(notes), seconds, turned};
   }
-  // Step 4. Without regions, the body still records whether it intersects itself.
+  // Step 4. Without regions, the body still stores whether it intersects itself.
   notes.push_back(note_without_regions(mesh, turn));
   Workers workers(options.threads);
   const bool self_intersecting = !mesh.self_intersecting_faces(workers).empty();
@@ -132,24 +132,24 @@ MadeBody make_body_of_faces(CheckedMesh mesh, bool turn) {
     notes.push_back(note_without_regions(mesh, turn));
   else if (turn)
     turned = turn_outward(mesh, notes);
-  constexpr bool kNotAsked = false;  // whether it intersects itself matters to regions only
+  constexpr bool kNotAsked = false;  // self-intersection matters only for regions
   return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, kNotAsked), std::move(notes), 0,
           turned};
 }
 
 namespace {
 
-/// Arrays of a body, row by row.
+/// Row-major arrays of a body.
 template <class Number>
 struct Rows {
   std::span<const Number> numbers;
-  std::size_t each;  ///< numbers in a row
+  std::size_t each;  ///< numbers per row
 };
 
-/// Returns the error in the shapes of the two arrays, or an empty text if they are vertices and faces.
+/// Returns the error in the shapes of the two arrays, or an empty string if they are vertices and faces.
 template <class Number>
 std::string shape_fault(const Rows<double>& vertices, const Rows<Number>& faces) {
-  // Two corners per face: segments, that is, a body in 2D.
+  // Two corners per face: segments of a 2D body.
   const bool is_flat = faces.each == 2;
   if (faces.each < 2)
     return "faces have " + std::to_string(faces.each) + " corners; give 3 or more, or 2 in the plane";
@@ -177,7 +177,7 @@ Expected<Mesh> mesh_of(const Rows<double>& vertices, const Rows<Number>& faces, 
   Mesh mesh;
   mesh.name = who;
   mesh.dim = faces.each == 2 ? 2 : 3;
-  // Pass 1: vertices. Missing z coordinates are 0. Whether numbers are finite is checked with the mesh.
+  // Pass 1: vertices. Missing z coordinates are 0. The mesh check tests whether numbers are finite.
   const std::size_t count = vertices.numbers.size() / vertices.each;
   mesh.vertices.reserve(count);
   for (std::size_t v = 0; v < count; ++v) {
@@ -208,7 +208,7 @@ Expected<Body> body_of(const Rows<double>& vertices, const Rows<Number>& faces, 
   return Body::from(std::move(*mesh), options);
 }
 
-/// Returns the note on a body that bounds no solid: which answers it does not support.
+/// Returns the note on a body that bounds no solid: the answers it does not support.
 std::string note_no_solid(const LrbRep& rep) {
   return rep.name() +
          ": bounds no solid: pairs, contacts and distances are exact; nothing is inside it, and where its surface "

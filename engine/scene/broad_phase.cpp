@@ -1,7 +1,7 @@
 /// Sort and sweep (Baraff 1992) along one axis.
 ///
-/// 1. Choose the least crowded axis.
-/// 2. Sort the boxes by their lower ends: by insertion, as bodies move little from step to step.
+/// 1. Choose the axis with the fewest overlaps.
+/// 2. Sort the boxes by their lower ends: by insertion, because bodies move little from step to step.
 /// 3. Sweep: compare each box on the other axes with those that begin before it ends.
 
 #include <algorithm>
@@ -18,19 +18,19 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-/// More swaps than this for each body take longer than sorting afresh.
+/// Maximum number of swaps per body, beyond which a full sort is faster.
 constexpr std::uint64_t kSwapsOfABody = 32;
 
-/// Returns how crowded an axis is: the average number of boxes over a point of it, up to a factor that all
-/// axes have, which is the sum of the boxes' lengths over the length that they cover. Halves before it
-/// subtracts, against overflow.
+/// Returns the density of boxes on an axis: the sum of their lengths divided by the length that they cover,
+/// which is the average number of boxes over a point, up to a factor common to all axes. Divides before
+/// subtracting, to avoid overflow.
 double crowding(std::span<const Box> boxes, int axis) {
   double low = 0, high = 0, lengths = 0;
   bool any = false;
   for (const Box& b : boxes) {
     if (b.isEmpty()) continue;
     const double from = b.min()[axis] / 2, to = b.max()[axis] / 2;
-    // An infinite box would hide how the others lie.
+    // An infinite box would mask the distribution of the others.
     if (!std::isfinite(from) || !std::isfinite(to)) continue;
     low = any ? std::min(low, from) : from;
     high = any ? std::max(high, to) : to;
@@ -67,7 +67,7 @@ void SweepAndPrune::sort(std::span<const Box> boxes) {
   }
   // Insertion sort of the last order: linear in the number of bodies and swaps.
   for (std::size_t k = 1; k < order_.size(); ++k) {
-    if (work_.swaps > kSwapsOfABody * order_.size()) {  // bodies have jumped: the last order is no help
+    if (work_.swaps > kSwapsOfABody * order_.size()) {  // bodies have jumped: the last order does not help
       std::sort(order_.begin(), order_.end(), before);
       return;
     }
@@ -92,7 +92,7 @@ const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes) {
     for (std::size_t l = k + 1; l < order_.size(); ++l) {
       const std::uint32_t j = order_[l];
       const Box& b = boxes[j];
-      // The boxes that follow begin even later.
+      // The following boxes begin even later.
       if (b.min()[axis_] > a.max()[axis_]) break;
       if (b.isEmpty()) continue;
       ++work_.box_tests;

@@ -1,4 +1,4 @@
-// A sweep along one axis for pairs of AABBs within a distance (sort and sweep, Baraff 1992).
+// Pairs of AABBs within a distance, by sort and sweep along one axis (Baraff 1992).
 // 1. Choose the axis along which the boxes' centres spread most.
 // 2. Sort the boxes by their lower ends on it.
 // 3. For each box, visit the following ones until they begin beyond its upper end plus the limit.
@@ -23,7 +23,7 @@ double gap(const Box& a, const Box& b) {
   constexpr double kMost = std::numeric_limits<double>::max();
   // Larger gaps count as half the largest double: still a lower bound, and the norm stays finite.
   if (!(gaps.maxCoeff() <= kMost / 2)) return kMost / 2;
-  // Rounded down, because callers drop pairs by it.
+  // Rounded down, because callers prune pairs by it.
   return gaps.stableNorm() * kRoundedDown;
 }
 
@@ -36,7 +36,7 @@ SortedBoxes::SortedBoxes(std::span<const Box> boxes, int axis) : boxes_(boxes), 
 }
 
 bool SortedBoxes::is_beyond(double low, std::uint32_t box, double limit) const {
-  // The same rounding as in gap(): a pair within the limit is never dropped.
+  // The same rounding as in gap(): a pair within the limit is never pruned.
   return (low - boxes_[box].max()[axis_]) * kRoundedDown > limit;
 }
 
@@ -51,7 +51,7 @@ int longest_axis(std::span<const Box> a, std::span<const Box> b) {
   Box whole;
   for (const std::span<const Box> boxes : {a, b})
     for (const Box& box : boxes) {
-      // Bodies that leave the range of doubles have infinite boxes, which would hide the spread of the
+      // Bodies that leave the range of doubles have infinite boxes, which would mask the spread of the
       // others.
       if (!box.isEmpty() && box.min().allFinite() && box.max().allFinite()) whole.extend(box.center());
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// Pairs of boxes that are near each other, by a sweep along one axis.
+/// Pairs of boxes within a distance, by a sweep along one axis.
 
 #include <cstdint>
 #include <span>
@@ -11,11 +11,11 @@ namespace lrb::scene {
 
 using Box = Eigen::AlignedBox3d;
 
-/// Returns a lower bound on the distance of two boxes that are not empty, which is off by rounding alone; 0
-/// exactly if they have a point in common.
+/// Returns a lower bound on the distance of two nonempty boxes that deviates from it only by rounding. It is
+/// 0 if and only if they intersect.
 double gap(const Box& a, const Box& b);
 
-/// The boxes that are not empty, in the order of their lower ends on an axis. The boxes must outlive it.
+/// The nonempty boxes in the order of their lower ends on an axis. The boxes must outlive it.
 class SortedBoxes {
  public:
   SortedBoxes(std::span<const Box> boxes, int axis);
@@ -23,10 +23,10 @@ class SortedBoxes {
   std::span<const Box> boxes() const { return boxes_; }
   const std::vector<std::uint32_t>& order() const { return order_; }
   double low(std::uint32_t box) const { return boxes_[box].min()[axis_]; }
-  /// Returns true if no box from `low` on can be as near to this one as `limit`.
+  /// Returns true if every box with a lower end of at least `low` is further than `limit` from this one.
   bool is_beyond(double low, std::uint32_t box, double limit) const;
-  /// Returns the place in the order of the first box whose lower end is no less than `low` (or more, if
-  /// `above`).
+  /// Returns the index in the order of the first box whose lower end is at least `low` (if `above`: greater
+  /// than `low`).
   std::size_t first_from(double low, bool above) const;
 
  private:
@@ -35,10 +35,10 @@ class SortedBoxes {
   std::vector<std::uint32_t> order_;
 };
 
-/// Returns the axis on which these boxes reach furthest.
+/// Returns the axis along which the centres of the boxes spread most.
 int longest_axis(std::span<const Box> a, std::span<const Box> b);
 
-/// Calls see(a, b, gap) for each pair of boxes that are no further apart than `limit`; see() may lower it.
+/// Calls see(a, b, gap) for each pair of boxes at most `limit` apart; see() may lower the limit.
 template <class See>
 void each_near_pair(std::span<const Box> boxes, const double& limit, const See& see) {
   const SortedBoxes sorted(boxes, longest_axis(boxes, {}));
@@ -50,12 +50,12 @@ void each_near_pair(std::span<const Box> boxes, const double& limit, const See& 
     }
 }
 
-/// Does the same for pairs of a box of `a` and one of `b`.
+/// The same for pairs of a box of `a` and a box of `b`.
 template <class See>
 void each_near_pair(std::span<const Box> a, std::span<const Box> b, const double& limit, const See& see) {
   const int axis = longest_axis(a, b);
   const SortedBoxes sorted_a(a, axis), sorted_b(b, axis);
-  // Each pair once: of two boxes that begin at the same place, the one of A counts as the first.
+  // Each pair once: if two boxes begin at the same coordinate, the one of A counts as the first.
   const auto sweep = [&](const SortedBoxes& firsts, const SortedBoxes& seconds, bool above,
                          const auto& found) {
     for (const std::uint32_t i : firsts.order())

@@ -1,5 +1,6 @@
 // Collisions and distances among many moving bodies.
-// collide(): 1. Recompute the world AABBs of moved bodies.
+// collide():
+// 1. Recompute the world AABBs of moved bodies.
 // 2. Broad phase: within a scene, sort and sweep, coherent from call to call; otherwise a one-axis sweep.
 // 3. Narrow phase: an exact query for each pair, as one batch.
 // nearest(): branch and bound over pairs in ascending order of the gaps of their AABBs.
@@ -21,15 +22,15 @@
 namespace lrb {
 namespace scene {
 
-/// A placed body: one slot of a scene.
+/// A posed body: one slot of a scene.
 struct Standing {
   BodyKey key{};
   const LrbRep* rep = nullptr;
   Pose pose;
 };
 
-/// The bodies of one side of a query with their world AABBs: a whole scene or a single body. A free slot has
-/// an empty box.
+/// The bodies of one side of a query with their world AABBs: an entire scene or a single body. A free slot
+/// has an empty box.
 struct Party {
   std::span<const Box> boxes;
   std::span<const Standing> standing;
@@ -37,7 +38,7 @@ struct Party {
 
 /// A candidate pair, by slot indices. Ordered by gap, then by keys.
 struct Near {
-  double gap = 0;  ///< of their boxes
+  double gap = 0;  ///< lower bound on the distance of their AABBs
   BodyKey key_a{}, key_b{};
   std::uint32_t a = 0, b = 0;
 
@@ -52,7 +53,7 @@ namespace {
 
 using namespace scene;
 
-/// Returns two bodies of the same scene, the one with the lower key first.
+/// Returns the pair of two bodies of the same scene, the one with the lower key first.
 Near near_of_one(const Party& party, std::uint32_t i, std::uint32_t j, double gap) {
   if (party.standing[j].key < party.standing[i].key) std::swap(i, j);
   return {gap, party.standing[i].key, party.standing[j].key, i, j};
@@ -67,7 +68,7 @@ struct Parties {
   Party a, b;
   bool is_one = false;
 
-  /// Calls see(near) for the pairs whose boxes are at most `limit` apart. see() may lower the limit.
+  /// Calls see(near) for the pairs whose AABBs are at most `limit` apart. see() may lower the limit.
   template <class See>
   void each_near(const double& limit, const See& see) const {
     if (is_one)
@@ -85,13 +86,12 @@ struct Parties {
   }
 };
 
-/// Returns the pair of least gap between AABBs; of equal gaps, the pair of lowest keys. Returns nullopt if
-/// there is no pair.
+/// Returns the pair with the smallest gap between AABBs (ties: lowest keys), or nullopt if there is no pair.
 std::optional<Near> nearest_of(const Parties& parties) {
   std::optional<Near> nearest;
   double limit = std::numeric_limits<double>::infinity();
   parties.each_near(limit, [&](const Near& n) {
-    // Lowering the limit while the sweep runs prunes the rest of it.
+    // Lowering the limit during the sweep prunes the rest of it.
     if (nearest && !(n < *nearest)) return;
     nearest = n;
     limit = n.gap;
@@ -128,8 +128,8 @@ class Scene::Held {
 
   void reserve(std::size_t bodies);
 
-  /// Return the two sides of a query, with up-to-date boxes: the scene's own pairs; a body from outside and
-  /// the scene; the scene and another one.
+  /// Return the two sides of a query, with up-to-date boxes: the scene with itself; a body from outside with
+  /// the scene; the scene with another one.
   Parties own();
   Parties with(const Party& outside) { return {outside, party(), false}; }
   Parties with(Held& other);
@@ -142,10 +142,10 @@ class Scene::Held {
   Work work;
 
  private:
-  /// Beside what Standing and the box say of a body.
+  /// The data of a body in addition to Standing and its box.
   struct Slot {
     std::optional<Body> body;
-    std::shared_ptr<const BodyExtent> extent;  ///< one for all copies of a body
+    std::shared_ptr<const BodyExtent> extent;  ///< shared by all copies of a body
     ExtremeVertices last;
     bool has_moved = false;
   };
@@ -162,13 +162,13 @@ class Scene::Held {
   Batch batch_;
   SweepAndPrune sweep_;
   std::uint64_t next_key_ = 0;
-  std::size_t came_and_gone_ = 0;  ///< since the last sweep
+  std::size_t came_and_gone_ = 0;  ///< bodies added or removed since the last sweep
 
   std::vector<Slot> slots_;
   std::vector<Standing> standing_;  ///< (|slots|)
-  std::vector<Box> boxes_;          ///< (|slots|) empty where nobody stands
+  std::vector<Box> boxes_;          ///< (|slots|) empty for free slots
   std::vector<std::uint32_t> free_;
-  std::vector<std::uint32_t> moved_;  ///< slots whose boxes are to be made anew
+  std::vector<std::uint32_t> moved_;  ///< slots whose boxes must be recomputed
   std::unordered_map<BodyKey, std::uint32_t> place_of_;
   std::unordered_map<std::uint64_t, std::weak_ptr<const BodyExtent>> extents_;  ///< by LrbRep::serial()
 
@@ -187,7 +187,7 @@ std::vector<BodyKey> Scene::Held::keys() const {
   return out;
 }
 
-/// Adds free slots. The broad phase discards its order when it sees more boxes than before.
+/// Adds free slots. The broad phase restarts if the number of boxes changes.
 void Scene::Held::add_places(std::size_t more) {
   const std::size_t before = slots_.size();
   // Reverse order: slots are taken from the back of free_, so the lowest index is used first.
@@ -211,7 +211,7 @@ std::uint32_t Scene::Held::free_place() {
 }
 
 std::shared_ptr<const BodyExtent> Scene::Held::extent_of(const LrbRep& rep) {
-  // Copies of a body share its extent. The map holds weak references: the slots own it.
+  // Copies of a body share its extent. The map has weak references: the slots own it.
   std::weak_ptr<const BodyExtent>& known = extents_[rep.serial()];
   std::shared_ptr<const BodyExtent> extent = known.lock();
   if (!extent) known = extent = std::make_shared<const BodyExtent>(rep);
@@ -238,7 +238,7 @@ bool Scene::Held::remove(BodyKey key) {
   if (found == place_of_.end()) return false;
   const std::uint32_t place = found->second;
   const std::uint64_t serial = standing_[place].rep->serial();
-  // The last copy of a body takes the shared extent with it; then the map entry can go.
+  // The last copy of a body releases the shared extent; then the map entry is removed.
   slots_[place].extent.reset();
   if (extents_[serial].expired()) extents_.erase(serial);
   slots_[place].body.reset();
@@ -261,7 +261,7 @@ bool Scene::Held::move(BodyKey key, const Pose& pose) {
 
 Party Scene::Held::party() {
   work.moved = moved_.size();
-  // Recompute the AABBs of moved bodies only, in parallel: each task writes its own slot.
+  // Recompute only the AABBs of moved bodies, in parallel: each task writes its own slot.
   workers_.for_each(moved_.size(), [&](std::size_t k, unsigned) {
     const std::uint32_t place = moved_[k];
     Slot& slot = slots_[place];
@@ -282,10 +282,10 @@ Parties Scene::Held::with(Held& other) {
   return {party(), others, false};
 }
 
-/// Finds the pairs of a scene whose boxes intersect, by the broad phase.
+/// Returns the pairs of a scene whose AABBs intersect, by the broad phase.
 std::vector<Near> Scene::Held::sweep(const Party& all) {
-  // The insertion sort moves each new box through the order. If more than 1 in 8 bodies came or went, start
-  // afresh with a full sort.
+  // The insertion sort moves each new box through the order. If more than 1 in 8 bodies were added or
+  // removed, restart with a full sort.
   constexpr std::size_t kShareThatStays = 8;
   if (std::exchange(came_and_gone_, 0) > slots_.size() / kShareThatStays) sweep_ = {};
   std::vector<Near> near;
@@ -331,15 +331,15 @@ std::span<const SceneAnswer> Scene::Held::collide(const Parties& parties, const 
     if (told_.size() == count) told_.emplace_back();
     told_[count].a = near[i].key_a;
     told_[count].b = near[i].key_b;
-    // Swap instead of move: the buffers of earlier results become the memory of the next ones.
+    // Swap instead of move: the buffers of earlier results are reused for the next ones.
     std::swap(told_[count].result, answers_[i]);
     ++count;
   }
   return std::span<const SceneAnswer>(told_).first(count);
 }
 
-/// Computes the distances of pairs, into distances_. The `within` of the request is ignored: a bound is
-/// needed for every pair.
+/// Computes the distances of pairs, into distances_. DistanceRequest::within is ignored, because every pair
+/// needs bounds.
 void Scene::Held::measure(const Parties& parties, std::span<const Near> near, DistanceRequest request) {
   request.within.reset();
   questions_.clear();
@@ -351,24 +351,24 @@ std::optional<SceneDistance> Scene::Held::nearest(const Parties& parties, const 
                                                   Apart apart) {
   // Pairs per batch, independent of the number of threads. Distances found in a batch prune later ones.
   constexpr std::size_t kAtATime = 64;
-  // Step 1: an upper bound, from the pair with the least gap between AABBs.
+  // Step 1: an upper bound, from the pair with the smallest gap between AABBs.
   const std::optional<Near> likely = nearest_of(parties);
   if (!likely) return {};
   measure(parties, std::span(&*likely, 1), request);
   SceneDistance best{likely->key_a, likely->key_b, distances_[0]};
   if (!best.result) return best;
-  // Step 2: only pairs whose gap is within that bound can be nearer. They come in ascending order of gap.
+  // Step 2: only pairs whose gap is within that bound can be closer. They are in ascending order of gap.
   const std::vector<Near> near = find_near(parties, distance_of(*best.result, apart));
   for (std::size_t asked = 0; asked < near.size(); asked += kAtATime) {
     const double upper = distance_of(*best.result, apart);
-    // The gap bounds the distance from below: no pair from here on can be nearer.
+    // The gap is a lower bound on the distance: no further pair can be closer.
     if (upper == 0 || near[asked].gap > upper) break;
     const auto some = std::span(near).subspan(asked, std::min(kAtATime, near.size() - asked));
     // Step 3: exact distances of the next batch, which may lower the bound.
     measure(parties, some, request);
     for (std::size_t i = 0; i < some.size(); ++i) {
       const SceneDistance found{some[i].key_a, some[i].key_b, distances_[i]};
-      // An error is the answer, because this pair might have been the nearest.
+      // An error is the answer, because this pair might have been the closest.
       if (!found.result) return found;
       if (distance_of(*found.result, apart) < distance_of(*best.result, apart)) best = found;
     }
@@ -378,7 +378,7 @@ std::optional<SceneDistance> Scene::Held::nearest(const Parties& parties, const 
 
 namespace {
 
-/// One body as a party.
+/// A single body as one side of a query.
 struct Alone {
   Alone(const Body& body, const Pose& pose)
       : box(world_box(body, pose)), standing{BodyKey{}, &body.rep(), pose} {}

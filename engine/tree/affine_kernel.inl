@@ -1,6 +1,6 @@
 #pragma once
 // Compiled once per instruction set by cmake/kernels.cmake, which defines LRB_AFFINE_KERNEL_NAME. Separate
-// from the tree kernel, because that one's speed depends on what the compiler inlines into its one loop. See
+// from the tree kernel, because the speed of that kernel depends on inlining into its one loop. See
 // tree_kernel.inl.
 
 #include "engine/tree/kernel_triangles.inl"
@@ -8,27 +8,27 @@
 
 namespace lrb {
 
-// Part of affine_kernel.inl: the relative position of two nodes under maps that are not rotations, their
-// boxes, and their triangles. kernel_setup.hpp explains the maps.
+// The relative position of two nodes under maps that are not rotations, their boxes, and their triangles.
+// kernel_setup.hpp explains the maps.
 
 namespace {
 
-/// Two nodes, on the axes of one of them.
+/// Two nodes, on the axes of one of them (`self`).
 struct OnAxes {
-  alignas(16) float r[3][4], abs_r[3][4], t[4];  ///< coordinates on these axes = r * (those in the other
-                                                 ///< node) + t
-  alignas(16) float own[3][4], abs_own[3][4];    ///< if `flat`: coordinates of its own = own * (those in the
-                                                 ///< node); else not set
+  alignas(16) float r[3][4], abs_r[3][4], t[4];  ///< coordinates on these axes = r * (coordinates in the
+                                                 ///< other node) + t
+  alignas(16) float own[3][4], abs_own[3][4];  ///< if `flat`: coordinates of its own = own * (coordinates in
+                                               ///< the node); otherwise not set
   bool flat;
-  float error;  ///< bound on the error of every transformed coordinate, of both nodes together
+  float error;  ///< error bound of every transformed coordinate, for both nodes together
 };
 
-/// Two nodes under any two affine maps, on A's axes and on B's.
+/// Two nodes under arbitrary affine maps, on A's axes and on B's.
 struct Skewed {
   OnAxes on[2];
 };
 
-/// Stores three rows, and the absolute values of their entries.
+/// Stores three rows and the absolute values of their entries.
 inline void put_rows(const Float4* rows, float (*to)[4], float (*sizes)[4]) {
   for (int i = 0; i < 3; ++i) {
     const Float4 size = abs4(rows[i]);
@@ -37,13 +37,13 @@ inline void put_rows(const Float4* rows, float (*to)[4], float (*sizes)[4]) {
   }
 }
 
-/// Computes a map's matrix times the transposed frame of a node: from node coordinates to the map's target
-/// axes.
+/// Computes a map's matrix times the transposed frame of a node: the map from node coordinates to the map's
+/// target axes.
 inline void from_node(const KernelMap& map, const Columns& node, Float4* rows) {
   for (int i = 0; i < 3; ++i) rows[i] = combine(map.rows[i], node.c);
 }
 
-/// Computes the same, on the axes of the node `onto`.
+/// The same, followed by the rotation to the axes of the node `onto`.
 inline void from_node_to(const TreeNode& onto, const KernelMap& map, const Columns& node, float (*to)[4],
                          float (*sizes)[4]) {
   Float4 half_way[3], r[3];
@@ -66,7 +66,7 @@ inline Columns columns_of(const TreeNode& n) {
   return columns_of(frame_row(n, 0), frame_row(n, 1), frame_row(n, 2));
 }
 
-/// A node, and the ratio of its body's units to the query's.
+/// A node, with the ratio of its body's units to the query's.
 struct Scaled {
   const TreeNode& n;
   float ratio;
@@ -74,14 +74,14 @@ struct Scaled {
   float radius() const { return n.radius * ratio; }
 };
 
-/// Moves both nodes to the axes of `self`. Errors are as those of between(), with two differences: no
-/// transposed matrix serves as an inverse, and the boxes of a flat body are transformed on its own axes as
-/// well. Each body's rotation (16 u for each entry), the transposition of its frame (8 u), decoding (3 u),
-/// products and sums take 48 u of its size, the offset 8 u: less than the 64 u in kKernelRounding.
+/// Transforms both nodes to the axes of `self`. Errors are as in between(), with two differences: no matrix
+/// is inverted by transposition, and the boxes of a flat body are transformed on its own axes as well. For
+/// each body, rotation (16 u for each entry), transposition of its frame (8 u), decoding (3 u), products and
+/// sums take 48 u of its size, and the offset 8 u: less than the 64 u in kKernelRounding.
 inline void see_on(const AffineTerms::Axes& axes, const Scaled& self, const Scaled& other, OnAxes& on) {
   // The other node's boxes on the axes of `self`: a 3 x 3 matrix and an offset.
   from_node_to(self.n, axes.other, other.columns, on.r, on.abs_r);
-  // The difference of the origins in double: both may be large.
+  // The difference of the origins in double, because both may be large.
   const Float4 offset = __builtin_convertvector(mapped_origin(axes.other, other.n, other.ratio) +
                                                     *reinterpret_cast<const Double4*>(axes.origin) -
                                                     mapped_origin(axes.own, self.n, self.ratio),
@@ -91,7 +91,7 @@ inline void see_on(const AffineTerms::Axes& axes, const Scaled& self, const Scal
   const Float4 t = combine(parts, self.columns.c);
   __builtin_memcpy(on.t, &t, sizeof t);
   on.flat = axes.flat;
-  // A flattened body's own boxes are not axis-aligned there, so they are transformed as well.
+  // The own boxes of a flattened body are not axis-aligned there, so they are transformed as well.
   if (on.flat) from_node_to(self.n, axes.own, self.columns, on.own, on.abs_own);
   on.error = axes.slack + kKernelRounding * (axes.own.size * self.radius() +
                                              axes.other.size * other.radius() + sum_of_sizes(offset));
@@ -100,7 +100,7 @@ inline void see_on(const AffineTerms::Axes& axes, const Scaled& self, const Scal
 inline Skewed between_skewed(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
   const Scaled of_a{a, k.ratio_a, columns_of(a)}, of_b{b, k.ratio_b, columns_of(b)};
   Skewed w;
-  // There is no common rotation, so each side gets its own transformation; neither is the inverse of the
+  // There is no common rotation, so each side has its own transformation; neither is the inverse of the
   // other.
   see_on(k.affine->axes[0], of_a, of_b, w.on[0]);
   see_on(k.affine->axes[1], of_b, of_a, w.on[1]);
@@ -116,7 +116,7 @@ inline Float8 dot3(const float* row, const Float8* x) {
 
 inline Boxes boxes_on_own(const Boxes& boxes, Side side, const Skewed& w) {
   const OnAxes& on = w.on[static_cast<int>(side)];
-  // Well-conditioned maps: the own map is taken as the identity, and the difference is in the slack.
+  // Well-conditioned maps: the own map is taken as the identity; its deviation is in the slack.
   if (!on.flat) return boxes;
   // Bounding box of the image: half extents |own| half (Arvo 1990).
   Boxes o;
@@ -139,7 +139,7 @@ inline Whole whole_on_own(const Whole& whole, Side side, const Skewed& w) {
 }
 
 inline Turned turn(const Boxes& boxes, const OnAxes& on) {
-  // The same with an offset, and grown by the error of both nodes together.
+  // As above, with an offset, and enlarged by the error of both nodes together.
   Turned o;
   for (int i = 0; i < 3; ++i) {
     o.centre[i] = splat(on.t[i]) + dot3(on.r[i], boxes.centre);
@@ -174,11 +174,11 @@ inline Whole turn_whole_a(const Whole& a, const Skewed& w) {
   return turn(a, w.on[1]);
 }
 
-/// Moves the corners of a leaf's simplices, in query units, to the world's axes.
+/// Transforms the corners of a leaf's simplices to the world's axes, in query units.
 inline void to_world(const KernelMap& map, const Scaled& node, const LeafBlock& block, const float* offset,
                      Corners& to) {
   Float4 rows[3];
-  // Straight from node axes to world axes: for triangles nothing is gained by the body's axes.
+  // Directly from node axes to world axes: the body's axes have no advantage for triangles.
   from_node(map, node.columns, rows);
   for (int corner = 0; corner < 3; ++corner) {
     Float8 own[3];
@@ -190,9 +190,9 @@ inline void to_world(const KernelMap& map, const Scaled& node, const LeafBlock& 
   }
 }
 
-/// Moves the corners of two leaves to the world's axes, relative to the origin of A's leaf: there nothing is
-/// stretched. Errors are as those of between(), with corners of A rotated as those of B are, without an
-/// offset.
+/// Transforms the corners of two leaves to the world's axes, relative to the origin of A's leaf. World axes
+/// do not distort lengths. Errors are as in between(), with corners of A rotated like those of B, but without
+/// an offset.
 inline Between corners_of(const TreeKernel& k, const TreeNode& a, const TreeNode& b, const Skewed&,
                           Corners& of_a, Corners& of_b) {
   // Positions are relative to the origin of A's leaf, which keeps coordinates small.
@@ -207,10 +207,10 @@ inline Between corners_of(const TreeKernel& k, const TreeNode& a, const TreeNode
   to_world(f.world[1], node_b, k.blocks_b[b.first], parts, of_b);
   Between w;
   const float size_a = f.world[0].size * node_a.radius(), size_b = f.world[1].size * node_b.radius();
-  // `reach` bounds every difference of a corner of A and one of B.
+  // `reach` bounds every difference of a corner of A and a corner of B.
   w.reach = size_a + size_b + sum_of_sizes(offset);
   w.error = f.world_slack + kKernelRounding * w.reach;
-  // A's corners are rotated here too, so both bodies have the error of rotated edges. Only B's contain the
+  // A's corners are rotated as well, so both bodies have the error of rotated edges. Only B's contain the
   // offset.
   w.edge_error[0] = 2 * f.world_slack + kTurnedEdgeRounding * size_a;
   w.edge_error[1] = 2 * f.world_slack + kTurnedEdgeRounding * size_b + kFarEdgeRounding * w.reach;
@@ -220,7 +220,7 @@ inline Between corners_of(const TreeKernel& k, const TreeNode& a, const TreeNode
 }  // namespace
 namespace {
 
-/// Walks the trees of bodies under any affine maps.
+/// Traversal for bodies under arbitrary affine maps.
 struct AffineWalk {
   static constexpr bool kMargin = false;
   static Skewed between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
@@ -234,7 +234,7 @@ struct AffineWalk {
 }  // namespace
 
 void LRB_AFFINE_KERNEL_NAME(TreeKernel& k) {
-  // No batched test of node boxes here: it assumes that the relative map is a rotation.
+  // No batched test of node boxes: it assumes that the relative map is a rotation.
   if (k.nearest_first) run_nearest<AffineWalk>(k);
   run<AffineWalk, false>(k, k.most_node_pairs);
 }

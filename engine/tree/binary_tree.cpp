@@ -1,10 +1,10 @@
-// Builds a binary tree top-down by the surface area heuristic (Goldsmith and Salmon 1987).
+// Top-down construction of a binary tree by the surface area heuristic (Goldsmith and Salmon 1987).
 // 1. Split large ranges by boxes on the coordinate axes: at the best boundary between bins (Wald 2007) or, on
-// request, at the best of all cuts.
-// 2. Split small ranges by the cost of the boxes that fit their halves (FittedCuts).
+//    request, at the best of all cuts.
+// 2. Split small ranges by the cost of the tight boxes of their halves (FittedCuts).
 // 3. Compute all boxes on the coordinate axes in one pass from the leaves upwards.
-// The place of every node follows from the number of simplices in each half. Threads build subtrees without
-// synchronisation, and the tree is the same for any number of threads.
+// The index of every node follows from the number of simplices in each half. Threads therefore build subtrees
+// without synchronisation, and the tree does not depend on the number of threads.
 
 #include "engine/tree/binary_tree.hpp"
 
@@ -37,15 +37,15 @@ class BinaryBuilder {
  private:
   static constexpr int kBins = 32;
 
-  /// Returns the number of nodes for some simplices.
+  /// Returns the number of nodes of a subtree with this many simplices.
   static std::uint32_t nodes_for(std::uint32_t simplices) { return 2 * leaves_for(simplices) - 1; }
 
-  /// Returns true if ranges of this many simplices are split by the boxes that fit their halves.
+  /// Returns true if ranges of this size are split by the tight boxes of their halves.
   bool is_fitted(std::uint32_t simplices) const { return simplices <= std::max(splits_.fitted, kTreeWidth); }
 
-  /// Builds a subtree, but for boxes.
+  /// Builds a subtree, without its boxes.
   void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
-    // FittedCuts keeps the simplices sorted along all axes, so it takes over the whole subtree.
+    // FittedCuts keeps the simplices sorted along all axes, so it handles the entire subtree.
     if (is_fitted(end - begin)) {
       FittedCuts cuts(soup_, soup_.listed(begin, end), splits_.effort);
       build_fitted(self, begin, end, cuts.whole_cost(), cuts, begin);
@@ -75,17 +75,17 @@ class BinaryBuilder {
     build_fitted(right, middle, end, halves.right_cost, cuts, first);
   }
 
-  /// Makes an inner node. Its subtrees contain the simplices before `middle` and the rest. cost: 0 if
+  /// Creates an inner node. Its subtrees contain the simplices before `middle` and the rest. cost: 0 if
   /// measure() is to compute it. Returns the roots of the subtrees.
   std::pair<std::uint32_t, std::uint32_t> fork(std::uint32_t self, std::uint32_t begin, std::uint32_t middle,
                                                std::uint32_t end, double cost) {
-    // Preorder: the left subtree follows its parent, and its size is known from the number of its leaves.
+    // Preorder: the left subtree follows its parent, and its size follows from the number of its leaves.
     const std::uint32_t left = self + 1, right = left + nodes_for(middle - begin);
     nodes_[self] = {begin, end, left, right, {}, cost};
     return {left, right};
   }
 
-  /// Finds all nodes' boxes, children's first, and the costs of those that are not fitted.
+  /// Computes the boxes of all nodes bottom-up, and the costs of nodes that are not fitted.
   void measure() {
     // Children come after parents, so reverse order visits children first.
     for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
@@ -97,7 +97,7 @@ class BinaryBuilder {
     }
   }
 
-  /// Where to split a range: how many simplices go to the left, in the order of their centres on an axis.
+  /// A split of a range: number of simplices on the left, in the order of their centres on an axis.
   struct Split {
     double cost = kInfinity;
     int axis = 0;
@@ -119,9 +119,9 @@ class BinaryBuilder {
     Split best;
     for (int axis = 0; axis < 3; ++axis) try_axis(begin, end, centres, axis, best.cost, best.axis, best.left);
     const std::uint32_t n = end - begin;
-    // Move the cut to the nearest multiple of kTreeWidth, so that all leaves but the last are full. Keep both
+    // Round the cut to a multiple of kTreeWidth, so that all leaves except the last are full. Keep both
     // halves nonempty.
-    if (best.left == 0) best.left = n / 2;  // all centres coincide: any half will do
+    if (best.left == 0) best.left = n / 2;  // all centres coincide: any half is valid
     best.left = (best.left + kTreeWidth / 2) / kTreeWidth * kTreeWidth;
     best.left = std::clamp(best.left, kTreeWidth, (n - 1) / kTreeWidth * kTreeWidth);
     return best;
@@ -145,7 +145,7 @@ class BinaryBuilder {
         left.extend(soup_.box[order[i - 1]]);
         if (i % kTreeWidth != 0) continue;
         const double cost = box_cost(left) * leaves_for(i) + right_cost[i];
-        // Of equal costs, the most even cut: simplices in one place are halved instead of peeled off.
+        // Ties: the most balanced cut, so that coincident simplices are halved instead of peeled off.
         if (cost < best.cost || (cost == best.cost && larger_side(i, n) < larger_side(best.left, n)))
           best = {cost, axis, i};
       }
@@ -156,8 +156,8 @@ class BinaryBuilder {
   void try_axis(std::uint32_t begin, std::uint32_t end, const Box& centres, int axis, double& best_cost,
                 int& best_axis, std::uint32_t& best_left) const {
     const double from = centres.min()[axis], width = centres.sizes()[axis];
-    const double bins = kBins / width;  // for a unit of length
-    // The centres coincide on this axis, or very nearly: no cut across it.
+    const double bins = kBins / width;  // per unit of length
+    // The centres (nearly) coincide on this axis: no cut across it.
     if (!std::isfinite(bins)) return;
     std::array<Box, kBins> bin_box;
     std::array<std::uint32_t, kBins> bin_count{};
@@ -177,7 +177,7 @@ class BinaryBuilder {
       right_count += bin_count[b];
       right_cost[b] = right_count ? box_cost(right) * leaves_for(right_count) : 0;
     }
-    // Pass 3, from the left: the cost of each cut. Costs are box cost times number of leaves.
+    // Pass 3, from the left: the cost of each cut, as box cost times number of leaves.
     Box left;
     std::uint32_t left_count = 0;
     for (int b = 1; b < kBins; ++b) {
@@ -206,15 +206,15 @@ std::vector<BinaryNode> build_binary_tree(Soup& soup, Workers& workers, Splits s
 }
 
 // Collapses a binary tree to a wide one by dynamic programming (Ylitie, Karras and Laine 2017, section 3.1).
-// Let cost(n, p) be the least cost of the wide nodes in the subtree of n, if it may take p places of its
-// parent:
-// - p = 1: n becomes a wide node, and its two halves share kTreeWidth places below it;
-// - p > 1: the halves share the p places, or the subtree uses fewer.
-// Each inner node takes kTreeWidth^2 / 2 steps at most.
+// Let cost(n, p) be the minimum cost of the wide nodes in the subtree of n if it may use p child slots of its
+// wide parent:
+// - p = 1: n becomes a wide node, and its two halves share kTreeWidth slots below it;
+// - p > 1: the halves share the p slots, or the subtree uses fewer.
+// Each inner node takes at most kTreeWidth^2 / 2 steps.
 
 namespace {
 
-/// Returns what a wide node costs. The power is measured (docs/measurements.md).
+/// Returns the cost of a wide node. The exponent is measured (docs/measurements.md).
 double wide_cost(const BinaryNode& n) {
   return n.cost * std::sqrt(n.cost) + kSimplexCost * (n.end - n.begin);
 }
@@ -222,13 +222,13 @@ double wide_cost(const BinaryNode& n) {
 }  // namespace
 
 Collapse::Collapse(std::span<const BinaryNode> tree) : tree_(tree), best_(tree.size()) {
-  // Children come after parents: reverse order is from the leaves upwards. Leaves keep cost 0.
+  // Children come after parents: reverse order is bottom-up. Leaves keep cost 0.
   for (std::size_t node = tree.size(); node-- > 0;) {
     if (tree[node].is_leaf()) continue;
     Best& best = best_[node];
     const Best &left = best_[tree[node].left], &right = best_[tree[node].right];
     for (std::uint32_t places = 2; places <= kTreeWidth; ++places) {
-      // The best distribution of the places over both halves; of equal ones, the fewest places on the left.
+      // The best distribution of the slots over both halves; ties: fewest slots on the left.
       std::uint32_t to_left = 1;
       const auto cost = [&](std::uint32_t k) { return left.cost[k - 1] + right.cost[places - k - 1]; };
       for (std::uint32_t k = 2; k < places; ++k)
@@ -236,9 +236,9 @@ Collapse::Collapse(std::span<const BinaryNode> tree) : tree_(tree), best_(tree.s
       best.to_left[places - 1] = static_cast<std::uint8_t>(to_left);
       best.cost[places - 1] = cost(to_left);
     }
-    // One place: the node itself becomes wide, and its halves share all of its places.
+    // One slot: the node itself becomes wide, and its halves share all of its slots.
     best.cost[0] = wide_cost(tree[node]) + best.cost[kTreeWidth - 1];
-    // More places never cost more, because a subtree may leave some unused.
+    // More slots never cost more, because a subtree may leave some unused.
     for (std::uint32_t places = 2; places <= kTreeWidth; ++places)
       best.cost[places - 1] = std::min(best.cost[places - 1], best.cost[places - 2]);
   }
@@ -250,14 +250,15 @@ std::vector<std::uint32_t> Collapse::children(std::uint32_t node) const {
   return children;
 }
 
-/// Shares places among the children of a node that does not become a wide one by itself.
+/// Distributes slots among the children of a node that does not become a wide one itself.
 void Collapse::share(std::uint32_t node, std::uint32_t places, std::vector<std::uint32_t>& children) const {
   const std::uint32_t to_left = best_[node].to_left[places - 1];
   const auto give = [&](std::uint32_t child, std::uint32_t given) {
     const auto& cost = best_[child].cost;
-    // Equal cost with fewer places: give the rest up. share() must not follow a distribution that lost.
+    // Equal cost with fewer slots: release the rest. share() must not follow a distribution that was not
+    // chosen.
     while (given > 1 && cost[given - 1] == cost[given - 2]) --given;
-    // One place left: the child is a wide node (or a leaf). More: its own children take its places.
+    // One slot left: the child is a wide node (or a leaf). More: its own children take its slots.
     given == 1 ? children.push_back(child) : share(child, given, children);
   };
   give(tree_[node].left, to_left);

@@ -1,5 +1,5 @@
 #pragma once
-/// The binary tree over simplices that becomes an OBB tree when it is collapsed to width eight.
+/// The binary tree over simplices that is collapsed to the 8-wide OBB tree.
 
 #include <array>
 #include <cstdint>
@@ -19,44 +19,44 @@ struct BinaryNode {
   std::uint32_t begin, end;  ///< range in Soup::order
   std::uint32_t left = kNull, right = kNull;
   Eigen::AlignedBox3d box;  ///< on the coordinate axes
-  double cost = 0;          ///< box_cost() of the box that fits, or of `box` where cuts are not fitted
+  double cost = 0;          ///< box_cost() of the tight box, or of `box` for ranges that are not fitted
   bool is_leaf() const { return left == kNull; }
 };
 
-/// How much is spent on choosing splits.
+/// The effort of choosing splits.
 struct Splits {
-  /// Ranges of at most so many simplices are split so that the boxes that fit their halves are small; larger
-  /// ones by boxes on the coordinate axes.
+  /// Ranges of at most this many simplices are split by the tight boxes of their halves, larger ones by boxes
+  /// on the coordinate axes.
   std::uint32_t fitted;
-  CutEffort effort;  ///< for these
-  bool all_cuts;     ///< of larger ranges: chooses from all cuts, in place of those between bins
+  CutEffort effort;  ///< for these small ranges
+  bool all_cuts;     ///< for larger ranges: choose from all cuts instead of bin boundaries
 };
 
-/// Builds the tree top-down, and puts the simplices in order. Every split leaves a multiple of kTreeWidth
-/// simplices on its left, so that all leaves but the last are full; among those splits a surface area
-/// heuristic chooses. Parents come before children, left before right. The same for any number of threads.
+/// Builds the tree top-down and sorts Soup::order. Every split has a multiple of kTreeWidth simplices on its
+/// left, so that all leaves except the last are full; the surface area heuristic chooses among those splits.
+/// Parents come before children, left before right. The result does not depend on the number of threads.
 std::vector<BinaryNode> build_binary_tree(Soup& soup, Workers& workers, Splits splits);
 
-// Which nodes of a binary tree become children of which wide ones.
+// Collapse of a binary tree to a wide one.
 
-/// Collapses a binary tree to nodes of up to kTreeWidth children so that the sum of all wide nodes' costs is
-/// least. What a node costs is about how often it is visited: BinaryNode::cost to the power of 1.5.
+/// Collapses a binary tree to nodes of up to kTreeWidth children with minimum total cost of all wide nodes.
+/// The cost of a node estimates how often it is visited: BinaryNode::cost^1.5.
 ///
 /// Source: Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
-/// BVHs", 2017, section 3.1 (dynamic programming, from the leaves upward), where it is the surface itself.
+/// BVHs", 2017, section 3.1 (bottom-up dynamic programming; there the cost is the surface area itself).
 class Collapse {
  public:
-  /// `tree` must outlive this.
+  /// `tree` must outlive this object.
   explicit Collapse(std::span<const BinaryNode> tree);
 
-  /// Returns the children of the wide node that an inner node becomes: 2 to kTreeWidth, in the tree's order.
+  /// Returns the children of the wide node for an inner node: 2 to kTreeWidth, in the tree's order.
   std::vector<std::uint32_t> children(std::uint32_t node) const;
 
  private:
-  /// What is best for a subtree, where it may take the place of 1 to kTreeWidth children of a wide node.
+  /// The optimum for a subtree that may use 1 to kTreeWidth child slots of a wide node.
   struct Best {
-    std::array<double, kTreeWidth> cost{};           ///< [places - 1]: of all wide nodes in it
-    std::array<std::uint8_t, kTreeWidth> to_left{};  ///< [places - 1]: places that its left half takes
+    std::array<double, kTreeWidth> cost{};           ///< [slots - 1]: total cost of all wide nodes in it
+    std::array<std::uint8_t, kTreeWidth> to_left{};  ///< [slots - 1]: slots used by its left half
   };
 
   void share(std::uint32_t node, std::uint32_t places, std::vector<std::uint32_t>& children) const;

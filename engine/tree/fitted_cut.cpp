@@ -1,9 +1,9 @@
-// Chooses where to cut ranges of simplices by the surface area heuristic, for oriented boxes.
-// 1. Moments of each simplex are summed over the range: its covariance gives the principal axes.
+// Selection of cuts of ranges of simplices by the surface area heuristic, for oriented boxes.
+// 1. The moments of the simplices are summed over the range; their covariance gives the principal axes.
 // 2. All cuts across the coordinate axes and some principal axes are ranked by the moments of both halves,
-// with prefix sums, in time linear in the number of simplices.
-// 3. The best ranked cuts are measured with the boxes that fit the halves, and the cheapest one is taken.
-// 4. The orders along the coordinate axes are partitioned stably, so that no half is ever sorted again.
+//    with prefix sums, in linear time.
+// 3. The best ranked cuts are evaluated with the tight boxes of the halves, and the cheapest one is chosen.
+// 4. The orders along the coordinate axes are partitioned stably, so that no half is sorted again.
 
 #include "engine/tree/fitted_cut.hpp"
 
@@ -24,11 +24,11 @@ using Box = Eigen::AlignedBox3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Estimates the cost of the fitting box, up to a factor. Half the surface of a box is about the root of the
-/// sum of the squares of the three products of two standard deviations along principal axes. No axes are
+/// Estimates the cost of the tight box, up to a factor. Half the surface area of a box is about the root of
+/// the sum of the squared products of two standard deviations each, along principal axes. The axes are not
 /// needed: the radicand is the sum of the principal minors of the covariance.
 double ranked_cost(const Spread& spread) {
-  // Covariance from raw moments. Cancellation is bounded by measuring small ranges anew (kMeasureAgain).
+  // Covariance from raw moments. Cancellation is limited by measuring small ranges again (kMeasureAgain).
   const double whole = 1 / spread.weight;
   const Vector3d mean = spread.first * whole;
   const Vector3d square = spread.squares * whole - mean.cwiseProduct(mean);
@@ -36,16 +36,16 @@ double ranked_cost(const Spread& spread) {
       spread.products * whole - Vector3d(mean.y() * mean.z(), mean.z() * mean.x(), mean.x() * mean.y());
   const double minors =
       square.y() * square.z() + square.z() * square.x() + square.x() * square.y() - product.squaredNorm();
-  // In this order, each is 0 if rounding has made it NaN.
+  // std::max(0.0, x), in this order, is 0 if x is NaN due to rounding.
   return std::sqrt(std::max(0.0, minors)) + kLengthCost * std::max(0.0, square.sum());
 }
 
-/// A simplex with its position along a direction, as one integer that sorts fast: the high bits grow with the
+/// A simplex with its position along a direction, as an integer sort key: the high bits increase with the
 /// position, the low bits are the simplex's number.
 std::uint64_t place_at(float x, std::uint32_t number) {
-  // Floats of one sign are ordered like their bits. Flip all bits of negative ones, and the sign of the
+  // Floats of one sign are ordered like their bits. Flip all bits of negative ones, and only the sign of the
   // others.
-  const auto bits = std::bit_cast<std::uint32_t>(x + 0.0f);  // -0 is in the same place as 0
+  const auto bits = std::bit_cast<std::uint32_t>(x + 0.0f);  // -0 gets the same key as 0
   const std::uint32_t growing = bits >> 31 != 0 ? ~bits : bits | 0x80000000u;
   return std::uint64_t{growing} << 32 | number;
 }
@@ -54,7 +54,7 @@ std::uint32_t number_at(std::uint64_t place) {
   return static_cast<std::uint32_t>(place);
 }
 
-/// Returns what a cut costs with some simplices on its left and right.
+/// Returns the cost of a cut with these numbers of simplices on its left and right.
 float sum_of_costs(const FittedCuts::Halves& halves, std::uint32_t left, std::uint32_t right) {
   return static_cast<float>(halves.left_cost * leaves_for(left) + halves.right_cost * leaves_for(right));
 }
@@ -67,10 +67,10 @@ bool FittedCuts::Cut::operator<(const Cut& y) const {
 
 FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplices, CutEffort effort)
     : soup_(soup), effort_(effort), simplices_(simplices.begin(), simplices.end()) {
-  // Number the simplices in an order that does not depend on earlier splits, so that ties are broken alike.
+  // Number the simplices independently of earlier splits, so that ties are broken consistently.
   std::sort(simplices_.begin(), simplices_.end());
   const std::size_t n = simplices_.size();
-  // The only sorts along coordinate axes; cuts keep these orders.
+  // The only sorts along coordinate axes; cuts preserve these orders.
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<std::uint32_t>& order = coordinate_[axis];
     order.resize(n);
@@ -94,7 +94,7 @@ FittedCuts::Halves FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
     return all;
   };
   all_ = sum();
-  // The range has become small beside the one that it was measured with: use a closer origin and scale.
+  // The range has become small compared with the one used for measuring: use a closer origin and scale.
   if (all_.variance() < kMeasureAgain) {
     measure();
     all_ = sum();
@@ -107,7 +107,7 @@ FittedCuts::Halves FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
   // Step 2: rank all cuts.
   cuts_.clear();
   for (int way = 0; way < 3 + effort_.principal; ++way) rank(way);
-  constexpr std::size_t kPerCut = 128;  // ranks are less sure where there are more simplices
+  constexpr std::size_t kPerCut = 128;  // ranks are less reliable for more simplices
   // Step 3: measure the best ranked ones, in order of rank.
   const std::size_t few = std::min(std::max<std::size_t>(effort_.tried, size_ / kPerCut), cuts_.size());
   std::partial_sort(cuts_.begin(), cuts_.begin() + static_cast<std::ptrdiff_t>(few), cuts_.end());
@@ -117,7 +117,7 @@ FittedCuts::Halves FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
   for (Cut cut : std::span(cuts_).first(few)) {
     const Halves tried = measured(cut, best.cost);
     cut.cost = sum_of_costs(tried, cut.left, size_ - cut.left);
-    // Ties go to the most even cut.
+    // Ties go to the most balanced cut.
     if (!(cut < best)) continue;
     best = cut;
     halves = tried;
@@ -135,14 +135,14 @@ std::vector<std::uint32_t> FittedCuts::order() const {
   return order;
 }
 
-/// Returns the range, ordered along a direction.
+/// Returns the simplices of the range, ordered along a direction.
 std::span<const std::uint32_t> FittedCuts::along(int way) const {
   return way < 3 ? std::span(coordinate_[way]).subspan(begin_, size_) : principal_[way - 3];
 }
 
-/// Measures how the simplices of the range are spread.
+/// Measures the moments of the simplices of the range.
 void FittedCuts::measure() {
-  // Moments are taken about the centre of the range and scaled by its diagonal, which limits cancellation.
+  // Moments are relative to the centre of the range and scaled by its diagonal, which limits cancellation.
   Box bounds;
   for (const std::uint32_t i : along(0)) bounds.extend(soup_.box[simplices_[i]]);
   const Vector3d origin = bounds.center();
@@ -151,9 +151,9 @@ void FittedCuts::measure() {
   for (const std::uint32_t i : along(0)) spread_[i] = Spread(soup_.corners[simplices_[i]], origin, scale);
 }
 
-/// Orders the range along its principal axis number k.
+/// Orders the range along its k-th principal axis.
 void FittedCuts::order_along_principal(int k, const Vector3d& direction) {
-  const Vector3d& near = soup_.centre[simplices_[along(0)[size_ / 2]]];  // places are rounded to float
+  const Vector3d& near = soup_.centre[simplices_[along(0)[size_ / 2]]];  // keys are rounded to float
   places_.clear();
   for (const std::uint32_t i : along(0)) {
     const Vector3d seen = soup_.centre[simplices_[i]] - near;
@@ -164,9 +164,9 @@ void FittedCuts::order_along_principal(int k, const Vector3d& direction) {
   for (const std::uint64_t place : places_) principal_[k].push_back(number_at(place));
 }
 
-/// Adds all cuts across one direction.
+/// Adds all cuts across one direction, with their estimated costs.
 void FittedCuts::rank(int way) {
-  // Moments of the left half grow by one simplex per step; those of the right half are the rest.
+  // The moments of the left half grow by one simplex per step; those of the right half are the remainder.
   const std::span<const std::uint32_t> order = along(way);
   Spread left;
   for (std::uint32_t i = 1; i < size_; ++i) {
@@ -178,17 +178,17 @@ void FittedCuts::rank(int way) {
   }
 }
 
-/// Finds what the halves of a cut cost; the right one infinity if the cut costs more than `most` without it.
+/// Returns the costs of the halves of a cut. The right cost is infinite if the left one alone exceeds `most`.
 FittedCuts::Halves FittedCuts::measured(const Cut& cut, float most) const {
   const std::span<const std::uint32_t> order = along(cut.way);
   Halves halves{0, fitted_box_cost(order.first(cut.left)), 0};
-  // Stop early: costs only add up, so the cut has lost.
+  // Stop early: costs only add up, so the cut cannot win.
   const bool too_much = sum_of_costs(halves, cut.left, 0) > most;
   halves.right_cost = too_much ? kInfinity : fitted_box_cost(order.subspan(cut.left));
   return halves;
 }
 
-/// Returns what the box costs that fits some of the simplices.
+/// Returns the cost of the tight box of some simplices.
 double FittedCuts::fitted_box_cost(std::span<const std::uint32_t> some) const {
   Spread spread;
   // The candidates of fit_frame(): the coordinate axes and the principal axes.
@@ -204,7 +204,7 @@ double FittedCuts::fitted_box_cost(std::span<const std::uint32_t> some) const {
   return std::min(box_cost(straight), box_cost(turned));
 }
 
-/// Cuts the range: puts the simplices on the left first along each axis, and keeps both sides in order.
+/// Cuts the range: partitions the order along each axis into left and right, stably.
 void FittedCuts::part(const Cut& cut) {
   const std::span<const std::uint32_t> order = along(cut.way);
   // Mark the sides once, then partition each order in place; the right half goes through a buffer.
@@ -221,9 +221,8 @@ void FittedCuts::part(const Cut& cut) {
   }
 }
 
-// The simplices of a tree in its unit, and frames that fit some of them: principal axes of the covariance of
-// the surface's points, not of the vertices, so that the tessellation does not matter (Gottschalk, Lin and
-// Manocha 1996).
+// The simplices of a tree in its units, and tight frames: principal axes of the covariance of surface points,
+// not of vertices, so that the tessellation does not matter (Gottschalk, Lin and Manocha 1996).
 
 namespace {
 
@@ -257,7 +256,7 @@ Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, doubl
       corners[s][k] = to_units(body.vertices[v[k]]);
       box[s].extend(corners[s][k]);
     }
-    // The centre of the box, not the centroid: cuts are judged by boxes.
+    // The centre of the box, not the centroid: cuts are evaluated by boxes.
     centre[s] = 0.5 * (box[s].min() + box[s].max());
   }
 }
@@ -304,11 +303,10 @@ Frame fit_frame(const Soup& soup, std::span<const std::uint32_t> which, const Bo
   Spread spread;
   for (const std::uint32_t s : which) spread += Spread(soup.corners[s], straight.origin, scale);
   const Matrix3d axes = eigenvectors_of_symmetric(spread.covariance()).transpose();
-  // Round the axes to float before measuring. If rounding spoils orthonormality, fall back to the coordinate
-  // axes.
+  // Round the axes to float before measuring. If rounding violates orthonormality, use the coordinate axes.
   const Frame principal{axes.cast<float>().cast<double>(), straight.origin};
   if (!principal.axes.allFinite() || !is_orthonormal(principal.axes)) return straight;
-  // Principal axes are not always best: a cube's are arbitrary. Keep the smaller box.
+  // Principal axes are not always best (those of a cube are arbitrary). Use the smaller box.
   return half_area(box_in_frame(soup, which, principal)) < half_area(bounds) ? principal : straight;
 }
 

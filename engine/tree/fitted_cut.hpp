@@ -1,5 +1,5 @@
 #pragma once
-/// Where to cut ranges of simplices in two so that the boxes that fit the halves are small.
+/// Selection of cuts that divide ranges of simplices into halves with small tight boxes.
 
 #include <algorithm>
 #include <array>
@@ -17,19 +17,19 @@
 
 namespace lrb {
 
-// The simplices that a tree is built over, and the boxes that fit some of them.
+// The simplices of a tree, and their tight boxes.
 
-/// Simplices in the tree's units, in the order in which they were given.
+/// Simplices in the tree's units, in the given order.
 struct Soup {
   std::span<const SimplexId> simplices;
   std::vector<std::array<Eigen::Vector3d, 3>> corners;
   std::vector<Eigen::AlignedBox3d> box;
   std::vector<Eigen::Vector3d> centre;  ///< of the box
-  std::vector<std::uint32_t> order;     ///< lists the simplices in the order of the tree's leaves
+  std::vector<std::uint32_t> order;     ///< the simplices in the order of the tree's leaves
 
   Soup(const SimplexView& body, std::span<const SimplexId> simplices, double unit);
 
-  /// Returns a function that tells which of two simplices comes first on an axis: by centre, then by number.
+  /// Returns the comparison of two simplices on an axis: by centre, then by number.
   auto order_on(int axis) const {
     return [this, axis](std::uint32_t s, std::uint32_t t) {
       const double x = centre[s][axis], y = centre[t][axis];
@@ -37,31 +37,32 @@ struct Soup {
     };
   }
 
+  /// Returns order[begin .. end - 1].
   std::span<const std::uint32_t> listed(std::uint32_t begin, std::uint32_t end) const {
     return std::span(order).subspan(begin, end - begin);
   }
 };
 
-/// Returns half the surface of a box.
+/// Returns half the surface area of a box.
 inline double half_area(const Eigen::AlignedBox3d& b) {
   const Eigen::Vector3d e = b.sizes();
   return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
 }
 
-/// Returns what a box costs a query, by the surface area heuristic: half its surface, and a little for its
-/// length.
+/// Returns the cost of a box to a query by the surface area heuristic: half its surface area, plus a small
+/// term for its length.
 inline double box_cost(const Eigen::AlignedBox3d& b) {
   return half_area(b) + kLengthCost * b.sizes().squaredNorm();
 }
 
-/// Axes of length 1 about an origin: a point x has the coordinates axes * (x - origin).
+/// Unit axes about an origin: a point x has the coordinates axes * (x - origin).
 struct Frame {
   Eigen::Matrix3d axes;  ///< rows
   Eigen::Vector3d origin;
 };
 
-/// How the points of simplices are spread: the sums over all points of 1, of the point, and of its product
-/// with itself. A simplex weighs twice its area, and a little more, so that segments and points count.
+/// Moments of the points of simplices: the integrals of 1, of the point, and of its outer product. A simplex
+/// has a weight of twice its area plus a small constant, so that segments and points count.
 struct Spread {
   double weight = 0;
   Eigen::Vector3d first = Eigen::Vector3d::Zero();
@@ -69,7 +70,7 @@ struct Spread {
   Eigen::Vector3d products = Eigen::Vector3d::Zero();  ///< yz, zx, xy
 
   Spread() = default;
-  /// Measures one simplex, seen from `origin`, its lengths times `scale`.
+  /// Measures one simplex relative to `origin`, with lengths scaled by `scale`.
   Spread(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Vector3d& origin, double scale);
 
   void operator+=(const Spread& more) {
@@ -89,54 +90,56 @@ struct Spread {
 
   /// Returns the covariance of the points.
   Eigen::Matrix3d covariance() const;
-  /// Returns the mean square of the points' distances from their middle.
+  /// Returns the mean squared distance of the points from their mean.
   double variance() const { return squares.sum() / weight - (first / weight).squaredNorm(); }
 };
 
 /// Returns the box of some simplices in a frame.
 Eigen::AlignedBox3d box_in_frame(const Soup& soup, std::span<const std::uint32_t> which, const Frame& frame);
 
-/// Returns the principal axes of some simplices, rounded to float, so that what is measured is what the query
-/// uses; or the coordinate axes where those give the smaller box. bounds: their box on the coordinate axes.
+/// Returns the principal axes of some simplices, or the coordinate axes if those give a smaller box. Axes are
+/// rounded to float before they are evaluated, as the query uses them. bounds: the box of the simplices on
+/// the coordinate axes.
 Frame fit_frame(const Soup& soup, std::span<const std::uint32_t> which, const Eigen::AlignedBox3d& bounds);
 
-/// Returns the number of leaves that hold some simplices: all but the last are full.
+/// Returns the number of leaves for some simplices; all except the last are full.
 inline std::uint32_t leaves_for(std::uint32_t simplices) {
   return (simplices + kTreeWidth - 1) / kTreeWidth;
 }
 
-/// Returns how many of some simplices are on the larger side of a cut: the fewer, the more even it is.
+/// Returns the number of simplices on the larger side of a cut: smaller is more balanced.
 inline std::uint32_t larger_side(std::uint32_t left, std::uint32_t all) {
   return std::max(left, all - left);
 }
 
-/// How many cuts of a range to compare.
+/// Number of cuts of a range to compare.
 struct CutEffort {
-  int principal;        ///< across how many of the range's principal axes, the longest first; 0 to 3
-  std::uint32_t tried;  ///< number of cuts for which the boxes are found, at least 1; more in large ranges
+  int principal;        ///< number of principal axes of the range to cut across, longest first; 0 to 3
+  std::uint32_t tried;  ///< minimum number of cuts for which tight boxes are computed, at least 1; more for
+                        ///< large ranges
 };
 
-/// Some simplices, ordered along the coordinate axes, that are cut into ranges and those again, down to
-/// leaves.
+/// Recursive cutting of simplices into ranges, down to leaves. Keeps the simplices ordered along the
+/// coordinate axes.
 ///
-/// All cuts of a range across the coordinate axes and some principal axes are ranked by how the points of the
-/// halves are spread. Of the first ones that one is taken whose halves have the smallest boxes, each on its
-/// own axes as in fit_frame(): the sum of box_cost(), each times the number of leaves in it (the surface area
-/// heuristic, of boxes as the query will see them). Of cuts that rank or cost the same, the most even one
-/// comes first, so that simplices at one point are halved.
+/// All cuts of a range across the coordinate axes and some principal axes are ranked by the moments of the
+/// halves. Among the best ranked ones, the cut with the smallest boxes is chosen, each box on its own axes as
+/// in fit_frame(): the cost is the sum of box_cost() times the number of leaves (the surface area heuristic
+/// with the boxes that the query uses). Ties go to the most balanced cut, so that coincident simplices are
+/// halved.
 class FittedCuts {
  public:
-  /// Nothing is cut yet: the one range is [0, simplices.size()). `soup` must outlive this.
+  /// Starts with the single range [0, simplices.size()). `soup` must outlive this object.
   FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplices, CutEffort effort);
 
   struct Halves {
-    std::uint32_t middle;          ///< where the range is cut: a multiple of kTreeWidth after its beginning
-    double left_cost, right_cost;  ///< box_cost() of the boxes that fit
+    std::uint32_t middle;  ///< index of the cut: a multiple of kTreeWidth after the beginning of the range
+    double left_cost, right_cost;  ///< box_cost() of the tight boxes
   };
-  /// Cuts a range of more than kTreeWidth simplices that nothing has cut yet, in two ranges.
+  /// Cuts an existing range of more than kTreeWidth simplices into two ranges.
   Halves cut(std::uint32_t begin, std::uint32_t end);
 
-  /// Returns box_cost() of the box that fits all simplices.
+  /// Returns box_cost() of the tight box of all simplices.
   double whole_cost() const { return whole_cost_; }
 
   /// Returns the simplices, range by range.
@@ -144,9 +147,9 @@ class FittedCuts {
 
  private:
   struct Cut {
-    float cost;            ///< rounded: what differs by rounding errors alone mostly costs the same
+    float cost;            ///< rounded, so that costs that differ only by rounding errors are mostly equal
     std::uint32_t larger;  ///< larger_side()
-    int way;               ///< the direction it is across
+    int way;               ///< index of the direction that it cuts across
     std::uint32_t left;    ///< number of simplices on its left
     bool operator<(const Cut& y) const;
   };
@@ -162,18 +165,19 @@ class FittedCuts {
   const Soup& soup_;
   const CutEffort effort_;
   double whole_cost_ = 0;
-  std::vector<std::uint32_t> simplices_;  ///< in order; below, simplices go by their place here
-  std::vector<Spread> spread_;            ///< of each simplex; in a range, from one origin and at one scale
-  std::array<std::vector<std::uint32_t>, 3> coordinate_;  ///< range by range, ordered along an axis in each
+  std::vector<std::uint32_t> simplices_;  ///< ascending; below, simplices are identified by their index here
+  std::vector<Spread> spread_;  ///< moments of each simplex; within a range, relative to one origin and scale
+  std::array<std::vector<std::uint32_t>, 3> coordinate_;  ///< range by range, ordered along an axis within
+                                                          ///< each
 
-  // The range that is being cut.
+  // The current range.
   std::uint32_t begin_ = 0, size_ = 0;
   Spread all_;
   std::array<std::vector<std::uint32_t>, 3> principal_;  ///< ordered along its principal axes
   std::vector<Cut> cuts_;
   std::vector<std::uint8_t> is_left_;  ///< for each simplex
 
-  // Memory that is kept from one use to the next.
+  // Reused memory.
   std::vector<std::uint64_t> places_;
   std::vector<std::uint32_t> right_;
 };

@@ -1,6 +1,5 @@
 #pragma once
-// Part of tree_kernel.inl and pair_kernel.inl: two nodes, their relative position, and which of their boxes
-// intersect.
+// Part of tree_kernel.inl and pair_kernel.inl: two nodes, their relative position, and tests of their boxes.
 
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/kernel_lanes.inl"
@@ -41,24 +40,24 @@ inline Boxes decode(const TreeNode& n, float ratio) {
   return b;
 }
 
-/// The positions of two nodes relative to each other: coordinates in A's node = r * (coordinates in B's node)
-/// + t, and back r^T * (coordinates in A's node) + back. The fourth entry of each four is unused.
+/// The relative position of two nodes: coordinates in A's node = r * (coordinates in B's node) + t;
+/// coordinates in B's node = r^T * (coordinates in A's node) + back. The fourth entry of each row is unused.
 struct Between {
   alignas(16) float r[3][4], abs_r[3][4], t[4], back[4];
   float reach;  ///< bound on every coordinate difference that occurs
-  float error;  ///< bound on the error of every transformed coordinate
-  /// For A and for B: bound on the error of every coordinate of the difference of two corners of that body.
+  float error;  ///< error bound of every transformed coordinate
+  /// For A and for B: error bound of every coordinate of the difference of two corners of that body.
   float edge_error[2];
   // Only with a margin:
-  /// How much boxes grow on A's and on B's axes: the error, the margin, and the displacement that is swept.
+  /// Enlargement of boxes on A's and on B's axes: the error, the margin, and the swept displacement.
   alignas(16) float grow[2][4];
   float way[4];  ///< displacement by which B's node is swept, on A's axes
-  float margin;  ///< how much further any of its points may move
+  float margin;  ///< maximum additional displacement of any of its points
 };
 
-/// Sets the error bounds. radius_a, radius_b: radius of a ball that contains what is transformed of each
-/// body, or the length of its edges. reach: bound on the differences of a corner of A and one of B that
-/// occur; whole: bound on the coordinates from which corners of B are transformed.
+/// Sets the error bounds. radius_a, radius_b: radius of a ball that contains the transformed points of each
+/// body, or the length of its edges. reach: bound on the differences of a corner of A and a corner of B.
+/// whole: bound on the coordinates from which corners of B are transformed.
 inline void set_errors(Between& w, float slack, float m_size, float radius_a, float radius_b, float reach,
                        float whole) {
   w.reach = reach;
@@ -67,7 +66,7 @@ inline void set_errors(Between& w, float slack, float m_size, float radius_a, fl
   w.edge_error[1] = 2 * slack + kTurnedEdgeRounding * (m_size * radius_b) + kFarEdgeRounding * reach;
 }
 
-/// Returns row i of a node's frame; the fourth entry is whatever follows in the node.
+/// Returns row i of a node's frame; the fourth entry is the number that follows it in the node.
 inline Float4 frame_row(const TreeNode& n, int i) {
   static_assert(__builtin_offsetof(TreeNode, base) == sizeof(n.frame));
   Float4 row;
@@ -92,10 +91,10 @@ inline Float4 combine(const float* x, const Float4* column) {
   return splat4(x[0]) * column[0] + splat4(x[1]) * column[1] + splat4(x[2]) * column[2];
 }
 
-/// Finds the displacement by which a node of B is swept, on A's axes. Returns the sum of the magnitudes of
+/// Computes the displacement by which a node of B is swept, on A's axes. Returns the sum of the magnitudes of
 /// its coordinates.
 inline float sweep(const TreeKernel& k, const TreeNode& b, const Columns& a_columns, Between& w) {
-  // In double first, because the node's origin may be far from the body's. Then rounded to float and rotated.
+  // In double first, because the node's origin may be far from the body's; then rounded to float and rotated.
   const Double4* m = reinterpret_cast<const Double4*>(k.sweep);
   const Double4 swept =
       ((m[0] * splat4d(b.origin[0]) + m[1] * splat4d(b.origin[1])) + m[2] * splat4d(b.origin[2])) *
@@ -108,9 +107,9 @@ inline float sweep(const TreeKernel& k, const TreeNode& b, const Columns& a_colu
   return __builtin_fabsf(parts[0]) + __builtin_fabsf(parts[1]) + __builtin_fabsf(parts[2]);
 }
 
-/// Returns how far the origin of B's node is from that of A's, on A's axes.
+/// Returns the offset from the origin of A's node to that of B's, on A's axes.
 inline Float4 offset_between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
-  // Double precision: the origins may be large and nearly equal, and their difference would cancel in float.
+  // Double precision: the origins may be large and nearly equal, so their difference would cancel in float.
   const Double4* m = reinterpret_cast<const Double4*>(k.m);
   const Double4 origin_a{a.origin[0], a.origin[1], a.origin[2], 0};
   const Double4 d =
@@ -121,9 +120,9 @@ inline Float4 offset_between(const TreeKernel& k, const TreeNode& a, const TreeN
   return __builtin_convertvector(d, Float4);
 }
 
-/// Computes the relative position of two nodes. kMargin: allows for k.margin. If simplices intersect at a
-/// point after a motion, they now have two points that the motion brings together. A slab between the
-/// simplices that is wider than the motion is long across it therefore proves that they do not intersect.
+/// Computes the relative position of two nodes. kMargin: accounts for k.margin. If simplices share a point
+/// after a motion, then before it they have two points that the motion brings together. A slab between the
+/// simplices that is wider than the motion's extent across it therefore proves that they do not intersect.
 template <bool kMargin = false>
 inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
   Between w;
@@ -146,16 +145,17 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
   const float t_parts[3] = {t[0], t[1], t[2]};
   const Float4 back = -combine(t_parts, r);
   __builtin_memcpy(w.back, &back, sizeof back);
-  // `whole` bounds every number that occurs on the way, and the error bounds are relative to it.
+  // `whole` bounds every intermediate number, and the error bounds are relative to it.
   const float radius_a = a.radius * k.ratio_a, radius_b = b.radius * k.ratio_b;
   const float whole = k.m_size * (radius_a + radius_b + __builtin_fabsf(df[0]) + __builtin_fabsf(df[1]) +
                                   __builtin_fabsf(df[2]));
   float reach = whole;
-  // The sweep of B's origin goes into w.way. The margin covers by how much other points of the node differ.
+  // The sweep of B's origin is in w.way. The margin bounds by how much other points of the node differ from
+  // it.
   if constexpr (kMargin) {
     const float size = sweep(k, b, a_columns, w);
     w.margin = k.margin + k.sweep_turn * radius_b + kSweepRounding * size;
-    reach += size + w.margin;  // differences of corners at the end of the sweep count, too
+    reach += size + w.margin;  // also covers differences of corners at the end of the sweep
   }
   set_errors(w, k.slack, k.m_size, radius_a, radius_b, reach, whole);
   if constexpr (kMargin) {
@@ -172,8 +172,8 @@ inline float grow_of(const Between& w, int side, int axis) {
   return kMargin ? w.grow[side][axis] : w.error;
 }
 
-/// Returns the boxes unchanged: the axes of a node under a rotation are its own. Under other maps see
-/// affine_kernel.inl.
+/// Returns the boxes unchanged: under a rotation the axes of a node are its own. See affine_kernel.inl for
+/// other maps.
 inline const Boxes& boxes_on_own(const Boxes& boxes, Side, const Between&) {
   return boxes;
 }
@@ -181,11 +181,11 @@ inline const Whole& whole_on_own(const Whole& whole, Side, const Between&) {
   return whole;
 }
 
-/// Returns the node box of B on A's axes, grown by the error bound.
+/// Returns the node box of B on A's axes, enlarged by the error bound.
 template <bool kMargin>
 inline Whole turn_whole_b(const Whole& b, const Between& w) {
   Whole o;
-  // The box on other axes has the half extents |r| half (Arvo 1990).
+  // On other axes a box has the half extents |r| half (Arvo 1990).
   for (int i = 0; i < 3; ++i) {
     o.centre[i] = w.t[i] + w.r[i][0] * b.centre[0] + w.r[i][1] * b.centre[1] + w.r[i][2] * b.centre[2];
     o.half[i] = grow_of<kMargin>(w, 0, i) + w.abs_r[i][0] * b.half[0] + w.abs_r[i][1] * b.half[1] +
@@ -194,11 +194,11 @@ inline Whole turn_whole_b(const Whole& b, const Between& w) {
   return o;
 }
 
-/// Returns the node box of A on B's axes, grown by the error bound.
+/// Returns the node box of A on B's axes, enlarged by the error bound.
 template <bool kMargin>
 inline Whole turn_whole_a(const Whole& a, const Between& w) {
   Whole o;
-  // Columns of r in place of rows: the inverse of a rotation is its transpose.
+  // Columns of r instead of rows: the inverse of a rotation is its transpose.
   for (int j = 0; j < 3; ++j) {
     o.centre[j] = w.back[j] + w.r[0][j] * a.centre[0] + w.r[1][j] * a.centre[1] + w.r[2][j] * a.centre[2];
     o.half[j] = grow_of<kMargin>(w, 1, j) + w.abs_r[0][j] * a.half[0] + w.abs_r[1][j] * a.half[1] +
@@ -207,7 +207,7 @@ inline Whole turn_whole_a(const Whole& a, const Between& w) {
   return o;
 }
 
-/// Boxes of one node on the axes of the other: axis-aligned there, and grown by the error bound.
+/// Boxes of one node on the axes of the other: axis-aligned there, and enlarged by the error bound.
 struct Turned {
   Float8 centre[3], half[3];
 };
@@ -215,7 +215,7 @@ struct Turned {
 template <bool kMargin>
 inline Turned turn_b(const Boxes& b, const Between& w) {
   Turned o;
-  // The same as turn_whole_b(), for eight boxes at once.
+  // As turn_whole_b(), for eight boxes at once.
   for (int i = 0; i < 3; ++i) {
     o.centre[i] = splat(w.t[i]) + splat(w.r[i][0]) * b.centre[0] + splat(w.r[i][1]) * b.centre[1] +
                   splat(w.r[i][2]) * b.centre[2];
@@ -242,7 +242,7 @@ inline Turned turn_a(const Boxes& a, const Between& w) {
 inline Lanes apart(const Float8* centre, const Float8* half, const float* other_centre,
                    const float* other_half) {
   Lanes result = kNoLanes;
-  // No early exit: a box that one axis separates shares its vector with seven that it may not.
+  // No early exit: the other seven boxes of the vector may not be separated by that axis.
   for (int i = 0; i < 3; ++i)
     result |= greater(abs8(centre[i] - splat(other_centre[i])), half[i] + splat(other_half[i]));
   return result;

@@ -1,5 +1,5 @@
 #pragma once
-// Part of tree_kernel.inl and pair_kernel.inl: eight floats at a time, and a truth value for each of eight.
+// Part of tree_kernel.inl and pair_kernel.inl: vectors of eight floats, and masks of eight lanes.
 
 #include <cstddef>
 #include <cstdint>
@@ -38,7 +38,7 @@ inline Float8 abs8(Float8 x) {
   return reinterpret_cast<Float8>(reinterpret_cast<Int8>(x) & mask);
 }
 
-// A truth value for each of eight lanes: one bit each where the processor compares into bits, else all or
+// A truth value for each of eight lanes: one bit each if the processor has mask registers, otherwise all or
 // none of a lane's bits.
 #if defined(__AVX512VL__) && defined(__AVX512DQ__)
 using Lanes = std::uint8_t;
@@ -65,7 +65,7 @@ inline Lanes greater(Float8 x, Float8 y) {
   return x > y;
 }
 
-/// Returns a number whose bit k is set if lane k is true.
+/// Returns a mask whose bit k is set if lane k is true.
 inline std::uint32_t bits(Lanes lanes) {
 #if defined(__AVX__)
   // The sign bit of each lane. A lane is all ones or all zeros.
@@ -99,15 +99,15 @@ inline Lanes either(Lanes x, Lanes y) {
 inline Lanes equal(Lanes x, Lanes y) {
   return static_cast<Lanes>(~(x ^ y));
 }
-/// Returns x where `which`, else y.
+/// Returns x in the lanes of `which`, y in the others.
 inline Lanes select(Lanes which, Lanes x, Lanes y) {
   return static_cast<Lanes>((x & which) | (y & ~which));
 }
 
-/// Returns x where it is greater than y, else y: also where either is NaN.
+/// Returns x if it is greater than y, otherwise y (also if either is NaN).
 inline Float8 larger(Float8 x, Float8 y) {
 #if defined(__AVX__)
-  // maxps returns its second operand if either is NaN, which is what the other branch does.
+  // maxps returns its second operand if either is NaN, like the other branch.
   return reinterpret_cast<Float8>(_mm256_max_ps(reinterpret_cast<__m256>(x), reinterpret_cast<__m256>(y)));
 #else
   return select(greater(x, y), x, y);

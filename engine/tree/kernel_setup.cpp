@@ -1,7 +1,8 @@
-// Sets up the dual traversal: one relative pose, and a bound on all errors that come with it.
-// 1. Compute B's pose relative to A, and how far the matrices are from rotations.
+// Setup of the dual traversal: the relative pose, and a bound on all its errors.
+// 1. Compute B's pose relative to A, and the deviation of the matrices from rotations.
 // 2. Nearly rotations: the rigid kernel, with the bounds derived at kernel_of().
-// 3. Anything else, or bodies so far apart that floats could overflow: the affine kernel (kernel_setup.hpp).
+// 3. Otherwise, or if the bodies are so far apart that floats could overflow: the affine kernel
+//    (kernel_setup.hpp).
 
 #include "engine/tree/kernel_setup.hpp"
 
@@ -17,22 +18,22 @@
 
 namespace lrb {
 
-// Sets up the tree kernel for any affine maps. kernel_setup.hpp derives the method and its error bounds.
+// Setup for arbitrary affine maps. kernel_setup.hpp derives the method and its error bounds.
 // 1. Write each map as a power of two times a matrix with entries up to 1.
-// 2. Invert the matrix, or a version with raised singular values if it is nearly singular.
+// 2. Invert the matrix; if it is nearly singular, invert a version with raised singular values.
 // 3. Choose the query's unit, and express both bodies on the axes of each, and in the world, in that unit.
-// 4. Bound the rounding of world coordinates, and carry the bound over to each set of axes.
+// 4. Bound the rounding of world coordinates, and transform the bound to each set of axes.
 
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// The exponent of a map of everything to one point: less than any other, and sums of such exponents do not
+/// The exponent of a map of everything to one point: less than any other, while sums of such exponents do not
 /// overflow.
 constexpr int kNoExponent = -100000;
 
-/// A bound on coordinates in a tree's units. It is 1, except for bodies near the end of the range of doubles.
+/// Bound on coordinates in a tree's units: 1, except for bodies near the end of the range of doubles.
 constexpr double kMostUnits = 2;
 
 /// Returns an exponent with x < 2^exponent; that power is at most twice as large as needed.
@@ -42,21 +43,21 @@ int exponent_of(double x) {
   return x == 0 ? kNoExponent : exponent;
 }
 
-/// Returns 2^exponent x; mostly by a product, which is faster.
+/// Returns 2^exponent x; usually by a product, which is faster.
 template <class Matrix>
 Matrix scaled(const Matrix& x, int exponent) {
-  // Beyond that, 2^exponent itself may overflow or underflow although the products do not.
+  // Beyond that, 2^exponent may overflow or underflow although the products do not.
   if (std::abs(exponent) <= 1000) return x * std::ldexp(1.0, exponent);
   return x.unaryExpr([exponent](double c) { return std::ldexp(c, exponent); });
 }
 
-/// Returns the part of a map that acts on a body in 2D, where z = 0. The third axis stays in place.
+/// Returns the part of a map that acts on a 2D body, where z = 0. The third axis is unchanged.
 Matrix3d map_in_plane(Matrix3d r) {
   r(2, 2) = r.topLeftCorner<2, 2>().cwiseAbs().maxCoeff();
   return r;
 }
 
-/// Returns a bound on the Euclidean norm, at most sqrt 3 times that.
+/// Returns a bound on the Euclidean norm, at most sqrt 3 times the norm.
 double norm_of(const Matrix3d& m) {
   return m.norm() * (1 + kWrapperMargin);
 }
@@ -65,16 +66,16 @@ Matrix3d raised_inverse(const Matrix3d& r) {
   // A regularised pseudo-inverse: R = U S V^T becomes V S'^-1 U^T with S' bounded from below.
   const Eigen::JacobiSVD<Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vector3d& values = svd.singularValues();
-  // The map to a point, or NaN: any G is valid (see the header), so take the identity.
+  // A map to a point, or NaN: any G is valid (see the header), so use the identity.
   if (!(values[0] > 0)) return Matrix3d::Identity();
   const Vector3d raised = values.cwiseMax(kFlatness * values[0]);
   return svd.matrixV() * raised.cwiseInverse().asDiagonal() * svd.matrixU().transpose();
 }
 
-/// Returns the exponent of the query's unit: that of the larger body in the world, or more if the bodies are
-/// so far apart that floats would overflow.
+/// Returns the exponent of the query's unit: that of the larger body in the world, or more if the distance of
+/// the bodies would overflow floats.
 int query_exponent(const AffineMap& a, const Pose& pose_a, const AffineMap& b, const Pose& pose_b) {
-  // Halves, so that the difference cannot overflow. Floats have room for distances of 2^kFarOff units.
+  // Halves, so that the difference cannot overflow. Floats can represent distances of 2^kFarOff units.
   constexpr int kFarOff = 60, kLeast = -1022;
   const double apart = (pose_b.t / 2 - pose_a.t / 2).cwiseAbs().maxCoeff();
   return std::max({a.exponent, b.exponent, exponent_of(apart) - kFarOff, kLeast});
@@ -93,7 +94,7 @@ void put(const Vector3d& x, double (&to)[4]) {
   for (int i = 0; i < 3; ++i) to[i] = x[i];
 }
 
-/// Returns a bound on every coordinate that the map gives for coordinates up to 1, and on every term of it.
+/// Returns a bound on every coordinate of the image of coordinates up to 1, and on every term of it.
 double row_size(const Matrix3d& r) {
   return r.cwiseAbs().rowwise().sum().maxCoeff();
 }
@@ -111,7 +112,7 @@ AffineMap::AffineMap(const Pose& pose, const ObbTree& tree, int dim)
   size = norm_of(r);
   back = r.inverse();
   back_size = norm_of(back);
-  flat = !(back_size * size * kFlatness <= 1);  // also where it is not a number
+  flat = !(back_size * size * kFlatness <= 1);  // also true for NaN
   // Nearly singular: use the regularised inverse, under which the own map is not the identity.
   if (flat) {
     back = raised_inverse(r);
@@ -139,17 +140,18 @@ TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbT
   k.nodes_b = b.nodes().data();
   k.blocks_a = a.blocks().data();
   k.blocks_b = b.blocks().data();
-  // Powers of two at most 1: scaling a tree's coordinates to the query's unit is exact, but for underflow.
+  // Powers of two of at most 1: scaling a tree's coordinates to the query's unit is exact, except for
+  // underflow.
   k.ratio_a = std::ldexp(1.0F, maps[0].exponent - exponent);
   k.ratio_b = std::ldexp(1.0F, maps[1].exponent - exponent);
   const float ratios[2] = {k.ratio_a, k.ratio_b};
   const Vector3d t[2] = {scaled(pose_a.t, -exponent), scaled(pose_b.t, -exponent)}, between = t[1] - t[0];
   // Step 4: the rounding of world coordinates, relative to the sum of the largest terms of both bodies.
-  double size = std::ldexp(kWorldUnderflow, -exponent);  // a bound on every term of a world coordinate
+  double size = std::ldexp(kWorldUnderflow, -exponent);  // bound on every term of a world coordinate
   for (int side = 0; side < 2; ++side)
     size += row_size(maps[side].r) * kMostUnits * ratios[side] + t[side].cwiseAbs().maxCoeff();
   const double rounding = kWorldRounding * size;
-  // For each body: both bodies' maps on its axes, and the slack there.
+  // For each body: the maps of both bodies to its axes, and the slack there.
   for (int side = 0; side < 2; ++side) {
     const AffineMap &self = maps[side], &other = maps[1 - side];
     AffineTerms::Axes& axes = terms.axes[side];
@@ -159,11 +161,11 @@ TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbT
     put(origin, axes.origin);
     axes.flat = self.flat;
     put(self.own, self.flat ? norm_of(self.own) : 1, axes.own);
-    // Own map off the identity, plus the world's rounding stretched by G.
+    // Deviation of the own map from the identity, plus the rounding of the world scaled by G.
     const double off = self.defect * kMostUnits * ratios[side];
     axes.slack = rounded_up(kPoseSafety * (off + self.back_size * rounding));
     put(self.r, self.size, terms.world[side]);
-    // Only for choosing which node to descend, so rounding does not matter.
+    // Only used to choose the node to descend, so rounding does not matter.
     terms.span[side] = static_cast<float>(self.size) * ratios[side];
   }
   put(between, terms.between);
@@ -175,7 +177,7 @@ InstructionSet best_instruction_set() {
 #if defined(__x86_64__)
   const char* const wish = std::getenv("LRB_SIMD");
   const std::string_view most = wish != nullptr ? wish : "";
-  // All features that the AVX-512 kernels are compiled with must be present.
+  // All features with which the AVX-512 kernels are compiled must be present.
   const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
                           __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
@@ -203,8 +205,8 @@ double wrapper_margin(const Pose& pose_a, const ObbTree& a, const Pose& pose_b, 
   return kWrapperMargin * (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow);
 }
 
-/// Scales by a power of two, which is exact, so that squares fit into doubles, and back; mostly by a product,
-/// which is faster.
+/// Scales by a power of two, which is exact, so that squares are representable in doubles, and back; usually
+/// by a product, which is faster.
 double stretch(const Pose& pose) {
   // Normalise so that the largest entry is in [0.5, 1).
   int exponent = 0;
@@ -212,16 +214,16 @@ double stretch(const Pose& pose) {
   const Eigen::Matrix3d r = std::abs(exponent) <= 1000
                                 ? Eigen::Matrix3d(pose.r * std::ldexp(1.0, -exponent))
                                 : pose.r.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
-  // The largest row sum of r^T r bounds its spectral norm, which is the square of r's.
+  // The largest row sum of r^T r bounds its spectral norm, which is the square of that of r.
   const double norm = std::sqrt((r.transpose() * r).cwiseAbs().rowwise().sum().maxCoeff());
   const double size = std::ldexp(norm * (1 + kWrapperMargin), exponent);
-  // Results near underflow are rounded absolutely; the least normal double covers that.
+  // Results near underflow have an absolute rounding error, which the smallest normal double covers.
   return exponent < -1000 ? size + kWorldUnderflow : size;
 }
 
 namespace {
 
-/// B's rotation seen from A, and how far that and A's own are from rotations.
+/// B's rotation relative to A, with its deviation and that of A's own matrix from rotations.
 struct RelativeTurn {
   Eigen::Matrix3d m;
   double defect_a, defect_m;
@@ -229,23 +231,24 @@ struct RelativeTurn {
   RelativeTurn(const Pose& a, const Pose& b)
       : m(a.r.transpose() * b.r), defect_a(rotation_defect(a.r)), defect_m(rotation_defect(m)) {}
 
-  /// Returns false also if something is not a number.
+  /// Returns false for NaN.
   bool is_near_rotation() const { return defect_a <= kNearRotation && defect_m <= kNearRotation; }
 };
 
-/// Sets the kernel up. It compares boxes on A's axes and on B's. Let w_a = r_a x_a + t_a + rounding and w_b
-/// likewise be the world coordinates of a point of each body. If they are equal, then, with m = r_a^T r_b, t
-/// = r_a^T (t_b - t_a) and Euclidean norms,
-/// - on A's axes, where the kernel takes x_a as it is and m x_b + t for x_b, these differ by at most
-///     on_a = D(r_a) |x_a| + |r_a| |rounding|,   D(r) = |r^T r - 1|;
-/// - on B's axes, where it takes x_b as it is and m^T (x_a - t) for x_a, by at most
-///     on_b = D(m) |x_b| + |m| on_a, seen from any point of B (then x_b is a distance of two of its points).
+/// Sets up the kernel, which compares boxes on A's axes and on B's. Let w_a = r_a x_a + t_a + rounding and
+/// w_b = r_b x_b + t_b + rounding be the world coordinates of a point of each body, and m = r_a^T r_b, t =
+/// r_a^T (t_b - t_a), with Euclidean norms. If w_a = w_b:
+/// - On A's axes the kernel uses x_a unchanged and m x_b + t for x_b. These differ by at most
+///       on_a = D(r_a) |x_a| + |r_a| |rounding|,   D(r) = |r^T r - 1|.
+/// - On B's axes it uses x_b unchanged and m^T (x_a - t) for x_a. These differ by at most
+///       on_b = D(m) |x_b| + |m| on_a,
+///   relative to any point of B (x_b is then a distance of two points of B).
 /// |r|^2 <= 1 + D(r). World coordinates are rounded by at most 4 u times the sizes of their terms (u =
-/// 2^-53), m, t and the offsets between nodes by another 16 u of the same sizes. The factor kPoseSafety
-/// covers the change from the largest coordinate to the Euclidean length (sqrt 3), and from a distance to an
-/// extent (2). The bounds hold for any matrix, but for one that is far from a rotation they are so large that
-/// little is culled; kernel_setup.hpp has other bounds for those. Overflow makes bounds infinite or not a
-/// number: then nothing is culled.
+/// 2^-53), and m, t and the offsets between nodes by another 16 u of the same sizes. The factor kPoseSafety
+/// covers the conversion from the largest coordinate to the Euclidean length (sqrt 3), and from a distance to
+/// an extent (2). The bounds hold for any matrix. For one far from a rotation they are so large that little
+/// is culled; kernel_setup.hpp has other bounds for those. Overflow makes bounds infinite or NaN: then
+/// nothing is culled.
 TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pose_a, const ObbTree& b,
                      const Pose& pose_b) {
   TreeKernel k{};
@@ -253,12 +256,12 @@ TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pos
   k.nodes_b = b.nodes().data();
   k.blocks_a = a.blocks().data();
   k.blocks_b = b.blocks().data();
-  // Powers of two at most 1, so scaling to the query's unit is exact.
+  // Powers of two of at most 1, so scaling to the query's unit is exact.
   const double unit = query_unit(a, b);
   k.ratio_a = static_cast<float>(a.unit() / unit);
   k.ratio_b = static_cast<float>(b.unit() / unit);
 
-  // m twice: in double for the offsets of nodes, in float for the rotation of boxes.
+  // m is stored twice: in double for the offsets of nodes, in float for the rotation of boxes.
   const Eigen::Matrix3d& m = turn.m;
   const Eigen::Vector3d t = pose_a.r.transpose() * (pose_b.t - pose_a.t) / unit;
   for (int i = 0; i < 3; ++i) {
@@ -280,7 +283,7 @@ TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pos
   return k;
 }
 
-/// Returns true if floats of the kernel cannot overflow.
+/// Returns true if the kernel's floats cannot overflow.
 bool is_near(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b) {
   return (pose_b.t - pose_a.t).cwiseAbs().maxCoeff() <= kNearEnough * query_unit(a, b);
 }
@@ -300,7 +303,7 @@ TreeKernel set_up_any_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree
 }
 
 void start_at_roots(TreeKernel& k, const ObbTree& a, const ObbTree& b, std::vector<NodePair>& room) {
-  // One allocation for both stacks, kept from query to query.
+  // One allocation for both stacks, reused by later queries.
   const std::size_t each = stack_room(a.height(), b.height());
   if (room.size() < 2 * each) room.resize(2 * each);
   k.stack = room.data();
@@ -309,7 +312,7 @@ void start_at_roots(TreeKernel& k, const ObbTree& a, const ObbTree& b, std::vect
 }
 
 void allow_for_wrappers(TreeKernel& k) {
-  // A larger slack leaves more pairs to the exact tests, and never drops one.
+  // A larger slack leaves more pairs to the exact tests, and never loses one.
   k.slack *= kWrapperSlack;
   if (k.affine == nullptr) return;
   for (AffineTerms::Axes& axes : k.affine->axes) axes.slack *= kWrapperSlack;

@@ -1,5 +1,5 @@
 #pragma once
-// Part of tree_kernel.inl and pair_kernel.inl: eight pairs of triangles, and what float arithmetic can prove
+// Part of tree_kernel.inl and pair_kernel.inl: eight pairs of triangles, and what float arithmetic proves
 // about them.
 
 #include "engine/tree/kernel_boxes.inl"
@@ -12,16 +12,17 @@ struct Corners {
   Float8 x[3][3];  // [corner][axis]
 };
 
-/// Computes (u x v) . d in float arithmetic, lane by lane, with a bound on its error; u and v are differences
-/// of two corners of one body each, d is a difference of corners of both.
+/// Computes (u x v) . d in float arithmetic, lane by lane, with an error bound. u and v are each a difference
+/// of two corners of one body; d is a difference of corners of both.
 ///
-/// Let eu and ev bound the errors of the coordinates of u and v, U and V those coordinates, w = 2^-24. The
-/// normal n = u x v is off by at most 2 (U ev + V eu + eu ev) in each component, and its rounding by 4 w U V.
-/// d is no longer than reach + 2 error, so that the sum of its coordinates is below 1.75 times that: n . d is
-/// off by at most 2 error |n|_1, which leaves room for rounding d and the products with it (4 w reach of
-/// 128), and by 3.5 (reach + 2 error) (U ev + V eu + eu ev + 2 w U V); 4 instead of 3.5 leaves room for the
-/// last term (eu and ev are at least 8 w times a radius, U and V at most 2 radii) and for rounding in this
-/// computation.
+/// Let eu and ev bound the errors of the coordinates of u and v, U and V bound those coordinates, and w =
+/// 2^-24. The normal n = u x v has an error of at most 2 (U ev + V eu + eu ev) in each component, and a
+/// rounding error of 4 w U V. |d| is at most reach + 2 error, so the sum of its coordinates is below 1.75
+/// times that. Hence n . d has two errors:
+/// - 2 error |n|_1, which leaves room for rounding d and its products (4 w reach of 128);
+/// - 3.5 (reach + 2 error) (U ev + V eu + eu ev + 2 w U V). The factor 4 instead of 3.5 leaves room for the
+///   last term (eu and ev are at least 8 w times a radius, U and V at most 2 radii) and for rounding in this
+///   computation.
 struct Normal {
   Float8 n[3], size, bound;
 
@@ -50,21 +51,21 @@ inline void subtract(const Float8* x, const Float8* y, Float8* difference) {
   for (int axis = 0; axis < 3; ++axis) difference[axis] = x[axis] - y[axis];
 }
 
-/// The sides of other simplices' planes on which the corners of eight simplices lie, lane by lane.
+/// The sides of the corners of eight simplices relative to other simplices' planes, lane by lane.
 struct SideLanes {
-  Lanes positive[3], negative[3];  ///< certainly in front, or behind, by more than the margin
-  Lanes certain;                   ///< each corner is certainly in front or behind
-  Lanes parted;                    ///< all are in front, or all behind
+  Lanes positive[3], negative[3];  ///< proven to be in front, or behind, by more than the margin
+  Lanes certain;                   ///< each corner is proven to be in front or behind
+  Lanes parted;                    ///< all are in front, or all behind: the plane separates
 
-  /// Returns the lanes whose corners are not certainly on both sides.
+  /// Returns the lanes whose corners are not proven to be on both sides.
   Lanes one_side() const {
     return static_cast<Lanes>(
         ~((positive[0] | positive[1] | positive[2]) & (negative[0] | negative[1] | negative[2])));
   }
 };
 
-/// Finds the sides of `points` on `planes`. plane_edge_error: Between::edge_error of the body whose planes
-/// they are. kMargin: as for between().
+/// Computes the sides of `points` relative to `planes`. plane_edge_error: Between::edge_error of the body of
+/// the planes. kMargin: as for between().
 template <bool kMargin = false>
 inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, const Between& w,
                                  float plane_edge_error) {
@@ -75,7 +76,7 @@ inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, c
   const Normal n(e1, plane_edge_error, e2, plane_edge_error, w.reach, w.error);
   Float8 bound = n.bound;
   // The plane must separate by more than the margin and by more than the sweep's extent along the normal.
-  if constexpr (kMargin)  // the size is more than the normal's length
+  if constexpr (kMargin)  // the size is at least the normal's length
     bound += splat(w.margin) * n.size +
              abs8(n.n[0] * splat(w.way[0]) + n.n[1] * splat(w.way[1]) + n.n[2] * splat(w.way[2]));
   SideLanes sides;
@@ -84,7 +85,7 @@ inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, c
   for (int corner = 0; corner < 3; ++corner) {
     Float8 d[3];
     subtract(points.x[corner], planes.x[0], d);
-    // Certain only beyond the bound. A NaN compares false on both sides and leaves the corner undecided.
+    // Proven only beyond the bound. NaN compares false on both sides and leaves the corner undecided.
     const Float8 height = n.dot(d);
     sides.positive[corner] = greater(height, bound);
     sides.negative[corner] = greater(-bound, height);
@@ -96,13 +97,14 @@ inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, c
   return sides;
 }
 
-/// Triangles whose corners are rotated so that corner 0, the tip, is alone on its side of the other's plane.
+/// Triangles with their corners rotated so that corner 0, the tip, is alone on its side of the other's plane.
 struct TipFirst {
   Corners t;
-  Lanes positive;  ///< lanes whose tip is on the positive side
+  Lanes positive;  ///< lanes with the tip on the positive side
 
   TipFirst(const Corners& from, const SideLanes& s) {
-    // The two corners on the same side are the ends; the third is the tip. Selection, because lanes differ.
+    // The two corners on the same side are the ends; the third is the tip. By selection, because lanes
+    // differ.
     const Lanes first = equal(s.positive[1], s.positive[2]), second = equal(s.positive[0], s.positive[2]);
     for (int corner = 0; corner < 3; ++corner)
       for (int axis = 0; axis < 3; ++axis)
@@ -118,12 +120,11 @@ struct Verdict {
   Lanes cross, disjoint;
 };
 
-/// Decides whether two triangles overlap on the line in which their planes cross, if each has corners
-/// certainly on both sides of the other's plane. Decides this as engine/exact/plane_side.hpp does, whose
-/// orient3d(tip of a, end of a, tip of b, end of b) is -(edge of a x edge of b) . (tip of b - tip of a). A
-/// sign that is certain here is also that of the world coordinates: a world point in the leaf's frame is an
-/// affine image, which may be mirrored but preserves intersections, and every corner is within `error` of its
-/// own image.
+/// Decides whether two triangles overlap on the line in which their planes cross, if each has corners proven
+/// to be on both sides of the other's plane. Follows engine/exact/plane_side.hpp, whose orient3d(tip of a,
+/// end of a, tip of b, end of b) equals -(edge of a x edge of b) . (tip of b - tip of a). A sign proven here
+/// is also the sign in world coordinates: the map from the world to the leaf's frame is affine, possibly
+/// mirrored, and preserves intersections, and every corner is within `error` of its image.
 inline Verdict overlap(const Corners& a, const SideLanes& a_sides, const Corners& b, const SideLanes& b_sides,
                        const Between& w) {
   // Step 1: rotate both triangles so that their tips come first.
@@ -131,8 +132,8 @@ inline Verdict overlap(const Corners& a, const SideLanes& a_sides, const Corners
   const Lanes alike = equal(ta.positive, tb.positive);
   Float8 between_tips[3], ua[2][3], ub[2][3];
   subtract(tb.t.x[0], ta.t.x[0], between_tips);
-  // Step 2: pair each end of A with the opposite end of B (low with high). Which end of B that is depends on
-  // whether the tips are on like sides.
+  // Step 2: pair each end of A with the opposite end of B (low with high). The choice depends on whether the
+  // tips are on equal sides.
   for (int end = 0; end < 2; ++end) subtract(ta.t.x[1 + end], ta.t.x[0], ua[end]);
   for (int end = 0; end < 2; ++end)
     for (int axis = 0; axis < 3; ++axis)
@@ -145,25 +146,25 @@ inline Verdict overlap(const Corners& a, const SideLanes& a_sides, const Corners
     low[end] = greater(-n.bound, value);
     high[end] = greater(value, n.bound);
   }
-  // Both comparisons in favour: the triangles cross. One against: they are disjoint. Otherwise undecided.
+  // Both comparisons positive: the triangles cross. One negative: they are disjoint. Otherwise undecided.
   const Lanes certain = both(a_sides.certain, b_sides.certain);
   return {both(certain, select(tb.positive, both(high[0], low[1]), both(low[0], high[1]))),
           both(certain, select(tb.positive, either(low[0], high[1]), either(high[0], low[1])))};
 }
 
-/// What is certain about eight pairs of triangles; a bit for each.
+/// The decisions for eight pairs of triangles, as bit masks.
 struct EightCertainties {
   std::uint32_t cross = 0, disjoint = 0, uncertain = 0;
-  std::uint32_t one_side[2] = {};   ///< for A's and B's: the corners that are certain lie on one side
-  std::uint32_t unsure[2][3] = {};  ///< [A's, B's][corner]: the corner may lie in the other's plane
+  std::uint32_t one_side[2] = {};   ///< for A's and B's: all decided corners are on one side
+  std::uint32_t unsure[2][3] = {};  ///< [A's, B's][corner]: the corner may be in the other's plane
 
-  /// Stores what is certain about a pair. Without branches, because that cannot be predicted.
+  /// Writes the decision for one pair. Branch-free, because it is unpredictable.
   void tell(int lane, Candidate& c) const {
     const auto is = [lane](std::uint32_t lanes) { return lanes >> lane & 1; };
     const auto value = [](Certainty certainty) { return static_cast<std::uint32_t>(certainty); };
-    // A triangle whose certain corners are on one side of a plane intersects it in the hull of those that may
-    // lie in it. If these are corners of the other triangle too, that hull is a corner or an edge of it, or
-    // all of it. Report A's corners if A is such a triangle, otherwise B's.
+    // A triangle whose decided corners are on one side of a plane intersects the plane in the convex hull of
+    // its undecided corners. If these are also corners of the other triangle, that hull is a corner or an
+    // edge of it, or the entire triangle. Report A's corners if A is such a triangle, otherwise B's.
     const std::uint32_t of = is(one_side[0]) ^ 1, touch = is(uncertain) & (is(one_side[0]) | is(one_side[1]));
     c.certainty = static_cast<Certainty>(is(cross) * value(Certainty::cross) +
                                          is(disjoint) * value(Certainty::disjoint) +
@@ -177,14 +178,14 @@ struct EightCertainties {
 inline EightCertainties certainties_of(const Corners& a, const SideLanes& a_sides, const Corners& b,
                                        const SideLanes& b_sides, const Between& w, std::uint32_t which) {
   EightCertainties c;
-  // Pairs with all six corners off the other's plane: compare the spans on the common line.
+  // Pairs with all six corners proven off the other's plane: compare the spans on the common line.
   const std::uint32_t certain = bits(both(a_sides.certain, b_sides.certain)) & which;
   if (certain != 0) {
     const Verdict v = overlap(a, a_sides, b, b_sides, w);
     c.cross = bits(v.cross);
     c.disjoint = bits(v.disjoint);
   }
-  // The rest has corners that may lie in a plane. Record which, for a test of shared corners.
+  // The remaining pairs have corners that may be in a plane. Record them for the test of shared corners.
   if (certain == which) return c;
   c.uncertain = which & ~certain;
   const SideLanes* const sides[2] = {&a_sides, &b_sides};
@@ -196,7 +197,7 @@ inline EightCertainties certainties_of(const Corners& a, const SideLanes& a_side
   return c;
 }
 
-/// Picks simplices of a block, lane by lane: lane k gets number which[k].
+/// Gathers simplices of a block, lane by lane: lane k gets simplex which[k].
 inline Corners pick(const Corners& from, const std::uint8_t* which) {
   Corners to;
 #if defined(__AVX2__)

@@ -17,7 +17,7 @@ inline Float8 gap_between(const Float8* centre, const Float8* half, const float*
   return gap;
 }
 
-/// The gaps (see gap_between()) from box i of A to the boxes of B. Set only if two or more pairs may
+/// The gaps (see gap_between()) from box i of A to the boxes of B. Set only if at least two pairs may
 /// intersect.
 struct Gaps {
   Float8 of[8];
@@ -45,9 +45,9 @@ inline Float8 gaps_of(const Row& row, const Boxes& own_b, const Turned& bt) {
 }
 
 /// Finds the pairs of boxes that may intersect: bit 8 i + j of the result is set for box i of A and box j of
-/// B. The separating axes are the six face normals, without the edge directions ("SAT lite", van den Bergen
-/// 1997). Most pairs of nodes are disjoint, and most of these are rejected by the first test. kGaps: also
-/// finds the gaps.
+/// B. The separating axes are the six face normals, without cross products of edges ("SAT lite", van den
+/// Bergen 1997). Most pairs of nodes are disjoint, and the first test rejects most of these. kGaps: also
+/// computes the gaps.
 template <bool kMargin, bool kGaps, class Lie>
 inline std::uint64_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Lie& w,
                                 Gaps* gaps = nullptr) {
@@ -67,8 +67,8 @@ inline std::uint64_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
   const Boxes &own_a = boxes_on_own(a, Side::a, w), &own_b = boxes_on_own(b, Side::b, w);
   const auto in_mask_b = static_cast<unsigned>(__builtin_popcount(mask_b));
   std::uint64_t all = 0;
-  int alone =
-      -1;  // the only row so far, if it has one pair: its gap is not needed unless there is another row
+  // The only row so far, if it has one pair: its gap is needed only if there is another row
+  int alone = -1;
   for (std::uint32_t todo = mask_a; todo != 0; todo &= todo - 1) {
     const int i = __builtin_ctz(todo);
     const Row row = row_of(own_a, at, i);
@@ -79,7 +79,7 @@ inline std::uint64_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
     k.box_tests += in_mask_b;
     if constexpr (kGaps) {
       if (mask == 0) continue;
-      // A single pair needs no gap, because there is nothing to sort. Its row is computed once a second pair
+      // A single pair needs no gap, because there is nothing to sort. Its row is computed when a second pair
       // appears.
       if (all == 0 && (mask & (mask - 1)) == 0) {
         alone = i;
@@ -94,11 +94,11 @@ inline std::uint64_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
   return all;
 }
 
-/// Writes the corners of two leaves' simplices to `a` and `b`, in the frame of A's leaf and query units, and
-/// returns the bounds on their errors: those of the two nodes.
+/// Writes the corners of two leaves' simplices to `a` and `b`, in the frame of A's leaf and query units.
+/// Returns their error bounds: those of the two nodes.
 inline const Between& corners_of(const TreeKernel& k, const TreeNode& na, const TreeNode& nb,
                                  const Between& w, Corners& a, Corners& b) {
-  // A's corners are scaled only: A's leaf frame is the common frame. B's are rotated and translated to it.
+  // A's corners are only scaled: A's leaf frame is the common frame. B's are rotated and translated to it.
   const LeafBlock& block_a = k.blocks_a[na.first];
   const LeafBlock& block_b = k.blocks_b[nb.first];
   for (int corner = 0; corner < 3; ++corner) {
@@ -114,7 +114,7 @@ inline const Between& corners_of(const TreeKernel& k, const TreeNode& na, const 
   return w;
 }
 
-/// Fetches all cache lines of a node.
+/// Prefetches all cache lines of a node.
 inline void prefetch(const TreeNode& n) {
   // A node has 192 bytes, three cache lines.
   constexpr std::size_t kLine = 64;
@@ -129,8 +129,8 @@ inline void push(TreeKernel& k, std::uint32_t a, std::uint32_t b) {
   k.stack[k.stack_size++] = {a, b};
 }
 
-/// Sorts the pairs that were pushed last so that the one with the least gap is on top of the stack. If there
-/// are many, moves only that one.
+/// Moves the pair with the smallest gap among the last `size` pairs to the top of the stack. Sorts all of
+/// them if there are few.
 inline void nearest_last(NodePair* pairs, float* gaps, std::uint32_t size) {
   constexpr std::uint32_t kFew = 8;
   // Insertion sort by descending gap, for a short list.
@@ -148,7 +148,7 @@ inline void nearest_last(NodePair* pairs, float* gaps, std::uint32_t size) {
     }
     return;
   }
-  // Many pairs: one linear pass finds the nearest, in place of a sort.
+  // Many pairs: one linear pass finds the closest, instead of a sort.
   std::uint32_t nearest = 0;
   for (std::uint32_t i = 1; i < size; ++i)
     if (gaps[i] < gaps[nearest]) nearest = i;
@@ -157,8 +157,8 @@ inline void nearest_last(NodePair* pairs, float* gaps, std::uint32_t size) {
   pairs[nearest] = last;
 }
 
-/// Descends both nodes. kNearest: visits the pair with the deepest overlap of boxes first. If one pair of
-/// simplices is enough, it is likely to be found there.
+/// Descends both nodes. kNearest: visits the pair with the deepest overlap of boxes first, where an
+/// intersecting pair of simplices is most likely.
 template <class Walk, bool kNearest>
 inline void descend_both(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   // All 64 combinations of children are decided before any is pushed.
@@ -174,7 +174,7 @@ inline void descend_both(TreeKernel& k, const TreeNode& na, const TreeNode& nb) 
   if constexpr (kNearest) nearest_last(k.stack + bottom, gap_of, k.stack_size - bottom);
 }
 
-/// Descends A's node only: its boxes against the node box of B, in both frames.
+/// Descends only A's node: its boxes against the node box of B, in both frames.
 template <class Walk>
 inline void descend_a(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t b_index) {
   const Boxes a = decode(na, k.ratio_a);
@@ -191,7 +191,7 @@ inline void descend_a(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std
     push(k, na.first + static_cast<std::uint32_t>(__builtin_ctz(c)), b_index);
 }
 
-/// Descends B's node only.
+/// Descends only B's node.
 template <class Walk>
 inline void descend_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t a_index) {
   const Whole a = whole_of(na, k.ratio_a);
@@ -207,7 +207,7 @@ inline void descend_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std
     push(k, a_index, nb.first + static_cast<std::uint32_t>(__builtin_ctz(c)));
 }
 
-/// Pairs of simplices of two blocks, by their numbers there. There is room for eight more beyond the last.
+/// Pairs of simplices of two blocks, by their indices there. Has space for eight more than 64.
 struct PairList {
   std::uint8_t a[72], b[72];
   std::uint32_t size = 0;
@@ -225,7 +225,7 @@ inline void list_pairs(std::uint64_t pairs, PairList& list) {
   __builtin_memset(list.b + list.size, 0, 8);
 }
 
-/// Records which pairs of eight in a list are separated by a plane of one of their simplices.
+/// Records the pairs of a batch that are separated by a plane of one of their simplices.
 [[gnu::noinline, gnu::cold]] inline void note_parted(TreeKernel& k, const LeafBlock& a, const LeafBlock& b,
                                                      const PairList& list, std::uint32_t begin,
                                                      std::uint32_t by_a, std::uint32_t by_b) {
@@ -243,7 +243,7 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   // Pass 1: boxes of the simplices.
   const std::uint64_t pairs = pair_masks<kMargin, false>(k, na, nb, w);
   if (pairs == 0) return;
-  // Pass 2: list the surviving pairs, so that the lanes of the next passes are full.
+  // Pass 2: list the remaining pairs, so that the lanes of the next passes are full.
   const LeafBlock& block_a = k.blocks_a[na.first];
   const LeafBlock& block_b = k.blocks_b[nb.first];
   PairList list;
@@ -252,7 +252,7 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   Corners a, b;
   const Between& errors = corners_of(k, na, nb, w, a, b);
   for (std::uint32_t begin = 0; begin < list.size; begin += 8) {
-    // Pass 3: planes. A pair is separated if all corners of one lie on one side of the other's plane.
+    // Pass 3: planes. A pair is separated if all corners of one are on one side of the other's plane.
     const Corners some_a = pick(a, list.a + begin), some_b = pick(b, list.b + begin);
     const SideLanes b_sides = sides_of_planes<kMargin>(some_a, some_b, errors, errors.edge_error[0]);
     const SideLanes a_sides = sides_of_planes<kMargin>(some_b, some_a, errors, errors.edge_error[1]);
@@ -261,7 +261,7 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
     const std::uint32_t left = ~bits(either(a_sides.parted, b_sides.parted)) & here;
     if (k.parted != nullptr && left != here) [[unlikely]]
       note_parted(k, block_a, block_b, list, begin, bits(b_sides.parted) & here, bits(a_sides.parted) & here);
-    // Pass 4: decide what float arithmetic can prove about the rest. The exact tests get what is undecided.
+    // Pass 4: decide the remaining pairs as far as float arithmetic can. Exact tests get the undecided ones.
     if (left == 0) continue;
     EightCertainties certainties;
     if constexpr (!kMargin) certainties = certainties_of(some_a, a_sides, some_b, b_sides, errors, left);
@@ -275,7 +275,7 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   }
 }
 
-/// Compares the boxes in two nodes. Pushes the pairs of their children that may intersect.
+/// Compares the boxes in two nodes. Pushes the pairs of children that may intersect.
 template <class Walk, bool kNearest>
 inline void open(TreeKernel& k, const NodePair& pair) {
   const TreeNode& a = k.nodes_a[pair.a];
@@ -297,8 +297,8 @@ inline void open(TreeKernel& k, const NodePair& pair) {
     descend_both<Walk, kNearest>(k, a, b);
 }
 
-/// Returns true if `out` has room for all 64 pairs of two leaves, and fewer than `end` pairs of nodes have
-/// been visited.
+/// Returns true if `out` has space for all 64 pairs of two leaves, and fewer than `end` pairs of nodes were
+/// visited.
 inline bool may_go_on(const TreeKernel& k, std::uint64_t end) {
   return k.out_capacity - k.out_size >= 64 && k.node_pairs < end;
 }
@@ -312,12 +312,12 @@ void run(TreeKernel& k, std::uint64_t end) {
   }
 }
 
-/// Records the pairs of nodes whose node boxes are disjoint.
+/// Records the pairs of nodes that are rejected by their node boxes.
 [[gnu::noinline]] inline void note_parted_nodes(TreeKernel& k, const NodePair* pairs, std::uint32_t apart) {
   for (; apart != 0; apart &= apart - 1) k.parted_nodes[k.parted_nodes_size++] = pairs[__builtin_ctz(apart)];
 }
 
-/// Compares the node boxes of up to 8 pairs and moves those that may intersect to `tested`.
+/// Tests the node boxes of up to 8 pairs and moves those that may intersect to `tested`.
 inline void test_wholes(TreeKernel& k, const NodePair* pairs, std::uint32_t count) {
   const std::uint32_t apart = pairs_apart(k, pairs, count);
   const auto parted = static_cast<unsigned>(__builtin_popcount(apart));
@@ -329,8 +329,8 @@ inline void test_wholes(TreeKernel& k, const NodePair* pairs, std::uint32_t coun
     k.tested[k.tested_size++] = pairs[__builtin_ctz(c)];
 }
 
-/// Does so for all complete batches of eight pairs on the stack. If no tested pair is left to expand, also
-/// tests an incomplete batch, or the last pairs below `base`.
+/// Tests all complete batches of eight pairs on the stack. If no tested pair is left to expand, also tests an
+/// incomplete batch, or the last pairs below `base`.
 inline void test_stack(TreeKernel& k) {
   // Complete batches first: SIMD lanes are full.
   const std::uint32_t came = k.stack_size - k.base, eights = came - came % 8;
@@ -343,7 +343,7 @@ inline void test_stack(TreeKernel& k) {
     k.stack_size = k.base + left;
     return;
   }
-  // Nothing new: take up to eight of the pairs that the search for the nearest boxes left.
+  // No new pairs: take up to eight of those left by the search for the closest boxes.
   if (came == 0) {
     left = k.base < 8 ? k.base : 8;
     k.base -= left;
@@ -352,35 +352,35 @@ inline void test_stack(TreeKernel& k) {
   if (left != 0) test_wholes(k, k.stack + (k.base + eights), left);
 }
 
-/// Does what run() does, but tests node boxes before the boxes inside: half of the pairs end there, for a
-/// fraction of the work if eight are compared at a time. To fill batches of eight, pairs wait for others.
+/// As run(), but tests node boxes before the boxes inside. This rejects half of the pairs, at a fraction of
+/// the cost if eight are tested at a time. Pairs wait until a batch of eight is complete.
 template <class Walk>
 void run_tested(TreeKernel& k, std::uint64_t end) {
   while (k.stack_size + k.tested_size != 0 && may_go_on(k, end)) {
-    // Test when a batch is complete or nothing else can be done. Otherwise expand a tested pair, which may
+    // Test if a batch is complete or there is nothing else to do. Otherwise expand a tested pair, which may
     // push more.
     if (k.stack_size - k.base >= 8 || k.tested_size == 0) {
       test_stack(k);
     } else {
       const NodePair pair = k.tested[--k.tested_size];
-      ++k.box_tests;  // of the whole nodes
+      ++k.box_tests;  // for the node boxes
       open<Walk, false>(k, pair);
     }
   }
 }
 
-/// Number of pairs of nodes in which the nearest boxes are visited first. Bodies that intersect mostly show
-/// it within these, and for disjoint bodies any order is as good.
+/// Number of pairs of nodes for which the closest boxes are visited first. If bodies intersect, an
+/// intersecting pair is mostly found within these; for disjoint bodies the order is irrelevant.
 constexpr std::uint64_t kNearestPairs = 8;
 
-/// Begins with the nearest boxes, where one pair of simplices is enough.
+/// Starts with the closest boxes, if one pair of simplices is enough.
 template <class Walk>
 void run_nearest(TreeKernel& k) {
   // A resumed traversal has done this already.
   if (k.node_pairs >= kNearestPairs) return;
   const std::uint64_t most = k.most_node_pairs;
   run<Walk, true>(k, kNearestPairs < most ? kNearestPairs : most);
-  // The pairs left so far stay at the bottom of the stack, below `base`; run_tested() takes them last.
+  // The remaining pairs stay at the bottom of the stack, below `base`; run_tested() processes them last.
   k.base = k.stack_size;
 }
 

@@ -7,27 +7,27 @@
 namespace lrb {
 namespace {
 
-/// Whole nodes, in query units: one in each lane of V, which is Float8 or float.
+/// Node boxes in query units: one in each lane of V, which is Float8 or float.
 template <class V>
 struct WholeNodes {
   V frame[3][3], centre[3], half[3];
 };
 
-/// Where the nodes of pairs are: their origins' difference, seen from A, on A's axes.
+/// The differences of the nodes' origins, relative to A, on A's axes.
 template <class V>
 struct Offsets {
   V of[3];
 };
 
-/// Up to this number of pairs are compared one by one. With more, eight at a time are faster, except on
-/// processors with four lanes only.
+/// Up to this number of pairs are compared one by one. For more, eight at a time are faster, except on
+/// processors with only four lanes.
 #if defined(__AVX2__)
 constexpr std::uint32_t kFewPairs = 2;
 #else
 constexpr std::uint32_t kFewPairs = 8;
 #endif
 
-/// A node's frame, base and scale are read as these many numbers.
+/// Number of floats in a node's frame, base and scale.
 constexpr int kWholeNumbers = 15;
 
 /// Computes node boxes from those numbers, in query units.
@@ -42,12 +42,12 @@ inline WholeNodes<V> whole_nodes(const V* numbers, float ratio) {
   return out;
 }
 
-/// Reads eight nodes. nodes: where each of them is.
+/// Reads eight nodes. nodes: pointers to them.
 inline WholeNodes<Float8> read_wholes(const TreeNode* const* nodes, float ratio, Float8) {
   static_assert(__builtin_offsetof(TreeNode, scale) == 12 * sizeof(float));
-  // Each node's first 16 floats are four rows of four; transposing them puts one number of all eight nodes in
-  // a vector.
-  Float8 numbers[16];  // the last one is what follows
+  // The first 16 floats of each node are four rows of four. Transposing them gathers one number of all eight
+  // nodes in a vector.
+  Float8 numbers[16];  // the last one is unused
   for (int part = 0; part < 4; ++part) {
     Float4 row[8];
     for (int k = 0; k < 8; ++k)
@@ -92,29 +92,32 @@ inline std::uint32_t is_greater(float x, float y) {
   return x > y;
 }
 
-/// Returns a bit for each of the pairs of nodes, one in each lane of V, whose boxes are apart: on an axis of
-/// either, or along a direction across an axis of each. The answer for a pair does not depend on V nor on the
-/// other lanes. NaN (an overflow) counts as "not apart".
+/// Returns a bit for each pair of nodes, one in each lane of V, whose boxes are disjoint: separated along a
+/// face normal of either, or along a cross product of an axis of each. The result for a pair does not depend
+/// on V or on the other lanes. NaN (an overflow) counts as not disjoint.
 ///
-/// A point in common is x_a in A's node and x_b in B's, and on each axis of A's node x_a and r x_b + offset
-/// differ by at most slack + 48 u `size`, u = 2^-24 (see kKernelRounding; all that lies in a node lies in its
-/// box). Errors on B's axes are larger: r is off by 16 u in each entry, and so r^T r from the identity by
-/// 112 u at most, together with the axes of both nodes; turning what is off on A's axes back adds 84 u,
-/// rounding 10 u. kWholeRounding covers all of it, and the slack that m is no rotation.
+/// Face normals. A common point is x_a in A's node and x_b in B's. On each axis of A's node x_a and r x_b +
+/// offset differ by at most slack + 48 u `size`, u = 2^-24 (see kKernelRounding; everything in a node is in
+/// its box). Errors on B's axes are larger: each entry of r has an error of 16 u, so r^T r deviates from the
+/// identity by at most 112 u, including the axes of both nodes. Rotating the error on A's axes back adds 84
+/// u, rounding 10 u. kWholeRounding covers all of it, and the slack covers the deviation of m from a
+/// rotation.
 ///
-/// Across the i-th axis of A's node and the m-th of B's the direction is e_i x r_m, whose entries are those
-/// of r; its length is at most 1, the sum of its entries 1.5. So where the point is makes 1.5 `error`. Along
-/// B's other axes the direction has the entries of r on e_i, as if r were a rotation: that is off by 150 u at
-/// most, less than `error`. The rest of four times `error` is for rounding. If r is no rotation, with r^T r
-/// off the identity by D, its cofactors are off its entries by 2 D at most, which makes 6 D times B's extent;
-/// the slack in four times `error` has 16 of that.
+/// Cross products. For the i-th axis of A's node and the m-th of B's the direction is e_i x r_m, whose
+/// entries are entries of r; its length is at most 1, the sum of its entries 1.5. The error of the common
+/// point thus contributes 1.5 `error`. Along B's other axes the direction has the entries of r on e_i, as if
+/// r were a rotation, with an error of at most 150 u, less than `error`. The rest of four times `error` is
+/// for rounding. If r is not a rotation, and r^T r deviates from the identity by D, its cofactors deviate
+/// from its entries by at most 2 D, which contributes 6 D times B's extent; the slack in four times `error`
+/// contains 16 of that.
 template <class V>
 inline std::uint32_t wholes_apart(const TreeKernel& k, const TreeNode* const* nodes_a,
                                   const TreeNode* const* nodes_b) {
-  // Step 1: B's axes and centre relative to A, and the bound on the error.
+  // Step 1: B's axes and centre relative to A, and the error bound.
   const WholeNodes<V> a = read_wholes(nodes_a, k.ratio_a, V{}), b = read_wholes(nodes_b, k.ratio_b, V{});
   const Offsets<V> offset = offsets_between(k, nodes_a, nodes_b, V{});
-  V turned[3][3], r[3][3], abs_r[3][3], c[3];  // B's axes on A's body's; on A's node's; B's middle from A's
+  V turned[3][3], r[3][3], abs_r[3][3], c[3];  // B's axes on A's body's axes; on A's node's axes; B's centre
+                                               // relative to A's
   V size{};
   for (int i = 0; i < 3; ++i) {
     const float* m = k.m_rows[i];
@@ -143,10 +146,10 @@ inline std::uint32_t wholes_apart(const TreeKernel& k, const TreeNode* const* no
     apart |= is_greater(
         absolute(r[0][j] * c[0] + r[1][j] * c[1] + r[2][j] * c[2]),
         b.half[j] + error + (abs_r[0][j] * a.half[0] + abs_r[1][j] * a.half[1] + abs_r[2][j] * a.half[2]));
-  // A single pair can stop here. Of eight pairs, the lanes that are left need the other axes.
+  // A single pair can stop here. For eight pairs, the remaining lanes need the other axes.
   if (sizeof(V) == sizeof(float) && apart != 0) return apart;
   // Step 4: the nine cross products of an axis of A and one of B. Nearly parallel axes give a direction near
-  // 0, and then the error term keeps the test from separating.
+  // 0, for which the error term prevents a separation.
   const V error_across = 4 * error;
   for (int i = 0; i < 3; ++i) {
     const int p = (i + 1) % 3, q = (i + 2) % 3;
@@ -160,7 +163,7 @@ inline std::uint32_t wholes_apart(const TreeKernel& k, const TreeNode* const* no
   return apart;
 }
 
-/// Returns a bit for each pair of nodes in a list of at most eight whose boxes are disjoint.
+/// Returns a bit for each pair of nodes, of at most eight, whose boxes are disjoint.
 inline std::uint32_t pairs_apart(const TreeKernel& k, const NodePair* pairs, std::uint32_t count) {
   // Unused lanes repeat the first pair, so that they read valid memory.
   const TreeNode *a[8], *b[8];

@@ -1,9 +1,9 @@
-// Builds the 8-wide tree of oriented boxes (principal axes: Gottschalk, Lin and Manocha 1996; quantized child
+// Construction of the 8-wide OBB tree (principal axes: Gottschalk, Lin and Manocha 1996; quantized child
 // boxes: Ylitie, Karras and Laine 2017).
 // 1. Choose the unit, a power of two, so that coordinates are at most about 1.
 // 2. Build a binary tree, and collapse it to eight children per node (binary_tree.hpp).
 // 3. Lay out nodes and blocks depth first.
-// 4. Fill each node by itself, in parallel: fit a frame, compute the boxes in it, quantize them outwards.
+// 4. Fill the nodes independently, in parallel: fit a frame, compute the boxes in it, quantize them outwards.
 
 #include <algorithm>
 #include <cmath>
@@ -23,15 +23,15 @@ namespace {
 using Box = Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-/// Splits of trees of bodies. More tries save nothing, fewer cost 2 % of a query (docs/measurements.md).
+/// Splits of trees of bodies. More tries gain nothing, fewer cost 2 % of a query (docs/measurements.md).
 constexpr Splits kBodySplits{.fitted = 2048, .effort = {.principal = 1, .tried = 3}, .all_cuts = false};
-/// Splits of trees of wrappers, whose faces are few and long: these are worth more tries.
+/// Splits of trees of wrappers, whose faces are few and long: more tries are worthwhile.
 constexpr Splits kWrapperSplits{.fitted = 512, .effort = {.principal = 3, .tried = 32}, .all_cuts = true};
 
 }  // namespace
 
-/// Collapses the binary tree to eight children per node and quantizes the boxes. First decides where
-/// everything goes, then fills in each node by itself.
+/// Collapses the binary tree to eight children per node and quantizes the boxes. Lays out all nodes first,
+/// then fills them independently.
 class ObbTreeBuilder {
  public:
   /// Builds an empty tree over the listed simplices.
@@ -53,7 +53,7 @@ class ObbTreeBuilder {
     binary_of_.resize(1);
     lay_out(Collapse(binary_), 0, 0, 1);
     tree_.blocks_.resize(block_count_);
-    // Nodes per task: a few of them hold enough simplices to be worth sharing.
+    // Nodes per task: enough simplices to be worth distributing.
     constexpr std::size_t kShare = 32;
     workers.for_each((tree_.nodes_.size() + kShare - 1) / kShare, [&](std::size_t i, unsigned) {
       const std::size_t end = std::min(tree_.nodes_.size(), (i + 1) * kShare);
@@ -61,7 +61,7 @@ class ObbTreeBuilder {
     });
   }
 
-  /// Decides where children and blocks go: depth first.
+  /// Assigns the indices of children and blocks, depth first.
   void lay_out(const Collapse& collapse, std::uint32_t wide, std::uint32_t binary, std::uint32_t height) {
     tree_.height_ = std::max(tree_.height_, height);
     binary_of_[wide] = binary;
@@ -70,7 +70,7 @@ class ObbTreeBuilder {
       tree_.nodes_[wide].first = block_count_++;
       return;
     }
-    // Children are contiguous. Their places are reserved before any of their subtrees.
+    // Children are contiguous: their indices are reserved before those of any subtree.
     const std::vector<std::uint32_t> children = collapse.children(binary);
     const auto first = static_cast<std::uint32_t>(tree_.nodes_.size());
     tree_.nodes_.resize(first + children.size());
@@ -95,7 +95,7 @@ class ObbTreeBuilder {
         boxes.push_back(box_in_frame(soup_, soup_.listed(child.begin, child.end), frame));
       }
     }
-    // quantize() overwrites the whole node.
+    // quantize() overwrites the entire node.
     quantize(node, frame, boxes);
     node.first = first;
     node.is_leaf = b.is_leaf();
@@ -124,13 +124,14 @@ class ObbTreeBuilder {
     node = {};
     Box all;
     for (const Box& b : boxes) all.extend(b);
-    // Covers the rounding in the projection above, and leaves room for the float arithmetic below.
+    // Covers the rounding of the projection above, with room for the float arithmetic below.
     const double margin =
         kTreeRounding * (all.min().cwiseAbs().cwiseMax(all.max().cwiseAbs()).maxCoeff()) + kTreeRoundingUnits;
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) node.frame[i][j] = static_cast<float>(frame.axes(i, j));
       node.origin[i] = frame.origin[i];
-      // The range is widened by twice the margin: the boxes grow by one, and the codes must still cover them.
+      // The range is widened by twice the margin: boxes are enlarged by one margin, and the codes must still
+      // cover them.
       const double lo = all.min()[i] - 2 * margin, hi = all.max()[i] + 2 * margin;
       node.base[i] = std::nextafter(static_cast<float>(lo), -INFINITY);
       node.scale[i] = std::nextafter(static_cast<float>((hi - node.base[i]) / kQuantizedMost), INFINITY);
@@ -154,7 +155,7 @@ class ObbTreeBuilder {
   }
   static std::uint8_t quantize_down(const TreeNode& node, int axis, double x) {
     // Start one code too high and step down until the decoded value is at or below x. The float decoding
-    // itself decides, so no estimate of its rounding is needed here.
+    // itself decides, so its rounding need not be estimated.
     int q = std::clamp(static_cast<int>((x - node.base[axis]) / node.scale[axis]) + 1, 0, kQuantizedMost);
     while (q > 0 && decode(node, axis, q) > x) --q;
     return static_cast<std::uint8_t>(q);
@@ -169,7 +170,7 @@ class ObbTreeBuilder {
   ObbTree& tree_;
   Soup& soup_;
   const std::vector<BinaryNode> binary_;
-  std::vector<std::uint32_t> binary_of_;  ///< (|nodes|) the binary tree's node for each wide one
+  std::vector<std::uint32_t> binary_of_;  ///< (|nodes|) node of the binary tree for each wide one
   std::uint32_t block_count_ = 0;
 };
 
@@ -180,7 +181,7 @@ void ObbTree::measure(const SimplexView& body, std::span<const SimplexId> simpli
     for (int k = 0; k < body.dim; ++k) extent_ = std::max(extent_, body.vertices[v[k]].cwiseAbs().maxCoeff());
   }
   if (simplices.empty()) return;
-  // The least power of two above the extent, kept inside the range of normal doubles.
+  // The smallest power of two above the extent, clamped to the range of normal doubles.
   int exponent = 0;
   std::frexp(extent_, &exponent);
   unit_ = std::ldexp(1.0, std::clamp(exponent, -1022, 1023));
@@ -191,16 +192,16 @@ ObbTree::ObbTree(const SimplexView& body, unsigned threads) {
 }
 
 ObbTree::ObbTree(const SimplexView& body, std::span<const SimplexId> simplices, unsigned threads) {
-  constexpr std::size_t kFew = 8192;  // sorting them takes a hundredth of a second
+  constexpr std::size_t kFew = 8192;  // sorting them takes 10 ms
   ObbTreeBuilder::build(*this, body, simplices, simplices.size() <= kFew ? kWrapperSplits : kBodySplits,
                         threads);
 }
 
-// Checks a tree that comes from a file.
-// 1. check_structure(): every node but the root has exactly one parent, which comes before it. The nodes then
-// form a tree and every traversal ends. Every simplex is in exactly one leaf.
+// Checks of a tree loaded from a file.
+// 1. check_structure(): every node except the root has exactly one parent, which comes before it. The nodes
+//    then form a tree and every traversal terminates. Every simplex is in exactly one leaf.
 // 2. bounds_hold(): each corner is in the box of its simplex and in those of all ancestors, and the leaf
-// has a correct copy of it. This is what the query's completeness rests on.
+//    contains a correct copy of it. The completeness of queries depends on this.
 
 namespace {
 
@@ -254,7 +255,7 @@ void check_structure(const std::vector<TreeNode>& nodes, const std::vector<LeafB
       node_seen[node.first + k] = true;
     }
   }
-  // Nothing may be left over: no simplex and no block.
+  // Every simplex and every block must have been reached.
   if (std::find(missing.begin(), missing.end(), true) != missing.end() ||
       std::find(block_seen.begin(), block_seen.end(), false) != block_seen.end())
     refuse(0, "does not hold all faces");
@@ -280,11 +281,11 @@ bool holds(const TreeNode& node, std::uint32_t k, const Eigen::Vector3d& x) {
   return at.norm() <= node.radius;
 }
 
-/// Returns true if a leaf's copy of a corner is the corner, to the rounding that the query allows for.
+/// Returns true if a leaf's copy of a corner equals the corner, up to the rounding that the query allows for.
 bool is_copy(const TreeNode& leaf, const LeafBlock& block, std::uint32_t k, int corner,
              const Eigen::Vector3d& x) {
   const Eigen::Vector3d at = in_frame(leaf, x);
-  // The kernel's error bounds assume no larger error in the copies.
+  // The kernel's error bounds assume at most this error in the copies.
   const double rounding = kTreeRounding * leaf.radius + kTreeRoundingUnits;
   for (int i = 0; i < 3; ++i)
     if (!(std::abs(at[i] - static_cast<double>(block.corner[corner][i][k])) <= rounding)) return false;
@@ -308,7 +309,7 @@ ObbTree::ObbTree(const SimplexView& body, std::span<const SimplexId> simplices, 
     : nodes_(std::move(nodes)), blocks_(std::move(blocks)) {
   measure(body, simplices);
   check_structure(nodes_, blocks_, simplices);
-  // Heights from the root downwards, in one pass, because parents come first.
+  // Depths from the root downwards, in one pass, because parents come first.
   std::vector<std::uint32_t> height(nodes_.size(), 1);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     height_ = std::max(height_, height[i]);
@@ -320,7 +321,7 @@ ObbTree::ObbTree(const SimplexView& body, std::span<const SimplexId> simplices, 
 bool ObbTree::bounds_hold(const SimplexView& body) const {
   int exponent = 0;
   std::frexp(unit_, &exponent);
-  // Record each node's parent and its place there on the way down.
+  // Record each node's parent and its index there on the way down.
   std::vector<std::uint32_t> parent(nodes_.size(), kNull), place(nodes_.size(), 0);
   for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
     const TreeNode& node = nodes_[i];
@@ -337,7 +338,7 @@ bool ObbTree::bounds_hold(const SimplexView& body) const {
       body.simplex(blocks_[node.first].simplex[k], v);
       for (int corner = 0; corner < body.dim; ++corner) {
         const Eigen::Vector3d& world = body.vertices[v[corner]];
-        // The same scaling as in Soup: a power of two, exact but for underflow.
+        // The same scaling as in Soup: a power of two, exact except for underflow.
         const Eigen::Vector3d x(std::ldexp(world.x(), 1 - exponent), std::ldexp(world.y(), 1 - exponent),
                                 std::ldexp(world.z(), 1 - exponent));
         if (!holds(node, k, x) || !is_copy(node, blocks_[node.first], k, corner, x)) return false;

@@ -1,6 +1,6 @@
 #pragma once
-/// The pair kernel: tells for given pairs of triangles, eight at a time, in float arithmetic whose every
-/// error is bounded, which of them certainly cross or are disjoint, and how far apart they certainly are.
+/// The pair kernel: for given pairs of triangles, eight at a time, decides in float arithmetic with bounded
+/// errors whether they cross or are disjoint, and computes lower bounds of their distance.
 ///
 /// Contains only plain structures: this header is compiled once per instruction set (cmake/kernels.cmake).
 
@@ -9,8 +9,8 @@
 namespace lrb {
 
 /// A simplex in query units: its first corner, in a frame with the axes of its body, and the edges from there
-/// to the other corners. Where simplices are small, so are these differences and their errors. A segment
-/// repeats its second corner.
+/// to the other corners. For small simplices these differences and their errors are small. A segment repeats
+/// its second corner.
 struct alignas(16) CachedSimplex {
   float corner[3], edge[2][3];
   float longest;  ///< length of the longest edge, rounded up
@@ -22,7 +22,7 @@ struct CachedPair {
   std::uint32_t a, b;
 };
 
-/// One bit for each of eight pairs. Where neither bit is set nothing is certain.
+/// One bit for each of eight pairs; undecided if neither is set.
 struct PairVerdicts {
   std::uint8_t cross, disjoint;
 };
@@ -32,23 +32,22 @@ struct PairKernel {
   const CachedPair* pairs;  ///< (8 block_count)
   std::uint32_t block_count;
   float r[3][3], t[3];       ///< A's frame <- B's frame: r x + t
-  float radius_a, radius_b;  ///< radii of balls about the frames' origins that hold all first corners
+  float radius_a, radius_b;  ///< radii of balls about the frames' origins that contain all first corners
   float slack, m_size;       ///< as in TreeKernel
 
-  PairVerdicts* verdicts;  ///< (block_count), or null if not asked for
+  PairVerdicts* verdicts;  ///< (block_count), or null if not requested
 
-  /// (8 block_count), or null if not asked for. A pair meets only after a motion from `from` to `to`. If
-  /// `is_swept`, the motion is known to displace the points of B, seen from A's frame, by s times (sweep x +
-  /// sweep_t), s from -1 to 1, and then by no more than `margin`: the span is one of s. Otherwise the motion
-  /// may be any, and the span is one of its length, query units.
+  /// (8 block_count), or null if not requested. Each pair can intersect only after a motion in [from, to]. If
+  /// `is_swept`, the motion displaces the points of B, relative to A's frame, by s times (sweep x + sweep_t),
+  /// s in [-1, 1], and then by at most `margin`: the interval is one of s. Otherwise the motion is arbitrary,
+  /// and the interval is one of its length, query units.
   float *from, *to;
   bool is_swept;
   float sweep[3][3], sweep_t[3];  ///< rows; on A's axes <- in B's frame
   float sweep_turn, margin;
 };
 
-/// Runs the kernel with the instruction set that run_tree_kernel() chooses; the outcome is the same with
-/// each.
+/// Runs the kernel with the instruction set of run_tree_kernel(). The result is the same for each.
 void run_pair_kernel(const PairKernel& k);
 
 }  // namespace lrb

@@ -1,5 +1,5 @@
 // Compiled once per instruction set by cmake/kernels.cmake, which defines LRB_PAIR_KERNEL_NAME. Separate from
-// the tree kernel, because that one's speed depends on what the compiler inlines into its one loop.
+// the tree kernel, because the speed of that kernel depends on inlining into its one loop.
 
 #include "engine/tree/kernel_triangles.inl"
 #include "engine/tree/pair_kernel.hpp"
@@ -33,14 +33,14 @@ struct EightSimplices {
   }
 
  private:
-  /// Returns four numbers of a simplex. By bytes, because they belong to more than one of its arrays.
+  /// Returns four numbers of a simplex. Bytewise, because they belong to more than one of its arrays.
   static const char* part_of(const CachedSimplex& s, int part) {
     static_assert(sizeof s == 3 * sizeof(Float4));
     return reinterpret_cast<const char*>(&s) + static_cast<std::size_t>(part) * sizeof(Float4);
   }
 };
 
-/// Eight pairs, each seen from the first corner of its simplex of A.
+/// Eight pairs, each relative to the first corner of its simplex of A.
 struct EightPairs {
   Corners a, b;
   Float8 corner_b[3];  ///< the first corner, in B's frame
@@ -48,7 +48,7 @@ struct EightPairs {
   Between w;
 
   EightPairs(const PairKernel& k, const CachedPair* pairs) {
-    // Relative to A's first corner, coordinates and errors are small if the simplices are small and near.
+    // Relative to A's first corner, coordinates and errors are small if the simplices are small and close.
     const EightSimplices of_a(k.a, &pairs->a), of_b(k.b, &pairs->b);
     const float edge_a = largest_of(of_a.longest);
     edge_b = largest_of(of_b.longest);
@@ -72,7 +72,7 @@ struct EightPairs {
     const float error = k.slack + kKernelRounding * whole;
     const float reach = (largest_of(between) + edge_a + k.m_size * edge_b + 3 * error) * kFloatUp;
     set_errors(w, k.slack, k.m_size, edge_a, edge_b, reach, whole);
-    w.error += kOwnEdgeRounding * edge_a;  // corners of A, too, are computed from edges
+    w.error += kOwnEdgeRounding * edge_a;  // corners of A are computed from edges as well
   }
 };
 
@@ -85,13 +85,13 @@ struct Shadow {
 
 /// A direction, of any length, and the gaps of eight pairs along it.
 struct Across {
-  /// How far one simplex lies above the other at least; negative where they overlap.
+  /// Lower bounds on the height of one simplex above the other; negative if they overlap.
   Float8 d[3], a_above, b_above;
   Float8 size;  ///< |d|_1
 
-  /// Any direction will do, however it came about: only the errors of the corners count, those of A's among
-  /// them, 2 error |d|_1, which leaves room for the rounding of the products as in Normal. The direction is
-  /// scaled so that its square neither overflows nor vanishes; no direction at all gives NaN, which proves
+  /// Any direction is valid, however it was computed: only the errors of the corners count (including those
+  /// of A's), 2 error |d|_1, which leaves room for the rounding of the products as in Normal. The direction
+  /// is scaled so that its square neither overflows nor vanishes. A zero direction gives NaN, which proves
   /// nothing.
   Across(const Float8* direction, const EightPairs& p) {
     // The largest component of d becomes 1.
@@ -118,8 +118,8 @@ struct Across {
   }
 };
 
-/// Calls see() with directions along which pairs may be separated: the normals of both, the axes, and the
-/// line between the centroids.
+/// Calls see() with directions that may separate the pairs: both normals, the coordinate axes, and the line
+/// between the centroids.
 template <class See>
 inline void for_directions(const EightPairs& p, See&& see) {
   Float8 d[3];
@@ -141,13 +141,13 @@ inline void for_directions(const EightPairs& p, See&& see) {
 struct Span {
   Float8 from, to;
 
-  /// Narrow the span. A NaN proves nothing and is ignored.
+  /// Narrow the interval. A NaN proves nothing and is ignored.
   void not_before(Float8 x) { from = larger(x, from); }
   void not_after(Float8 x) { to = select(greater(to, x), x, to); }
 };
 
-/// Returns the lengths of motions after which the pairs may intersect: at least the width of the widest slab
-/// between the two.
+/// Returns the lengths of motions after which the pairs may intersect: at least the width of the widest
+/// separating slab.
 inline Span span_of_lengths(const EightPairs& p) {
   Span span{Float8{}, splat(__builtin_inff())};
   for_directions(p, [&](const Across& x) {
@@ -159,10 +159,10 @@ inline Span span_of_lengths(const EightPairs& p) {
 }
 
 /// Returns the parts of a sweep in which the pairs may intersect. Along each direction B moves at a constant
-/// rate, up to `spared`: it comes from one side of A and leaves on the other.
+/// rate, up to `spared`: it enters from one side of A and leaves on the other.
 inline Span span_of_sweep(const PairKernel& k, const EightPairs& p) {
   Span span{splat(-__builtin_inff()), splat(__builtin_inff())};
-  // `spared` bounds how far the motion of any point of B's simplex differs from the sweep of its first
+  // `spared` bounds the difference between the motion of any point of B's simplex and the sweep of its first
   // corner.
   const float longest = k.sweep_turn * k.radius_b + __builtin_fabsf(k.sweep_t[0]) +
                         __builtin_fabsf(k.sweep_t[1]) + __builtin_fabsf(k.sweep_t[2]);
@@ -188,7 +188,7 @@ inline PairVerdicts verdicts_of(const EightPairs& p) {
   const SideLanes b_sides = sides_of_planes(p.a, p.b, p.w, p.w.edge_error[0]);
   const SideLanes a_sides = sides_of_planes(p.b, p.a, p.w, p.w.edge_error[1]);
   const std::uint32_t parted = bits(either(a_sides.parted, b_sides.parted));
-  // All eight pairs are separated by planes: the common line need not be looked at.
+  // All eight pairs are separated by planes: the common line is not needed.
   if (parted == 255u) return {0, 255u};
   const Verdict v = overlap(p.a, a_sides, p.b, b_sides, p.w);  // for the others
   return {static_cast<std::uint8_t>(bits(v.cross) & ~parted),

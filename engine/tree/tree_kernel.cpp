@@ -14,12 +14,12 @@ void for_each_self_pair(const ObbTree& tree, const std::function<void(SimplexId,
   start_at_roots(k, tree, tree, pairs);
   k.out = candidates.data();
   k.out_capacity = static_cast<std::uint32_t>(candidates.size());
-  // The kernel stops when the output buffer is nearly full, and resumes where it stopped.
+  // The kernel stops when the output buffer is nearly full, and resumes there.
   while (!is_done(k)) {
     k.out_size = 0;
     run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i)
-      // Keep one of the two orders; this also drops pairs of equal simplices.
+      // Keep one of the two orders; this also removes pairs of equal simplices.
       if (candidates[i].a < candidates[i].b) visit(candidates[i].a, candidates[i].b);
   }
 }
@@ -58,7 +58,7 @@ Kernels best_kernels() {
 }
 
 const Kernels& kernels() {
-  // Chosen once, at the first call. The initialisation of a local static is thread-safe.
+  // Selected once, at the first call. The initialisation of a local static is thread-safe.
   static const Kernels best = best_kernels();
   return best;
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// The inner loop of the complete query: the dual traversal of two OBB trees, in eight-wide float arithmetic
-/// whose every error is bounded, so that it drops a pair of simplices only if they cannot meet.
+/// with bounded errors, so that a pair of simplices is rejected only if it is disjoint.
 ///
 /// Contains only plain structures: this header is compiled once per instruction set (cmake/kernels.cmake).
 
@@ -11,24 +11,24 @@
 
 namespace lrb {
 
-/// Calls visit(s, t), s < t, for all pairs of a tree's simplices, in the body's own frame, that float
-/// arithmetic could not prove disjoint: all that meet, and a few that do not. In an unspecified order.
+/// Calls visit(s, t), s < t, for all pairs of a tree's simplices, in the body's frame, that float arithmetic
+/// could not prove disjoint: all intersecting pairs, and a few others. In unspecified order.
 void for_each_self_pair(const ObbTree& tree, const std::function<void(SimplexId, SimplexId)>& visit);
 
 struct NodePair {
   std::uint32_t a, b;
 };
 
-/// How two simplices meet, as far as float arithmetic can be certain of it.
+/// The intersection of two simplices as far as float arithmetic decides it.
 enum class Certainty : std::uint8_t {
   none,
   disjoint,
   cross,
-  /// They touch if some corners of one are corners of the other too; else nothing is certain.
+  /// They touch if the given corners of one are also corners of the other; otherwise undecided.
   touch_if_shared,
 };
 
-/// A pair of real simplices that boxes and planes could not prove apart.
+/// A pair of real simplices that boxes and planes could not prove disjoint.
 struct Candidate {
   SimplexId a, b;
   Certainty certainty;  ///< none if there is a margin
@@ -37,24 +37,24 @@ struct Candidate {
   std::uint8_t corners;  ///< bit k: corner k
 };
 
-/// A pair of real simplices that a plane parts.
+/// A pair of real simplices that a plane separates.
 struct PartedPair {
   SimplexId a, b;
-  Side whose;  ///< the simplex whose plane it is; A's if both planes part them
+  Side whose;  ///< the simplex that spans the plane; A's if both planes separate
 };
 
-/// A node that is this many times as large as the other is descended by itself, because all of the other's
-/// boxes would meet the same few of its own.
+/// A node that is larger than the other by this factor is descended alone, because all boxes of the other
+/// would intersect the same few of its own.
 inline constexpr float kMuchLarger = 3;
 
-/// A linear map: columns for double arithmetic, rows rounded for that in floats.
+/// A linear map: columns for double arithmetic, rounded rows for float arithmetic.
 struct KernelMap {
   alignas(32) double columns[3][4];
   float rows[3][3];
   float size;  ///< >= the Euclidean norm
 };
 
-/// The maps of two bodies that are not nearly rotations; kernel_setup.hpp explains them. Each pair of entries
+/// The maps of two bodies that are not nearly rotations, explained in kernel_setup.hpp. Each pair of entries
 /// is for A and B.
 struct AffineTerms {
   struct Axes {
@@ -65,16 +65,16 @@ struct AffineTerms {
     float slack;  ///< as TreeKernel::slack, on these axes
   } axes[2];
   KernelMap world[2];             ///< coordinates in a body -> the world's axes
-  alignas(32) double between[4];  ///< B's origin seen from A's, on the world's axes
+  alignas(32) double between[4];  ///< B's origin relative to A's, on the world's axes
   float world_slack;
   int exponent;   ///< the query's unit is 2^exponent
-  float span[2];  ///< about the size in the world, in query units, of a length of 1 in the tree's units
+  float span[2];  ///< approximate size in the world, in query units, of a length of 1 in the tree's units
 };
 
-/// TreeKernel::most_node_pairs of a kernel that stops only when it is done.
+/// TreeKernel::most_node_pairs of a kernel without a limit.
 inline constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 
-/// One traversal. All lengths are in the query's unit: the larger of the two trees' units.
+/// The state of one traversal. All lengths are in the query's unit: the larger of the two trees' units.
 struct TreeKernel {
   const TreeNode* nodes_a;
   const TreeNode* nodes_b;
@@ -82,46 +82,45 @@ struct TreeKernel {
   const LeafBlock* blocks_b;
   float ratio_a, ratio_b;      ///< tree's unit / query's unit: powers of two, at most 1
   alignas(32) double m[3][4];  ///< from B's axes to A's, by columns (m[column][row])
-  alignas(32) double t[4];     ///< B's origin seen from A's, in A's axes
+  alignas(32) double t[4];     ///< B's origin relative to A's, on A's axes
   float m_rows[3][3];          ///< m rounded, by rows: m_rows[row][column] = m[column][row]
-  float slack;  ///< absolute: errors of poses and of the rounding of world coordinates (see kernel_setup.cpp)
+  float slack;   ///< absolute: errors of poses and rounding of world coordinates (see kernel_setup.cpp)
   float m_size;  ///< >= 1 and >= the Euclidean norm of m
-  /// 0, or else pairs are kept that may meet once the points of B have been displaced by -1 to 1 times (sweep
-  /// x + sweep_t) and then by no more than this.
+  /// 0, or: keep pairs that may intersect after the points of B are displaced by -1 to 1 times (sweep x +
+  /// sweep_t) and then by at most this.
   float margin;
-  alignas(32) double sweep[3][4], sweep_t[4];  ///< laid out as m and t
+  alignas(32) double sweep[3][4], sweep_t[4];  ///< layout as m and t
   float sweep_turn;                            ///< >= the Euclidean norm of sweep
-  bool nearest_first;   ///< without a margin: descend first where boxes overlap most, at the beginning
-  AffineTerms* affine;  ///< null, or these maps take the place of m, t and slack (without a margin)
+  bool nearest_first;   ///< without a margin: at the beginning, descend first where boxes overlap most
+  AffineTerms* affine;  ///< null, or maps that replace m, t and slack (without a margin)
 
-  /// Pairs of nodes to be visited, for which there must be room: see stack_room(). Where whole nodes are
-  /// compared first, pairs that this does not part are moved from `stack` to `tested`.
+  /// Pairs of nodes to be visited; capacity: see stack_room(). Where node boxes are tested first, pairs that
+  /// may intersect are moved from `stack` to `tested`.
   NodePair *stack, *tested;
   std::uint32_t stack_size, tested_size;
-  std::uint32_t base;  ///< number of pairs on the stack that the search for the nearest boxes left there
+  std::uint32_t base;  ///< number of pairs left on the stack by the search for the closest boxes
   Candidate* out;
   std::uint32_t out_capacity;  ///< at least 64
   std::uint32_t out_size;
 
-  PartedPair*
-      parted;  ///< null, or room for 64 pairs: those that planes part; only for one pair of nodes at a time
+  /// Null, or space for 64 pairs: those that planes separate; only for one pair of nodes at a time.
+  PartedPair* parted;
   std::uint32_t parted_size;
 
-  // For whoever watches one step after another; a step ends with the first pair of nodes that it adds to
-  // node_pairs:
-  NodePair* parted_nodes;  ///< null, or as much room as in `stack`: those that were parted as wholes
+  // For observation step by step; a step ends with the first pair of nodes that it adds to node_pairs:
+  NodePair* parted_nodes;  ///< null, or as much space as `stack`: the pairs rejected by their node boxes
   std::uint32_t parted_nodes_size;
-  NodePair opened;          ///< the last pair whose boxes inside were compared
-  std::uint32_t opened_at;  ///< stack_size without the pairs that came of it
+  NodePair opened;          ///< the last pair that was expanded
+  std::uint32_t opened_at;  ///< stack_size before its children were pushed
 
   std::uint64_t node_pairs, box_tests, prefilter_tests;
-  std::uint64_t most_node_pairs;  ///< where to stop, or up to 71 later; may be raised to go on
+  std::uint64_t most_node_pairs;  ///< where to stop, at most 71 pairs late; may be raised to continue
 };
 
-/// Traverses until no pair waits, fewer than 64 places are left in `out`, or most_node_pairs are
-/// reached. Uses the newest instruction set that the processor has; the environment variable LRB_SIMD, read
-/// at the first call, limits it to AVX2 ("avx2") or to what every processor has ("baseline"). The outcome is
-/// the same, counters included (tests/reproducibility/reproducibility.sh).
+/// Traverses until no pair is waiting, fewer than 64 places are left in `out`, or most_node_pairs are
+/// reached. Uses the newest instruction set of the processor; the environment variable LRB_SIMD, read at the
+/// first call, limits it to AVX2 ("avx2") or to the minimum of the platform ("baseline"). The result is the
+/// same, including counters (tests/reproducibility/reproducibility.sh).
 void run_tree_kernel(TreeKernel& k);
 
 }  // namespace lrb

@@ -1,6 +1,6 @@
-// Compiled once per instruction set by cmake/kernels.cmake, which defines LRB_TREE_KERNEL_NAME. Only plain
-// loops over plain arrays here: an inline function of a library, compiled for a newer processor, could be
-// picked by the linker for all.
+// Compiled once per instruction set by cmake/kernels.cmake, which defines LRB_TREE_KERNEL_NAME. Contains only
+// plain loops over plain arrays: if a library's inline function were compiled here for a newer processor, the
+// linker could select that copy for the entire program.
 //
 // The floating-point operations are the same for every instruction set and are not contracted, so that
 // counters and traces do not depend on the processor.
@@ -10,7 +10,7 @@
 namespace lrb {
 namespace {
 
-/// Walks the trees of bodies under rotations, or what is very nearly that.
+/// Traversal for bodies under rotations, or near-rotations.
 template <bool kMargin_>
 struct RigidWalk {
   static constexpr bool kMargin = kMargin_;
@@ -25,7 +25,7 @@ struct RigidWalk {
 }  // namespace
 
 void LRB_TREE_KERNEL_NAME(TreeKernel& k) {
-  // The batched test of node boxes allows for no margin: traverse without it.
+  // The batched test of node boxes does not support a margin: traverse without it.
   if (k.margin > 0) return run<RigidWalk<true>, false>(k, k.most_node_pairs);
   // The first few pairs of nodes in order of distance, the rest in batches of eight.
   if (k.nearest_first) run_nearest<RigidWalk<false>>(k);

@@ -1,4 +1,4 @@
-"""Exact collision queries on meshes, with pictures of how they were answered.
+"""Exact collision queries on meshes, with pictures of the search.
 
 >>> import numpy as np
 >>> import lrbscope
@@ -10,9 +10,9 @@
 >>> lrbscope.collide(body, body, pose).relation
 'crossing'
 
-Arrays are as the field has them: vertices (n, 3) float, faces (m, 3) int, poses (4, 4) or (k, 4, 4) float
-that map body to world coordinates, pairs (p, 2). Lengths are in the meshes' unit, times in seconds. Answers
-are exact for the vertices' world coordinates, and the same for any number of threads.
+Array shapes follow the usual conventions: vertices (n, 3) float, faces (m, 3) int, poses (4, 4) or
+(k, 4, 4) float that map body to world coordinates, pairs (p, 2). Lengths are in the meshes' unit, times in
+seconds. Answers are exact for the vertices' world coordinates, and do not depend on the number of threads.
 """
 
 from . import _core
@@ -54,14 +54,14 @@ from ._core import (
 from ._picture import Picture
 from .collision import CollisionManager, ContactData, DistanceData
 
-# Objects say, and pickle, where users find them.
+# Classes report, and pickle, the module that users import them from.
 for _name in dir(_core):
     _object = getattr(_core, _name)
     if isinstance(_object, type):
         _object.__module__ = __name__
 del _name, _object
 
-# EnvironmentError is left out: it would hide Python's own.
+# EnvironmentError is not exported: it would hide Python's own.
 __all__ = [
     "Body",
     "Clash",

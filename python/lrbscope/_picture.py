@@ -1,4 +1,4 @@
-"""Pictures as arrays that notebooks show."""
+"""Pictures as arrays with notebook display."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ else:
 
 
 class Picture(_Pixels):
-    """Pixels that a notebook shows: an array (height, width, 3) of uint8, or with opacity (height, width, 4).
+    """Pixels with notebook display: an array (height, width, 3) of uint8, or with alpha (height, width, 4).
 
-    `caption` says in a sentence what is drawn.
+    `caption` describes the picture in a sentence.
     """
 
     caption: str
@@ -35,7 +35,7 @@ class Picture(_Pixels):
         self.caption = getattr(other, "caption", "")
 
     def _repr_png_(self) -> bytes | None:
-        # Parts of a picture, such as one channel, are plain numbers.
+        # Parts of a picture, such as one channel, are plain arrays.
         return _core._encode_png(self) if self.ndim == 3 and self.shape[2] in (3, 4) else None
 
     def save(self, path: str | PathLike[str]) -> None:

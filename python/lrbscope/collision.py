@@ -1,4 +1,4 @@
-"""Collisions between many named objects, asked for as in trimesh.collision.
+"""Collisions between many named objects, with the interface of trimesh.collision.
 
 >>> m = CollisionManager()
 >>> _ = m.add_object("left", cube)
@@ -11,8 +11,8 @@ False
 >>> m.in_collision_internal(return_names=True)
 (True, {('left', 'right')})
 
-Objects collide if their surfaces meet, or if one lies in another that is a solid. Contacts are where surfaces
-meet; an object inside another has none. Distances are those of the solids, 0 where objects collide.
+Objects collide if their surfaces intersect, or if one is inside another that is a solid. Contacts are where
+surfaces intersect; an object inside another has none. Distances are those of the solids, 0 if objects collide.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ _EXTERNAL = "__external"
 
 
 class ContactData:
-    """A contact: a triangle of one object that meets a triangle of another.
+    """A contact: a triangle of one object that intersects a triangle of another.
 
     names: set of the two objects' names. Points and vectors are in the world frame.
     """
@@ -66,30 +66,28 @@ class ContactData:
 
     @property
     def normal(self) -> _Floats:
-        """(3,) float: unit, from the first object to the second, averaged over the contact region; else
-        of the first's face.
+        """(3,) float: unit, from the first object to the second, averaged over the contact region, or the
+        normal of the first's face if undefined.
         """
         return self._normal
 
     @property
     def point(self) -> _Floats:
-        """(3,) float: the middle of the intersection of the two triangles."""
+        """(3,) float: the centre of the intersection of the two triangles."""
         return self._point
 
     @property
     def depth(self) -> float:
-        """float: an estimate of how deep the objects are in each other in the contact region, along the
-        normal.
-        """
+        """float: an estimate of the penetration depth in the contact region, along the normal."""
         return self._depth
 
     def index(self, name: Hashable) -> int:
-        """Return the face of the object of this name."""
+        """Return the intersecting face of the object of this name."""
         return self._faces[name]
 
 
 class DistanceData:
-    """The nearest points of two objects. names: set of their names."""
+    """The closest points of two objects. names: set of their names."""
 
     def __init__(self, names: _Names, faces: Sequence[int], points: _Floats, distance: float) -> None:
         self.names: set[Any] = set(names)
@@ -103,16 +101,16 @@ class DistanceData:
         return self._distance
 
     def index(self, name: Hashable) -> int:
-        """Return the face of the object of this name that is nearest."""
+        """Return the closest face of the object of this name."""
         return self._faces[name]
 
     def point(self, name: Hashable) -> _Floats:
-        """Return the nearest point on the object of this name, (3,) float, world frame."""
+        """Return the closest point on the object of this name, (3,) float, world frame."""
         return self._points[name]
 
 
 class _BodyCache:
-    """Bodies of meshes that were given lately, so that one mesh is not taken in again and again."""
+    """Cache of the bodies of recently used meshes, so that a mesh is converted only once."""
 
     _MOST = 64
 
@@ -120,8 +118,8 @@ class _BodyCache:
         self._bodies: OrderedDict[Any, Body] = OrderedDict()
 
     def body(self, mesh: _Mesh) -> Body:
-        """Return the body of anything with `vertices` and `faces`; without regions, which no answer here
-        needs.
+        """Return the body of an object with `vertices` and `faces`; without regions, which no answer of this
+        module needs.
         """
         if isinstance(mesh, _core.Body):
             return mesh
@@ -180,7 +178,7 @@ def _contact_data(names: _Names, result: Result, body: Body, pose: _Floats) -> _
 
 
 def _answer(first: Any, *rest: tuple[bool, Any]) -> Any:
-    """Return what was asked for: `first` alone, or with those of `rest` that are wanted, (wanted, value)
+    """Return the requested values: `first` alone, or followed by the wanted ones of `rest`, (wanted, value)
     each.
     """
     more = tuple(value for wanted, value in rest if wanted)
@@ -190,17 +188,17 @@ def _answer(first: Any, *rest: tuple[bool, Any]) -> Any:
 def _sorted_names(names: _Names) -> _Names:
     try:
         a, b = sorted(names)
-    except TypeError:  # names of different kinds
+    except TypeError:  # names of different types
         a, b = sorted(names, key=str)
     return a, b
 
 
 class CollisionManager:
-    """Objects by name, and which of them collide or are near. Takes whatever has `vertices` and `faces`,
-    or a Body. The objects are bodies of a Scene.
+    """Named objects: which of them collide and which are close. Accepts any object with `vertices` and
+    `faces`, or a Body. The objects are bodies of a Scene.
     """
 
-    # What is returned beside the answer depends on two flags; where these are no constants it is Any.
+    # The type of the return value depends on two flags; if these are not literals, it is Any.
 
     def __init__(self) -> None:
         self._cache = _BodyCache()
@@ -218,13 +216,13 @@ class CollisionManager:
         return body
 
     def remove_object(self, name: Hashable) -> None:
-        """Take an object out. Raises ValueError if there is none of this name."""
+        """Remove an object. Raises ValueError if the name is unknown."""
         key = self._known(name)
         self._scene.remove(key)
         del self._keys[name], self._names[key]
 
     def set_transform(self, name: Hashable, transform: npt.ArrayLike) -> None:
-        """Move an object. transform: (4, 4) float. Raises ValueError if there is none of this name."""
+        """Move an object. transform: (4, 4) float. Raises ValueError if the name is unknown."""
         self._scene.move(self._known(name), _pose_of(transform))
 
     @overload
@@ -250,10 +248,10 @@ class CollisionManager:
     def in_collision_single(
         self, mesh: _Mesh, transform: _Pose = None, return_names: bool = False, return_data: bool = False
     ) -> Any:
-        """Ask whether a mesh collides with any object.
+        """Return True if a mesh collides with any object.
 
-        Returns bool; with return_names also a set of names; with return_data also a list of ContactData, in
-        which the mesh is called '__external' and is the first object.
+        With return_names also a set of names; with return_data also a list of ContactData, in which the mesh is
+        called '__external' and is the first object.
         """
         outside = self._cache.body(mesh), _pose_of(transform)
         hit, names, data = self._collide(return_names, return_data, outside=outside)
@@ -276,10 +274,10 @@ class CollisionManager:
     @overload
     def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any: ...
     def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
-        """Ask whether any two objects collide.
+        """Return True if any two objects collide.
 
-        Returns bool; with return_names also a set of pairs of names, each in alphabetical order; with
-        return_data also a list of ContactData.
+        With return_names also a set of pairs of names, each in alphabetical order; with return_data also a
+        list of ContactData.
         """
         hit, names, data = self._collide(return_names, return_data)
         return _answer(hit, (return_names, {_sorted_names(n) for n in names}), (return_data, data))
@@ -307,10 +305,10 @@ class CollisionManager:
     def in_collision_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
-        """Ask whether any object collides with one of another manager.
+        """Return True if any object collides with one of another manager.
 
-        Returns bool; with return_names also a set of pairs of names, this manager's first; with return_data
-        also a list of ContactData.
+        With return_names also a set of pairs of names, this manager's first; with return_data also a list of
+        ContactData.
         """
         hit, names, data = self._collide(return_names, return_data, other=other_manager)
         return _answer(hit, (return_names, set(names)), (return_data, data))
@@ -338,10 +336,10 @@ class CollisionManager:
     def min_distance_single(
         self, mesh: _Mesh, transform: _Pose = None, return_name: bool = False, return_data: bool = False
     ) -> Any:
-        """Find how far a mesh is from the nearest object.
+        """Return the distance from a mesh to the closest object, or inf if there is no object.
 
-        Returns float, inf if there is none; with return_name also its name; with return_data also a
-        DistanceData, in which the mesh is called '__external'.
+        With return_name also its name; with return_data also a DistanceData, in which the mesh is called
+        '__external'.
         """
         outside = self._cache.body(mesh), _pose_of(transform)
         distance, names, data = self._nearest(outside=outside)
@@ -362,10 +360,9 @@ class CollisionManager:
     @overload
     def min_distance_internal(self, return_names: bool = False, return_data: bool = False) -> Any: ...
     def min_distance_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
-        """Find how far the two nearest objects are apart.
+        """Return the minimum distance between two objects, or inf if there are fewer than two.
 
-        Returns float, inf if there are not two; with return_names also their names in alphabetical order;
-        with return_data also a DistanceData.
+        With return_names also their names in alphabetical order; with return_data also a DistanceData.
         """
         distance, names, data = self._nearest()
         names = names if data is None else _sorted_names(names)
@@ -394,10 +391,9 @@ class CollisionManager:
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
-        """Find how far the objects are from the nearest of another manager.
+        """Return the minimum distance to the objects of another manager, or inf if either has no objects.
 
-        Returns float, inf if one has no objects; with return_names also the names, this manager's first; with
-        return_data also a DistanceData.
+        With return_names also the names, this manager's first; with return_data also a DistanceData.
         """
         found = self._nearest(other=other_manager)
         return _answer(found[0], (return_names, found[1]), (return_data, found[2]))
@@ -410,12 +406,12 @@ class CollisionManager:
     def _others(
         self, outside: tuple[Body, _Floats] | None, other: CollisionManager | None
     ) -> tuple[tuple[Scene | Body | None, _Floats | None], Callable[[int, int], _Names]]:
-        """Return the arguments that name the others to a scene's functions, and what gives names to pairs of
-        keys.
+        """Return the arguments that select the others in a scene's functions, and a function from pairs of
+        keys to names.
         """
         if outside is not None:
             return outside, lambda a, b: (_EXTERNAL, self._names[b])
-        if other is self:  # each object meets itself
+        if other is self:  # each object intersects itself
             other = self._copy()
         names = self._names if other is None else other._names
         scene = None if other is None else other._scene
@@ -434,7 +430,7 @@ class CollisionManager:
         outside: tuple[Body, _Floats] | None = None,
         other: CollisionManager | None = None,
     ) -> tuple[bool, list[_Names], _Contacts]:
-        """Return whether any pair collides, names of those that do, and their contacts."""
+        """Return whether any pair collides, the names of colliding objects, and their contacts."""
         others, names_of = self._others(outside, other)
         if not (want_names or want_data):
             return self._scene.any_meet(*others), [], []
@@ -449,7 +445,7 @@ class CollisionManager:
     def _nearest(
         self, outside: tuple[Body, _Floats] | None = None, other: CollisionManager | None = None
     ) -> tuple[float, _Names, _Nearest]:
-        """Return distance, names and data of the nearest pair."""
+        """Return distance, names and data of the closest pair."""
         others, names_of = self._others(outside, other)
         found = self._scene.nearest(*others, solids=True)
         if found is None:

@@ -1,4 +1,4 @@
-"""The interface of python-fcl, answered by lrbscope: `from lrbscope import fcl`.
+"""The interface of python-fcl on top of lrbscope: `from lrbscope import fcl`.
 
 >>> from lrbscope import fcl
 >>> box = fcl.Box(1, 2, 3)
@@ -7,13 +7,12 @@
 >>> fcl.collide(fcl.CollisionObject(box), near, fcl.CollisionRequest(), result), result.is_collision
 (1, True)
 
-Meshes (BVHModel) and boxes are as they are. Round shapes are polyhedra whose corners lie on them, with
-`facets` facets around: they lie inside the shape, by 0.0012 of its radius at most for 64. What meets is
-decided exactly for these.
+Meshes (BVHModel) and boxes are exact. Round shapes are inscribed polyhedra with `facets` facets around: they
+deviate by at most 0.0012 of the radius for 64 facets. Intersections are decided exactly for these polyhedra.
 
-As in FCL, a mesh is a surface, and a shape is a solid: what lies inside a shape collides with it. Depths are
-estimates, but signed distances of shapes are proved. What is not there raises Unsupported: Halfspace, Plane,
-OcTree, costs, motions other than CCDM_TRANS and CCDM_LINEAR.
+As in FCL, a mesh is a surface and a shape is a solid: an object inside a shape collides with it. Depths are
+estimates, but signed distances of shapes are proven. Unsupported features raise Unsupported: Halfspace,
+Plane, OcTree, costs, motions other than CCDM_TRANS and CCDM_LINEAR.
 """
 
 from __future__ import annotations
@@ -41,15 +40,15 @@ if TYPE_CHECKING:
     _DistanceCallback = Callable[["CollisionObject", "CollisionObject", Any], tuple[bool, float]]
 
 facets: int = 64
-"""int: the number of facets around of shapes that are made from now on."""
+"""int: the number of facets around the axis of shapes made from now on."""
 
 
 class Unsupported(NotImplementedError):
-    """Raised for what FCL has and this module has not."""
+    """Raised for features of FCL that this module does not support."""
 
 
 class GJKSolverType(enum.IntEnum):
-    """Which solver FCL is to use; has no effect here."""
+    """Which solver FCL uses; has no effect here."""
 
     GST_LIBCCD = 0
     GST_INDEP = 1
@@ -65,7 +64,7 @@ class CCDMotionType(enum.IntEnum):
 
 
 class CCDSolverType(enum.IntEnum):
-    """Which solver FCL is to use; has no effect here."""
+    """Which solver FCL uses; has no effect here."""
 
     CCDC_NAIVE = 0
     CCDC_CONSERVATIVE_ADVANCEMENT = 1
@@ -88,7 +87,7 @@ def _matrix(given: npt.ArrayLike) -> _Floats:
 
 
 def _matrix_of_quaternion(given: npt.ArrayLike) -> _Floats:
-    """Return the rotation of w, x, y, z, of any length but 0."""
+    """Return the rotation of the quaternion w, x, y, z, of any length but 0."""
     q = _vector(given, 4, "a quaternion")
     length = np.linalg.norm(q)
     if not length > 0:
@@ -104,7 +103,7 @@ def _matrix_of_quaternion(given: npt.ArrayLike) -> _Floats:
 
 
 def _quaternion_of_matrix(r: _Floats) -> _Floats:
-    """Return w, x, y, z with w >= 0; the largest component first, so that nothing is lost to rounding."""
+    """Return w, x, y, z with w >= 0. Computes the largest component first, to avoid cancellation."""
     squares = np.array([r[0, 0] + r[1, 1] + r[2, 2], *(2 * np.diag(r) - np.trace(r))]) + 1
     differences = {(0, 1): r[2, 1] - r[1, 2], (0, 2): r[0, 2] - r[2, 0], (0, 3): r[1, 0] - r[0, 1]}
     sums = {(1, 2): r[0, 1] + r[1, 0], (1, 3): r[0, 2] + r[2, 0], (2, 3): r[1, 2] + r[2, 1]}
@@ -170,7 +169,7 @@ class Transform:
 
 
 class CollisionGeometry:
-    """A shape. Its body is made when it is first asked for."""
+    """A shape. Its body is made on first use."""
 
     _node_type = 0
     _object_type = 0
@@ -179,7 +178,7 @@ class CollisionGeometry:
     _made: Body | None = None
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if not name.startswith("_"):  # a measure, which the body was made to
+        if not name.startswith("_"):  # a dimension, which the body depends on
             self._made = None
             if isinstance(value, (list, tuple, np.ndarray)):
                 value = np.array(value, dtype=float)
@@ -191,11 +190,11 @@ class CollisionGeometry:
         return self._node_type
 
     def computeLocalAABB(self) -> None:
-        """Do nothing: boxes are found when they are needed."""
+        """Do nothing: boxes are computed on demand."""
 
     @property
     def aabb_center(self) -> _Floats:
-        """(3,) float: the middle of the box of the geometry."""
+        """(3,) float: the centre of the geometry's bounding box."""
         middle: _Floats = self._body().box().mean(axis=0)
         return middle
 
@@ -215,12 +214,12 @@ class CollisionGeometry:
 class BVHModel(CollisionGeometry):
     """A triangle mesh: beginModel(), then addSubModel(), addTriangle() or addVertex(), then endModel()."""
 
-    _node_type = 5  # OBBRSS, as python-fcl has it
+    _node_type = 5  # OBBRSS, as in python-fcl
     _object_type = 1
     _is_shape = False
 
     def __init__(self) -> None:
-        self._state = 0  # 1: begun, 2: ended
+        self._state = 0  # 1: after beginModel(), 2: after endModel()
         self._vertices: list[_Floats] = []
         self._triangles: list[tuple[int, int, int]] = []
 
@@ -229,11 +228,11 @@ class BVHModel(CollisionGeometry):
         return len(self._triangles)
 
     def buildState(self) -> int:
-        """Return 0 if nothing was begun, 1 between beginModel() and endModel(), then 2."""
+        """Return 0 before beginModel(), 1 between beginModel() and endModel(), then 2."""
         return self._state
 
     def beginModel(self, num_tris_: int = 0, num_vertices_: int = 0) -> int:
-        """Begin anew. The numbers are not needed. Returns 0."""
+        """Start a new model. The numbers are not needed. Returns 0."""
         self._state, self._vertices, self._triangles, self._made = 1, [], [], None
         return 0
 
@@ -266,10 +265,10 @@ class BVHModel(CollisionGeometry):
         return True
 
     def endModel(self) -> int:
-        """End. Returns 0."""
+        """Finish the model. Returns 0."""
         self._check(1)
         self._state = 2
-        self._body()  # complains now, if the mesh cannot be queried
+        self._body()  # raises here if the mesh cannot be queried
         return 0
 
     def _check(self, state: int) -> None:
@@ -283,8 +282,8 @@ class BVHModel(CollisionGeometry):
 
 
 class Convex(CollisionGeometry):
-    """A convex polyhedron: vertices (n, 3), the number of faces, and for each its number of corners and
-    these, in a row.
+    """A convex polyhedron: vertices (n, 3), the number of faces, and for each face its number of corners
+    followed by the corners, in one flat list.
     """
 
     _node_type = 15
@@ -319,7 +318,7 @@ class TriangleP(CollisionGeometry):
 
 
 class Box(CollisionGeometry):
-    """A box with these sides, its middle in the origin."""
+    """A box with these side lengths, centred at the origin."""
 
     _node_type = 9
     _object_type = 2
@@ -334,8 +333,8 @@ class Box(CollisionGeometry):
 
 
 def _turned(profile: Sequence[tuple[float, float]]) -> _Surface:
-    """Return the surface of a profile, points (radius, z) from the lower pole to the upper, turned about
-    z.
+    """Return the surface of revolution about z of a profile, points (radius, z) from the lower pole to the
+    upper.
     """
     angles = 2 * np.pi * np.arange(facets) / facets
     around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -388,7 +387,7 @@ class Sphere(CollisionGeometry):
 
 
 class Capsule(CollisionGeometry):
-    """A cylinder of height lz along z with a half sphere on either end."""
+    """A cylinder of height lz along z with a hemisphere on either end."""
 
     _node_type = 12
     _object_type = 2
@@ -404,7 +403,7 @@ class Capsule(CollisionGeometry):
 
 
 class Cone(CollisionGeometry):
-    """A cone of height lz along z, its base below, the middle of its height in the origin."""
+    """A cone of height lz along z, base down, the middle of its height at the origin."""
 
     _node_type = 13
     _object_type = 2
@@ -418,7 +417,7 @@ class Cone(CollisionGeometry):
 
 
 class Cylinder(CollisionGeometry):
-    """A cylinder of height lz along z, its middle in the origin."""
+    """A cylinder of height lz along z, centred at the origin."""
 
     _node_type = 14
     _object_type = 2
@@ -439,13 +438,13 @@ class _Missing(CollisionGeometry):
 
 
 class Halfspace(_Missing):
-    """Raises Unsupported: it has no end."""
+    """Raises Unsupported: it is unbounded."""
 
     _instead = "it has no end; take a Box that is large enough"
 
 
 class Plane(_Missing):
-    """Raises Unsupported: it has no end."""
+    """Raises Unsupported: it is unbounded."""
 
     _instead = "it has no end; take a thin Box that is large enough"
 
@@ -457,7 +456,7 @@ class OcTree(_Missing):
 
 
 class CollisionObject:
-    """A geometry that stands somewhere."""
+    """A geometry at a pose."""
 
     def __init__(
         self, geom: CollisionGeometry | None = None, tf: Transform | None = None, _no_instance: bool = False
@@ -468,7 +467,7 @@ class CollisionObject:
         self._tf = Transform() if tf is None else Transform(tf)
 
     def getObjectType(self) -> int:
-        """Return FCL's number: 1 a mesh, 2 a shape."""
+        """Return FCL's type number: 1 for a mesh, 2 for a shape."""
         return self._geom._object_type
 
     def getNodeType(self) -> int:
@@ -500,15 +499,15 @@ class CollisionObject:
         self._tf.setQuatRotation(q)
 
     def getTransform(self) -> Transform:
-        """Return where it stands."""
+        """Return the pose."""
         return Transform(self._tf)
 
     def setTransform(self, tf: Transform) -> None:
-        """Set where it stands."""
+        """Set the pose."""
         self._tf = Transform(tf)
 
     def isOccupied(self) -> bool:
-        """Return True: it is not one of an octree's cells."""
+        """Return True: there are no octree cells."""
         return True
 
     def isFree(self) -> bool:
@@ -526,12 +525,12 @@ class CollisionObject:
 
     @property
     def pose(self) -> _Floats:
-        """(4, 4) float: where it stands."""
+        """(4, 4) float: the pose."""
         return self._tf._pose()
 
 
 class Contact:
-    """Where two objects meet. b1, b2: triangles, -1 of shapes; normal: from o1 to o2; pos: world frame."""
+    """A contact of two objects. b1, b2: triangles, -1 for shapes; normal: from o1 to o2; pos: world frame."""
 
     def __init__(self) -> None:
         self.o1: CollisionGeometry | None = None
@@ -543,11 +542,11 @@ class Contact:
 
 
 class CostSource:
-    """Never made: there are no costs here."""
+    """Never made: costs are not supported."""
 
 
 class CollisionRequest:
-    """num_max_contacts: how many contacts to list; enable_contact: with point, normal and depth."""
+    """num_max_contacts: maximum number of contacts; enable_contact: with point, normal and depth."""
 
     def __init__(
         self,
@@ -575,7 +574,7 @@ class CollisionResult:
 
 
 class DistanceRequest:
-    """Nearest points are always found."""
+    """Closest points are always computed."""
 
     def __init__(
         self,
@@ -589,7 +588,7 @@ class DistanceRequest:
 
 
 class DistanceResult:
-    """min_distance; nearest_points: two (3,) arrays, world frame; b1, b2: triangles, -1 of shapes."""
+    """min_distance; nearest_points: two (3,) arrays, world frame; b1, b2: triangles, -1 for shapes."""
 
     def __init__(self, min_distance_: float = sys.float_info.max) -> None:
         self.min_distance = min_distance_
@@ -600,7 +599,7 @@ class DistanceResult:
 
 
 class ContinuousCollisionRequest:
-    """toc_err: how far off the time of contact may be. The rest has no effect here."""
+    """toc_err: maximum error of the time of contact. The rest has no effect here."""
 
     def __init__(
         self,
@@ -616,14 +615,14 @@ class ContinuousCollisionRequest:
 
 
 class ContinuousCollisionResult:
-    """is_collide: bool; time_of_contact: from 0 to 1, 1 if they do not meet."""
+    """is_collide: bool; time_of_contact: from 0 to 1, 1 if there is no contact."""
 
     def __init__(self, is_collide: bool = False, time_of_contact: float = 1.0) -> None:
         self.is_collide, self.time_of_contact = is_collide, time_of_contact
 
 
 class CollisionData:
-    """What managers hand to callbacks of collisions."""
+    """Data that managers pass to collision callbacks."""
 
     def __init__(
         self, request: CollisionRequest | None = None, result: CollisionResult | None = None
@@ -634,7 +633,7 @@ class CollisionData:
 
 
 class DistanceData:
-    """What managers hand to callbacks of distances."""
+    """Data that managers pass to distance callbacks."""
 
     def __init__(self, request: DistanceRequest | None = None, result: DistanceResult | None = None) -> None:
         self.request = DistanceRequest() if request is None else request
@@ -643,7 +642,7 @@ class DistanceData:
 
 
 def _holds(o1: CollisionObject, o2: CollisionObject, relation: str) -> bool:
-    """Return whether a shape holds the other object. Inside a mesh there is nothing."""
+    """Return True if a shape contains the other object. A mesh is a surface and contains nothing."""
     holder = {"a_inside_b": o2, "b_inside_a": o1}.get(relation)
     return holder is not None and holder._geom._is_shape
 
@@ -658,7 +657,7 @@ def _contact(o1: CollisionObject, o2: CollisionObject, b1: int = -1, b2: int = -
 def _contacts(o1: CollisionObject, o2: CollisionObject, result: Result, full: bool) -> Iterator[Contact]:
     """Yield a Contact for each pair of triangles.
 
-    Where one object is a shape, for each triangle of the other; of two shapes for each contact region.
+    If one object is a shape, for each triangle of the other; for two shapes, for each contact region.
     """
     found: Iterable[tuple[int, Any, Any, float]] = ((i, None, None, 0.0) for i in range(len(result.pairs)))
     if full:
@@ -685,7 +684,7 @@ def collide(
     request: CollisionRequest | None = None,
     result: CollisionResult | None = None,
 ) -> int:
-    """Find whether two objects collide, and where. Returns the number of contacts; adds to `result`."""
+    """Find whether and where two objects collide. Returns the number of contacts; adds to `result`."""
     request = CollisionRequest() if request is None else request
     result = CollisionResult() if result is None else result
     many = request.num_max_contacts > 1 or request.enable_contact
@@ -718,10 +717,9 @@ def distance(
     request: DistanceRequest | None = None,
     result: DistanceResult | None = None,
 ) -> float:
-    """Find how far two objects are apart.
+    """Return the distance of two objects, in the world's unit.
 
-    Returns the distance, the world's unit: 0 for meshes that meet, -1 where a shape and something else
-    overlap. Improves `result` if they are nearer.
+    0 for intersecting meshes, -1 if a shape and another object overlap. Updates `result` if it is smaller.
     """
     request = DistanceRequest() if request is None else request
     result = DistanceResult() if result is None else result
@@ -741,7 +739,7 @@ def distance(
 
 
 def defaultCollisionCallback(o1: CollisionObject, o2: CollisionObject, cdata: CollisionData) -> bool:
-    """Collide two objects; returns True when there are more contacts than were asked for."""
+    """Collide two objects; returns True once there are more contacts than requested."""
     if cdata.done:
         return True
     collide(o1, o2, cdata.request, cdata.result)
@@ -753,7 +751,7 @@ def defaultCollisionCallback(o1: CollisionObject, o2: CollisionObject, cdata: Co
 def defaultDistanceCallback(
     o1: CollisionObject, o2: CollisionObject, cdata: DistanceData
 ) -> tuple[bool, float]:
-    """Measure two objects; returns whether that is all, and the least distance so far."""
+    """Measure two objects; returns whether to stop, and the minimum distance so far."""
     if cdata.done:
         return True, cdata.result.min_distance
     distance(o1, o2, cdata.request, cdata.result)
@@ -762,8 +760,8 @@ def defaultDistanceCallback(
 
 
 class DynamicAABBTreeCollisionManager:
-    """Many objects: the bodies of a Scene. Where they stand is looked at when it is asked, so that setup()
-    and update() have nothing to do, and the measures of FCL's tree have no effect.
+    """Many objects: the bodies of a Scene. Poses are read at each query, so that setup() and update() do
+    nothing; parameters of FCL's tree have no effect.
     """
 
     max_tree_nonbalanced_level = tree_incremental_balance_pass = 10
@@ -786,7 +784,7 @@ class DynamicAABBTreeCollisionManager:
         self._objects[self._scene.add(obj.body, obj.pose)] = obj
 
     def unregisterObject(self, obj: CollisionObject) -> None:
-        """Take an object out, if it is there."""
+        """Remove an object if it is present."""
         for key in [key for key, o in self._objects.items() if o is obj]:
             self._scene.remove(key)
             del self._objects[key]
@@ -802,7 +800,7 @@ class DynamicAABBTreeCollisionManager:
         return list(self._objects.values())
 
     def clear(self) -> None:
-        """Take all objects out."""
+        """Remove all objects."""
         self._scene = _core.Scene()
         self._objects: dict[int, CollisionObject] = {}  # by key
 
@@ -815,7 +813,7 @@ class DynamicAABBTreeCollisionManager:
         return len(self._objects)
 
     def _moved(self) -> Scene:
-        """Return the scene with all objects where they stand now, and with the bodies that they have now."""
+        """Return the scene with all objects at their current poses and with their current bodies."""
         objects = list(self._objects.items())
         if any(o.body is not self._scene.body(key) for key, o in objects):
             self.clear()
@@ -825,8 +823,8 @@ class DynamicAABBTreeCollisionManager:
         return self._scene
 
     def _arguments(self, args: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Return the arguments that name the others to the scene's functions, what gives the objects of a
-        pair of keys, and data and callback.
+        """Return the arguments that select the others in the scene's functions, a function from pairs of
+        keys to objects, and data and callback.
         """
         if len(args) not in (2, 3) or not callable(args[-1]):
             raise ValueError("expected data and callback, after an object or a manager if there is one")
@@ -851,7 +849,7 @@ class DynamicAABBTreeCollisionManager:
     def collide(self, *args: Any) -> None:
         """collide(data, callback), (object, data, callback) or (manager, data, callback).
 
-        Calls callback(o1, o2, data) for objects whose boxes meet, until it returns True.
+        Calls callback(o1, o2, data) for objects with overlapping boxes, until it returns True.
         """
         others, objects_of, data, callback = self._arguments(args)
         keys, _ = self._moved().near(0, *others)
@@ -872,8 +870,8 @@ class DynamicAABBTreeCollisionManager:
     def distance(self, *args: Any) -> None:
         """distance(data, callback), (object, data, callback) or (manager, data, callback).
 
-        Calls callback(o1, o2, data), which returns whether that is all and the least distance so far, for
-        objects whose boxes are nearer than that, nearest first.
+        Calls callback(o1, o2, data), which returns whether to stop and the minimum distance so far, for
+        objects whose boxes are closer than that, closest first.
         """
         others, objects_of, data, callback = self._arguments(args)
         scene = self._moved()
@@ -895,7 +893,7 @@ class DynamicAABBTreeCollisionManager:
 
 
 def _motion(o: CollisionObject, tf_end: Transform, kind: CCDMotionType) -> _Floats:
-    """Return the poses between which an object moves, (2, 4, 4)."""
+    """Return the start and end pose of an object's motion, (2, 4, 4)."""
     end = Transform(tf_end)
     if kind == CCDMotionType.CCDM_TRANS:
         end.setRotation(o.getRotation())
@@ -912,11 +910,11 @@ def continuousCollide(
     request: ContinuousCollisionRequest | None = None,
     result: ContinuousCollisionResult | None = None,
 ) -> float:
-    """Find when two objects first collide while they move from where they stand to the given Transforms.
+    """Find the first contact of two objects that move from their poses to the given Transforms.
 
-    As ccd_motion_type says they keep their rotation (CCDM_TRANS), or turn by the shortest arc (CCDM_LINEAR).
-    Returns a time from 0 to 1, 1 if they do not collide: they do not before it, and do at most toc_err later.
-    Objects so near each other that rounding hides whether they meet count as colliding.
+    Depending on ccd_motion_type they keep their rotation (CCDM_TRANS) or rotate by the shortest arc
+    (CCDM_LINEAR). Returns a time from 0 to 1, 1 if they do not collide: there is no contact before it, and
+    contact at most toc_err later. Objects within rounding errors of contact count as colliding.
     """
     request = ContinuousCollisionRequest() if request is None else request
     result = ContinuousCollisionResult() if result is None else result

@@ -18,7 +18,7 @@
 namespace lrb::python {
 namespace {
 
-/// A contact region, and what keeps its memory.
+/// A contact region, with the owner of its memory.
 struct Region {
   std::shared_ptr<const CollideResult> result;
   const ContactRegion* region;
@@ -55,7 +55,7 @@ py::array_t<bool> crosses_of(const Answer& answer) {
   return out;
 }
 
-/// Returns the corners of all pairs' intersections, and the number of the pair that each is of.
+/// Returns the corners of all pairs' intersections, and the number of each corner's pair.
 py::tuple points_of(const Answer& answer) {
   std::vector<Eigen::Vector3d> points;
   std::vector<std::uint32_t> of_pair;
@@ -96,41 +96,44 @@ void bind_result(py::module_& m) {
       m, "Result", "The answer to one query. Made by collide(). Arrays are read-only and share its memory.");
   c.def_property_readonly(
       "relation", [](const Answer& a) { return py::str(to_string(a.result->relation)); },
-      "str: 'separate', 'crossing', 'touching', 'a_inside_b', 'b_inside_a', 'undefined' (the surfaces do\n"
-      "not meet, the bodies' boxes do, and a body is not closed), 'unresolved' (within limits only).");
+      "str: 'separate', 'crossing', 'touching', 'a_inside_b', 'b_inside_a', 'undefined' (the "
+      "surfaces are\n"
+      "disjoint, the bodies' boxes overlap, and a body is not closed), 'unresolved' (only with "
+      "limits).");
   c.def_property_readonly(
       "pairs", &pairs_of,
-      "(p, 2) uint32: the triangles of A and of B that meet, ascending. One pair at most unless "
-      "mode is 'all'.");
-  c.def_property_readonly("face_pairs", &face_pairs_of,
-                          "(p, 2) uint32: the faces that these are of; differs for polygons only.");
+      "(p, 2) uint32: the intersecting triangles of A and of B, ascending. At most one pair "
+      "unless mode is 'all'.");
+  c.def_property_readonly(
+      "face_pairs", &face_pairs_of,
+      "(p, 2) uint32: the faces of these triangles; differs from `pairs` for polygons only.");
   c.def_property_readonly("crosses", &crosses_of,
-                          "(p,) bool: the pair passes through each other; False: it touches.");
+                          "(p,) bool: True if the pair crosses; False if it touches.");
   c.def_property_readonly(
       "fingerprint", [](const Answer& a) { return trace::to_hex(fingerprint(a.result->pairs)); },
       "str: 16 hexadecimal digits, a hash of `pairs`.");
   c.def_property_readonly(
       "interiors_overlap", &overlap_of,
-      "bool or None: whether the bodies share a volume; None where that is not known or was not asked for.");
-  c.def_property_readonly("regions", &regions_of, "list of ContactRegion, if contacts were asked for.");
+      "bool or None: True if the bodies share a volume; None if not known or not requested.");
+  c.def_property_readonly("regions", &regions_of, "list of ContactRegion, if contacts were requested.");
   c.def_property_readonly(
       "points", &points_of,
-      "((c, 3) float64, (c,) uint32): corners of the intersections of pairs, world frame, and the "
-      "pair of each, if\n"
-      "contacts were asked for.");
+      "((c, 3) float64, (c,) uint32): corners of the intersections of pairs, world frame, and "
+      "the pair of each, if\n"
+      "contacts were requested.");
   c.def_property_readonly(
       "counters", [](const Answer& a) { return counters_of(a.result->counters); },
       "dict: the work of the query, in numbers of operations.");
   c.def_property_readonly(
       "error_bound", [](const Answer& a) { return a.result->error_bound; },
-      "float: 0 if the answer is exact; else how far the wrappers that meet are off both bodies "
-      "together, world's unit.");
+      "float: 0 if the answer is exact; else the sum of both intersecting wrappers' maximum "
+      "deviations from their bodies, world's unit.");
   c.def_property_readonly(
       "finished", [](const Answer& a) { return a.result->finished; },
       "bool: False if a limit was reached before the tolerance.");
   c.def_property_readonly(
       "separation", &separation_of,
-      "dict or None: the regions that prove the bodies apart when refined, if they were asked for.");
+      "dict or None: the regions that prove the bodies separate when refined, if requested.");
   c.def_property_readonly(
       "opened",
       [](const Answer& a) {
@@ -140,11 +143,12 @@ void bind_result(py::module_& m) {
       "((i,) uint32, (j,) uint32): regions of A and of B that were refined, in order.");
   c.def(
       "__bool__", [](const Answer& a) { return in_contact(*a.result); },
-      "True if the bodies are known to have a point in common: surfaces meet, or one body is in the other.");
+      "True if the bodies are known to have a point in common: surfaces intersect, or one body "
+      "is inside the other.");
   c.def("__repr__", &shown);
 }
 
-/// Returns names as an array of numpy's strings.
+/// Returns names as a numpy array of strings.
 template <class Name>
 py::array names(std::size_t n, const Name& name) {
   py::list all;
@@ -236,7 +240,7 @@ void bind_region(py::module_& m) {
       "A connected part of the intersection of two surfaces; world frame, the meshes' unit.");
   c.def_property_readonly(
       "pairs", [](const Region& r) { return array_of_ids(std::span<const std::uint32_t>(r.region->pairs)); },
-      "(i,) uint32: numbers of the pairs in Result.pairs, ascending.");
+      "(i,) uint32: indices into Result.pairs, ascending.");
   c.def_property_readonly(
       "curves", &curves_of,
       "list of ((q, 3) float64, bool): the points of each curve, and whether it is closed.");
@@ -244,12 +248,12 @@ void bind_region(py::module_& m) {
       "length", [](const Region& r) { return r.region->length; }, "float: of all curves.");
   c.def_property_readonly(
       "area", [](const Region& r) { return r.region->area; },
-      "float: of coplanar contact, or that closed curves span; unit squared.");
+      "float: of the coplanar contact or the area spanned by closed curves; unit squared.");
   c.def_property_readonly(
       "centroid", [](const Region& r) { return array_of(r.region->centroid); }, "(3,) float64");
   c.def_property_readonly(
       "normal", [](const Region& r) { return array_of(r.region->normal); },
-      "(3,) float64: unit, from A to B, averaged; zero where it has no meaning.");
+      "(3,) float64: unit, from A to B, averaged; zero if undefined.");
   c.def_property_readonly(
       "depth_estimate", [](const Region& r) { return r.region->depth_estimate; },
       "float: an estimate of how far B must move along `normal` to leave the region.");
@@ -288,7 +292,7 @@ namespace {
 
 const pid_t loaded_by = getpid();
 
-/// Work on a thread of its own, so that the one that Python's signals come to can wait for either.
+/// Runs work on a separate thread, so that the thread that receives Python's signals can wait for both.
 class Batch {
  public:
   Batch(std::size_t n, unsigned threads, const std::function<void(std::size_t, unsigned)>& work)
@@ -298,7 +302,7 @@ class Batch {
     if (thread_.joinable()) thread_.join();
   }
 
-  /// Waits, but no longer than a moment. Returns true if all is done.
+  /// Waits for a short time at most. Returns true if all work is done.
   bool wait() {
     constexpr std::chrono::milliseconds kMoment{50};
     std::unique_lock lock(mutex_);
@@ -329,7 +333,7 @@ class Batch {
   std::exception_ptr failure_;
   std::mutex mutex_;
   std::condition_variable ready_;
-  std::thread thread_;  ///< last: it uses all others
+  std::thread thread_;  ///< last member: it uses all others
 };
 
 }  // namespace

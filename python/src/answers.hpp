@@ -14,17 +14,17 @@
 
 namespace lrb::python {
 
-/// One answer, with the bodies that it is about.
+/// One answer, with its bodies.
 struct Answer {
   std::shared_ptr<const CollideResult> result;
   std::shared_ptr<const LrbRep> a, b;
 };
 
-/// Answers in the order of the questions: for many poses of two bodies, or for many pairs.
+/// Answers in the order of the queries: for many poses of two bodies, or for many pairs.
 struct Answers {
   std::shared_ptr<const std::vector<CollideResult>> all;
   std::shared_ptr<const LrbRep> a, b;
-  /// The bodies of each answer, where these differ; a and b are nothing then.
+  /// The bodies of each answer if they differ; a and b are null then.
   std::vector<std::array<std::shared_ptr<const LrbRep>, 2>> each;
 
   Answer at(std::size_t i) const {
@@ -35,10 +35,11 @@ struct Answers {
 /// Returns true if bodies are known to have a point in common.
 bool in_contact(const CollideResult& r);
 
-/// Returns an element of a list-like object as Python counts, from the end if negative; throws IndexError.
+/// Returns an index as Python counts, from the end if negative. Throws IndexError if it is out of range.
 std::size_t checked_index(py::ssize_t i, std::size_t n);
 
-/// Gives a list-like class its iterator, without which types and isinstance() do not take it for iterable.
+/// Gives a list-like class an iterator, without which type checkers and isinstance() do not accept it as
+/// iterable.
 template <class Class>
 void bind_iterator(Class& c) {
   c.def("__iter__", [](const py::object& self) {
@@ -47,34 +48,35 @@ void bind_iterator(Class& c) {
   });
 }
 
-/// Returns contact regions as Python has them.
+/// Returns contact regions as Python objects.
 py::list regions_of(const Answer& answer);
 
-/// Returns the number of threads that an argument stands for: 0 as many as the machine runs at once, but one
-/// in a process that was forked from the one that loaded the module. Threads do not survive a fork, and who
-/// forks has processes for all cores.
+/// Returns the number of threads for an argument: 0 is the hardware's number, but 1 in a process forked from
+/// the one that loaded the module. Threads do not survive a fork, and a program that forks uses processes for
+/// all cores.
 unsigned threads_of(std::size_t asked);
 
-/// Calls work(i, worker) for i = 0 .. n - 1 on threads_of(asked) threads without the lock of Python, which
-/// must be held when this is called. Looks for signals meanwhile: after Ctrl-C calls that have not begun are
-/// left out, and KeyboardInterrupt comes out.
+/// Calls work(i, worker) for i = 0 .. n - 1 on threads_of(asked) threads without the GIL, which the caller
+/// must hold. Checks for signals meanwhile: after Ctrl-C, calls that have not started are skipped and
+/// KeyboardInterrupt is raised.
 void run_batch(std::size_t n, unsigned threads,
                const std::function<void(std::size_t i, unsigned worker)>& work);
 
-/// Returns the memory that single queries of the calling thread reuse.
+/// Returns the workspace that single queries of the calling thread reuse.
 Workspace& own_workspace();
 
-/// Throws what signal handlers raised, such as KeyboardInterrupt. Takes the lock of Python.
+/// Throws exceptions raised by signal handlers, such as KeyboardInterrupt. Acquires the GIL.
 void check_signals();
 
-/// Asks about pairs of bodies without the lock of Python, as run_batch() does.
+/// Queries pairs of bodies without the GIL, as run_batch() does.
 std::vector<CollideResult> answers_of(std::span<const PosedPair> pairs, const CollideRequest& request,
                                       unsigned threads);
 
-/// Returns a distance as Python has it.
+/// Returns a distance as a Python object.
 py::object distance_object(DistanceResult result);
 
-/// What can be asked for by name, in the order in which functions take it. None: as CollideRequest has it.
+/// The query's keyword arguments, in the order of the functions' parameters. None: the default of
+/// CollideRequest.
 struct RequestArguments {
   py::handle mode, contacts, interiors_overlap, tolerance, max_tests, max_time, separation, max_pairs,
       recursion;

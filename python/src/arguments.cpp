@@ -15,12 +15,12 @@ std::string shape_text(const py::array& a) {
   return out + (a.ndim() == 1 ? ",)" : ")");
 }
 
-/// Returns the array that an argument is or can be made, of any type; none if it is none.
+/// Returns an argument as an array of any type, or an empty handle if it cannot be converted.
 py::array any_array(py::handle given) {
   return py::array::ensure(given);
 }
 
-/// Returns an array of doubles; copies only what is not one already.
+/// Returns an array of doubles; copies only if the argument is not one already.
 Numbers numbers(py::handle given, const char* what, const char* expected) {
   if (py::isinstance<py::array_t<double, py::array::c_style>>(given))
     return py::reinterpret_borrow<Numbers>(given);
@@ -38,7 +38,7 @@ constexpr const char* kPoses = "numbers of shape (4, 4) or (k, 4, 4)";
 
 /// Reads a row-major matrix of 3 or 4 rows of 4.
 Pose read_pose(const double* m, py::ssize_t rows, const char* what) {
-  constexpr double kRounding = 1e-9;  // of the last row, as products and inverses leave it
+  constexpr double kRounding = 1e-9;  // of the last row, after products and inverses
   for (int c = 0; rows == 4 && c < 4; ++c)
     if (!(std::abs(m[12 + c] - (c == 3 ? 1 : 0)) <= kRounding))
       throw InputError(std::string(what) + ": the last row of a pose must be 0 0 0 1");
@@ -65,7 +65,7 @@ void add_vertices(py::handle given, Mesh& mesh) {
   }
 }
 
-/// Appends a face. Corners are checked here because ids are narrower than the numbers that numpy has.
+/// Appends a face. Checks corners here, because ids are narrower than numpy's integers.
 void add_face(std::span<const std::int64_t> corners, Mesh& mesh, std::vector<VertexId>& memory) {
   const bool fits = mesh.dim == 2 ? corners.size() == 2 : corners.size() >= 3;
   const std::string face = "faces: face " + std::to_string(mesh.face_count());
@@ -99,7 +99,7 @@ void add_equal_faces(const py::array& found, Mesh& mesh) {
   for (py::ssize_t i = 0; i < f.shape(0); ++i) add_face({f.data(i, 0), width}, mesh, memory);
 }
 
-/// Adds polygons, each of which has its own number of corners.
+/// Adds polygons with any numbers of corners.
 void add_any_faces(const py::sequence& faces, Mesh& mesh) {
   std::vector<VertexId> memory;
   for (const py::handle face : faces) {

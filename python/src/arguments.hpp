@@ -1,7 +1,6 @@
 #pragma once
-/// What callers from Python give, as what the engine takes. Everything here throws InputError in one line
-/// that names the argument, or TypeError where an argument is of another kind altogether. The lock of Python
-/// must be held.
+/// Converts Python arguments to the engine's types. All functions throw InputError with a one-line message
+/// that names the argument, or TypeError if an argument is of an unrelated type. The GIL must be held.
 
 #include <cstdint>
 #include <span>
@@ -22,27 +21,27 @@ namespace lrb::python {
 
 namespace py = pybind11;
 
-/// Returns what an error says of an object's type or, of an array, of its shape and type.
+/// Returns the description for an error message: an object's type or, for an array, its shape and dtype.
 std::string described(py::handle given);
 
-/// Returns a text for people, with \xff for a byte that is not UTF-8, as names of files may have.
+/// Returns a text for display, with \xff for each byte that is not UTF-8; file names may have such bytes.
 py::str printable(std::string_view text);
 py::list printable(const std::vector<std::string>& texts);
 
 /// Return an argument as a number or a flag; `fallback` for None. `what` is the argument's name.
 bool flag(py::handle given, const char* what, bool fallback = false);
 double number(py::handle given, const char* what, double fallback = 0);
-double size(py::handle given, const char* what, double fallback = 0);  ///< finite, from 0 on
+double size(py::handle given, const char* what, double fallback = 0);  ///< finite, at least 0
 std::uint64_t count(py::handle given, const char* what, std::uint64_t fallback = 0);
 std::string text(py::handle given, const char* what, const std::string& fallback = {});
 /// Returns a path, given as str, bytes or os.PathLike.
 std::string path(py::handle given, const char* what);
-/// Returns a path as Python has it, so that it can be opened.
+/// Returns a path as a Python str that open() accepts.
 py::str path_of(std::string_view path);
 /// Returns three numbers as a vector.
 Eigen::Vector3d vector(py::handle given, const char* what);
 
-/// Returns the enumerator that a word stands for; `fallback` for None.
+/// Returns the enumerator of a word; `fallback` for None.
 template <class Enum>
 Enum word(py::handle given, const char* what, Enum fallback) {
   if (given.is_none()) return fallback;
@@ -51,11 +50,11 @@ Enum word(py::handle given, const char* what, Enum fallback) {
   throw InputError(std::string(what) + ": \"" + name + "\" is not one of " + all_names<Enum>());
 }
 
-/// Poses of a body: one, or many in a row.
+/// Poses of a body: one, or many.
 struct Poses {
   bool one = true;
-  Pose first;              ///< if there is one
-  std::vector<Pose> many;  ///< if not: a single query asks for no memory
+  Pose first;              ///< if `one`
+  std::vector<Pose> many;  ///< if not `one`: a single query does not allocate
 
   std::vector<Pose> to_vector() const { return one ? std::vector<Pose>{first} : many; }
 };
@@ -64,12 +63,12 @@ Poses poses(py::handle given, const char* what);
 /// Reads one pose; throws for many.
 Pose pose(py::handle given, const char* what);
 
-/// Returns the mesh of arrays: vertices (n, 3) and faces (m, k) with k >= 3 or a sequence of sequences; of a
-/// body in the plane vertices (n, 2) and segments (m, 2).
+/// Makes a mesh from arrays: vertices (n, 3) and faces (m, k) with k >= 3, or a sequence of sequences; in 2D
+/// vertices (n, 2) and segments (m, 2).
 Mesh mesh_of_arrays(py::handle vertices, py::handle faces, const std::string& name);
 
-/// Returns an array that nobody can write to and that shows memory of `owner`, which it keeps alive. T: as
-/// numpy has it. strides: in bytes; empty for numbers one after the other.
+/// Returns a read-only array that views memory of `owner` and keeps it alive. T: element type as in numpy.
+/// strides: in bytes; empty for contiguous numbers.
 template <class T>
 py::array_t<T> view(std::vector<py::ssize_t> shape, const T* data, py::handle owner,
                     std::vector<py::ssize_t> strides = {}) {
@@ -77,7 +76,7 @@ py::array_t<T> view(std::vector<py::ssize_t> shape, const T* data, py::handle ow
   py::detail::array_proxy(out.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return out;
 }
-/// Shows ids as (n / columns, columns) numbers, or as (n) if there is one column.
+/// Views ids as an array (n / columns, columns), or (n) for one column.
 template <class Id>
 py::array_t<std::uint32_t> view_of_ids(std::span<const Id> ids, py::ssize_t columns, py::handle owner) {
   static_assert(sizeof(Id) == sizeof(std::uint32_t));

@@ -6,10 +6,10 @@ namespace lrb::python {
 
 namespace py = pybind11;
 
-// Each binds one subject. module.cpp calls them in the order in which the classes need each other.
+// Each binds one subject. module.cpp calls them in an order that defines each class before its first use.
 void bind_answers(py::module_& m);
 void bind_body(py::module_& m);
-/// Binds what managers of many objects are made of: boxes of bodies, and which of them meet.
+/// Binds the parts of managers of many objects: boxes of bodies, and their overlapping pairs.
 void bind_boxes(py::module_& m);
 void bind_clash(py::module_& m);
 void bind_coherent(py::module_& m);

@@ -13,7 +13,7 @@
 namespace lrb::python {
 namespace {
 
-/// Returns the number of vertices up to the last that a real face has.
+/// Returns the number of vertices up to the last one used by a real face.
 std::size_t used_vertices(const LrbRep& rep) {
   std::size_t n = 0;
   for (FaceId f = 0; f < rep.real_face_count(); ++f)
@@ -70,8 +70,8 @@ void save(const Body& body, py::handle file) {
     write_mesh(real_mesh(body), name);
 }
 
-/// Shows the first n vertices, with as many coordinates as the constructor takes: (n, 3), or (n, 2) of a body
-/// in the plane.
+/// Views the first n vertices, with as many coordinates as the constructor takes: (n, 3), or (n, 2) for a 2D
+/// body.
 py::array_t<double> vertices_of(const py::object& self, std::size_t n) {
   const LrbRep& rep = self.cast<const Body&>().rep();
   return view({static_cast<py::ssize_t>(n), rep.dim()},
@@ -79,7 +79,8 @@ py::array_t<double> vertices_of(const py::object& self, std::size_t n) {
               {sizeof(Eigen::Vector3d), sizeof(double)});
 }
 
-/// Returns faces [begin, end) of a body: ids where all have as many corners, else a list of arrays.
+/// Returns faces [begin, end) of a body: an array of ids if all have the same number of corners, else a list
+/// of arrays.
 py::object faces_of(const py::object& self, FaceId begin, FaceId end) {
   const LrbRep& rep = self.cast<const Body&>().rep();
   const LrbData& d = rep.data();
@@ -155,7 +156,7 @@ py::array_t<double> box(const Body& body, py::handle given) {
   return out;
 }
 
-/// Returns the bytes of plain numbers.
+/// Returns the bytes of trivially copyable numbers.
 template <class T>
 py::bytes bytes_of(const std::vector<T>& numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T)};
@@ -174,7 +175,7 @@ constexpr std::size_t kPickled = 15;  ///< members of the tuple
 
 py::tuple pickled(const Body& body) {
   const LrbData& d = body.rep().data();
-  py::list notes;  // bytes, as names of files that are in them may not be UTF-8
+  py::list notes;  // bytes, because file names in them may not be UTF-8
   for (const std::string& note : body.notes()) notes.append(py::bytes(note));
   return py::make_tuple(kPickleVersion, d.dim, bytes_of(d.vertices), bytes_of(d.face_offsets),
                         bytes_of(d.face_vertices), d.real_face_count, bytes_of(d.inner_cell),
@@ -211,7 +212,7 @@ py::str shown(const Body& body) {
                    " regions, " + (rep.closed() ? "solid>" : "not closed>"));
 }
 
-/// Returns a body as its own copy, for it does not change.
+/// Returns a body as its own copy, because it is immutable.
 py::object itself(const py::object& self) {
   body(self, "self");
   return self;
@@ -225,24 +226,25 @@ void bind_making(BodyClass& c) {
         py::arg("name") = "body",
         R"(Body(vertices, faces, *, regions=True, lean=False, seed=1, threads=0, name='body')
 
-Makes a body of arrays.
+Makes a body from arrays.
 
-vertices: (n, 3) float, any unit; (n, 2) for a body in the plane.
+vertices: (n, 3) float, any unit; (n, 2) for a 2D body.
 faces: (m, 3) int, corners counter-clockwise seen from outside; (m, k) or a list of lists for convex
-    polygons; (m, 2) segments in the plane. What is inside out is turned, and `notes` says so.
-regions: build an LRB-rep, with wrappers. Without, answers are the same and making is faster.
-lean: a smaller LRB-rep whose wrappers fit less well.
-seed, threads: of the build, whose result depends on the seed only; threads 0: all cores.
+    polygons; (m, 2) segments in 2D. Inward-oriented surfaces are flipped, and `notes` lists this.
+regions: build an LRB-rep with wrappers. Without regions, answers are the same and the body is made faster.
+lean: build a smaller LRB-rep whose wrappers fit less tightly.
+seed, threads: of the build. The result depends only on the seed. threads 0: all cores.
 
-Raises InputError, which names the element, for what cannot be queried at all. A surface that cannot have
-regions (open, not manifold) is a body without them.)");
+Raises InputError, which names the element, for a mesh that cannot be queried at all. A surface that cannot
+have regions (open, not manifold) gives a body without them.)");
   c.def_static("load", &load, py::arg("path"), py::kw_only(), py::arg("regions") = true,
                py::arg("lean") = false, py::arg("seed") = 1, py::arg("threads") = 0,
                R"(load(path, *, regions=True, lean=False, seed=1, threads=0)
 
 Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the options.)");
   c.def("save", &save, py::arg("path"),
-        "save(path)\n\nWrites the body: .lrb with its regions, .ply or .obj its faces alone.");
+        "save(path)\n\n"
+        "Writes the body: with its regions as .lrb, its faces alone as .ply or .obj.");
   c.def(py::pickle(&pickled, &unpickled));
   c.def("__copy__", &itself);
   c.def("__deepcopy__", [](const py::object& self, const py::handle&) { return itself(self); });
@@ -253,69 +255,72 @@ void bind_geometry(BodyClass& c) {
   c.def_property_readonly(
       "vertices",
       [](const py::object& self) { return vertices_of(self, self.cast<const Body&>().vertex_count()); },
-      "(n, 3) float64, (n, 2) in the plane: the mesh's vertices, its unit. Read-only, shares the body's "
-      "memory.");
+      "(n, 3) float64, in 2D (n, 2): the mesh's vertices in its unit. Read-only; shares the "
+      "body's memory.");
   c.def_property_readonly(
       "all_vertices",
       [](const py::object& self) {
         return vertices_of(self, self.cast<const Body&>().rep().vertices().size());
       },
-      "(v, 3) float64, (v, 2) in the plane: `vertices`, then those that only pseudo faces have.");
+      "(v, 3) float64, in 2D (v, 2): `vertices`, followed by the vertices that only pseudo "
+      "faces use.");
   c.def_property_readonly(
       "faces",
       [](const py::object& self) {
         return faces_of(self, FaceId{0}, FaceId(self.cast<const Body&>().rep().real_face_count()));
       },
-      "(m, 3) uint32, (m, 2) in the plane: the corners of each face; a list of arrays if faces differ in "
-      "their number of corners.");
+      "(m, 3) uint32, in 2D (m, 2): the corners of each face; a list of arrays if faces differ "
+      "in their number of corners.");
   c.def_property_readonly(
       "triangles", &triangles_of,
-      "(t, 3) uint32, (t, 2) in the plane: the corners of each triangle, which pairs name. A polygon is its fan "
-      "from the first corner.");
-  c.def_property_readonly("face_of_triangle", &face_of_triangle,
-                          "(t,) uint32: the face that each triangle is of.");
+      "(t, 3) uint32, in 2D (t, 2): the corners of each triangle; pairs index this array. A "
+      "polygon is a fan of triangles from its first corner.");
+  c.def_property_readonly("face_of_triangle", &face_of_triangle, "(t,) uint32: the face of each triangle.");
   c.def("box", &box, py::arg("pose") = py::none(),
-        "box(pose=None)\n\nReturns the box of the body at a pose, (2, 3) float64: least and greatest "
-        "coordinates, exact.");
+        "box(pose=None)\n\n"
+        "Returns the exact bounding box of the body at a pose, (2, 3) float64: minimum and "
+        "maximum coordinates.");
 }
 
 void bind_numbers(BodyClass& c) {
   c.def_property_readonly(
       "name", [](const Body& b) { return printable(b.rep().name()); }, "str: for messages.");
   c.def_property_readonly(
-      "dim", [](const Body& b) { return b.rep().dim(); }, "int: 3, or 2 in the plane.");
+      "dim", [](const Body& b) { return b.rep().dim(); }, "int: 3, or 2 for a 2D body.");
   c.def_property_readonly(
       "is_solid", [](const Body& b) { return b.rep().closed(); },
-      "bool: the faces bound a solid, so that 'inside' has a meaning.");
+      "bool: the faces bound a solid, so that 'inside' is defined.");
   c.def_property_readonly(
       "real_face_count", [](const Body& b) { return b.rep().real_face_count(); }, "int: faces of the mesh.");
   c.def_property_readonly(
       "face_count", [](const Body& b) { return b.rep().face_count(); },
-      "int: faces of the LRB-rep, pseudo faces included.");
+      "int: faces of the LRB-rep, including pseudo faces.");
   c.def_property_readonly(
       "region_count", [](const Body& b) { return b.rep().region_count(); },
-      "int: regions of the LRB-rep; 0 without.");
+      "int: regions of the LRB-rep; 0 if it has none.");
   c.def_property_readonly(
       "layer_count", [](const Body& b) { return b.rep().layer_count(); },
       "int: passes of the build that made regions.");
   c.def_property_readonly(
       "hash", [](const Body& b) { return trace::to_hex(b.rep().hash()); },
-      "str: 16 hexadecimal digits, the same for the same LRB-rep.");
+      "str: 16 hexadecimal digits, equal for equal LRB-reps.");
   c.def_property_readonly(
       "notes", [](const Body& b) { return printable(b.notes()); },
-      "list of str: what was done to the mesh or could not be, for people.");
+      "list of str: changes made to the mesh and features not available, as text.");
   c.def_property_readonly("build_seconds", &Body::build_seconds,
-                          "float: that the build took; 0 if there was none.");
+                          "float: duration of the build; 0 if the body was not built.");
   c.def_property_readonly(
       "memory_bytes", [](const Body& b) { return b.rep().memory_bytes(); }, "int");
   c.def("figures", &figures,
-        "figures()\n\nReturns the LRB-rep in numbers, a dict with the keys of `lrbscope build "
-        "--json`: faces, regions, layers,\n"
+        "figures()\n\n"
+        "Returns statistics of the LRB-rep, a dict with the keys of `lrbscope build --json`: "
+        "faces, regions, layers,\n"
         "volumes (unit cubed) of solid, outermost wrapper and hull, bytes, build_seconds.");
   c.def("levels", &levels, py::kw_only(), py::arg("threads") = 0,
-        "levels(*, threads=0)\n\nReturns the wrappers that queries to a tolerance walk, coarsest "
-        "first: a list of dicts with\n"
-        "`bound` (no point of the wrapper is further from the body; the mesh's unit), `faces`, "
+        "levels(*, threads=0)\n\n"
+        "Returns the levels of detail used by queries with a tolerance, coarsest first: a list of"
+        " dicts with `bound`\n"
+        "(maximum distance of the wrapper's points from the body, in the mesh's unit), `faces`, "
         "`pseudo_faces`.\n"
         "The first call makes them.");
 }
@@ -338,7 +343,8 @@ const BodyExtent& Body::extent() const {
 }
 
 const Body& body(py::handle given, const char* what) {
-  // What isinstance() and cast() look up is the same in each call, and they take as long as a query.
+  // Cached: the look-up in isinstance() and cast() gives the same result in each call and takes as long as a
+  // query.
   static PyTypeObject* const type = reinterpret_cast<PyTypeObject*>(py::type::of<Body>().ptr());
   if (Py_TYPE(given.ptr()) == type) {
     auto* object = reinterpret_cast<py::detail::instance*>(given.ptr());
@@ -355,9 +361,8 @@ BodyPtr shared_body(py::handle given, const char* what) {
 }
 
 void bind_body(py::module_& m) {
-  BodyClass c(
-      m, "Body",
-      R"(A body: a surface with its LRB-rep, ready to be queried. Does not change once made; threads share it.
+  BodyClass c(m, "Body",
+              R"(A body: a surface with its LRB-rep, ready for queries. Immutable; can be shared by threads.
 
 >>> import numpy as np
 >>> v = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])

@@ -9,14 +9,14 @@
 namespace lrb::python {
 namespace {
 
-/// A coherent query as Python has it, with its bodies.
+/// The Python class CoherentQuery, with its bodies.
 struct HeldQuery {
   HeldQuery(BodyPtr of_a, BodyPtr of_b, const CollideRequest& request, CoherentQuery::CacheUse use)
       : a(std::move(of_a)), b(std::move(of_b)), query(a->rep(), b->rep(), request, use) {}
 
   BodyPtr a, b;
   CoherentQuery query;
-  std::mutex mutex;  ///< it is asked by one thread at a time
+  std::mutex mutex;  ///< used by one thread at a time
 };
 using HeldQueryPtr = std::shared_ptr<HeldQuery>;
 
@@ -60,10 +60,11 @@ py::dict statistics(HeldQuery& self) {
 constexpr const char* kCoherentText =
     R"(CoherentQuery(a, b, *, mode='all', contacts=False, interiors_overlap=False, max_pairs=0, always=False)
 
-Asks about two bodies again and again as they move by little from one call to the next: keeps the pairs that may meet near
-the last poses, and tests only these. Answers are those of collide(); with mode 'first' or 'any' it may be another pair.
+Queries two bodies repeatedly while they move little between calls. Caches the candidate pairs near the last
+poses and tests only these. Answers equal those of collide(); with mode 'first' or 'any' the pair may differ.
 
-For the options see collide(). always: keep pairs even where queries from scratch are found to be faster (for tests).
+For the options see collide(). always: use the cache even when uncached queries are measured to be faster (for
+tests).
 
 >>> q = CoherentQuery(cube, cube)
 >>> [q.collide(shifted(x, 0.25, 0.125)).relation for x in (0.5, 0.51, 1.5)]
@@ -77,13 +78,14 @@ void bind_coherent(py::module_& m) {
   c.def(py::init(&make), py::arg("a"), py::arg("b"), py::kw_only(), py::arg("mode") = no,
         py::arg("contacts") = no, py::arg("interiors_overlap") = no, py::arg("max_pairs") = no,
         py::arg("always") = no, kCoherentText);
-  c.def(
-      "collide", &collide_next, py::arg("pose_b") = no, py::arg("pose_a") = no,
-      "collide(pose_b=None, pose_a=None)\n\nReturns the Result for these poses, (4, 4); None: the identity.");
+  c.def("collide", &collide_next, py::arg("pose_b") = no, py::arg("pose_a") = no,
+        "collide(pose_b=None, pose_a=None)\n\n"
+        "Returns the Result for these poses, (4, 4); None: the identity.");
   c.def_property_readonly(
       "statistics", &statistics,
-      "dict of int: queries answered from_cache, caches_made for a query (swept_caches of them for "
-      "a motion),\nqueries from_scratch, tests_saved.");
+      "dict of int: queries answered from_cache, caches_made for a query (swept_caches of them "
+      "for a motion),\n"
+      "queries from_scratch, tests_saved.");
   c.def_property_readonly(
       "a", [](const HeldQuery& q) { return q.a; }, "Body");
   c.def_property_readonly(
@@ -101,7 +103,7 @@ Workspace& own_workspace() {
 
 namespace {
 
-/// Returns the answer to a query, with memory of its own. Throws InputError if it is refused.
+/// Answers a query with its own memory. Throws InputError if the query is rejected.
 CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const CollideRequest& request, Workspace& workspace) {
   return std::move(lrb::collide(a, pose_a, b, pose_b, request, workspace).value());
@@ -140,7 +142,7 @@ py::object collide(py::handle a, py::handle b, py::handle poses_b, py::handle po
   return collide_many(body_a, at_a, body_b, at.many, request, threads_of(count(threads, "threads")));
 }
 
-/// A row of bodies with their poses.
+/// A sequence of bodies with their poses.
 struct Row {
   std::vector<std::shared_ptr<const LrbRep>> reps;
   std::vector<Pose> poses;
@@ -189,7 +191,7 @@ py::object contacts(py::handle a, py::handle b, py::handle poses_b, py::handle p
   return out;
 }
 
-/// Asks as a program in C++ would, and returns nothing: what calls from Python are compared with
+/// Queries as a C++ program would and returns nothing: the baseline for calls from Python
 /// (tests/python/bench.py).
 void collide_alone(py::handle a, py::handle b, py::handle given, unsigned threads) {
   const LrbRep &rep_a = body(a, "a").rep(), &rep_b = body(b, "b").rep();
@@ -207,17 +209,16 @@ constexpr const char* kCollideText =
     R"(collide(a, b, poses_b=None, pose_a=None, *, mode='all', contacts=False, interiors_overlap=False,
         tolerance=0, max_tests=0, max_time=0, separation=False, max_pairs=0, recursion='complete', threads=0)
 
-Finds whether two bodies meet, which of their triangles do, and how the bodies lie to each other; exactly.
+Finds out exactly whether two bodies intersect, which of their triangles do, and the relation of the bodies.
 
-poses_b: where B stands: a (4, 4) float matrix from body to world, applied to columns (x, y, z, 1); any affine
-map.
-    (k, 4, 4): k poses, answered on all cores without Python's lock; Ctrl-C ends the batch.
-pose_a: (4, 4), of A, in all of them. None is the identity for both.
-mode: 'all' pairs; 'first': one that crosses, if any; 'any': the first pair that is found, the fastest.
+poses_b: pose of B: a (4, 4) float matrix from body to world, applied to columns (x, y, z, 1); any affine map.
+    (k, 4, 4): k poses, processed on all cores without the GIL; Ctrl-C ends the batch.
+pose_a: (4, 4), the pose of A for all of them. None is the identity for both.
+mode: 'all' pairs; 'first': one crossing pair, if any; 'any': the first pair found, the fastest.
 contacts: fill Result.regions: curves, area, normal and depth of each contact region.
-tolerance (the meshes' unit), max_tests, max_time (s), separation: ask for no more than a scene needs.
-max_pairs: refuse answers of more pairs; 0: of more than 33,554,432, with contacts 2,097,152.
-threads: of a batch; 0: all cores. Answers are the same for any number.
+tolerance (the meshes' unit), max_tests, max_time (s), separation: limits and options of approximate queries.
+max_pairs: raise an error for answers of more pairs; 0: more than 33,554,432, with contacts 2,097,152.
+threads: of a batch; 0: all cores. Answers do not depend on it.
 
 Returns a Result, or for (k, 4, 4) a Results.
 
@@ -231,7 +232,7 @@ constexpr const char* kCollidePairsText =
     R"(collide_pairs(bodies_a, poses_a, bodies_b, poses_b, *, mode='all', contacts=False, max_pairs=0,
               threads=0)
 
-Asks for k pairs of bodies, on all cores: bodies_a[i] at poses_a[i] against bodies_b[i] at poses_b[i].
+Queries k pairs of bodies on all cores: bodies_a[i] at poses_a[i] against bodies_b[i] at poses_b[i].
 
 bodies_a, bodies_b: sequences of k bodies; poses_a, poses_b: (k, 4, 4) float.
 

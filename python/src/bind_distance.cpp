@@ -44,12 +44,15 @@ py::object overlap_of(const ClashResult& r) {
 void bind_result(py::module_& m) {
   py::class_<ClashResult> c(
       m, "Clash",
-      "What kind of contact two solids have, and how deep. Lengths are the world's unit; "
-      "intervals are proved to\nhold what they say. Made by clash().");
+      "Kind and depth of the contact of two solids. Lengths are in the world's unit; intervals "
+      "are proven\n"
+      "bounds. Made by clash().");
   c.def_property_readonly(
       "kind", [](const ClashResult& r) { return py::str(to_string(r.kind)); },
-      "str: 'apart', 'within_clearance', 'touching_point', 'touching_edge', 'touching_face', 'protrudes',\n"
-      "'pierces' (A goes through B), 'cuts_through' (A parts B), 'a_inside_b', 'b_inside_a', 'equal',\n"
+      "str: 'apart' (separate), 'within_clearance', 'touching_point', 'touching_edge', "
+      "'touching_face', 'protrudes',\n"
+      "'pierces' (A passes through B), 'cuts_through' (A divides B), 'a_inside_b', "
+      "'b_inside_a', 'equal',\n"
       "'undecided' (see `reason`).");
   c.def_property_readonly(
       "reason",
@@ -57,25 +60,28 @@ void bind_result(py::module_& m) {
         if (r.reason == ClashReason::none) return py::none();
         return py::str(std::string(name_of(r.reason)));
       },
-      "str or None: why the kind is 'undecided', as 'A intersects itself'; None if it is decided.");
+      "str or None: why the kind is 'undecided', such as 'A intersects itself'; None if it is "
+      "decided.");
   c.def_property_readonly("interiors_overlap", &overlap_of,
-                          "bool or None: whether the solids share a volume; None where that is not known.");
+                          "bool or None: True if the solids share a volume; None if not known.");
   c.def_readonly("shares_faces", &ClashResult::shares_faces,
                  "bool: the surfaces coincide over an area, with both solids on the same side of it.");
   c.def_property_readonly(
       "distance", [](const ClashResult& r) { return ends_of(r.distance); }, "(float, float): of the solids.");
   c.def_property_readonly(
       "depth", [](const ClashResult& r) { return ends_of(r.depth); },
-      "(float, float) or None: the length of the shortest way for B after which they share no volume.");
+      "(float, float) or None: length of the shortest translation of B after which they share "
+      "no volume.");
   c.def_property_readonly(
       "translation", [](const ClashResult& r) { return array_of(r.translation); },
-      "(3,) float64: moved by this, B is proved to share no volume with A; its length is depth[1].");
+      "(3,) float64: after this translation, B is proven to share no volume with A; its length "
+      "is depth[1].");
   c.def_property_readonly(
       "along", [](const ClashResult& r) { return ends_of(r.along); },
-      "(float, float) or None: how far B has to move in the direction that was given.");
+      "(float, float) or None: how far B has to move in the given direction.");
   c.def_property_readonly(
       "volume", [](const ClashResult& r) { return ends_of(r.volume); },
-      "(float, float) or None: the volume that they share, unit cubed.");
+      "(float, float) or None: the shared volume, unit cubed.");
   c.def("__repr__",
         [](const ClashResult& r) { return "<lrbscope.Clash " + std::string(to_string(r.kind)) + ">"; });
 }
@@ -91,11 +97,11 @@ void bind_clash(py::module_& m) {
         R"(clash(a, b, poses_b=None, pose_a=None, *, clearance=0, along=None, depth=True, volume=True,
       threads=0)
 
-Finds what kind of contact two solids have, and how deep it is.
+Finds the kind and depth of the contact of two solids.
 
 poses_b: (4, 4) float, or (k, 4, 4) for many poses on all cores; pose_a: (4, 4). None: the identity.
-clearance: solids that are no further apart are 'within_clearance'; the world's unit.
-along: (3,), a direction along which B is to leave A. depth, volume: whether to find these.
+clearance: solids at this distance or less are 'within_clearance'; the world's unit.
+along: (3,), a direction in which B is to leave A. depth, volume: whether to compute them.
 
 Returns a Clash, or for (k, 4, 4) a list of them.
 
@@ -153,7 +159,7 @@ py::array_t<double> points_of(const DistanceResult& r) {
   return out;
 }
 
-/// Returns an id as Python has it: None if there is none.
+/// Returns an id as a Python int, or None if there is none.
 template <class Id>
 py::object id_of(Id id) {
   if (id == kNull) return py::none();
@@ -185,9 +191,8 @@ std::string shown(const Distance& d) {
 }
 
 void bind_single_distance(py::module_& m) {
-  py::class_<Distance> c(
-      m, "Distance",
-      "How far two surfaces are apart: an interval that is proved to hold the distance. Made by distance().");
+  py::class_<Distance> c(m, "Distance",
+                         "Distance of two surfaces, as a proven interval. Made by distance().");
   c.def_property_readonly(
       "lower", [](const Distance& d) { return d.result->lower; }, "float: the world's unit.");
   c.def_property_readonly(
@@ -195,7 +200,7 @@ void bind_single_distance(py::module_& m) {
   c.def_property_readonly(
       "solids",
       [](const Distance& d) { return py::make_tuple(d.result->solids_lower(), d.result->solids_upper()); },
-      "(float, float): the interval for the solids: 0 also where one body holds the other.");
+      "(float, float): the interval for the solids; also 0 if one body contains the other.");
   c.def_property_readonly(
       "meet", [](const Distance& d) { return d.result->meet; }, "bool: the surfaces have a point in common.");
   c.def_property_readonly(
@@ -203,27 +208,28 @@ void bind_single_distance(py::module_& m) {
       [](const Distance& d) {
         return d.result->within ? py::object(py::bool_(*d.result->within)) : py::object(py::none());
       },
-      "bool or None: the answer to `within`, if it was asked and found.");
+      "bool or None: True if the distance is at most `within`; None if not requested or not "
+      "decided.");
   c.def_property_readonly(
       "finished", [](const Distance& d) { return d.result->finished; }, "bool: no limit was reached.");
   c.def_property_readonly(
       "relation", [](const Distance& d) { return py::str(to_string(d.result->relation)); },
-      "str: as Result.relation; of surfaces that meet, what the first pair shows.");
+      "str: as Result.relation; for intersecting surfaces, derived from the first pair.");
   c.def_property_readonly(
       "points", [](const Distance& d) { return points_of(*d.result); },
-      "(2, 3) float64: the nearest points of A and of B, world frame.");
+      "(2, 3) float64: the closest points of A and of B, world frame.");
   c.def_property_readonly(
       "triangles",
       [](const Distance& d) {
         return py::make_tuple(id_of(d.result->witness[0].simplex), id_of(d.result->witness[1].simplex));
       },
-      "(int, int): the triangles that these lie on; None of a body without faces.");
+      "(int, int): the triangles of these points; None for a body without faces.");
   c.def_property_readonly(
       "faces",
       [](const Distance& d) {
         return py::make_tuple(id_of(d.result->witness[0].face), id_of(d.result->witness[1].face));
       },
-      "(int, int): the faces of these.");
+      "(int, int): the faces of these triangles.");
   c.def_property_readonly(
       "features",
       [](const Distance& d) {
@@ -279,13 +285,13 @@ void bind_distance(py::module_& m) {
         R"(distance(a, b, poses_b=None, pose_a=None, *, within=None, tolerance=0, relative_tolerance=0,
          max_steps=0, relation=True, threads=0)
 
-Finds how far the surfaces of two bodies are apart, as an interval that is proved to hold the distance.
+Finds the distance of the surfaces of two bodies, as a proven interval.
 
 poses_b: (4, 4) float, or (k, 4, 4) for many poses on all cores; pose_a: (4, 4). None: the identity.
-within: ask only whether they are this near (the world's unit): Distance.within.
-tolerance (the world's unit), relative_tolerance: how wide the interval may be. 0, 0: about 1e-12 of the
-bodies' size. max_steps: of the search; 0: no limit. relation: decide how bodies lie whose surfaces do not
-meet.
+within: only decide whether the distance is at most this (the world's unit): Distance.within.
+tolerance (the world's unit), relative_tolerance: maximum width of the interval. 0, 0: about 1e-12 of the
+bodies' size. max_steps: of the search; 0: no limit. relation: determine the relation of bodies whose
+surfaces do not intersect.
 
 Returns a Distance, or for (k, 4, 4) a Distances.
 
@@ -304,7 +310,7 @@ struct FirstContacts {
   FirstContact at(std::size_t i) const { return {{all, &(*all)[i]}}; }
 };
 
-/// Returns the motion through some poses, at equal times from 0 to 1; through one: at rest.
+/// Returns the motion through poses at equally spaced times from 0 to 1; a single pose is at rest.
 Motion motion_through(std::span<const Pose> poses) {
   if (poses.size() == 1) return Motion::still(poses[0]);
   std::vector<Motion::KeyFrame> frames;
@@ -313,7 +319,7 @@ Motion motion_through(std::span<const Pose> poses) {
   return Motion::key_frames(frames);
 }
 
-/// Motions of a body, and whether one was given.
+/// Motions of a body, and whether a single one was given.
 struct Motions {
   std::vector<Motion> all;
   bool one = true;
@@ -347,7 +353,7 @@ py::object first_contact(py::handle a, py::handle b, py::handle motion_b, py::ha
   request.relation = flag(relation, "relation", true);
   auto results = std::make_shared<std::vector<FirstContactResult>>(of_b.all.size());
   const unsigned n = of_b.one ? 1 : threads_of(count(threads, "threads"));
-  // Alone, too, because it can take a while: Ctrl-C ends the wait for those that have not begun.
+  // Runs in a batch even for a single motion, because it can take long: Ctrl-C ends the wait.
   std::vector<Workspace> workspaces(n);
   run_batch(of_b.all.size(), n, [&](std::size_t i, unsigned worker) {
     (*results)[i] = std::move(
@@ -392,42 +398,50 @@ py::str word_of(Value value) {
 void bind_single_contact(py::module_& m) {
   py::class_<FirstContact> c(
       m, "FirstContact",
-      "When two moving bodies first meet, as a proved interval of the time t from 0 to 1. "
-      "Made by\nfirst_contact().");
+      "First contact of two moving bodies, as a proven interval of the time t from 0 to 1. Made"
+      " by\n"
+      "first_contact().");
   const auto get = [&c](const char* name, auto member, const char* text) {
     c.def_property_readonly(
         name, [member](const FirstContact& f) { return (*f.result).*member; }, text);
   };
   c.def_property_readonly(
       "outcome", [](const FirstContact& f) { return word_of(f.result->outcome); },
-      "str: 'contact'; 'never', which is proved; 'undecided': too near each other for doubles to tell.");
-  get("t0", &FirstContactResult::t0, "float: they do not meet before; 1 if never.");
-  get("t1", &FirstContactResult::t1, "float: they meet here; undecided: after it they do not; 1 if never.");
-  get("at_start", &FirstContactResult::at_start, "bool: they meet at t = 0.");
+      "str: 'contact'; 'never', which is proven; 'undecided': too close to each other for "
+      "double precision.");
+  get("t0", &FirstContactResult::t0, "float: no contact before this time; 1 if never.");
+  get("t1", &FirstContactResult::t1,
+      "float: in contact at this time; if undecided, no contact after it; 1 if never.");
+  get("at_start", &FirstContactResult::at_start, "bool: in contact at t = 0.");
   get("grazing", &FirstContactResult::grazing,
-      "bool: the interval is wider than asked, because the bodies graze before.");
-  get("passed", &FirstContactResult::passed, "bool: they have met by t1, though not at t1 itself.");
-  get("finished", &FirstContactResult::finished, "bool: no limit on steps was reached.");
+      "bool: the interval is wider than requested, because of an earlier tangential contact.");
+  get("passed", &FirstContactResult::passed,
+      "bool: in contact at some time up to t1, though not at t1 itself.");
+  get("finished", &FirstContactResult::finished, "bool: no step limit was reached.");
   c.def_property_readonly(
       "unresolved",
       [](const FirstContact& f) -> py::object {
         if (f.result->unresolved == Unresolved::nothing) return py::none();
         return word_of(f.result->unresolved);
       },
-      "str or None: why the interval is wider than asked, or nobody knows whether they meet in it: "
-      "'rounding':\nas near each other as rounding; 'steps': a limit on steps was reached.");
+      "str or None: why the interval is wider than requested, or contact in it is undecided: "
+      "'rounding': the\n"
+      "bodies are as close as rounding errors; 'steps': a step limit was reached.");
   get("speed", &FirstContactResult::speed,
-      "float: at which the points come nearer to each other along the normal; world's unit per unit of t.");
+      "float: approach speed of the closest points along the normal; world's unit per unit of "
+      "t.");
   c.def_property_readonly(
       "at_begin", [](const FirstContact& f) { return word_of(f.result->at_begin); },
-      "str: how the bodies lie at the start, as Result.relation.");
-  c.def_property_readonly("doubtful", &doubtful_of, "(d, 2) float64: spans of t in which nothing is known.");
-  c.def_property_readonly("pair", &pair_of, "(int, int) or None: triangles of A and of B that meet at t1.");
+      "str: relation of the bodies at the start, as Result.relation.");
+  c.def_property_readonly("doubtful", &doubtful_of, "(d, 2) float64: time intervals that are undecided.");
+  c.def_property_readonly("pair", &pair_of,
+                          "(int, int) or None: triangles of A and of B that intersect at t1.");
   c.def_property_readonly("points", &contact_points_of,
-                          "(2, 3) float64: the nearest points of A and of B at t0, world frame.");
+                          "(2, 3) float64: the closest points of A and of B at t0, world frame.");
   c.def_property_readonly(
       "normal", [](const FirstContact& f) { return array_of(f.result->normal); },
-      "(3,) float64: unit, from A to B, at t0; 0 at the start, and where rounding hides it.");
+      "(3,) float64: unit, from A to B, at t0; 0 at the start, and if it is below rounding "
+      "errors.");
   c.def_property_readonly(
       "counters", [](const FirstContact& f) { return counters_of(f.result->counters); },
       "dict: the work, in numbers of operations.");
@@ -474,15 +488,15 @@ void bind_first_contact(py::module_& m) {
         R"(first_contact(a, b, motion_b, motion_a=None, *, tolerance=1e-9, max_steps=10000000, relation=True,
               threads=0)
 
-Finds when the surfaces of two moving bodies first meet, as an interval of t that is proved to hold it.
+Finds the time of impact of the surfaces of two moving bodies, as a proven interval of t.
 
-motion_b: (m, 4, 4) float, m >= 2: poses at equal times from t = 0 to t = 1, rotations; between two of them B
-    turns by the shortest arc and its origin moves straight. (4, 4): at rest. (k, m, 4, 4): k motions, on all
-    cores.
+motion_b: (m, 4, 4) float, m >= 2: rigid poses at equally spaced times from t = 0 to t = 1. In between, B
+    rotates by the shortest arc and its origin moves on a straight line. (4, 4): at rest. (k, m, 4, 4):
+    k motions, on all cores.
 motion_a: (m, 4, 4) or (4, 4); None: at rest at the identity.
-tolerance: the widest interval, in t. max_steps: of the search, which has a limit of its own, too; 0: that
-    alone.
-relation: find out how bodies lie at the start that do not meet there.
+tolerance: maximum width of the interval, in t. max_steps: step limit in addition to the built-in limit;
+    0: only the built-in limit.
+relation: determine the relation at the start of bodies that are not in contact then.
 
 Returns a FirstContact, or for (k, m, 4, 4) a FirstContacts.
 

@@ -6,7 +6,7 @@
 namespace lrb::python {
 namespace {
 
-/// Explanations with the bodies that they are about.
+/// Explanations, with their bodies.
 struct OfPair {
   PairExplanation told;
   std::shared_ptr<const LrbRep> a, b;
@@ -58,7 +58,7 @@ OfWalk explain_walk(py::handle a, py::handle b, py::handle pose_b, py::handle po
   return {lrb::explain_walk(body_a.rep(), at_a, body_b.rep(), at_b), body_a.shared(), body_b.shared()};
 }
 
-/// Returns the points of a contact, or the nearest points of faces that do not meet.
+/// Returns the points of a contact, or the closest points of disjoint faces.
 py::array_t<double> points_of(const OfPair& e) {
   if (e.told.meet == exact::Meet::disjoint) return array_of(e.told.nearest);
   std::vector<Eigen::Vector3d> points;
@@ -74,9 +74,9 @@ py::tuple hidden_by(const OfPair& e) {
 }
 
 void bind_pair(py::module_& m) {
-  py::class_<OfPair> c(
-      m, "PairExplanation",
-      "Why two triangles are in an answer, or are not. Made by explain_pair(). str() says it in words.");
+  py::class_<OfPair> c(m, "PairExplanation",
+                       "Why two triangles are in an answer or not. Made by explain_pair(). str() gives the "
+                       "explanation as text.");
   c.def_property_readonly(
       "meet", [](const OfPair& e) { return py::str(std::string(name_of(e.told.meet))); },
       "str: 'disjoint', 'touch' or 'cross'.");
@@ -85,27 +85,26 @@ void bind_pair(py::module_& m) {
       "str: 'node_boxes', 'node_edges', 'face_boxes', 'planes', 'floats' or 'exact'.");
   c.def_property_readonly(
       "hidden_by", &hidden_by,
-      "((i,) uint32, (j,) uint32): the regions that hide the face of A and of B in the outermost "
+      "((i,) uint32, (j,) uint32): the regions that hide the faces of A and B in the outermost "
       "wrapper, from the outside inward.");
   c.def_property_readonly(
       "points", &points_of,
-      "(c, 3) float64: corners of what the triangles have in common, or (2, 3) their nearest "
-      "points; world frame.");
+      "(c, 3) float64: corners of the triangles' intersection, or (2, 3) their closest points; "
+      "world frame.");
   c.def_property_readonly(
       "distance",
       [](const OfPair& e) { return e.told.meet == exact::Meet::disjoint ? e.told.distance : 0.0; },
       "float: of the triangles, in double arithmetic; the world's unit.");
   c.def(
       "dict", [](const OfPair& e) { return parsed(e.json()); },
-      "dict()\n\nReturns all of it: a dict with the keys of `lrbscope why --pair --json`.");
+      "dict()\n\nReturns everything: a dict with the keys of `lrbscope why --pair --json`.");
   c.def("__str__", [](const OfPair& e) { return printable(e.text()); });
 }
 
 void bind_walk(py::module_& m) {
-  py::class_<OfWalk> c(
-      m, "WalkExplanation",
-      "How a query went, and what proves two bodies apart. Made by explain_walk(). str() says it in "
-      "words.");
+  py::class_<OfWalk> c(m, "WalkExplanation",
+                       "How a query proceeded, and what proves two bodies separate. Made by explain_walk(). "
+                       "str() gives the explanation as text.");
   c.def_property_readonly(
       "result",
       [](const OfWalk& e) {
@@ -118,8 +117,8 @@ void bind_walk(py::module_& m) {
         if (!e.told.plane) return py::none();
         return py::make_tuple(array_of(e.told.plane->normal), e.told.plane->of_a, e.told.plane->of_b);
       },
-      "((3,) float64, float, float) or None: normal n and numbers f < g with n x <= f for all of A, n x >= g for all of "
-      "B.");
+      "((3,) float64, float, float) or None: normal n and numbers f < g with n x <= f for all "
+      "of A, n x >= g for all of B.");
   c.def_property_readonly(
       "near_pairs",
       [](const OfWalk& e) {
@@ -131,10 +130,11 @@ void bind_walk(py::module_& m) {
         }
         return out;
       },
-      "(p, 2) uint32: triangles that came to a comparison of their own and do not meet, nearest first; five at most.");
+      "(p, 2) uint32: triangle pairs that were compared individually and are disjoint, closest "
+      "first; at most five.");
   c.def(
       "dict", [](const OfWalk& e) { return parsed(e.json()); },
-      "dict()\n\nReturns all of it: a dict with the keys of `lrbscope why --json`.");
+      "dict()\n\nReturns everything: a dict with the keys of `lrbscope why --json`.");
   c.def("__str__", [](const OfWalk& e) { return printable(e.text()); });
 }
 
@@ -147,10 +147,10 @@ void bind_explain(py::module_& m) {
   m.def("explain_pair", &explain_pair, py::arg("a"), py::arg("b"), py::arg("pair"), py::arg("pose_b") = no,
         py::arg("pose_a") = no, R"(explain_pair(a, b, pair, pose_b=None, pose_a=None)
 
-Tells why two triangles are in an answer, or are not: pair by pair of boxes from the roots of both trees down, then what
-decides between the triangles.
+Explains why two triangles are in an answer or not: the box pairs from the roots of both trees down, then the
+test that decides between the triangles.
 
-pair: a triangle of A and one of B, as Result.pairs numbers them; poses: (4, 4). Returns a PairExplanation.
+pair: a triangle of A and one of B, as numbered in Result.pairs; poses: (4, 4). Returns a PairExplanation.
 
 >>> e = explain_pair(cube, cube, (0, 0), shifted(5, 0, 0))
 >>> e.meet, e.decided_by, e.distance
@@ -158,7 +158,7 @@ pair: a triangle of A and one of B, as Result.pairs numbers them; poses: (4, 4).
   m.def("explain_walk", &explain_walk, py::arg("a"), py::arg("b"), py::arg("pose_b") = no,
         py::arg("pose_a") = no, R"(explain_walk(a, b, pose_b=None, pose_a=None)
 
-Tells how the complete query walks both trees and, of bodies that do not meet, what proves them apart.
+Explains how the complete query traverses both trees and, for disjoint bodies, what proves them separate.
 
 Poses: (4, 4). Returns a WalkExplanation.
 

@@ -17,7 +17,7 @@ int side(const py::handle& given) {
   return static_cast<int>(n);
 }
 
-/// What to draw, as the run's own spec has it; whether the direction was given.
+/// The picture in terms of the run's spec, and whether the direction was given.
 struct Wanted {
   render::FrameSpec frames;
   bool from_given = false;
@@ -56,7 +56,7 @@ Wanted wanted(const PictureArguments& given) {
   return out;
 }
 
-/// Returns one frame. OSMesa has one current context: pictures are drawn one at a time.
+/// Returns one frame. OSMesa has one current context, so pictures are drawn one at a time.
 run::PaintedFrame paint(const Recorded& recorded, std::size_t step, Wanted wanted) {
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);

@@ -47,7 +47,7 @@ RecordedPtr trace_of(py::handle a, py::handle b, py::handle poses_b, py::handle 
   trace::RecorderSettings settings;
   const py::none no;
   settings.request = request_of({mode, no, no, tolerance, max_tests, no, separation, no, recursion});
-  // Pictures show contacts; those who asked for less than all pairs have none.
+  // Pictures show contacts; a request for less than all pairs has none.
   settings.request.contacts =
       flag(contacts, "contacts", settings.request.mode == Mode::all_pairs && !settings.request.is_coarse());
   settings.level = word(events, "events", settings.level);
@@ -60,7 +60,7 @@ RecordedPtr trace_of(py::handle a, py::handle b, py::handle poses_b, py::handle 
   return out;
 }
 
-/// Shows events as numpy's records.
+/// Views events as a numpy record array.
 py::array events_of(const py::object& self) {
   const std::vector<trace::Event>& events = self.cast<const Recorded&>().trace.events;
   using trace::Event;
@@ -118,11 +118,11 @@ void save(const Recorded& r, py::handle file) {
 std::string html_of(const Recorded& r) {
   const py::gil_scoped_release unlocked;
   report::Page page = run::run_page(r.shown(), {}, "", {r.title, r.purpose, "", "the trace", {}});
-  page.links.clear();  // of files that lie beside a run's page
+  page.links.clear();  // these refer to files next to a run's page
   return report::page_html(page);
 }
 
-/// Returns the page in a frame of its own, so that its style is not that of the notebook.
+/// Returns the page in an iframe, so that its style does not affect the notebook.
 std::string notebook_html(const Recorded& r) {
   std::string page = html_of(r), out;
   out.reserve(page.size() + page.size() / 8);
@@ -168,14 +168,14 @@ void bind_trace(py::module_& m) {
   py::class_<Recorded, RecordedPtr> c(
       m, "Trace",
       "A recorded run: every event of its queries. Made by trace() and Scenario.record(). In a "
-      "notebook: a page on\n"
-      "which the bodies can be turned after any event.");
+      "notebook: a page\n"
+      "that shows the bodies, rotatable, after any event.");
   c.def_property_readonly(
       "events", &events_of,
-      "(e,) records of a, b, cause, boundary (uint32), depth_a, depth_b (uint16), kind, side, meet, "
-      "detail (uint8);\n"
-      "`kind` counts in `kinds`, and what a and b are depends on it (docs/scenarios.md). Shares the "
-      "trace's memory.");
+      "(e,) records of a, b, cause, boundary (uint32), depth_a, depth_b (uint16), kind, side, "
+      "meet, detail (uint8);\n"
+      "`kind` indexes `kinds` and determines the meaning of a and b (docs/scenarios.md). Shares"
+      " the trace's memory.");
   c.attr("kinds") = words<EventKind>();
   c.def_property_readonly(
       "steps", &steps_of,
@@ -187,12 +187,13 @@ void bind_trace(py::module_& m) {
       },
       "Results: the answers of the steps.");
   c.def_property_readonly(
-      "notes", [](const Recorded& r) { return printable(r.notes); }, "list of str: for people.");
+      "notes", [](const Recorded& r) { return printable(r.notes); }, "list of str: notes as text.");
   c.def("json", &json_of,
         "json()\n\nReturns the trace as text that ui.perfetto.dev opens (trace/schema/trace.schema.json).");
   c.def("summary", &summary_of,
-        "summary()\n\nReturns the run in numbers, a dict with the keys of summary.json.");
-  c.def("save", &save, py::arg("path"), "save(path)\n\nWrites json(), compressed if the path ends in .gz.");
+        "summary()\n\nReturns the run's statistics, a dict with the keys of summary.json.");
+  c.def("save", &save, py::arg("path"),
+        "save(path)\n\nWrites json(), gzip-compressed if the path ends in .gz.");
   c.def(
       "html", [](const Recorded& r) { return printable(html_of(r)); },
       "html()\n\nReturns the run's page: one file that opens in any browser.");
@@ -213,8 +214,9 @@ void bind_trace(py::module_& m) {
               {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent});
         },
         py::arg("step") = -1, py::kw_only(), names...,
-        "picture(step=-1, *, ...)\n\nDraws the end of a step, counted from the end if negative. "
-        "Options and result as of render().");
+        "picture(step=-1, *, ...)\n\n"
+        "Draws the end of a step, counted from the end if negative. Options and result as in "
+        "render().");
   });
 }
 
@@ -254,11 +256,11 @@ void bind_recorded(py::module_& m) {
         R"(trace(a, b, poses_b=None, pose_a=None, *, events='faces', max_events=1000000, mode='all',
       contacts=None, tolerance=0, max_tests=0, separation=False, recursion='complete')
 
-Records the query of two bodies at each pose, a step each: every comparison and every refinement.
+Records the query of two bodies at each pose, one step per pose: every comparison and every refinement.
 
-poses_b, pose_a: as of collide(). events: 'faces'; 'nodes' adds pairs of tree nodes, phases, points; 'all'
-adds pairs of triangles that planes part. max_events: how many are kept; more are counted. The rest: as of
-collide().
+poses_b, pose_a: as in collide(). events: 'faces'; 'nodes' adds pairs of tree nodes, phases, points; 'all'
+adds pairs of triangles that planes separate. max_events: maximum number stored; further ones are counted.
+The rest: as in collide().
 
 Returns a Trace.
 
@@ -283,11 +285,11 @@ True)");
        look_at=None, zoom=1, orthographic=False, wrappers=False, close_up=False, colour_by='kind',
        transparent=False)
 
-Draws a body, or two and where they meet.
+Draws one body, or two bodies and their contact.
 
-size: pixels, width and height. view_from: the direction from the bodies to the viewer; None: from where least
-of the contact is hidden. up: the direction upwards in the picture. look_at: the point in its middle; zoom:
-above 1 closer. wrappers: show the wrappers that the query worked on. close_up: show the contact alone.
+size: pixels, width and height. view_from: the direction from the bodies to the viewer; None: the one that
+hides least of the contact. up: the upward direction in the picture. look_at: the point at its centre; zoom:
+above 1 magnifies. wrappers: show the wrappers that the query used. close_up: show the contact alone.
 colour_by: 'kind', 'layer', 'region', 'face_tests', 'refinements', 'hits', 'misses'. transparent: no
 background.
 
@@ -300,18 +302,18 @@ Returns a Picture, (height, width, 3) uint8; transparent: (height, width, 4).
 
 namespace {
 
-/// What a run wrote.
+/// The results that a run wrote.
 struct Outcome {
   std::string folder;
   run::RunOutcome run;
 };
 
-/// Returns what tells `progress`, a callable or None, how far a job is. Lets Ctrl-C end it in any case.
+/// Returns a function that reports progress to `progress`, a callable or None. Ctrl-C is checked in any case.
 run::ProgressReport report_to(const py::object& progress) {
   const bool told = !progress.is_none();
   if (told && !PyCallable_Check(progress.ptr()))
     throw py::type_error("progress: expected a callable, got " + described(progress));
-  // A plain pointer, because copies are made and destroyed without the lock; the caller's argument keeps it
+  // A plain pointer, because copies are made and destroyed without the GIL; the caller's argument keeps it
   // alive.
   PyObject* const callee = progress.ptr();
   return [told, callee](const std::string& what, std::uint64_t done, std::uint64_t total) {
@@ -349,17 +351,17 @@ void bind_outcome(py::module_& m) {
       "folder", [](const Outcome& o) { return path_of(o.folder); }, "str");
   c.def_property_readonly(
       "page", [](const Outcome& o) { return path_of(o.folder + "/index.html"); },
-      "str: the run's page, for a browser.");
+      "str: path of the run's page.");
   c.def_property_readonly(
       "frames", [](const Outcome& o) { return o.run.frames; }, "int: the number of pictures in frames/.");
   c.def_property_readonly(
       "mismatches", [](const Outcome& o) { return printable(o.run.mismatches); },
       "list of str: expectations that were not met.");
   c.def_property_readonly(
-      "notes", [](const Outcome& o) { return printable(o.run.notes); }, "list of str: for people.");
+      "notes", [](const Outcome& o) { return printable(o.run.notes); }, "list of str: notes as text.");
   c.def_property_readonly(
       "summary", [](const Outcome& o) { return py::module_::import("json").attr("loads")(o.run.summary); },
-      "dict: the run in numbers, summary.json.");
+      "dict: the run's statistics, summary.json.");
   c.def("__repr__", [](const Outcome& o) { return printable("<lrbscope.Outcome in '" + o.folder + "'>"); });
 }
 
@@ -369,30 +371,32 @@ void bind_scenario(py::module_& m) {
   bind_outcome(m);
   py::class_<spec::Scenario> c(
       m, "Scenario",
-      R"(Two bodies (or one), how they move, what is asked and drawn: a shipped scenario, or one from a file.
+      R"(Two bodies (or one), their motion, the query and the pictures: a shipped scenario, or one from a file.
 
 >>> s = Scenario('collision')
 >>> s.name, len(s.purpose) > 0
 ('collision', True))");
-  c.def(
-      py::init([](py::handle given) {
-        return spec::open_scenario(py::isinstance<py::str>(given) ? text(given, "scenario")
-                                                                  : path(given, "scenario"));
-      }),
-      py::arg("path_or_name"),
-      "Scenario(path_or_name)\n\nOpens a shipped scenario by its name (scenarios()), or a file by its path.");
+  c.def(py::init([](py::handle given) {
+          return spec::open_scenario(py::isinstance<py::str>(given) ? text(given, "scenario")
+                                                                    : path(given, "scenario"));
+        }),
+        py::arg("path_or_name"),
+        "Scenario(path_or_name)\n\n"
+        "Opens a shipped scenario by its name (see scenarios()), or a file by its path.");
   c.def_property_readonly(
       "name", [](const spec::Scenario& s) { return s.name; }, "str");
   c.def_property_readonly(
       "purpose", [](const spec::Scenario& s) { return s.purpose; }, "str: what the pictures should show.");
   c.def("record", &record_scenario, py::kw_only(), py::arg("progress") = py::none(),
-        "record(*, progress=None)\n\nRuns the scenario and draws nothing. progress(what, done, "
-        "total): is called now and then. Returns a Trace.");
+        "record(*, progress=None)\n\n"
+        "Runs the scenario without drawing. progress(what, done, total) is called at intervals. "
+        "Returns a Trace.");
   c.def("run", &run_into, py::arg("out"), py::kw_only(), py::arg("progress") = py::none(),
-        "run(out, *, progress=None)\n\nRuns the scenario and writes page, frames, trace, numbers and "
-        "bodies into the folder `out`. Returns an Outcome.");
+        "run(out, *, progress=None)\n\n"
+        "Runs the scenario and writes page, frames, trace, statistics and bodies to the folder "
+        "`out`. Returns an Outcome.");
   c.def("__repr__", [](const spec::Scenario& s) { return "<lrbscope.Scenario '" + s.name + "'>"; });
-  m.def("scenarios", &shipped, "scenarios()\n\nReturns the names of the scenarios that lrbscope ships.");
+  m.def("scenarios", &shipped, "scenarios()\n\nReturns the names of the shipped scenarios.");
   m.def("_encode_png", &png_of, py::arg("pixels"));
 }
 

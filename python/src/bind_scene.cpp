@@ -36,33 +36,34 @@ py::array_t<std::uint32_t> pairs_of(SweepAndPrune& sweep, const Boxes& given) {
 void bind_boxes(py::module_& m) {
   py::class_<SweepAndPrune>(
       m, "SweepAndPrune",
-      R"(The broad phase: finds which of many boxes meet, by sort and sweep; quick if they have moved little.
+      R"(The broad phase: finds intersecting pairs of many boxes by sort and sweep; fast if they moved little.
 
 >>> boxes = [cube.box(), cube.box(shifted(0.5, 0, 0)), cube.box(shifted(9, 0, 0))]
 >>> SweepAndPrune().update(boxes).tolist()
 [[0, 1]])")
       .def(py::init<>())
       .def("update", &pairs_of, py::arg("boxes"),
-           "update(boxes)\n\nReturns the pairs of boxes with a point in common, (p, 2) uint32 "
-           "ascending. boxes: (n, 2, 3) float, least\n"
-           "and greatest coordinates.");
+           "update(boxes)\n\n"
+           "Returns the pairs of boxes with a point in common, (p, 2) uint32 ascending. boxes: (n, "
+           "2, 3) float, minimum\n"
+           "and maximum coordinates.");
 }
 
 namespace {
 
-/// A scene as Python has it. Its broad phase runs on one thread, which a fork does not take away; queries run
-/// on all those of run_batch().
+/// The Python class Scene. Its broad phase runs on the calling thread, so that it survives a fork; queries
+/// run on the threads of run_batch().
 struct HeldScene {
   explicit HeldScene(std::size_t asked_threads) : threads(asked_threads), scene(1) {}
 
   std::size_t threads;
   lrb::Scene scene;
   std::unordered_map<BodyKey, BodyPtr> bodies;
-  std::mutex mutex;  ///< scenes are asked by one thread at a time
+  std::mutex mutex;  ///< used by one thread at a time
 };
 using ScenePtr = std::shared_ptr<HeldScene>;
 
-/// Who is asked about beside the bodies of a scene: nobody, another scene, or a body from outside.
+/// The other side of a query: none, another scene, or a body outside the scene.
 struct Others {
   ScenePtr scene;
   BodyPtr body;
@@ -86,7 +87,7 @@ Others others_of(const HeldScene& self, py::handle given, py::handle pose_of_bod
   return out;
 }
 
-/// Holds the scenes that are asked. Waits for them without the lock of Python, which who has them may need.
+/// Locks the scenes of a query. Waits without the GIL, because the thread that owns a scene may need it.
 class Locked {
  public:
   explicit Locked(HeldScene& self, const Others& others = {}) : own_(self.mutex, std::defer_lock) {
@@ -103,7 +104,7 @@ class Locked {
   std::unique_lock<std::mutex> own_, other_;
 };
 
-/// Calls ask() with what names the others in the functions of lrb::Scene.
+/// Calls ask() with the arguments that select the others in the functions of lrb::Scene.
 template <class Ask>
 auto with_others(const Others& others, const Ask& ask) {
   const py::gil_scoped_release unlocked;
@@ -192,9 +193,9 @@ py::array_t<double> pose_at(HeldScene& self, py::handle given) {
   return out;
 }
 
-/// The pairs whose boxes are near each other; of a body from outside the key is -1.
+/// The pairs of bodies with nearby boxes; a body outside the scene has key -1.
 struct NearPairs {
-  std::vector<std::int64_t> keys;  ///< two to a pair
+  std::vector<std::int64_t> keys;  ///< two per pair
   std::vector<double> gaps;
 
   void add(const ScenePair& p, const Others& others) {
@@ -235,12 +236,12 @@ py::object nearest_boxes(HeldScene& self, py::handle other, py::handle at) {
   return py::make_tuple(others.body ? -1 : number_of(found->a), number_of(found->b), found->gap);
 }
 
-/// Answers of a scene, with the keys of the bodies that each is about.
+/// Answers of a scene, with the keys of each answer's bodies.
 struct Meetings : Answers {
   std::vector<std::int64_t> keys;
 };
 
-/// Pairs of a scene that are to be asked, with what keeps their bodies.
+/// Pairs of a scene to be queried, with shared ownership of their bodies.
 struct Questions {
   std::vector<PosedPair> pairs;
   std::vector<std::array<std::shared_ptr<const LrbRep>, 2>> reps;
@@ -291,7 +292,7 @@ Meetings collide(HeldScene& self, py::handle other, py::handle at, py::handle mo
 }
 
 bool any_meet(HeldScene& self, py::handle other, py::handle at) {
-  constexpr std::size_t kAtATime = 1024;  // what they find spares queries about the others
+  constexpr std::size_t kAtATime = 1024;  // pairs per block; a hit ends the search
   const Others others = others_of(self, other, at);
   CollideRequest request;
   request.mode = Mode::any_pair;
@@ -329,12 +330,13 @@ std::size_t size_of(HeldScene& self) {
 
 constexpr const char* kSceneText = R"(Scene(*, threads=0)
 
-Many bodies that come, go and move: which of them meet, and which are nearest. A broad phase that keeps its order from
-call to call finds the pairs whose boxes meet; these are asked exactly, on `threads` threads (0: all cores).
+Many bodies that are added, removed and moved: finds which of them intersect and which are closest. A broad
+phase that keeps its order between calls finds the pairs of overlapping boxes; these get exact queries, on
+`threads` threads (0: all cores).
 
-add() gives a body a key, an int, that no other body of the scene ever has. Functions that take `other` ask about all
-pairs of the scene's bodies (None), or about each of them against those of another Scene, or against a Body from outside
-that stands at `pose`: this one is A of the pair and its key -1.
+add() gives a body a key, an int, which the scene never reuses. Functions that take `other` query all pairs of the
+scene's bodies (None), or each of them against the bodies of another Scene, or against a Body at `pose`
+outside the scene. The outside body is A of the pair, with key -1.
 
 >>> s = Scene()
 >>> left, right = s.add(cube), s.add(cube, shifted(3, 0, 0))
@@ -350,15 +352,15 @@ void bind_bodies(SceneClass& c) {
   const py::none no;
   c.def(py::init([](py::handle threads) { return std::make_shared<HeldScene>(count(threads, "threads")); }),
         py::kw_only(), py::arg("threads") = no, kSceneText);
-  c.def(
-      "add", &add, py::arg("body"), py::arg("pose") = no,
-      "add(body, pose=None)\n\nAdds a Body, as often as you like, where it stands, (4, 4); None: the identity. "
-      "Returns its key.");
-  c.def("remove", &remove, py::arg("key"), "remove(key)\n\nTakes a body out.");
+  c.def("add", &add, py::arg("body"), py::arg("pose") = no,
+        "add(body, pose=None)\n\n"
+        "Adds a Body at a pose, (4, 4); None: the identity. The same Body may be added "
+        "repeatedly. Returns its key.");
+  c.def("remove", &remove, py::arg("key"), "remove(key)\n\nRemoves a body.");
   c.def("move", &move, py::arg("key"), py::arg("pose"),
         "move(key, pose)\n\nMoves a body: key int, pose (4, 4); or many: key (k,) int, pose (k, 4, 4).");
   c.def("body", &body_at, py::arg("key"), "body(key)\n\nReturns the Body of a key.");
-  c.def("pose", &pose_at, py::arg("key"), "pose(key)\n\nReturns where a body stands, (4, 4) float64.");
+  c.def("pose", &pose_at, py::arg("key"), "pose(key)\n\nReturns the pose of a body, (4, 4) float64.");
   c.def_property_readonly("keys", &keys, "(n,) int64: of all bodies, ascending.");
   c.def("__len__", &size_of);
   c.def("__contains__", &contains, py::arg("key"));
@@ -368,40 +370,45 @@ void bind_bodies(SceneClass& c) {
 
 void bind_questions(SceneClass& c) {
   const py::none no;
-  c.def(
-      "near", &near, py::arg("within") = no, py::arg("other") = no, py::arg("pose") = no,
-      "near(within=0, other=None, pose=None)\n\nReturns the pairs of bodies whose boxes are no further apart than "
-      "`within` (the world's unit), nearest first:\ntheir keys, (p, 2) int64, and the gaps of the boxes, (p,) "
-      "float64. At 0 these are the pairs that collide() asks about.");
-  c.def(
-      "nearest_boxes", &nearest_boxes, py::arg("other") = no, py::arg("pose") = no,
-      "nearest_boxes(other=None, pose=None)\n\nReturns the keys of the pair whose boxes are nearest, and their "
-      "gap: (int, int, float); None if there is no pair.");
-  c.def(
-      "collide", &collide, py::arg("other") = no, py::arg("pose") = no, py::kw_only(), py::arg("mode") = no,
-      py::arg("contacts") = no, py::arg("interiors_overlap") = no, py::arg("max_pairs") = no,
-      "collide(other=None, pose=None, *, mode='all', contacts=False, interiors_overlap=False, max_pairs=0)\n\n"
-      "Finds all pairs of bodies that meet, or of which one holds the other, in ascending order of their keys. For "
-      "the options\nsee collide(). Returns Meetings.");
+  c.def("near", &near, py::arg("within") = no, py::arg("other") = no, py::arg("pose") = no,
+        "near(within=0, other=None, pose=None)\n\n"
+        "Returns the pairs of bodies whose boxes are at most `within` apart (the world's unit), "
+        "closest first:\n"
+        "their keys, (p, 2) int64, and the gaps of the boxes, (p,) float64. At 0 these are the "
+        "pairs that collide() tests.");
+  c.def("nearest_boxes", &nearest_boxes, py::arg("other") = no, py::arg("pose") = no,
+        "nearest_boxes(other=None, pose=None)\n\n"
+        "Returns the keys of the pair with the closest boxes, and their gap: (int, int, float); "
+        "None if there is no pair.");
+  c.def("collide", &collide, py::arg("other") = no, py::arg("pose") = no, py::kw_only(), py::arg("mode") = no,
+        py::arg("contacts") = no, py::arg("interiors_overlap") = no, py::arg("max_pairs") = no,
+        "collide(other=None, pose=None, *, mode='all', contacts=False, interiors_overlap=False, "
+        "max_pairs=0)\n\n"
+        "Finds all pairs of bodies that intersect or of which one contains the other, in "
+        "ascending order of their keys. For the\n"
+        "options see collide(). Returns Meetings.");
   c.def("any_meet", &any_meet, py::arg("other") = no, py::arg("pose") = no,
-        "any_meet(other=None, pose=None)\n\nReturns True if collide() would find a pair; asks no longer than "
-        "needed.");
-  c.def(
-      "nearest", &nearest, py::arg("other") = no, py::arg("pose") = no, py::kw_only(), py::arg("solids") = no,
-      py::arg("relative_tolerance") = no, py::arg("tolerance") = no,
-      "nearest(other=None, pose=None, *, solids=False, relative_tolerance=0, tolerance=0)\n\n"
-      "Finds the pair of bodies whose surfaces are nearest, or whose solids are: 0 apart also where one holds the "
-      "other.\nReturns their keys and a Distance, (int, int, Distance); None if there is no pair.");
+        "any_meet(other=None, pose=None)\n\n"
+        "Returns True if collide() would find a pair; stops at the first.");
+  c.def("nearest", &nearest, py::arg("other") = no, py::arg("pose") = no, py::kw_only(),
+        py::arg("solids") = no, py::arg("relative_tolerance") = no, py::arg("tolerance") = no,
+        "nearest(other=None, pose=None, *, solids=False, relative_tolerance=0, tolerance=0)\n\n"
+        "Finds the pair of bodies with the closest surfaces, or the closest solids: their "
+        "distance is also 0 if one contains the\n"
+        "other. Returns their keys and a Distance, (int, int, Distance); None if there is no "
+        "pair.");
 }
 
 }  // namespace
 
 void bind_scene(py::module_& m) {
   py::class_<Meetings, Answers>(
-      m, "Meetings", "The pairs of a scene's bodies that meet: a sequence of Result, in the order of `keys`.")
+      m, "Meetings",
+      "The intersecting pairs of a scene's bodies: a sequence of Result, in the order of "
+      "`keys`.")
       .def_property_readonly(
           "keys", [](const Meetings& s) { return array_of_keys(s.keys); },
-          "(k, 2) int64: the keys of A and B of each, ascending; -1 of a body from outside.")
+          "(k, 2) int64: the keys of A and B of each; -1 for a body outside the scene. Ascending.")
       .def("__repr__", [](const Meetings& s) {
         return "<lrbscope.Meetings of " + std::to_string(s.all->size()) + " pairs of bodies>";
       });

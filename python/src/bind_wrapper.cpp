@@ -6,7 +6,7 @@
 namespace lrb::python {
 namespace {
 
-/// A wrapper, and the body that it is of.
+/// A wrapper and its body.
 struct BodyWrapper {
   BodyPtr body;
   Wrapper wrapper;
@@ -69,7 +69,7 @@ py::array_t<bool> real_of(const BodyWrapper& w) {
   return out;
 }
 
-/// Returns the region that the wrapper has behind a face of its boundary, on whichever side; else None.
+/// Returns the region that the wrapper has behind a face of its boundary, on either side; else None.
 py::object region_behind(const BodyWrapper& w, py::handle given) {
   const FaceId f = face(w, given);
   const LrbRep& rep = w.body->rep();
@@ -84,56 +84,59 @@ py::object region_behind(const BodyWrapper& w, py::handle given) {
 void bind_wrapper(py::module_& m) {
   py::class_<BodyWrapper> c(
       m, "Wrapper",
-      R"(Which regions of a body's LRB-rep count as part of it. Its boundary encloses the body.
+      R"(The set of regions of a body's LRB-rep that are included. Their union with the body is the wrapper.
 
 >>> w = Wrapper(cube)
 >>> w.refine_all()
 >>> len(w) == cube.real_face_count
 True)");
   c.def(py::init(&made), py::arg("body"), py::arg("mode") = py::none(),
-        "Wrapper(body, mode='regularised')\n\nMakes the outermost wrapper. mode: or 'unregularised', "
-        "in which refining a face\n"
-        "discards that face alone.");
+        "Wrapper(body, mode='regularised')\n\n"
+        "Makes the outermost wrapper. mode 'unregularised': refining a face discards that\n"
+        "face alone.");
   c.def_static("at", &at, py::arg("body"), py::arg("tolerance"), py::kw_only(), py::arg("threads") = 0,
-               "at(body, tolerance, *, threads=0)\n\nMakes the coarsest wrapper that is off the body by no "
-               "more than a tolerance (the\n"
-               "mesh's unit).");
+               "at(body, tolerance, *, threads=0)\n\n"
+               "Makes the coarsest wrapper whose maximum deviation from the body is within a\n"
+               "tolerance (the mesh's unit).");
   c.def(
       "refine", [](BodyWrapper& w, py::handle r) { return w.wrapper.refine(region(w, r)); },
-      py::arg("region"), "refine(region)\n\nExcludes a region. Returns False if it was excluded already.");
+      py::arg("region"), "refine(region)\n\nExcludes a region. Returns False if it was already excluded.");
   c.def(
       "refine_face", [](BodyWrapper& w, py::handle f) { return w.wrapper.refine_face(face(w, f)); },
       py::arg("face"),
-      "refine_face(face)\n\nRefines the region behind a face. Returns False if it is real or not on "
-      "the boundary.");
+      "refine_face(face)\n\n"
+      "Refines the region behind a face. Returns False if the face is real or not on the "
+      "boundary.");
   c.def(
       "coarsen", [](BodyWrapper& w, py::handle r) { return w.wrapper.coarsen(region(w, r)); },
       py::arg("region"),
-      "coarsen(region)\n\nTakes a region back in. Returns False if it is included already.");
+      "coarsen(region)\n\n"
+      "Includes a region again. Returns False if it is already included.");
   c.def(
       "refine_all", [](BodyWrapper& w) { w.wrapper.refine_all(); },
-      "refine_all()\n\nLeaves the real faces alone.");
+      "refine_all()\n\nExcludes all regions: only the real faces remain.");
   c.def(
-      "reset", [](BodyWrapper& w) { w.wrapper.reset(); }, "reset()\n\nGoes back to the outermost wrapper.");
+      "reset", [](BodyWrapper& w) { w.wrapper.reset(); }, "reset()\n\nResets to the outermost wrapper.");
   c.def(
       "includes", [](const BodyWrapper& w, py::handle r) { return w.wrapper.included(region(w, r)); },
-      py::arg("region"), "includes(region)\n\nReturns whether a region counts as part of the body.");
+      py::arg("region"), "includes(region)\n\nReturns True if a region is included in the wrapper.");
   c.def("region_behind", &region_behind, py::arg("face"),
-        "region_behind(face)\n\nReturns the region that is behind a face of the boundary; None of a "
-        "real face, or one that is not on it.");
+        "region_behind(face)\n\n"
+        "Returns the region behind a face of the boundary, or None if the face is real or not on "
+        "the boundary.");
   c.def_property_readonly(
       "body", [](const BodyWrapper& w) { return w.body; }, "Body");
-  c.def_property_readonly(
-      "faces", &faces_of,
-      "(f,) uint32: the faces of the boundary, ascending; real ones are less than body.real_face_count.");
+  c.def_property_readonly("faces", &faces_of,
+                          "(f,) uint32: the faces of the boundary, ascending; real faces are less than "
+                          "body.real_face_count.");
   c.def_property_readonly("is_real", &real_of,
-                          "(f,) bool: for each of these, whether it is one of the mesh.");
+                          "(f,) bool: for each of these, True if it is a face of the mesh.");
   c.def_property_readonly("triangles", &triangles_of,
-                          "(t, 3) uint32: the boundary's triangles, into body.all_vertices.");
+                          "(t, 3) uint32: the boundary's triangles, as indices into body.all_vertices.");
   c.def_property_readonly(
       "excluded",
       [](const BodyWrapper& w) { return array_of_ids(std::span<const RegionId>(w.wrapper.excluded())); },
-      "(r,) uint32: the excluded regions, in the order in which they were refined.");
+      "(r,) uint32: the excluded regions, in order of refinement.");
   c.def("__len__", [](const BodyWrapper& w) { return w.wrapper.boundary_size(); });
   c.def("__repr__", [](const BodyWrapper& w) {
     return printable("<lrbscope.Wrapper of '" + w.body->rep().name() +

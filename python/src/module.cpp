@@ -5,9 +5,8 @@
 namespace lrb::python {
 namespace {
 
-/// Throws TypeError in place of memory. pybind11 asks for memory when an object without a value is first
-/// used, as one is that was made by __new__ alone; objects that __init__ or __setstate__ makes have memory of
-/// their own.
+/// Throws TypeError instead of allocating. pybind11 allocates when an object without a value is first used,
+/// such as one made by __new__ alone; objects made by __init__ or __setstate__ have their own memory.
 void* refuse_memory(std::size_t) {
   throw py::type_error(
       "expected an object that its class has initialized, found one that only __new__ made; call the class");
@@ -24,7 +23,8 @@ void refuse_objects_without_value(const py::module_& m) {
 PyObject* input_error = nullptr;  // live as long as the module
 PyObject* environment_error = nullptr;
 
-/// Raises our exceptions as those of the module. Their texts may hold names of files that are not UTF-8.
+/// Raises lrbscope's exceptions as the module's Python exceptions. Messages may contain file names that are
+/// not UTF-8.
 void raise(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
@@ -37,9 +37,11 @@ void raise(std::exception_ptr thrown) {
 
 void bind_exceptions(py::module_& m) {
   py::exception<InputError> input(m, "InputError", PyExc_ValueError);
-  input.doc() = "Raised for input that cannot be used: one line that names the argument, file or element.";
+  input.doc() =
+      "Raised for invalid input. The message is one line that names the argument, file or "
+      "element.";
   py::exception<EnvironmentError> environment(m, "EnvironmentError", PyExc_OSError);
-  environment.doc() = "Raised when the machine cannot do what is asked: a full disk, a missing font.";
+  environment.doc() = "Raised when the machine cannot do what was requested: a full disk, a missing font.";
   input_error = input.release().ptr();
   environment_error = environment.release().ptr();
   py::register_exception_translator(&raise);
@@ -52,7 +54,8 @@ PYBIND11_MODULE(_core, m) {
   namespace py = pybind11;
   using namespace lrb::python;
   py::options options;
-  options.disable_function_signatures();  // docstrings begin with them, with the defaults that users see
+  options
+      .disable_function_signatures();  // docstrings begin with signatures that show the user-visible defaults
   m.doc() = "The engine of lrbscope. Use the package lrbscope.";
   m.attr("__version__") = lrb::trace::lrbscope_version();
   bind_exceptions(m);

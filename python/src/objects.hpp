@@ -15,10 +15,10 @@
 
 namespace lrb::python {
 
-/// A body as Python has it: an LRB-rep, which does not change, and what is known of where it came from.
+/// The Python class Body: an immutable LRB-rep, and its origin.
 class Body {
  public:
-  /// vertex_count: of the mesh; the vertices after these belong to pseudo faces.
+  /// vertex_count: of the mesh; later vertices belong to pseudo faces.
   Body(bodies::LoadedBody loaded, std::size_t vertex_count);
   explicit Body(bodies::LoadedBody loaded);
 
@@ -27,7 +27,7 @@ class Body {
   const std::vector<std::string>& notes() const { return notes_; }
   double build_seconds() const { return build_seconds_; }
   std::size_t vertex_count() const { return vertex_count_; }
-  /// Returns what finds the body's box; made when it is first asked for.
+  /// Returns the helper that finds the body's box; made on first use.
   const BodyExtent& extent() const;
 
  private:
@@ -41,12 +41,11 @@ class Body {
 
 using BodyPtr = std::shared_ptr<Body>;
 
-/// Returns the body that an argument is; throws TypeError for anything else.
+/// Returns the body of an argument. Throws TypeError for any other object.
 const Body& body(py::handle given, const char* what);
 BodyPtr shared_body(py::handle given, const char* what);
 
-/// A recorded run as Python has it: what the pictures and pages of scenarios/run are made of, with bodies
-/// that it shares.
+/// The Python class Trace: the input of the pictures and pages of scenarios/run, with shared bodies.
 class Recorded {
  public:
   std::vector<std::shared_ptr<const LrbRep>> bodies;  ///< A and B, or A alone
@@ -56,14 +55,14 @@ class Recorded {
   std::vector<std::string> notes;
   std::string title, purpose;
 
-  /// Returns what frames are drawn from; this object must outlive it.
+  /// Returns the data that frames are drawn from; this object must outlive it.
   run::RecordedRun shown() const;
 };
 
-/// Takes a recording over.
+/// Takes ownership of a recording.
 std::shared_ptr<Recorded> recorded_of(run::Recording recording, const spec::Scenario& scenario);
 
-/// How a picture is to look, as Python gives it. None: as render() says.
+/// Picture options as given in Python. None: the default of render().
 struct PictureArguments {
   py::handle size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent;
 };
@@ -77,7 +76,8 @@ void with_picture_arguments(const Bind& bind) {
        py::arg("colour_by") = no, py::arg("transparent") = no);
 }
 
-/// Draws the end of a step of a run as a lrbscope.Picture. The lock must be held, and is not while it draws.
+/// Draws the end of a step of a run as a lrbscope.Picture. The GIL must be held, and is released while
+/// drawing.
 py::object draw(const Recorded& recorded, std::size_t step, const PictureArguments& given);
 
 /// Encodes an (h, w, 3) or (h, w, 4) array as PNG.

@@ -82,7 +82,8 @@ double largest_side(const LrbRep& rep) {
 }
 
 Wrapper wrapper_at(const LrbRep& rep, double tolerance, unsigned threads) {
-  const std::span<const double> needed = rep.levels(threads).needed();  // empty: no region is ever included
+  // Empty: no region is included at any tolerance.
+  const std::span<const double> needed = rep.levels(threads).needed();
   Wrapper wrapper(rep);
   for (RegionId r = 0; r < rep.region_count(); ++r)
     if (needed.empty() || !(needed[r] <= tolerance)) wrapper.refine(r);

@@ -13,10 +13,10 @@
 
 namespace lrb::resolutions {
 
-// Adds up squared distances from planes.
+// Sums of squared distances from planes.
 
-/// The sum over some triangles of area times squared distance from the triangle's plane, as a function of the
-/// point: x^T a x - 2 b^T x + c, with a symmetric. Its unit is length^4.
+/// The sum over a set of triangles of area times squared distance from the triangle's plane, as a function of
+/// the point: x^T a x - 2 b^T x + c, with a symmetric. Its unit is length^4.
 class Quadric {
  public:
   Quadric() = default;
@@ -48,7 +48,7 @@ class Quadric {
   double weight() const { return weight_; }  ///< sum over all planes
   double at(const Eigen::Vector3d& p) const { return p.dot(times(p)) - 2 * b_.dot(p) + c_; }
 
-  /// Returns the point where at(x) + pull |x - m|^2 is least; pull > 0.
+  /// Returns the point that minimises at(x) + pull |x - m|^2; pull > 0.
   Eigen::Vector3d lowest(const Eigen::Vector3d& m, double pull) const {
     // By Cramer's rule: the matrix is positive definite because of the pull, and the result is the same on
     // every machine.
@@ -81,14 +81,15 @@ using construct::HullMesh;
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// How strongly a new vertex is drawn towards its edge's middle, and long edges are made expensive, relative
-/// to the distance from the planes around. Larger values give more even triangles and rounder creases,
-/// smaller ones give needles on flat parts.
+/// Weight of the pull of a new vertex towards its edge's midpoint, which also makes long edges expensive,
+/// relative to the distance from the surrounding planes. Larger values give more even triangles and rounder
+/// creases, smaller ones give needles on flat parts.
 constexpr double kEvenness = 1e-3;
-/// Cosine of the largest angle by which a triangle may turn. Smaller values allow folds; with larger ones
-/// collapses stop early.
+/// Cosine of the maximum rotation of a triangle's normal. Smaller values allow folds; larger ones stop
+/// collapses early.
 constexpr double kLeastCosine = 0.3;
-/// A new triangle's shape (1: equilateral, 0: none) must be this good, or better than the worst it replaces.
+/// Minimum shape quality of a new triangle (1: equilateral, 0: degenerate), unless it is better than the
+/// worst it replaces.
 constexpr double kLeastShape = 0.1;
 
 double shape(const Vector3& a, const Vector3& b, const Vector3& c) {
@@ -103,7 +104,7 @@ class Decimator {
       : hull_(mesh), name_(mesh.name), next_id_(static_cast<VertexId>(mesh.vertices.size())) {
     Eigen::AlignedBox3d box;
     for (const Vector3& x : mesh.vertices) box.extend(x);
-    origin_ = box.center();  // near the surface, where quadrics lose no digits
+    origin_ = box.center();  // near the surface, where quadrics are precise
     quadrics_.resize(hull_.point_count());
     for (Slot s = 0; s < hull_.slot_count(); ++s) {
       const auto& v = hull_[s].v;
@@ -125,7 +126,7 @@ class Decimator {
         if (hull_.degree(c.u) > 0 && hull_.degree(c.v) > 0) try_collapse(c);
         if (2 * hull_.triangle_count() < planted_) plant();
       }
-      if (hull_.triangle_count() == before) return;  // everything that is left is refused
+      if (hull_.triangle_count() == before) return;  // all remaining collapses are rejected
     }
   }
 
@@ -149,8 +150,8 @@ class Decimator {
   }
 
  private:
-  /// An edge, and what its collapse costs. Both ends are gone after the collapse, so that an entry is either
-  /// right or names a vertex that no longer exists.
+  /// An edge, and the cost of its collapse. Both ends are deleted by the collapse, so that an entry is either
+  /// up to date or names a vertex that no longer exists.
   struct Collapse {
     double cost;
     Corner u, v;
@@ -159,7 +160,7 @@ class Decimator {
       return u != other.u ? u > other.u : v > other.v;
     }
   };
-  /// An edge of the hole that a collapse leaves.
+  /// A boundary edge of the hole that a collapse leaves.
   struct RimEdge {
     Corner from, to;
     Slot inside, across;
@@ -195,8 +196,8 @@ class Decimator {
 
   bool in_star(Slot s) const { return std::find(star_.begin(), star_.end(), s) != star_.end(); }
 
-  /// Fills star_ and rim_. Returns false if what the collapse leaves would not be a surface: the rim must be
-  /// one simple loop (the link condition), with more than two edges.
+  /// Fills star_ and rim_. Returns false if the result of the collapse would not be a surface: the boundary
+  /// must be one simple loop (the link condition) with more than two edges.
   bool find_star(Corner u, Corner v) {
     star_.clear();
     hull_.for_each_around(u, [&](Slot s, int) { star_.push_back(s); });
@@ -234,7 +235,7 @@ class Decimator {
     return worst_new >= std::min(kLeastShape, worst_old);
   }
 
-  /// Proves exactly that the new fan meets nothing but what it shares with it.
+  /// Proves exactly that the new fan intersects the surface only in shared vertices and edges.
   bool is_clear(const HullMesh::Point& w) {
     fan_.clear();
     for (const RimEdge& r : rim_) fan_.emplace_back(hull_.point(r.from), hull_.point(r.to), w);
@@ -292,9 +293,9 @@ class Decimator {
   std::string name_;
   VertexId next_id_;
   Vector3 origin_;
-  std::vector<Quadric> quadrics_;  ///< (|points|), about origin_
+  std::vector<Quadric> quadrics_;  ///< (|points|), relative to origin_
   std::optional<AabbTree> tree_;
-  std::uint32_t planted_ = 0;  ///< number of triangles when the tree was made
+  std::uint32_t planted_ = 0;  ///< number of triangles when the tree was built
   std::vector<Collapse> queue_;
   std::vector<Slot> star_;
   std::vector<RimEdge> rim_;

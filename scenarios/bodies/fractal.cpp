@@ -18,34 +18,34 @@ namespace {
 using Eigen::Vector3d;
 using Point = Eigen::Matrix<std::int64_t, 3, 1>;
 
-// Coordinates are integers, with 2^kUnitBits to the unit of length. Those of the basic shape are multiples of
-// 2^-5; each level of detail takes weights in sixteenths, that is, four bits more.
+// Coordinates are integers, with 2^kUnitBits per unit of length. Those of the basic shape are multiples of
+// 2^-5; each level of detail uses weights in sixteenths, that is, four more bits.
 constexpr int kUnitBits = 46, kBaseBits = 5, kLevelBits = 4;
 constexpr int kMaxLevel = (kUnitBits - kBaseBits) / kLevelBits;
 
-// The share of the room at an edge that one dent takes; the rest is for the dents in its walls.
+// Share of the available angle at an edge that one dent takes; the rest is for the dents in its walls.
 constexpr double kShare = 0.35;
-// A dent never leans further under its neighbours than this, however much room there is (radians).
+// Maximum angle by which a dent undercuts its neighbours, however large the available angle is (radians).
 constexpr double kMostRoom = 75 * std::numbers::pi / 180;
 constexpr double kWallRoom = 30 * std::numbers::pi / 180;
 constexpr double kSteepest = 60 * std::numbers::pi / 180;
 
-// How unevenly detail is spread: in the order of dents, a face counts as if it were broader or narrower by up
-// to this many powers of two.
+// Unevenness of detail: in the order of dents, a face counts as if it were wider or narrower by up to this
+// many powers of two.
 constexpr double kUneven = 2.5;
 
 struct Polygon {
   std::vector<VertexId> corners;  ///< counter-clockwise seen from outside
-  std::vector<double> room;  ///< angle between the face and the part of the solid that it may use, at edge
-                             ///< (i, i + 1)
+  /// Angle between the face and the part of the solid available to it, at edge (i, i + 1).
+  std::vector<double> room;
   CellId inner = kSolid, outer = kOutside;
   int level = 0;
 };
 
-/// A kind of dent: what is put behind a lid with m corners.
+/// A kind of dent: the geometry behind a lid with m corners.
 struct Kind {
   bool rim;    ///< there is a coplanar frame around the dent proper
-  bool flush;  ///< the rim and the inner lid are a region of their own, with no volume
+  bool flush;  ///< the rim and the inner lid form a separate region without volume
   bool flat;   ///< a frustum with a flat bottom; else a pyramid
   int lids() const { return flush ? 2 : 1; }
   /// Returns the number of real faces that it adds.
@@ -74,7 +74,7 @@ class Carver {
   }
 
  private:
-  /// Makes a prism over a pentagon, lying on its side like a house.
+  /// Makes a pentagonal prism, lying on its side like a house.
   void start() {
     const std::array<Eigen::Vector2d, 5> house = {{{-1, -0.75}, {1, -0.75}, {1, 0.25}, {0, 1}, {-1, 0.25}}};
     for (const double z : {-0.875, 0.875})
@@ -123,7 +123,7 @@ class Carver {
     return n.normalized();
   }
 
-  /// Returns the distances of the mean of the corners from the edges.
+  /// Returns the distances of the vertex centroid from the edges.
   std::vector<double> distances(const Polygon& f) const {
     const std::size_t m = f.corners.size();
     const Vector3d c = centre(f);
@@ -144,15 +144,15 @@ class Carver {
     return *std::min_element(d.begin(), d.end());
   }
 
-  /// Adds a face and puts it in the queue for dents. Broad faces come first: a sliver stays as it is.
+  /// Adds a face and puts it in the queue for dents. Wide faces come first: slivers are left unchanged.
   void add(std::vector<VertexId> corners, std::vector<double> room, CellId outer, int level) {
     faces_.push_back({std::move(corners), std::move(room), kSolid, outer, level});
     const auto f = static_cast<FaceId>(faces_.size() - 1);
     waiting_.push({breadth(faces_[f]) * steady::exp2(random_.in(-kUneven, kUneven)), f});
   }
 
-  /// Returns true if some dents can add up to these numbers. Keeps a margin while there are many to make; at
-  /// the end none is needed.
+  /// Returns true if some set of dents can add up to these numbers. Keeps a margin while many dents remain;
+  /// at the end none is needed.
   static bool fits(std::int64_t lids, std::int64_t gain) {
     if (lids < 0 || gain < 0) return false;
     if (lids == 0) return gain == 0;
@@ -160,7 +160,7 @@ class Carver {
     return 2 * gain >= 5 * lids && gain <= 7 * lids;
   }
 
-  /// Dents a large face so that the numbers that are left still fit.
+  /// Dents a large face so that the remaining numbers still fit.
   void carve_next() {
     std::vector<std::pair<double, FaceId>> passed_over;
     bool done = false;
@@ -180,7 +180,7 @@ class Carver {
     const int m = static_cast<int>(faces_[f].corners.size());
     const double wanted = static_cast<double>(gain_left_) / static_cast<double>(lids_left_);
     std::vector<std::pair<double, const Kind*>>
-        choice;  // (weight, kind): kinds near the average are likelier
+        choice;  // (weight, kind): kinds near the average are more likely
     double sum = 0;
     for (const Kind& k : kKinds) {
       if (!fits(lids_left_ - k.lids(), gain_left_ - k.gain(m))) continue;
@@ -199,8 +199,8 @@ class Carver {
     return true;
   }
 
-  /// Shrinks the face about the mean of its m corners to 1 - m u / 16 of its size. Every corner moves by u /
-  /// 16 of its way to each of the others: integers stay integers, and the plane stays the plane.
+  /// Shrinks the face about its m corners' centroid to 1 - m u / 16 of its size. Every corner moves by u / 16
+  /// of its distance to each of the others: integers stay integers, and the plane is unchanged.
   std::vector<Point> shrunk(const Polygon& f, int u) const {
     Point sum = Point::Zero();
     for (const VertexId v : f.corners) sum += points_[v];
@@ -230,14 +230,14 @@ class Carver {
   std::uint32_t regions_ = 0;
 };
 
-/// How deep a dent may be, and how steep its walls are then.
+/// Maximum depth of a dent, and the slope of its walls then.
 struct Slope {
   double depth;
   std::vector<double> angle;  ///< between face and wall, at each edge
 };
 
-/// Returns the shape of a dent. `rim` and `floor` tell how far the tops and the feet of its walls lie from
-/// the edges, as shares of the distance from edge to centre.
+/// Returns the shape of a dent. `rim` and `floor`: distances of the tops and feet of its walls from the
+/// edges, as shares of the distance from edge to centre.
 Slope slope_of(const std::vector<double>& distance, const std::vector<double>& room, double rim,
                double floor) {
   Slope s{std::numeric_limits<double>::infinity(), {}};
@@ -300,7 +300,7 @@ LrbData Carver::data() const {
   d.name = spec_.name;
   d.closed = true;
   for (const Point& p : points_) d.vertices.push_back(position(p));
-  // A region is made before the regions inside it, so that layers can be counted back from the last one.
+  // A region is made before the regions inside it, so that layers can be counted backward from the last one.
   d.region_layer.assign(regions_, 0);
   for (std::size_t f = faces_.size(); f-- > 0;)
     if (is_region(faces_[f].inner) && is_region(faces_[f].outer))

@@ -34,8 +34,8 @@ std::vector<Eigen::Vector2d> outline(const GeneratorValues& v) {
 }  // namespace
 
 /// Makes a tube of rectangular section around the axis: a loop of rings (bore, top, teeth, bottom), each with
-/// one point for each point of the outline. It is star-shaped seen from the axis, so that it cannot meet
-/// itself.
+/// one point for each point of the outline. It is star-shaped seen from the axis, and therefore free of
+/// self-intersections.
 Mesh gear(const GeneratorValues& v, std::uint64_t) {
   const std::vector<Eigen::Vector2d> teeth = outline(v);
   const int n = static_cast<int>(teeth.size()), rings = static_cast<int>(v.at("rings"));
@@ -73,9 +73,9 @@ Mesh cog2d(const GeneratorValues& v, std::uint64_t) {
 
 namespace {
 
-/// Gives each edge a bay in its middle third, as in a Koch curve turned inside out. The bay's apex is moved a
-/// little, so that no two look alike. Depths below a third of an edge keep bays within the triangle that
-/// belongs to their edge.
+/// Gives each edge a bay in its middle third, as in an inverted Koch curve. The bay's apex is displaced
+/// slightly, so that no two bays are equal. Depths below a third of an edge keep bays within the triangle of
+/// their edge.
 std::vector<Eigen::Vector2d> with_bays(const std::vector<Eigen::Vector2d>& outline, double depth,
                                        Random& random) {
   std::vector<Eigen::Vector2d> out;
@@ -84,7 +84,7 @@ std::vector<Eigen::Vector2d> with_bays(const std::vector<Eigen::Vector2d>& outli
     const Eigen::Vector2d inward(-along.y(), along.x());  // the solid is on the left
     out.push_back(a);
     out.push_back(a + along * random.in(0.30, 0.38));
-    // Drawn one after the other, because compilers evaluate operands in different orders.
+    // In separate statements, because compilers evaluate operands in different orders.
     const double reach = random.in(0.7, 1.0), middle = random.in(0.44, 0.56);
     out.push_back(a + along * middle + inward * depth * reach);
     out.push_back(a + along * random.in(0.62, 0.70));
@@ -108,10 +108,10 @@ Mesh polygon_2d(const std::vector<Eigen::Vector2d>& outline) {
 
 Mesh island(const GeneratorValues& v, std::uint64_t seed) {
   Random random(seed);
-  // The coarse outline: wide capes and one deep gulf, so that it is not convex even before detail is cut into
-  // it.
-  const double cape[][2] = {{1.00, 0.04}, {0.93, 0.10}, {0.98, 0.24}, {0.90, 0.37}, {0.38, 0.47},
-                            {0.95, 0.58}, {1.00, 0.70}, {0.45, 0.80}, {1.00, 0.91}};  // radius, turn
+  // The coarse outline: wide capes and one deep gulf, so that it is not convex even before detail is added.
+  const double cape[][2] = {
+      {1.00, 0.04}, {0.93, 0.10}, {0.98, 0.24}, {0.90, 0.37}, {0.38, 0.47},
+      {0.95, 0.58}, {1.00, 0.70}, {0.45, 0.80}, {1.00, 0.91}};  // radius, share of a full turn
   std::vector<Eigen::Vector2d> outline;
   for (const auto& c : cape) {
     const double angle = 2 * std::numbers::pi * c[1];
@@ -125,7 +125,7 @@ Mesh island(const GeneratorValues& v, std::uint64_t seed) {
 
 namespace {
 
-/// The middle line of a torus knot, by t in [0, 1).
+/// The centre line of a torus knot, by t in [0, 1).
 struct KnotLine {
   double p, q, radius, swing;
   Eigen::Vector3d operator()(double t) const {
@@ -142,7 +142,7 @@ Mesh knot(const GeneratorValues& v, std::uint64_t) {
   const int n = static_cast<int>(v.at("segments")), sides = static_cast<int>(v.at("sides"));
   const double tube = v.at("tube") * line.radius;
 
-  // Frames are carried along without twist, then turned evenly so that the last meets the first.
+  // Frames are transported without twist, then rotated evenly so that the last equals the first.
   std::vector<Eigen::Vector3d> tangent(n), side(n + 1);
   for (int i = 0; i < n; ++i) tangent[i] = (line((i + 0.5) / n) - line((i - 0.5) / n)).normalized();
   side[0] = tangent[0].unitOrthogonal();
@@ -188,7 +188,7 @@ void arc(Profile& profile, double radius, double height, double from, double to,
   }
 }
 
-/// Turns a profile around the z axis. The solid lies on the left of the profile's direction, seen with the
+/// Rotates a profile around the z axis. The solid is on the left of the profile's direction, seen with the
 /// axis on the left and z up; the first and the last point are put on the axis.
 Mesh lathe(const Profile& profile, int segments) {
   Mesh mesh;
@@ -208,7 +208,7 @@ Mesh lathe(const Profile& profile, int segments) {
   const auto last = static_cast<VertexId>(mesh.vertices.size() - 1);
   for (int i = 0; i < segments; ++i) add_triangle(mesh, 0, id(1, i + 1), id(1, i));
   for (int row = 1; row + 2 < rows; ++row) {
-    const int odd = row % 2;  // every other ring is turned by half a segment
+    const int odd = row % 2;  // every other ring is rotated by half a segment
     for (int i = 0; i < segments; ++i) {
       const VertexId a = id(row, i), b = id(row, i + 1), c = id(row + 1, i + odd), d = id(row + 1, i + 1);
       if (odd) {
@@ -265,8 +265,8 @@ Mesh pot(const GeneratorValues& v, std::uint64_t) {
 
 namespace {
 
-/// Cuts the edges of an icosahedron into `frequency` parts and puts the vertices at radius(direction): a
-/// star-shaped surface for any positive radius, so that it cannot meet itself.
+/// Subdivides the edges of an icosahedron into `frequency` parts and puts the vertices at radius(direction):
+/// star-shaped for any positive radius, and therefore free of self-intersections.
 class StarSurface {
  public:
   StarSurface(int frequency, const std::function<double(const Eigen::Vector3d&)>& radius)
@@ -290,7 +290,7 @@ class StarSurface {
     };
     for (int i = 0; i < n_; ++i) {
       for (int j = 0; i + j < n_; ++j) {
-        // Called one after the other, because id() numbers new vertices and compilers evaluate arguments in
+        // In separate statements, because id() numbers new vertices and compilers evaluate arguments in
         // different orders.
         const VertexId up = id(i, j + 1), along = id(i + 1, j), here = id(i, j);
         add_triangle(mesh_, here, along, up);
@@ -301,10 +301,10 @@ class StarSurface {
     }
   }
 
-  /// Returns a vertex on an edge, which faces share; finds it again by its place on the icosahedron, rounded.
+  /// Returns a vertex on an edge shared by faces, identified by its rounded position on the icosahedron.
   VertexId vertex(const Eigen::Vector3d& on_icosahedron) {
-    constexpr double kGrid = 1 << 24;  // far finer than the distance of two vertices, far coarser than
-                                       // rounding
+    // Far finer than the distance of two vertices, far coarser than rounding.
+    constexpr double kGrid = 1 << 24;
     const auto key = [&](int i) { return std::llround(on_icosahedron[i] * kGrid); };
     const auto [it, is_new] =
         ids_.try_emplace({key(0), key(1), key(2)}, static_cast<VertexId>(mesh_.vertices.size()));
@@ -336,11 +336,11 @@ Eigen::Vector3d random_direction(Random& random) {
   return {s * steady::cos(angle), s * steady::sin(angle), z};
 }
 
-/// Returns the height of a crater's profile at the cosine of the angle from its middle: a bowl inside a soft
+/// Returns the height of a crater's profile at the cosine of the angle from its centre: a bowl inside a soft
 /// raised rim.
 double crater_height(const Crater& c, double cosine) {
   const double t =
-      (1 - cosine) / (1 - c.cos_rim);  // 0 in the middle, 1 on the rim, about the square of the angle
+      (1 - cosine) / (1 - c.cos_rim);  // 0 at the centre, 1 on the rim, about the square of the angle
   if (t >= 2) return 0;
   const double rim = 0.25 * c.depth * steady::exp(-8 * (t - 1) * (t - 1));
   return rim - (t < 1 ? c.depth * (1 - t) * (1 - t) * (1 + 2 * t) : 0);

@@ -121,8 +121,8 @@ const Generator& known_generator(const std::string& name) {
   throw InputError("no generator is called \"" + name + "\"" + io::suggestion(name, known));
 }
 
-/// Returns the values with defaults where `values` names none; throws for parameters that the generator does
-/// not have, and for values that it does not take.
+/// Returns the values, with defaults for those not in `values`. Throws for unknown parameters and values out
+/// of range.
 GeneratorValues all_values(const Generator& g, const GeneratorValues& values) {
   const std::vector<std::string> known = names_of(g.parameters);
   for (const auto& [key, value] : values)

@@ -1,5 +1,5 @@
 #pragma once
-/// Makes bodies by our own code: seeded, closed, oriented outward, free of self-intersections.
+/// Generates bodies: seeded, closed, oriented outward, free of self-intersections.
 
 #include <cstdint>
 #include <map>
@@ -16,7 +16,7 @@ namespace lrb::generators {
 struct GeneratorParameter {
   const char* name;
   double fallback, least, most;
-  bool whole;        ///< takes whole numbers only
+  bool whole;        ///< accepts integers only
   const char* what;  ///< with its unit
 };
 
@@ -27,23 +27,23 @@ struct Generator {
   const char* purpose;
   int dim;
   std::vector<GeneratorParameter> parameters;
-  Mesh (*make)(const GeneratorValues& values, std::uint64_t seed);  ///< every parameter has its value
-  /// Makes bodies whose regions are known by construction, so that no builder is needed; null for others.
+  Mesh (*make)(const GeneratorValues& values, std::uint64_t seed);  ///< every parameter has a value
+  /// Makes a body whose regions are known by construction, without a builder; null if they are not.
   LrbRep (*make_rep)(const GeneratorValues& values, std::uint64_t seed) = nullptr;
 };
 
 std::span<const Generator> generators();
-/// Returns a generator by its name; null if there is none.
+/// Returns a generator by name, or null if it is unknown.
 const Generator* find_generator(const std::string& name);
 
-/// Makes a body; parameters that `values` does not name have the generator's defaults. Throws InputError for
-/// an unknown name or parameter and for a value out of range.
+/// Makes a body. Parameters not in `values` have the generator's defaults. Throws InputError for an unknown
+/// name or parameter and for a value out of range.
 Mesh generate(const std::string& name, const GeneratorValues& values = {}, std::uint64_t seed = 1);
-/// Makes the same body with its regions, if the generator knows them; nothing if a builder has to find them.
+/// Makes the same body with its regions. Returns nullopt if the generator does not know them.
 std::optional<LrbRep> generate_rep(const std::string& name, const GeneratorValues& values = {},
                                    std::uint64_t seed = 1);
 
-// The generators' functions (generated_solids.cpp, fractal.cpp). All parameters have their values, checked by
+// The generators' functions (generated_solids.cpp, fractal.cpp). All parameters have values, checked by
 // generate().
 
 Mesh rock(const GeneratorValues& v, std::uint64_t seed);
@@ -64,11 +64,11 @@ inline void add_triangle(Mesh& mesh, VertexId a, VertexId b, VertexId c) {
   mesh.add_face(corners);
 }
 
-/// Makes a 2D mesh of a closed polygon in the plane, counter-clockwise.
+/// Makes a 2D mesh from a closed polygon, counter-clockwise.
 Mesh polygon_2d(const std::vector<Eigen::Vector2d>& outline);
 
-// The fractal bodies of the paper's section 4: a basic shape to which local detail is added again and again,
-// as dents under lids. The regions are known by construction, so that no builder is needed.
+// The fractal bodies of the paper's section 4: a basic shape with repeated local detail, as dents under lids.
+// The regions are known by construction, without a builder.
 
 struct FractalSpec {
   std::string name = "fractal";
@@ -77,14 +77,14 @@ struct FractalSpec {
   std::uint64_t seed = 1;
 };
 
-/// Makes a body with exactly these numbers of faces. Its outermost wrapper is the basic shape's, a prism over
-/// a pentagon (7 faces); its size is about 2. It is closed and free of self-intersections (a dent stays
-/// within the room that its face's edges leave it; tests prove it exactly for the paper's bodies). All
-/// coordinates are integer multiples of one power of two, so that corners of one face are coplanar in double
-/// arithmetic, and so are lids and the rims they cover.
+/// Makes a body with exactly these numbers of faces. Its outermost wrapper is the basic shape's, a pentagonal
+/// prism (7 faces); its size is about 2. It is closed and free of self-intersections (a dent stays within the
+/// angles available at its face's edges; tests prove it exactly for the paper's bodies). All coordinates are
+/// integer multiples of one power of two, so that corners of one face are coplanar in double arithmetic, and
+/// so are lids and the rims they cover.
 ///
-/// Every dent turns one face into a lid (a pseudo face) and adds 3 to 11 faces, so that the numbers have to
-/// fit: throws InputError if they do not ((real_faces - 7) / pseudo faces must be between 2.5 and 7).
+/// Every dent turns one face into a lid (a pseudo face) and adds 3 to 11 faces, which limits the possible
+/// numbers. Throws InputError unless (real_faces - 7) / pseudo faces is between 2.5 and 7.
 LrbRep fractal_body(const FractalSpec& spec);
 
 /// Returns the paper's table 1: objects A to H.

@@ -56,8 +56,8 @@ RepFigures figures_of(const LrbRep& rep) {
   return out;
 }
 
-/// Returns the mesh that a body was built from, without vertices of pseudo faces: a build keeps within what
-/// all vertices span.
+/// Returns the mesh that a body was built from, without vertices of pseudo faces: a build is limited to the
+/// extent of all vertices.
 Mesh real_faces(const LrbRep& rep) {
   Mesh mesh;
   mesh.dim = rep.dim();
@@ -108,10 +108,10 @@ Eigen::Vector3d principal_sizes(const LrbRep& rep) {
   return sizes;
 }
 
-/// Says why the outermost wrapper is much larger than the hull.
+/// Explains why the outermost wrapper is much larger than the convex hull.
 std::string why_loose(const LrbRep& rep) {
   constexpr double kThin =
-      20;  // times as long as thick, the distance that the wrapper keeps is 10 % of the thickness
+      20;  // at this ratio of length to thickness the wrapper's clearance is 10 % of the thickness
   const Eigen::Vector3d sizes = principal_sizes(rep);
   if (rep.dim() == 3 && sizes[2] > kThin * sizes[0])
     return "the body is " + (sizes[0] > 0 ? rounded(sizes[2] / sizes[0]) : "infinitely many") +
@@ -119,9 +119,10 @@ std::string why_loose(const LrbRep& rep) {
   return "so few faces do not fit it closer: try --max-outer";
 }
 
-/// Says which region opens a large part of the body at once; empty if none does.
+/// Names the region that refines a large part of the body at once; empty if there is none.
 std::string crowded_region(const LrbRep& rep) {
-  constexpr std::size_t kFew = 200, kPart = 10;  // of real faces, one in so many
+  // At least kFew faces, and 1 / kPart of the real faces.
+  constexpr std::size_t kFew = 200, kPart = 10;
   RegionId worst(0);
   for (RegionId r = 0; r < rep.region_count(); ++r)
     if (rep.floor(r).size() > rep.floor(worst).size()) worst = r;
@@ -130,8 +131,8 @@ std::string crowded_region(const LrbRep& rep) {
   return "region " + std::to_string(worst) + " opens " + std::to_string(faces) + " faces at once";
 }
 
-/// Returns why an LRB-rep is poor although its options are not to blame, and a remedy; empty if no cause is
-/// known.
+/// Returns the cause and a remedy if an LRB-rep is poor for reasons other than its options; empty if no cause
+/// is known.
 std::string cause_of_waste(const LrbRep& rep) {
   if (rep.self_intersecting())
     return "its surface intersects itself, and faces that intersect others cannot be covered; repair it or unite "
@@ -195,7 +196,7 @@ std::vector<Trial> try_settings(const LrbRep& rep, unsigned threads) {
 }
 
 std::vector<std::string> advice(const LrbRep& rep, std::span<const Trial> trials) {
-  constexpr double kWorth = 0.95;  // of what it is: smaller gains come and go with the seed
+  constexpr double kWorth = 0.95;  // of the current value: smaller gains depend on the seed
   const RepFigures& now = trials[0].figures;
   const auto least = [&](auto number) -> const Trial& {
     return *std::min_element(trials.begin(), trials.end(), [&](const Trial& a, const Trial& b) {
@@ -229,8 +230,8 @@ std::vector<std::string> advice(const LrbRep& rep, std::span<const Trial> trials
 }
 
 std::string poor_line(const LrbRep& rep, const BuildOptions& build) {
-  constexpr double kLoose = 2, kMany = 2.5, kOpen = 2;            // 1.1 to 1.4, 1.5 to 2, and 1 are usual
-  if (rep.real_face_count() <= build.max_outer_faces) return {};  // so few faces need no wrapper
+  constexpr double kLoose = 2, kMany = 2.5, kOpen = 2;            // 1.1 to 1.4, 1.5 to 2, and 1 are typical
+  if (rep.real_face_count() <= build.max_outer_faces) return {};  // bodies with so few faces need no wrapper
   if (rep.region_count() == 0) return rep.name() + ": has no regions: every query starts from its faces";
   const RepFigures f = figures_of(rep);
   std::vector<std::string> faults;

@@ -9,7 +9,7 @@
 namespace lrb::resolutions {
 namespace {
 
-/// An edge as one of its two faces sees it.
+/// An edge, relative to one of its two faces.
 struct HalfEdge {
   VertexId low, high;   ///< its ends
   VertexId tip;         ///< the face's third corner
@@ -56,7 +56,7 @@ Mesh subdivide(const Mesh& mesh) {
   }
   out.vertices.reserve(old_count + added.size());
   for (VertexId v = 0; v < old_count; ++v) {
-    const double n = degree[v], beta = n == 3 ? 3.0 / 16 : 3.0 / (8 * n);  // Warren's
+    const double n = degree[v], beta = n == 3 ? 3.0 / 16 : 3.0 / (8 * n);  // Warren's weight
     out.vertices.push_back(n == 0 ? mesh.vertices[v]
                                   : Eigen::Vector3d((1 - n * beta) * mesh.vertices[v] + beta * sum[v]));
   }
@@ -82,7 +82,7 @@ std::vector<Mesh> resolutions(const Mesh& mesh, const ResolutionOptions& options
     throw InputError(obstacles.empty() ? mesh.name + ": no LRB-rep can be built of it" : obstacles.front());
   }
   const std::uint32_t all[] = {~0u};
-  Mesh finest = decimate(mesh, all).front();  // without any collapse: only turns polygons into triangles
+  Mesh finest = decimate(mesh, all).front();  // without any collapse: only triangulates polygons
   for (std::uint32_t i = 0; i < options.subdivisions; ++i) finest = subdivide(finest);
   orient_outward(finest);
   std::vector<std::uint32_t> targets;

@@ -120,7 +120,7 @@ Mesh make_torus(int n, int m, double major, double minor, bool quads) {
   return mesh;
 }
 
-/// Splits every triangle into four, with new vertices in the middles of edges.
+/// Splits every triangle into four, with new vertices at the edges' midpoints.
 Mesh subdivided(const Mesh& in) {
   Mesh out;
   out.vertices = in.vertices;
@@ -258,7 +258,8 @@ Mesh icosphere(int level, double radius, const Point3& centre) {
 
 Mesh bumpy_sphere(int level, std::uint64_t seed, double amplitude) {
   std::mt19937_64 random(seed);
-  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };  // the same everywhere
+  // The same on every platform.
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   std::vector<std::pair<Point3, double>> waves;
   for (int i = 0; i < 6; ++i) {
     const double x = 8 * unit() - 4, y = 8 * unit() - 4, z = 8 * unit() - 4;

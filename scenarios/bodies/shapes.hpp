@@ -1,7 +1,6 @@
 #pragma once
-/// Makes bodies for tests. Unless its comment says otherwise a body is closed, manifold, free of
-/// self-intersections and oriented outward (2D: the solid on the left of every segment). The same arguments
-/// give the same mesh.
+/// Makes bodies for tests. Unless stated otherwise a body is closed, manifold, free of self-intersections and
+/// oriented outward (2D: the solid on the left of every segment). The same arguments give the same mesh.
 
 #include <cstdint>
 #include <functional>
@@ -18,19 +17,19 @@
 
 namespace lrb::shapes {
 
-// LRB-reps small enough to know by heart, made without a builder.
+// LRB-reps small enough to check by hand, made without a builder.
 
 /// Returns a box [0, 4] x [0, 4] x [0, 2] whose top has a dent [1, 3] x [1, 3], 1 deep, under a lid: one
 /// region of volume 4. Triangles; real volume 28, outermost wrapper 32.
 LrbRep dented_box();
 
-/// Returns a staircase in the plane under two nested lids: region 1 (layer 1) hides region 0 (layer 0).
-/// Segments; real area 10, 10.5 with region 0, 16 with both.
+/// Returns a 2D staircase under two nested lids: region 1 (layer 1) hides region 0 (layer 0). Segments; real
+/// area 10, 10.5 with region 0, 16 with both.
 LrbRep stairs_2d();
 
 using RandomEngine = std::mt19937_64;
 
-/// Draws uniformly from [0, 1), by our own means: the standard library's distributions differ between
+/// Draws uniformly from [0, 1). Own code, because the standard library's distributions differ between
 /// implementations.
 inline double uniform(RandomEngine& random) {
   return static_cast<double>(random() >> 11) * 0x1p-53;
@@ -59,8 +58,8 @@ inline Eigen::AlignedBox3d box_of(const LrbRep& rep) {
   return box;
 }
 
-/// Draws a random rotation, and a translation that leaves the centres of the bodies' boxes about `share`
-/// times the sum of their radii apart: 1 just misses round bodies, 0 puts one into the other.
+/// Draws a random rotation, and a translation such that the distance of the boxes' centres is about `share`
+/// times the sum of their radii: 1 just misses round bodies, 0 puts one inside the other.
 inline Pose random_pose(RandomEngine& random, const LrbRep& a, const LrbRep& b, double share) {
   const Eigen::AlignedBox3d box_a = box_of(a), box_b = box_of(b);
   Pose p;
@@ -80,27 +79,27 @@ using Point3 = Eigen::Vector3d;
 Mesh tetrahedron(double size = 1);  ///< corners at 0 and on the axes; 4 triangles
 Mesh box(const Point3& low = {0, 0, 0}, const Point3& high = {1, 1, 1});       ///< 12 triangles
 Mesh quad_box(const Point3& low = {0, 0, 0}, const Point3& high = {1, 1, 1});  ///< 6 quads
-/// Makes the boundary of the unit cells (i, j, k), 0 <= i < nx and so on, for which `solid` holds, in
-/// triangles. Cells that meet only in an edge or vertex make it non-manifold.
+/// Makes the boundary of the unit cells (i, j, k), 0 <= i < nx and so on, for which `solid` returns true, in
+/// triangles. Cells that share only an edge or vertex make it non-manifold.
 Mesh voxels(int nx, int ny, int nz, const std::function<bool(int, int, int)>& solid, bool quads = false);
 Mesh l_shape();                        ///< three unit cells in an L
 Mesh comb(int teeth, int length = 4);  ///< a row of cells with a tooth of `length` cells on every second one
-Mesh box_with_void();                  ///< 3 x 3 x 3 cells without the middle one: two components, one a void
+Mesh box_with_void();  ///< 3 x 3 x 3 cells without the central one: two components, one a void
 
 // Round bodies.
 Mesh icosphere(int level, double radius = 1, const Point3& centre = {0, 0, 0});  ///< 20 * 4^level triangles
 Mesh bumpy_sphere(int level, std::uint64_t seed,
                   double amplitude = 0.2);  ///< star-shaped about 0, radius about 1
 /// Makes a surface of revolution about z: `profile` lists (radius, z) from the lower pole to the upper one,
-/// both on the axis and the others off it; triangles.
+/// these two on the axis and the others not; triangles.
 Mesh revolve(const std::vector<Point2>& profile, int slices);
 Mesh uv_sphere(int slices, int stacks, double radius = 1);
 /// Makes a thick hemispherical shell about 0, open to +z: outer radius 1, inner radius 1 - thickness.
 Mesh bowl(int slices, int stacks, double thickness = 0.2);
-Mesh torus(int n, int m, double major = 1, double minor = 0.4);  ///< n round the axis, m round the tube
+Mesh torus(int n, int m, double major = 1, double minor = 0.4);  ///< n around the axis, m around the tube
 Mesh quad_torus(int n, int m, double major = 1,
                 double minor = 0.4);  ///< the same in quads (hardly ever planar)
-Mesh open_cylinder(int slices);       ///< the mantle alone: NOT closed
+Mesh open_cylinder(int slices);       ///< the lateral surface alone: NOT closed
 
 // Polygons in the plane z = 0 (dim 2).
 Mesh polygon(const std::vector<Point2>& corners);  ///< as given; counter-clockwise to be oriented outward

@@ -109,7 +109,7 @@ namespace {
 constexpr const char* kPicture = "compare.png";
 constexpr std::size_t kMostSteps = 200;
 
-/// Returns the first event of a step that is not the same in both.
+/// Returns the first event of a step that differs.
 std::optional<std::string> different_event(const Runs& runs) {
   const trace::Trace &x = runs.of[0]->trace, &y = runs.of[1]->trace;
   for (std::size_t step = 0; step < step_count(runs); ++step) {

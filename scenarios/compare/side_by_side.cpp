@@ -20,7 +20,7 @@ using render::group_digits;
 using ColourBy = render::FrameSpec::ColourBy;
 using FaceValues = std::array<std::vector<double>, 2>;  ///< of A and of B
 
-/// Returns the numbers of faces that colours mean, in a step.
+/// Returns the face values that determine the colours in a step.
 FaceValues values_of(const run::Recording& r, ColourBy by, std::size_t step) {
   FaceValues out;
   for (std::size_t i = 0; i < out.size(); ++i)
@@ -33,7 +33,7 @@ double largest(const FaceValues& values) {
   return run::scale_without_the_smallest(values)[1];
 }
 
-/// Returns |x - y| for each real face; empty unless the bodies have as many.
+/// Returns |x - y| for each real face; empty if the numbers of faces differ.
 FaceValues difference(const Runs& runs, const std::array<FaceValues, 2>& values) {
   FaceValues out;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Two recorded runs of the same steps beside each other: pictures on one scale with one camera, and charts.
+/// Two recorded runs of the same steps side by side: pictures on one scale with one camera, and charts.
 
 #include <array>
 #include <cstdint>
@@ -16,22 +16,22 @@ struct Runs {
   std::array<const run::Recording*, 2> of;
   std::array<std::string, 2> names;
   std::array<const spec::Scenario*, 2> scenarios;
-  std::array<std::string, 2> pages = {};  ///< of the runs, as paths; empty: there is none
+  std::array<std::string, 2> pages = {};  ///< of the runs, as paths; empty: no page
 };
 
 /// Returns the number of steps that both runs have.
 std::size_t step_count(const Runs& runs);
 /// Returns true if all events of a step were stored.
 bool is_whole(const run::Recording& run, std::size_t step);
-/// Returns the step at which both together test most boxes, of those that are whole in both. Throws
-/// InputError if none is.
+/// Returns the step with the most box tests in both runs together, of those stored completely in both. Throws
+/// InputError if there is none.
 std::size_t busiest_step(const Runs& runs);
-/// Says which of the runs were cut, in a sentence; empty if none was.
+/// Returns a sentence that names the truncated runs; empty if there are none.
 std::string cut_words(const Runs& runs);
-/// Throws InputError if a folder holds a run of its own, whose page would be lost.
+/// Throws InputError if a folder contains a run, whose page would be overwritten.
 void refuse_folder_of_run(const std::string& folder);
 
-/// What colours mean: box tests where both runs have recorded pairs of nodes, else face tests.
+/// Meaning of the colours: box tests if both runs have recorded pairs of nodes, else face tests.
 render::FrameSpec::ColourBy common_colours(const Runs& runs);
 
 /// Draws one view of a run after an event. `framing`: what the camera shows.
@@ -41,9 +41,9 @@ render::Panel panel_after(const run::RecordedRun& recorded, render::FrameSpec fr
 /// Draws panels beside each other, without letters.
 render::Image in_a_row(const std::vector<render::Panel>& panels);
 
-/// Draws the bodies of both runs at the end of a step, coloured by common_colours() on one scale, and where
-/// the bodies have as many faces in both and these differ, a third picture: how much more each face has in
-/// one of the runs than in the other.
+/// Draws the bodies of both runs at the end of a step, coloured by common_colours() on one scale. If the
+/// bodies have the same numbers of faces in both and the values differ, a third picture shows the difference
+/// per face.
 render::Image draw(const Runs& runs, std::size_t step, const run::ProgressReport& progress);
 
 /// Returns a chart of a counter over the steps of both.

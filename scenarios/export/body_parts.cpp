@@ -23,7 +23,7 @@ using render::Rgba;
 constexpr double kNone = -1;
 enum Kind : std::uint8_t { kPseudo, kReal, kContact };
 
-/// As the pictures have them: a whitish veil.
+/// As in the pictures: whitish and translucent.
 Rgba lid_colour(Side side) {
   return render::with_alpha(render::mix(render::palette::body(side), render::kWhite, 0.70), 124);
 }
@@ -105,8 +105,8 @@ class BodyParts {
     return number;
   }
 
-  /// Returns true for a face of the wrapper that has the wrapper in front: the lid of a region that is
-  /// refined under one that is not.
+  /// Returns true for a face of the wrapper with the wrapper in front of it: the lid of a refined region
+  /// under an included one.
   bool faces_inward(FaceId f) const {
     return body_.wrapper != nullptr && body_.wrapper->included(rep_.outer_cell(f)) &&
            !body_.wrapper->included(rep_.inner_cell(f));
@@ -159,8 +159,7 @@ render::SceneOptions scene_options(const Moment& moment) {
   return out;
 }
 
-/// Returns the colours of all faces of the bodies as pictures have them; those of 2D bodies
-/// colour no faces.
+/// Returns the colours of all faces of the bodies as in the pictures; empty for 2D bodies.
 std::vector<std::vector<Rgba>> face_colours(const Moment& moment, std::span<const BodyParts> parts) {
   std::vector<render::SceneBody> bodies;
   std::vector<std::vector<Rgba>> out;

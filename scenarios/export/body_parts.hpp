@@ -16,19 +16,19 @@
 
 namespace lrb::exchange {
 
-/// One body as it stands at a moment.
+/// One body in its state at a moment.
 struct BodyMoment {
   const LrbRep* rep = nullptr;
-  const Wrapper* wrapper = nullptr;  ///< null: none is asked for, and the body is as without one
+  const Wrapper* wrapper = nullptr;  ///< null: no wrapper is requested, and the body has none
   Pose pose;
-  const trace::TreeShape* tree = nullptr;  ///< that was walked; null where that was not recorded
+  const trace::TreeShape* tree = nullptr;  ///< the traversed tree; null if not recorded
 };
 
-/// What is shown, and how it is coloured.
+/// The content of a model, and its colouring.
 struct Moment {
   std::string title;
   std::vector<BodyMoment> bodies;  ///< A and B, or A alone
-  /// The events of the time step so far, which the counters count; nothing: there are none, nor the columns.
+  /// The events of the time step so far, used for counters; nullopt: no events, and no such columns.
   std::optional<std::span<const trace::Event>> events;
   std::span<const ContactRegion> contacts;
   render::FrameSpec::ColourBy colour_by = render::FrameSpec::ColourBy::kind;
@@ -40,22 +40,22 @@ struct Wanted {
   bool side[2] = {true, true};  ///< of A's and B's
 };
 
-/// Returns the model of a moment. Its columns, -1 where they do not apply:
+/// Returns the model of a moment. Its columns, -1 where not applicable:
 /// - side: 0 A, 1 B; kind: 0 pseudo face, 1 real face, 2 contact
 /// - face: its number in the LRB-rep; real faces are numbered as in the mesh's file
-/// - region: which the face hides, or a real face lies in; layer: the builder's pass that made it
+/// - region: the one behind a pseudo face, or around a real face; layer: the builder's pass that made it
 /// - level: the number of regions between the face and the outside
-/// - distance: no point of the face is further from the body than this (proved; the mesh's unit)
-/// - with events: tests, hits, misses, refinements, contacts: as trace::FaceCounts has them
+/// - distance: proven maximum distance of the face's points from the body (the mesh's unit)
+/// - with events: tests, hits, misses, refinements, contacts: as in trace::FaceCounts
 /// - with a count to colour by: value, as it colours
 /// - with contacts: contact, the number of the contact region, and its length, area and depth
 Model make_model(const Moment& moment, const Wanted& wanted);
 
-/// Returns the wrapper that the regions of the builder's first `layers` passes make; 0: the body itself.
+/// Returns the wrapper of the regions of the builder's first `layers` passes; 0: the body itself.
 Wrapper wrapper_of_layers(const LrbRep& rep, std::uint32_t layers);
 
-/// Returns the finest wrapper with at most `most` faces that comes of refining region after region, those
-/// whose lids may be furthest off the body first. Throws InputError if the outermost one has more.
+/// Returns the finest wrapper with at most `most` faces obtained by refining regions in order of decreasing
+/// deviation of their lids. Throws InputError if the outermost one has more.
 Wrapper wrapper_of_faces(const LrbRep& rep, std::uint32_t most);
 
 }  // namespace lrb::exchange

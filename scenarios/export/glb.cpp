@@ -25,7 +25,7 @@ constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2, kJsonChunk = 0x4E4F53
 
 enum Material : std::uint8_t { kOpaque, kTranslucent, kUnlit };
 
-/// glTF keeps the colours of vertices linear.
+/// glTF vertex colours are linear.
 std::uint16_t linear(std::uint8_t srgb) {
   constexpr double kMost = 65535;
   const double x = srgb / 255.0;
@@ -33,7 +33,7 @@ std::uint16_t linear(std::uint8_t srgb) {
                                     0.5);
 }
 
-/// What is drawn in one go: corners that no two cells share, so that each cell has its colour and is flat.
+/// Geometry of one draw call: no two cells share corners, so that each cell has its own colour and is flat.
 struct Primitive {
   std::vector<std::array<float, 3>> x;
   std::vector<Rgba> colours;
@@ -79,8 +79,8 @@ class GlbOut {
   }
 
  private:
-  /// Puts the axis that points up in the model where glTF has it, and the model's middle where it is; nodes
-  /// below hold floats round that middle.
+  /// Rotates the model's up axis to glTF's and translates to its centre; nodes below store floats relative to
+  /// the centre.
   Json root() const {
     Json out = {{"name", "lrbscope"}, {"children", Json::array()}};
     const double h = std::sqrt(0.5);
@@ -93,7 +93,7 @@ class GlbOut {
     return out;
   }
 
-  /// Returns the number of a material, which is added when it is asked for first.
+  /// Returns the index of a material, which is added on first use.
   std::size_t number_of(Material kind) {
     std::optional<std::size_t>& number = materials_[kind];
     if (number) return *number;
@@ -129,7 +129,7 @@ class GlbOut {
     json_["meshes"].push_back(std::move(mesh));
   }
 
-  /// What all cells of a node agree on, and what they add up to.
+  /// Values common to all cells of a node, and sums over them.
   Json extras(const Part& part) const {
     Json out = {{"cells", part.cell_count()}};
     for (std::size_t i = 0; i < model_.columns.size(); ++i) {
@@ -180,7 +180,7 @@ class GlbOut {
     return json_["accessors"].size() - 1;
   }
 
-  /// Puts bytes, whose length is a multiple of 4, into the buffer.
+  /// Adds bytes, whose length must be a multiple of 4, to the buffer.
   Json accessor(const std::string& bytes, int target, int component, const char* type, std::size_t count) {
     json_["bufferViews"].push_back(
         {{"buffer", 0}, {"byteOffset", bin_.size()}, {"byteLength", bytes.size()}, {"target", target}});

@@ -13,7 +13,7 @@
 namespace lrb::exchange {
 namespace {
 
-/// Returns the part with these of its cells, and of its vertices those that they use, in their order.
+/// Returns the part with a subset of its cells, and the vertices that they use, in order.
 Part some_cells(const Part& part, std::span<const std::size_t> cells) {
   constexpr std::uint32_t kUnused = ~0U;
   std::vector<std::uint32_t> number(part.vertices.size(), kUnused);
@@ -80,7 +80,7 @@ namespace {
 struct Format {
   std::string_view ending;
   std::string (*bytes)(const Model&, const FileOptions&);
-  bool ascii, regions;  ///< whether it knows these options
+  bool ascii, regions;  ///< whether the format supports these options
 };
 constexpr std::array kFormats = {
     Format{".ply", ply_bytes, true, false}, Format{".vtp", vtp_bytes, true, false},

@@ -1,6 +1,5 @@
 #pragma once
-/// What is written to files that other programs open: points, lines and polygons with a colour and a row of
-/// numbers each.
+/// Models for export to other programs: points, lines and polygons, each with a colour and a row of numbers.
 
 #include <bit>
 #include <cstdint>
@@ -27,7 +26,7 @@ void append(std::string& out, T value) {
 
 enum class Shape : std::uint8_t { points, lines, polygons };
 
-/// The name of a number that every cell has. A number that a cell does not have is -1.
+/// A number that every cell has. -1 if it does not apply to a cell.
 struct Column {
   std::string_view name;
   bool whole = true;  ///< its numbers are integers
@@ -40,7 +39,7 @@ struct Part {
   bool in_regions = true;                    ///< its cells are faces, which have regions
   std::vector<Eigen::Vector3d> vertices;     ///< world frame
   std::vector<std::uint32_t> offsets = {0};  ///< (cells + 1), into corners
-  std::vector<std::uint32_t> corners;        ///< of a polygon counter-clockwise seen from outside
+  std::vector<std::uint32_t> corners;        ///< polygons counter-clockwise seen from outside
   std::vector<render::Rgba> colours;         ///< (cells)
   std::vector<std::vector<double>> values;   ///< (columns) x (cells)
 
@@ -52,24 +51,24 @@ struct Part {
 };
 
 struct Model {
-  std::string title;            ///< what it shows, one line
+  std::string title;            ///< description, one line
   std::vector<Column> columns;  ///< the same for all parts
-  std::string_view quality;     ///< the column by which programs are to colour; empty: none
+  std::string_view quality;     ///< the column that programs should colour by; empty: none
   std::vector<Part> parts;      ///< none is empty
 
   std::size_t column(std::string_view name) const;  ///< Returns its index; the model must have it.
 };
 
-/// Returns the parts with the faces of each region apart, by the column "region": NAME_region_N, and
+/// Returns the parts with the faces of each region separated, by the column "region": NAME_region_N, and
 /// NAME_no_region for the rest.
 std::vector<Part> split_by_region(const Model& model);
 
-// Writes models in the formats of other programs. docs/formats.md tells what each holds.
+// Writes models in the formats of other programs. docs/formats.md describes their contents.
 
 struct FileOptions {
   bool ascii = false;    ///< numbers as text: PLY, VTP
   bool regions = false;  ///< a group or node for each region: OBJ, GLB
-  int up = 2;            ///< the axis of the model that points up, for GLB, in which y does
+  int up = 2;            ///< the up axis of the model, for GLB, whose up axis is y
 };
 
 /// Return the bytes of a file.
@@ -78,10 +77,10 @@ std::string vtp_bytes(const Model& model, const FileOptions& options);
 std::string obj_bytes(const Model& model, const FileOptions& options);
 std::string glb_bytes(const Model& model, const FileOptions& options);
 
-/// Writes a model to FILE.ply, .vtp, .obj or .glb, whole or not at all. Throws InputError for other names,
-/// and for options that the format does not know.
+/// Writes a model to FILE.ply, .vtp, .obj or .glb, completely or not at all. Throws InputError for other
+/// names, and for options that the format does not support.
 void save_model(const Model& model, const std::string& path, const FileOptions& options);
-/// Throws as save_model() does, before there is a model.
+/// Throws as save_model() does, before a model is made.
 void check_model_file(const std::string& path, const FileOptions& options);
 
 }  // namespace lrb::exchange

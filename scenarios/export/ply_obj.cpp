@@ -38,7 +38,7 @@ namespace {
 
 using render::Rgba;
 
-/// Writes numbers one after another, as text with a line for each element, or as bytes.
+/// Writes numbers in sequence, as text with a line per element, or as bytes.
 class PlyOut {
  public:
   explicit PlyOut(bool ascii) : ascii_(ascii) {}
@@ -67,7 +67,7 @@ class PlyOut {
   bool ascii_, at_begin_ = true;
 };
 
-/// Programs that keep colours of vertices only get the mean of those of the cells about.
+/// For programs that support only vertex colours: the mean over the adjacent cells.
 std::vector<Rgba> vertex_colours(const Part& part) {
   std::vector<std::array<std::uint32_t, 5>> sums(part.vertices.size());
   for (std::size_t c = 0; c < part.cell_count(); ++c) {

@@ -141,7 +141,7 @@ class VtpOut {
     return out;
   }
 
-  /// The number of bytes, and the bytes.
+  /// The number of bytes, followed by the bytes.
   template <class T>
   static std::string as_base64(const std::vector<T>& values) {
     std::string bytes;

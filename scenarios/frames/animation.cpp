@@ -30,15 +30,15 @@ std::string program() {
 }
 
 std::vector<std::string> codec(const std::string& ending) {
-  // Colours of their own for a GIF, which has 256; sizes that are even for H.264, in colours that every
-  // player has.
+  // GIF: a separate palette, because it has 256 colours. H.264: even sizes, and a pixel format that every
+  // player supports.
   if (ending == ".gif") return {"-filter_complex", "split[a][b];[a]palettegen[p];[b][p]paletteuse"};
   if (ending == ".webp") return {"-c:v", "libwebp", "-lossless", "1", "-loop", "0"};
   return {"-vf",    "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-c:v", "libx264", "-crf", "16", "-pix_fmt",
           "yuv420p"};
 }
 
-/// Returns true if there is such a program, by its path, or by its name in one of the folders of PATH.
+/// Returns true if a program exists, given by path or by name in one of the folders of PATH.
 bool is_installed(const std::string& name) {
   if (name.find('/') != std::string::npos) return access(name.c_str(), X_OK) == 0;
   const char* path = std::getenv("PATH");
@@ -48,7 +48,7 @@ bool is_installed(const std::string& name) {
   return false;
 }
 
-/// Runs a program without input or output but its errors. Returns its exit code.
+/// Runs a program with no input or output except stderr. Returns its exit code.
 int run_program(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -67,8 +67,7 @@ int run_program(const std::vector<std::string>& words) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
-/// Returns the command, word by word, that makes a moving picture of the frames in folder/frames: 12 a
-/// second.
+/// Returns the command, word by word, that makes an animation of the frames in folder/frames: 12 per second.
 std::vector<std::string> animation_command(const std::string& folder, const std::string& file) {
   std::vector<std::string> out = {program(),
                                   "-y",
@@ -100,7 +99,7 @@ void check_animation(const std::string& file) {
 void animate(const std::string& folder, const std::string& file) {
   make_folder_of(file);
   const std::filesystem::path path(file);
-  // Beside its place, under another name, so that a file that is half written is never seen under its own.
+  // Written under another name in the same folder, so that a partial file never appears under its final name.
   const std::string part =
       (path.parent_path() / ("." + path.stem().string() + ".part" + path.extension().string())).string();
   const int code = run_program(animation_command(folder, part));

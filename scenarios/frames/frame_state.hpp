@@ -1,5 +1,5 @@
 #pragma once
-/// The state of a recorded run after any of its events, as a picture shows it and in words.
+/// The state of a recorded run after any of its events, as a picture and as text.
 
 #include <array>
 #include <optional>
@@ -19,17 +19,17 @@
 
 namespace lrb::run {
 
-/// Returns CollideResult::error_bound in a word or two.
+/// Returns CollideResult::error_bound as a short text.
 std::string error_bound_text(double bound);
 
-/// Returns what a pass made: "pass 3: 47 regions, 1 064 to 340 faces, 12 caps refused: 9 met the hull, 3 too
-/// thick".
+/// Returns the results of a pass: "pass 3: 47 regions, 1 064 to 340 faces, 12 caps refused: 9 met the hull, 3
+/// too thick".
 std::string pass_words(const trace::PassSummary& pass);
 
-/// Returns what a pass was about: "fitting, caps at most 0.002 off the body".
+/// Returns the purpose of a pass: "fitting, caps at most 0.002 off the body".
 std::string stage_words(const trace::PassSummary& pass);
 
-/// Returns what an event of a construction says.
+/// Returns the text of a construction event.
 std::string built_words(const trace::Event& e);
 
 class FrameState {
@@ -39,48 +39,48 @@ class FrameState {
 
   FrameState(FrameState&&) = default;
 
-  /// Moves to just after `event`. To be called before anything else.
+  /// Moves to just after `event`. Call it before all other members.
   void seek(trace::EventId event);
 
-  /// Returns the picture. `wrapper` false: the bodies alone. `plain`: shows a state, not an event, so that
-  /// nothing is pointed out but contacts.
+  /// Returns the picture. `wrapper` false: only the bodies. `plain`: shows a state, not an event, so that
+  /// only contacts are highlighted.
   render::Scene scene(bool wrapper = true, bool plain = false) const;
   /// Returns the text of a frame, without colour key and scale.
   render::Overlay overlay(const std::string& title) const;
-  /// Returns the same in one sentence, for the page.
+  /// Returns the same as one sentence, for the page.
   std::string caption() const;
-  /// Returns the same in a few words, for a panel of a montage.
+  /// Returns a shorter text for a panel of a montage.
   std::string short_caption() const;
-  /// Returns true if the answer that is shown has contact regions.
+  /// Returns true if the displayed answer has contact regions.
   bool in_contact() const { return now_.result != nullptr && !now_.result->regions.empty(); }
   std::uint32_t step() const { return cursor_.step()->index; }
   Pose pose(Side side) const { return cursor_.pose(side); }
   const std::vector<const LrbRep*>& reps() const { return run_.reps; }
 
  private:
-  /// What is known after the event that was sought, besides the cursor's own state.
+  /// Data valid after the current event, in addition to the cursor's own state.
   struct Moment {
-    bool is_step_end = false;  ///< the step's last event has come
-    /// The step's answer with its contact regions; null before the step's end, or if none was handed over.
+    bool is_step_end = false;  ///< the event is the step's last
+    /// The step's answer with its contact regions; null before the step's end, or if no results were given.
     const CollideResult* result = nullptr;
-    /// The step's answer as the trace has it; null before the step's end, or if the step is not finished.
+    /// The step's answer in the trace; null before the step's end, or if the step is not finished.
     const trace::StepResult* answer = nullptr;
     /// The answer's certificate of separation, whose wrappers are then shown; null if it has none.
     const Separation* proof = nullptr;
-    /// What separates the bodies of a step that ends here without contact; nullopt for other events, and if
-    /// it is not to be shown because colours of faces by numbers need the picture for themselves.
+    /// The separating plane of a step that ends here without contact; nullopt for other events, and if face
+    /// colours by value take precedence.
     std::optional<WalkExplanation> separating;
     /// The segment between the closest points, and the separating translation of B, of a step that ends here;
     /// nullopt if they were not requested.
     std::optional<MarkedSegment> gap, separation_vector;
-    /// The pairs that another engine got wrong in the step; empty before the step's end.
+    /// The wrong pairs of another engine in the step; empty before the step's end.
     std::span<const WrongPair> wrong;
     /// The pass of a construction that the event belongs to; null before the first, and for other runs.
     const trace::PassSummary* pass = nullptr;
     bool is_pass_end = false;     ///< the end of a pass that made regions
     std::vector<RegionId> built;  ///< the regions of this pass so far
   };
-  /// What a scene refers to until it is built.
+  /// Data that a scene refers to until it is built.
   struct SceneParts {
     std::array<std::vector<double>, 2> values;
     std::array<std::vector<std::uint8_t>, 2> in_contact;
@@ -102,10 +102,11 @@ class FrameState {
   render::SceneHighlight scene_highlight(bool wrapper, bool plain) const;
   render::SceneOptions scene_options(const SceneParts& parts) const;
   void add_marks(render::Scene& scene, bool plain) const;
-  /// (|F|) Marks the faces of a coarse answer so far; empty if the answer is one for contact regions.
+  /// (|F|) Marks the intersecting faces of a coarse answer so far; empty if the answer has contact regions
+  /// instead.
   std::vector<std::uint8_t> met(Side side) const;
   const trace::TreeShape* tree_of(Side side) const;     ///< Returns null if there is none.
-  std::span<const trace::Event> events_so_far() const;  ///< Returns those of the step.
+  std::span<const trace::Event> events_so_far() const;  ///< Returns the events of the step so far.
   std::vector<double> values_of(Side side) const;
   /// Returns true unless other regions are isolated.
   bool is_shown(const trace::RefinedRegion& r) const;
@@ -114,35 +115,35 @@ class FrameState {
   std::string event_text() const;
   std::string construction_text() const;
   static std::string node_pair_text(const trace::Event& e);
-  /// Returns what was measured at the step's end, to follow other words; empty if nothing was requested.
+  /// Returns the measurements at the step's end, to be appended to other text; empty if none were requested.
   std::string measured_text() const;
   /// Describes the isolated regions; empty if there are none.
   std::string isolated_text() const;
-  /// Names the wrappers that a step begins with.
+  /// Names the wrappers at the beginning of a step.
   std::string first_wrappers_text() const;
   /// Explains why a relation is undefined.
   std::string open_text() const;
   std::string result_text() const;
-  /// Returns the relation of the bodies, and how it is known.
+  /// Returns the relation of the bodies, and how it was decided.
   std::string relation_text() const;
   std::string construction_caption() const;
   void add_construction(render::Overlay& o) const;
   void add_counters(render::Overlay& o) const;
   void add_pair_counters(render::Overlay& o) const;
-  /// Returns the number of faces of the wrapper that is shown.
+  /// Returns the number of faces of the displayed wrapper.
   std::uint32_t boundary_size(Side side) const;
   trace::Totals totals() const;  ///< Counts the events of the step so far.
 
   RecordedRun run_;
   const trace::Trace& trace_;
   const render::FrameSpec& spec_;
-  bool point_out_refined_;  ///< frames follow refinements, so that the last one is what is new
+  bool point_out_refined_;  ///< frames follow refinements, so that the last one is the new part
   trace::Cursor cursor_;
   std::vector<trace::PassSummary> passes_;  ///< of a construction
   Moment now_;
 };
 
-// The marks of what a trace has measured at a step.
+// The marks of a trace's measurements at a step.
 
 inline Eigen::Vector3d vector_of(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};

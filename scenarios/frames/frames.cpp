@@ -118,10 +118,10 @@ struct FrameJob {
   }
 };
 
-/// The panels of a montage, gathered while the frames are drawn.
+/// The panels of a montage, collected while the frames are drawn.
 struct Montage {
   std::vector<render::Panel> panels;
-  std::vector<std::string> svgs;  ///< of panels with one view; else none
+  std::vector<std::string> svgs;  ///< for panels with one view; else empty
 
   std::vector<std::string> write(const RecordedRun& p, const render::FrameSpec& spec,
                                  const std::string& folder, const render::PngOptions& png,
@@ -148,7 +148,7 @@ struct Montage {
   }
 
  private:
-  /// Returns the caption that a paper prints under the figure.
+  /// Returns the caption to be printed under the figure.
   std::string caption(std::string text) const {
     for (std::size_t i = 0; i < panels.size(); ++i)
       text += (i == 0 ? " " : "; ") + (panels.size() > 1 ? render::panel_letter(i) + " " : "") +
@@ -163,7 +163,7 @@ void write_svgs(const std::vector<std::string>& views, const std::string& name) 
     io::write_text(name + (views.size() > 1 ? "_" + std::to_string(i + 1) : "") + ".svg", views[i]);
 }
 
-/// Throws InputError for colours or boxes that come from a walk of trees, where none is recorded.
+/// Throws InputError for colours or boxes that need a recorded tree traversal if there is none.
 void check_colours(const RecordedRun& recorded, const render::FrameSpec& spec) {
   if (render::needed_level(spec) == EventLevel::faces) return;
   const std::string what = render::needed_level(spec.colour_by) == EventLevel::faces

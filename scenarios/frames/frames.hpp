@@ -15,28 +15,28 @@
 
 namespace lrb::run {
 
-/// A recorded run with its LRB-reps: what frames are drawn from. `render` makes one from a trace file, `run`
-/// from what it recorded.
+/// A recorded run with its LRB-reps, the input of frames. `render` makes one from a trace file, `run` from
+/// its recording.
 struct RecordedRun {
   std::string title;
-  std::string purpose;  ///< what the pictures should show; may be empty
+  std::string purpose;  ///< expected content of the pictures; may be empty
   std::vector<const LrbRep*> reps;
   const trace::Trace* trace = nullptr;
   const std::vector<CollideResult>* results = nullptr;         ///< one for each step, or null
-  const std::vector<trace::TreeShape>* trees = nullptr;        ///< A's and B's, or none: as Recording::trees
+  const std::vector<trace::TreeShape>* trees = nullptr;        ///< A's and B's, or null: as Recording::trees
   const std::vector<std::vector<WrongPair>>* wrong = nullptr;  ///< as Recording::wrong, or null
-  /// Ends of the scale of colours that mean numbers; nothing: as the frame has them.
+  /// Ends of the scale of colours by value; nullopt: as in the frame.
   std::optional<std::array<double, 2>> value_range = {};
-  /// Values to colour A's and B's faces by, in place of those that FrameSpec::colour_by computes, and their
+  /// Values to colour A's and B's faces by, instead of those computed for FrameSpec::colour_by, and their
   /// name; null: compute them.
   const std::array<std::vector<double>, 2>* face_values = nullptr;
   std::string value_name = {};
 };
 
-/// Returns the results of a run's steps; none if they are not known.
+/// Returns the results of a run's steps; empty if they are not known.
 const std::vector<CollideResult>& results_of(const RecordedRun& recorded);
 
-/// File in the output folder that shows the last certificate of separation of the run.
+/// File in the output folder with a picture of the run's last certificate of separation.
 inline constexpr const char* kSeparationFile = "separation.png";
 
 struct DrawnFrame {
@@ -48,7 +48,7 @@ struct DrawnFrame {
 
 struct DrawnFrames {
   std::vector<DrawnFrame> frames;
-  std::vector<std::string> montage;     ///< montage.png, montage.svg, caption.txt; none: no montage
+  std::vector<std::string> montage;     ///< montage.png, montage.svg, caption.txt; empty: no montage
   const trace::Step* proved = nullptr;  ///< the step whose certificate of separation is drawn; null: none
 };
 
@@ -90,7 +90,7 @@ class FrameSequence {
   render::Rasterizer rasterizer_;
 };
 
-/// Throws InputError for frames of more pixels than can be drawn.
+/// Throws InputError if frames exceed the maximum number of pixels.
 void check_frame_size(const render::Look& spec);
 /// Throws InputError for views that bodies of this dimension cannot have.
 void check_views(const std::vector<render::Look::View>& views, int dim);
@@ -98,14 +98,13 @@ void check_views(const std::vector<render::Look::View>& views, int dim);
 /// large.
 void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec);
 
-/// Draws the frames that draw_frames() makes, but in memory, and no montage or SVG. `framing` is what the
-/// cameras show, instead of what the run itself shows.
+/// Draws the same frames as draw_frames(), in memory, without montage or SVG. `framing` replaces the run's
+/// own framing.
 std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render::FrameSpec& spec,
                                        const ProgressReport& progress, const Framing* framing = nullptr);
 
-/// Draws frames into folder/frames/ and, if asked, folder/montage.png with folder/caption.txt; where there
-/// are certificates of separation, the last one into folder/separation.png. Writes `text` into every frame's
-/// file.
+/// Draws frames to folder/frames/ and, if requested, folder/montage.png with folder/caption.txt; if there are
+/// certificates of separation, the last one to folder/separation.png. Writes `text` into every frame's file.
 DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& spec, const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const ProgressReport& progress);

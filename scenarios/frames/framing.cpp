@@ -16,7 +16,7 @@ const Pose& step_pose(const trace::Step& step, std::size_t body) {
   return body == 0 ? step.pose_a : step.pose_b;
 }
 
-/// Returns some of many points that span nearly the same: the extreme ones in a few dozen directions.
+/// Returns a subset of points with almost the same extent: the extreme ones in a few dozen directions.
 std::vector<Vector3d> extremes(const std::vector<Vector3d>& points) {
   constexpr int kTurns = 24, kRows = 7;
   std::vector<Vector3d> out;
@@ -34,7 +34,7 @@ std::vector<Vector3d> extremes(const std::vector<Vector3d>& points) {
   return out;
 }
 
-/// Adds the corners of all faces that meet: for coarse answers, which have no contact regions.
+/// Adds the corners of all intersecting faces: for coarse answers, which have no contact regions.
 void add_contacts(const RecordedRun& p, std::vector<Vector3d>& points) {
   for (std::size_t i = 0; i < p.trace->steps.size(); ++i)
     for (const trace::Event& e : p.trace->events_of(i))
@@ -68,10 +68,11 @@ std::vector<Vector3d> shown_points(const LrbRep& rep, const std::vector<RegionId
   return out;
 }
 
-constexpr int kWidth = 240, kHeight = 180;  ///< of the pictures in which what is hidden is counted
-constexpr double kNearness = 0.15;          ///< of `like`, against all of the contacts
+constexpr int kWidth = 240, kHeight = 180;  ///< of the pictures used to count hidden points
+/// Weight of closeness to `like`, relative to the visible share of the contacts.
+constexpr double kNearness = 0.15;
 
-/// Returns the last step with contacts; the number of steps if there is none.
+/// Returns the last step with contacts, or the number of steps if there is none.
 std::size_t last_contact(const RecordedRun& recorded) {
   if (recorded.results == nullptr) return recorded.trace->steps.size();
   for (std::size_t i = recorded.results->size(); i-- > 0;)
@@ -91,7 +92,7 @@ std::vector<Vector3d> points_at(const RecordedRun& recorded, std::size_t step) {
 double seen_share(const std::vector<Vector3d>& points, const render::Projection& projection,
                   const render::DepthImage& depths) {
   constexpr double kLift =
-      2.0 / kHeight;  // a curve lies on faces: it is seen if it lies two pixels' width behind them
+      2.0 / kHeight;  // a curve lies on faces: it counts as visible up to two pixels behind them
   std::size_t seen = 0;
   for (const Vector3d& p : points) {
     const Vector3d at = projection.to_screen(projection.to_eye(p));
@@ -102,7 +103,7 @@ double seen_share(const std::vector<Vector3d>& points, const render::Projection&
   return static_cast<double>(seen) / static_cast<double>(points.size());
 }
 
-/// Returns directions all round, at two heights.
+/// Returns directions all around, at two heights.
 std::vector<Vector3d> directions(const Vector3d& up) {
   constexpr int kTurns = 16;
   const Vector3d u = up.normalized(), side = u.unitOrthogonal(), third = u.cross(side);
@@ -115,11 +116,11 @@ std::vector<Vector3d> directions(const Vector3d& up) {
   return out;
 }
 
-/// Returns true if a close-up of the contacts would show hardly less than both bodies.
+/// Returns true if a close-up of the contacts would show almost as much as a view of both bodies.
 bool close_up_is_whole(const RecordedRun& recorded, const render::Look::View& close_up) {
   const std::size_t step = last_contact(recorded);
   if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return false;
-  constexpr double kCloser = 1.8;  // a close-up is to show things so many times as large
+  constexpr double kCloser = 1.8;  // minimum magnification of a close-up
   Framing framing;
   framing.points = points_at(recorded, step);
   for (const CollideResult& result : *recorded.results)

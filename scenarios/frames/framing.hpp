@@ -8,19 +8,18 @@
 
 namespace lrb::run {
 
-/// Collects the points that a sequence shows. If `spec` isolates regions, these are the points of the
-/// regions, with some room around them if the rest is drawn as a ghost. Exploded regions count where they are
-/// drawn.
+/// Collects the points that a sequence shows. If `spec` isolates regions, these regions, with a margin if the
+/// rest is shown as a ghost; if it explodes bodies, the displaced regions.
 Framing frame_sequence(const RecordedRun& recorded, const render::FrameSpec& spec);
 
-/// Returns the direction, of many all round and from above, from which the bodies hide least of the contacts
-/// of the last step that has any; where several hide about as little, the one nearest to `like`. Returns
-/// `like` if there is no contact.
+/// Returns the direction, of many all around and from above, from which the bodies hide least of the contacts
+/// of the last step with contacts; of similar ones, the one closest to `like`. Returns `like` if there is no
+/// contact.
 Eigen::Vector3d least_hidden(const RecordedRun& recorded, const Eigen::Vector3d& up,
                              const Eigen::Vector3d& like);
 
-/// Shows both bodies wholly in close-ups of the contacts that would be hardly closer, and so cut off parts of
-/// them for nothing.
+/// Shows both bodies completely in close-ups of the contacts that would magnify little and only cut off
+/// parts.
 void widen_close_ups(const RecordedRun& recorded, std::vector<render::Look::View>& views);
 
 }  // namespace lrb::run

@@ -58,7 +58,7 @@ void write_text(const std::string& path, const std::string& text) {
 }
 
 void refuse_links(const std::string& folder) {
-  refuse_links_in(folder);  // ends here if `frames` is a link itself
+  refuse_links_in(folder);  // throws if `frames` itself is a link
   refuse_links_in(fs::path(folder) / "frames");
 }
 
@@ -81,7 +81,7 @@ void mark_run(const std::string& folder, const std::string& scenario_file) {
 
 FolderLock::FolderLock(const std::string& path)
     : folder_(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (folder_ < 0) return;  // a folder that can be written to but not listed: there is nothing to lock it by
+  if (folder_ < 0) return;  // the folder is writable but not readable: no descriptor to lock
   if (flock(folder_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   close(folder_);
   throw EnvironmentError(

@@ -33,7 +33,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-/// Returns a word as it can be shown in a one-line message.
+/// Returns a word in a form suitable for a one-line message.
 std::string shown(std::string_view word) {
   constexpr std::size_t kLongest = 32;
   std::string out;
@@ -41,10 +41,10 @@ std::string shown(std::string_view word) {
   return "\"" + out + (word.size() > kLongest ? "...\"" : "\"");
 }
 
-/// wanted: what each line must have, for the message.
+/// wanted: the expected content of each line, for the message.
 double number(std::string_view word, const std::string& where, const std::string& wanted) {
-  const std::string_view digits = word.substr(word[0] == '+' ? 1 : 0);  // from_chars does not read a plus
-                                                                        // sign
+  // from_chars does not accept a plus sign.
+  const std::string_view digits = word.substr(word[0] == '+' ? 1 : 0);
   double x = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
   if (error == std::errc::result_out_of_range)
@@ -56,7 +56,7 @@ double number(std::string_view word, const std::string& where, const std::string
   return x;
 }
 
-/// Returns the next line of a text and moves `at` behind it.
+/// Returns the next line of a text and moves `at` past it.
 std::string_view next_line(const std::string& text, std::size_t& at) {
   const std::size_t end = std::min(text.find('\n', at), text.size());
   const std::string_view line = std::string_view(text).substr(at, end - at);
@@ -71,7 +71,7 @@ std::string_view trimmed(std::string_view cell) {
   return cell.substr(first, cell.find_last_not_of(kBlank) + 1 - first);
 }
 
-/// Returns the cells of a table's line, without blanks and quotes around them; none for a line without
+/// Returns the cells of a table's line, without surrounding blanks and quotes; empty for a line without
 /// content. A comma in quotes does not end a cell.
 std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
@@ -95,7 +95,7 @@ bool names_columns(const std::vector<std::string_view>& cells) {
   });
 }
 
-/// Returns where in a table's line each number of a pose stands.
+/// Returns the column of each number of a pose in a table's lines.
 std::array<std::size_t, 12> columns_of(const std::vector<std::string_view>& names, const std::string& where) {
   std::array<std::size_t, 12> out{};
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -114,14 +114,14 @@ double number_in(const std::vector<std::string_view>& cells, std::size_t column,
   return number(cells[column], where, "12 numbers a line");
 }
 
-/// Throws unless the last four of 16 cells are the last row of a pose.
+/// Throws unless the last four of 16 cells are 0, 0, 0, 1.
 void check_last_row(const std::vector<std::string_view>& cells, const std::string& where) {
   for (std::size_t i = 12; i < 16; ++i)
     if (number_in(cells, i, where) != (i == 15 ? 1 : 0))
       throw InputError(where + "the last row of the 4x4 pose is not 0, 0, 0, 1");
 }
 
-/// Calls see(numbers, line) for each line of `count` numbers; `meaning` says what these are.
+/// Calls see(numbers, line) for each line of `count` numbers; `meaning` describes them for messages.
 template <class See>
 void read_lines(const std::string& text, const std::string& name, std::size_t count, const char* meaning,
                 See&& see) {
@@ -237,7 +237,7 @@ bool ends_like(const std::string& path, std::string_view ending) {
                     [](char x, char y) { return x == std::tolower(static_cast<unsigned char>(y)); });
 }
 
-/// Takes poses from a parser, and stops it at the first value that is none.
+/// Receives poses from a parser, and stops it at the first invalid value.
 class PoseParser : public nlohmann::json_sax<nlohmann::json> {
  public:
   PoseParser(const std::string& text, const std::string& name) : text_(text), name_(name) {}
@@ -342,7 +342,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  /// What the parser is in: before the list, in an object of which members but one are skipped, behind the
+  /// The parser's current context: before the list, in an object whose other members are skipped, after the
   /// key "poses", in the list, in a pose, or in a row of it.
   enum class Level : std::uint8_t { root, object, member, list, pose, row };
 
@@ -351,7 +351,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
-  /// Returns where the value begins that the parser has just reached.
+  /// Returns the start of the value that the parser has just reached.
   std::size_t value_start() const { return text_.find_first_not_of(" \t\r\n,:", last_end_); }
 
   bool scalar(const char* type) {
@@ -394,7 +394,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
     fail(0, "", "expected an array of poses, or an object with such an array as \"poses\"");
   }
 
-  /// Refuses a value of this type where it is.
+  /// Rejects a value of this type at its location.
   [[noreturn]] void refuse(const char* type) const {
     const std::string found = std::string(", found ") + type;
     if (level_ == Level::root) refuse_root();
@@ -406,13 +406,13 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
 
   const std::string &text_, &name_;
   const char* seen_ = text_.data();
-  std::size_t last_end_ = 0;   ///< of the value or key before
-  TextPosition position_;      ///< of the pose, or of the one before
+  std::size_t last_end_ = 0;   ///< of the previous value or key
+  TextPosition position_;      ///< of the current or previous pose
   std::size_t reached_ = 0;    ///< the offset of position_
   std::size_t start_[3] = {};  ///< of the list, the pose and the row
   Level level_ = Level::root;
-  bool of_object_ = false;                          ///< the list is a member
-  std::size_t skipped_ = 0;                         ///< values around this one that are skipped
+  bool of_object_ = false;                          ///< the list is a member of an object
+  std::size_t skipped_ = 0;                         ///< enclosing values that are skipped
   std::string pointer_;                             ///< of the list
   std::size_t found_ = 0, items_ = 0, in_row_ = 0;  ///< numbers and items of the pose, numbers of the row
   std::array<double, 16> x_{};
@@ -424,7 +424,8 @@ std::string row_text(const Pose& pose, std::string_view between, bool json) {
   for (const double x : rows_of(pose)) {
     if (!out.empty()) out += between;
     out += exact_text(x);
-    if (json && x == 0 && std::signbit(x)) out += ".0";  // "-0" would be an integer, and lose its sign
+    // "-0" would be parsed as an integer, and lose its sign.
+    if (json && x == 0 && std::signbit(x)) out += ".0";
   }
   return out;
 }

@@ -53,8 +53,8 @@ struct Steps {
   }
 };
 
-/// Writes when the surfaces first meet in steps of the poses, of which the one numbered `at` is so many steps
-/// after the motion's start.
+/// Sets the time of first contact in steps of the poses; pose number `at` is `after` steps after the motion's
+/// start.
 void number_contact(const Steps& steps, double at, double after, trace::MeasuredApproach& search) {
   if (search.outcome != MotionOutcome::contact) return;
   const auto step_of = [&](double t) { return at + (t * steps.count - after); };
@@ -62,7 +62,7 @@ void number_contact(const Steps& steps, double at, double after, trace::Measured
   search.length = {(*search.step)[0] * steps.length, (*search.step)[1] * steps.length};
 }
 
-/// Sets the poses at whole steps, given from which step on there may be contacts.
+/// Sets the poses at whole steps, given the first step after which contact is possible.
 void find_step(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Steps& steps, std::uint32_t from,
                Approach& out) {
   CollideRequest request;
@@ -79,7 +79,7 @@ void find_step(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Steps
   }
 }
 
-/// Sets the poses at whole steps from the first contact.
+/// Sets the poses at whole steps before and after the first contact.
 void stand_at_contact(const Steps& steps, double t, Approach& out) {
   out.met = true;
   const Motion whole = steps.whole();
@@ -97,7 +97,7 @@ void stand_at_contact(const Steps& steps, double t, Approach& out) {
 Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& start,
                        const spec::Motion& motion, bool watched) {
   const double length = motion.step_length * (diagonal_of(a) + diagonal_of(b));
-  // Beyond twice the distance, B is as far behind the target as it was before it.
+  // Beyond twice the distance, B is as far behind the target as it started before it.
   const auto whole_way =
       static_cast<std::uint32_t>(std::min<double>(motion.steps, std::ceil(2 * motion.from.norm() / length)));
   const Steps steps{motion, start, length, whole_way};

@@ -12,7 +12,7 @@ namespace {
 
 using trace::EventId;
 
-/// Returns every n-th of the list, and its last.
+/// Returns every n-th element of the list, and its last.
 std::vector<EventId> every(const std::vector<EventId>& all, std::uint32_t n) {
   std::vector<EventId> out;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -27,7 +27,7 @@ std::vector<EventId> step_ends(const trace::Trace& trace) {
   return out;
 }
 
-/// Returns the beginning of each step and the events in it that change a wrapper.
+/// Returns the first event of each step and the events in it that change a wrapper.
 std::vector<EventId> wrapper_changes(const trace::Trace& trace) {
   std::vector<EventId> out;
   for (EventId e = 0; e < trace.events.size(); ++e) {
@@ -36,7 +36,8 @@ std::vector<EventId> wrapper_changes(const trace::Trace& trace) {
   return out;
 }
 
-/// Returns the event at which the body stands bare, and the last one of each pass that made regions.
+/// Returns the event at which the wrapper is the body itself, and the last one of each pass that made
+/// regions.
 std::vector<EventId> pass_ends(const trace::Trace& trace) {
   if (!trace.header.construction)
     throw InputError("frames after passes are for constructions: take step, refinement or event");
@@ -97,7 +98,7 @@ std::vector<EventId> moments(const render::FrameSpec& spec, const trace::Trace& 
 
 namespace {
 
-/// What is kept first has the smallest number.
+/// Events of lower rank are kept first.
 enum Rank : std::uint8_t { kChange, kMeeting, kOther, kGone };
 
 /// Returns the rank of each event.
@@ -109,7 +110,7 @@ std::vector<std::uint8_t> ranks(const trace::Trace& trace) {
     const bool changes = e.changes_wrapper() || e.kind == EventKind::pass_end;
     if (changes || e.kind == EventKind::step || e.kind == EventKind::result) out[i] = kChange;
     if (e.kind == EventKind::contact) out[i] = kMeeting;
-    // The face that such a refinement takes away is that of its cause.
+    // The face removed by such a refinement is named by its cause.
     if (e.changes_wrapper() && by_face && e.cause != kNull) out[e.cause] = kChange;
   }
   if (const trace::EventId first = first_contact(trace); first != kNull) out[first] = kChange;
@@ -135,8 +136,8 @@ std::vector<StepEvents> events_of_steps(const trace::Trace& trace) {
   return out;
 }
 
-/// Takes steps out, until what changes wrappers in the others fits. Keeps every n-th from the one of the
-/// first contact on, and before it. Returns how many are left.
+/// Drops steps until the wrapper changes in the others fit. Keeps every n-th step, counted forward and
+/// backward from the first contact. Returns the number of steps left.
 std::size_t drop_steps(const trace::Trace& trace, const std::vector<StepEvents>& steps, std::size_t most,
                        std::vector<std::uint8_t>& rank) {
   const trace::EventId first = first_contact(trace);
@@ -178,7 +179,7 @@ ThinnedEvents thin_events(const trace::Trace& trace, std::size_t most) {
   for (const std::uint8_t wanted : {kChange, kMeeting, kOther}) {
     const auto there = static_cast<std::size_t>(std::count(rank.begin(), rank.end(), wanted));
     const std::size_t taken = std::min(room, there);
-    // Replays need the first of what changes wrappers; of the rest, evenly spaced ones say most.
+    // Replays need the first wrapper changes; of other events, evenly spaced ones are the most informative.
     const bool from_the_front = wanted == kChange;
     out.cut |= from_the_front && taken < there;
     std::size_t seen = 0;

@@ -24,7 +24,7 @@
 namespace lrb::run {
 namespace {
 
-/// Throws if the body has no vertex that an event says was located.
+/// Throws if an event locates a vertex that the body does not have.
 void check_vertex(const Recording& run, const trace::Event& e) {
   const std::size_t side = static_cast<std::size_t>(e.side);
   const std::size_t count =
@@ -34,7 +34,7 @@ void check_vertex(const Recording& run, const trace::Event& e) {
                      std::string(name_of(e.side)) + ", which has " + std::to_string(count));
 }
 
-/// Throws if the trace cannot have come from the run's bodies.
+/// Throws if the trace cannot be a recording of the run's bodies.
 void check_events(const std::string& path, const Recording& run) {
   const trace::Trace& trace = run.trace;
   try {
@@ -62,7 +62,7 @@ std::vector<CollideResult> contacts_of(const trace::Trace& trace,
     return out;
   CollideRequest request = trace.header.request;
   request.contacts = true;
-  request.separation = false;  // the trace holds it
+  request.separation = false;  // it is stored in the trace
   for (const trace::Step& step : trace.steps)
     out.push_back(collide(bodies[0].rep, step.pose_a, bodies[1].rep, step.pose_b, request));
   return out;
@@ -176,12 +176,11 @@ std::vector<Pose> poses_of_b(const spec::Scenario& s, Recording& r) {
   return std::move(approach.poses);
 }
 
-/// Asks the queries of a run's steps, one after another.
+/// Runs the queries of a run's steps in order.
 class StepQueries {
  public:
   StepQueries(const spec::Scenario& s, const LrbRep& a, const LrbRep& b) : s_(s), a_(a), b_(b) {
-    // Caches are made whenever they can be: where they pay is a matter of time, and a trace is to be the same
-    // again.
+    // Always use caches: whether they save time depends on timing, and a trace must be reproducible.
     if (s.more.coherent) coherent_.emplace(a, b, s.request, CoherentQuery::CacheUse::always);
   }
 
@@ -234,8 +233,8 @@ void record_collision(const spec::Scenario& s, Recording& r, const ProgressRepor
   r.trace = std::move(recorded);
 }
 
-/// Returns all regions, those of the builder's last pass (the outermost ones) first: each can then be refined
-/// when its turn comes.
+/// Returns all regions, those of the builder's last pass (the outermost ones) first, so that each can be
+/// refined in turn.
 std::vector<RegionId> outside_in(const LrbRep& rep) {
   std::vector<RegionId> order(rep.region_count());
   std::iota(order.begin(), order.end(), RegionId{0});
@@ -279,8 +278,7 @@ void record_construction(const spec::Scenario& s, Recording& r) {
   r.trace = recorder.take(r.bodies[0].rep, body.pose);
 }
 
-/// Adds what follows from a run that has been recorded: how it is to be drawn, its trees, what people should
-/// know of it.
+/// Adds data derived from a recorded run: drawing options, trees, notes.
 void finish(const spec::Scenario& s, Recording& r) {
   r.trace.header.pictures = spec::pictures_text(s.frames);
   r.trees = trees_of(r.trace, r.bodies);

@@ -1,5 +1,5 @@
 #pragma once
-/// Runs a scenario: asks every query and records every event. Draws nothing.
+/// Runs a scenario: performs all queries and records all events. Draws nothing.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,68 +16,67 @@
 
 namespace lrb::run {
 
-/// Called with the progress of a long job: what it is doing, how much is done, how much there is.
+/// Called with the progress of a long job: the current activity, the amount done, the total.
 using ProgressReport = std::function<void(const std::string& what, std::uint64_t done, std::uint64_t total)>;
-/// A report that nobody reads.
+/// A report that is discarded.
 inline const ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
 
 struct Recording {
   std::vector<bodies::LoadedBody> bodies;  ///< A and B, or A alone
   trace::Trace trace;
-  std::vector<CollideResult> results;  ///< one for each step; none for one body
-  /// A's tree and B's, if pairs of their nodes were recorded.
+  std::vector<CollideResult> results;  ///< one for each step; empty for one body
+  /// The trees of A and B, if pairs of their nodes were recorded.
   std::vector<trace::TreeShape> trees;
-  /// The pairs that another engine got wrong, for each step: first those that it reported, then those that it
-  /// missed. Empty if none was recorded.
+  /// The wrong pairs of another engine, for each step: first those reported wrongly, then those missed. Empty
+  /// if no other engine was recorded.
   std::vector<std::vector<WrongPair>> wrong;
-  std::vector<std::string> notes;  ///< for people
+  std::vector<std::string> notes;  ///< notes as text
 };
 
-/// Returns the trees of the bodies that a trace with pairs of nodes is about; none for other traces.
+/// Returns the trees of the bodies of a trace with node pairs; empty for other traces.
 std::vector<trace::TreeShape> trees_of(const trace::Trace& trace,
                                        const std::vector<bodies::LoadedBody>& bodies);
 
 bodies::LoadedBody make_body(const spec::BodySpec& spec);
 
-/// Builds the bodies and runs the scenario. A construction is recorded while the builder works; a body that
-/// comes with its regions is shown layer by layer.
+/// Builds the bodies and runs the scenario. A construction is recorded during the build; a body loaded with
+/// its regions is shown layer by layer.
 Recording record(const spec::Scenario& scenario, const ProgressReport& progress);
-/// Runs it with bodies that have been built.
+/// Runs it with existing bodies.
 Recording record(const spec::Scenario& scenario, std::vector<bodies::LoadedBody> bodies,
                  const ProgressReport& progress);
 
 /// Returns one line for each expectation that was not met.
 std::vector<std::string> mismatches(const spec::Scenario& scenario, const Recording& recording);
 
-// Opens a run that was recorded and written.
+// Opens a recorded and written run.
 
-/// Loads the bodies that were recorded: those named by `given`, or if it is empty those of these names beside
-/// the trace.
+/// Loads the recorded bodies: those in `given`, or if it is empty the files of these names next to the trace.
 std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
                                             const std::vector<std::string>& given,
                                             const std::vector<std::string>& names);
 
-/// Returns the run whose trace has been read, with its bodies (see find_bodies()). Computes the contact
-/// regions of each step anew, because a trace holds pairs but not where they meet. Throws InputError if the
-/// trace cannot have come from these bodies.
+/// Returns the run of a trace, with its bodies (see find_bodies()). Recomputes the contact regions of each
+/// step, because a trace contains pairs but not their intersections. Throws InputError if the trace cannot be
+/// a recording of these bodies.
 Recording open_run(trace::Trace trace, const std::string& trace_path,
                    const std::vector<std::string>& bodies = {});
 
-/// Returns the path of a run's trace, whether `run` is the run's folder or the trace itself. All commands
-/// that take a recorded run take both. Throws InputError for a folder that has none.
+/// Returns the path of a run's trace; `run` is the run's folder or the trace itself. All commands that take a
+/// recorded run accept both. Throws InputError for a folder without a trace.
 std::string trace_of(const std::string& run);
 
-/// Returns a run, given as trace_of() takes it, with a.lrb and b.lrb beside the trace.
+/// Returns a run, given as in trace_of(), with a.lrb and b.lrb next to the trace.
 Recording open_run(const std::string& run);
 
-/// Two bodies as they stood at a step of a run.
+/// Two bodies in their state at a step of a run.
 struct OpenStep {
   std::vector<bodies::LoadedBody> bodies;
   trace::Step step;
 };
 
-/// Opens one step of a run, by its number; without a number the last. `run`: as trace_of() takes it.
-/// Throws InputError if there is no such step, or only one body.
+/// Opens one step of a run by number, or the last without a number. `run`: as in trace_of(). Throws
+/// InputError if the step does not exist, or the run has one body.
 OpenStep open_step(const std::string& run, std::optional<std::uint32_t> number);
 
 // Names of a run's files of frames.
@@ -86,7 +85,7 @@ OpenStep open_step(const std::string& run, std::optional<std::uint32_t> number);
 std::string numbered_frame(std::size_t frame);
 std::string frame_file(std::size_t frame);
 
-/// Removes what an earlier run left: frames, montage and its caption, certificate of separation.
+/// Removes the output of an earlier run: frames, montage and its caption, certificate of separation.
 void remove_old_frames(const std::string& folder);
 
 }  // namespace lrb::run

@@ -57,7 +57,7 @@ Eigen::Vector3d read_room(const io::JsonNode& node) {
   return room;
 }
 
-/// Reads frames of a crowd, which may use some of what frames of two bodies may.
+/// Reads frames of a crowd, which support part of the settings for two bodies.
 FrameSpec read_crowd_frames(const io::JsonNode& node) {
   FrameSpec frames = read_frames(node, {});
   for (const char* key : {"events", "colour_by", "node_boxes", "explode", "montage", "format"})

@@ -87,7 +87,7 @@ namespace {
 constexpr double kLongestTolerance = 1e150;  // its square is still finite
 constexpr std::uint64_t kMostCount = std::uint64_t{1} << 62;
 
-/// Reads a value of a query by its type: a length, a number of things from 1, a word, or true or false.
+/// Reads a value of a query by its type: a length, a count of at least 1, a word, or true or false.
 template <class Enum>
 void read_value(const io::JsonNode& node, Enum& value) {
   value = node.choice<Enum>();

@@ -1,6 +1,6 @@
 #pragma once
-/// A scenario: two bodies (or one), how they move, what is asked, recorded and drawn, and what must come out.
-/// The file format is described by schema/scenario.schema.json.
+/// A scenario: two bodies (or one), their motion, the queries, the recording and the pictures, and the
+/// expected results. schema/scenario.schema.json describes the file format.
 
 #include <array>
 #include <cstdint>
@@ -21,14 +21,15 @@
 
 namespace lrb::spec {
 
-/// The most steps that a scenario or a crowd may have.
+/// Maximum number of steps of a scenario or a crowd.
 inline constexpr std::uint32_t kMostSteps = 100'000;
 
-/// What a scenario shows.
+/// Content kind of a scenario.
 enum class Show : std::uint8_t {
   collision,     ///< two bodies: a query at every time step
-  refinement,    ///< one body: its wrapper from the outermost one down to the body itself
-  construction,  ///< one body: how the builder made its regions, pass by pass, from the body outward
+  refinement,    ///< one body: refinement of its wrapper from the outermost one down to the body itself
+  construction,  ///< one body: construction of its regions by the builder, pass by pass, from the body
+                 ///< outward
 };
 constexpr auto words_of(Show) {
   return std::to_array<EnumWord<Show>>({{Show::collision, "collision"},
@@ -37,14 +38,14 @@ constexpr auto words_of(Show) {
 }
 
 struct BodySpec {
-  std::string file;  ///< mesh or .lrb, looked up from the scenario's folder; empty: generated
+  std::string file;  ///< mesh or .lrb, relative to the scenario's folder; empty: generated
   std::string generator;
   generators::GeneratorValues parameters;
   BuildOptions build;
-  Pose pose;  ///< where it starts and, if it does not move, stays
+  Pose pose;  ///< initial pose, and the constant one if it does not move
 };
 
-/// How B moves while A stays. Each kind reads some of the fields.
+/// Motion of B while A is at rest. Each kind uses some of the fields.
 struct Motion {
   enum class Kind : std::uint8_t { poses, keyframes, sweep, approach, spin };
   struct Keyframe {
@@ -54,19 +55,21 @@ struct Motion {
     double degrees = 0;
   };
   Kind kind = Kind::poses;
-  std::vector<Pose> poses;          ///< poses: one for each step, applied to B as it is
-  std::vector<Keyframe> keyframes;  ///< keyframes: positions move straight, rotations along the shortest arc
-  Eigen::Vector3d from{0, 0, 0};  ///< sweep: position of B; approach: where B starts, relative to the target
-  Eigen::Vector3d to{0, 0, 0};    ///< sweep
-  Eigen::Vector3d target{0, 0, 0};  ///< approach: the point that B's origin heads for
-  Eigen::Vector3d axis{0, 0, 1};    ///< sweep, approach, spin: B turns about it
+  std::vector<Pose> poses;  ///< poses: one for each step, applied to B unchanged
+  /// Keyframes: positions interpolated linearly, rotations along the shortest arc.
+  std::vector<Keyframe> keyframes;
+  /// Sweep: position of B; approach: initial position of B, relative to the target.
+  Eigen::Vector3d from{0, 0, 0};
+  Eigen::Vector3d to{0, 0, 0};      ///< sweep
+  Eigen::Vector3d target{0, 0, 0};  ///< approach: the point that B's origin moves towards
+  Eigen::Vector3d axis{0, 0, 1};    ///< sweep, approach, spin: rotation axis of B
   double degrees = 0;               ///< sweep, spin: over all steps; approach: per step
-  std::uint32_t steps = 1;          ///< sweep, spin: number of steps; approach: largest number that is tried
+  std::uint32_t steps = 1;          ///< sweep, spin: number of steps; approach: maximum number tried
   double step_length = 0.01;        ///< approach: as a share of the sum of the bodies' diagonals
   std::uint32_t before = 10;        ///< approach: steps shown before the first contact
   std::uint32_t into = 5;           ///< approach: steps shown after it
-  bool exact =
-      false;  ///< approach: a step is at the first contact itself, not at the first of equal steps that meets
+  bool exact = false;  ///< approach: a step is at the first contact itself, not at the first colliding one of
+                       ///< equal steps
 };
 constexpr auto words_of(Motion::Kind) {
   using Kind = Motion::Kind;
@@ -79,11 +82,11 @@ constexpr auto words_of(Motion::Kind) {
 
 using render::FrameSpec;
 
-/// What else is asked at each step, and how steps follow each other.
+/// Further queries at each step, and how steps follow each other.
 struct StepQuestions {
-  bool coherent = false;  ///< each step goes on from the one before: engine/collide
-  bool distance = false;  ///< how far apart the bodies are
-  bool clash = false;     ///< what kind of contact they have, and how deep
+  bool coherent = false;  ///< each step continues from the previous one: engine/collide
+  bool distance = false;  ///< query the distance of the bodies
+  bool clash = false;     ///< query the kind and depth of their contact
 };
 
 struct Expectation {
@@ -111,48 +114,47 @@ struct Scenario {
   std::uint64_t hash = 0;  ///< FNV-1a hash (64 bits) of the file's bytes
 };
 
-/// Reads a scenario. `file` names it in messages, and its folder is where body files are looked up. Throws
-/// InputError: "file:line:column: pointer: what is wrong, what is known".
+/// Reads a scenario. `file` names it in messages; body files are relative to its folder. Throws InputError:
+/// "file:line:column: pointer: what is wrong, what is known".
 Scenario parse_scenario(const std::string& text, const std::string& file);
 
-/// The largest integer that every reader of JSON can hold.
+/// The largest integer that every JSON reader supports.
 inline constexpr std::uint64_t kAnySeed = std::numeric_limits<std::int64_t>::max();
 
-/// Reads a body of a scenario or an experiment. Files are looked up in `folder`; `seed` is for what does not
-/// name one.
+/// Reads a body of a scenario or an experiment. Files are relative to `folder`; `seed` is the default seed.
 BodySpec read_body(const io::JsonNode& node, const std::filesystem::path& folder, std::uint64_t seed);
 
-/// Reads the "query" part of a scenario, with what else is asked of steps where there is a place for it.
-/// Refuses what the engine cannot give together.
+/// Reads the "query" part of a scenario, with the further queries of steps if `more` is not null. Rejects
+/// combinations that the engine does not support.
 CollideRequest read_query(const io::JsonNode& node, StepQuestions* more = nullptr);
 
-/// Reads a name that a folder can have.
+/// Reads a name that is valid for a folder.
 std::string read_name(const io::JsonNode& node);
 
 inline constexpr double kLeastDpi = 24, kMostDpi = 2400;
-/// The greatest depth of tree nodes whose boxes can be asked for.
+/// Maximum depth of tree nodes whose boxes can be requested.
 inline constexpr std::uint32_t kMostDepth = 64;
 
-/// Returns what a run's frames are if nothing is said.
+/// Returns the default frames of a run.
 FrameSpec default_frames(Show show);
 
-/// Reads the "frames" part of a scenario; what it leaves out is as in `fallback`.
+/// Reads the "frames" part of a scenario; missing settings are taken from `fallback`.
 FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback);
 
-/// Return what traces keep of how a run is drawn, as a part of a scenario's "frames", and read it: sizes,
-/// style, views and columns, but not which moments. `name` names the trace in messages; empty text gives
-/// `fallback`. Reading throws InputError.
+/// Convert between the drawing options of a run that traces store, as a part of a scenario's "frames", and
+/// their text: sizes, style, views and columns, but not the selection of frames. `name` names the trace in
+/// messages; empty text gives `fallback`. Reading throws InputError.
 std::string pictures_text(const FrameSpec& frames);
 FrameSpec read_pictures(const std::string& text, const std::string& name, const FrameSpec& fallback = {});
 
-// Reads poses and motions of a scenario, and computes the poses of those motions that need no query.
+// Reads poses and motions of a scenario, and computes the poses of motions that need no query.
 
 /// Reads a pose: 12 numbers (3x4, row by row), or {position, axis, degrees}.
 Pose read_pose(const io::JsonNode& node);
 Motion read_motion(const io::JsonNode& node);
 
-/// Returns the poses of B, one for each step, for every kind of motion but approach (approach.hpp). `start`
-/// is the body's own pose, applied first.
+/// Returns the poses of B, one for each step, for every kind of motion except approach (approach.hpp).
+/// `start` is the body's own pose, applied first.
 std::vector<Pose> poses_of(const Motion& motion, const Pose& start);
 
 /// Returns the pose that applies `first`, then `second`.

@@ -69,7 +69,7 @@ Pose turned(const Eigen::Vector3d& axis, double degrees, const Eigen::Vector3d& 
 
 std::vector<Pose> keyframe_poses(const std::vector<Motion::Keyframe>& keys) {
   const auto rotation = [](const Motion::Keyframe& k) {
-    // Everything is in long double, slerp too: see engine/include/lrbscope/core/random.hpp.
+    // All computations use long double, including slerp: see engine/include/lrbscope/core/random.hpp.
     return Eigen::Quaternion<long double>(
         Eigen::AngleAxis<long double>(k.degrees * kDegree, k.axis.normalized().cast<long double>()));
   };

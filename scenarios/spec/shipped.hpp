@@ -18,14 +18,14 @@ struct NamedText {
   std::string text, file;  ///< `file` is for messages
 };
 
-/// Returns the text of a shipped file "NAME<ending>", or of a file by its path. `what` tells in messages what
-/// such a file holds. Throws InputError; for a word that is neither, it names the nearest shipped name.
+/// Returns the text of a shipped file "NAME<ending>", or of a file by its path. `what` is the kind of file,
+/// for messages. Throws InputError; for a word that is neither, it suggests the closest shipped name.
 NamedText open_named(const std::string& name_or_path, std::string_view ending, std::string_view what);
 
 inline constexpr std::string_view kScenarioEnding = ".scenario.json", kCrowdEnding = ".crowd.json",
                                   kExperimentEnding = ".experiment.json";
 
-/// Reads a shipped scenario by its name, or a scenario from a file. Throws InputError.
+/// Reads a shipped scenario by name, or a scenario from a file. Throws InputError.
 Scenario open_scenario(const std::string& name_or_path);
 
 }  // namespace lrb::spec

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# browser.sh LRBSCOPE: makes the page of a run, opens it in Chromium without a window, and uses it as a person would (drive.js):
-# clicks, filters, slides, presses keys. Fails on anything that does not come out as the trace says, and on any error in the
-# browser's console. Skipped (77) where there is no Chromium.
+# browser.sh LRBSCOPE: makes the page of a run, opens it in headless Chromium, and drives it (drive.js) with clicks, filters,
+# sliders and keys. Fails if the page disagrees with the trace, and on any error in the browser's console. Skipped (77) without
+# Chromium.
 set -euo pipefail
 lrbscope=$(realpath "$1")
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/chromium.sh"
 
-# page SCENARIO: runs it; its page with the scripts of this folder, and its trace, is $work/page.html.
+# page SCENARIO: runs it, and writes its page with the scripts of this folder and its trace to $work/page.html.
 page() {
   "$lrbscope" --quiet run "$1" -o "$work/out" >/dev/null
   {
@@ -18,7 +18,7 @@ page() {
   } >"$work/page.html"
 }
 
-# in_frame WIDTH: $work/frame.html, the page in a frame as wide as that: windows of browsers are not as narrow as telephones.
+# in_frame WIDTH: writes $work/frame.html, the page in a frame of this width; browser windows cannot be as narrow as phones.
 in_frame() {
   cat >"$work/frame.html" <<END
 <!DOCTYPE html><body style="margin: 0"><iframe src="page.html?drive=layout" style="border: 0; width: $1px; height: 900px"></iframe>
@@ -26,7 +26,7 @@ in_frame() {
 END
 }
 
-# drive WIDTH HEIGHT FILE OPTION...: opens a file of $work and prints what drive.js found.
+# drive WIDTH HEIGHT FILE OPTION...: opens a file of $work and prints the results of drive.js.
 drive() {
   local size=$1,$2 file=$3
   shift 3
@@ -44,16 +44,16 @@ drive() {
 failed=0
 page "$here/meet.json"
 drive 1600 1200 'page.html?drive=all' "${webgl[@]}"
-# A scenario takes the camera that the page copies.
+# The camera copied by the page is valid in a scenario.
 camera=$(sed -n 's/^camera //p' "$work/driven")
 scenario=$(cat "$here/meet.json")
 printf '%s\n' "${scenario/'"frames": {'/"\"frames\": { \"most\": 1, \"views\": [$camera],"}" >"$work/copied.json"
 "$lrbscope" --quiet run "$work/copied.json" -o "$work/copied" >/dev/null
-# The command that the page gives says what the page says.
+# The command shown by the page gives the page's verdict.
 command=$(sed -n 's/^command lrbscope //p' "$work/driven")
 verdict=$(sed -n 's/^verdict .*Decided by \(.*\)\./\1/p' "$work/driven")
 if ! eval "\"$lrbscope\" $command" | grep -qxF "decided by $verdict"; then
-  echo "browser.sh: \"$command\" does not say \"decided by $verdict\"" >&2
+  echo "browser.sh: \"$command\" does not print \"decided by $verdict\"" >&2
   failed=1
 fi
 for width in 400 3000; do in_frame "$width" && drive 3200 1000 frame.html "${webgl[@]}"; done

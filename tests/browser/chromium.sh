@@ -1,11 +1,11 @@
-# Sourced by the scripts of this folder: finds Chromium, or ends them with 77 (skipped); puts scripts into pages.
-# Expects `here`, this folder; sets `browser`, the program, and `work`, a folder that is removed in the end.
+# Sourced by the scripts of this folder: finds Chromium, or exits with 77 (skipped); inserts scripts into pages.
+# Expects `here`, this folder; sets `browser`, the program, and `work`, a folder removed on exit.
 browser=""
 for name in chromium chromium-browser google-chrome; do
   if command -v "$name" >/dev/null; then browser=$name && break; fi
 done
 if [ -z "$browser" ]; then
-  echo "$(basename "$0"): skipped: no Chromium here (Debian's package chromium)"
+  echo "$(basename "$0"): skipped: needs Chromium (Debian's package chromium)"
   exit 77
 fi
 work=$(mktemp -d)
@@ -23,10 +23,10 @@ with_scripts() {
   echo '</body></html>'
 }
 
-# unmarked: what a page's HTML means, of a text without tags.
+# unmarked: decodes the HTML entities of a text without tags.
 unmarked() { sed -e 's/&lt;/</g' -e 's/&gt;/>/g' -e 's/&quot;/"/g' -e 's/&amp;/\&/g'; }
 
-# browse OPTION... PAGE: opens a page without a window and prints its document when all is done.
+# browse OPTION... PAGE: opens a page in headless Chromium and prints its final document.
 browse() {
   HOME=$work command "$browser" --headless --no-sandbox --disable-dev-shm-usage --user-data-dir="$(mktemp -d -p "$work")" \
     --hide-scrollbars "$@" --dump-dom 2>>"$work/browser.log"

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # measure.sh LRBSCOPE [STABILITY_PAGE]: makes a page of each kind, opens it in Chromium at 400, 1,000, 1,400 and 3,000 pixels, light and
-# dark, and measures it (measure.js): text that is cut off, overlaps or is hard to see, and complaints in the console.
-# STABILITY_PAGE: a program that writes one from results that no method gave. Skipped (77) where there is no Chromium.
-# measure.sh --pages PAGE...: measures these pages alone.
+# dark, and measures it (measure.js): cut off or overlapping text, low contrast, and messages in the console.
+# STABILITY_PAGE: a program that writes a page from made-up results. Skipped (77) without Chromium.
+# measure.sh --pages PAGE...: measures only these pages.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/chromium.sh"
 
-# make_pages LRBSCOPE [STABILITY_PAGE]: writes a page of each kind, and puts their paths into `pages`.
+# make_pages LRBSCOPE [STABILITY_PAGE]: writes a page of each kind, and stores their paths in `pages`.
 make_pages() {
   local lrbscope=$1 out=$work/out
   cp "$here"/*.json "$here"/open.obj "$work"
@@ -16,7 +16,7 @@ make_pages() {
   "$lrbscope" --quiet compare "$out/meet" "$out/later" -o "$out/compare" >/dev/null
   "$lrbscope" --quiet golden approve --goldens "$work/goldens" --size 320x240 "$work/meet.json" "$work/build.json" >/dev/null
   sed -i 's/0\.02,/0.021,/' "$work/meet.json"
-  "$lrbscope" --quiet golden report --goldens "$work/goldens" -o "$out/golden" >/dev/null || true # a failure is to be shown
+  "$lrbscope" --quiet golden report --goldens "$work/goldens" -o "$out/golden" >/dev/null || true # the page shows a failure
   "$lrbscope" --quiet levels "$out/dent/a.lrb" --at 0.02 0.1 -o "$out/levels" >/dev/null
   pages=()
   for name in meet build dent plane open near compare golden levels; do pages+=("$out/$name/index.html"); done
@@ -33,7 +33,7 @@ make_pages() {
   fi
 }
 
-# measure light|dark: opens all pages at all widths, one after the other; prints what is wrong with them.
+# measure light|dark: opens all pages at all widths, one after the other, and prints the findings.
 measure() {
   local scheme=1 budget=2000000
   [ "$1" = dark ] && scheme=0

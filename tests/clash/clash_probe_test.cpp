@@ -1,4 +1,5 @@
 // What a clash query tells a probe.
+#include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -64,6 +65,23 @@ TEST_CASE("clash probe: the depth of a body that is not convex") {
   const ClashResult result = watched(torus, ball, Pose::translation({1.2, 0.1, 0.3}), told);
   REQUIRE(result.interiors_overlap == Answer::yes);
   check_depth(told, result);
+}
+
+TEST_CASE("clash probe: an upper bound that no translation proves is reported as infinite at the end") {
+  // So far from the origin that a pose is rounded by a quarter of the box, the search still finds a
+  // translation.
+  const LrbRep box = closed(shapes::box({0, 0, 0}, {1, 1, 1}));
+  const Pose far = Pose::translation({1e15, 0, 0}), beside = Pose::translation({1e15 + 0.5, 0.25, 0.25});
+  ClashCourse told;
+  const ClashResult result = clash(box, far, box, beside, {}, told);
+  REQUIRE(result.interiors_overlap == Answer::yes);
+  REQUIRE(result.depth.has_value());
+  CHECK(std::isinf(result.depth->upper));
+  REQUIRE(told.of_depth.size() >= 2);
+  CHECK(std::any_of(told.of_depth.begin(), told.of_depth.end(),
+                    [](const Bounds& b) { return std::isfinite(b.upper); }));
+  CHECK(told.of_depth.back().lower == result.depth->lower);
+  CHECK(told.of_depth.back().upper == result.depth->upper);
 }
 
 TEST_CASE("clash probe: of bodies that are apart the distance is told, and of those that touch, nothing") {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# bodies.sh TREE LRBSCOPE: runs the commands of docs/meshes.md under "A body whose wrappers are bad" with bodies that have the trouble
-# it speaks of, and looks whether the program says what the page says: what is poor, and what was tried and helps.
+# bodies.sh TREE LRBSCOPE: runs the commands of docs/meshes.md under "Tuning a poor LRB-rep" with bodies that are poor in the ways described
+# there, and checks that the program prints the note and the advice that the page quotes.
 set -euo pipefail
 page=$1/docs/meshes.md
 program=$2
@@ -37,7 +37,7 @@ limbs() { # a tube along a knot
     for (i = 0; i < n; i++) {
       t = 2 * pi * i / n
       for (j = 0; j < m; j++) {
-        # The frame: along the tube, and two directions across it.
+        # Frame: the tangent t, and u and v perpendicular to it.
         r = 1 + 0.4 * cos(3 * t); px = r * cos(2 * t); py = r * sin(2 * t); pz = 0.4 * sin(3 * t)
         dr = -1.2 * sin(3 * t)
         tx = dr * cos(2 * t) - 2 * r * sin(2 * t); ty = dr * sin(2 * t) + 2 * r * cos(2 * t); tz = 1.2 * cos(3 * t)
@@ -58,9 +58,9 @@ limbs() { # a tube along a knot
 }
 plates >twin.obj
 limbs >cow.obj
-commands=$(awk '/^## A body whose wrappers/ { on = 1; next } /^## / { on = 0 } on && $0 == "```sh" { inside = 1; next }
+commands=$(awk '/^## Tuning a poor LRB-rep/ { on = 1; next } /^## / { on = 0 } on && $0 == "```sh" { inside = 1; next }
   /^```$/ { inside = 0 } on && inside' "$page")
-[ "$(wc -l <<<"$commands")" -ge 8 ] || { echo "$page: the commands are not there any more"; exit 1; }
+[ "$(wc -l <<<"$commands")" -ge 8 ] || { echo "$page: found no commands"; exit 1; }
 complain() { echo "$page: $1"; cat said; exit 1; }
 lrbscope() { "$program" "$@" >>said 2>&1; }
 while IFS= read -r line; do
@@ -68,17 +68,17 @@ while IFS= read -r line; do
   : >said
   eval "$line" || complain "failed: $line"
   case "$line" in
-    *"build twin.obj -o"*) grep -q 'twin.obj: the LRB-rep is poor: its outermost wrapper has 7.* times as long as it is thick' said || complain "no warning" ;;
-    *"build cow.obj -o"*) grep -q 'poor' said && complain "a warning" ;;
-    *"twin.lrb"*--try*) grep -q '^  --max-outer 80 has the closest outermost wrapper: 5' said || complain "other advice" ;;
-    *"cow.lrb"*--try*) grep -q '^  --lean --patch 40 has the fewest faces: 1\.' said || complain "other advice" ;;
-    *"--regions"*) grep -qE '^ +region +layer +lids +floor +volume +distance +parent +waste$' said || complain "no table" ;;
+    *"build twin.obj -o"*) grep -q 'twin.obj: the LRB-rep is poor: its outermost wrapper has 7.* times as long as it is thick' said || complain "expected a warning" ;;
+    *"build cow.obj -o"*) grep -q 'poor' said && complain "unexpected warning" ;;
+    *"twin.lrb"*--try*) grep -q '^  --max-outer 80 has the closest outermost wrapper: 5' said || complain "the advice differs" ;;
+    *"cow.lrb"*--try*) grep -q '^  --lean --patch 40 has the fewest faces: 1\.' said || complain "the advice differs" ;;
+    *"--regions"*) grep -qE '^ +region +layer +lids +floor +volume +distance +parent +waste$' said || complain "found no table" ;;
   esac
 done <<<"$commands"
 figure() { "$program" inspect "$1" --json | grep -oE "\"$2\":[0-9.e+-]+" | cut -d: -f2; }
 awk -v a="$(figure twin.lrb volume_outer)" -v b="$(figure twin2.lrb volume_outer)" 'BEGIN { exit !(b < 0.8 * a) }' ||
-  { echo "twin2.lrb: is not better"; exit 1; }
+  { echo "twin2.lrb: expected less than 0.8 times the outer volume of twin.lrb"; exit 1; }
 awk -v a="$(figure cow.lrb total_per_real)" -v b="$(figure cow2.lrb total_per_real)" 'BEGIN { exit !(b < 0.8 * a) }' ||
-  { echo "cow2.lrb: is not better"; exit 1; }
-[ "$(head -c 4 twin.png | tail -c 3)" = PNG ] || { echo "twin.png: is no picture"; exit 1; }
-echo "what the page says is so"
+  { echo "cow2.lrb: expected less than 0.8 times the faces of cow.lrb"; exit 1; }
+[ "$(head -c 4 twin.png | tail -c 3)" = PNG ] || { echo "twin.png: is not a picture"; exit 1; }
+echo "the output agrees with the page"

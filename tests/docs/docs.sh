@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# docs.sh TREE [LRBSCOPE]: checks the pages of the tree: every relative link and anchor of every .md leads somewhere;
-# docs/rooms.svg is what docs/rooms.sh draws; and, given the program, every `lrbscope` line of a shell block names a command
-# and options that its --help has; each block of code is run by a test (runner() says which); and a block below the line <!-- examples/FILE --> is that file.
+# docs.sh TREE [LRBSCOPE]: checks all .md files of the tree.
+# - Every relative link and anchor has a target.
+# - docs/rooms.svg is the output of docs/rooms.sh.
+# - Every code block is run by a test (see runner()); a block below the line <!-- examples/FILE --> is a copy of that file.
+# - With the program: every `lrbscope` line of a shell block has a command and options of its --help.
 set -euo pipefail
 cd "$1"
 program=${2:-}
@@ -9,7 +11,7 @@ bad=0
 complain() { echo "$1" && bad=1; }
 pages=$(find . -name '*.md' -not -path './build*' -not -path './out/*' -not -path './.git/*' | sort)
 
-# Prints the anchors of a page, as hosts make them of headings.
+# Prints the anchors of a page, as GitHub makes them from headings.
 anchors() {
   sed '/^```/,/^```/d' "$1" | sed -n 's/^##* *//p' | tr '[:upper:]' '[:lower:]' | sed 's/[^a-z0-9 _-]//g; s/ /-/g'
 }
@@ -21,36 +23,36 @@ for page in $pages; do
     links=$((links + 1))
     target=$(dirname "$page")/${link%%#*}
     [ "${link%%#*}" != "" ] || target=$page
-    [ -e "$target" ] || { complain "$page: leads to $link, which is not there"; continue; }
+    [ -e "$target" ] || { complain "$page: no target for the link $link"; continue; }
     case "$link" in
-      *#*) anchors "$target" | grep -qxF -- "${link#*#}" || complain "$page: leads to $link, but $target has no such heading" ;;
+      *#*) anchors "$target" | grep -qxF -- "${link#*#}" || complain "$page: link $link: $target has no such heading" ;;
     esac
   done < <(sed '/^```/,/^```/d' "$page" | grep -oE '\]\([^) ]+\)' | sed 's/^](//; s/)$//')
 done
 [ "$links" -gt 20 ] || complain "docs.sh: found only $links links"
 
-bash docs/rooms.sh | cmp -s - docs/rooms.svg || complain "docs/rooms.svg is not what tests/layers/rooms.txt says: docs/rooms.sh >docs/rooms.svg"
+bash docs/rooms.sh | cmp -s - docs/rooms.svg || complain "docs/rooms.svg differs from tests/layers/rooms.txt; run docs/rooms.sh >docs/rooms.svg"
 
-# Every block is run by a test that names its page, or runs those of all pages.
+# Every block is run by a test that names its page, or that covers all pages.
 runner() { # LANGUAGE: prints the file of the test
   case "$1" in
     cpp | cmake) echo tests/package/CMakeLists.txt ;;
     python) echo tests/python/test_docs.py ;;
     sh) echo tests/docs/commands.py ;;
     tex) echo tests/docs/figures.sh ;;
-    text) echo tests/docs/goldens.sh ;; # what commands print
+    text) echo tests/docs/goldens.sh ;; # output of commands
     *) return 1 ;;
   esac
 }
 for page in README.md docs/*.md; do
   for language in $(sed -n 's/^```\([a-z]\+\)$/\1/p' "$page" | sort -u); do
-    test=$(runner "$language") || { complain "$page: nobody runs blocks of $language"; continue; }
-    [ -e "$test" ] || complain "$test is not there, which runs blocks of $language"
-    case "$language" in cpp | cmake | python | text) grep -q "$page" "$test" || complain "$page: its blocks of $language are not run by $test" ;; esac
+    test=$(runner "$language") || { complain "$page: no test runs $language blocks"; continue; }
+    [ -e "$test" ] || complain "missing test of $language blocks: $test"
+    case "$language" in cpp | cmake | python | text) grep -q "$page" "$test" || complain "$page: $test does not run its $language blocks" ;; esac
   done
 done
 
-# Every example is linked from a page; the blocks that show one are its text.
+# Every example is linked from a page; blocks that show an example are copies of it.
 shown=0
 for page in $pages; do
   while IFS= read -r file; do
@@ -74,7 +76,7 @@ if [ -n "$program" ]; then
       read -ra words <<<"$line"
       command=${words[1]:-}
       case "$command" in "" | -*) continue ;; esac
-      # Options of a subcommand, such as `golden test`, stand in its own help.
+      # Options of a subcommand, such as `golden test`, are in its own help.
       help=$("$program" "$command" --help 2>/dev/null) || { complain "$page: lrbscope has no command $command"; continue; }
       sub=${words[2]:-}
       if [[ "$sub" =~ ^[a-z]+$ ]] && more=$("$program" "$command" "$sub" --help 2>/dev/null); then help+=$more; fi
@@ -86,5 +88,5 @@ if [ -n "$program" ]; then
   done
   [ "$commands" -gt 20 ] || complain "docs.sh: found only $commands commands"
 fi
-[ "$bad" = 0 ] && echo "$links links, $commands commands: all lead somewhere"
+[ "$bad" = 0 ] && echo "$links links, $commands commands: all valid"
 exit "$bad"

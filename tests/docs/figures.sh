@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # figures.sh TREE LRBSCOPE PDF_TEXT: runs the commands of docs/figures.md under "A figure of your own two meshes at 85 mm" with two cubes,
-# looks whether each figure has the width that it was asked for, and includes one in the page's LaTeX document where that is installed.
+# checks that each figure has the requested width, and includes one in the page's LaTeX document if LaTeX is installed.
 set -euo pipefail
 page=$1/docs/figures.md
 program=$2
@@ -8,7 +8,7 @@ pdf_text=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-cube() { # X: where it begins
+cube() { # X: least x coordinate
   awk -v x="$1" 'BEGIN {
     for (i = 0; i < 8; i++) print "v", x + i % 2, int(i / 2) % 2, int(i / 4)
     print "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6"
@@ -19,22 +19,22 @@ cube 5 >b.obj
 block() { awk -v what="$1" '/^## A figure of your own/ { on = 1; next } /^## / { on = 0 } on && $0 == "```" what { inside = 1; next }
   /^```$/ { inside = 0 } on && inside' "$page"; }
 commands=$(block sh)
-[ "$(wc -l <<<"$commands")" -ge 3 ] || { echo "$page: the commands are not there any more"; exit 1; }
+[ "$(wc -l <<<"$commands")" -ge 3 ] || { echo "$page: found no commands"; exit 1; }
 lrbscope() { "$program" -q "$@" >/dev/null; }
 while IFS= read -r line; do
   echo "$line"
   eval "$line" || { echo "$page: failed: $line"; exit 1; }
 done <<<"$commands"
 for file in fig.pdf titled.pdf; do # 85 mm are 240.945 points
-  "$pdf_text" <"$file" | grep -aE '/MediaBox \[ 0 0 240\.94[0-9]* ' >/dev/null || { echo "$file: is not 85 mm wide"; exit 1; }
+  "$pdf_text" <"$file" | grep -aE '/MediaBox \[ 0 0 240\.94[0-9]* ' >/dev/null || { echo "$file: expected a width of 85 mm"; exit 1; }
 done
-grep -q 'width="321.26"' tests.svg || { echo "tests.svg: is not 85 mm wide"; exit 1; }
-[ -s fig.caption.txt ] || { echo "fig.caption.txt: is empty"; exit 1; }
+grep -q 'width="321.26"' tests.svg || { echo "tests.svg: expected a width of 85 mm"; exit 1; }
+[ -s fig.caption.txt ] || { echo "fig.caption.txt is empty"; exit 1; }
 if command -v pdflatex >/dev/null; then
   block tex >paper.tex
   pdflatex -halt-on-error -interaction=batchmode paper.tex >/dev/null 2>&1 || { cat paper.log; exit 1; }
-  [ -s paper.pdf ] || { echo "paper.pdf: was not made"; exit 1; }
+  [ -s paper.pdf ] || { echo "paper.pdf was not made"; exit 1; }
   echo "included by LaTeX"
 else
-  echo "no pdflatex here: the figure was not included"
+  echo "skipped: including the figure; needs pdflatex"
 fi

@@ -10,24 +10,24 @@ gear=$tree/tests/data/gear.obj
 block=$tree/tests/data/l_block.obj
 fail() { echo "$name: $1" && { cat said 2>/dev/null || true; } && exit 1; }
 
-# try ARGUMENT...: runs the example, which must succeed.
+# try ARGUMENT...: runs the example and expects success.
 command=("$binaries/$name")
-try() { "${command[@]}" "$@" >said 2>&1 || fail "ended with $?: $*"; }
-# expect PATTERN...: an extended regular expression that a line of the output must match.
+try() { "${command[@]}" "$@" >said 2>&1 || fail "exit code $?: $*"; }
+# expect PATTERN...: extended regular expressions, each of which must match a line of the output.
 expect() {
   local pattern
   for pattern in "$@"; do grep -qE -- "$pattern" said || fail "no line matches $pattern"; done
 }
-# refuse REASON ARGUMENT...: runs the example, which must end with 1 and print one line to stderr that contains REASON.
+# refuse REASON ARGUMENT...: runs the example and expects exit code 1 and one line on stderr that contains REASON.
 refuse() {
   local reason=$1 code=0
   shift
   "${command[@]}" "$@" >/dev/null 2>said || code=$?
-  [ "$code" = 1 ] || fail "ended with $code, expected 1: $*"
+  [ "$code" = 1 ] || fail "exit code $code, expected 1: $*"
   [ "$(wc -l <said)" = 1 ] || fail "expected one line: $*"
   grep -qF -- "$reason" said || fail "expected \"$reason\": $*"
 }
-# png FILE, pdf FILE: it must begin like one.
+# png FILE, pdf FILE: checks the first bytes.
 png() { head -c 8 "$1" | grep -qaF PNG || fail "$1 is not a PNG"; }
 pdf() { head -c 5 "$1" | grep -qaF %PDF- || fail "$1 is not a PDF"; }
 
@@ -79,7 +79,7 @@ case "$name" in
     refuse "no/out.json: cannot create the file" "$gear" "$block" 0.7 0.1 -0.1 no/out
     ;;
   contact)
-    if [ -z "$python" ] || [ ! -d "$package/lrbscope" ]; then echo "no Python module was built" && exit 77; fi
+    if [ -z "$python" ] || [ ! -d "$package/lrbscope" ]; then echo "skipped: the Python module was not built" && exit 77; fi
     export PYTHONPATH=$package PYTHONDONTWRITEBYTECODE=1
     command=("$python" "$tree/examples/contact.py")
     try contact.png
@@ -94,7 +94,7 @@ case "$name" in
     try out
     expect '^ok +figure2: 70 events equal; images: 3 equal$'
     pdf out/figure2.pdf
-    [ -s out/figure2.caption.txt ] || fail "there is no caption"
+    [ -s out/figure2.caption.txt ] || fail "out/figure2.caption.txt is missing or empty"
     try out
     if grep -q approved said; then fail "the second run approved again"; fi
     rm out/goldens/figure2/frame_1.png

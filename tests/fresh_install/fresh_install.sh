@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# tests/fresh_install/fresh_install.sh [--suite S] [--commit C] [--until STEP] [--minutes M] [--no-cache] [--keep]: proves the README's two
-# commands on a bare Debian: bookworm (12, the default of S) or trixie (13). Makes a root with debootstrap, from the package
-# sources of this machine, clones commit C (HEAD) into it, and runs ./run and ./check there as root would type them, in a clean
-# environment; then again as a user without root; then the rest of ./check --full, in the end with the engines of others
-# installed. Debian packages are made there, and installed in another bare root, where the program runs and a stranger's project
-# is built. Prints how long every step took.
-# Steps: root clone stranger run check user api browser again peers python debs site sanitizers clang fuzz tidy; --until ends after one of them.
-# --minutes: steps after `user` end when M minutes are over, and the table says which were left out.
-# Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare/S: the bare root and downloaded packages; and this machine's
-# compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
-# Exits with 1 if a step failed, 2 for words that it does not know, 3 where it may not run or can make no root.
-# Needs root and debootstrap. Everything runs in a mount namespace of its own, so that no mount can stay behind.
+# tests/fresh_install/fresh_install.sh [--suite S] [--commit C] [--until STEP] [--minutes M] [--no-cache] [--keep]: tests the README's two
+# commands on a minimal Debian: bookworm (12, the default of S) or trixie (13). Makes a root file system with debootstrap, from the
+# package sources of this machine, clones commit C (HEAD) into it, and runs ./run and ./check there in a clean environment, as root;
+# then again as a user without root; then the rest of ./check --full, the last parts with other engines installed. Debian packages
+# are made there, and installed in another minimal root, which runs the program and builds an external project. Prints the time of
+# every step.
+# Steps: root clone stranger run check user api browser again peers python debs site sanitizers clang fuzz tidy; --until: the last one.
+# --minutes: steps after `user` end after M minutes, and the table lists those left out.
+# Cached in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare/S: the minimal root and downloaded packages; this machine's compiler cache is
+# used as well. --no-cache disables all three, to measure times. --keep keeps the root for inspection.
+# Exit codes: 1 if a step failed, 2 for unknown arguments, 3 if it may not run or cannot make a root.
+# Needs root and debootstrap. Runs in its own mount namespace, so that no mount remains.
 set -euo pipefail
 script=$(readlink -f "${BASH_SOURCE[0]}")
 here=$(dirname "$script")
@@ -22,7 +22,7 @@ refuse() { echo "fresh_install.sh: $1" >&2 && exit 3; }
 
 # ---- the package sources of this machine
 
-# Prints this machine's sources of Debian's own packages, one "URI RELEASE" a line; Debian's servers where it has none. On a
+# Prints this machine's sources of Debian's own packages, one "URI RELEASE" per line; by default Debian's servers. On a
 # machine with another release of Debian, the sources of the suite have the same addresses.
 debian_sources() {
   local release found
@@ -38,16 +38,16 @@ http://deb.debian.org/debian-security $suite-security"
   echo "$found"
 }
 
-# Prints how this machine reaches them: apt's proxies, certificates and retries.
+# Prints apt's settings of this machine for proxies, certificates and retries.
 apt_transport() {
   apt-config dump 2>/dev/null | grep -iE '^Acquire::(https?|Retries)\b' || true
   if [ -n "${http_proxy:-}" ]; then echo "Acquire::http::Proxy \"$http_proxy\";"; fi
   if [ -n "${https_proxy:-}" ]; then echo "Acquire::https::Proxy \"$https_proxy\";"; fi
 }
 
-# ---- a root
+# ---- the root file system
 
-# Makes the bare root $1: from the cache, or with debootstrap.
+# Makes the minimal root $1, from the cache or with debootstrap.
 make_root() {
   local root=$1 sources key tar mirror keep=()
   sources=$(debian_sources)
@@ -62,7 +62,7 @@ make_root() {
     [ "$cached" = 0 ] || keep+=(--cache-dir="$cache/debs")
     debootstrap --variant=minbase --include=ca-certificates,git "${keep[@]}" "$suite" "$root" "$mirror" >"$work/debootstrap.log" 2>&1 ||
       { tail -20 "$work/debootstrap.log"; return 1; }
-    # As in an image of Debian's: no package lists, no packages.
+    # As in Debian's images: no package lists, no downloaded packages.
     rm -rf "$root"/var/lib/apt/lists/* "$root"/var/cache/apt/archives/*.deb "$root/etc/apt/sources.list"
     awk '{ print "deb", $1, $2, "main" }' <<<"$sources" >"$root/etc/apt/sources.list.d/debian.list"
     rm -f "$root/etc/resolv.conf" "$root/etc/hosts" # debootstrap copies this machine's
@@ -71,7 +71,7 @@ make_root() {
       tar -C "$root" --numeric-owner --one-file-system -cpf "$tar.$$" . && mv "$tar.$$" "$tar"
     fi
   fi
-  # What belongs to this machine and not to the cached root.
+  # Settings of this machine, which the cached root must not have.
   cp -L /etc/resolv.conf /etc/hosts "$root/etc/" 2>/dev/null || true
   apt_transport >"$root/etc/apt/apt.conf.d/90machine"
   if [ "$cached" = 1 ]; then
@@ -79,18 +79,18 @@ make_root() {
   fi
 }
 
-# Mounts what programs expect beside files: processes, shared memory, and the caches. Says what cannot be had.
+# Mounts processes, shared memory and the caches. Reports missing mounts.
 mount_parts() {
   local root=$1 device
   if [ "$mounts" = 0 ]; then
-    echo "fresh_install.sh: this machine lets nobody mount: the root has no /proc, and only packages are kept between runs"
+    echo "fresh_install.sh: mounting is not allowed here: the root has no /proc, and only packages are cached"
   fi
   try mount -t proc proc "$root/proc" || true
   try mount -t tmpfs -o mode=1777 tmpfs "$root/dev/shm" || true
-  for device in null zero full random urandom tty; do # where debootstrap may not make devices
+  for device in null zero full random urandom tty; do # if debootstrap may not make devices
     [ -c "$root/dev/$device" ] || { touch "$root/dev/$device" && try mount --bind "/dev/$device" "$root/dev/$device"; }
   done
-  [ -c "$root/dev/null" ] || { echo "fresh_install.sh: no /dev/null can be made in the root" >&2 && return 1; }
+  [ -c "$root/dev/null" ] || { echo "fresh_install.sh: cannot make /dev/null in the root" >&2 && return 1; }
   if [ "$cached" = 1 ]; then
     mkdir -p "$cache/debs" "$objects" "$root/var/cache/ccache" "$cache/tidy" "$root/root/.cache/lrbscope-tidy"
     try mount --bind "$cache/tidy" "$root/root/.cache/lrbscope-tidy" || true
@@ -100,9 +100,9 @@ mount_parts() {
 }
 try() { [ "$mounts" = 1 ] && "$@"; }
 
-# Runs words in the root, as root would in a shell of its own; with the compiler cache if there is one.
+# Runs a command in the root, as root in a clean environment, with the compiler cache if available.
 inside() { as root /root "$@"; }
-limit=() # timeout and its words, in steps that may be cut short
+limit=() # timeout and its arguments, in steps with a time limit
 # as USER HOME WORD...
 as() {
   local user=$1 home_of=$2 clean=(TERM=dumb PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin)
@@ -118,12 +118,12 @@ as() {
 
 all=(root clone stranger run check user api browser again peers python debs site sanitizers clang fuzz tidy)
 names=() seconds=() busy=() failed=() left_out=()
-# step NAME FUNCTION: runs it, with its output, and notes how long it took and whether it failed. Ends here if it was the
-# last wanted.
+# step NAME FUNCTION: runs it, prints its output, and records its time and whether it failed. Exits after the last requested
+# step.
 step() {
   local name=$1 code TIMEFORMAT='%R %U %S'
-  echo "== bare: $name"
-  set +e # a function that is asked whether it failed would not stop at its first failure
+  echo "== fresh_install: $name"
+  set +e # in a condition, a function would not stop at its first failure
   { time { (set -e && "$2") 2>&1 | tee "$work/$name.log"; code=${PIPESTATUS[0]}; }; } 2>"$work/$name.time"
   set -e
   names+=("$name")
@@ -134,7 +134,7 @@ step() {
   elif [ "$code" != 0 ]; then
     echo "fresh_install.sh: $name FAILED"
     failed+=("$name")
-    case $name in root | clone | stranger | run | check) finish ;; esac # the others do not need each other
+    case $name in root | clone | stranger | run | check) finish ;; esac # the others are independent
   fi
   [ "$name" != "$until" ] || finish
 }
@@ -146,13 +146,13 @@ table() {
     all=$((all + seconds[i])) all_busy=$((all_busy + busy[i]))
   done
   printf '%-12s %8d %18d\n' all $all $all_busy
-  [ ${#left_out[@]} = 0 ] || echo "no time was left for, or to end: ${left_out[*]}"
+  [ ${#left_out[@]} = 0 ] || echo "left out or cut short by the time limit: ${left_out[*]}"
   echo "$suite, on $(nproc) processors, load $(cut -d' ' -f1-3 /proc/loadavg), caches $([ "$cached" = 1 ] && echo kept || echo off)"
 }
 finish() {
   table
   if [ "$cached" = 1 ] && [ "$mounts" = 0 ]; then cp -n "$root"/var/cache/apt/archives/*.deb "$cache/debs/" 2>/dev/null || true; fi
-  # The closing lines of every ctest, the main one last.
+  # The summary lines of every ctest, the main one last.
   local name
   for name in user sanitizers clang again python peers check; do
     if [ -f "$work/$name.log" ] && grep -q 'tests passed' "$work/$name.log"; then
@@ -170,7 +170,7 @@ finish() {
 
 step_root() { make_root "$root" && mount_parts "$root"; }
 step_clone() {
-  # Pushed into the root, so that the clone is one of an ordinary repository and this one stays unseen.
+  # Pushes into the root, so that the clone comes from an ordinary repository, not from this one.
   git init -q --bare "$root/srv/lrbscope.git"
   git -C "$root/srv/lrbscope.git" config receive.shallowUpdate true
   git -C "$repository" push -q "$root/srv/lrbscope.git" "$commit:refs/heads/main"
@@ -181,7 +181,7 @@ step_clone() {
   cp -a "$root$home" "$root/home/stranger/lrbscope"
   chown -R 1000:1000 "$root/home/stranger"
 }
-# Without root, and without packages: says which, and that root must install them.
+# Without root and without packages: the commands must print the packages for root to install.
 step_stranger() {
   local command code said
   for command in ./run ./check; do
@@ -189,7 +189,7 @@ step_stranger() {
     said=$(home=/home/stranger/lrbscope as 1000:1000 /home/stranger "$command" 2>&1) || code=$?
     echo "$said"
     [ $code = 3 ] && grep -q 'apt-get install .*libeigen3-dev' <<<"$said" ||
-      { echo "$command of a user without packages: exit code $code, where 3 and what to install was expected"; return 1; }
+      { echo "$command of a user without packages: exit code $code, expected 3 and the packages to install"; return 1; }
   done
 }
 step_run() {
@@ -197,23 +197,23 @@ step_run() {
   inside ./run
   local picture
   for picture in out/collision/index.html out/figure2/montage.png; do
-    [ -s "$root$home/$picture" ] || { echo "./run made no $picture"; return 1; }
+    [ -s "$root$home/$picture" ] || { echo "./run did not write $picture"; return 1; }
   done
 }
 add_compiler_cache() {
   [ "$mounts" = 1 ] || return 0
   inside bash -c 'apt-get update -q && apt-get install -y -q --no-install-recommends ccache' >"$work/ccache.log" 2>&1 ||
     { cat "$work/ccache.log"; return 1; }
-  rm -rf "$root"/var/lib/apt/lists/* # a bare machine has none
+  rm -rf "$root"/var/lib/apt/lists/* # a minimal machine has none
 }
 step_check() {
   inside ./check
-  # Nothing may be skipped where the formatter can be had.
+  # The format part may not be skipped if the formatter is available.
   [ "$suite" != bookworm ] || inside bash -c 'command -v clang-format-14'
 }
-# The tests that write files and start programs.
+# Tests that write files and start programs.
 user_tests='^(mesh_tests|lrb_tests|trace_tests|render_tests|scenarios_tests|crowd_tests|golden_tests|stability.*|measure_tests|package|robustness)$'
-# Without root, with the packages: the same clone, given away, so that only what depends on the user is done again.
+# Without root, with the packages: the same clone with another owner, so that only steps that depend on the user are repeated.
 step_user() {
   chmod a+x "$root/root"
   chown -R 1000:1000 "$root$home"
@@ -223,7 +223,7 @@ step_user() {
   chown -R 0:0 "$root$home"
   return $code
 }
-# The packages of the clone, in a root that has nothing of it.
+# Installs the packages of the clone in a new root.
 step_debs() {
   inside ./check debs
   local made=$root$home/build/release/debs root=$work/fresh home=/root
@@ -232,8 +232,8 @@ step_debs() {
   inside bash -c 'apt-get update -q && apt-get install -y -q --no-install-recommends ./lrbscope_*.deb'
   inside lrbscope --version
   inside lrbscope --quiet run collision -o out
-  [ -s "$root/root/out/index.html" ] || { echo "the installed program made no page" && return 1; }
-  [ -s "$root/usr/share/man/man1/lrbscope-run.1.gz" ] || { echo "there is no manual page" && return 1; }
+  [ -s "$root/root/out/index.html" ] || { echo "the installed program wrote no page" && return 1; }
+  [ -s "$root/usr/share/man/man1/lrbscope-run.1.gz" ] || { echo "found no manual page" && return 1; }
   cp -r "$(dirname "$script")/stranger" "$root/root/stranger"
   inside bash -c 'apt-get install -y -q --no-install-recommends cmake make g++ ./liblrbscope*.deb'
   inside bash -c 'lrbscope --quiet export collision --what body --of a -o a.ply'
@@ -289,12 +289,12 @@ if [ "${1:-}" != --inside ]; then
   case $suite in bookworm | trixie) ;; *) usage ;; esac
   case " ${all[*]} " in *" $until "*) ;; *) usage ;; esac
   [[ $minutes =~ ^[0-9]+$ ]] || usage
-  [ "$(id -u)" = 0 ] || refuse "needs root, to make a root of its own"
+  [ "$(id -u)" = 0 ] || refuse "needs root, to make a root file system"
   command -v debootstrap >/dev/null || refuse "needs debootstrap (apt-get install debootstrap)"
   commit=$(git -C "$repository" rev-parse --verify -q "$commit^{commit}") || { echo "fresh_install.sh: no such commit" >&2 && exit 2; }
   cache=${XDG_CACHE_HOME:-$HOME/.cache}/lrbscope-bare/$suite
   mkdir -p "$cache"
-  for old in "$cache"/work-*; do # of runs that were killed
+  for old in "$cache"/work-*; do # of killed runs
     [ ! -d "$old" ] || [ -d "/proc/${old##*-}" ] || rm -rf --one-file-system "$old"
   done
   work=$cache/work-$$
@@ -306,7 +306,7 @@ if [ "${1:-}" != --inside ]; then
   }
   trap clean_up EXIT
   trap 'exit 130' INT TERM HUP
-  # Mounts and processes end with the namespace, however this script ends.
+  # Mounts and processes end with the namespace, even if this script is killed.
   apart=(unshare --mount --propagation private --pid --fork --kill-child)
   mounts=1
   chroot / true 2>/dev/null || refuse "may not change the root here"
@@ -322,6 +322,6 @@ if [ "${1:-}" != --inside ]; then
   exit $code
 fi
 commit=$2 until=$3 minutes=$4 cached=$5 mounts=$6 cache=$7 work=$8 suite=$9
-objects=${CCACHE_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/ccache} # this machine's: an object is what it is wherever it was made
+objects=${CCACHE_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/ccache} # this machine's cache: objects do not depend on the root
 root=$work/root
 all_steps

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # tests/fuzz/run.sh [--runs N | --seconds N] [FORMAT...]: builds the fuzzers (clang, address and undefined-behaviour
-# sanitizers: the preset asan-ubsan) and runs each for 20 seconds, or as long as it is told; --runs 1000000 is the full
-# run. Formats: mesh (OBJ, STL, PLY and OFF) lrb fields (an .lrb, damaged field by field) body (folded polygons, built)
-# poses scenario crowd crowd_trace experiment trace motion. What runs learn stays in build/asan-ubsan/fuzz/corpus; an input that
-# crashes, or takes over 10 s, is left in .../found and ends the script; those of before are in tests/fuzz/corpus.
+# sanitizers: the preset asan-ubsan) and runs each for 20 seconds, N seconds or N inputs; --runs 1000000 is the full run.
+# Formats: mesh (OBJ, STL, PLY and OFF) lrb fields (an .lrb, damaged field by field) body (folded polygons, built)
+# poses scenario crowd crowd_trace experiment trace motion. New inputs are kept in build/asan-ubsan/fuzz/corpus. An input that
+# crashes, or takes over 10 s, is left in .../found and ends the script; earlier findings are in tests/fuzz/corpus.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 bound=-max_total_time=20
@@ -21,11 +21,11 @@ cmake --build "$build" --target fuzz_seeds "${formats[@]/#/fuzz_}"
 rm -rf "$dir/seeds"
 "$build/tests/fuzz_seeds" "$dir/seeds"
 mkdir -p "$dir/found"
-# Where memory was taken, two calls deep, is enough to look for a crash, and a deep walk for each allocation is not cheap.
+# Two frames per allocation suffice to find a crash; deep stack traces are slow.
 export ASAN_OPTIONS=malloc_context_size=2
 for format in "${formats[@]}"; do
   mkdir -p "$dir/corpus/$format"
-  # Longer inputs are cut, and a seed that is cut is worth nothing.
+  # Longer inputs are truncated, which would make seeds useless.
   longest=$(find "$dir/seeds/$format" -type f -printf '%s\n' | sort -n | tail -1)
   length=$((longest > 1536 ? longest : 1536))
   options=(-timeout=10 -rss_limit_mb=2048 -max_len="$length" -print_final_stats=1 -verbosity=0 "$bound")

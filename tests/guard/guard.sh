@@ -1,7 +1,7 @@
 #!/bin/sh
-# Counts the instructions of a few queries (callgrind) and compares them with tests/guard/guard.txt: a change that makes
-# a query do more work shows, whatever else the machine is doing. Counts depend on the compiler, its flags and on what
-# the processor can do (AVX2), each of which has lines of its own.
+# Counts the instructions of a few queries (callgrind) and compares them with tests/guard/guard.txt, to detect changes that
+# add work to a query, independently of the load of the machine. Counts depend on the compiler, its flags and AVX2;
+# guard.txt has separate lines for each combination.
 #   tests/guard/guard.sh [BUILD] [--tolerance PERCENT] [--approve]      BUILD: a build folder [build/release]
 # Exit codes: 0 within the tolerance (or approved), 1 more instructions than it allows, 2 bad usage, 3 cannot count.
 set -eu
@@ -10,7 +10,7 @@ known=$here/guard.txt
 build=$here/../../build/release tolerance=1 approve=
 while [ $# -gt 0 ]; do
   case $1 in
-    --tolerance) [ $# -gt 1 ] || { echo "guard: --tolerance needs a number of percent" >&2; exit 2; }
+    --tolerance) [ $# -gt 1 ] || { echo "guard: --tolerance: expected a percentage" >&2; exit 2; }
       tolerance=$2; shift ;;
     --approve) approve=yes ;;
     -*) echo "guard: unknown option $1" >&2; exit 2 ;;
@@ -20,7 +20,7 @@ while [ $# -gt 0 ]; do
 done
 program=$build/tests/guard/query_guard
 [ -x "$program" ] || {
-  echo "guard: $program is not there: install valgrind, configure with -DLRB_BUILD_BENCHMARKS=ON, build query_guard" >&2
+  echo "guard: missing $program: install valgrind, configure with -DLRB_BUILD_BENCHMARKS=ON, build query_guard" >&2
   exit 3
 }
 command -v valgrind > /dev/null || { echo "guard: install Debian's valgrind" >&2; exit 3; }
@@ -34,7 +34,7 @@ for f in "$scratch"/counts.*; do
   awk -v key="$key" '/^desc: Trigger: Client Request: / { name = $NF } /^(totals|summary):/ { n = $2 }
                      END { if (name != "" && n > 0) print key, name, n }' "$f"
 done > "$scratch/now"
-[ -s "$scratch/now" ] || { echo "guard: callgrind counted nothing" >&2; exit 3; }
+[ -s "$scratch/now" ] || { echo "guard: callgrind wrote no counts" >&2; exit 3; }
 touch "$known"
 if [ -n "$approve" ]; then
   grep -v "^$key " "$known" > "$scratch/new" || true
@@ -47,14 +47,14 @@ awk -v tolerance="$tolerance" '
   FNR == NR { known[$1 " " $2] = $3; next }
   { key = $1 " " $2
     counted[$2] = $3
-    if (!(key in known)) { printf "%-18s %12d  not known for %s: --approve it\n", $2, $3, $1; next }
+    if (!(key in known)) { printf "%-18s %12d  no count for %s: use --approve\n", $2, $3, $1; next }
     change = 100 * ($3 / known[key] - 1)
     printf("%-18s %12d  %+.2f %%%s\n", $2, $3, change, (change > tolerance ? "  MORE than " tolerance " %" : ""))
     if (change > tolerance) bad = 1 }
   END {
     if (counted["shallow"] > 0) {
       cost = 100 * (counted["shallow_watched"] / counted["shallow"] - 1)
-      printf("what events cost that nobody keeps: %+.2f %%, at most 1 %%%s\n", cost, (cost > 1 ? ": MORE" : ""))
+      printf("overhead of events without a recorder: %+.2f %%, at most 1 %%%s\n", cost, (cost > 1 ? ": MORE" : ""))
       if (cost > 1) bad = 1
     }
     exit bad

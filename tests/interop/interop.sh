@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# interop.sh LRBSCOPE: exports a run and has programs of others open the files: interop.py reads VTP, PLY and GLB as their
-# specifications say, with nothing of ours, and VTK (Debian's python3-vtk9) all of them where it is; assimp (assimp-utils) PLY,
-# OBJ and GLB; Khronos' validator (npm's gltf-validator) GLB; speedscope (npm's, in Chromium) the trace. All must find the same
-# faces and numbers. Says which were not there. Skipped (77) without python3. LRB_NODE_MODULES: where npm's packages are
-# installed, if node does not find them.
+# interop.sh LRBSCOPE: exports a run and opens the files in other programs. All must find the same faces and numbers.
+# - interop.py: VTP, PLY and GLB by independent readers; all formats by VTK (Debian's python3-vtk9)
+# - assimp (assimp-utils): PLY, OBJ and GLB; Khronos' validator (npm's gltf-validator): GLB; speedscope (npm's, in Chromium): the trace
+# Missing programs are reported as skipped. Exit code 77 (skipped) without python3. LRB_NODE_MODULES: folder of npm's packages, if
+# node does not find them.
 set -euo pipefail
 lrbscope=$(realpath "$1")
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-python=/usr/bin/python3 # Debian's own, which has Debian's modules
+python=/usr/bin/python3 # the system's, which has Debian's modules
 [ -x "$python" ] || python=$(command -v python3 || true)
-[ -n "$python" ] || { echo "interop.sh: skipped: no python3 here" && exit 77; }
+[ -n "$python" ] || { echo "interop.sh: skipped: needs python3" && exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -22,7 +22,7 @@ for name in text.vtp text.ply; do "$lrbscope" --quiet export run --ascii -o "$na
 "$python" "$here/interop.py" run/trace.json run.vtp text.vtp run.ply text.ply run.glb run.obj regions.glb
 
 if command -v assimp >/dev/null; then
-  faces=$("$python" "$here/interop.py" --count run.vtp) # polygons and, as assimp counts them, segments of lines
+  faces=$("$python" "$here/interop.py" --count run.vtp) # polygons, and line segments as counted by assimp
   for name in run.ply:polygons run.obj:all run.glb:all; do
     found=$(assimp info "${name%:*}" | awk '$1 == "Faces:" { print $2 }')
     wanted=$(awk -v w="${name#*:}" '{ print w == "all" ? $1 + $2 : $1 }' <<<"$faces")
@@ -30,14 +30,14 @@ if command -v assimp >/dev/null; then
   done
   echo "assimp: the same faces in PLY, OBJ and GLB"
 else
-  echo "assimp is not here (Debian's assimp-utils): not asked"
+  echo "skipped: assimp is not installed (Debian's assimp-utils)"
 fi
 
 export NODE_PATH=${LRB_NODE_MODULES:-$(npm root -g 2>/dev/null || true)}
 if command -v node >/dev/null && node -e 'require.resolve("gltf-validator")' 2>/dev/null; then
   node "$here/validate.js" run.glb regions.glb
 else
-  echo "gltf-validator is not here (npm install gltf-validator): not asked"
+  echo "skipped: gltf-validator is not installed (npm install gltf-validator)"
 fi
 
 status=0

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# layers.sh [TREE]: reads every #include of ours in the tree's sources against rooms.txt, and fails on each that goes where its
-# room may not see, on a folder or public header that is not on the list, and on a list with a circle.
-# layers.sh --self-test: turns an include of each room round, one after another in a copy, and fails unless each is found.
+# layers.sh [TREE]: checks every project #include in the tree's sources against rooms.txt. Fails on an include that its
+# module may not depend on, on a folder or public header that is not listed, and on a cyclic list.
+# layers.sh --self-test: reverses an include of each module, one at a time in a copy, and fails unless each is detected.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 tops=(engine trace render scenarios bench tools python)
@@ -17,7 +17,7 @@ check() { # the tree's root
         for (i = 1; i <= n; i++) if (next_rooms[i] == to || sees(next_rooms[i], to, depth + 1)) return 1
         return 0
       }
-      # A public header counts for the room that implements it, so that the face hides no arrow.
+      # A public header belongs to the module that implements it, so that no dependency is hidden.
       function room_of(path) {
         if (path in owner) return owner[path]
         sub(/\/include\/lrbscope\/.*$/, "/x", path)
@@ -38,14 +38,14 @@ check() { # the tree's root
         }
         for (room in known) {
           count = split(seen[room], listed, " ")
-          for (i = 1; i <= count; i++) if (!(listed[i] in known)) complain("rooms.txt: " room " may see " listed[i] ", which is not on the list")
-          if (sees(room, room, 0)) complain("rooms.txt: " room " sees itself: break the circle")
+          for (i = 1; i <= count; i++) if (!(listed[i] in known)) complain("rooms.txt: " room " may depend on " listed[i] ", which is not listed")
+          if (sees(room, room, 0)) complain("rooms.txt: " room " depends on itself: break the cycle")
         }
         count = split(folders, there, " ")
-        for (i = 1; i <= count; i++) if (!(there[i] in known)) complain(there[i] ": a new folder: put it, and what it may see, on tests/layers/rooms.txt")
+        for (i = 1; i <= count; i++) if (!(there[i] in known)) complain(there[i] ": a new folder: list it and its dependencies in tests/layers/rooms.txt")
         count = split(headers, there, " ")
-        for (i = 1; i <= count; i++) if (!(there[i] in owner)) complain(there[i] ": a new public header: put it behind the room that implements it, on tests/layers/rooms.txt")
-        for (header in owner) if (index(" " headers, " " header " ") == 0) complain("rooms.txt: there is no " header)
+        for (i = 1; i <= count; i++) if (!(there[i] in owner)) complain(there[i] ": a new public header: list it with the module that implements it in tests/layers/rooms.txt")
+        for (header in owner) if (index(" " headers, " " header " ") == 0) complain("rooms.txt: no such header: " header)
       }
       function complain(text) { print text; bad = 1 }
       {
@@ -59,12 +59,12 @@ check() { # the tree's root
         from = room_of(file); to = room_of(target); includes++
         key = from SUBSEP to
         if (!(key in verdict)) verdict[key] = from == to || sees(from, to, 0)
-        if (!verdict[key]) complain(file ": includes " target ", but " from " may not see " to " (tests/layers/rooms.txt)")
+        if (!verdict[key]) complain(file ": includes " target ", but " from " may not depend on " to " (tests/layers/rooms.txt)")
       }
-      END { if (!bad) print includes " includes between rooms, all as tests/layers/rooms.txt allows"; exit bad }'
+      END { if (!bad) print includes " includes between modules, all allowed by tests/layers/rooms.txt"; exit bad }'
 }
 
-# Prints the room of a file; of a public header of the engine, the one that implements it.
+# Prints the module of a file; for a public header of the engine, the module that implements it.
 room_of() {
   case "$1" in
     engine/include/*) awk -v file="$1" '/^[^#].* has / { for (i = 3; i <= NF; i++) if (file == "engine/include/lrbscope/" $i ".hpp") print $1 }' "$here/rooms.txt" ;;
@@ -79,7 +79,7 @@ self_test() {
   copy=$(mktemp -d)
   trap 'rm -rf "$copy"' EXIT # not local: the trap outlives this function
   (cd "$root" && find "${tops[@]}" -name '*.[chi]pp' -o -name '*.inl' | tar -cf - -T -) | tar -xf - -C "$copy"
-  # An include from one room to another, turned round: the header that was included includes its user's room.
+  # A reversed include between two modules: the included header includes the file that included it.
   local -A done=()
   while read -r file header; do
     local pair
@@ -89,21 +89,21 @@ self_test() {
     cp "$copy/$header" "$copy/kept"
     printf '#include "%s"\n' "$file" >>"$copy/$header"
     if (check "$copy") >"$copy/said"; then
-      echo "layers.sh: did not notice that $header includes $file" >&2
+      echo "layers.sh: did not detect that $header includes $file" >&2
       return 1
     fi
-    grep -qF "$header: includes $file" "$copy/said" || { echo "layers.sh: complained of something else than $header" >&2; return 1; }
+    grep -qF "$header: includes $file" "$copy/said" || { echo "layers.sh: reported another error than $header" >&2; return 1; }
     mv "$copy/kept" "$copy/$header"
     turned=$((turned + 1))
   done < <(cd "$copy" && grep -rHoE --include=*.hpp '^#include ("(engine|trace|render|scenarios|bench)/[^"]+|<lrbscope/[a-z_]+\.hpp)' "${tops[@]}" |
              sed -E 's/:#include "/ /; s/:#include <(lrbscope)/ engine\/include\/\1/')
-  [ "$turned" -gt 10 ] || { echo "layers.sh: only $turned includes to turn round" >&2; return 1; }
+  [ "$turned" -gt 10 ] || { echo "layers.sh: only $turned includes to reverse" >&2; return 1; }
   mkdir "$copy/engine/attic" && : >"$copy/engine/attic/x.hpp"
-  ! (check "$copy") >"$copy/said" && grep -q '^engine/attic: a new folder' "$copy/said" || { echo "layers.sh: did not notice a new folder" >&2; return 1; }
+  ! (check "$copy") >"$copy/said" && grep -q '^engine/attic: a new folder' "$copy/said" || { echo "layers.sh: did not detect a new folder" >&2; return 1; }
   rm -r "$copy/engine/attic"
   : >"$copy/engine/include/lrbscope/attic.hpp"
-  ! (check "$copy") >"$copy/said" && grep -q 'attic.hpp: a new public header' "$copy/said" || { echo "layers.sh: did not notice a new public header" >&2; return 1; }
-  echo "$turned includes turned round, a new folder, and a new public header: each was noticed"
+  ! (check "$copy") >"$copy/said" && grep -q 'attic.hpp: a new public header' "$copy/said" || { echo "layers.sh: did not detect a new public header" >&2; return 1; }
+  echo "$turned reversed includes, a new folder and a new public header: all detected"
 }
 
 case "${1:-}" in

@@ -1,4 +1,4 @@
-# lrb_blocks(PAGE LANGUAGE OUT): the code blocks of a page, as files in the build folder, in the list OUT.
+# lrb_blocks(PAGE LANGUAGE OUT): writes the code blocks of a page to the build folder, and stores the list of files in OUT.
 function(lrb_blocks page language out)
   file(READ "${page}" text)
   get_filename_component(name "${page}" NAME_WE)

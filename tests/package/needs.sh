@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# needs.sh TREE GENERATOR COMPILER: what configuring does without a preset. Each package is hidden in turn: the part that needs it
-# is left out, and the summary names both; where that part was asked for, one line names the package and the option.
+# needs.sh TREE GENERATOR COMPILER: tests configuring without a preset. Hides each package in turn: the part that needs it must be
+# left out, and the summary must name both. If that part is requested, one line must name the package and the option.
 set -euo pipefail
 tree=$(cd "$1" && pwd)
 build=$(mktemp -d)
 trap 'rm -rf "$build"' EXIT
 bad() { echo "needs.sh: $1" && cat "$build/log" && exit 1; }
 
-# Configures with these options; the log has what was printed, and one line for the exit code.
+# Configures with these options; the log has the output, and one line for the exit code.
 configure() {
   local code=0
   cmake -S "$tree" -B "$build" "$@" >"$build/log" 2>&1 || code=$?
@@ -22,25 +22,25 @@ for part in engine trace render program tests; do built $part || bad "a plain co
 grep -qx 'LRB_WARNINGS_AS_ERRORS:STRING=OFF' "$build/CMakeCache.txt" || bad "warnings are errors without a preset"
 
 count=0
-# hide OPTION VISIBLE PACKAGE PART ASKED INSTEAD: what hides PACKAGE, what shows it again, the first part that needs it, what
-# asks for that part, and what the refusal offers.
+# hide OPTION VISIBLE PACKAGE PART ASKED INSTEAD: the options that hide PACKAGE and show it again, the first part that needs it,
+# the option that requests this part, and the option that the error message offers.
 hide() {
   listed "$3"
   configure "$1"
   if [ "$4" = engine ]; then
-    grep -qx 'exit code 1' "$build/log" || bad "$3 is hidden, and configuring goes on"
+    grep -qx 'exit code 1' "$build/log" || bad "configuring succeeds without $3"
   else
     grep -qx 'exit code 0' "$build/log" || bad "configuring fails without $3"
-    grep -q -- "^-- left out: $4, needs Debian's.* $3\b" "$build/log" || bad "nothing says that $4 is left out for want of $3"
+    grep -q -- "^-- left out: $4, needs Debian's.* $3\b" "$build/log" || bad "no line says that $4 is left out because of $3"
     ! built "${4%% *}" || bad "$4 is built without $3"
     if [ -n "$5" ]; then configure "$1" "$5"; fi
   fi
   if [ -n "$5" ]; then
-    grep -qx 'exit code 1' "$build/log" || bad "$5 without $3 was not refused"
+    grep -qx 'exit code 1' "$build/log" || bad "$5 without $3 was not rejected"
     [ "$(grep -c "^ *lrbscope: $4 needs Debian's.* $3\b.* configure with $6" "$build/log")" = 1 ] || bad "no line names $3 and $6"
   fi
   configure "$2" -ULRB_BUILD_TESTS -ULRB_BUILD_PROGRAM -ULRB_COMPONENTS
-  grep -qx 'exit code 0' "$build/log" || bad "configuring fails with $3 there again"
+  grep -qx 'exit code 0' "$build/log" || bad "configuring fails with $3 visible again"
   count=$((count + 1))
 }
 package() { hide "-DCMAKE_DISABLE_FIND_PACKAGE_$1=ON" "-DCMAKE_DISABLE_FIND_PACKAGE_$1=OFF" "${@:2}"; }
@@ -62,7 +62,7 @@ package valijson libvalijson-dev tests -DLRB_BUILD_TESTS=ON -DLRB_BUILD_TESTS=OF
 package SQLite3 libsqlite3-dev tests -DLRB_BUILD_TESTS=ON -DLRB_BUILD_TESTS=OFF
 package pybind11 pybind11-dev "Python module" "" ""
 
-# The engine alone needs nothing of the other parts.
+# The engine alone does not need other parts.
 configure -DLRB_BUILD_PROGRAM=OFF -DLRB_COMPONENTS=engine
 for part in trace render program tests; do ! built $part || bad "-DLRB_BUILD_PROGRAM=OFF -DLRB_COMPONENTS=engine builds $part"; done
 echo "$count packages hidden, one at a time"

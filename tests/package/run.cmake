@@ -1,8 +1,8 @@
-# Builds and runs a stranger's project. HOW:
-#   package  installs the build in BUILD, finds it there by find_package() and by pkg-config
-#   shared   the same for shared libraries, which it builds and installs first
-#   fetched  fetches our tree by FetchContent
-# SOURCE: this folder. BUILD: a build of ours, beside which everything happens. VERSION, GENERATOR, COMPILER, FLAGS, LAUNCHER.
+# Builds and runs an external project. HOW:
+#   package  installs BUILD, and finds it by find_package() and pkg-config
+#   shared   the same for shared libraries, built and installed first
+#   fetched  fetches the source tree by FetchContent
+# SOURCE: this folder. BUILD: a build folder, in which the test works. VERSION, GENERATOR, COMPILER, FLAGS, LAUNCHER.
 get_filename_component(tree "${SOURCE}/../.." ABSOLUTE)
 set(place "${BUILD}/package test ${HOW}")
 set(prefix "${place}/installed")
@@ -17,7 +17,7 @@ function(run)
 endfunction()
 
 set(toolchain -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}")
-# Not optimised: it is about what is found and linked.
+# Not optimised, because the test only covers finding and linking.
 set(ours "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" -DCMAKE_UNITY_BUILD=ON -DCMAKE_BUILD_TYPE=Debug
     -DCMAKE_CXX_FLAGS_DEBUG=-O0)
 if(HOW STREQUAL "fetched")
@@ -33,7 +33,7 @@ if(HOW STREQUAL "shared")
       -DLRB_BUILD_PROGRAM=OFF)
   run(${CMAKE_COMMAND} --build "${place}/build")
   run(${CMAKE_COMMAND} --install "${place}/build" --prefix "${prefix}")
-  # The name by which programs find it carries the version that they were compiled for.
+  # The soname contains the version that programs were compiled for.
   file(GLOB_RECURSE library "${prefix}/liblrb_engine.so.${VERSION}")
   run(objdump -p "${library}")
   string(REGEX MATCH "^[0-9]+\\.[0-9]+" minor "${VERSION}")
@@ -51,7 +51,7 @@ run(${CMAKE_COMMAND} -S "${SOURCE}" -B "${place}/user" ${toolchain} "-DCMAKE_PRE
 run(${CMAKE_COMMAND} --build "${place}/user")
 run("${place}/user/user")
 run("${place}/user/user_picture")
-# The examples, as a project of their own.
+# The examples, as a separate project.
 run(${CMAKE_COMMAND} -S "${tree}/examples" -B "${place}/examples" ${toolchain} "-DCMAKE_PREFIX_PATH=${prefix}")
 run(${CMAKE_COMMAND} --build "${place}/examples")
 run("${place}/examples/collide" "${tree}/tests/data/gear.obj" "${tree}/tests/data/l_block.obj" 0 0 0)

@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
-# pip.sh PYTHON TREE: what pyproject.toml makes a wheel of is the package alone; and `pip install TREE` into an environment of its
-# own, which then asks a query. Exit code 77, skipped, where what it builds with is not installed: pip is not let to fetch it.
+# pip.sh PYTHON TREE: checks that the wheel of pyproject.toml contains only the package; then runs `pip install TREE` in a new
+# environment, and a query there. Exit code 77 (skipped) if the build requirements are not installed; pip may not download them.
 set -euo pipefail
 python=${1:-} tree=$2
-[ -n "$python" ] || { echo "no Python module is built here: install the part [python] of packages.txt" && exit 77; }
+[ -n "$python" ] || { echo "skipped: the Python module was not built: install the part [python] of packages.txt" && exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-# As scikit-build-core configures it.
+# The configuration of scikit-build-core.
 cmake -S "$tree" -B "$work/wheel" -G Ninja -DSKBUILD=2 -DCMAKE_BUILD_TYPE=Release -DLRB_BUILD_TESTS=OFF \
   "-DPython3_EXECUTABLE=$python" >"$work/configure.log" 2>&1 || { cat "$work/configure.log" && exit 1; }
 cmake --install "$work/wheel" --component python --prefix "$work/installed" >/dev/null
-[ "$(ls "$work/installed")" = lrbscope ] || { echo "a wheel would have more than the package:" && ls "$work/installed" && exit 1; }
-[ -e "$work/installed/lrbscope/py.typed" ] || { echo "a wheel would not have the package's files" && exit 1; }
+[ "$(ls "$work/installed")" = lrbscope ] || { echo "the wheel has more than the package:" && ls "$work/installed" && exit 1; }
+[ -e "$work/installed/lrbscope/py.typed" ] || { echo "the wheel lacks files of the package" && exit 1; }
 for module in scikit_build_core pybind11 numpy venv pip; do
-  "$python" -c "import $module" 2>/dev/null || { echo "$python has no $module, which pip install . needs" && exit 77; }
+  "$python" -c "import $module" 2>/dev/null || { echo "skipped: $python has no $module, which pip install . needs" && exit 77; }
 done
 "$python" -m venv --system-site-packages "$work/venv"
 "$work/venv/bin/python" -m pip install --no-index --no-build-isolation --no-deps "$tree"

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# python.sh PYTHON PACKAGE: the tests of the Python package in the folder PACKAGE. Exit code 77, skipped, where there is none.
+# python.sh PYTHON PACKAGE: runs the tests of the Python package in the folder PACKAGE. Exit code 77 (skipped) without it.
 set -euo pipefail
 python=${1:-} package=${2:-}
-[ -n "$python" ] && [ -d "$package/lrbscope" ] || { echo "no Python module was built: install the part [python] of packages.txt" && exit 77; }
+[ -n "$python" ] && [ -d "$package/lrbscope" ] || { echo "skipped: the Python module was not built: install the part [python] of packages.txt" && exit 77; }
 for module in numpy pytest; do
-  "$python" -c "import $module" 2>/dev/null || { echo "$python has no $module: install the part [python] of packages.txt" && exit 77; }
+  "$python" -c "import $module" 2>/dev/null || { echo "skipped: $python has no $module: install the part [python] of packages.txt" && exit 77; }
 done
 package=$(cd "$package" && pwd)
 cd "$(dirname "${BASH_SOURCE[0]}")"

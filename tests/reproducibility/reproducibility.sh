@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# tests/reproducibility/reproducibility.sh: are answers the same to the last bit? Builds engine, traces and generators with gcc and with
-# clang at -O0, -O2 and -O3, runs tests/reproducibility/fingerprints.cpp with all instruction sets and on 1 and 2 threads, and
-# prints a table; exits 1 if a line of output differs from that of the first run. COMPILERS and LEVELS may name fewer.
+# tests/reproducibility/reproducibility.sh: verifies that answers are bit-identical. Builds engine, traces and generators with gcc and
+# clang at -O0, -O2 and -O3, runs tests/reproducibility/fingerprints.cpp with all instruction sets on 1 and 2 threads, and
+# prints a table. Exits with 1 if a line of output differs from the first run. COMPILERS and LEVELS restrict the builds.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 top=build/repeat
@@ -11,7 +11,7 @@ printf '%-8s %-5s %-9s %-8s %-7s %s\n' compiler level vectors threads lines answ
 for compiler in ${COMPILERS:-g++ clang++}; do
   for level in ${LEVELS:-0 2 3}; do
     build=$top/$compiler-O$level
-    # What the release preset has beside its level of optimisation.
+    # The options of the release preset, except for the optimisation level.
     cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release \
       -DCMAKE_CXX_FLAGS_RELEASE="-O$level" -DLRB_HARDEN=$([ "$level" = 0 ] && echo OFF || echo ON) \
       -DLRB_BUILD_TESTS=ON -DLRB_WARNINGS_AS_ERRORS=OFF >/dev/null

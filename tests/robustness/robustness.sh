@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# tests/robustness/robustness.sh LRBSCOPE [unlimited]: what the program does when the machine fails it or somebody stops it. Nothing
-# half-written may ever be seen under a final name, nothing temporary may stay, and the message is one line.
-# "unlimited" leaves out what sets a limit on memory, below which ASan's shadow of it would not fit.
+# tests/robustness/robustness.sh LRBSCOPE [unlimited]: injects faults of the machine and signals. No final file may be half-written,
+# no temporary file may remain, and the message must be one line.
+# "unlimited" skips the tests with a memory limit, which is too small for ASan's shadow memory.
 set -u
 bin=$(realpath "$1")
 dir=$(mktemp -d)
@@ -31,7 +31,7 @@ no_temporaries() {
   left=$(find "$dir" -name '*.tmp-*')
   [ -z "$left" ] || fail "$1: left $left"
 }
-# whole FILE WHAT: what is there under its final name is complete
+# whole FILE WHAT: a final file is complete
 whole() {
   case $1 in
     *.lrb) "$bin" inspect "$1" >/dev/null 2>err || fail "$2: half-written $1" ;;
@@ -75,9 +75,9 @@ expect 3 "stdout on a full disk" bash -c "'$bin' query cube.obj cube.obj --poses
 expect 3 "help on a full disk" bash -c "'$bin' --help >/dev/full"
 "$bin" query cube.obj cube.obj --poses poses.txt --pairs 2>err | head -1 >out.txt
 code=${PIPESTATUS[0]}
-[ "$code" = 141 ] || fail "closed pipe: exit $code, expected 141 as from any other program"
+[ "$code" = 141 ] || fail "closed pipe: exit $code, expected 141"
 [ "$(wc -l <out.txt)" = 1 ] || fail "closed pipe: $(wc -l <out.txt) lines arrived"
-[ ! -s err ] || fail "closed pipe: it should end silently"
+[ ! -s err ] || fail "closed pipe: expected no output on stderr"
 expect 3 "closed pipe where SIGPIPE is ignored" \
   bash -c "trap '' PIPE; '$bin' query cube.obj cube.obj --poses poses.txt --pairs | head -1 >/dev/null; exit \${PIPESTATUS[0]}"
 expect 3 "closed stdout" bash -c "'$bin' list >&-"
@@ -95,7 +95,7 @@ mkdir out && mkdir out/index.html
 expect 2 "a folder where the page goes" "$bin" run short.json -o out --frames none
 all_whole out "a folder where the page goes"
 rm -rf out
-# A limit on files' sizes stands for a disk that fills up in the middle.
+# A limit on file sizes simulates a disk that fills up during the run.
 (
   ulimit -f 8
   trap '' XFSZ
@@ -113,7 +113,7 @@ if [ "$(id -u)" = 0 ] && mkdir tiny && mount -t tmpfs -o size=128k tmpfs tiny 2>
   [ ! -e tiny/x.lrb ] || whole tiny/x.lrb "a full file system, again"
   umount tiny
 else
-  echo "not run: a full tmpfs (needs root and mount)"
+  echo "skipped: a full tmpfs (needs root and mount)"
 fi
 if [ "$(id -u)" != 0 ]; then
   mkdir read_only && chmod 555 read_only
@@ -121,7 +121,7 @@ if [ "$(id -u)" != 0 ]; then
   expect 2 "a file in an unwritable folder" "$bin" build cube.obj -o read_only/x.lrb
   chmod 755 read_only
 else
-  echo "not run: an unwritable folder (root may write everywhere)"
+  echo "skipped: an unwritable folder (root may write everywhere)"
 fi
 
 # --- nothing is written outside of the output folder
@@ -157,10 +157,10 @@ no_memory() {
   awk 'BEGIN { n = 400; for (i = 0; i <= n; ++i) for (j = 0; j <= n; ++j) print "v", i, j, sin(i * j);
     for (i = 0; i < n; ++i) for (j = 0; j < n; ++j) { a = i * (n + 1) + j + 1; print "f", a, a + n + 1, a + 1 } }' >big.obj
   echo "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125" >pose.txt
-  # A long array of small objects, as any large trace is.
+  # A long array of small objects, like any large trace.
   awk 'BEGIN { printf "{\"traceEvents\": ["; for (i = 0; i < 600000; ++i) printf "{\"name\":\"step\",\"args\":{\"event\":%d}},\n", i; print "{}]}" }' >big.json
   local need limit extra command
-  for need in $(seq 20000 4000 400000); do  # kB that the program needs only to start
+  for need in $(seq 20000 4000 400000); do  # kB that the program needs to start
     (ulimit -v "$need"; "$bin" --version >/dev/null 2>&1) && break
   done
   for extra in 4000 12000 30000; do
@@ -176,15 +176,15 @@ no_memory() {
 }
 [ "${2:-}" = unlimited ] || no_memory
 
-# --- stopped in the middle
+# --- interrupted
 # stop SIGNAL SECONDS NAME COMMAND...
 stop() {
   local signal=$1 seconds=$2 name=$3 pid got=0
   shift 3
-  # A shell starts background jobs with SIGINT ignored; env gives it back.
+  # A shell starts background jobs with SIGINT ignored; env restores it.
   env --default-signal=INT "$@" >out.txt 2>err </dev/null &
   pid=$!
-  # Before it has taken the signals into its own hands, they end it without a word: wait until it blocks them.
+  # Signals end the program without a message until it handles them: wait until it blocks them.
   for _ in $(seq 200); do grep -q 'SigBlk:.*[1-9a-f]' "/proc/$pid/status" 2>/dev/null && break; sleep 0.05; done
   sleep "$seconds"
   if ! kill -s "$signal" "$pid" 2>/dev/null; then
@@ -194,7 +194,7 @@ stop() {
   fi
   wait "$pid" || got=$?
   [ "$got" = $((128 + $(kill -l "$signal"))) ] || fail "$name: exit $got after SIG$signal"
-  [ "$(grep -c "interrupted by SIG$signal" err)" = 1 ] || fail "$name: does not say that SIG$signal came"
+  [ "$(grep -c "interrupted by SIG$signal" err)" = 1 ] || fail "$name: does not report SIG$signal"
   no_temporaries "$name, SIG$signal"
   [ ! -d "$name" ] || all_whole "$name" "$name, SIG$signal"
 }
@@ -206,18 +206,18 @@ done
 stop HUP 0.5 run "$bin" run long.json -o run
 (trap '' INT; "$bin" list >/dev/null 2>err & pid=$!; kill -INT $pid; wait $pid) || fail "an ignored SIGINT ended it"
 
-# --- two at once
+# --- two runs at the same time
 "$bin" run long.json -o both >/dev/null 2>err_first &
 first=$!
 for _ in $(seq 100); do [ -d both/frames ] && break; sleep 0.1; done
 if kill -0 $first 2>/dev/null; then
   expect 3 "a second run into one folder" "$bin" run short.json -o both
-  grep -q 'another lrbscope' err || fail "a second run: does not say why"
+  grep -q 'another lrbscope' err || fail "a second run: does not report the reason"
 fi
 kill $first 2>/dev/null
 wait $first 2>/dev/null
 expect 0 "a run after one that was stopped" "$bin" run short.json -o both
-[ "$(find both/frames -name '*.png' | wc -l)" = 4 ] || fail "a run after one that was stopped: not its own frames"
+[ "$(find both/frames -name '*.png' | wc -l)" = 4 ] || fail "a run after one that was stopped: expected 4 frames of its own"
 all_whole both "two at once"
 no_temporaries "two at once"
 

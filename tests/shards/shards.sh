@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# tests/shards/shards.sh LRBSCOPE [SECONDS]: the two lines of docs/paper.md for a sweep in parts, run as they are there but for
-# smaller numbers, with several numbers of parts: the report's data must be the same bytes as those of one process.
+# tests/shards/shards.sh LRBSCOPE [SECONDS]: runs the two lines of docs/paper.md for a sharded sweep, with fewer collisions and
+# several numbers of parts. The data of the report must be the same bytes as that of one process.
 # Each run may take SECONDS (120).
 set -euo pipefail
 program=$1
@@ -25,7 +25,7 @@ awk 'BEGIN { n = 24; m = 24
 sweep=$(grep '^seq .*lrbscope paper' "$page" | sed 's/ *#.*//')
 merge=$(grep '^lrbscope paper --merge' "$page")
 smaller() { sed "s/^seq 0 3/seq 0 $(($1 - 1))/; s,{}/4,{}/$1,; s/--collisions [0-9]*/--collisions 3 --meshes torus.obj/" <<<"$sweep"; }
-grep -q '^seq 0 2 .*--collisions 3 .*{}/3 ' <<<"$(smaller 3)" || { echo "the page's line has other options than this test knows: $sweep"; exit 1; }
+grep -q '^seq 0 2 .*--collisions 3 .*{}/3 ' <<<"$(smaller 3)" || { echo "unexpected options in the line of the page: $sweep"; exit 1; }
 
 lrbscope paper --collisions 3 --meshes torus.obj -o whole >/dev/null
 [ "$(wc -l <whole/series.jsonl)" -gt 20 ] || { echo "no series to compare"; exit 1; }

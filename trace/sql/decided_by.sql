@@ -1,5 +1,5 @@
--- What decided the face tests, and how long they took (recorded with --events nodes; times on the wall clock, in
--- nanoseconds, recording included).
+-- Face tests by the deciding arithmetic, and their durations (recorded with --events nodes; times on the wall
+-- clock, in nanoseconds, recording included).
 SELECT
   EXTRACT_ARG(arg_set_id, 'args.decided by') AS decided_by,
   COUNT(*) AS face_tests,

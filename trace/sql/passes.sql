@@ -1,4 +1,4 @@
--- A construction, pass by pass: as construction.passes of summary.json.
+-- A construction by pass; equals construction.passes of summary.json.
 SELECT
   EXTRACT_ARG(p.arg_set_id, 'args.stage') AS stage,
   COUNT(CASE WHEN e.name = 'patch' THEN 1 END) AS patches,

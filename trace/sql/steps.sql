@@ -1,4 +1,4 @@
--- Each time step: what it found, and the events in it. In summary.json: steps.
+-- Each time step: its result and number of events. In summary.json: steps.
 SELECT
   EXTRACT_ARG(step.arg_set_id, 'args.time step') AS time_step,
   MAX(CASE WHEN inner_slice.name = 'result' THEN EXTRACT_ARG(inner_slice.arg_set_id, 'args.relation') END) AS relation,

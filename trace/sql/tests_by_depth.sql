@@ -1,4 +1,4 @@
--- Face tests by the depth of the deeper of the two faces. In summary.json: histograms, tests_by_depth.
+-- Face tests by the larger depth of the two faces. In summary.json: histograms, tests_by_depth.
 SELECT
   MAX(EXTRACT_ARG(arg_set_id, 'args.depth of A'), EXTRACT_ARG(arg_set_id, 'args.depth of B')) AS depth,
   COUNT(*) AS face_tests

@@ -1,4 +1,4 @@
--- The totals of summary.json, over the events that were stored.
+-- The totals of summary.json, over the stored events.
 SELECT
   (SELECT COUNT(*) FROM slice WHERE category IN ('step', 'test', 'wrapper', 'answer', 'walk', 'point', 'phase', 'pass', 'cap', 'hull')) AS events,
   (SELECT COUNT(*) FROM slice WHERE name = 'face test') AS face_tests,

@@ -1,5 +1,6 @@
--- Pairs of tree nodes by the number of pairs above them (recorded with --events nodes): how many, how many of these ended
--- because no boxes met, and their tests of boxes. The sums of all rows are node_pairs and box_tests of summary.json's counters.
+-- Pairs of tree nodes by the number of pairs above them (recorded with --events nodes): their number, how
+-- many of them ended because no boxes overlapped, and their box tests. The sums over all rows are node_pairs
+-- and box_tests of summary.json's counters.
 SELECT
   EXTRACT_ARG(arg_set_id, 'args.pairs above') AS pairs_above,
   COUNT(*) AS node_pairs,

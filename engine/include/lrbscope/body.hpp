@@ -1,6 +1,6 @@
 #pragma once
-/// A body for queries, made in one call of whatever the user has: matrices, arrays, a mesh, a file. What is
-/// wrong with it comes back as a reason that names the element, not as an exception.
+/// A body for queries, created in one call from matrices, arrays, a mesh or a file. Faults are returned as an
+/// error that names the element, not thrown.
 
 #include <cstdint>
 #include <memory>
@@ -20,35 +20,36 @@ namespace lrb {
 
 struct BodyOptions {
   BuildOptions build;   ///< threads, quality (`lean`, `patch_interior`, `max_outer_faces`), seed, progress
-  bool regions = true;  ///< false: faces alone, in a tenth of the time or less; then there are no wrappers
-  bool turn = true;     ///< turn components that are inside out; Body::notes() says so
-  bool join =
-      true;  ///< join corners in exactly the same place when a file is read, where the surface is open there
-  std::string name = "body";  ///< for messages, of bodies that come from no file
+  bool regions = true;  ///< false: faces only, without wrappers; takes a tenth of the time or less
+  bool turn = true;     ///< reorient components that are inward-oriented; Body::notes() reports it
+  /// When reading a file, merge coincident vertices where the surface is open (join_corners()).
+  bool join = true;
+  std::string name = "body";  ///< for messages about bodies that do not come from a file
 };
-/// Returns a BodyOptions as it is by default.
+/// Returns the default options.
 const BodyOptions& default_body_options();
 
-/// A body that can be queried. Const once made, and shared by its copies, which cost nothing: give each
-/// thread one. Stands wherever a `const LrbRep&` is asked for; must then outlive what refers to it.
+/// An immutable body that can be queried. Copies share the data and are cheap; give each thread its own.
+/// Converts to `const LrbRep&`; the body must outlive every object that refers to it.
 ///
-/// What bounds no solid (holes, edges of three faces, faces that disagree on which side is outside) is a
-/// body, too: pairs, contacts and distances are exact as of any other. It has no wrappers, and nothing lies
-/// inside it: where its surface meets nothing, CollideResult::relation is `separate` if the bodies' boxes in
-/// the world are apart, else `undefined`. notes() says why.
+/// A surface that does not bound a solid (holes, edges with three faces, inconsistently oriented faces) is
+/// valid: pairs, contacts and distances are exact as for any other body. Such a body has no wrappers, and
+/// nothing is inside it: without surface contact, CollideResult::relation is `separate` if the world AABBs
+/// are disjoint, else `undefined`. notes() gives the reason.
 ///
-/// A body with regions has cells that are proven closed (validate_cells()). If that proof fails, of a mesh or
-/// of an .lrb file, the body has its faces only, and notes() says what failed and where.
+/// The cells of a body with regions are proven closed (validate_cells()). If that proof fails, for a mesh or
+/// an .lrb file, the body consists of its faces only, and notes() gives the first violation.
 class Body {
  public:
-  /// Makes a body of a matrix of vertices (n x 3, or n x 2 in the plane; any scalar) and one of faces (m x 3
-  /// triangles, m x k polygons of k corners, or m x 2 segments of a body in the plane; any integer). Refuses,
-  /// by index, what is not finite and corners that do not exist, and as Mesh does.
+  /// Creates a body from a matrix of vertices (n x 3, or n x 2 for 2D; any scalar) and a matrix of faces (m x
+  /// 3 triangles, m x k polygons with k corners, or m x 2 segments in 2D; any integer). Returns an error
+  /// naming the index for coordinates that are not finite, for vertex indices out of range, and for faults
+  /// that make a Mesh unusable.
   template <class V, class F>
   static Expected<Body> from(const Eigen::MatrixBase<V>& vertices, const Eigen::MatrixBase<F>& faces,
                              const BodyOptions& options = default_body_options());
 
-  /// Does the same for arrays: x, y, z of each vertex; three corners of each triangle.
+  /// Creates a body from flat arrays: x, y, z of each vertex and three vertex indices of each triangle.
   static Expected<Body> from(std::span<const double> coordinates, std::span<const std::uint32_t> corners,
                              const BodyOptions& options = default_body_options());
   static Expected<Body> from(std::span<const double> coordinates, std::span<const std::int32_t> corners,
@@ -56,14 +57,14 @@ class Body {
   static Expected<Body> from(std::span<const double> coordinates, std::span<const std::int64_t> corners,
                              const BodyOptions& options = default_body_options());
 
-  /// Does the same for a mesh; its name is used, unless it has none.
+  /// Creates a body from a mesh. Its name is used, unless it is empty.
   static Expected<Body> from(Mesh mesh, const BodyOptions& options = default_body_options());
 
-  /// Takes an LRB-rep that has been made elsewhere, and that others may have, too.
+  /// Wraps an existing LRB-rep, which may be shared.
   static Body from(LrbRep rep);
   static Body from(std::shared_ptr<const LrbRep> rep);
 
-  /// Reads a mesh file as read_mesh() does, or an .lrb file, told apart by content.
+  /// Reads a mesh file as read_mesh() does, or an .lrb file; detected by content.
   static Expected<Body> load(const std::string& path, const BodyOptions& options = default_body_options());
 
   const LrbRep& rep() const { return *held_->rep; }
@@ -71,17 +72,17 @@ class Body {
 
   const std::string& name() const { return rep().name(); }
   int dim() const { return rep().dim(); }
-  /// Returns true if its surface bounds a solid, so that relations other than touching and crossing have a
+  /// Returns true if the surface bounds a solid, so that the relations "inside" and "separate" have a
   /// meaning.
   bool is_solid() const { return rep().closed(); }
-  /// Returns true if it has wrappers beyond its own surface. Bodies of few faces may need none.
+  /// Returns true if the body has wrappers beyond its own surface. Bodies with few faces may need none.
   bool has_regions() const { return rep().region_count() > 0; }
-  /// Returns the number of components that were inside out and were turned.
+  /// Returns the number of inward-oriented components that were reoriented.
   std::uint32_t turned() const { return held_->turned; }
-  /// Returns what was done to it, and what cannot be asked of it and why; one line each, for people.
+  /// Returns what was changed, and which queries are restricted and why; one line each, for users.
   std::span<const std::string> notes() const { return held_->notes; }
 
-  /// Returns true if both are the same body, as copies are.
+  /// Returns true if both share the same data, as copies do.
   friend bool operator==(const Body& x, const Body& y) { return x.held_ == y.held_; }
 
  private:
@@ -92,7 +93,7 @@ class Body {
   };
 
   explicit Body(std::shared_ptr<const Held> held) : held_(std::move(held)) {}
-  /// `coordinates`: row by row, `each` to a vertex; `corners`: row by row, `each_face` to a face.
+  /// `coordinates`: row-major, `each` per vertex. `corners`: row-major, `each_face` per face.
   static Expected<Body> from_rows(std::span<const double> coordinates, std::size_t each,
                                   std::span<const std::int64_t> corners, std::size_t each_face,
                                   const BodyOptions& options);
@@ -114,42 +115,42 @@ Expected<Body> Body::from(const Eigen::MatrixBase<V>& vertices, const Eigen::Mat
                    options);
 }
 
-// Makes an LRB-rep of whatever mesh there is, and says what was done: what lrb::Body and the program have in
-// common.
+// Conversion of an arbitrary mesh to an LRB-rep, with notes on the changes; used by lrb::Body and the
+// command-line program.
 
 struct MadeBody {
   LrbRep rep;
-  std::vector<std::string> notes;  ///< what was done to it or could not be done; one line each, for people
-  double build_seconds = 0;        ///< 0 if nothing was built
-  std::uint32_t turned = 0;        ///< number of components that were inside out
+  std::vector<std::string> notes;  ///< what was changed or could not be done; one line each, for users
+  double build_seconds = 0;        ///< 0 if no regions were built
+  std::uint32_t turned = 0;        ///< number of inward-oriented components
 };
 
-/// Turns what is inside out, if `turn`, and builds; what cannot be an LRB-rep, or has one whose proof fails,
-/// becomes a body without regions, and a note says why. Throws InputError if it cannot be queried at all.
+/// Reorients inward-oriented components, if `turn`, and builds an LRB-rep. A mesh that has none, or one whose
+/// proof fails, becomes a body without regions, and a note gives the reason. Throws InputError if the mesh
+/// cannot be queried at all.
 MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn = true);
 
-/// Does the same without regions, for callers that ask only for pairs of faces, distances and the relation:
-/// builds no LRB-rep, and proves nothing about the mesh that these answers do not need. Faces have the same
-/// numbers.
+/// Creates a body without regions, for callers that need only pairs of faces, distances and the relation.
+/// Proves only what these answers need. Faces keep their numbers.
 MadeBody make_body_of_faces(CheckedMesh mesh, bool turn = true);
 
 /// Returns a note with the first violation if the proof of an LRB-rep's cells fails (validate_cells()), or an
-/// empty text if they are proven.
+/// empty string if they are proven.
 std::string note_unproven(const LrbRep& rep);
-/// Returns the LRB-rep if its cells are proven; if not, its real faces without regions, and adds that note.
+/// Returns the LRB-rep if its cells are proven; otherwise its real faces without regions, and adds that note.
 LrbRep proven(LrbRep rep, std::vector<std::string>& notes);
 
-/// Turns what is inside out and returns the number of components. Adds a note if there were any.
+/// Reorients inward-oriented components and returns their number. Adds a note if there were any.
 std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes);
 
-/// Says why there can be no LRB-rep of a mesh, even if it were turned.
+/// Returns the reasons why the mesh cannot become an LRB-rep, even if it were reoriented.
 std::string obstacles_to_build(const CheckedMesh& mesh);
 
-/// Joins corners in exactly the same place where the surface is open there (mesh_repair.hpp). Returns a note
-/// that says so; empty if there were none.
+/// Merges coincident vertices where the surface is open (mesh_repair.hpp). Returns a note, or an empty string
+/// if there were none.
 std::string join_corners_of_mesh(Mesh& mesh);
 
-/// Returns true if a file says that it is an LRB-rep (by its first bytes, not its name).
+/// Returns true if the first bytes of a file identify it as an LRB-rep. The name is not considered.
 bool is_lrb_file(const std::string& path);
 
 }  // namespace lrb

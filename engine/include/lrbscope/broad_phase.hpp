@@ -1,5 +1,5 @@
 #pragma once
-/// The broad phase: finds which of many bodies can meet at all, as pairs of boxes that do.
+/// The broad phase: finds the pairs of bodies whose AABBs intersect.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,9 +16,9 @@ struct BodyPair {
 };
 
 /// Sort and sweep (D. Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992, section 2.4.1)
-/// along one axis. Keeps the order of the boxes on it from one step to the next, so that an insertion sort
-/// costs little when bodies have moved little; compares the other two axes. Uses the axis on which the boxes
-/// are least crowded, and gives it up only for one that is twice as good.
+/// along one axis; the other two axes are compared for overlapping pairs. The order of the boxes is kept
+/// between steps, so that an insertion sort is cheap if bodies move little. The sweep axis is the one with
+/// the fewest overlaps; it changes only if another is twice as good.
 class SweepAndPrune {
  public:
   /// The cost of the last update.
@@ -28,8 +28,8 @@ class SweepAndPrune {
     bool sorted_afresh = false;   ///< true if the number of bodies or the axis changed
   };
 
-  /// Returns the pairs of boxes that have a point in common (boxes are closed: touching is enough),
-  /// ascending. Empty boxes meet nothing; no coordinate may be NaN. Valid until the next update.
+  /// Returns the pairs of boxes that intersect (closed sets: touching is enough), ascending. Empty boxes
+  /// intersect nothing. Coordinates must not be NaN. Valid until the next update.
   const std::vector<BodyPair>& update(std::span<const Eigen::AlignedBox3d> boxes);
   const Work& work() const { return work_; }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Builds an LRB-rep from a mesh; convex hulls.
+/// Construction of an LRB-rep from a mesh, and convex hulls.
 
 #include <array>
 #include <cstdint>
@@ -18,18 +18,20 @@
 
 namespace lrb {
 
-// Watching a build from outside: derive from ConstructProbe, override what is of interest, and name it in
-// BuildOptions. The body is the same as without; what is told, and in which order, does not depend on the
-// number of threads.
+// Observing a build: derive from ConstructProbe, override the callbacks of interest, and set
+// BuildOptions::probe. The result is the same with and without a probe. The callbacks and their order do not
+// depend on the number of threads.
+//
+// The *front* is the outer surface of everything built so far, which the next pass covers with caps.
 
-/// What a pass does to the hull.
+/// The operation of a pass on the front.
 enum class BuildStage : std::uint8_t {
-  fit,       ///< caps that stand off the body by no more than a distance, which grows from pass to pass
-  simplify,  ///< caps of as few faces as can be, wherever they stand
-  bridge,    ///< the pockets between the outer hull and its convex hull become regions
-  fill,      ///< what is left of each void becomes a region
-  close,     ///< a convex wrapper of few faces goes around everything
-  known,     ///< nothing was built: the body came with its regions
+  fit,       ///< makes caps within a maximum deviation from the body, which grows from pass to pass
+  simplify,  ///< makes caps of as few faces as possible, without a limit on their deviation
+  bridge,    ///< turns the pockets between the front and its convex hull into regions
+  fill,      ///< turns the rest of each void into a region
+  close,     ///< adds a convex wrapper of few faces around everything
+  known,     ///< nothing was built: the body was loaded with its regions
 };
 constexpr auto words_of(BuildStage) {
   return std::to_array<EnumWord<BuildStage>>({{BuildStage::fit, "fitting"},
@@ -40,29 +42,29 @@ constexpr auto words_of(BuildStage) {
                                               {BuildStage::known, "known regions"}});
 }
 
-/// What became of a cap: it stands, or why it was given up. The words fit behind a number: "9 met the hull".
-/// What is told of a chain in the plane is the first in this order, of all lengths that were tried from a
-/// segment on.
+/// The result for a cap: accepted (`stands`), or the reason why it was rejected. The words can follow a
+/// number: "9 met the hull". For a chain in 2D, lengths are tried from a segment on, and the reported verdict
+/// is the first one in this order among all of them.
 enum class CapVerdict : std::uint8_t {
   stands,
-  too_thick,         ///< with fewer faces it would stand off the body by more than the pass allows
-  too_much_volume,   ///< with fewer faces it would hold more space than a collapse may add
+  too_thick,         ///< with fewer faces its deviation would exceed the limit of the pass
+  too_much_volume,   ///< with fewer faces it would enclose more volume than a collapse may add
   too_thin,          ///< with fewer faces some would be needles
-  no_place,          ///< no point lies in front of the faces that are to go, and within the body's bounds
-  no_surface,        ///< collapsing any more edges would leave no surface
+  no_place,          ///< no position is in front of all faces to be removed and within the body's bounds
+  no_surface,        ///< another edge collapse would leave no surface
   too_many_faces,    ///< it saves too few faces to be worth a region
-  splits_polygon,    ///< it covers a polygon of the mesh in part
-  turns_inward,      ///< at its ring it would leave the hull inward
-  meets_itself,      ///< its faces meet in more than they share
-  meets_patch,       ///< it meets what it covers
-  meets_hull,        ///< it meets another part of the hull
-  holds_component,   ///< another component may lie beneath it
-  overlaps,          ///< it covers what another cap of the pass covers, or is
-  several_outlines,  ///< bridging in the plane: there is more than one outline
-  too_crowded,       ///< bridging: the hull has very large polygons or fans
-  flat,              ///< bridging: the convex hull has no inside, or the outline crosses itself
+  splits_polygon,    ///< it covers only part of a polygon of the mesh
+  turns_inward,      ///< at its boundary it would turn to the inside of the front
+  meets_itself,      ///< its faces intersect beyond shared corners and edges
+  meets_patch,       ///< it intersects the patch that it covers
+  meets_hull,        ///< it intersects another part of the front
+  holds_component,   ///< another component may be beneath it
+  overlaps,          ///< it overlaps another cap of the pass or the patch of one
+  several_outlines,  ///< bridging in 2D: there is more than one outline
+  too_crowded,       ///< bridging: the front has very large polygons or fans
+  flat,              ///< bridging: the convex hull has no interior, or the outline intersects itself
   too_far_out,       ///< closing: coordinates are too large for a wrapper around them
-  leaves_out,        ///< closing: the wrapper does not hold all of the hull
+  leaves_out,        ///< closing: the wrapper does not contain the entire front
 };
 constexpr auto words_of(CapVerdict) {
   return std::to_array<EnumWord<CapVerdict>>({{CapVerdict::stands, "stands"},
@@ -86,102 +88,103 @@ constexpr auto words_of(CapVerdict) {
                                               {CapVerdict::leaves_out, "left some of the hull out"}});
 }
 
-/// How a pass begins.
+/// State at the start of a pass.
 struct PassStart {
   BuildStage stage = BuildStage::fit;
-  std::uint32_t layer = 0;       ///< of the regions that it makes, if it makes any
-  std::uint32_t hull_faces = 0;  ///< triangles of the hull; segments in the plane
-  double most_off = 0;           ///< how far caps may stand off the body, mesh's unit; 0: as far as they like
+  std::uint32_t layer = 0;       ///< layer of the regions that it makes
+  std::uint32_t hull_faces = 0;  ///< number of triangles (2D: segments) of the front
+  double most_off = 0;           ///< maximum deviation of caps from the body, mesh units; 0: unlimited
 };
 
-/// How it ends.
+/// State at the end of a pass.
 struct PassEnd {
   std::uint32_t hull_faces = 0;
-  /// Faces that no patch may have: they meet others, lie within another component, or belong to a very large
-  /// polygon or fan.
+  /// Number of faces excluded from patches: they intersect others, are inside another component, or belong to
+  /// a very large polygon or fan.
   std::uint32_t barred = 0;
-  std::uint32_t no_patch =
-      0;  ///< vertices at which no patch could be grown, most of them beside other patches
-  std::uint32_t waiting = 0;  ///< vertices at which none is tried before caps may stand further off
-  bool given_up = false;      ///< too few caps stood: the rest of the hull was not tried
+  /// Number of vertices at which no patch could be grown, most of them next to other patches.
+  std::uint32_t no_patch = 0;
+  std::uint32_t waiting = 0;  ///< vertices that are skipped until caps may have a larger deviation
+  bool given_up = false;      ///< too few caps were accepted: the rest of the front was not tried
 };
 
-/// A part of the hull that a cap is to cover: a disk of triangles, a chain of segments, or a whole component.
+/// A part of the front to be covered by a cap: a disk of triangles, a chain of segments, or a whole
+/// component.
 struct GrownPatch {
-  VertexId vertex{};           ///< from which it grew
-  std::uint32_t faces = 0;     ///< triangles or segments
-  std::uint32_t interior = 0;  ///< vertices all of whose faces are in it
+  VertexId vertex{};           ///< start vertex
+  std::uint32_t faces = 0;     ///< number of triangles or segments
+  std::uint32_t interior = 0;  ///< number of vertices all of whose faces belong to the patch
 };
 
-/// A cap that was tried over the patch that was told last.
+/// A cap that was tried over the patch reported last.
 struct TriedCap {
-  std::uint32_t faces = 0;    ///< new faces
-  std::uint32_t covered = 0;  ///< faces of the hull that go under them
+  std::uint32_t faces = 0;    ///< number of new faces
+  std::uint32_t covered = 0;  ///< number of faces of the front that it covers
   CapVerdict verdict = CapVerdict::stands;
-  bool careful = false;  ///< made with a proof for each collapse, after one without had failed at the end
-  /// How far it stands off the body where it was measured, mesh's unit, an estimate; negative: nobody
-  /// measured.
+  bool careful = false;  ///< made with a proof for each collapse, after an attempt without them failed at the
+                         ///< end
+  /// Measured deviation from the body, an estimate, mesh units; negative: not measured.
   double off = -1;
 
-  /// Returns how many new faces there are for each face that the hull loses; best near 0.
+  /// Returns the number of new faces for each face by which the front shrinks; best near 0.
   double cost() const {
     return faces < covered ? static_cast<double>(faces) / (covered - faces)
                            : std::numeric_limits<double>::infinity();
   }
 };
 
-/// What is told: pass() { patch() cap() ... region() ... merged() ... } end_pass(), and again; closed() is
-/// last.
+/// Observer of a build. Order of the callbacks: for each pass, pass() { patch() cap() ... region() ...
+/// merged() ... } end_pass(); finally closed().
 class ConstructProbe {
  public:
   virtual ~ConstructProbe() = default;
   virtual void pass(const PassStart&) {}
   virtual void patch(const GrownPatch&) {}
   virtual void cap(const TriedCap&) {}
-  /// A region was made: by the cap that was told last, if that stands; a cap can make several.
+  /// A region was made by the cap reported last, if that was accepted. One cap can make several regions.
   virtual void region(RegionId) {}
-  /// `pieces` pieces of the space under the cap became part of the region `into`, which was told just before:
-  /// each is an inner shell of it.
+  /// `pieces` pieces of the space under the cap were merged into the region `into`, which was reported just
+  /// before. Each is an inner shell of it.
   virtual void merged(RegionId /*into*/, std::uint32_t /*pieces*/) {}
   virtual void end_pass(const PassEnd&) {}
-  /// The body is built. `faces`: of its outermost wrapper, as triangles or segments.
+  /// The build is complete. `faces`: number of triangles or segments of the outermost wrapper.
   virtual void closed(std::uint32_t /*faces*/) {}
 };
 
 struct BuildOptions {
-  /// Number of interior vertices that a patch aims at: small makes the paper's recursion cheap, large makes
-  /// the structure small.
+  /// Target number of interior vertices of a patch. Small values make the paper's recursion cheap, large ones
+  /// make the structure small.
   std::uint32_t patch_interior = 16;
-  std::uint32_t max_outer_faces = 20;  ///< number of faces to aim for in the outermost wrapper
-  /// Builds a small structure (about 1.5 faces per real face) in place of wrappers that fit (about 2).
+  std::uint32_t max_outer_faces = 20;  ///< target number of faces of the outermost wrapper
+  /// Builds a small structure (about 1.5 faces per real face) instead of tightly fitting wrappers (about 2).
   bool lean = false;
-  std::uint64_t seed = 1;  ///< seeds the order in which patches grow
-  unsigned threads = 1;    ///< 0: as many as the machine runs at once. The result does not depend on it
-  /// Called after each pass with the pass's number and the number of faces of the hull. May be empty.
+  std::uint64_t seed = 1;  ///< seed for the order in which patches grow
+  unsigned threads = 1;    ///< 0: number of hardware threads. The result does not depend on it
+  /// Called after each pass with its number and the number of faces of the front. May be empty.
   std::function<void(std::uint32_t pass, std::uint32_t hull_faces)> progress;
-  ConstructProbe* probe = nullptr;  ///< is told everything that happens; null: nobody. Must outlive the build
+  ConstructProbe* probe = nullptr;  ///< observer of the build, may be null. Must outlive the build
 };
 
-/// Builds by patch caps on progressive hulls (patch_builder.cpp); 2D meshes go through chain_builder.cpp. The
-/// mesh must be closed, manifold and oriented, with the solid behind its faces, as MeshReport::buildable()
-/// says: InputError names the offenders otherwise. A body that is inside out is turned by
-/// CheckedMesh::turn_outward(). Deterministic for a seed, on any number of threads.
+/// Builds an LRB-rep by simplifying patches of progressive hulls (Sander et al., "Silhouette Clipping", 2000)
+/// into caps (patch_builder.cpp; 2D: chain_builder.cpp). The mesh must be closed, manifold and oriented with
+/// the solid behind its faces (MeshReport::buildable()). Use CheckedMesh::turn_outward() first for an
+/// inward-oriented body. Throws InputError naming the affected elements otherwise. The result depends on the
+/// seed, not on the number of threads.
 LrbRep build_lrb(const CheckedMesh& mesh, const BuildOptions& options = {});
 
-/// Checks the mesh first, then does the same.
+/// Checks the mesh first, then builds.
 LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options = {});
 
-// Convex hulls, for bodies of one's own and to compare wrappers with.
+// Convex hulls, to create bodies and as a baseline for wrappers.
 
-/// Returns the convex hull's triangles, counter-clockwise seen from outside, as indices of points; none if
-/// all points lie in one plane. Exact, and for every input the result of adding the points in order, each in
-/// place of the triangles that it lies strictly in front of: points on a triangle's plane count as behind it.
-/// The triangles are listed in the order in which they arise that way. Coordinates must be finite. Takes
-/// about n log n time, however many points are on the hull (Barber, Dobkin and Huhdanpaa, "The Quickhull
-/// Algorithm for Convex Hulls", 1996).
+/// Returns the triangles of the convex hull as point indices, counter-clockwise seen from outside; empty if
+/// all points are coplanar. Exact. The result, with its order, is defined as that of incremental insertion in
+/// the order of the points: each replaces the triangles that it is strictly in front of; points in a
+/// triangle's plane count as behind it. Coordinates must be finite. Takes about O(n log n) time for any
+/// number of hull vertices (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", 1996).
 std::vector<std::array<std::uint32_t, 3>> convex_hull(std::span<const Eigen::Vector3d> points);
 
-/// Returns the same hull as a mesh, with only the vertices that it needs.
+/// Returns the convex hull as a mesh that contains only the hull's vertices.
 Mesh convex_hull_mesh(std::span<const Eigen::Vector3d> points);
 
 }  // namespace lrb

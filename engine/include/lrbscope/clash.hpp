@@ -1,9 +1,9 @@
 #pragma once
-/// What kind of contact two solids have, and how deep it is: the kind, decided exactly; a translation that
-/// parts them; bounds of the depth and of the volume that they share, as intervals that are proved.
+/// Classification of the contact of two solids, decided exactly, with a separating translation and proven
+/// bounds of the penetration depth and of the shared volume.
 ///
-/// All of it is about the solids that the triangles of the world bound, whose corners are the doubles that
-/// Pose::apply() gives. A translation moves those corners by exactly the same vector.
+/// The solids are those bounded by the world triangles, whose corners are the doubles given by Pose::apply().
+/// A translation moves these corners by exactly the same vector.
 
 #include <array>
 #include <cstdint>
@@ -20,23 +20,24 @@
 
 namespace lrb {
 
-/// How two solids lie to each other. A *piece* of one's surface is a connected part of it that is wholly
-/// inside the other solid, wholly outside, or on its surface.
+/// The relation of two solids. A *piece* of a surface is a connected part that is entirely inside the other
+/// solid, entirely outside, or on its surface.
 enum class ClashKind : std::uint8_t {
-  apart,             ///< no point in common, and further apart than the clearance
-  within_clearance,  ///< no point in common, and at most the clearance apart
-  touching_point,    ///< interiors share no point; surfaces meet in points alone
-  touching_edge,     ///< interiors share no point; surfaces meet along lines, in no area
-  touching_face,     ///< interiors share no point; surfaces meet in an area
-  protrudes,         ///< interiors overlap, and neither is parted: each has one piece at most outside the
-                     ///< other (of each component of its surface)
-  pierces,           ///< A goes through B: A is parted, into pieces outside of B; B is not
-  cuts_through,      ///< A parts B: of B, two pieces or more of a component lie outside A
-  a_inside_b,        ///< B holds all of A, whether or not surfaces touch
+  apart,             ///< no common point, and the distance exceeds the clearance
+  within_clearance,  ///< no common point, and the distance is at most the clearance
+  touching_point,    ///< disjoint interiors; surfaces intersect in points only
+  touching_edge,     ///< disjoint interiors; surfaces intersect along lines, in no area
+  touching_face,     ///< disjoint interiors; surfaces intersect in an area
+  protrudes,  ///< interiors overlap, and neither surface is divided: each of its components has at most one
+              ///< piece outside the other solid
+  pierces,  ///< A passes through B: a component of A's surface has two or more pieces outside B, none of B's
+            ///< has two outside A
+  cuts_through,  ///< A divides B: a component of B's surface has two or more pieces outside A
+  a_inside_b,    ///< B contains A entirely; surfaces may touch
   b_inside_a,
   equal,      ///< the same solid
-  undecided,  ///< the bodies are not apart, but it is not clear what solids they are, or the work is too
-              ///< much: ClashResult::reason
+  undecided,  ///< the bodies are not apart, but the solids are ill-defined or the work exceeds a limit: see
+              ///< ClashResult::reason
 };
 constexpr auto words_of(ClashKind) {
   return std::to_array<EnumWord<ClashKind>>({{ClashKind::apart, "apart"},
@@ -54,16 +55,16 @@ constexpr auto words_of(ClashKind) {
 }
 const char* to_string(ClashKind k);
 
-/// Why a kind is undecided: the first of these that holds.
+/// The reason why a kind is undecided: the first of these that applies.
 enum class ClashReason : std::uint8_t {
-  none,    ///< it is decided
-  a_open,  ///< LrbRep::closed() does not hold
+  none,    ///< the kind is decided
+  a_open,  ///< LrbRep::closed() is false
   b_open,
-  a_overlaps,  ///< LrbRep::overlaps_itself() holds, so that there is no one solid that the faces bound
+  a_overlaps,  ///< LrbRep::overlaps_itself() is true, so that the faces bound no unique solid
   b_overlaps,
-  flat_face,       ///< rounding in the world took its area from a face that meets the other body
-  many_cells,      ///< a face is cut into more cells than kInteriorCellsPerFace, or into some that do not fit
-  faces_coincide,  ///< faces coincide, and no point beside them was proved to be inside both
+  flat_face,       ///< a face that intersects the other body has no area in the world, due to rounding
+  many_cells,      ///< a face has more cells than kInteriorCellsPerFace, or they do not match along an edge
+  faces_coincide,  ///< faces coincide, and no point beside them was proven to be inside both
 };
 constexpr auto words_of(ClashReason) {
   return std::to_array<EnumWord<ClashReason>>(
@@ -79,76 +80,78 @@ constexpr auto words_of(ClashReason) {
 }
 
 struct ClashRequest {
-  /// The distance up to which solids without a point in common are `within_clearance`. Finite, at least 0;
-  /// unit: the world's.
+  /// Maximum distance at which disjoint solids are `within_clearance`. Finite, at least 0; world units.
   double clearance = 0;
-  /// A direction of one's own, of any length but 0, along which B is to leave A.
+  /// Direction in which B is to leave A, any length except 0; enables ClashResult::along.
   std::optional<Eigen::Vector3d> along;
-  bool depth = true;   ///< find ClashResult::depth and ClashResult::translation
-  bool volume = true;  ///< find ClashResult::volume
+  bool depth = true;   ///< compute ClashResult::depth and ClashResult::translation
+  bool volume = true;  ///< compute ClashResult::volume
 };
 
-/// Two doubles that hold a number.
+/// Proven bounds of a number.
 struct ProvedInterval {
   double lower = 0, upper = 0;
 };
 
-/// The pieces of a solid's surface, by where they lie to the other solid.
+/// Numbers of pieces of a solid's surface by their location relative to the other solid.
 struct SurfacePieces {
   std::uint32_t inside = 0, outside = 0;
-  std::uint32_t most_outside = 0;  ///< the most of one component of the surface
-  bool on_same = false;            ///< an area lies on the other's surface, with both solids on the same side
-  bool on_opposite = false;        ///< ..., with the solids on opposite sides
+  std::uint32_t most_outside = 0;  ///< the maximum for one component of the surface
+  bool on_same = false;  ///< an area coincides with the other's surface, with both solids on the same side
+  bool on_opposite = false;  ///< an area coincides with the other's surface, with the solids on opposite
+                             ///< sides
 };
 
 struct ClashResult {
   ClashKind kind = ClashKind::undecided;
-  ClashReason reason = ClashReason::none;  ///< of a kind that is undecided, and of no other
-  bool shares_faces = false;  ///< surfaces coincide over an area, with both solids on the same side of it
+  ClashReason reason = ClashReason::none;  ///< none unless the kind is undecided
+  bool shares_faces = false;  ///< surfaces coincide in an area, with both solids on the same side of it
   Answer interiors_overlap = Answer::unknown;
-  std::array<SurfacePieces, 2> pieces;  ///< of A's surface and of B's; counted where surfaces meet
-  /// The distance of the solids.
+  std::array<SurfacePieces, 2> pieces;  ///< of A's surface and of B's; counted if the surfaces intersect
+  /// The distance of the solids, world units.
   ProvedInterval distance;
-  /// The penetration depth: the length of the shortest translation of B after which the interiors share no
-  /// point. None for bodies that are not closed. If interiors do not overlap: 0. The upper end is the length
-  /// of `translation`; infinite if none was found. Of bodies that intersect themselves, points that an odd
-  /// number of faces hide count as interior, as for CollideResult::relation.
+  /// The penetration depth: the length of the shortest translation of B after which the interiors are
+  /// disjoint; 0 if they do not overlap. nullopt if a body is not closed. The upper end is the length of
+  /// `translation`, infinite if none was found. In bodies that intersect themselves, interior is decided by
+  /// parity, as for CollideResult::relation.
   std::optional<ProvedInterval> depth;
-  /// Moved by this, B is proved to share no interior point with A: the solids are apart.
+  /// A separation vector (cf. minimum translational distance, Cameron and Culley 1986): translated by it, B
+  /// is proven to share no interior point with A.
   Eigen::Vector3d translation{0, 0, 0};
-  /// ClashRequest::along: how far B has to move in that direction until the interiors share no point for the
-  /// first time: for all that is less than the lower end they do, and at the upper end they do not.
+  /// For ClashRequest::along: how far B has to move in that direction until the interiors are disjoint for
+  /// the first time. They overlap after every move shorter than the lower end, and are disjoint after a move
+  /// by the upper end.
   std::optional<ProvedInterval> along;
-  /// The volume that the solids share, unit cubed. None for bodies that are not closed or intersect
-  /// themselves, unless they are apart.
+  /// The volume of the intersection of the solids, world units cubed. nullopt for bodies that are not closed
+  /// or intersect themselves, unless they are disjoint.
   std::optional<ProvedInterval> volume;
 };
 
-/// Returns what kind of contact body `a` at pose_a and body `b` at pose_b have, and how deep it is. Both must
-/// be 3D; poses may be any finite maps, and world coordinates must be finite. Throws InputError for these,
-/// and for numbers of the request that have no meaning.
+/// Classifies the contact of body `a` at pose_a and body `b` at pose_b, with its depth. Poses may be any
+/// finite affine maps. Throws InputError unless both bodies are 3D and world coordinates are finite, and for
+/// an invalid request.
 ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const ClashRequest& request = {});
 
-/// Throws InputError for a request that clash() rejects, with bodies of the dimension of `a`: a clearance
-/// that is negative or not finite, a direction without length, bodies in the plane.
+/// Throws InputError for a request that clash() rejects for a body like `a`: a negative or non-finite
+/// clearance, a direction of length zero, 2D bodies.
 void check_request(const LrbRep& a, const ClashRequest& request);
 
-// Watching a clash query, from outside the engine: derive from ClashProbe and give it to clash(). The answer
-// is the same as without.
+// Observing the convergence of a clash query: derive from ClashProbe and pass it to clash(). The answer is
+// the same with and without a probe.
 
 class ClashProbe {
  public:
   virtual ~ClashProbe() = default;
-  /// Bounds of the distance of bodies without a point in common became narrower; work as for a distance.
+  /// The bounds of the distance of disjoint bodies became narrower; work as for distance().
   virtual void distance(const Bounds& known) = 0;
-  /// Bounds of the depth of bodies whose interiors overlap: the lower end is proved, the upper one is the
-  /// shortest way out that was found so far, infinite at first, which only the last bounds, those of the
-  /// answer, have proved. Work is counted in queries that were asked and steps in which hulls grew.
+  /// The bounds of the depth of overlapping bodies became narrower. The lower bound is proven. The upper
+  /// bound is the shortest separation vector found so far, initially infinite; it is proven only in the last
+  /// call, which reports the answer. Work counts queries and steps in which EPA polytopes were expanded.
   virtual void depth(const Bounds& known) = 0;
 };
 
-/// Keeps what it is told.
+/// Records all bounds.
 class ClashCourse final : public ClashProbe {
  public:
   void distance(const Bounds& known) override { of_distance.push_back(known); }
@@ -156,7 +159,7 @@ class ClashCourse final : public ClashProbe {
   std::vector<Bounds> of_distance, of_depth;
 };
 
-/// Does what clash() in clash.hpp does, and tells the probe what is known, after more and more work.
+/// Returns the same as clash() without a probe, and reports the bounds while they converge.
 ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const ClashRequest& request, ClashProbe& probe);
 

@@ -1,12 +1,12 @@
 #pragma once
-/// The two-body query: finds whether two bodies meet, which real faces do, and how the bodies lie to each
-/// other.
+/// The two-body query: decides whether two bodies intersect, finds the intersecting real faces, and
+/// classifies the relation of the bodies.
 ///
-/// There are two algorithms. `complete` never misses: it descends an OBB tree over real faces whose bounds
-/// hold everything beneath, so that every pair that meets is reached, and tests exactly at the leaves (see
-/// tree_query.hpp for the proof). `paper` is section 4 of the paper to the letter: recursion through lids
-/// that hit. It misses contacts under lids that nothing touches, and is kept to reproduce the paper's figures
-/// and to show where it fails.
+/// There are two algorithms. `complete` never misses a contact: it descends OBB trees over the real faces,
+/// whose nodes bound everything beneath, and tests exactly at the leaves (proof in tree_query.hpp). `paper`
+/// is section 4 of the paper to the letter: recursion through lids that were hit. It misses contacts under
+/// lids that are not touched. It is kept to reproduce the paper's figures and to show where the paper's
+/// algorithm fails.
 
 #include <array>
 #include <cstdint>
@@ -21,13 +21,13 @@
 
 namespace lrb {
 
-// The request: what can be asked about two bodies.
+// The request.
 
 enum class Mode : std::uint8_t {
   all_pairs,
-  first_pair,  ///< finds one pair that crosses, if there is one; the relation is exact
-  /// Finds out whether the surfaces meet. The first pair that does ends the query, and Relation::touching
-  /// then says no more than that this pair touches: others may cross.
+  first_pair,  ///< finds one crossing pair, if there is one; the relation is exact
+  /// Decides whether the surfaces intersect. The first intersecting pair ends the query. Relation::touching
+  /// then refers to that pair only: others may cross.
   any_pair,
 };
 constexpr auto words_of(Mode) {
@@ -38,7 +38,8 @@ constexpr auto words_of(Mode) {
 enum class Recursion : std::uint8_t {
   complete,
   paper,         ///< each pair of regions is recursed into once
-  paper_strict,  ///< each region is refined once; its new faces meet only the new faces of what it hit
+  paper_strict,  ///< each region is refined once; its new faces are tested only against the new faces of the
+                 ///< regions it hit
 };
 
 constexpr auto words_of(Recursion) {
@@ -50,7 +51,8 @@ const char* to_string(Recursion r);
 
 enum class Predicates : std::uint8_t {
   exact,
-  /// Without the exact fallback: the answer can be wrong; exists to measure what exactness costs and saves.
+  /// Without the exact fallback. The answer can be wrong; exists to measure the cost and benefit of
+  /// exactness.
   floating,
 };
 constexpr auto words_of(Predicates) {
@@ -58,8 +60,8 @@ constexpr auto words_of(Predicates) {
       {{Predicates::exact, "exact"}, {Predicates::floating, "floating"}});
 }
 
-/// The largest number of pairs that a query keeps, unless the request gives another. A pair takes 25 bytes
-/// while it is found and sorted, and 650 with its contact (docs/measurements.md): 0.8 GB, and 1.4 GB.
+/// Default for the maximum number of pairs of a query. A pair takes 25 bytes while pairs are found and
+/// sorted, and 650 with its contact (docs/measurements.md): 0.8 GB and 1.4 GB in total.
 inline constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 25;
 inline constexpr std::uint64_t kMostPairsWithContacts = std::uint64_t{1} << 21;
 
@@ -69,28 +71,30 @@ struct CollideRequest {
   Predicates predicates = Predicates::exact;  ///< for pairs and relation; contacts are always exact
   WrapperMode wrapper = WrapperMode::regularised;
   bool contacts = false;  ///< fill CollideResult::contacts and CollideResult::regions (all_pairs)
-  bool interiors_overlap =
-      false;  ///< decide CollideResult::interiors_overlap for bodies that meet (all_pairs)
+  /// Decide CollideResult::interiors_overlap for intersecting bodies (all_pairs).
+  bool interiors_overlap = false;
 
-  /// Limits on the effort: coarse queries (docs/queries.md says when to use which). Only for `complete`,
-  /// without contacts, interiors_overlap or unregularised wrappers (else InputError). Bodies that meet are
-  /// never called separate. The levels that they walk are made when they are first asked for, unless
-  /// LrbRep::levels() was called before or a file had them; a query with max_time does without rather than
-  /// make them.
+  /// Limits that make a query *coarse* (error-bounded; docs/queries.md describes when to use which). Only for
+  /// `complete`, without contacts, interiors_overlap or unregularised wrappers (else InputError).
+  /// Intersecting bodies are never reported as separate. Coarse queries use levels of detail, which the first
+  /// one creates unless LrbRep::levels() was called before or the file contained them. A query with max_time
+  /// does not create them.
   ///
-  /// tolerance: the relation is exact, and so is an answer of one pair; the list of all pairs of bodies that
-  /// cross may be that of wrappers no further off than this, each. Unit: the meshes'.
+  /// tolerance: the relation is exact, and so is the answer in the modes that find one pair. The list of all
+  /// pairs of crossing bodies may be that of wrappers whose deviation is at most `tolerance` each. Mesh
+  /// units.
   double tolerance = 0;
-  /// Limits on tests (face tests; 0: no limit) and time (seconds; 0: no limit). Where a limit is reached the
-  /// best answer so far is given: nothing, the relation with one pair, or that of a level, coarser ones
-  /// first.
+  /// Limits on face tests and on time in seconds; 0: no limit. When a limit is reached, the best answer so
+  /// far is returned. With increasing limits this is: nothing, the relation with one pair, the pairs of a
+  /// level of detail (coarser levels first).
   std::uint64_t max_tests = 0;
   double max_time = 0;
-  /// For separate bodies: finds CollideResult::separation. Takes longer than the query, and no limit ends it.
+  /// For separate bodies: compute CollideResult::separation. Takes longer than the query and is not subject
+  /// to limits.
   bool separation = false;
-  /// The largest number of pairs that are kept: a query that finds more ends with an InputError. (Two bodies
-  /// of n faces have up to n * n.) 0: kMostPairs, or kMostPairsWithContacts. The paper's recursions count a
-  /// pair each time they find it.
+  /// Maximum number of pairs; a query that finds more throws InputError. (Two bodies of n faces have up to
+  /// n^2 pairs.) 0: kMostPairs, or kMostPairsWithContacts with contacts. The paper's recursions count a pair
+  /// each time they find it.
   std::uint64_t max_pairs = 0;
 
   bool is_coarse() const { return tolerance > 0 || max_tests > 0 || max_time > 0; }
@@ -100,20 +104,21 @@ struct CollideRequest {
   friend bool operator==(const CollideRequest&, const CollideRequest&) = default;
 };
 
-// The result: what a query answers, and how much work it took.
+// The result, and the work done.
 
-/// How two bodies lie to each other.
+/// The relation of two bodies.
 enum class Relation : std::uint8_t {
-  separate,    ///< no point in common
-  crossing,    ///< at least two faces pass through each other's interior
-  touching,    ///< surfaces meet, but no two faces cross. The bodies may still share a volume: two equal
-               ///< cubes, one shifted along an edge, overlap with their sides flush, and no face passes
-               ///< through another. CollideResult::interiors_overlap tells, where it is asked for
-  a_inside_b,  ///< no surface contact; B holds A
+  separate,  ///< no common point
+  crossing,  ///< at least two faces cross in their interiors
+  /// Surfaces intersect, but no two faces cross. The interiors may still overlap: two equal cubes, one
+  /// shifted along an edge, overlap with flush sides, and no face crosses another.
+  /// CollideResult::interiors_overlap decides it, if requested.
+  touching,
+  a_inside_b,  ///< no surface contact; B contains A
   b_inside_a,
-  undefined,  ///< no surface contact, boxes in the world that meet, and a body that is not closed: inside has
-              ///< no meaning
-  /// A query within limits did not find out; the bodies meet, or are no further apart than the error bound.
+  undefined,  ///< no surface contact and world AABBs that intersect, but a body is not closed, so that inside
+              ///< is not defined
+  /// A query with limits did not decide: the bodies intersect, or their distance is at most the error bound.
   unresolved,
 };
 constexpr auto words_of(Relation) {
@@ -134,98 +139,100 @@ constexpr auto words_of(Answer) {
 }
 const char* to_string(Answer a);
 
-/// A pair of real simplices that meet (see LrbRep::face_of_simplex for the faces).
+/// A pair of intersecting real simplices (see LrbRep::face_of_simplex() for their faces).
 struct SimplexPair {
   SimplexId a, b;
   friend auto operator<=>(const SimplexPair&, const SimplexPair&) = default;
 };
 
-/// A certificate that two closed bodies are separate: if these regions of their outermost wrappers are
-/// refined in this order, the wrappers meet nowhere, and none has a point in the other. No region can be
-/// taken back in without the proof failing.
+/// A certificate that two closed bodies are separate: if these regions are refined in this order, starting
+/// with the outermost wrappers, the two wrappers do not intersect, and neither contains a point of the other.
+/// The certificate is minimal: if any region is included again, the proof fails.
 struct Separation {
-  std::array<std::vector<RegionId>, 2> refined;      ///< A's and B's
+  std::array<std::vector<RegionId>, 2> refined;      ///< regions of A and of B
   std::array<std::uint32_t, 2> face_count = {0, 0};  ///< of the two wrappers
 
   friend bool operator==(const Separation&, const Separation&) = default;
 };
 
-/// The work that the query did, in numbers of operations.
+/// The work done by a query, as numbers of operations.
 struct Counters {
-  std::uint64_t face_tests = 0;  ///< exact comparisons of two simplices, pseudo or real (best: pairs found)
-  std::uint64_t real_tests = 0;  ///< those of them in which both are real
+  std::uint64_t face_tests = 0;  ///< exact tests of two simplices, pseudo or real (best: number of pairs)
+  std::uint64_t real_tests = 0;  ///< exact tests of two real simplices
   std::uint64_t exact_fallbacks = 0;  ///< predicates that the floating-point filter could not decide
   std::uint64_t node_pairs = 0;       ///< complete: pairs of tree nodes visited
-  std::uint64_t box_tests = 0;        ///< complete: box against box
-  std::uint64_t prefilter_tests =
-      0;  ///< complete: pairs of simplices that reached the box and plane tests of a pair of leaves
+  std::uint64_t box_tests = 0;        ///< complete: tests of two boxes
+  /// complete: pairs of simplices that reached the box and plane tests of a pair of leaves
+  std::uint64_t prefilter_tests = 0;
   std::uint64_t refinements = 0;     ///< paper: refine operations; complete: equal to regions_opened
-  std::uint64_t regions_opened = 0;  ///< regions excluded from either wrapper at the end
-  std::vector<std::uint32_t> face_tests_by_level;  ///< by max(depth of a, depth of b) of the compared faces
+  std::uint64_t regions_opened = 0;  ///< number of regions excluded from either wrapper at the end
+  std::vector<std::uint32_t> face_tests_by_level;  ///< by max(depth of a, depth of b) of the tested faces
 
   friend bool operator==(const Counters&, const Counters&) = default;
 };
 
 struct CollideResult {
   Relation relation = Relation::separate;
-  /// Crossing, inside: yes. Separate: no. Touching: unknown unless requested (see Relation::touching: without
-  /// the request, nobody notices that a stack of boxes sinks). A body that is not closed: unknown. Yes
-  /// assumes that rounding leaves the bodies a volume in the world. If requested, a crossing is yes only
-  /// where that is proved, else unknown; a body inside another is not checked for having become flat.
+  /// Crossing or inside: yes. Separate: no. Touching: unknown unless requested (see Relation::touching:
+  /// without the request a sinking stack of boxes goes unnoticed). A body that is not closed: unknown. Yes
+  /// assumes that the bodies keep a volume under rounding of the world coordinates. If requested, crossing
+  /// bodies are reported as yes only if that is proven, else unknown; a body inside another is not checked
+  /// for zero volume.
   Answer interiors_overlap = Answer::unknown;
   Recursion recursion = Recursion::complete;  ///< the recursion that was used
   Mode mode = Mode::all_pairs;
-  /// Ascending; at most one pair unless all_pairs. Coarse queries: with pseudo simplices
-  /// (LrbRep::is_real_simplex()) where lids were not refined; those meet or come within rounding of it.
-  /// Contacts that a lid hides from the other body are not among them.
+  /// Ascending; at most one pair unless all_pairs. Coarse queries: contain pseudo simplices
+  /// (LrbRep::is_real_simplex()) where lids were not refined, and such pairs intersect or are within rounding
+  /// of it. Contacts hidden from the other body by a lid are missing.
   std::vector<SimplexPair> pairs;
   std::vector<exact::Meet> meets;               ///< (|pairs|) touch or cross
   std::vector<PairContactRecord> contacts;      ///< (|pairs|) if requested
   std::vector<ContactRegion> regions;           ///< connected groups of contacts, if requested
-  std::array<std::vector<RegionId>, 2> opened;  ///< regions refined, A's and B's, in order
-  /// 0 if the answer is exact. Else the pairs are those of wrappers, and where two of their faces meet, both
-  /// bodies are no further away than this together, in the world. Bodies that are unresolved are no further
-  /// apart than this. Infinite: no level was reached, and the pair that there may be is one of those that
-  /// cross.
+  std::array<std::vector<RegionId>, 2> opened;  ///< refined regions of A and of B, in order
+  /// 0 if the answer is exact. Otherwise the pairs are those of wrappers: where two of their faces intersect,
+  /// the distances to both bodies add up to at most this, in world units. The distance of unresolved bodies
+  /// is at most this. Infinite: no level of detail was completed; the pair, if there is one, is one of the
+  /// crossing pairs.
   double error_bound = 0;
-  bool finished = true;  ///< false: a limit was reached before the tolerance (or the exact answer) was
-  std::optional<Separation> separation;  ///< if requested, separate, and not nearer than rounding
+  bool finished = true;  ///< false: a limit was reached before the tolerance (or the exact answer)
+  std::optional<Separation> separation;  ///< if requested, for separate bodies whose distance exceeds
+                                         ///< rounding
   Counters counters;
 };
 
-/// Make an answer and its counters as new, but keep their memory.
+/// Reset a result or its counters, but keep their memory.
 void clear(CollideResult& result);
 void clear(Counters& counters);
 
-/// Throws the InputError that the query found more pairs than `limit`.
+/// Throws an InputError: the query found more than `limit` pairs.
 [[noreturn]] void refuse_pairs(std::uint64_t limit);
 
-/// Returns the FNV-1a hash (64 bits) of the pairs, each as u32 a, u32 b little-endian; cbf29ce484222325 for
-/// none.
+/// Returns the FNV-1a hash (64 bits) of the pairs, each as little-endian u32 a, u32 b; cbf29ce484222325 if
+/// there are none.
 std::uint64_t fingerprint(const std::vector<SimplexPair>& pairs);
 
-/// Queries body `a` at pose_a against body `b` at pose_b; both must be 3D, or both 2D (else InputError).
-/// Poses must be finite, and so must be the world coordinates of every vertex that a face uses (else
-/// InputError, naming it). A vertex that no face uses need not, but may be refused where the body comes
-/// near 1.8e308. To watch a query: observe.hpp.
+/// Queries body `a` at pose_a against body `b` at pose_b. Throws InputError unless both are 3D or both 2D,
+/// the poses are finite, and the world coordinates of every vertex of a face are finite (naming the vertex).
+/// Unused vertices are exempt, but may be rejected for bodies with world coordinates near 1.8e308. To observe
+/// a query, see observe.hpp.
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request = {});
 
-/// Throw InputError where collide() does before it begins: for bodies and poses that cannot be queried, and
-/// for a tolerance or limit that is not finite or is combined with a request that must be exact. Programs
-/// call these to reject input before the first of many queries.
+/// Throw InputError under the conditions that collide() checks first: bodies and poses that cannot be
+/// queried; a tolerance or limit that is not finite or is combined with a request that must be exact. For
+/// programs that validate input before many queries.
 void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 void check_request(const CollideRequest& request);
 
-/// Tests every pair of real simplices exactly: the slow answer that the fast one is compared with. It shares
-/// the predicates and the definition of world coordinates with the query, and nothing else: no tree, no
-/// boxes. Throws InputError beyond kMostPairs.
+/// The result of brute force.
 struct BruteForceResult {
   std::vector<SimplexPair> pairs;  ///< ascending
   std::vector<exact::Meet> meets;  ///< (|pairs|)
   Relation relation = Relation::separate;
 };
 
+/// Tests every pair of real simplices exactly, as the reference for collide(). It shares only the predicates
+/// and the definition of world coordinates with it, no tree or boxes. Throws InputError beyond kMostPairs.
 BruteForceResult brute_force(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
 }  // namespace lrb

@@ -1,7 +1,6 @@
 #pragma once
-/// Tells whether two faces meet: the exact answer for triangles in space and for segments in the plane,
-/// degenerate ones included. A triangle whose corners have become collinear or equal counts as the segment or
-/// point that they span.
+/// Exact intersection tests for triangles in 3D and segments in 2D, degenerate ones included. A triangle with
+/// collinear or coincident corners counts as the segment or point that they span.
 
 #include <array>
 #include <cstdint>
@@ -14,8 +13,8 @@
 
 namespace lrb::exact {
 
-/// How two simplices meet. `cross`: their relative interiors share a point and they do not lie in one plane
-/// (in 2D: on one line), so that each passes through the other. `touch`: they share a point, but do not
+/// The intersection of two simplices. `cross`: their relative interiors share a point and they are not
+/// coplanar (2D: collinear), so that each passes through the other. `touch`: they share a point but do not
 /// cross.
 enum class Meet : std::uint8_t { disjoint = 0, touch = 1, cross = 2 };
 constexpr auto words_of(Meet) {
@@ -23,30 +22,28 @@ constexpr auto words_of(Meet) {
       {{Meet::disjoint, "disjoint"}, {Meet::touch, "touch"}, {Meet::cross, "cross"}});
 }
 
-/// Tells how two triangles (closed sets), given by their corners, meet. Degenerate ones (zero area) never
-/// cross.
+/// Classifies the intersection of two triangles (closed sets). Degenerate triangles (zero area) never cross.
 Meet meet_triangles(const double* const a[3], const double* const b[3]);
 
-/// Tells how two segments (closed sets) in the plane z = 0 meet; reads only x and y.
+/// Classifies the intersection of two segments (closed sets) in the plane z = 0; reads only x and y.
 Meet meet_segments(const double* const a[2], const double* const b[2]);
 
-/// Returns true if two triangles of one complex meet in nothing but the vertices and edges that they share by
-/// index: the empty set, one common corner, or one common edge. ia, ib: vertex indices of the corners.
+/// Returns true if two triangles of one complex intersect only in the vertices and edges that they share by
+/// index: nowhere, in one common corner, or in one common edge. ia, ib: vertex indices of the corners.
 bool meet_only_in_shared(const double* const a[3], const VertexId ia[3], const double* const b[3],
                          const VertexId ib[3]);
-/// Does the same for two segments in the plane.
+/// Returns the same for two segments in 2D.
 bool meet_only_in_shared_2d(const double* const a[2], const VertexId ia[2], const double* const b[2],
                             const VertexId ib[2]);
 
-/// Returns the number of times that the floating-point filter could not decide since the thread started (for
+/// Returns how often the floating-point filter could not decide since the start of this thread (for
 /// counters).
 std::uint64_t exact_fallbacks();
 
-// The intersection of two faces that meet, with exact combinatorics and coordinates rounded to double.
+// The intersection of two faces, with exact combinatorics and coordinates rounded to double.
 
-/// A part of a simplex: corner i (`dim` 0), the edge from corner i to corner i + 1 mod n (`dim` 1), or its
-/// interior (`dim` 2, index 0). Of the features that hold a point, it is always the one of least dimension
-/// that is named.
+/// A feature of a simplex: corner i (`dim` 0), the edge from corner i to corner i + 1 mod n (`dim` 1), or the
+/// interior (`dim` 2, index 0). A point is assigned to its feature of lowest dimension.
 struct Feature {
   std::uint8_t dim = 2;
   std::uint8_t index = 0;
@@ -55,59 +52,60 @@ struct Feature {
 
 /// A corner of the intersection of two simplices.
 struct ContactCorner {
-  /// World frame. A corner of either simplex is copied; in each coordinate, other points are within 1e-13 of
-  /// the cut edge's extent plus two roundings of the exact point.
+  /// World frame. A corner of either simplex is copied. Any other point deviates from the exact one, in each
+  /// coordinate, by at most 1e-13 of the extent of the cut edge plus two roundings.
   Eigen::Vector3d x{0, 0, 0};
-  Feature on_a, on_b;  ///< where the point lies on each simplex; exact
+  Feature on_a, on_b;  ///< location of the point on each simplex; exact
 };
 
 /// The intersection of two simplices, a convex set: a point, a segment or a coplanar polygon.
 struct PairContact {
   Meet meet = Meet::disjoint;
-  bool coplanar = false;                   ///< both lie in one plane (in 2D: on one line)
-  std::uint8_t corner_count = 0;           ///< 0 none, 1 point, 2 segment, 3 to 6 polygon (in order round it)
-  std::array<ContactCorner, 6> corners{};  ///< the first corner_count
+  bool coplanar = false;          ///< both are in one plane (2D: on one line)
+  std::uint8_t corner_count = 0;  ///< 0 none, 1 point, 2 segment, 3 to 6 polygon (in order around it)
+  std::array<ContactCorner, 6> corners{};  ///< the first corner_count are valid
 };
 
+/// Return the intersection of two triangles or segments given by their corners.
 PairContact contact_of_triangles(const double* const a[3], const double* const b[3]);
-/// Intersects segments in the plane; corners have z = 0.
+/// Segments are in the plane z = 0.
 PairContact contact_of_segments(const double* const a[2], const double* const b[2]);
 
 }  // namespace lrb::exact
 
 namespace lrb {
 
-// The geometry of contact: that of each pair, and the connected contact regions that the pairs form. All
-// points and vectors are in the world frame; lengths in the meshes' unit.
+// Contact geometry: of each pair, and of the connected contact regions that the pairs form. Points and
+// vectors are in the world frame; lengths in mesh units.
 
 /// The intersection of the simplices of one pair.
 using PairContactRecord = exact::PairContact;
 
 /// A chain of points along which the surfaces cross or touch.
 struct ContactLoop {
-  std::vector<Eigen::Vector3d> points;  ///< world frame; not repeated at the end of a closed loop
+  std::vector<Eigen::Vector3d> points;  ///< world frame; the first point of a closed loop is not repeated
   bool closed = false;
 };
 
-/// A connected part of the intersection of the two surfaces. Vertices that stand twice in one place (seams of
-/// textures) count as one if their coordinates in the file are the same. A length or an area that is too
-/// large for a double is infinity, which can happen to areas of bodies of 1e155 units and more, and to
-/// lengths of 1e307 and more. Points, centroid and normal stay finite.
+/// A connected component of the intersection of the two surfaces (cf. contact manifold). Vertices with equal
+/// coordinates in the file (texture seams) count as one. A length or area that overflows is infinite
+/// (possible for areas of bodies of 1e155 units and more, and for lengths from 1e307). Points, centroid and
+/// normal stay finite.
 struct ContactRegion {
   std::vector<std::uint32_t> pairs;  ///< indices into CollideResult::pairs, ascending
-  std::vector<ContactLoop>
-      loops;          ///< curves of the region; for coplanar contact, the outline of its polygons
-  double length = 0;  ///< total length of the loops (unit: the mesh's)
-  double area = 0;    ///< coplanar contact: its area; closed loops: the area they span (unit squared)
-  Eigen::Vector3d centroid{
-      0, 0, 0};  ///< of the area for coplanar contact, of the curve's length, else of the points
-  Eigen::Vector3d normal{0, 0, 0};  ///< unit, from A to B, averaged; zero where it has no meaning
-  /// An estimate of how far B must move along `normal` to leave this region; 0: it only touches, or the
-  /// bodies are flush. It is measured along `normal`: from the nearest point of the part of B that the region
-  /// encloses in A to the farthest point of the part of A that it encloses in B, contact points included.
-  /// Once B has moved that far a plane parts the two. Nothing but these two parts is considered; convex
-  /// bodies have nothing else. Concave bodies may still meet in other regions, each with its own depth, or
-  /// come to meet on the way; and parts that lie beside each other may be free after less.
+  /// Curves of the region; for coplanar contact, the outline of its polygons.
+  std::vector<ContactLoop> loops;
+  double length = 0;  ///< total length of the loops, mesh units
+  double area = 0;    ///< coplanar contact: area; closed loops: area spanned by them; mesh units squared
+  /// Of the area for coplanar contact, else of the curves' length, else of the points.
+  Eigen::Vector3d centroid{0, 0, 0};
+  Eigen::Vector3d normal{0, 0, 0};  ///< unit vector from A to B, averaged; zero if undefined
+  /// An estimate of how far B must move along `normal` to leave this region; 0 if it only touches or the
+  /// bodies are flush. It is the extent, along `normal`, from the nearest point of the part of B that the
+  /// region encloses in A to the farthest point of the part of A that it encloses in B, contact points
+  /// included. After such a move a plane separates these two parts. Other parts are not considered. Convex
+  /// bodies have none. Concave bodies may still intersect in other regions, each with its own depth, or
+  /// collide during the move. Parts that are side by side may separate earlier.
   double depth_estimate = 0;
 };
 

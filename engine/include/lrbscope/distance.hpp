@@ -1,16 +1,16 @@
 #pragma once
-/// How far two bodies are apart: an interval of doubles that is proved to hold the distance of their
+/// The distance of two bodies: an interval of doubles that is proven to contain the distance of their
 /// surfaces.
 ///
-/// The distance is that of the contract of collide(): of the simplices whose corners are the doubles that
-/// Pose::apply() gives, exactly. It is 0 where the exact query finds a pair that meets, and only there.
+/// As for collide(), the distance is that of the simplices whose corners are the doubles given by
+/// Pose::apply(), exactly. It is 0 if and only if the exact query finds an intersecting pair.
 ///
-/// Two trees of boxes are walked, pairs of nodes whose boxes are nearest first; the distance of two boxes is
-/// a lower bound for all in them (Larsen, Gottschalk, Lin, Manocha, "Fast Distance Queries with Rectangular
-/// Swept Sphere Volumes", 2000, with oriented boxes in place of swept rectangles; best first as Quinlan,
-/// "Efficient Distance Computation between Non-Convex Objects", 1994). What floats cannot tell is compared in
-/// doubles with proved errors (pair_bounds.hpp), and what these cannot, in integers
-/// (exact/pair_distance.hpp).
+/// Algorithm: best-first traversal of two BVHs (Quinlan, "Efficient Distance Computation between Non-Convex
+/// Objects", 1994). The distance of two boxes bounds that of their contents from below (Larsen, Gottschalk,
+/// Lin and Manocha, "Fast Distance Queries with Rectangular Swept Sphere Volumes", 2000; here with OBBs
+/// instead of swept rectangles). Simplices are compared in floats first, then in doubles with proven errors
+/// (pair_bounds.hpp), and finally in integers (exact/pair_distance.hpp) where the previous stage cannot
+/// decide.
 
 #include <array>
 #include <cstdint>
@@ -27,36 +27,36 @@
 namespace lrb {
 
 struct DistanceRequest {
-  /// Asks only whether the surfaces are this near (at most `within`): DistanceResult::within. The interval
-  /// then is as narrow as it was when that was decided. Finite, at least 0; unit: the world's.
+  /// Decide only whether the distance of the surfaces is at most `within`: DistanceResult::within. The search
+  /// stops once that is decided, so the interval may be wide. Finite, at least 0; world units.
   std::optional<double> within;
-  /// The interval may be as wide as the larger of `tolerance` (unit: the world's) and `relative_tolerance`
-  /// times its upper end. 0, 0: at most 1e-12 of the larger body's size, or 4 units in the last place of the
-  /// distance where that is more; beyond 7e10 times the bodies' size, 2.3e-13 of the distance.
+  /// Maximum width of the interval: the larger of `tolerance` (world units) and `relative_tolerance` times
+  /// its upper end. If both are 0: 1e-12 of the larger body's size, or 4 units in the last place of the
+  /// distance if that is more; for distances beyond 7e10 times the bodies' size, 2.3e-13 of the distance.
   double tolerance = 0, relative_tolerance = 0;
-  /// The largest number of steps; 0: no limit. A step opens a pair of nodes of the trees. With more steps the
-  /// interval only becomes narrower.
+  /// Maximum number of steps; 0: no limit. A step expands a pair of tree nodes. More steps only narrow the
+  /// interval.
   std::uint64_t max_steps = 0;
-  /// Decide how bodies lie whose surfaces do not meet. Without it, DistanceResult::relation is always
+  /// Determine the relation of bodies whose surfaces do not intersect. If false, DistanceResult::relation is
   /// `undefined` for them.
   bool relation = true;
 };
 
-/// A point of one body's surface.
+/// A closest point on one body's surface.
 struct Witness {
-  Eigen::Vector3d point{0, 0, 0};  ///< the world; but for rounding, on the feature
+  Eigen::Vector3d point{0, 0, 0};  ///< world frame; on the feature up to rounding
   SimplexId simplex = kNull;
-  FaceId face = kNull;     ///< whose simplex it is
-  exact::Feature feature;  ///< of the simplex: corner, edge or inside
-  /// The vertices that span the feature: the first `corner_count` of them.
+  FaceId face = kNull;     ///< the face of the simplex
+  exact::Feature feature;  ///< feature of the simplex: corner, edge or interior
+  /// The vertices that span the feature: the first `corner_count` entries.
   std::array<VertexId, 3> corners{kNull, kNull, kNull};
   int corner_count = 0;
 };
 
-/// The work that a distance took.
+/// The work done by a distance query.
 struct DistanceCounters {
-  std::uint64_t steps = 0;            ///< pairs of nodes that were opened
-  std::uint64_t box_tests = 0;        ///< boxes compared
+  std::uint64_t steps = 0;            ///< pairs of nodes expanded
+  std::uint64_t box_tests = 0;        ///< tests of two boxes
   std::uint64_t pairs_in_floats = 0;  ///< pairs of simplices compared in floats
   std::uint64_t pairs_in_doubles = 0;
   std::uint64_t pairs_exact = 0;
@@ -64,22 +64,22 @@ struct DistanceCounters {
 };
 
 struct DistanceResult {
-  /// Hold the distance of the surfaces. Both 0 if they meet; else the lower end is more than 0 unless a limit
-  /// was reached or a tolerance leaves room for 0. Infinite if a body has no faces.
+  /// Bounds of the distance of the surfaces. Both 0 if they intersect; otherwise `lower` > 0 unless a limit
+  /// was reached or a tolerance permits 0. Infinite if a body has no faces.
   double lower = 0, upper = 0;
-  bool meet = false;  ///< the surfaces are proved to have a point in common
-  std::optional<bool>
-      within;            ///< the answer to DistanceRequest::within; none if a limit was reached before it
-  bool finished = true;  ///< false: max_steps were reached before the interval was narrow enough
-  /// How the bodies lie. For surfaces that meet, what the first pair found shows, as for Mode::any_pair;
-  /// `unresolved` where it was not found out whether they do.
+  bool meet = false;  ///< the surfaces are proven to have a common point
+  /// The answer to DistanceRequest::within; nullopt if a limit was reached before it was decided.
+  std::optional<bool> within;
+  bool finished = true;  ///< false: max_steps was reached before the interval was narrow enough
+  /// The relation of the bodies. If surfaces intersect, it is derived from the first pair found, as for
+  /// Mode::any_pair; `unresolved` if it is not known whether they do.
   Relation relation = Relation::undefined;
-  /// Of A and of B, `upper` apart but for rounding; equal if they meet. Simplices are kNull if a body has no
-  /// faces.
+  /// Closest points of A and of B, at distance `upper` up to rounding; equal if the surfaces intersect.
+  /// Simplices are kNull if a body has no faces.
   std::array<Witness, 2> witness;
   DistanceCounters counters;
 
-  /// The distance of the solids: 0 also where one holds the other.
+  /// Bounds of the distance of the solids: 0 also if one contains the other.
   bool solids_meet() const {
     return meet || relation == Relation::a_inside_b || relation == Relation::b_inside_a;
   }
@@ -87,32 +87,32 @@ struct DistanceResult {
   double solids_upper() const { return solids_meet() ? 0 : upper; }
 };
 
-/// Returns the distance of body `a` at pose_a and body `b` at pose_b; both must be 3D, or both 2D. Poses may
-/// be any finite maps, and world coordinates must be finite. Throws InputError for these, and for numbers of
-/// the request that are negative or not finite.
+/// Returns the distance of body `a` at pose_a and body `b` at pose_b. Poses may be any finite affine maps.
+/// Throws InputError unless both bodies are 3D or both 2D and world coordinates are finite, and for negative
+/// or non-finite numbers in the request.
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                         const DistanceRequest& request = {});
 
-/// Throws InputError for a request that distance() rejects: a number that is negative or not finite.
+/// Throws InputError for a request that distance() rejects: a negative or non-finite number.
 void check_request(const DistanceRequest& request);
 
-/// Returns the distances for some poses of B, in their order; the same for any number of threads (0: all
-/// cores).
+/// Returns the distances for several poses of B, in their order. The result does not depend on `threads` (0:
+/// all cores).
 std::vector<DistanceResult> distances(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
                                       std::span<const Pose> poses_b, const DistanceRequest& request = {},
                                       unsigned threads = 0);
 
-/// Asks for two bodies again and again as they move by little: begins with the pair of simplices that was
-/// nearest before, or met, keeps how they lie where they cannot have met in between, and planes that hold
-/// parts of them apart. Intervals are proved as those of distance() are, and as narrow; where pairs are
-/// equally near, or several meet, the witness may be another, and the relation of surfaces that meet is what
-/// that pair shows.
+/// Distance queries for two bodies that move little between queries. Starts with the pair of simplices that
+/// was closest or intersected before, reuses the relation if the surfaces cannot have intersected in between,
+/// and reuses separating planes of parts. Intervals are proven and as narrow as those of distance(). If
+/// several pairs are equally close, or intersect, the witness may differ, and with it the relation of
+/// intersecting surfaces.
 class CoherentDistance {
  public:
-  /// Keeps references to the bodies, which must outlive it. Do not assign to them.
+  /// Stores references to the bodies, which must outlive it and must not be assigned to.
   CoherentDistance(const LrbRep& a, const LrbRep& b, const DistanceRequest& request = {});
 
-  /// Returns the answer for these poses. Throws InputError as distance() does.
+  /// Returns the distance for these poses. Throws InputError as distance() does.
   DistanceResult distance(const Pose& pose_a, const Pose& pose_b);
 
   ~CoherentDistance();
@@ -124,33 +124,34 @@ class CoherentDistance {
   std::unique_ptr<Work> work_;
 };
 
-// Watching how the bounds of a distance tighten, from outside the engine: derive from BoundsProbe and give
-// it to distance(). The answer is the same as without; what is told costs a look at all pairs that wait.
+// Observing the convergence of a distance query: derive from BoundsProbe and pass it to distance(). The
+// answer is the same with and without a probe. Each report takes a pass over all pairs in the queue.
 
-/// What is known of a number after some work.
+/// Bounds of a number after some work.
 struct Bounds {
-  std::uint64_t work = 0;       ///< done until then, in steps that the query names
-  double lower = 0, upper = 0;  ///< hold the number; `upper` is infinite where none is known yet
+  std::uint64_t work = 0;       ///< done so far, in steps defined by the query
+  double lower = 0, upper = 0;  ///< the number is in [lower, upper]; `upper` is infinite if no upper bound is
+                                ///< known yet
   friend bool operator==(const Bounds&, const Bounds&) = default;
 };
 
 class BoundsProbe {
  public:
   virtual ~BoundsProbe() = default;
-  /// Bounds became narrower: in the order of the work.
+  /// The bounds became narrower. Called in the order of the work.
   virtual void bounds(const Bounds& known) = 0;
 };
 
-/// Keeps what it is told.
+/// Records all bounds.
 class BoundsCourse final : public BoundsProbe {
  public:
   void bounds(const Bounds& known) override { course.push_back(known); }
   std::vector<Bounds> course;
 };
 
-/// Does what distance() in distance.hpp does, and tells the probe what is known, after more and more work:
-/// the last bounds lie within those of the answer, and are the answer's unless `within` or a tolerance asks
-/// for less. Work is counted in pairs of nodes opened and pairs of simplices measured in doubles or exactly.
+/// Returns the same as distance() without a probe, and reports the bounds while they converge. The last
+/// bounds are inside those of the answer, and equal to them unless `within` or a tolerance ends the search
+/// earlier. Work counts pairs of nodes expanded and pairs of simplices measured in doubles or exactly.
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                         const DistanceRequest& request, BoundsProbe& probe);
 

@@ -1,7 +1,7 @@
 #pragma once
-/// Words of enumerators. Beside each enum that is shown, written or read stands one table, the constexpr
-/// function words_of(Enum); messages, files, options and the tests of the schemas take the words from it.
-/// A new enumerator needs one line there.
+/// Names of enumerators. Each enum that is printed, written or parsed has one table beside it, the constexpr
+/// function words_of(Enum). Messages, files, options and the schema tests take the names from this table. A
+/// new enumerator needs one line in it.
 
 #include <array>
 #include <cstddef>
@@ -11,15 +11,15 @@
 
 namespace lrb {
 
-/// A line of an enum's table.
+/// One line of an enum's table.
 template <class Enum>
 struct EnumWord {
   Enum value;
-  std::string_view word;  ///< of literals: data() ends with a NUL
+  std::string_view word;  ///< a literal, so that data() is NUL-terminated
 };
 
-/// The table of an enum, checked while compiling: the enumerators in their order, from 0 on. (Enumerators
-/// without a word come last in the enum and are left out.)
+/// Returns the table of an enum. Checks at compile time that it lists the enumerators in order, from 0.
+/// (Enumerators without a name must come last in the enum; the table omits them.)
 template <class Enum>
 consteval auto checked_words() {
   const auto table = words_of(Enum{});
@@ -30,13 +30,14 @@ consteval auto checked_words() {
 template <class Enum>
 inline constexpr auto kWords = checked_words<Enum>();
 
-/// Returns the word of an enumerator; "?" for a value that is none.
+/// Returns the name of an enumerator, or "?" if the value has none.
 template <class Enum>
 constexpr std::string_view name_of(Enum value) {
   const auto i = static_cast<std::size_t>(value);
   return i < kWords<Enum>.size() ? kWords<Enum>[i].word : "?";
 }
 
+/// Returns the enumerator with this name, or nullopt if there is none.
 template <class Enum>
 constexpr std::optional<Enum> from_name(std::string_view word) {
   for (const EnumWord<Enum>& entry : kWords<Enum>)
@@ -44,7 +45,7 @@ constexpr std::optional<Enum> from_name(std::string_view word) {
   return std::nullopt;
 }
 
-/// Returns "a, b or c", or with other separators "a|b|c".
+/// Returns "a, b or c"; with other separators for example "a|b|c".
 template <class Enum>
 std::string all_names(std::string_view between = ", ", std::string_view before_last = " or ") {
   std::string out;

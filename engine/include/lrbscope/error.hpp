@@ -9,31 +9,30 @@
 
 namespace lrb {
 
-/// Thrown for input that cannot be used. The message is one line that names the file, the line or element,
-/// what was expected and what to do. Commands end with exit code 2.
+/// Thrown for unusable input. The message is one line with the file, the line or element, the expected and
+/// the found content, and a remedy. Commands exit with code 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown when the machine cannot do what is asked (no off-screen context, disk full, a missing font).
-/// Commands end with exit code 3.
+/// Thrown if the machine cannot carry out a request (no off-screen context, disk full, missing font).
+/// Commands exit with code 3.
 class EnvironmentError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// An answer, or the reason why there is none: for whatever a caller can foresee to fail, such as a file that
-// is damaged or a pose that is not finite. (std::expected is of C++23; the names are its.)
+// Errors as values, for failures that a caller can foresee, such as a damaged file or a pose that is not
+// finite. (Modelled on std::expected of C++23.)
 
-/// Why something was refused: one line that names the file, the line or element, what was expected and what
-/// to do.
+/// An error: one line with the file, the line or element, the expected and the found content, and a remedy.
 struct Refusal {
   std::string reason;
   friend bool operator==(const Refusal&, const Refusal&) = default;
 };
 
-/// A T, which may be a reference, or a Refusal.
+/// Either a value of type T, which may be a reference, or an error (Refusal).
 template <class T>
 class [[nodiscard]] Expected {
   using Value = std::remove_reference_t<T>;
@@ -42,7 +41,7 @@ class [[nodiscard]] Expected {
  public:
   using value_type = T;
 
-  /// Holds a T as T{} makes it.
+  /// Contains a value-initialised T.
   Expected() requires std::is_default_constructible_v<T> : kept_(std::in_place_index<0>) {}
   Expected(Kept value) : kept_(std::in_place_index<0>, std::move(value)) {}
   Expected(Value& value) requires std::is_reference_v<T> : kept_(std::in_place_index<0>, value) {}
@@ -51,23 +50,23 @@ class [[nodiscard]] Expected {
   bool has_value() const { return kept_.index() == 0; }
   explicit operator bool() const { return has_value(); }
 
-  /// Return the T. There must be one.
+  /// Return the value. Precondition: has_value().
   Value& operator*() & requires(!std::is_reference_v<T>) { return *std::get_if<0>(&kept_); }
   const Value& operator*() const& requires(!std::is_reference_v<T>) { return *std::get_if<0>(&kept_); }
   Value&& operator*() && requires(!std::is_reference_v<T>) { return std::move(*std::get_if<0>(&kept_)); }
   Value* operator->() requires(!std::is_reference_v<T>) { return &**this; }
   const Value* operator->() const requires(!std::is_reference_v<T>) { return &**this; }
-  // A reference refers to the same object, const or temporary as the Expected may be.
-  Value& operator*() const requires std::is_reference_v<T> { return *std::get_if<0>(&kept_); }
+  // If T is a reference, constness and value category of the Expected do not affect the referenced object.
+  Value& operator*() const& requires std::is_reference_v<T> { return *std::get_if<0>(&kept_); }
   Value* operator->() const requires std::is_reference_v<T> { return &**this; }
 
-  /// Return the T. Throw the reason as an InputError if there is none.
+  /// Return the value. Throw InputError with the reason if there is none.
   Value& value() & requires(!std::is_reference_v<T>) { return check(), **this; }
   const Value& value() const& requires(!std::is_reference_v<T>) { return check(), **this; }
   Value&& value() && requires(!std::is_reference_v<T>) { return check(), std::move(**this); }
-  Value& value() const requires std::is_reference_v<T> { return check(), **this; }
+  Value& value() const& requires std::is_reference_v<T> { return check(), **this; }
 
-  /// Returns why there is none. There must not be one.
+  /// Returns the error. Precondition: !has_value().
   const Refusal& error() const { return *std::get_if<1>(&kept_); }
 
   friend bool operator==(const Expected&, const Expected&) requires(!std::is_reference_v<T>) = default;

@@ -1,7 +1,7 @@
 #pragma once
-/// Explains answers of the complete query: how it comes from the roots of both trees to two faces and what
-/// decides between these, and what proves two bodies apart. Everything is asked of the query's own kernel,
-/// one pair of tree nodes at a time, so that what is told is what happens.
+/// Explanations of the complete query's answers: the path from the roots of both trees to two faces and the
+/// test that decides them, and the proof that two bodies are separate. Every step is computed by the query's
+/// own kernel, one pair of tree nodes at a time, so the explanation matches the query.
 
 #include <array>
 #include <cstdint>
@@ -19,11 +19,11 @@
 
 namespace lrb {
 
-// The boxes of tree nodes as they lie in the world, in double arithmetic: to be shown, and to tell how far
-// they are apart. The query compares them in floats and allows for all errors; these allow for none.
+// The boxes of tree nodes in the world, in double arithmetic, for display and distances. The query compares
+// them in floats and accounts for all rounding errors; these functions do not.
 
-/// The axes across the sides of two boxes. The query compares boxes along these, and those of whole nodes
-/// also along directions across an edge of each.
+/// The face normals of two boxes. The query tests boxes along these axes, and the OBBs of nodes also along
+/// cross products of their edges.
 enum class BoxAxis : std::uint8_t { a1, a2, a3, b1, b2, b3 };
 constexpr auto words_of(BoxAxis) {
   return std::to_array<EnumWord<BoxAxis>>({{BoxAxis::a1, "axis 1 of A's box"},
@@ -34,41 +34,40 @@ constexpr auto words_of(BoxAxis) {
                                            {BoxAxis::b3, "axis 3 of B's box"}});
 }
 
-/// Two boxes that the query compared, as they lie in the world.
+/// Two boxes compared by the query, in the world.
 struct BoxPair {
-  /// Of A's tree and of B's: the nodes whose boxes they are; of the boxes of faces, the leaves that hold
-  /// them.
+  /// Nodes of A's tree and of B's that the boxes belong to. For boxes of faces: the leaves that contain them.
   std::array<std::uint32_t, 2> node = {0, 0};
-  /// The distance of the boxes along the axis on which they are furthest apart, mesh's unit; negative where
-  /// they overlap on all axes.
+  /// Largest distance of the boxes along one of the axes, mesh units; negative if they overlap on all axes.
   double gap = 0;
-  BoxAxis axis = BoxAxis::a1;  ///< that axis
+  BoxAxis axis = BoxAxis::a1;  ///< the axis of that distance
 };
 
-/// A box in the world: a parallelepiped, for poses that are no rotations.
+/// A box in the world. A parallelepiped if the pose is not a rotation.
 struct WorldBox {
   Eigen::Vector3d centre;
-  std::array<Eigen::Vector3d, 3> half;    ///< from the centre to the middle of a side
-  std::array<Eigen::Vector3d, 3> across;  ///< unit vectors across the sides
+  std::array<Eigen::Vector3d, 3> half;    ///< from the centre to the centre of a side
+  std::array<Eigen::Vector3d, 3> across;  ///< unit normals of the sides
 };
 
+/// Value of `child` that selects the box of the node itself.
 constexpr int kWhole = -1;
 
-/// Returns the box of a node's child or simplex, number 0 to 7 there, or with kWhole that of the whole node.
-/// `pose`: body to world.
+/// Returns the box of a node's child or simplex (`child` 0 to 7), or with kWhole of the node itself. `pose`:
+/// body to world.
 WorldBox box_of(const ObbTree& tree, std::uint32_t node, int child, const Pose& pose);
 
-/// Sets the gap and the axis of two boxes.
+/// Computes the gap of two boxes and its axis.
 void compare_boxes(const WorldBox& a, const WorldBox& b, BoxPair& out);
 
-/// What decided about two faces.
+/// The test that decided a pair of faces.
 enum class DecidedBy : std::uint8_t {
-  node_boxes,  ///< boxes of nodes above them are apart
-  node_edges,  ///< so are these, along a direction across an axis of each
-  face_boxes,  ///< the boxes of the faces themselves are apart
-  planes,      ///< the plane of one has all of the other on one side, in floats with bounded errors
+  node_boxes,  ///< boxes of nodes above them are disjoint
+  node_edges,  ///< the same, along a cross product of an edge of each
+  face_boxes,  ///< the boxes of the faces themselves are disjoint
+  planes,      ///< the plane of one separates it from the other, in floats with bounded errors
   floats,      ///< other tests in floats with bounded errors
-  exact,       ///< the exact test, because floats were not certain
+  exact,       ///< the exact test, because floats could not decide
 };
 constexpr auto words_of(DecidedBy) {
   return std::to_array<EnumWord<DecidedBy>>({{DecidedBy::node_boxes, "node_boxes"},
@@ -79,35 +78,36 @@ constexpr auto words_of(DecidedBy) {
                                              {DecidedBy::exact, "exact"}});
 }
 
-/// On which sides of a face's plane (2D: line) the corners of the other face lie: 1 in front, -1 behind, 0 in
-/// it.
+/// The sides of a face's plane (2D: line) on which the other face's corners are: 1 in front, -1 behind, 0 in
+/// the plane.
 struct PlaneSides {
   std::array<int, 3> exact = {0, 0, 0};
-  std::array<int, 3> in_double = {0, 0, 0};    ///< as plain double arithmetic has it, right or wrong
-  std::array<double, 3> distance = {0, 0, 0};  ///< signed, mesh's unit, in double; 0 where there is no plane
+  std::array<int, 3> in_double = {0, 0, 0};    ///< by plain double arithmetic, which may be wrong
+  std::array<double, 3> distance = {0, 0, 0};  ///< signed, mesh units, in double; 0 if the face spans no
+                                               ///< plane
 };
 
 struct PairExplanation {
   SimplexPair pair;
   exact::Meet meet = exact::Meet::disjoint;
   DecidedBy decided_by = DecidedBy::exact;
-  /// From the roots down: boxes as their parents have them. The last ones are the leaves of both faces, or
-  /// the boxes that are apart; where these are the nodes' own, their nodes come twice.
+  /// From the roots down: boxes as stored in their parents. The last pair are the leaves of both faces, or
+  /// the boxes that are disjoint. If those are the nodes' own OBBs, their nodes are listed twice.
   std::vector<BoxPair> nodes;
-  bool reaches_faces = false;  ///< the query came to the boxes of the faces
-  BoxPair face_boxes;          ///< valid if it did
-  /// The regions that hide A's and B's face in the outermost wrapper, from the outside inward.
+  bool reaches_faces = false;  ///< the query reached the boxes of the faces
+  BoxPair face_boxes;          ///< valid if reaches_faces
+  /// The regions that hide the faces of A and B in the outermost wrapper, from the outside inward.
   std::array<std::vector<RegionId>, 2> hidden_by;
-  std::array<PlaneSides, 2> sides;  ///< A's corners by B's plane, B's corners by A's
-  exact::PairContact contact;       ///< of faces that meet
-  /// Of faces that do not meet: their nearest points (world) and distance (mesh's unit), in double. The plane
-  /// across the line between these points, at its middle, has the faces on different sides.
+  std::array<PlaneSides, 2> sides;  ///< A's corners relative to B's plane, B's corners relative to A's
+  exact::PairContact contact;       ///< if the faces intersect
+  /// If they do not: closest points (world) and distance (mesh units), in double. The perpendicular bisecting
+  /// plane of the closest points separates the faces.
   std::array<Eigen::Vector3d, 2> nearest;
   double distance = 0;
-  double ulp = 0;  ///< of the largest world coordinate of the two faces
+  double ulp = 0;  ///< unit in the last place of the largest world coordinate of the two faces
 };
 
-/// Explains pairs of two bodies, one after the other.
+/// Explains several pairs of faces of the same two bodies.
 class PairExplainer {
  public:
   /// The bodies must outlive this object.
@@ -116,9 +116,9 @@ class PairExplainer {
   PairExplainer(const PairExplainer&) = delete;
   PairExplainer& operator=(const PairExplainer&) = delete;
 
-  /// Puts the bodies where they stand; comes before the first explain(). Throws as collide() does.
+  /// Sets the poses. Must be called before the first explain(). Throws as collide() does.
   void place(const Pose& pose_a, const Pose& pose_b);
-  /// Explains how two real simplices come out. Throws InputError if a simplex is not real or does not exist.
+  /// Explains the test of two real simplices. Throws InputError if a simplex is not real or does not exist.
   PairExplanation explain(const SimplexPair& pair);
 
  private:
@@ -130,49 +130,49 @@ class PairExplainer {
 PairExplanation explain_pair(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                              const SimplexPair& pair);
 
-/// The pairs of nodes at one depth.
+/// The pairs of nodes at one depth of the traversal.
 struct WalkDepth {
-  std::uint64_t node_pairs = 0;  ///< compared
-  std::uint64_t ended = 0;       ///< those of them of which no two boxes meet
+  std::uint64_t node_pairs = 0;  ///< pairs compared
+  std::uint64_t ended = 0;       ///< pairs without intersecting child boxes
 };
 
-/// A plane that has one body on each side: n.x <= of_a for all of A, n.x >= of_b > of_a for all of B.
+/// A separating plane: n.x <= of_a for all points of A, n.x >= of_b > of_a for all points of B.
 struct PartingPlane {
-  Eigen::Vector3d normal{0, 0, 0};       ///< length 1, world, from A to B
-  double of_a = 0, of_b = 0;             ///< mesh's unit
-  std::array<Eigen::Vector3d, 2> reach;  ///< a vertex of A, and one of B, that reach so far; world
+  Eigen::Vector3d normal{0, 0, 0};       ///< unit length, world frame, from A to B
+  double of_a = 0, of_b = 0;             ///< mesh units
+  std::array<Eigen::Vector3d, 2> reach;  ///< a vertex of A and one of B that attain these bounds; world frame
 
   double gap() const { return of_b - of_a; }
 };
 
-/// Two boxes that the query compared and found apart.
+/// Two boxes that the query compared and found disjoint.
 struct PartedBoxes {
-  BoxPair pair;  ///< the nodes that are these boxes' own; of boxes of faces, the leaves
+  BoxPair pair;  ///< the nodes of these boxes; for boxes of faces, their leaves
   std::array<WorldBox, 2> boxes;
   bool of_faces = false;  ///< both are boxes of faces
 };
 
-/// The walk of the complete query over two bodies.
+/// The traversal of the complete query over two bodies.
 struct WalkExplanation {
-  CollideResult result;           ///< as collide() gives it, with a separation where there is one
-  BoxPair roots;                  ///< the boxes round both bodies
-  std::vector<WalkDepth> depths;  ///< by the number of steps from the roots
+  CollideResult result;           ///< as collide() returns it, with a separation if there is one
+  BoxPair roots;                  ///< the root boxes of both bodies
+  std::vector<WalkDepth> depths;  ///< indexed by distance from the roots
   std::uint64_t leaf_pairs = 0;   ///< pairs of leaves whose faces were compared
-  std::uint64_t face_pairs = 0;   ///< pairs of faces whose boxes meet
-  std::uint64_t left = 0;         ///< those of them that planes do not part; these are compared one by one
-  std::uint64_t certain = 0;      ///< those of them about which floats are certain
-  /// Of bodies that do not meet: the two boxes that are nearest to each other among those found apart along
-  /// an axis across their sides. Nodes that are apart only along a direction across an edge of each are left
-  /// out.
+  std::uint64_t face_pairs = 0;   ///< pairs of faces whose boxes intersect
+  std::uint64_t left = 0;         ///< pairs among these that planes do not separate; tested one by one
+  std::uint64_t certain = 0;      ///< pairs among these that are decided in floats
+  /// If the bodies do not intersect: the closest two boxes among those found disjoint along a face normal.
+  /// Nodes rejected only along a cross product of edges are not considered.
   std::optional<PartedBoxes> nearest_boxes;
-  std::optional<PartingPlane> plane;  ///< of separate bodies: the best that was found; often none exists
-  /// The pairs among those left that are nearest to each other, of bodies that do not meet: nearest first, at
-  /// most kMostNear.
+  std::optional<PartingPlane> plane;  ///< for separate bodies: the best separating plane found; often none
+                                      ///< exists
+  /// If the bodies do not intersect: the closest pairs among those tested one by one, closest first, at most
+  /// kMostNear.
   std::vector<SimplexPair> near;
   static constexpr std::size_t kMostNear = 5;
 };
 
-/// Walks both trees as the complete query for all pairs does, and tells what it did. Throws as collide()
+/// Traverses both trees as the complete query for all pairs does, and records its steps. Throws as collide()
 /// does.
 WalkExplanation explain_walk(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 

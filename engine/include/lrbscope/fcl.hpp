@@ -1,24 +1,23 @@
 #pragma once
-/// FCL's interface on this engine: for programs written for FCL 0.7 that want exact answers without being
-/// rewritten. Needs FCL's headers and library (Debian: libfcl-dev). FCL still answers for geometry other
-/// than meshes.
+/// FCL's interface to this engine, for programs written for FCL 0.7 that need exact answers without changes.
+/// Requires FCL's headers and library (Debian: libfcl-dev). FCL still answers for geometry other than meshes.
 ///
-/// Include this header and write lrb::fcl:: where fcl:: stood; collide() and distance() of two meshes
-/// (BVHModel of any bounding volume) are then this engine's, and every other name of FCL is FCL's own:
+/// Include this header and replace fcl:: by lrb::fcl::. Then collide() and distance() of two meshes (BVHModel
+/// of any bounding volume) are this engine's, and every other name of FCL is FCL's own:
 ///
-/// - Contacts name the pairs of triangles that meet, each once, ascending; one if num_max_contacts is 1,
-///   whichever is found first. With enable_contact, each has a point in the middle of what the two triangles
-///   have in common, and normal and estimated depth of the contact region that it belongs to (ContactRegion).
-/// - Distances are those of the surfaces, to 1e-12 of the meshes' size, whatever rel_err and abs_err allow; 0
-///   where they meet. Nearest points are in the world.
-/// - As with FCL, a mesh in another one whose surface it does not touch does not collide with it.
-/// - Costs, and geometry that is not occupied, are left to FCL.
+/// - Contacts list the intersecting pairs of triangles, each once, ascending; only the first one found if
+///   num_max_contacts is 1. With enable_contact, each has the centroid of the corners of the two triangles'
+///   intersection as its point, and the normal and estimated depth of its contact region (ContactRegion).
+/// - Distances are those of the surfaces, to 1e-12 of the meshes' size regardless of rel_err and abs_err; 0
+///   if they intersect. Nearest points are in the world frame.
+/// - As in FCL, a mesh inside another one does not collide with it unless the surfaces intersect.
+/// - Costs, and geometry that is not occupied, are forwarded to FCL.
 ///
-/// What a mesh cannot be asked about (coordinates that are not finite) throws lrb::InputError.
+/// A mesh that cannot be queried (coordinates that are not finite) throws lrb::InputError.
 ///
-/// A mesh becomes a body, without regions, the first time that it is asked about, and is kept. Each call
-/// compares it with what was kept, number by number, because programs change their meshes: about 1 ns a
-/// vertex. Where that is too much, ask lrb::collide() about body_of() the mesh.
+/// A mesh is converted to a body without regions when it is first queried, and the body is cached. Because
+/// programs change their meshes, each call compares the mesh with the cached body number by number: about 1
+/// ns per vertex. To avoid this, call lrb::collide() with the body_of() the mesh.
 
 #include <algorithm>
 #include <cstddef>
@@ -43,7 +42,7 @@ namespace lrb::fcl {
 
 using namespace ::fcl;
 
-/// The arrays of a mesh of FCL's.
+/// The arrays of an FCL mesh.
 template <class S>
 struct MeshArrays {
   std::span<const ::fcl::Vector3<S>> vertices;
@@ -59,7 +58,7 @@ MeshArrays<typename BV::S> arrays_of(const ::fcl::BVHModel<BV>& model) {
           {model.tri_indices, static_cast<std::size_t>(model.num_tris)}};
 }
 
-/// Returns the arrays of a geometry that is a mesh; of any other, empty ones.
+/// Returns the arrays of a geometry that is a mesh; empty arrays for any other.
 template <class S>
 MeshArrays<S> arrays_of(const ::fcl::CollisionGeometry<S>& geometry) {
   const auto as = [&]<class BV>(const BV*) {
@@ -92,8 +91,7 @@ Pose pose_of(const ::fcl::Transform3<S>& transform) {
   return {transform.linear().template cast<double>(), transform.translation().template cast<double>()};
 }
 
-/// Makes a body of a mesh's arrays, with its faces as they are; `options`: of what is to be built beside
-/// them.
+/// Creates a body from a mesh's arrays, with its faces unchanged. `options`: what to build in addition.
 template <class S>
 Expected<Body> body_of(const MeshArrays<S>& arrays, const BodyOptions& options) {
   Mesh mesh;
@@ -105,7 +103,7 @@ Expected<Body> body_of(const MeshArrays<S>& arrays, const BodyOptions& options) 
   return Body::from(std::move(mesh), options);
 }
 
-/// Returns the options of a body for answers like FCL's: faces alone, as they are.
+/// Returns the options of a body for FCL's answers: faces only, unchanged.
 inline BodyOptions faces_alone() {
   BodyOptions options;
   options.regions = false;
@@ -114,18 +112,17 @@ inline BodyOptions faces_alone() {
   return options;
 }
 
-/// Makes a body of a mesh of FCL's: faces have the numbers of its triangles. By default without regions, and
-/// nothing is turned.
+/// Creates a body from an FCL mesh. Faces have the numbers of its triangles. The default is without regions
+/// and without reorientation.
 template <class BV>
 Expected<Body> body_of(const ::fcl::BVHModel<BV>& model, const BodyOptions& options = faces_alone()) {
   return body_of(arrays_of(model), options);
 }
 
-/// The bodies that were made of meshes, by the meshes' addresses; for all threads. Keeps the last 256 that
-/// were asked about.
+/// A thread-safe cache of bodies by the addresses of their meshes. Keeps the 256 used last.
 class KnownBodies {
  public:
-  /// Returns the body of a mesh as it is now. Throws InputError if it cannot be one.
+  /// Returns the body of a mesh in its current state. Throws InputError if it cannot be converted.
   template <class S>
   Body of(const void* address, const MeshArrays<S>& arrays) {
     if (std::shared_ptr<const Body> known = find(address); known && is_same(*known, arrays)) return *known;
@@ -134,7 +131,7 @@ class KnownBodies {
     return *made;
   }
 
-  /// Forgets all of them, to free their memory.
+  /// Empties the cache, to free its memory.
   void clear() {
     const std::lock_guard lock(mutex_);
     entries_.clear();
@@ -149,7 +146,7 @@ class KnownBodies {
 
   struct Entry {
     std::shared_ptr<const Body> body;
-    std::uint64_t asked = 0;  ///< when it was asked about last
+    std::uint64_t asked = 0;  ///< time of last use
   };
 
   template <class S>
@@ -192,20 +189,20 @@ inline KnownBodies& known_bodies() {
   return bodies;
 }
 
-/// Memory of the calling thread's queries.
+/// Returns the workspace of the calling thread.
 inline Workspace& workspace() {
   thread_local Workspace memory;
   return memory;
 }
 
-/// Returns the middle of what two triangles have in common.
+/// Returns the centroid of the corners of two triangles' intersection.
 inline Eigen::Vector3d middle_of(const PairContactRecord& contact) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < contact.corner_count; ++i) sum += contact.corners[i].x / contact.corner_count;
   return sum;
 }
 
-/// Adds the pairs of an answer to FCL's result, as many as the request wants.
+/// Adds the pairs of an answer to FCL's result, up to the maximum of the request.
 template <class S>
 void add_contacts(const CollideResult& found, const ::fcl::CollisionGeometry<S>* o1,
                   const ::fcl::CollisionGeometry<S>* o2, const ::fcl::CollisionRequest<S>& request,
@@ -228,8 +225,8 @@ void add_contacts(const CollideResult& found, const ::fcl::CollisionGeometry<S>*
   }
 }
 
-/// Finds the contacts of two geometries; those that are no meshes, costs, and what is not occupied are FCL's.
-/// Returns the number of contacts in the result, to which those of calls before belong.
+/// Adds the contacts of two geometries to the result and returns their total number, including earlier ones.
+/// Geometries that are not meshes, costs, and geometry that is not occupied are forwarded to FCL.
 template <class S>
 std::size_t collide(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transform3<S>& tf1,
                     const ::fcl::CollisionGeometry<S>* o2, const ::fcl::Transform3<S>& tf2,
@@ -256,8 +253,8 @@ std::size_t collide(const ::fcl::CollisionObject<S>* o1, const ::fcl::CollisionO
                       o2->getTransform(), request, result);
 }
 
-/// Finds the distance of two geometries; of those that are no meshes it is FCL's. Returns the least distance
-/// in the result, to which those of calls before belong.
+/// Updates the result with the distance of two geometries and returns its minimum distance, including earlier
+/// ones. Geometries that are not meshes are forwarded to FCL.
 template <class S>
 S distance(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transform3<S>& tf1,
            const ::fcl::CollisionGeometry<S>* o2, const ::fcl::Transform3<S>& tf2,

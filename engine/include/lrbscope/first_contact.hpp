@@ -1,26 +1,30 @@
 #pragma once
-/// When two moving bodies first meet: an interval of t that is proved to hold the first contact.
+/// The time of impact of two moving bodies: an interval of t that is proven to contain the first contact.
 ///
-/// Bodies meet where their surfaces have a point in common, as for collide(): a body that is inside another
-/// without touching it does not meet it. What holds is said of two things at once:
-/// - the exact motions, functions of real numbers (motion.hpp): for no real t before t0 do the surfaces meet;
-/// - their doubles: for no double t before t0 does collide() find a contact at Motion::at(t).
+/// Contact means that the surfaces have a common point, as for collide(). A body inside another without
+/// touching it is not in contact with it. The answer holds for two things at once:
+/// - the exact motions, functions of real numbers (motion.hpp): the surfaces do not intersect at any real t
+///   before t0;
+/// - their evaluation in doubles: for no double t before t0 does collide() find a contact at Motion::at(t).
 /// At t1 collide() finds one.
 ///
-/// Spans of time in which no pair of simplices can meet are passed in one walk of the trees
-/// (pair_motion.hpp). Where there are pairs that may meet, each advances by conservative steps: as long as
-/// the slab that parts the two is proved to do so for a bound on their motion along its normal
-/// (pair_motion.hpp; Mirtich, "Impulse-based Dynamic Simulation", 1996, has conservative advancement; Tang,
-/// Kim and Manocha, "C2A", 2009, bounds along the direction between two parts). Steps towards a contact
-/// shrink as Newton's do. The least of the times that pairs come to is t0; the exact query decides what is
-/// there.
+/// Algorithm:
+/// 1. One traversal of the BVHs finds the pairs of simplices that can collide in a time interval; intervals
+///    without such pairs are skipped.
+/// 2. Each pair advances by conservative steps (conservative advancement: Mirtich, "Impulse-based Dynamic
+///    Simulation", 1996): as long as a separating slab is proven to separate the two, given a bound on their
+///    motion along its normal (Tang, Kim and Manocha, "C2A", 2009; pair_motion.hpp). Steps towards a contact
+///    shrink as in Newton's method.
+/// 3. t0 is the minimum of the times that pairs reach. The exact query decides there.
 ///
-/// Every search ends. Its steps are counted: a span, a pair that is found in it, a pair that moves, an exact
-/// query and each pair of simplices that it compares, a distance and every 8 pairs that it measures, every 16
-/// pairs of nodes of either; 16 for two simplices that are compared in integers. With n simplices in both
-/// bodies, p pieces of their motions (the mean of A's and B's) and r turns in these, there are no more than
+/// Every search terminates. Its steps count: a time interval, a pair found in it, an advancement of a pair,
+/// an exact query and each pair of simplices that it tests, a distance query and every 8 pairs that it
+/// measures, every 16 pairs of nodes of either; 16 for two simplices compared in integers. With n simplices
+/// in both bodies, p pieces of their motions (mean of A's and B's) and r revolutions in these, there are at
+/// most
 ///     (8192 + 512 n) (p + r)
-/// steps, and what one exact query or distance takes. Where they end, the interval is said to be unresolved.
+/// steps, plus the cost of one exact query or distance. If a search reaches this limit, the interval is
+/// reported as unresolved.
 
 #include <array>
 #include <cstdint>
@@ -38,20 +42,20 @@
 namespace lrb {
 
 struct FirstContactRequest {
-  /// The widest interval, in t. More than 0, at most 1. Below about 1e-14 of the bodies' sizes divided by
-  /// their speed rounding keeps the interval wider, and so do the doubles next to t.
+  /// Maximum width of the interval in t, in (0, 1]. Rounding, and the spacing of doubles next to t, keep the
+  /// interval wider below about 1e-14 of the bodies' sizes divided by their speed.
   double tolerance = 1e-9;
-  /// The largest number of steps; 0: no limit but the one above. A step looks for the pairs of a span, moves
-  /// a pair, or asks the exact query.
+  /// Maximum number of steps; 0: only the limit above. A step searches the pairs of a time interval, advances
+  /// a pair, or runs the exact query.
   std::uint64_t max_steps = 10'000'000;
-  bool relation = true;  ///< find out how bodies lie at the start that do not meet there
-  bool history = false;  ///< write FirstContactResult::history
+  bool relation = true;  ///< determine the relation at the start for bodies that are not in contact there
+  bool history = false;  ///< record FirstContactResult::history
 };
 
 enum class MotionOutcome : std::uint8_t {
   contact,
-  never,      ///< proved: they do not meet for any t from 0 to 1
-  undecided,  ///< they come too near each other for doubles to tell, or max_steps were reached
+  never,      ///< proven: no contact at any t in [0, 1]
+  undecided,  ///< the bodies come too close to each other to decide in doubles, or max_steps was reached
 };
 constexpr auto words_of(MotionOutcome) {
   return std::to_array<EnumWord<MotionOutcome>>({{MotionOutcome::contact, "contact"},
@@ -59,67 +63,67 @@ constexpr auto words_of(MotionOutcome) {
                                                  {MotionOutcome::undecided, "undecided"}});
 }
 
-/// Why an interval is wider than asked, or nobody knows whether the bodies meet in it.
+/// The reason why an interval is wider than requested or undecided.
 enum class Unresolved : std::uint8_t {
-  nothing,   ///< it is not
-  rounding,  ///< the bodies are as near each other as rounding
-  steps,     ///< the limit on steps was reached: that of the request, or the one above
+  nothing,   ///< it is resolved
+  rounding,  ///< the distance of the bodies is within rounding
+  steps,     ///< a limit on steps was reached: that of the request, or the built-in one
 };
 constexpr auto words_of(Unresolved) {
   return std::to_array<EnumWord<Unresolved>>(
       {{Unresolved::nothing, "nothing"}, {Unresolved::rounding, "rounding"}, {Unresolved::steps, "steps"}});
 }
 
-/// A span of t.
+/// A time interval, in t.
 struct TimeSpan {
   double begin = 0, end = 0;
   friend bool operator==(const TimeSpan&, const TimeSpan&) = default;
 };
 
-/// The work that it took.
+/// The work done by the search.
 struct FirstContactCounters {
-  std::uint64_t spans = 0;          ///< of time, for which pairs that may meet were looked for
-  std::uint64_t pairs = 0;          ///< that were found there
-  std::uint64_t steps = 0;          ///< in which pairs moved
-  std::uint64_t exact_queries = 0;  ///< that asked whether the bodies meet at one t
+  std::uint64_t spans = 0;          ///< time intervals searched for pairs that can collide
+  std::uint64_t pairs = 0;          ///< pairs found in them
+  std::uint64_t steps = 0;          ///< advancements of pairs
+  std::uint64_t exact_queries = 0;  ///< exact queries at one t
   friend bool operator==(const FirstContactCounters&, const FirstContactCounters&) = default;
 };
 
 struct FirstContactResult {
   MotionOutcome outcome = MotionOutcome::never;
-  /// contact: they do not meet before t0, and meet at t1. undecided: the same, but nobody knows whether they
-  /// meet from t0 to t1; after t1 they do not. never: both 1.
+  /// contact: no contact before t0, and contact at t1. undecided: no contact before t0 and after t1, unknown
+  /// in between. never: both 1.
   double t0 = 1, t1 = 1;
-  bool at_start = false;  ///< they meet at t = 0, and t0 = t1 = 0
-  /// The interval is wider than asked, because before t1 there are spans (`doubtful`) in which bodies are as
-  /// near each other as rounding, and no contact was found: they graze.
+  bool at_start = false;  ///< in contact at t = 0; t0 = t1 = 0
+  /// The interval is wider than requested, because before t1 there are time intervals (`doubtful`) in which
+  /// the distance is within rounding and no contact was found: tangential contact.
   bool grazing = false;
-  /// They have met by t1, which is proved by an argument of continuity, though not at t1: for surfaces that
-  /// pass through each other in less time than there is between two doubles, as parallel sheets do.
+  /// A contact by t1 is proven by continuity, but not at t1: the surfaces pass through each other between two
+  /// adjacent doubles, as parallel sheets do.
   bool passed = false;
   bool finished = true;  ///< false: a limit on steps was reached
   Unresolved unresolved = Unresolved::nothing;
-  /// How the bodies lie at the start; of bodies that meet there, what the first pair found shows, as for
-  /// Mode::any_pair. `undefined` if not asked for, or for bodies that are not closed.
+  /// The relation at the start. For bodies in contact there it is derived from the first pair found, as for
+  /// Mode::any_pair. `undefined` if not requested, or for bodies that are not closed.
   Relation at_begin = Relation::undefined;
-  /// The spans in which nothing is known, ascending.
+  /// The ambiguous time intervals, ascending.
   std::vector<TimeSpan> doubtful;
 
-  /// contact: a pair that meets at t1 (passed: that has met by then); kNull: none.
+  /// contact: a pair that intersects at t1 (passed: that has collided by then). kNull otherwise.
   SimplexPair pair{kNull, kNull};
-  /// The features of the two that are nearest at t0, just before they meet. At the start: where they meet.
+  /// The closest features of the pair at t0, just before contact. At the start: the features in contact.
   std::array<Witness, 2> witness;
-  Eigen::Vector3d normal{
-      0, 0, 0};  ///< there, from A to B, of length 1; 0 at the start, and where rounding hides it
-  double speed =
-      0;  ///< at which the witness points come nearer to each other along the normal, per unit of t
+  /// Contact normal at the witnesses, unit length, from A to B; 0 at the start, and if rounding hides it.
+  Eigen::Vector3d normal{0, 0, 0};
+  /// Approach speed of the witness points along the normal, per unit of t.
+  double speed = 0;
 
-  /// If asked for: spans in the order in which they were looked at, and what is known since.
+  /// If requested: time intervals in the order of the search, with the results for each.
   struct Event {
     TimeSpan span;
-    std::uint64_t pairs =
-        0;                  ///< that may meet in it; if there are too many, as many as were found until then
-    double free_until = 0;  ///< no contact before this
+    /// Pairs that can collide in it; if there are too many, the number found before the search was stopped.
+    std::uint64_t pairs = 0;
+    double free_until = 0;  ///< no contact before this t
   };
   std::vector<Event> history;
   FirstContactCounters counters;
@@ -127,51 +131,49 @@ struct FirstContactResult {
   bool is_contact() const { return outcome == MotionOutcome::contact; }
 };
 
-/// Returns when bodies `a` and `b` first meet; both must be 3D, or both 2D, and world coordinates finite.
-/// Throws InputError for these, and for a request that cannot be answered.
+/// Returns the time of impact of bodies `a` and `b`. Throws InputError unless both are 3D or both 2D and
+/// world coordinates are finite, and for an invalid request.
 FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                  const Motion& motion_b, const FirstContactRequest& request = {});
 
-/// Throws InputError for a request that first_contact() rejects: a tolerance that is not in (0, 1].
+/// Throws InputError for a request that first_contact() rejects: a tolerance outside (0, 1].
 void check_request(const FirstContactRequest& request);
 
-/// Returns the first contacts for some motions of B, in their order; the same for any number of threads (0:
-/// all cores).
+/// Returns the first contacts for several motions of B, in their order. The result does not depend on
+/// `threads` (0: all cores).
 std::vector<FirstContactResult> first_contacts(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                                std::span<const Motion> motions_b,
                                                const FirstContactRequest& request = {}, unsigned threads = 0);
 
-// Watching a search for a first contact, from outside the engine: derive from FirstContactProbe and give it
-// to first_contact(). The answer is the same as without; each time something is told the distance of the
-// bodies is measured once more.
+// Observing a search for a first contact: derive from FirstContactProbe and pass it to first_contact(). The
+// answer is the same with and without a probe. Each report takes one more distance query.
 
-/// What is known of a first contact after some work.
+/// Bounds of a first contact after some work.
 struct ContactBounds {
-  std::uint64_t work = 0;  ///< the sum of FirstContactCounters' spans, steps and exact_queries until then
-  double t0 = 0;           ///< the bodies do not meet before, but in what is doubtful
-  double t1 =
-      std::numeric_limits<double>::infinity();  ///< they have met by then; infinite: no contact is known
-  double lower = 0,
-         upper = 0;  ///< hold the distance of the surfaces at t0, to about a hundredth of it
+  std::uint64_t work = 0;  ///< sum of spans, steps and exact_queries of FirstContactCounters so far
+  double t0 = 0;           ///< no contact before this, except in ambiguous intervals
+  /// In contact by this time; infinite if no contact is known.
+  double t1 = std::numeric_limits<double>::infinity();
+  /// Bounds of the distance of the surfaces at t0, to about 1 %.
+  double lower = 0, upper = 0;
   friend bool operator==(const ContactBounds&, const ContactBounds&) = default;
 };
 
 class FirstContactProbe {
  public:
   virtual ~FirstContactProbe() = default;
-  /// t0 rose, or a contact was found, or an earlier one than before: in the order of the work.
+  /// t0 increased, or a contact or an earlier one was found. Called in the order of the work.
   virtual void bounds(const ContactBounds& known) = 0;
 };
 
-/// Keeps what it is told.
+/// Records all bounds.
 class FirstContactCourse final : public FirstContactProbe {
  public:
   void bounds(const ContactBounds& known) override { course.push_back(known); }
   std::vector<ContactBounds> course;
 };
 
-/// Does what first_contact() in first_contact.hpp does, and tells the probe what is known, after more and
-/// more work.
+/// Returns the same as first_contact() without a probe, and reports the bounds while they converge.
 FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                  const Motion& motion_b, const FirstContactRequest& request,
                                  FirstContactProbe& probe);

@@ -1,10 +1,10 @@
 #pragma once
-/// Index types of the engine: 32-bit indices into flat arrays, a type for each array, so that the compiler
-/// refuses a simplex where a face is meant.
+/// Typed 32-bit indices into the engine's flat arrays. Each array has its own index type, so that the
+/// compiler rejects a simplex index where a face index is expected.
 ///
-/// An id converts to its number implicitly, so that it can index an array. A number converts to an id only
-/// explicitly, `FaceId(i)`, or if it is a constant, `FaceId f = 0`. Ids of different kinds neither convert
-/// nor compare, except that a region is also a cell. An id costs what its number costs.
+/// An id converts implicitly to its number, so that it can index an array. A number converts to an id only
+/// explicitly, `FaceId(i)`, unless it is a constant, `FaceId f = 0`. Ids of different kinds neither convert
+/// nor compare, except that a RegionId converts to a CellId. An id has the size and cost of its number.
 
 #include <concepts>
 #include <cstddef>
@@ -19,21 +19,21 @@ namespace lrb {
 template <class Kind>
 class Id;
 
-using VertexId = Id<struct VertexKind>;  ///< into LrbRep::vertices() / Mesh::vertices
-/// A polygon (3D) or a segment (2D); real faces come first, in file order.
+using VertexId = Id<struct VertexKind>;  ///< index into LrbRep::vertices() or Mesh::vertices
+/// Index of a face: a polygon (3D) or a segment (2D). Real faces come first, in file order.
 using FaceId = Id<struct FaceKind>;
-/// A triangle of a face's fan (3D) or the segment itself (2D); real ones first.
+/// Index of a simplex: a triangle of a face's fan (3D) or the segment itself (2D). Real simplices come first.
 using SimplexId = Id<struct SimplexKind>;
-using RegionId = Id<struct RegionKind>;  ///< a region of an LRB-rep, 0 .. region_count() - 1
-/// A cell of the complex: a region, or one of the two cells that every body has, kSolid and kOutside.
+using RegionId = Id<struct RegionKind>;  ///< index of a region of an LRB-rep, 0 .. region_count() - 1
+/// Index of a cell of the complex: a region, or one of the two cells of every body, kSolid and kOutside.
 using CellId = Id<struct CellKind>;
 
-/// Ids of the first kind convert to ids of the second kind.
+/// True if ids of the first kind convert to ids of the second kind.
 template <class Kind, class Other>
 concept IsAlso = std::same_as<Kind, RegionKind> && std::same_as<Other, CellKind>;
 template <class Kind, class Other>
 concept IsNot = !std::same_as<Kind, Other> && !IsAlso<Kind, Other>;
-/// Ids of these kinds must not be compared.
+/// True if ids of these two kinds must not be compared.
 template <class Kind, class Other>
 concept Unrelated = IsNot<Kind, Other> && IsNot<Other, Kind>;
 
@@ -56,7 +56,7 @@ class Id {
   constexpr std::uint32_t value() const { return value_; }
   constexpr operator std::uint32_t() const { return value_; }
 
-  /// Returns the region that this cell is; is_region() must hold.
+  /// Returns this cell as a region. Precondition: is_region().
   constexpr RegionId as_region() const requires std::same_as<Kind, CellKind> { return RegionId(value_); }
 
   constexpr Id& operator++() {
@@ -74,7 +74,7 @@ bool operator==(Id<A>, Id<B>) = delete;
 template <class A, Unrelated<A> B>
 bool operator<=>(Id<A>, Id<B>) = delete;
 
-/// Stands for "no id", of any kind, and for an index of anything else that does not exist.
+/// The null id of every kind, also used as the null index into other arrays.
 struct NoId {
   static constexpr std::uint32_t kValue = std::numeric_limits<std::uint32_t>::max();
   constexpr operator std::uint32_t() const { return kValue; }
@@ -85,15 +85,15 @@ struct NoId {
 };
 inline constexpr NoId kNull;
 
-inline constexpr CellId kOutside(NoId::kValue - 1);  ///< all of space that no wrapper ever includes
-inline constexpr CellId kSolid(NoId::kValue - 2);    ///< the body itself, always included
+inline constexpr CellId kOutside(NoId::kValue - 1);  ///< the unbounded cell, never part of a wrapper
+inline constexpr CellId kSolid(NoId::kValue - 2);    ///< the body itself, part of every wrapper
 inline constexpr std::uint32_t kMaxId = NoId::kValue - 3;
 
 constexpr bool is_region(CellId cell) {
   return cell <= kMaxId;
 }
 
-/// Which of the two bodies of a query.
+/// One of the two bodies of a query.
 enum class Side : std::uint8_t { a = 0, b = 1 };
 constexpr auto words_of(Side) {
   return std::to_array<EnumWord<Side>>({{Side::a, "A"}, {Side::b, "B"}});
@@ -105,7 +105,7 @@ constexpr Side other(Side s) {
 
 }  // namespace lrb
 
-// Doxygen 1.9 finds no scope for it.
+// Doxygen 1.9 does not resolve the scope of this specialisation.
 /// @cond
 template <class Kind>
 struct std::hash<lrb::Id<Kind>> {

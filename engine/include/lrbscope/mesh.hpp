@@ -1,5 +1,5 @@
 #pragma once
-/// A polygon mesh as read from a file: flat arrays, nothing repaired.
+/// A polygon mesh as read from a file: flat arrays, without any repair.
 
 #include <array>
 #include <cstddef>
@@ -14,16 +14,16 @@
 
 namespace lrb {
 
-/// A body's boundary. In 3D a face is a convex planar polygon whose corners run counter-clockwise seen from
-/// outside; in 2D it is a segment in the plane z = 0 with the solid on the left of its direction.
+/// The boundary of a body. 3D: a face is a convex planar polygon with its corners counter-clockwise seen from
+/// outside. 2D: a face is a segment in the plane z = 0 with the solid on its left.
 struct Mesh {
-  int dim = 3;                                    ///< 3, or 2 for a closed polygon made of segments
+  int dim = 3;                                    ///< 3, or 2 for closed polygons made of segments
   std::vector<Eigen::Vector3d> vertices;          ///< (|V| x 3), unit of the file; z = 0 in 2D
   std::vector<std::uint32_t> face_offsets = {0};  ///< (|F| + 1), into face_vertices
-  std::vector<VertexId> face_vertices;            ///< corners of all faces, one after the other
-  std::vector<VertexId>
-      joined;        ///< ascending: those whose corners join_corners() gave to others; mostly none
-  std::string name;  ///< for messages: the file's name, or the generator's
+  std::vector<VertexId> face_vertices;            ///< corners of all faces, concatenated
+  /// Vertices that join_corners() merged into others, ascending. Empty for most meshes.
+  std::vector<VertexId> joined;
+  std::string name;  ///< for messages: name of the file or of the generator
 
   std::size_t face_count() const { return face_offsets.size() - 1; }
   std::span<const VertexId> face(FaceId f) const {
@@ -33,32 +33,32 @@ struct Mesh {
     face_vertices.insert(face_vertices.end(), corners.begin(), corners.end());
     face_offsets.push_back(static_cast<std::uint32_t>(face_vertices.size()));
   }
-  /// Returns the number of simplices of a face with `corners` corners: the triangles of its fan from the
-  /// first corner; in 2D 1, the segment itself.
+  /// Returns the number of simplices of a face with `corners` corners: in 3D the triangles of the fan from
+  /// its first corner, in 2D 1 (the segment itself).
   static std::size_t simplices_of(std::size_t corners, int dim) { return dim == 2 ? 1 : corners - 2; }
 };
 
-// Reads mesh files, and writes them for other tools.
+// Reading and writing of mesh files.
 
-/// Reads OBJ, STL (ASCII or binary), PLY (ASCII, binary of both endians) or OFF, told apart by content first
-/// and extension second. Also reads 2D bodies: an OBJ whose elements are closed `l` polylines, z = 0 (dim 2).
-/// Merges STL vertices that are equal to the bit. Throws InputError: "file:line: found what, expected what;
-/// what to do".
+/// Reads a mesh from an OBJ, STL (ASCII or binary), PLY (ASCII or binary, either endianness) or OFF file. The
+/// format is detected by content first and by extension second. An OBJ file of closed `l` polylines with z =
+/// 0 is a 2D body (dim 2). STL vertices with bitwise equal coordinates are merged. Throws InputError with
+/// file, line, the expected and the found content, and a remedy.
 Mesh read_mesh(const std::string& path);
 
-/// Does the same from memory; `name` stands for the file in messages, and its extension helps where content
-/// does not tell.
+/// Reads a mesh from memory. `name` replaces the path in messages; its extension is used where the content is
+/// ambiguous.
 Mesh read_mesh(const std::string& bytes, const std::string& name);
 
 using FaceColour = std::array<std::uint8_t, 3>;  ///< red, green, blue
 
-/// Throws InputError unless write_mesh() writes a mesh of this dimension to a file of this name.
+/// Throws InputError if write_mesh() cannot write a mesh of this dimension to a file of this name.
 void check_mesh_name(const std::string& path, int dim);
 
-/// Writes PLY (binary little-endian, uchar/int face lists, optional colours per face) or OBJ, by extension;
-/// OBJ has no place for colours, and 2D bodies are written as OBJ only. The file appears whole or not at all.
-/// Throws InputError (wrong extension, bad path, a number of colours other than that of the faces or none) or
-/// EnvironmentError (disk full and the like).
+/// Writes a mesh as PLY (binary little-endian, uchar/int face lists, optional face colours) or OBJ, chosen by
+/// extension. OBJ has no colours. 2D bodies are written as OBJ only. `face_colours`: empty, or one for each
+/// face. The write is atomic (AtomicFile). Throws InputError for a wrong extension, a bad path or a wrong
+/// number of colours, and EnvironmentError for failures of the machine such as a full disk.
 void write_mesh(const Mesh& mesh, const std::string& path, std::span<const FaceColour> face_colours = {});
 
 }  // namespace lrb

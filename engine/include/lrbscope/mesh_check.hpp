@@ -1,5 +1,5 @@
 #pragma once
-/// Checks a mesh and names its faults: nothing is repaired silently.
+/// Mesh checks that report faults without repairing anything.
 
 #include <array>
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace lrb {
 
-/// Every fault that a mesh can have.
-/// MESH_FAULT(enumerator, what it says, can still be built?, can still be queried?)
+/// All faults that a mesh can have.
+/// MESH_FAULT(enumerator, message, can an LRB-rep be built?, can the mesh be queried?)
 #define LRB_MESH_FAULTS(MESH_FAULT)                                                                  \
   MESH_FAULT(no_faces, "the mesh has no faces", false, false)                                        \
   MESH_FAULT(non_finite_vertex, "a coordinate is not finite", false, false)                          \
@@ -41,142 +41,141 @@ enum class MeshFault : std::uint8_t {
 };
 inline constexpr std::size_t kMeshFaultCount = static_cast<std::size_t>(MeshFault::count_);
 
-/// Returns the enumerator's own name: "open_edge".
+/// Returns the enumerator's identifier: "open_edge".
 std::string_view name_of(MeshFault fault);
 
 struct MeshFinding {
-  static constexpr std::size_t kShown = 8;  ///< enough to find the place, few enough to read
+  static constexpr std::size_t kShown = 8;  ///< number of affected elements printed by default
   std::uint64_t count = 0;
-  /// The first offenders, ascending, as many as MeshReport::kept: a vertex, face or component (by its first
-  /// face) and kNull; two faces or vertices; a face and its vertex; an edge by its vertices (2D: the vertex
-  /// and kNull).
+  /// The first affected elements, ascending, at most MeshReport::kept. Each is one of: a vertex, face or
+  /// component (by its first face) and kNull; two faces or vertices; a face and its vertex; an edge by its
+  /// vertices (2D: a vertex and kNull).
   std::vector<std::array<std::uint32_t, 2>> first;
 };
 
 struct MeshReport {
   std::array<MeshFinding, kMeshFaultCount> findings;
-  std::size_t kept = MeshFinding::kShown;  ///< the most offenders that are kept of each finding
-  std::uint32_t components = 0;            ///< edge-connected pieces of the surface
-  std::uint32_t open_components = 0;       ///< those with an open edge
-  std::uint32_t sheets = 0;                ///< those of them that lie in one plane, and so bound nothing
-  int genus = -1;                          ///< sum over the closed components; -1 if not closed and manifold
-  bool closed = false;                     ///< every edge has exactly two faces, in opposite directions
-  bool bounds_solid =
-      /// Every edge is passed as often one way as the other: weaker than closed (bodies may share edges), and
-      /// enough for "inside" to have a meaning, by parity.
-      false;
+  std::size_t kept = MeshFinding::kShown;  ///< maximum number of affected elements kept for each finding
+  std::uint32_t components = 0;            ///< edge-connected components of the surface
+  std::uint32_t open_components = 0;       ///< components with an open edge
+  std::uint32_t sheets = 0;  ///< open components that lie in one plane and therefore bound no solid
+  int genus = -1;            ///< sum over the closed components; -1 if not closed and manifold
+  bool closed = false;       ///< every edge has exactly two faces, in opposite directions
+  /// Every edge is traversed equally often in both directions. Weaker than closed (bodies may share edges),
+  /// and sufficient for "inside" to be defined by parity.
+  bool bounds_solid = false;
   bool self_intersections_checked = false;
 
   const MeshFinding& operator[](MeshFault f) const { return findings[static_cast<std::size_t>(f)]; }
-  bool buildable() const;  ///< no finding that forbids an LRB-rep: build_lrb() takes the mesh as it is
+  bool buildable() const;  ///< no finding forbids an LRB-rep: build_lrb() accepts the mesh as it is
+  /// Returns true if no finding forbids queries.
   bool queryable() const;
-  /// Returns the report as it is once orient_outward() has turned what is inside out: that finding is gone,
-  /// no other has changed.
+  /// Returns the report for the mesh after orient_outward(): the finding inside_out is removed, all others
+  /// are unchanged.
   MeshReport when_turned() const;
-  /// Returns the report with kShown offenders of each finding at most.
+  /// Returns the report with at most kShown affected elements for each finding.
   MeshReport shortened() const;
-  /// Returns one line for a fault that was found, with its first offenders.
+  /// Returns one line for a fault that was found, with the first affected elements.
   std::string line(MeshFault fault, const Mesh& mesh) const;
-  /// Returns one line for each fault found, with its first offenders.
+  /// Returns one line for each fault found, with the first affected elements.
   std::vector<std::string> lines(const Mesh& mesh) const;
-  /// Returns those lines that forbid an LRB-rep.
+  /// Returns those of these lines that forbid an LRB-rep.
   std::vector<std::string> obstacles(const Mesh& mesh) const;
 };
 
-/// Checks everything (to go on with the mesh, see CheckedMesh); self-intersections exactly and by a box
-/// tree, only if asked (they take the longest). Faces without area count as zero_area_face only, and what
-/// they touch is no self-intersection. In 2D vertices are judged as edges are in 3D: one segment must lead to
-/// each and one away from it.
+/// Runs all checks. (To continue with the mesh, use CheckedMesh.) Self-intersections are found exactly with a
+/// box tree, only if requested, because they take longest. Faces without area are reported as zero_area_face
+/// only; what they touch is not a self-intersection. In 2D, vertices take the role of edges: each must end
+/// one segment and start one.
 MeshReport check_mesh(const Mesh& mesh, bool self_intersections = true);
 
-/// Turns every component that is inside out so that the solid lies behind its faces. A component directly
-/// inside an odd number of others is a void and must face the other way; this is decided by parity.
-/// Components that are not closed stay as they are. Returns the number of components turned. The triangles of
-/// a turned triangle or quad keep their numbers; those of a larger polygon's fan are numbered the other way
-/// round.
+/// Orients every closed component so that the solid is behind its faces. A component nested directly inside
+/// an odd number of others is a void and is oriented the other way (decided by parity). Components that are
+/// not closed are unchanged. Returns the number of components reversed. The triangles of a reversed triangle
+/// or quad keep their numbers; the fan of a larger polygon is renumbered in reverse.
 std::uint32_t orient_outward(Mesh& mesh);
 
-/// Turns the faces of these components round, as orient_outward() does.
+/// Reverses the faces of these components, as orient_outward() does.
 void turn_faces(Mesh& mesh, const std::vector<std::vector<FaceId>>& components);
 
-// Checks a mesh's faces one by one, and finds faces with the same corners. Exact.
+// Checks of single faces, and search for faces with equal corners. Exact.
 
-/// What a face can be used for; each use includes those before it.
+/// The checks and queries that a face is usable for; each value includes those before it.
 enum class FaceUse : std::uint8_t {
-  nothing,   ///< it names a vertex that does not exist
+  nothing,   ///< a vertex index is out of range
   topology,  ///< its corners exist, but one is not finite
-  points,    ///< its corners are finite, but it has no area (2D: no length), or too few different corners
-  area,      ///< it is a proper face, perhaps neither planar nor convex
+  points,    ///< its corners are finite, but it has no area (2D: no length) or too few distinct corners
+  area,      ///< has area; need not be planar or convex
   convex,    ///< planar and convex (always so for triangles and segments)
 };
 
-/// Notes non-finite vertices, bad indices, repeated corners, faces without area, planarity and convexity in
-/// the report. Returns what each face can be used for.
+/// Reports non-finite vertices, indices out of range, repeated corners, faces without area, and non-planar
+/// and non-convex polygons. Returns the use of each face (|F|).
 std::vector<FaceUse> check_faces(const Mesh& mesh, MeshReport& report);
 
-/// Notes faces that have the same set of corners as an earlier one.
+/// Reports faces with the same set of corners as an earlier face.
 void check_duplicates(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report);
 
-/// Notes vertices that no face names, and those with the coordinates of an earlier one.
+/// Reports unused vertices, and vertices with the coordinates of an earlier one.
 void check_vertices(const Mesh& mesh, MeshReport& report);
 
-/// Counts a finding, and keeps the element(s) if it is among the first, of which MeshReport::kept are kept.
+/// Counts a finding. Records the element(s) if they are among the first MeshReport::kept.
 void note(MeshReport& report, MeshFault fault, std::uint32_t first, std::uint32_t second = kNull);
 
-/// Puts what was kept in order. Call it after the last note().
+/// Sorts the recorded elements. Must be called after the last note().
 void sort_offenders(MeshReport& report);
 
-// Finds which faces are neighbours, and what follows for the surface: components, closedness, genus.
+// Adjacency of faces, and the properties derived from it: components, closedness, genus.
 
 struct SurfaceTopology {
   std::uint32_t components = 0;
-  std::vector<std::uint32_t> component_of_face;  ///< (|F|) numbered by first face; kNull: face cannot be used
+  std::vector<std::uint32_t> component_of_face;  ///< (|F|) numbered by first face; kNull: face is not usable
   std::vector<bool> component_closed;            ///< every edge has exactly two faces, in opposite directions
   std::vector<bool> component_open;              ///< some edge has a face on one side only
-  bool closed = false;                           ///< all faces can be used and all components are closed
+  bool closed = false;                           ///< all faces are usable and all components are closed
   int genus = -1;  ///< sum over the components; -1 unless closed and every vertex has one fan. 2D: 0
 };
 
-/// Analyses the surface. In 3D neighbours share an edge; in 2D a vertex, with one segment leading in and one
-/// out. Notes open and non-manifold edges, flipped faces and non-manifold vertices (2D: vertices in the place
-/// of edges). Leaves out faces with fewer than three (2D: two) different corners, whose edges cancel each
-/// other.
+/// Analyses the surface. Adjacent faces share an edge (3D), or a vertex at which one segment ends and the
+/// other starts (2D). Reports open and non-manifold edges, flipped faces and non-manifold vertices (2D:
+/// vertices in the role of edges). Skips faces with fewer than three (2D: two) distinct corners, whose edges
+/// cancel each other.
 SurfaceTopology analyse_topology(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report);
 
-// A mesh together with the findings of its checks, so that no check runs twice.
+// A mesh with the results of its checks, so that no check runs twice.
 
-/// Everything that checking a mesh once finds out.
+/// All results of checking a mesh once.
 struct MeshFindings {
   MeshReport report;
   std::vector<FaceUse> use;  ///< (|F|)
   SurfaceTopology topology;
-  std::vector<std::vector<FaceId>> inside_out;  ///< the faces of each component that faces the wrong way
-  std::vector<bool> sheet;                      ///< (components) MeshReport::sheets counts them
+  std::vector<std::vector<FaceId>> inside_out;  ///< faces of each inward-oriented component
+  std::vector<bool> sheet;  ///< (components) true for those that MeshReport::sheets counts
 };
 
-/// A mesh that has been checked. Only check() makes one, and only turn_outward() changes its mesh, so that a
-/// function that takes one can rely on its report and need not check the mesh again.
+/// A mesh that has been checked. Only check() creates one and only turn_outward() changes its mesh, so
+/// functions that take a CheckedMesh can rely on its report.
 class CheckedMesh {
  public:
   const Mesh& mesh() const { return mesh_; }
   const MeshReport& report() const { return found_.report; }
   const std::vector<FaceUse>& use() const { return found_.use; }
   const SurfaceTopology& topology() const { return found_.topology; }
-  /// Returns true if a face belongs to a component with an open edge that lies in one plane.
+  /// Returns true if the face belongs to an open component that lies in one plane.
   bool is_of_sheet(FaceId f) const {
     const std::uint32_t component = found_.topology.component_of_face[f];
     return component != kNull && found_.sheet[component];
   }
 
-  /// Turns the components that are inside out (see orient_outward()) and returns their number. The report no
-  /// longer names them.
+  /// Reorients inward-oriented components (see orient_outward()), removes that finding from the report, and
+  /// returns their number.
   std::uint32_t turn_outward();
 
-  /// Looks for pairs of faces that meet in more than they share, which takes longer than all other checks,
-  /// and adds them to the report. Does nothing if that has been done.
+  /// Finds pairs of faces that intersect beyond their shared corners and edges, and adds them to the report.
+  /// Takes longer than all other checks together. Has no effect if called before.
   void find_self_intersections();
-  /// Returns the faces in such pairs, ascending: those that find_self_intersections() found. If it was not
-  /// called, finds them now, which is faster because pairs are not counted.
+  /// Returns the faces in such pairs, ascending. If find_self_intersections() was not called, searches for
+  /// the faces without counting pairs, which is faster.
   std::vector<FaceId> self_intersecting_faces(Workers& workers) const;
 
  private:
@@ -185,13 +184,13 @@ class CheckedMesh {
 
   Mesh mesh_;
   MeshFindings found_;
-  std::optional<std::vector<FaceId>> meeting_;  ///< set once they have been looked for
+  std::optional<std::vector<FaceId>> meeting_;  ///< set after the search
 };
 
-/// Checks a mesh for everything but self-intersections. Keeps so many offenders of each finding.
+/// Runs all checks except self-intersections. Records at most `kept` affected elements for each finding.
 CheckedMesh check(Mesh mesh, std::size_t kept = MeshFinding::kShown);
 
-/// Checks the same without taking the mesh over. The findings are valid as long as nobody changes the mesh.
+/// Runs the same checks without taking ownership. The findings are valid until the mesh changes.
 MeshFindings examine(const Mesh& mesh, std::size_t kept = MeshFinding::kShown);
 
 }  // namespace lrb

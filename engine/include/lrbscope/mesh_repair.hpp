@@ -1,5 +1,5 @@
 #pragma once
-/// The rims of a surface that is open: its open edges, put together to loops.
+/// Boundary loops of an open surface, hole filling, and merging of coincident vertices.
 
 #include <cstdint>
 #include <string>
@@ -12,83 +12,88 @@
 
 namespace lrb {
 
-/// A row of open edges, each of which begins where the one before ends.
+/// A chain of open edges; each begins where the previous one ends.
 struct BoundaryLoop {
-  /// In order, as the faces along the rim run; no vertex twice. The last joins the first, if it is a loop.
+  /// In the direction of the adjacent faces' edges; no vertex twice. If is_loop, the last connects to the
+  /// first.
   std::vector<VertexId> vertices;
-  /// It comes back to where it began. If not, it ends at edges with more than two faces, or at faces that
-  /// disagree on which side is outside.
+  /// The chain is closed. Otherwise it ends at edges with more than two faces, or at inconsistently oriented
+  /// faces.
   bool is_loop = false;
-  FaceId face = kNull;      ///< one of the faces along the rim
-  bool planar = false;      ///< all vertices lie in one plane: exact
-  double length = 0;        ///< sum over its edges; the mesh's unit
-  Eigen::AlignedBox3d box;  ///< around its vertices
+  FaceId face = kNull;      ///< one of the faces along the loop
+  bool planar = false;      ///< all vertices are coplanar: exact
+  double length = 0;        ///< sum of its edge lengths; mesh units
+  Eigen::AlignedBox3d box;  ///< AABB of its vertices
   std::size_t edges() const { return is_loop ? vertices.size() : vertices.size() - 1; }
 };
 
-/// Finds the loops of a mesh in space, the longest first. Every open edge is in one of them. A rim that comes
-/// through a vertex twice, as that of two holes which touch there, becomes two loops. None for 2D bodies.
+/// Finds the boundary loops of a 3D mesh, longest first. Every open edge is in exactly one of them. A
+/// boundary that passes through a vertex twice, as at two holes that touch there, is split into two loops.
+/// Returns none for 2D bodies.
 std::vector<BoundaryLoop> find_boundary_loops(const Mesh& mesh, const std::vector<FaceUse>& use);
 
-// Closes holes where that can be done without meeting anything, and proves it.
+// Hole filling, with a proof that the fill intersects nothing.
 
-/// What has become of a hole.
+/// The result for one hole.
 enum class HoleState : std::uint8_t {
-  closed,          ///< by a lid of its own
-  closed_as_ring,  ///< together with the hole that it lies in, by a lid between the two
-  not_a_loop,      ///< its rim is interrupted
-  no_area,         ///< all of its rim lies on one line
-  meets_surface,   ///< each lid that was tried would meet a face that was there
-  meets_lid,       ///< ... or the lid of another hole
-  meets_itself,    ///< ... or itself, or have an edge that faces have already
+  closed,          ///< filled on its own
+  closed_as_ring,  ///< filled together with an enclosing or enclosed hole, by a ring between the two
+  not_a_loop,      ///< its boundary is not a closed loop
+  no_area,         ///< all boundary vertices are collinear
+  meets_surface,   ///< every fill that was tried would intersect an existing face
+  meets_lid,       ///< every fill that was tried would intersect the fill of another hole
+  meets_itself,  ///< every fill that was tried would intersect itself, or duplicate an edge of existing faces
 };
 
 struct Hole {
   BoundaryLoop loop;
   HoleState state = HoleState::not_a_loop;
-  bool of_sheet = false;             ///< the rim of a component that lies in one plane, and so bounds nothing
-  std::uint32_t first_face = kNull;  ///< of its lid, if it is closed
-  std::uint32_t faces = 0;           ///< of its lid
-  std::uint32_t obstacle =
-      kNull;  ///< the face that a lid would meet (meets_surface), or the hole (meets_lid)
+  bool of_sheet = false;  ///< boundary of a component that lies in one plane and therefore bounds no solid
+  std::uint32_t first_face = kNull;  ///< first face of its fill, if closed
+  std::uint32_t faces = 0;           ///< number of faces of its fill
+  /// The existing face that a fill would intersect (meets_surface), or the other hole (meets_lid).
+  std::uint32_t obstacle = kNull;
 };
 
 struct ClosedHoles {
-  Mesh mesh;                ///< what was there, then new vertices and faces
-  std::vector<Hole> holes;  ///< as find_boundary_loops() orders them
+  Mesh mesh;                ///< the given mesh, then new vertices and faces
+  std::vector<Hole> holes;  ///< in the order of find_boundary_loops()
   std::uint32_t new_vertices = 0, new_faces = 0;
 };
 
-/// Puts lids of triangles on the holes of a mesh in space. Vertices and faces that were there stay as they
-/// are and keep their numbers.
+/// Fills the holes of a 3D mesh with triangles. Existing vertices and faces are unchanged and keep their
+/// numbers.
 ///
-/// Lids that are tried, in turn: for a flat hole its polygon, without those of the flat holes in it whose
-/// rims run the other way round (the end of a tube with a thick wall is a ring); for others the triangulation
-/// with the least area, then one made by cutting off corners in the plane of the mean normal, then a fan
-/// about the middle of the rim, which adds a vertex. A lid stands if the exact tests prove that its triangles
-/// meet neither a face that was there nor another lid nor each other in more than corners and edges that they
-/// share, and no new edge joins two vertices that an edge joins already. (Faces without area are not tested;
-/// they are findings of their own.)
+/// Fills are tried in this order:
+/// - Planar hole: its polygon, minus the planar holes in it whose loops have the opposite orientation (the
+///   end of a thick-walled tube is a ring).
+/// - Other holes: the triangulation of least area (Klincsek 1980; Barequet and Sharir 1995), then ear
+///   clipping in the plane of the mean normal, then a fan around the centroid of the loop, which adds a
+///   vertex.
+/// A fill is accepted if exact tests prove that its triangles intersect existing faces, other fills and each
+/// other only in shared corners and edges, and that no new edge connects two vertices that an edge connects
+/// already. (Faces without area are not tested; they are reported separately.)
 ClosedHoles close_holes(const CheckedMesh& mesh);
 
-/// What join_corners() has done.
+/// The effect of join_corners().
 struct JoinedCorners {
-  std::uint32_t before = 0, after = 0;            ///< vertices that faces use
-  std::uint32_t open_before = 0, open_after = 0;  ///< open edges (2D: loose ends)
+  std::uint32_t before = 0, after = 0;            ///< number of vertices used by faces
+  std::uint32_t open_before = 0, open_after = 0;  ///< number of open edges (2D: loose ends)
   bool any() const { return after < before; }
 };
 
-/// Joins vertices in exactly the same place (0 and -0 count as the same) where the surface is open: many
-/// files give each face vertices of its own, so that every edge is open although nothing gapes. Faces keep
-/// their numbers, and vertices theirs; those that no face uses any more are listed in Mesh::joined.
+/// Merges vertices with equal coordinates (0 and -0 are equal) where the surface is open. Many files give
+/// each face its own vertices, so that every edge is open although there is no gap. Faces and vertices keep
+/// their numbers; vertices that no face uses any more are listed in Mesh::joined.
 ///
-/// Only the ends of open edges (2D: loose ends) are joined, and only with those of open edges in the same
-/// place. So a piece that is closed is never touched: two bodies that are kept apart though they touch in a
-/// corner or along an edge stay as they are, and so do surfaces that are open elsewhere and pass through one
-/// place. Edges that fit one to one, in opposite directions, are joined first, again and again: where two
-/// boxes of loose faces touch along an edge, what their other edges tell keeps them two boxes. What is then
-/// still open and lies in one place is joined as well; it becomes closed, or the fault that it is (an edge
-/// with more than two faces, faces that contradict each other).
+/// Only ends of open edges (2D: loose ends) are merged, and only with each other. A closed piece is therefore
+/// never changed: two bodies that touch in a corner or along an edge stay separate, and so do surfaces that
+/// pass through one point and are open elsewhere.
+///
+/// 1. Edges that match one to one, in opposite directions, are merged first, repeatedly. Where two boxes of
+///    loose faces touch along an edge, their other edges thus keep them separate.
+/// 2. Remaining coincident open ends are merged. The result is closed, or a fault that the checks report (an
+///    edge with more than two faces, inconsistently oriented faces).
 JoinedCorners join_corners(Mesh& mesh);
 
 }  // namespace lrb

@@ -1,6 +1,6 @@
 #pragma once
-/// What a query can tell of its work beside face tests and refinements: pairs of tree nodes, tests by planes,
-/// points that are located, and where its phases begin and end.
+/// Observation of queries: face tests, refinements and contacts, and at higher event levels pairs of tree
+/// nodes, plane tests, located points and phases.
 
 #include <cstdint>
 
@@ -11,28 +11,28 @@
 
 namespace lrb {
 
-/// How much of a query is told. Each level tells what the ones before it tell, too.
+/// The amount of detail reported. Each level includes those before it.
 enum class EventLevel : std::uint8_t {
   faces,  ///< face tests, refinements and contacts
-  nodes,  ///< pairs of tree nodes, points that are located, phases, and how face tests were decided
-  all,    ///< pairs of simplices that a plane parts
+  nodes,  ///< pairs of tree nodes, located points, phases, and the method that decided each face test
+  all,    ///< pairs of simplices separated by a plane
 };
 constexpr auto words_of(EventLevel) {
   return std::to_array<EnumWord<EventLevel>>(
       {{EventLevel::faces, "faces"}, {EventLevel::nodes, "nodes"}, {EventLevel::all, "all"}});
 }
 
-/// A part of a query. Its count, which is told at its end, is given beside it.
+/// A part of a query. The quantity reported as its count is given after each colon.
 enum class Phase : std::uint8_t {
-  walk,        ///< descends both trees and tests what is left: pairs of nodes
-  sort,        ///< sorts the pairs that were found: pairs
-  relation,    ///< finds how the bodies lie to each other: points located
-  separation,  ///< looks for wrappers that prove the bodies apart: faces of both; 0: none
-  contacts,    ///< computes the geometry of contact: contact regions
-  kept,        ///< coherent: shows again the regions that earlier queries opened: regions
-  cache,       ///< coherent: walks both trees for pairs that may meet on the way ahead: pairs kept
-  cached,      ///< coherent: tests the pairs of the cache that may meet here: pairs of the cache that need no
-               ///< test
+  walk,        ///< traverses both trees and tests the remaining faces: pairs of nodes
+  sort,        ///< sorts the pairs found: pairs
+  relation,    ///< determines the relation of the bodies: points located
+  separation,  ///< searches for wrappers that prove the bodies separate: faces of both; 0: none
+  contacts,    ///< computes the contact geometry: contact regions
+  kept,        ///< coherent: reports again the regions refined by earlier queries: regions
+  cache,   ///< coherent: traverses both trees for pairs that may intersect in the motion ahead: pairs cached
+  cached,  ///< coherent: tests the cached pairs that may intersect at this pose: cached pairs that need no
+           ///< test
 };
 constexpr auto words_of(Phase) {
   return std::to_array<EnumWord<Phase>>({{Phase::walk, "tree walk"},
@@ -44,18 +44,18 @@ constexpr auto words_of(Phase) {
                                          {Phase::cache, "cache making"},
                                          {Phase::cached, "cached pairs"}});
 }
-/// Returns true if pairs of tree nodes are visited in the phase.
+/// Returns true if the phase visits pairs of tree nodes.
 constexpr bool walks_trees(Phase phase) {
   return phase == Phase::walk || phase == Phase::cache;
 }
 
-/// What the query does with a pair of tree nodes.
+/// The operation on a pair of tree nodes.
 enum class NodeStep : std::uint8_t {
-  descend_both,  ///< compares the boxes of A's children with those of B's
-  descend_a,     ///< compares the boxes of A's children with B's whole box
-  descend_b,     ///< compares the boxes of B's children with A's whole box
-  leaves,        ///< compares the simplices of two leaves: first their boxes, then by their planes
-  whole,         ///< compares the nodes' own boxes, which are apart
+  descend_both,  ///< tests the boxes of A's children against those of B's
+  descend_a,     ///< tests the boxes of A's children against the box of B's node
+  descend_b,     ///< tests the boxes of B's children against the box of A's node
+  leaves,        ///< tests the simplices of two leaves: first their boxes, then their planes
+  whole,         ///< rejects the pair by the OBBs of the two nodes
 };
 constexpr auto words_of(NodeStep) {
   return std::to_array<EnumWord<NodeStep>>({{NodeStep::descend_both, "both"},
@@ -65,24 +65,25 @@ constexpr auto words_of(NodeStep) {
                                             {NodeStep::whole, "whole"}});
 }
 
-/// A pair of tree nodes that the query came to.
+/// A pair of tree nodes visited by the query.
 struct NodeVisit {
-  std::uint32_t a = 0, b = 0;    ///< the nodes
-  std::uint32_t parent = kNull;  ///< what the probe returned for the pair above; kNull: these are the roots
+  std::uint32_t a = 0, b = 0;    ///< node indices in A's tree and in B's
+  std::uint32_t parent = kNull;  ///< the value that the probe returned for the parent pair; kNull for the
+                                 ///< roots
   NodeStep step = NodeStep::descend_both;
-  std::uint8_t box_tests = 0;  ///< box against box
-  std::uint8_t met = 0;        ///< pairs of boxes that meet: pairs of nodes to be visited, or of simplices
-  std::uint8_t parted = 0;     ///< leaves: pairs of simplices whose boxes meet, but that a plane parts
-  std::uint8_t certain = 0;    ///< leaves: those of the rest about which floats are certain
+  std::uint8_t box_tests = 0;  ///< tests of two boxes
+  std::uint8_t met = 0;      ///< pairs of boxes that intersect: pairs of nodes to be visited, or of simplices
+  std::uint8_t parted = 0;   ///< leaves: pairs of simplices with intersecting boxes that a plane separates
+  std::uint8_t certain = 0;  ///< leaves: remaining pairs that are decided in floats
 };
 
-/// What decided a face test.
+/// The method that decided a face test.
 enum class TestedBy : std::uint8_t {
-  untold,          ///< not told at this level of events
+  untold,          ///< not reported at this event level
   floats,          ///< the tree's kernel, in floats with bounded errors
-  shared_corners,  ///< the same, and that corners are equal
-  filter,          ///< exact predicates whose floating-point filters were certain
-  expansions,      ///< exact predicates, at least one of them by exact arithmetic
+  shared_corners,  ///< the same, using that corners are equal
+  filter,          ///< exact predicates, all decided by their floating-point filters
+  expansions,      ///< exact predicates, at least one of them in exact arithmetic
 };
 constexpr auto words_of(TestedBy) {
   return std::to_array<EnumWord<TestedBy>>({{TestedBy::untold, "untold"},
@@ -92,60 +93,60 @@ constexpr auto words_of(TestedBy) {
                                             {TestedBy::expansions, "expansions"}});
 }
 
-/// Where a point lies to a closed body.
+/// The location of a point relative to a closed body.
 enum class Where : std::uint8_t { outside, inside, on_surface };
 constexpr auto words_of(Where) {
   return std::to_array<EnumWord<Where>>(
       {{Where::outside, "outside"}, {Where::inside, "inside"}, {Where::on_surface, "on the surface"}});
 }
 
-// Watching a query from outside the engine: derive from CollideProbe, override what is of interest, and give
-// it to collide(). The answer is the same as without; each event costs a virtual call.
+// Observing a query: derive from CollideProbe, override the callbacks of interest, and pass it to collide().
+// The answer is the same with and without a probe. Each event costs a virtual call.
 
 class CollideProbe {
  public:
   virtual ~CollideProbe() = default;
-  /// A simplex of A was compared exactly with one of B. depth_a, depth_b: number of regions between each and
-  /// the outside.
+  /// A simplex of A was tested exactly against one of B. depth_a, depth_b: number of regions between each of
+  /// them and the outside.
   virtual void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a,
                          std::uint32_t depth_b);
-  /// A region of a body's wrapper was refined, which brought in as many faces. After a face test that hit,
-  /// that test is the cause.
+  /// A region of a body's wrapper was refined, which added `faces_added` faces. If it follows a face test
+  /// that hit, that test is the cause.
   virtual void refine(Side side, RegionId region, std::uint32_t faces_added);
-  /// A region was taken back in: a coarse query has asked the bodies for a first pair and goes on with
+  /// A region was included again: a coarse query has searched the bodies for a first pair and continues with
   /// wrappers.
   virtual void coarsen(Side side, RegionId region, std::uint32_t faces_removed);
-  /// Two simplices meet: part of the answer. They are real, but for coarse queries.
+  /// Two simplices intersect; the pair is part of the answer. They are real, except in coarse queries.
   virtual void contact(SimplexId a, SimplexId b, exact::Meet meet);
 
-  /// Returns how much is to be told, which must not change during a query. What follows is told only from
-  /// EventLevel::nodes on.
+  /// Returns the event level, which must be constant during a query. The callbacks below require at least
+  /// EventLevel::nodes.
   virtual EventLevel level() const;
-  /// The walk came to a pair of nodes. Returns what is to stand for it as NodeVisit::parent of pairs beneath
-  /// it.
+  /// The traversal visited a pair of nodes. Returns the value to be passed as NodeVisit::parent for the pairs
+  /// beneath it.
   virtual std::uint32_t node_pair(const NodeVisit& visit);
-  /// Told at EventLevel::all: the plane of the simplex of `whose` body parts two simplices.
+  /// EventLevel::all only: the plane of the simplex of the body `whose` separates two simplices.
   virtual void plane_test(SimplexId a, SimplexId b, Side whose);
-  /// What decided the face test that was told last.
+  /// The method that decided the face test reported last.
   virtual void tested_by(TestedBy how);
-  /// A vertex of `whose` body was located in the other one.
+  /// A vertex of the body `whose` was located relative to the other body.
   virtual void point(Side whose, VertexId v, Where where);
-  /// A phase begins. walked_a, walked_b: what is walked of each body: 0 for the body, i + 1 for level i.
+  /// A phase begins. walked_a, walked_b: the traversed representation of each body: 0 for the body, i + 1 for
+  /// level i.
   virtual void begin(Phase phase, std::uint32_t walked_a, std::uint32_t walked_b);
-  /// The phase that began last ends; Phase says what `count` counts.
+  /// The current phase ends. `count`: see Phase.
   virtual void end(Phase phase, std::uint64_t count);
 };
 
-/// Does what collide() in collide.hpp does, and tells the probe everything that happens, in order. What the
-/// probe throws ends the query.
+/// Returns the same as collide() without a probe, and reports all events in order. An exception thrown by the
+/// probe ends the query.
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request, CollideProbe& probe);
 
-// The probe: what the query reports to an observer. It is a template parameter: with NullProbe every call
-// vanishes.
+// The static probe interface of the query templates. With NullProbe every call is compiled away.
 
-/// The events of a query and, from pass on, of a construction (ConstructProbe), in one table: enumerator,
-/// name in traces, meaning of the fields a and b.
+/// The events of a query and, from `pass` on, of a build (ConstructProbe): enumerator, name in traces,
+/// meaning of the fields a and b.
 /// LRB_EVENT(enumerator, json_name, meaning of a, meaning of b)
 #define LRB_EVENTS(LRB_EVENT)                                                     \
   LRB_EVENT(step, "step", "time step", "")                                        \
@@ -178,44 +179,45 @@ constexpr auto words_of(EventKind) {
 #undef LRB_EVENT
 }
 
-/// Does nothing and costs nothing. Also the list of what a probe must have.
+/// A probe that does nothing at no cost. Also documents the interface of a probe.
 struct NullProbe {
   static constexpr bool kEnabled = false;
-  /// How much is to be told. What follows contact() is told only from EventLevel::nodes on.
+  /// The event level. The callbacks below contact() require at least EventLevel::nodes.
   EventLevel level() const { return EventLevel::faces; }
-  /// A simplex of A was compared exactly with one of B. depth_a/b: number of regions between each and the
-  /// outside.
+  /// A simplex of A was tested exactly against one of B. depth_a/b: number of regions between each of them
+  /// and the outside.
   void face_test(SimplexId, SimplexId, exact::Meet, std::uint32_t /*depth_a*/, std::uint32_t /*depth_b*/) {}
-  /// A region of a body's wrapper was refined. If a face test that hit came before, that test is the cause.
+  /// A region of a body's wrapper was refined. If it follows a face test that hit, that test is the cause.
   void refine(Side, RegionId, std::uint32_t /*faces_added*/) {}
-  /// A region was taken back in: what refined it was not for the wrapper that is queried next.
+  /// A region was included again: its refinement does not apply to the wrapper that is queried next.
   void coarsen(Side, RegionId, std::uint32_t /*faces_removed*/) {}
-  /// Two real simplices meet; they are part of the answer.
+  /// Two real simplices intersect; the pair is part of the answer.
   void contact(SimplexId, SimplexId, exact::Meet) {}
 
-  /// The walk came to a pair of nodes. Returns what stands for it as NodeVisit::parent of pairs beneath it.
+  /// The traversal visited a pair of nodes. Returns the value of NodeVisit::parent for the pairs beneath it.
   std::uint32_t node_pair(const NodeVisit&) { return kNull; }
-  /// Told at EventLevel::all: a plane parts two simplices, that of the one of `whose`. They are of the leaves
-  /// of the pair of nodes that was told last.
+  /// EventLevel::all only: the plane of the simplex of `whose` separates two simplices, which belong to the
+  /// leaves of the pair of nodes reported last.
   void plane_test(SimplexId, SimplexId, Side /*whose*/) {}
-  /// What decided the face test that was told last.
+  /// The method that decided the face test reported last.
   void tested_by(TestedBy) {}
-  /// A vertex of `whose` body was located in the other one.
+  /// A vertex of the body `whose` was located relative to the other body.
   void point(Side /*whose*/, VertexId, Where) {}
-  /// A phase begins. walked_a/b: what is walked of each body: 0 for the body itself, i + 1 for level i.
+  /// A phase begins. walked_a/b: the traversed representation of each body: 0 for the body, i + 1 for level
+  /// i.
   void begin(Phase, std::uint32_t /*walked_a*/, std::uint32_t /*walked_b*/) {}
-  /// The phase that began last ends.
+  /// The current phase ends.
   void end(Phase, std::uint64_t /*count*/) {}
 };
 
-/// Returns true if a probe is told more than face tests, refinements and contacts.
+/// Returns true if the probe's event level is above EventLevel::faces.
 template <class Probe>
 bool is_told_more(const Probe& probe) {
   if constexpr (Probe::kEnabled) return probe.level() != EventLevel::faces;
   return false;
 }
 
-/// Does a phase of a query and tells the probe where it begins and ends. work() returns the phase's count.
+/// Runs a phase of a query and reports its begin and end to the probe. work() returns the phase's count.
 template <class Probe, class Work>
 void in_phase(Probe& probe, Phase phase, const Work& work) {
   if (!is_told_more(probe)) {
@@ -226,7 +228,7 @@ void in_phase(Probe& probe, Phase phase, const Work& work) {
   probe.end(phase, work());
 }
 
-/// Locates points as a phase. work(see) calls see(side, vertex, where) for each point.
+/// Runs a point location phase. work(see) calls see(side, vertex, where) for each point.
 template <class Probe, class Work>
 void locate_in_phase(Probe& probe, const Work& work) {
   in_phase(probe, Phase::relation, [&] {

@@ -1,6 +1,6 @@
 #pragma once
-/// Work on several threads. Everything that runs here gives the same result on any number of threads: they
-/// decide who does a piece of work, never what the work is.
+/// Parallel loops. Results do not depend on the number of threads: the schedule decides which thread
+/// processes an item, never how it is processed.
 
 #include <cstddef>
 #include <functional>
@@ -8,10 +8,10 @@
 
 namespace lrb {
 
-/// The threads that share work: those of oneTBB's pool, which the whole program has in common.
+/// A set of threads, taken from the process-wide pool of oneTBB.
 class Workers {
  public:
-  /// Uses `threads` threads, the calling one included; 0: as many as the machine runs at once.
+  /// `threads`: number of threads including the caller; 0: number of hardware threads.
   explicit Workers(unsigned threads = 1);
   ~Workers();
   Workers(const Workers&) = delete;
@@ -19,18 +19,18 @@ class Workers {
 
   unsigned count() const { return count_; }
 
-  /// Calls work(i, worker) for i = 0 .. n - 1, in no order to rely on; worker < count(), and no two calls
-  /// with the same one run at once, unless calls are nested. If calls throw, the exception of the lowest i
-  /// comes out here, as on one thread; some of the calls above it may have been left out.
+  /// Calls work(i, worker) for i = 0 .. n - 1 in unspecified order, with worker < count(). Calls with the
+  /// same worker do not overlap unless they are nested. If calls throw, rethrows the exception of the lowest
+  /// i, as a sequential loop would; calls with larger i may have been skipped.
   void for_each(std::size_t n, const std::function<void(std::size_t i, unsigned worker)>& work);
 
-  /// Calls both functions, possibly at the same time. May be nested.
+  /// Calls both functions, possibly concurrently. Can be nested.
   void both(const std::function<void()>& one, const std::function<void()>& other);
 
  private:
   struct Pool;
   unsigned count_;
-  std::unique_ptr<Pool> pool_;  ///< none for a single thread
+  std::unique_ptr<Pool> pool_;  ///< null for a single thread
 };
 
 }  // namespace lrb

@@ -1,6 +1,6 @@
 #pragma once
-/// Repeated queries: memory that they reuse (Workspace), batches on all cores (Batch), and errors that are
-/// returned instead of thrown.
+/// Repeated queries: reuse of memory (Workspace), batches on all cores (Batch), and errors that are returned
+/// instead of thrown.
 
 #include <cstddef>
 #include <memory>
@@ -18,11 +18,11 @@
 
 namespace lrb {
 
-// Many queries at once, on all cores: answers stand in the order of the questions and are the same, to the
-// bit, for any number of threads. (Only a limit in seconds, CollideRequest::max_time, depends on the
-// machine.) A question that is refused has its reason in its place, and the others their answers.
+// Batches: many queries on all cores. The answers are in the order of the queries and bitwise equal for any
+// number of threads. (Only CollideRequest::max_time, a limit in seconds, depends on the machine.) A rejected
+// query has its error in place of its answer and does not affect the others.
 
-/// One question of a batch: two bodies where they stand.
+/// One query of a batch: two bodies with their poses.
 struct PosedPair {
   const LrbRep* a = nullptr;
   Pose pose_a;
@@ -30,17 +30,17 @@ struct PosedPair {
   Pose pose_b;
 };
 
-/// Returns the numbers of the pairs in an order in which those of the same two bodies follow each other: the
-/// memory of queries then keeps more of what it has.
+/// Returns a permutation of the pairs in which those of the same two bodies are adjacent, so that queries can
+/// reuse more of their memory.
 std::vector<std::size_t> order_by_bodies(std::span<const PosedPair> pairs);
 
 using CollideAnswers = std::vector<Expected<CollideResult>>;
 using DistanceAnswers = std::vector<Expected<DistanceResult>>;
 
-/// Asks batch after batch with the same threads and memory.
+/// Runs batches with the same threads and memory.
 class Batch {
  public:
-  /// Uses `threads` threads, the calling one included; 0: as many as the machine runs at once.
+  /// `threads`: number of threads including the caller; 0: number of hardware threads.
   explicit Batch(unsigned threads = 0);
   ~Batch();
   Batch(Batch&&) noexcept;
@@ -48,13 +48,13 @@ class Batch {
 
   unsigned threads() const;
 
-  /// Answer as collide() does, for each pose of B, or for each pair, into `answers`, whose memory is used
-  /// again: contacts, coarse answers and single pairs as the request says.
+  /// Run collide() for each pose of B, or for each pair, with any request. Writes to `answers`, whose memory
+  /// is reused.
   void collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
                const CollideRequest& request, CollideAnswers& answers);
   void collide(std::span<const PosedPair> pairs, const CollideRequest& request, CollideAnswers& answers);
 
-  /// Answer as distance() does.
+  /// Run distance() for each pose of B, or for each pair.
   void distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
                 const DistanceRequest& request, DistanceAnswers& answers);
   void distance(std::span<const PosedPair> pairs, const DistanceRequest& request, DistanceAnswers& answers);
@@ -64,7 +64,7 @@ class Batch {
   std::unique_ptr<Work> work_;
 };
 
-/// Answer one batch. threads: as for Batch.
+/// Run one batch. `threads`: as for Batch.
 CollideAnswers collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
                        const CollideRequest& request = {}, unsigned threads = 0);
 CollideAnswers collide(std::span<const PosedPair> pairs, const CollideRequest& request = {},
@@ -74,9 +74,9 @@ DistanceAnswers distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, s
 DistanceAnswers distance(std::span<const PosedPair> pairs, const DistanceRequest& request = {},
                          unsigned threads = 0);
 
-/// Memory that queries reuse, and the last answer to each question: one for each thread. It serves all four
-/// questions, about any bodies in space and in the plane; it is fastest when the same two bodies follow each
-/// other. A moved-from workspace may only be assigned to or destroyed.
+/// Memory that queries reuse, and the last answer of each kind of query. Use one per thread. It serves all
+/// four kinds of queries for any bodies, 3D and 2D, and is fastest if successive queries are about the same
+/// two bodies. A moved-from workspace may only be assigned to or destroyed.
 class Workspace {
  public:
   Workspace();
@@ -91,49 +91,48 @@ class Workspace {
   std::unique_ptr<Memory> memory_;
 };
 
-// The four questions with a workspace. Each does what the function of the same name and the same arguments
-// does without one, and its answer is the same to the last bit. Poses and motions map body coordinates to the
-// world; lengths in requests and answers are in world units, except where the request says otherwise.
+// The four queries with a workspace. Each returns the same answer, to the last bit, as the function of the
+// same name and arguments without a workspace. Poses and motions map body to world coordinates. Lengths in
+// requests and answers are in world units unless the request states otherwise.
 //
-// The answer lies in the workspace until the next query there that asks the same question, and is the
-// caller's to move from. What the functions without a workspace throw InputError for is returned as a
-// Refusal: bodies of different dimensions, poses and world coordinates that are not finite, requests that
-// contradict themselves. `probe` (null: none) is notified of what happens; what it throws ends the query, an
-// InputError as a Refusal.
+// The answer is stored in the workspace. It is valid until the next query of the same kind there, and the
+// caller may move from it. Where the function without a workspace throws InputError, an error is returned:
+// bodies of different dimensions, poses or world coordinates that are not finite, invalid requests. `probe`
+// (may be null) is notified of events. An exception that it throws ends the query; an InputError is returned
+// as an error.
 
-/// As collide() in <lrbscope/collide.hpp>; with a probe, as in <lrbscope/observe.hpp>. Also refuses more
-/// pairs than CollideRequest::max_pairs.
+/// See collide() in <lrbscope/collide.hpp>; with a probe, in <lrbscope/observe.hpp>. Also returns an error if
+/// there are more pairs than CollideRequest::max_pairs.
 ///
-/// Allocates no memory if the request is a plain one (complete; no contacts, interiors_overlap, separation or
-/// limits), there is no probe, and a query of these bodies with no fewer pairs has been answered before.
+/// Allocates no memory if the request is plain (complete; no contacts, interiors_overlap, separation or
+/// limits), there is no probe, and a query of these bodies with at least as many pairs was answered before.
 Expected<CollideResult&> collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                                  const CollideRequest& request, Workspace& workspace,
                                  CollideProbe* probe = nullptr);
 
-/// Adds to an answer of collide() what its request left out and `request` asks for: `contacts` (with the
-/// regions that they form) and `interiors_overlap`. The result is the same as if collide() had been called
-/// with `request`, apart from its counters. Intended for programs that decide by the answer whether to pay
-/// for more.
+/// Adds the parts that `request` requires to a result of collide() without them: `contacts` (with their
+/// regions) and `interiors_overlap`. The result is the same as if collide() had been called with `request`,
+/// except for its counters. For programs that decide from the pairs whether the rest is worth computing.
 ///
 /// `result`: all pairs of these bodies at these poses, found with Recursion::complete and without tolerance
-/// or limits, and not yet described. Returns it; refuses bodies and poses that collide() refuses.
+/// or limits, and without these parts. Returns it, or an error for bodies and poses that collide() rejects.
 Expected<CollideResult&> describe_contact(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
                                           const Pose& pose_b, const CollideRequest& request,
                                           Workspace& workspace, CollideResult& result);
 
-/// As distance() in <lrbscope/distance.hpp>. Also refuses numbers of the request that are negative or not
-/// finite.
+/// See distance() in <lrbscope/distance.hpp>. Also returns an error for a request with a negative or
+/// non-finite number.
 Expected<DistanceResult&> distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                                    const DistanceRequest& request, Workspace& workspace,
                                    BoundsProbe* probe = nullptr);
 
-/// As clash() in <lrbscope/clash.hpp>. Also refuses bodies in the plane, a clearance that is negative or not
-/// finite, and a direction without length.
+/// See clash() in <lrbscope/clash.hpp>. Also returns an error for 2D bodies, a negative or non-finite
+/// clearance, and a direction of length zero.
 Expected<ClashResult&> clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                              const ClashRequest& request, Workspace& workspace, ClashProbe* probe = nullptr);
 
-/// As first_contact() in <lrbscope/first_contact.hpp>, for motions over t from 0 to 1. Also refuses a
-/// tolerance that is not in (0, 1].
+/// See first_contact() in <lrbscope/first_contact.hpp>, for motions over t in [0, 1]. Also returns an error
+/// for a tolerance outside (0, 1].
 Expected<FirstContactResult&> first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                             const Motion& motion_b, const FirstContactRequest& request,
                                             Workspace& workspace, FirstContactProbe* probe = nullptr);

@@ -1,6 +1,6 @@
 // Format detection by content, with the file's extension as a fallback. The order matters: the size of a
-// binary STL is the most specific evidence, keywords come next, files known to be something else are rejected
-// with their name, and the extension decides only what is left.
+// binary STL is the most specific evidence, then keywords, then known other formats, which are rejected by
+// name. The extension decides the remaining cases.
 #include "engine/mesh/io/formats.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Lookalike {
   std::string_view what;
 };
 
-/// Files that are often mistaken for meshes, by how they begin.
+/// Signatures of files that are often mistaken for meshes.
 constexpr std::array<Lookalike, 20> kLookalikes = {{
     {"<!doctype html"sv, "an HTML page (a failed download?)"},
     {"<html"sv, "an HTML page (a failed download?)"},
@@ -71,7 +71,7 @@ std::string lower(std::string_view text) {
 
 std::optional<std::string_view> looks_like(std::string_view bytes) {
   static constexpr std::size_t kLongest = 32;
-  // Compared both as it is and without leading blanks, because binary signatures may begin with any byte.
+  // Compared with and without leading blanks, because binary signatures may begin with any byte.
   const std::size_t text = bytes.find_first_not_of(" \t\r\n");
   const std::string raw = lower(bytes.substr(0, kLongest)), start = lower(bytes.substr(text, kLongest));
   for (const Lookalike& l : kLookalikes)
@@ -122,7 +122,7 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   // A binary STL of a wrong size may also begin with "solid"; its reader reports the sizes.
   if (lower(first_of_all) == "solid") return is_text(bytes) ? MeshFormat::stl_ascii : MeshFormat::stl_binary;
   if (parse_off_header(first)) return MeshFormat::off;
-  // Formats that are not supported are named in the message.
+  // Unsupported formats are named in the message.
   if (const auto what = looks_like(bytes)) refuse(name, *what);
   if (is_utf16_without_mark(bytes)) refuse(name, "UTF-16 text (save it as UTF-8)");
   // Binary data: only the extension is left as evidence.
@@ -133,8 +133,8 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   if (first.empty()) refuse(name, "nothing but comments", "export or copy the file again");
   // OBJ has no signature, so its first statement identifies it.
   if (std::find(kObjWords.begin(), kObjWords.end(), first) != kObjWords.end()) return MeshFormat::obj;
-  if (extension == "obj") return MeshFormat::obj;  // the OBJ reader names the offending line
-  if (extension == "off" && is_number(first)) return MeshFormat::off;  // the keyword OFF may be left out
+  if (extension == "obj") return MeshFormat::obj;  // the OBJ reader reports the invalid line
+  if (extension == "off" && is_number(first)) return MeshFormat::off;  // the keyword OFF is optional
   refuse(name, "text that begins with " + in_quotes(first));
 }
 

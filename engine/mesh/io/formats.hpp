@@ -1,6 +1,5 @@
 #pragma once
-/// Tells which format a file is in: its content decides, its extension helps only where the content leaves it
-/// open.
+/// Detection of a file's format by content; the extension decides only if the content is ambiguous.
 
 #include <cstdint>
 #include <optional>
@@ -13,18 +12,19 @@ namespace lrb {
 
 enum class MeshFormat : std::uint8_t { obj, stl_ascii, stl_binary, ply, off };
 
-/// Returns the format. Throws InputError, saying what the content looks like, if it is none of the formats.
+/// Returns the format. Throws InputError with a description of the content if it is none of the formats.
 MeshFormat tell_format(std::string_view bytes, std::string_view name);
 
-/// Returns the extension in lower case, without the dot; empty if there is none.
+/// Returns the extension in lower case, without the dot, or an empty string if there is none.
 std::string extension_of(std::string_view path);
 
-/// The keyword that opens an OFF file: [ST][C][N][4][n]OFF.
+/// The keyword at the start of an OFF file: [ST][C][N][4][n]OFF.
 struct OffHeader {
-  bool has_extras = false;         ///< vertices carry texture (ST), colour (C) or normal (N)
-  bool dimensions_differ = false;  ///< 4 or n: not vertices in three dimensions
+  bool has_extras = false;         ///< vertices have texture (ST), colour (C) or normal (N)
+  bool dimensions_differ = false;  ///< 4 or n: vertices are not three-dimensional
 };
 
+/// Returns the header described by a keyword, or nullopt if it is not one.
 inline std::optional<OffHeader> parse_off_header(std::string_view word) {
   OffHeader header;
   const auto eat = [&](std::string_view prefix) {
@@ -37,13 +37,13 @@ inline std::optional<OffHeader> parse_off_header(std::string_view word) {
   return word == "OFF" ? std::optional(header) : std::nullopt;
 }
 
-// The readers, one for each format. They take the whole file and the name that stands for it in messages,
-// and throw InputError "name:line: found ..., expected ...; what to do" (binary: byte and element).
+// The readers, one for each format. They take the content of the file and its name for messages. They throw
+// InputError with name and line (binary files: byte and element), the expected and the found content, and a
+// remedy.
 //
-// Why our own readers and not a library: triangles are numbered in file order throughout (in answers, traces
-// and fingerprints), and a bad file must be refused with the line, what was expected and what to do. Assimp,
-// the well-kept library for these formats, splits and joins faces by material, drops degenerate ones and
-// reports errors without a line.
+// A library is not used, because triangles must be numbered in file order (in answers, traces and
+// fingerprints) and errors must be precise. Assimp, the established library for these formats, splits and
+// joins faces by material, drops degenerate ones and reports errors without a line.
 
 Mesh read_obj(std::string_view bytes, std::string_view name);
 Mesh read_stl_ascii(std::string_view bytes, std::string_view name);
@@ -51,13 +51,13 @@ Mesh read_stl_binary(std::string_view bytes, std::string_view name);
 Mesh read_ply(std::string_view bytes, std::string_view name);
 Mesh read_off(std::string_view bytes, std::string_view name);
 
-/// Returns true if the size is that of a binary STL file (84 bytes and 50 for each triangle that it claims).
+/// Returns true if the size is that of a binary STL file: 84 bytes, plus 50 for each triangle in its header.
 bool has_size_of_binary_stl(std::string_view bytes);
 
 /// Throws InputError unless the counts fit the engine's 32-bit indices.
 void check_index_limits(std::uint64_t vertices, std::uint64_t corners, std::string_view name);
 
-/// Throws InputError if the mesh has no faces, so that nothing of it can be queried.
+/// Throws InputError if the mesh has no faces and therefore cannot be queried.
 void refuse_without_faces(const Mesh& mesh, std::string_view name);
 
 }  // namespace lrb

@@ -49,7 +49,7 @@ void refuse_without_faces(const Mesh& mesh, std::string_view name) {
 
 Mesh read_mesh(const std::string& bytes, const std::string& name) {
   static constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
-  // A UTF-8 byte order mark in front of the text is skipped.
+  // Skip a UTF-8 byte order mark.
   std::string_view content = bytes;
   if (content.starts_with(kUtf8Mark)) content.remove_prefix(kUtf8Mark.size());
   Mesh mesh = read_as(tell_format(content, name), content, name);
@@ -71,17 +71,17 @@ void put(AtomicFile& out, T value) {
   out.write({bytes.data(), bytes.size()});
 }
 
-/// Appends the shortest digits that read back as the same double.
+/// Appends the shortest text that reads back as the same double.
 void put_number(std::string& line, double x) {
   std::array<char, 32> digits;
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr;
   line.append(digits.data(), end);
 }
 
-/// Returns the header, with the face list as MeshLab and Blender expect it, `uchar int`; only faces of more
-/// than 255 corners need a wider count.
+/// Returns the header. The face list has the types that MeshLab and Blender expect, `uchar int`; faces with
+/// more than 255 corners require a wider count.
 std::string ply_header(const Mesh& mesh, bool wide, bool coloured) {
-  // Indices are signed as usual, and unsigned only if there are more than 2^31 - 1 vertices.
+  // Indices are signed as usual, and unsigned only for more than 2^31 - 1 vertices.
   const bool many = mesh.vertices.size() > std::size_t{std::numeric_limits<std::int32_t>::max()};
   std::string text = "ply\nformat binary_little_endian 1.0\n";
   text.append("element vertex ").append(std::to_string(mesh.vertices.size()));
@@ -99,7 +99,7 @@ void write_ply(const Mesh& mesh, std::span<const FaceColour> colours, AtomicFile
   for (FaceId f = 0; f < mesh.face_count(); ++f)
     wide |= mesh.face(f).size() > std::numeric_limits<std::uint8_t>::max();
   out.write(ply_header(mesh, wide, !colours.empty()));
-  // Doubles as they are: reading the file gives the same coordinates.
+  // Doubles are written unchanged: reading the file restores the same coordinates.
   for (const Eigen::Vector3d& v : mesh.vertices)
     for (const double x : v) put(out, x);
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
@@ -122,7 +122,7 @@ void write_obj(const Mesh& mesh, AtomicFile& out) {
     out.write(line += '\n');
   }
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
-    // Segments are line elements (l), polygons faces (f). OBJ counts from 1.
+    // Segments are line elements (l), polygons faces (f). OBJ indices start at 1.
     line.assign(1, mesh.dim == 2 ? 'l' : 'f');
     for (const VertexId v : mesh.face(f)) line.append(" ").append(std::to_string(std::uint64_t{v} + 1));
     out.write(line += '\n');
@@ -146,7 +146,7 @@ void write_mesh(const Mesh& mesh, const std::string& path, std::span<const FaceC
     throw InputError(printable_name(path) + ": found " + std::to_string(face_colours.size()) +
                      " colours, expected " + std::to_string(mesh.face_count()) +
                      ", the number of faces; give one for each or none");
-  // The file appears at commit() as a whole.
+  // The file appears atomically at commit().
   AtomicFile out(path);
   extension_of(path) == "ply" ? write_ply(mesh, face_colours, out) : write_obj(mesh, out);
   out.commit();

@@ -13,13 +13,13 @@
 namespace lrb {
 namespace {
 
-/// Statements that say nothing about the shape: normals, texture, groups, materials, display.
+/// Statements that do not affect the shape: normals, texture, groups, materials, display.
 constexpr std::array<std::string_view, 24> kIgnored = {
     "vn",         "vt",        "vp",     "p",      "o",     "g",        "s",        "mg",
     "usemtl",     "mtllib",    "usemap", "maplib", "bevel", "c_interp", "d_interp", "lod",
     "shadow_obj", "trace_obj", "ctech",  "stech",  "illum", "group",    "object",   "newmtl"};
 
-/// Statements of free-form curves and surfaces, which have no polygons to read.
+/// Statements of free-form curves and surfaces, which have no polygons.
 constexpr std::array<std::string_view, 22> kFreeForm = {
     "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv",
     "sp",     "end", "con",  "res",  "bzp",  "bsp",   "cdc",  "cdp",  "rat",  "call", "csh"};
@@ -29,8 +29,8 @@ bool holds(const std::array<std::string_view, N>& list, std::string_view word) {
   return std::find(list.begin(), list.end(), word) != list.end();
 }
 
-/// A corner that names a vertex which the file has not defined yet when it is read. OBJ allows that for
-/// positive indices; whether the vertex follows is known only at the end.
+/// A vertex index beyond the vertices read so far. OBJ permits that for positive indices; the end of the file
+/// shows whether the vertex follows.
 struct ForwardReference {
   std::int64_t index;
   std::uint64_t line;
@@ -40,8 +40,8 @@ class ObjReader {
  public:
   ObjReader(std::string_view bytes, std::string_view name)
       : text_(bytes, name, {.hash_comments = true, .continuation = true}), name_(name) {
-    // A line of a vertex or a face hardly ever has fewer bytes than this: this makes one allocation, and
-    // never an absurd one.
+    // Vertex and face lines rarely have fewer bytes than this. The reservation avoids reallocation and is
+    // bounded by the file size.
     static constexpr std::size_t kBytesPerLine = 24;
     mesh_.vertices.reserve(bytes.size() / kBytesPerLine / 3);
     mesh_.face_offsets.reserve(bytes.size() / kBytesPerLine / 3 * 2);
@@ -49,12 +49,12 @@ class ObjReader {
   }
 
   Mesh read() {
-    // One statement per line. Continuation lines and comments are handled by the cursor.
+    // One statement per line. The cursor handles continuation lines and comments.
     do {
       const std::string_view word = text_.token();
       if (!word.empty()) statement(word);
     } while (text_.next_line());
-    // Checks that need the whole file: indices, the meaning of line elements, limits.
+    // Checks that need the entire file: indices, the meaning of line elements, limits.
     check_forward_references();
     take_segments();
     refuse_without_faces(mesh_, name_);
@@ -78,8 +78,7 @@ class ObjReader {
                "check that this is an OBJ file and not damaged");
   }
 
-  /// Reads x y z, followed by nothing, a weight, a colour, or both. Polygons have no use for weight and
-  /// colour.
+  /// Reads x y z, optionally followed by a weight, a colour, or both, which are ignored.
   void vertex() {
     static constexpr std::array<std::string_view, 3> kWhat = {"coordinate x", "coordinate y", "coordinate z"};
     Eigen::Vector3d& v = mesh_.vertices.emplace_back();
@@ -91,7 +90,7 @@ class ObjReader {
     if (more == 2 || more > 4)
       text_.fail(std::to_string(3 + more) + " numbers", "x y z, x y z w, x y z r g b or x y z r g b a",
                  "correct the line");
-    // Remembered, because only the end of the file decides whether the body is 2D.
+    // Stored, because only the end of the file decides whether the body is 2D.
     if (v.z() != 0 && line_off_plane_ == 0) line_off_plane_ = text_.line();
   }
 
@@ -118,7 +117,7 @@ class ObjReader {
     for (std::string_view t = text_.token(); !t.empty(); t = text_.token()) corners_.push_back(corner(t));
   }
 
-  /// Reads v, v/vt, v//vn or v/vt/vn. Texture and normal must be integers, but are not checked any further.
+  /// Reads v, v/vt, v//vn or v/vt/vn. Texture and normal must be integers and are otherwise ignored.
   VertexId corner(std::string_view token) {
     // The part before the first slash is the vertex; the rest is validated and ignored.
     const std::size_t slash = token.find('/');
@@ -139,7 +138,7 @@ class ObjReader {
 
   VertexId vertex_id(std::string_view token, std::int64_t index) {
     const auto count = static_cast<std::int64_t>(mesh_.vertices.size());
-    // Positive indices count from 1, negative ones back from the vertex read last; 0 is neither.
+    // Positive indices count from 1, negative ones back from the last vertex; 0 is invalid.
     if (index == 0)
       text_.fail("vertex index 0 in " + in_quotes(token),
                  "an index from 1 (or negative: -1 is the vertex read last)",
@@ -163,8 +162,7 @@ class ObjReader {
                       "correct the line or complete the file");
   }
 
-  /// Takes the polylines as the body if there are no faces; beside faces they are loose edges that bound
-  /// nothing.
+  /// Uses the polylines as the body if there are no faces. Otherwise they are loose edges that bound nothing.
   void take_segments() {
     if (mesh_.face_count() > 0 || segments_.empty()) return;
     if (line_off_plane_ != 0)

@@ -17,7 +17,7 @@ class OffReader {
       : text_(bytes, name, {.hash_comments = true}), name_(name) {}
 
   Mesh read() {
-    // The keyword may be missing; then the first token is already a count.
+    // The keyword is optional; without it the first token is a count.
     std::string_view first = text_.any_token();
     if (const auto header = parse_off_header(first)) {
       take_header(*header, first);
@@ -26,7 +26,7 @@ class OffReader {
     counts(first);
     for (std::uint64_t i = 0; i < vertices_; ++i) vertex();
     for (std::uint64_t i = 0; i < faces_; ++i) face();
-    // Anything left over means that the counts are wrong.
+    // Remaining tokens mean that the counts are wrong.
     const std::string_view extra = text_.any_token();
     if (!extra.empty())
       text_.fail(in_quotes(extra), "the end of the file (all vertices and faces are read)",
@@ -47,7 +47,7 @@ class OffReader {
       text_.fail("a binary OFF file", "a text one", "export it as OFF text, or as PLY");
   }
 
-  /// Reads the numbers of vertices, faces and edges (the last is not needed, and often wrong).
+  /// Reads the numbers of vertices, faces and edges (the last one is unused, and often wrong).
   void counts(std::string_view first) {
     vertices_ = count(first, "the number of vertices");
     faces_ = count(text_.token(), "the number of faces");
@@ -57,7 +57,7 @@ class OffReader {
     // Check before allocating: a vertex takes six bytes ("0 0 0" and a newline), a face eight ("3 0 1 2" and
     // a newline).
     static constexpr std::uint64_t kVertexBytes = 6, kFaceBytes = 8;
-    // One more than the bytes left, because the last line may lack its newline.
+    // One more than the remaining bytes, because the last line may lack its newline.
     const std::uint64_t left = text_.bytes_left() + 1;
     if (vertices_ > left / kVertexBytes || faces_ > (left - vertices_ * kVertexBytes) / kFaceBytes)
       text_.fail(
@@ -85,14 +85,14 @@ class OffReader {
     return token;
   }
 
-  /// Reads x y z, then normal, colour and texture as the header says; plain OFF has nothing more.
+  /// Reads x y z, then normal, colour and texture according to the header; plain OFF has no more.
   void vertex() {
     Eigen::Vector3d v;
     v.x() = text_.number(first_of_line("another vertex"), "coordinate x");
     v.y() = text_.number("coordinate y");
     v.z() = text_.number("coordinate z");
     mesh_.vertices.push_back(v);
-    // Extra values are validated as numbers, and otherwise ignored.
+    // Extra values must be numbers and are otherwise ignored.
     if (header_.has_extras) {
       skip_numbers();
     } else {
@@ -106,7 +106,7 @@ class OffReader {
       text_.fail("a face with " + std::to_string(corners) + " corners", "at least 3", "correct the line");
     for (std::int64_t i = 0; i < corners; ++i) {
       const std::int64_t v = text_.integer("a face's vertex index");
-      // All vertices are known before the faces, so indices are checked at once.
+      // All vertices precede the faces, so indices are checked at once.
       if (v < 0 || v >= static_cast<std::int64_t>(vertices_))
         text_.fail("vertex index " + std::to_string(v),
                    "0 to " + std::to_string(static_cast<std::int64_t>(vertices_) - 1) + " (" +

@@ -17,7 +17,7 @@
 namespace lrb {
 namespace {
 
-// The header of a PLY file, which says what its data consists of.
+// The header of a PLY file, which describes its data.
 
 enum class PlyFormat : std::uint8_t { ascii, binary_little_endian, binary_big_endian };
 enum class PlyType : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
@@ -50,8 +50,7 @@ struct PlyHeader {
   std::uint64_t data_line = 0;  ///< line on which the data begins
 };
 
-// The data of a PLY file as a stream of values, from text or from bytes: two classes with the same
-// functions.
+// The data of a PLY file as a stream of values, from text or from bytes: two classes with the same interface.
 
 /// Data as text: one element per line.
 class PlyText {
@@ -59,8 +58,8 @@ class PlyText {
   PlyText(std::string_view data, std::string_view name, std::uint64_t first_line)
       : text_(data, name, {}, first_line) {}
 
-  /// Returns true if there can be as many elements as the header says. (Every value takes a character and a
-  /// separator; the last one needs no separator.)
+  /// Returns true if the data can contain the number of elements in the header. (Every value takes a
+  /// character and a separator, which the last one may lack.)
   bool has_room(const PlyElement& e) const {
     return e.count <= (text_.bytes_left() + 1) / (2 * e.properties.size());
   }
@@ -78,7 +77,7 @@ class PlyText {
   void skip(PlyType, std::uint64_t count, std::string_view what) {
     for (; count > 0; --count) next(what);
   }
-  /// Checks that nothing follows the last element.
+  /// Checks that there is no data after the last element.
   void end_of_data() {
     const std::string_view extra = text_.any_token();
     if (!extra.empty())
@@ -101,7 +100,7 @@ class PlyText {
   }
 
   TextCursor text_;
-  std::string_view waiting_;  ///< a line's first token, which was read to find the line
+  std::string_view waiting_;  ///< first token of a line, read to find the line
 };
 
 class PlyBytes {
@@ -192,7 +191,7 @@ class PlyBytes {
   std::uint64_t index_ = 0;
 };
 
-/// The types, under both generations of names.
+/// The types, with old and new names.
 constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{
     {"char", PlyType::i8},
     {"uchar", PlyType::u8},
@@ -218,9 +217,9 @@ class PlyHeaderReader {
   PlyHeaderReader(std::string_view bytes, std::string_view name) : bytes_(bytes), text_(bytes, name, {}) {}
 
   PlyHeader read() {
-    text_.any_token();  // "ply", from which the format was recognised
+    text_.any_token();  // "ply", by which the format was recognised
     end_of_line();
-    // Statements until end_header. The end of the file gives an empty word, which statement() rejects.
+    // Statements until end_header. At the end of the file the word is empty, which statement() rejects.
     for (;;) {
       const std::string_view word = text_.any_token();
       if (word == "end_header") break;
@@ -273,7 +272,7 @@ class PlyHeaderReader {
     const std::string_view word = text_.token();
     if (word.empty()) text_.fail(text_.shown(word), "the element's name", "correct the header");
     e.name = word;
-    // The line is kept for messages about missing properties.
+    // The line is stored for messages about missing properties.
     e.line = text_.line();
     const std::int64_t count = text_.integer("the number of elements");
     if (count < 0) text_.fail(std::to_string(count) + " elements", "0 or more", "correct the header");
@@ -322,11 +321,11 @@ class PlyHeaderReader {
     if (!word.empty()) text_.fail(in_quotes(word), "the end of the line", "correct the header");
   }
 
-  /// Finds where the data begins. Binary data begins right behind the end of the line, and may look like
-  /// another line end: if the header ends its lines with CR alone, an LF there is data.
+  /// Finds the start of the data. Binary data starts directly after the line end, and may look like another
+  /// line end: if the header's lines end with CR alone, an LF there is data.
   void finish() {
     end_of_line();
-    // The cursor is at the line end behind end_header. Skip exactly that line end.
+    // The cursor is at the line end after end_header. Skip exactly that line end.
     std::size_t at = bytes_.size() - text_.bytes_left();
     const std::size_t first_cr = bytes_.find('\r');
     const bool cr_alone = first_cr != std::string_view::npos && bytes_.substr(first_cr, 2) != "\r\n";
@@ -384,7 +383,7 @@ PlyLayout find_layout(const PlyHeader& header, std::string_view name) {
   if (layout.face == nullptr)
     text.fail_at(last, "no element face in the header", "one with a list vertex_indices",
                  "export faces: point clouds and triangle strips are not read");
-  // Two names for the list of corners are in use.
+  // There are two common names for the list of corners.
   layout.corners = find_property(*layout.face, "vertex_indices");
   if (layout.corners < 0) layout.corners = find_property(*layout.face, "vertex_index");
   if (layout.corners < 0 || !layout.face->properties[layout.corners].count_type ||
@@ -401,7 +400,7 @@ class PlyReader {
       : header_(header), layout_(find_layout(header, name)), source_(source), name_(name) {}
 
   Mesh read() {
-    // Elements in the order of the header. Those that are not needed are read past, since their size may
+    // Elements in the order of the header. Unneeded ones are parsed and discarded, because their size may
     // vary.
     for (const PlyElement& e : header_.elements) elements(e);
     source_.end_of_data();
@@ -412,7 +411,7 @@ class PlyReader {
 
  private:
   void elements(const PlyElement& e) {
-    if (e.properties.empty()) return;  // such elements take no bytes, however many there are
+    if (e.properties.empty()) return;  // such elements take no bytes, regardless of their number
     // Checked before memory is reserved: a damaged count must not exhaust it.
     if (!source_.has_room(e))
       source_.fail("fewer bytes than " + std::to_string(e.count) + " times " + in_quotes(e.name) + " need",
@@ -457,7 +456,7 @@ class PlyReader {
     const std::int64_t count = source_.integer(*p.count_type, "the number of corners");
     if (count < 3)
       source_.fail("a face with " + std::to_string(count) + " corners", "at least 3", "correct the file");
-    // Against the header's count, because faces may come before vertices.
+    // Against the header's count, because faces may precede vertices.
     const auto vertices = static_cast<std::int64_t>(layout_.vertex->count);
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t v = source_.integer(p.type, p.name);

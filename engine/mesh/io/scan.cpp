@@ -19,15 +19,14 @@ constexpr bool is_newline(char c) {
   return c == '\n' || c == '\r';
 }
 
-/// Removes a plus sign, which files use and std::from_chars does not accept.
+/// Removes a plus sign, which is used in files but rejected by std::from_chars.
 std::string_view without_plus(std::string_view token) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-' && token[1] != '+') token.remove_prefix(1);
   return token;
 }
 
-/// Returns the double for digits that std::from_chars calls "out of range", as it does at both ends of the
-/// range. Numbers too small for a double round to zero or to a subnormal as any other number rounds; numbers
-/// too large have no double.
+/// Returns the double for digits that std::from_chars reports as out of range, at either end. Numbers too
+/// small are rounded as usual to zero or a subnormal. Numbers too large give infinity.
 double round_out_of_range(std::string_view digits) {
   const std::string copy(digits);
   char* stop = nullptr;
@@ -45,7 +44,7 @@ bool TextCursor::skip_continuation() {
 }
 
 void TextCursor::skip_newline() {
-  // CR LF counts as one line end, LF or CR alone as well.
+  // CR LF, LF and CR each count as one line end.
   const bool pair = *at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n';
   at_ += pair ? 2 : 1;
   ++line_;
@@ -65,7 +64,7 @@ std::string_view TextCursor::token() {
     at_ = std::find_if(at_, end_, is_newline);
     return {};
   }
-  // The token ends at a blank, at the line end, or at a continuation directly behind it.
+  // The token ends at a blank, at the line end, or at a continuation directly after it.
   for (; !at_line_end() && !is_blank(*at_); ++at_)
     if (*at_ == '\\' && rules_.continuation && at_ + 1 != end_ && is_newline(at_[1])) break;
   return {start, static_cast<std::size_t>(at_ - start)};
@@ -94,7 +93,7 @@ double TextCursor::number(std::string_view token, std::string_view what) const {
   // from_chars does not depend on the locale and rounds to nearest.
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range) value = round_out_of_range(digits);
-  // The whole token must be the number.
+  // The number must span the entire token.
   if (error == std::errc::invalid_argument || stop != digits.data() + digits.size())
     fail(shown(token), "a number (" + std::string(what) + ")", "correct the line");
   if (!std::isfinite(value))
@@ -129,7 +128,7 @@ std::string TextCursor::shown(std::string_view token) const {
 void refuse_nul(std::string_view text, std::string_view name) {
   const std::size_t nul = text.find('\0');
   if (nul == std::string_view::npos) return;
-  // The line of the NUL byte, counting LF alone.
+  // The line of the NUL byte, counting only LF.
   const TextCursor start(text, name, {});
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
   start.fail_at(static_cast<std::uint64_t>(line), "a NUL byte (byte " + std::to_string(nul) + " of the file)",

@@ -1,5 +1,5 @@
 #pragma once
-/// Reads numbers from a binary file's bytes.
+/// Tokenizer for text formats, and numbers in binary formats.
 
 #include <algorithm>
 #include <array>
@@ -21,13 +21,13 @@ T load(const char* from, std::endian order) {
   return std::bit_cast<T>(bytes);
 }
 
-// Reads a mesh's text token by token, line by line, with messages that name the line.
+// Reads text token by token and line by line, with messages that name the line.
 
-/// What a format allows between tokens.
+/// Syntax between tokens.
 struct TextRules {
-  bool hash_comments = false;  ///< `#` at the start of a token hides the rest of its line
-  bool continuation =
-      false;  ///< a backslash at the end of a line (not of a comment) joins it with the next one
+  bool hash_comments = false;  ///< `#` at the start of a token comments out the rest of its line
+  /// A backslash at the end of a line (not of a comment) joins it with the next one.
+  bool continuation = false;
 };
 
 /// A position in a text. Lines end with LF, CR LF or CR.
@@ -39,14 +39,15 @@ class TextCursor {
   std::uint64_t line() const { return line_; }
   std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - at_); }
 
-  /// Returns the next token of this line; empty at its end.
+  /// Returns the next token of this line, or an empty one at its end.
   std::string_view token();
-  /// Goes to the next line. Returns false if the text ends first.
+  /// Advances to the next line. Returns false if the text ends first.
   bool next_line();
-  /// Returns the next token on this line or a later one; empty at the end of the text.
+  /// Returns the next token on this line or a later one, or an empty one at the end of the text.
   std::string_view any_token();
 
-  /// Returns a token of this line as a finite double, rounded to nearest. `what`: "coordinate x" or the like.
+  /// Return a token of this line as a finite double, rounded to nearest, or as an integer. Throw InputError
+  /// if it is not one. `what`: "coordinate x" or similar.
   double number(std::string_view what) { return number(token(), what); }
   double number(std::string_view token, std::string_view what) const;
   std::int64_t integer(std::string_view what) { return integer(token(), what); }
@@ -58,7 +59,7 @@ class TextCursor {
   }
   [[noreturn]] void fail_at(std::uint64_t line, std::string_view found, std::string_view expected,
                             std::string_view advice) const;
-  /// Returns how a message names a token; an empty one is the end of the line or of the file.
+  /// Returns the description of a token for messages; an empty one is the end of the line or of the file.
   std::string shown(std::string_view token) const;
 
  private:
@@ -73,7 +74,7 @@ class TextCursor {
   TextRules rules_;
 };
 
-/// Throws InputError if the text holds a NUL byte: it is binary, or damaged.
+/// Throws InputError if the text contains a NUL byte: it is binary, or damaged.
 void refuse_nul(std::string_view text, std::string_view name);
 
 }  // namespace lrb

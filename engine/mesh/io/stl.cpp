@@ -13,8 +13,8 @@
 namespace lrb {
 namespace {
 
-constexpr std::size_t kHeader = 80;            ///< bytes of a binary file's header, which say nothing
-constexpr std::size_t kStart = kHeader + 4;    ///< the first triangle, after the number of triangles
+constexpr std::size_t kHeader = 80;          ///< bytes of a binary file's header, without meaning
+constexpr std::size_t kStart = kHeader + 4;  ///< offset of the first triangle, after the number of triangles
 constexpr std::size_t kTriangle = 12 * 4 + 2;  ///< normal, three corners, two bytes of attributes
 
 std::uint64_t claimed_triangles(std::string_view bytes) {
@@ -35,10 +35,10 @@ class StlText {
 
   Mesh read() {
     std::string_view word = text_.any_token();
-    // A file may contain several solids; they become one mesh.
+    // A file may contain several solids; they are combined in one mesh.
     do {
       if (!same_word(word, "solid")) unexpected(word, "solid");
-      text_.next_line();  // what follows is the solid's name, any words
+      text_.next_line();  // the rest of the line is the solid's name
       solid();
       word = text_.any_token();
     } while (!word.empty());
@@ -59,8 +59,8 @@ class StlText {
 
   void facet() {
     expect("normal");
-    // Ignore the normal, because exporters write anything for a thin triangle; the order of the corners says
-    // which side is out.
+    // Ignore the normal, because exporters write arbitrary ones for thin triangles. The order of the corners
+    // defines the orientation.
     for (int i = 0; i < 3; ++i)
       if (text_.any_token().empty()) unexpected({}, "the normal's three numbers");
     expect("outer");
@@ -78,7 +78,7 @@ class StlText {
   VertexId vertex() {
     static constexpr std::array<std::string_view, 3> kWhat = {"coordinate x", "coordinate y", "coordinate z"};
     Eigen::Vector3d v;
-    // STL repeats coordinates per triangle; equal points become one vertex.
+    // STL repeats coordinates per triangle; equal points are merged to one vertex.
     for (int i = 0; i < 3; ++i) v[i] = text_.number(text_.any_token(), kWhat[i]);
     return merger_.id(v);
   }
@@ -138,7 +138,7 @@ Mesh read_stl_binary(std::string_view bytes, std::string_view name) {
   VertexMerger merger(mesh.vertices);
   for (std::size_t t = 0; t < count; ++t) {
     std::size_t byte =
-        // Past the normal, because the order of the corners says which side is out.
+        // Skip the normal, because the order of the corners defines the orientation.
         kStart + t * kTriangle + 12;
     std::array<VertexId, 3> corners;
     for (VertexId& c : corners) {

@@ -6,17 +6,18 @@
 
 namespace lrb {
 
-/// Union-find with path halving: sets that can be joined but not split. The smaller number always leads, so
-/// that results do not depend on the order of the joins.
+/// Union-find with path halving. The smallest number leads each set, so that results do not depend on the
+/// order of unions.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
+  /// Returns the smallest number in the set of i.
   std::uint32_t leader(std::uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  /// Joins the sets of i and j. Returns true if they were two different sets until now.
+  /// Unites the sets of i and j. Returns true if they were different.
   bool join(std::uint32_t i, std::uint32_t j) {
     i = leader(i);
     j = leader(j);

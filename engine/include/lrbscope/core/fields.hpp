@@ -1,7 +1,7 @@
 #pragma once
-/// Tables of the fields of a record, one line for each field: from one table come how records are compared,
-/// written and read. A record's own header, or one beside it, specialises kFields and asks by
-/// `static_assert(covers_all_fields<Record>)` that no member is missing in it.
+/// Reflection of records: one table of fields defines how a record is compared, written and read. The header
+/// of a record, or one beside it, specialises kFields and verifies with
+/// `static_assert(covers_all_fields<Record>)` that no member is missing.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace lrb {
 
-/// In which files a field stands.
+/// The condition under which a field is written to files.
 enum class Kept : std::uint8_t {
   always,
-  if_set,     ///< only if it is not the default
-  if_coarse,  ///< only if the query was coarse
+  if_set,     ///< only if it differs from the default
+  if_coarse,  ///< only for coarse queries
 };
 
-/// How a number is written.
+/// The notation of a number.
 enum class Form : std::uint8_t {
   plain,
   id,           ///< at most kMaxId
@@ -27,10 +27,10 @@ enum class Form : std::uint8_t {
   or_infinite,  ///< infinity is written as null
 };
 
-/// One line of a record's table. Files hold the fields in the order of the table.
+/// One line of a record's table. Files contain the fields in the order of the table.
 template <class Record, class Value>
 struct Field {
-  std::string_view name;  ///< a literal, so that data() ends with a NUL
+  std::string_view name;  ///< a literal, so that data() is NUL-terminated
   Value Record::*member;
   Kept kept;
   Form form;
@@ -56,7 +56,7 @@ inline constexpr std::size_t kFieldCount = std::tuple_size_v<std::remove_cv_t<de
 
 namespace detail {
 
-/// Converts to any type: the initialiser that member_count() fills a record with.
+/// Converts to any type: the initialiser with which member_count() counts members.
 struct AnyValue {
   template <class T>
   operator T() const;
@@ -77,7 +77,7 @@ constexpr std::size_t member_count() {
 
 }  // namespace detail
 
-/// Returns true if a file has this field of the record. coarse: the query was coarse.
+/// Returns true if a file contains this field of the record. coarse: the query was coarse.
 template <class Record, class Value>
 bool is_kept(const Field<Record, Value>& field, const Record& record, bool coarse = false) {
   switch (field.kept) {
@@ -91,7 +91,7 @@ bool is_kept(const Field<Record, Value>& field, const Record& record, bool coars
   return true;
 }
 
-/// True if the table of a record has a line for each of its members.
+/// True if the table of a record has as many lines as the record has members.
 template <class Record>
 inline constexpr bool covers_all_fields = kFieldCount<Record> == detail::member_count<Record>();
 

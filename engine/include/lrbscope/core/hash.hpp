@@ -7,8 +7,8 @@
 
 namespace lrb {
 
-/// FNV-1a, 64 bits (Fowler, Noll, Vo): fingerprints of results and checksums of files. Hashes bytes as they
-/// lie in memory; lrbscope's formats and fingerprints are little-endian, as are all machines that it runs on.
+/// FNV-1a, 64 bits (Fowler, Noll, Vo), for fingerprints of results and checksums of files. Hashes the bytes
+/// in memory. lrbscope's formats and fingerprints are little-endian, like all supported machines.
 class Fnv64 {
  public:
   void add_bytes(const void* data, std::size_t size) {
@@ -31,8 +31,9 @@ class Fnv64 {
   std::uint64_t h_ = 0xcbf29ce484222325u;
 };
 
-/// Returns a similar checksum that runs at the speed of memory: eight FNV-1a sums of 64-bit words side by
-/// side, and then one over these sums and the remaining bytes. Any change confined to eight bytes changes it.
+/// Returns a checksum computed at memory bandwidth: eight interleaved FNV-1a sums of 64-bit words, then
+/// FNV-1a over these sums and the remaining bytes. A change within one of these words always changes
+/// the sum that contains it.
 inline std::uint64_t fnv64_of_words(const void* data, std::size_t size) {
   constexpr std::size_t kLanes = 8, kWord = sizeof(std::uint64_t);
   const auto* bytes = static_cast<const unsigned char*>(data);

@@ -8,8 +8,8 @@
 
 namespace lrb {
 
-/// SplitMix64 (Steele, Lea and Flood 2014). Gives the same numbers for the same seed on every machine and
-/// with every standard library, unlike the standard library's distributions.
+/// SplitMix64 (Steele, Lea and Flood 2014). A seed gives the same numbers on every machine and with every
+/// standard library, unlike the distributions of the standard library.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -30,7 +30,7 @@ class Random {
   std::uint32_t below(std::uint32_t bound) {
     return static_cast<std::uint32_t>(((bits() >> 32) * bound) >> 32);
   }
-  /// Puts the elements in random order.
+  /// Permutes the elements randomly.
   template <class Vector>
   void shuffle(Vector& elements) {
     for (auto i = static_cast<std::uint32_t>(elements.size()); i > 1; --i)
@@ -45,13 +45,13 @@ class Random {
 
 namespace lrb::steady {
 
-// Functions that give the same double on every x86-64 processor.
+// Mathematical functions with the same result on every x86-64 processor.
 //
-// glibc's sin, cos, exp and others for double pick their code by processor, with or without fused
-// multiply-add, and the results differ in the last bit here and there: enough to make a different body, and
-// so a different run. The functions for long double have the same code everywhere. Rounded to double, their
-// results are the correctly rounded ones, but for about one in two thousand. Checked by running the goldens
-// with GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2.
+// glibc selects the code of sin, cos, exp and others for double by processor, with or without fused
+// multiply-add. The results occasionally differ in the last bit, which is enough to change a body and thus a
+// run. The functions for long double have the same code everywhere. Rounded to double, their results are
+// correctly rounded, except for about one in two thousand. Verified by running the goldens with
+// GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2.
 
 inline double sin(double x) {
   return static_cast<double>(std::sin(static_cast<long double>(x)));
@@ -87,9 +87,9 @@ inline Eigen::Matrix3d rotation(const Eigen::Vector3d& axis, double angle) {
   return Turn(angle, axis.cast<long double>()).toRotationMatrix().cast<double>();
 }
 
-/// Returns the smallest turn that brings the direction of one vector to that of another; neither may be 0.
-/// The same as Eigen's FromTwoVectors() unless they are opposite, without the singular values for which the
-/// compiler takes seconds.
+/// Returns the smallest rotation that maps the direction of one vector to that of another; neither may be 0.
+/// Equal to Eigen's FromTwoVectors() unless they are opposite, without the singular value decomposition that
+/// takes seconds to compile.
 inline Eigen::Quaterniond turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d a = from.normalized(), b = to.normalized();
   const double c = b.dot(a);

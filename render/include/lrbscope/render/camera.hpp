@@ -1,5 +1,5 @@
 #pragma once
-/// Places the viewer. All numbers are doubles; the picture's plane has x to the right and y up.
+/// Cameras and projections. All numbers are doubles; the image plane has x to the right and y up.
 
 #include <optional>
 #include <span>
@@ -12,29 +12,29 @@ namespace lrb::render {
 
 struct Camera {
   Eigen::Vector3d eye{0, 0, 1};     ///< world frame
-  Eigen::Vector3d target{0, 0, 0};  ///< the middle of the picture
-  Eigen::Vector3d up{0, 1, 0};      ///< any direction but that of the view
+  Eigen::Vector3d target{0, 0, 0};  ///< centre of the picture
+  Eigen::Vector3d up{0, 1, 0};      ///< not parallel to the view direction
   bool orthographic = false;
-  double fov_y = 0.6;      ///< perspective: full angle from bottom to top, radians
-  double half_height = 1;  ///< orthographic: from the middle to the top edge, world units
+  double fov_y = 0.6;      ///< perspective: full vertical angle, radians
+  double half_height = 1;  ///< orthographic: from the centre to the top edge, world units
 };
 
 /// Returns the box around points; empty if there are none.
 Eigen::AlignedBox3d bounds(std::span<const Eigen::Vector3d> points);
 
-/// A direction to look from, and which way is up.
+/// A view direction and an up vector.
 struct ViewDirection {
   Eigen::Vector3d from{0.62, -0.68, 0.42};  ///< from the target to the viewer, world frame; need not be unit
   Eigen::Vector3d up{0, 0, 1};
 };
 
-/// Returns the direction of given angles in radians: azimuth from +x towards +y, elevation from the plane z =
-/// 0 towards +z.
+/// Returns the direction of the given angles in radians: azimuth from +x towards +y, elevation from the plane
+/// z = 0 towards +z.
 ViewDirection view_from_angles(double azimuth, double elevation);
 
 /// Returns a direction that looks across an axis from slightly above. If the axis leads from one body to the
-/// other, or along a contact's normal, both bodies stand side by side and what is between them can be seen.
-/// For an axis along `up` the viewer stands at +x.
+/// other, or along a contact normal, the bodies are side by side and the gap between them is visible. For an
+/// axis along `up` the viewer is at +x.
 ViewDirection view_beside(const Eigen::Vector3d& axis, const Eigen::Vector3d& up = {0, 0, 1},
                           double elevation = 0.45);
 
@@ -42,11 +42,11 @@ struct FitOptions {
   ViewDirection view;
   bool orthographic = false;
   double fov_y = 0.6;    ///< radians
-  double margin = 0.06;  ///< share of the picture's smaller side that stays free on every side
+  double margin = 0.06;  ///< free margin on every side, as a share of the picture's smaller side
 };
 
 /// Returns the camera of the given direction that shows all points as large as possible in a picture of the
-/// given size. Throws InputError if there are no points, or if one is not finite.
+/// given size. Throws InputError if there are no points or one is not finite.
 Camera fit_camera(std::span<const Eigen::Vector3d> points, double width, double height,
                   const FitOptions& options = {});
 Camera fit_camera(const Eigen::AlignedBox3d& box, double width, double height,
@@ -56,20 +56,19 @@ Camera fit_camera(const Eigen::AlignedBox3d& box, double width, double height,
 /// bodies.
 Camera fit_top(std::span<const Eigen::Vector3d> points, double width, double height, double margin = 0.06);
 
-/// Returns a camera with the contact's points in the middle of the picture. Around them it shows `context`
-/// times their size, but at least `least` times the scene's diagonal, so that some of the bodies is seen even
-/// where the contact is a single point.
+/// Returns a camera centred on the contact's points. It shows `context` times their extent, but at least
+/// `least` times the scene's diagonal, so that part of the bodies is visible even around a single point.
 Camera fit_contact(std::span<const Eigen::Vector3d> contact, const Eigen::AlignedBox3d& scene, double width,
                    double height, const FitOptions& options = {}, double context = 2.5, double least = 0.1);
 
-/// Returns the camera carried round the vertical through its target by `azimuth` and lifted by `elevation`
-/// (radians; stops short of the vertical).
+/// Returns the camera rotated by `azimuth` around the vertical axis through its target and raised by
+/// `elevation` (radians; clamped just below the vertical).
 Camera orbit(const Camera& camera, double azimuth, double elevation = 0);
 
-/// Maps world to pixels: a camera together with the picture's size.
+/// Maps world to pixels: a camera and a picture size.
 class Projection {
  public:
-  /// `scene` is the box around everything that will be drawn; it sets the range of depths. Throws InputError
+  /// `scene` is the box of everything that will be drawn; it determines the depth range. Throws InputError
   /// for a camera without a direction.
   Projection(const Camera& camera, double width, double height, const Eigen::AlignedBox3d& scene);
 
@@ -81,18 +80,18 @@ class Projection {
   /// Maps the eye's frame to pixels from the bottom left, y up, and depth in [-1, 1]. z must be at least
   /// near_depth().
   Eigen::Vector3d to_screen(const Eigen::Vector3d& eye) const;
-  /// Maps the world to pixels from the top left, y down; nothing for a point behind the eye.
+  /// Maps the world to pixels from the top left, y down. Returns nullopt for a point behind the eye.
   std::optional<Eigen::Vector2d> to_pixel(const Eigen::Vector3d& world) const;
-  /// Returns the depth in [-1, 1] of a point that lies closer to the viewer than one of depth `depth`, by
-  /// `heights` times the height that the picture shows there.
+  /// Returns the depth in [-1, 1] of a point closer to the viewer than one at depth `depth`, by `heights`
+  /// times the picture's height at that depth.
   double nearer(double depth, double heights) const;
   double near_depth() const { return near_; }
   double far_depth() const { return far_; }
   double focal() const { return focal_; }  ///< pixels per unit of x / z (orthographic: of x)
-  /// Returns the number of world units that a pixel covers at a point.
+  /// Returns the size of a pixel in world units at a point.
   double unit_per_pixel(const Eigen::Vector3d& world) const;
   const Eigen::Matrix3d& axes() const { return axes_; }  ///< rows: right, up, forward
-  /// Returns the direction from a point to the viewer, unit, world frame.
+  /// Returns the unit direction from a point to the viewer, world frame.
   Eigen::Vector3d towards_viewer(const Eigen::Vector3d& world) const;
 
  private:

@@ -15,17 +15,16 @@ namespace lrb::render {
 
 class FrameWriter {
  public:
-  /// At most `capacity` frames wait to be written; push() waits for room.
+  /// At most `capacity` frames are queued; push() blocks while the queue is full.
   explicit FrameWriter(std::size_t capacity = 4);
-  /// Waits for the frames that were pushed. An error that finish() did not report is lost here: call
-  /// finish().
+  /// Waits for the queued frames. An error that finish() did not report is lost here: call finish().
   ~FrameWriter();
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
 
-  /// Queues a frame. Throws the first error of an earlier frame, if there was one.
+  /// Queues a frame. Throws the first error of an earlier frame, if any.
   void push(std::string path, Image image, PngOptions options = {});
-  /// Waits until all frames are written; throws the first error.
+  /// Waits until all frames are written. Throws the first error.
   void finish();
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures as plain values.
+/// Images as plain values.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,11 +17,11 @@
 
 namespace lrb::render {
 
-// Turns double into float, here and nowhere else. Everything before is Eigen in double, exact enough to
-// decide by; everything after is glm, as the graphics library and the shaders take it. Each number is
-// rounded once, to nearest.
+// The only conversions from double to float. Everything before is Eigen in double, precise enough for
+// decisions; everything after is glm, as OpenGL and the shaders use it. Each number is rounded once, to
+// nearest.
 
-using ByteColour = glm::u8vec4;  ///< red, green, blue, alpha; straight
+using ByteColour = glm::u8vec4;  ///< red, green, blue, alpha; straight (not premultiplied)
 
 inline float to_float(double x) {
   return static_cast<float>(x);
@@ -61,7 +61,7 @@ struct PixelRect {
 class Image {
  public:
   Image() = default;
-  /// Throws InputError unless both sizes lie in 1 .. kMaxSide.
+  /// Throws InputError unless both sizes are in 1 .. kMaxSide.
   Image(int width, int height, Rgba fill = kWhite);
 
   static constexpr int kMaxSide = 32768;
@@ -78,12 +78,12 @@ class Image {
   const std::vector<Rgba>& pixels() const { return pixels_; }
   bool opaque() const;  ///< every alpha is 255
 
-  /// Paints one pixel; outside the image does nothing.
+  /// Blends one pixel; no effect outside the image.
   void blend(int x, int y, Rgba colour, int coverage = 255);
   void fill(const PixelRect& r, Rgba colour);
   /// Draws a frame of `thickness` pixels just inside the rectangle.
   void stroke(const PixelRect& r, Rgba colour, int thickness = 1);
-  /// Blends another image by its alpha, with its top left corner at (x, y).
+  /// Alpha-blends another image with its top left corner at (x, y).
   void paste(const Image& image, int x, int y);
 
   friend bool operator==(const Image&, const Image&) = default;
@@ -98,47 +98,46 @@ class Image {
 /// Returns the FNV-1a hash (64 bits) of size and pixels.
 std::uint64_t hash(const Image& image);
 
-// Measures how far two images differ, and draws it.
+// Compares images and draws their difference.
 
-/// The differences that count as noise between processors (measured; see docs/golden.md). Pixels are sorted
-/// into small and large differences.
+/// Limits of the differences that count as noise between processors (measured; see docs/golden.md). Pixels
+/// are classed as small or large differences.
 struct ImageTolerance {
   int large = 8;                ///< a channel difference above this is large
-  double large_share = 0.0005;  ///< at most this share of pixels may have one
-  int small = 2;                ///< a difference of 1 .. small is noise of rounding
-  double small_share = 0.15;    ///< at most this share of pixels may have one
+  double large_share = 0.0005;  ///< maximum share of pixels with one
+  int small = 2;                ///< a difference of 1 .. small is rounding noise
+  double small_share = 0.15;    ///< maximum share of pixels with one
 
   friend bool operator==(const ImageTolerance&, const ImageTolerance&) = default;
 };
 
 struct ImageDifference {
   bool same_size = false;
-  std::uint64_t pixels = 0;  ///< number of pixels of either image; 0 unless same_size
+  std::uint64_t pixels = 0;  ///< number of pixels of the larger image; 0 unless same_size
   std::uint64_t equal = 0;
-  std::uint64_t small = 0;   ///< number of pixels whose largest channel difference is in 1 .. tolerance.small
-  std::uint64_t medium = 0;  ///< number between small and large; counted with the small ones
-  std::uint64_t large = 0;   ///< number of pixels above tolerance.large
-  int largest = 0;           ///< largest channel difference
+  std::uint64_t small = 0;   ///< pixels with maximum channel difference in 1 .. tolerance.small
+  std::uint64_t medium = 0;  ///< pixels between small and large; counted as small
+  std::uint64_t large = 0;   ///< pixels above tolerance.large
+  int largest = 0;           ///< maximum channel difference
   bool within(const ImageTolerance& tolerance = {}) const;
-  /// Returns one line: which tolerance was exceeded and by how much, or that none was.
+  /// Returns one line: the exceeded tolerance and by how much, or that none was exceeded.
   std::string text(const ImageTolerance& tolerance = {}) const;
 };
 
 ImageDifference compare(const Image& expected, const Image& actual, const ImageTolerance& tolerance = {});
 
-/// Returns |expected - actual| times `gain` per channel, on black. It is as wide and high as either image;
-/// white where only one has pixels.
+/// Returns |expected - actual| times `gain` per channel, on black. As wide as the wider and as high as the
+/// higher image; white where only one has pixels.
 Image difference_image(const Image& expected, const Image& actual, int gain = 16);
 
-// Writes and reads images as PNG, with text inside that says how to make them again.
+// Writes and reads images as PNG, with text chunks that state how to reproduce them.
 
-/// Keyword (1 to 79 Latin-1 characters) and value of a tEXt chunk; values beyond Latin-1 go into an iTXt
-/// chunk.
+/// Keyword (1 to 79 Latin-1 characters) and value of a tEXt chunk. Values beyond Latin-1 are written as iTXt.
 using PngText = std::pair<std::string, std::string>;
 
 struct PngOptions {
   std::vector<PngText> text;
-  double dpi = 0;  ///< written as pHYs; 0: left out
+  double dpi = 0;  ///< written as pHYs; 0: omitted
 };
 
 /// Encodes an image: opaque ones as RGB, others as RGBA.
@@ -147,19 +146,19 @@ std::vector<std::uint8_t> encode_png(const Image& image, const PngOptions& optio
 struct DecodedPng {
   Image image;
   std::vector<PngText> text;
-  double dpi = 0;  ///< 0: none given
+  double dpi = 0;  ///< 0: not given
 };
-/// The largest number of pixels of a picture that is read, unless the caller expects fewer: 0.5 GB of them.
+/// Default limit on the pixels of a picture that is read: 0.5 GB.
 inline constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 27;
 
-/// Decodes a PNG. Throws InputError with `name` in it if the bytes are not a PNG, are damaged, hold more than
-/// `most_pixels` pixels, or hold more or less data than their pixels take. Takes memory only for the pixels,
-/// and only if so many can be in so few bytes.
+/// Decodes a PNG. Throws InputError with `name` in it if the bytes are not a PNG, are damaged, have more than
+/// `most_pixels` pixels, or contain more or less data than their pixels take. Allocates memory for the pixels
+/// only, and only if the compressed bytes can expand to that many.
 DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name = "PNG",
                       std::uint64_t most_pixels = kMostPixels);
 
-/// Writes a picture whole or not at all (AtomicFile), so that a half-written one is never seen under its
-/// name. Throws InputError if the path is at fault, EnvironmentError if the machine is.
+/// Writes a picture completely or not at all (AtomicFile), so that no partial file appears under its name.
+/// Throws InputError for a bad path, EnvironmentError for a failure of the machine.
 void write_png(const Image& image, const std::string& path, const PngOptions& options = {});
 /// Reads a picture. Throws InputError if the file cannot be read.
 DecodedPng read_png(const std::string& path, std::uint64_t most_pixels = kMostPixels);

@@ -1,5 +1,5 @@
 #pragma once
-/// Draws a draw list as a camera sees it into an image. Every run gives the same bytes, with any number of
+/// Renders a draw list to an image through a camera. Every run gives the same bytes, with any number of
 /// rasterizer threads.
 
 #include <array>
@@ -15,28 +15,27 @@
 
 namespace lrb::render {
 
-// Turns a draw list into triangles on the screen, all on the CPU in double: projection, clipping, shading,
-// snapping. What reaches the graphics library has w = 1, final colours, and corners on a grid of 1/256
-// pixel, so that rasterizers with other processors or thread counts have nothing left to disagree about.
-// Uses no graphics library.
+// Turns a draw list into screen triangles on the CPU in double: projection, clipping, shading, snapping.
+// OpenGL receives w = 1, final colours, and corners on a grid of 1/256 pixel, so that rasterizers on other
+// processors or with other thread counts give the same result. Does not depend on OpenGL.
 
-/// One step of DrawTriangle::nudge, as a share of the picture's height at that depth. It is small enough not
-/// to uncover what visibly lies behind, and large enough to keep a line on the face it runs along.
+/// One step of DrawTriangle::nudge, as a share of the picture's height at that depth. Small enough not to
+/// uncover what is visibly behind, and large enough to keep a line on the face that it follows.
 inline constexpr double kNudge = 1.2e-4;
 
 /// A corner of a face. Position and edge distances are interpolated linearly over the screen.
 struct FaceVertex {
   glm::vec3 x{0};     ///< normalised device coordinates
-  glm::vec3 edge{0};  ///< distance from the lines of the three edges, pixels; kNoEdge where not drawn
+  glm::vec3 edge{0};  ///< distance from the lines of the three edges, pixels; kNoEdge if not drawn
   ByteColour colour{0}, edge_colour{0};
   float half_width = 0;  ///< of edges, pixels
   std::uint32_t id = kNoId;
 };
 inline constexpr float kNoEdge = 1e6F;
-inline constexpr float kNeverDashed = -1;  ///< As dash length: solid even where the line is ghosted.
+inline constexpr float kNeverDashed = -1;  ///< Dash length of a line that stays solid even when ghosted.
 
-/// A corner of the rectangle around a line segment, which is drawn as a capsule. A point is a segment of no
-/// length.
+/// A corner of the rectangle around a line segment, which is drawn as a capsule. A point is a segment of
+/// length 0.
 struct LineVertex {
   glm::vec3 x{0};   ///< normalised device coordinates
   glm::vec2 at{0};  ///< from the segment's start, along it and to its left, pixels
@@ -62,7 +61,7 @@ struct ScreenMesh {
   std::array<VertexRange, kLayers> face_layers, line_layers;
 };
 
-/// How faces are shaded: flat, from their normal, by lights that move with the camera, each a share of the
+/// Flat shading of faces from their normal, by lights that move with the camera. Each light is a share of the
 /// face's colour. Directions are in the camera's frame (right, up, towards the viewer) and need not be unit.
 struct Lighting {
   double ambient = 0.52;
@@ -78,53 +77,53 @@ struct Lighting {
 Rgba shade(Rgba colour, const Eigen::Vector3d& normal, const Eigen::Matrix3d& axes, const Lighting& lighting);
 
 /// Makes the screen mesh. `scale` is the number of device pixels per pixel of the final image
-/// (supersampling); `projection` is in device pixels. `even_edges`: edges fade where faces are small by
-/// style, not place by place.
+/// (supersampling); `projection` is in device pixels. `even_edges`: edges fade by style where faces are
+/// small, not individually.
 ScreenMesh make_screen_mesh(const DrawList& list, const Projection& projection, double scale,
                             const Lighting& lighting = {}, bool even_edges = false);
 
 struct RasterOptions {
   int width = 1280, height = 720;  ///< pixels
   int supersample = 2;             ///< samples per pixel along each axis, 1 to 4; averaged in integers
-  std::optional<Rgba> background = kWhite;  ///< nothing: transparent
+  std::optional<Rgba> background = kWhite;  ///< nullopt: transparent
   Lighting lighting;
-  bool labels = true;       ///< draws the list's labels (needs the font if there are any)
-  double unit = 1;          ///< pixels in a unit of the list's widths and radii
-  bool even_edges = false;  ///< edges of faces fade by style, not place by place: see even_edge_room()
+  bool labels = true;       ///< draws the list's labels (needs the font if the list has any)
+  double unit = 1;          ///< pixels per unit of the list's widths and radii
+  bool even_edges = false;  ///< edges of faces fade by style, not individually: see even_edge_room()
 };
 
-/// The id of what is seen at each pixel, row by row from the top.
+/// The id of the visible primitive at each pixel, row by row from the top.
 struct IdImage {
   int width = 0, height = 0;
-  std::vector<std::uint32_t> ids;  ///< kNoId where there is nothing
+  std::vector<std::uint32_t> ids;  ///< kNoId on the background
   std::uint32_t at(int x, int y) const { return ids[static_cast<std::size_t>(y) * width + x]; }
 };
 
-/// The depth of what is seen at each pixel, row by row from the top, in [-1, 1] as Projection::to_screen()
-/// has it.
+/// The visible depth at each pixel, row by row from the top, in [-1, 1] as returned by
+/// Projection::to_screen().
 struct DepthImage {
   int width = 0, height = 0;
-  std::vector<float> depths;  ///< 1 where there is nothing
+  std::vector<float> depths;  ///< 1 on the background
   float at(int x, int y) const { return depths[static_cast<std::size_t>(y) * width + x]; }
 };
 
-/// Holds the context, programs and buffers from one frame to the next. Use it on the thread that made it.
+/// Keeps the context, programs and buffers between frames. Use it on the thread that made it.
 class Rasterizer {
  public:
-  /// Throws EnvironmentError if there is no off-screen OpenGL.
+  /// Throws EnvironmentError if off-screen OpenGL is not available.
   Rasterizer();
   ~Rasterizer();
   Rasterizer(const Rasterizer&) = delete;
   Rasterizer& operator=(const Rasterizer&) = delete;
 
-  /// Draws an image. Throws InputError for sizes out of range, EnvironmentError if the library fails.
+  /// Draws an image. Throws InputError for sizes out of range, EnvironmentError if OpenGL fails.
   Image draw(const DrawList& list, const Camera& camera, const RasterOptions& options = {});
 
-  /// Returns the ids of fills and of opaque triangles (with `translucent`: of translucent ones too, as if
-  /// they were opaque), from one sample in the middle of each pixel.
+  /// Returns the ids of fills and opaque triangles, sampled once at the centre of each pixel. With
+  /// `translucent`, also of translucent triangles, as if they were opaque.
   IdImage ids(const DrawList& list, const Camera& camera, int width, int height, bool translucent = false);
 
-  /// Returns the depths of opaque triangles, from one sample in the middle of each pixel.
+  /// Returns the depths of opaque triangles, sampled once at the centre of each pixel.
   DepthImage depths(const DrawList& list, const Camera& camera, int width, int height);
 
  private:
@@ -132,7 +131,7 @@ class Rasterizer {
   std::unique_ptr<State> state_;
 };
 
-/// Draws the labels of a list over a picture of it that was drawn without them.
+/// Draws the labels of a list over an image of the list that was drawn without them.
 void draw_labels(Image& image, const DrawList& list, const Camera& camera);
 
 }  // namespace lrb::render

@@ -1,6 +1,6 @@
 #pragma once
-/// How pictures look as a whole: on a screen, on paper, on a dark slide. What is drawn means the same in
-/// each; colour scales and categories are the palette's in all of them.
+/// Picture styles: screen, paper, dark slide. Colours have the same meaning in each; colour scales and
+/// categories are the palette's in all of them.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +20,7 @@ constexpr Rgba with_alpha(Rgba c, std::uint8_t a) {
   return {c.r, c.g, c.b, a};
 }
 
-/// Moves `c` towards `to` by t in [0, 1], channel by channel, alpha included.
+/// Moves `c` towards `to` by t in [0, 1], channel by channel, including alpha.
 constexpr Rgba mix(Rgba c, Rgba to, double t) {
   const auto channel = [t](std::uint8_t x, std::uint8_t y) {
     return static_cast<std::uint8_t>(x + (static_cast<double>(y) - x) * t + 0.5);
@@ -33,7 +33,7 @@ constexpr int div255(int x) {
   return (x + 127) / 255;
 }
 
-/// Paints `top` over `below`, with `coverage` (0..255) as a further factor of its alpha. Computes in integers
+/// Blends `top` over `below`, with `coverage` (0..255) as a further factor of its alpha. Integer arithmetic
 /// only, so that every machine gives the same bytes.
 constexpr Rgba over(Rgba top, Rgba below, int coverage = 255) {
   const int at = div255(top.a * coverage);
@@ -46,7 +46,7 @@ constexpr Rgba over(Rgba top, Rgba below, int coverage = 255) {
           static_cast<std::uint8_t>(a)};
 }
 
-/// Returns the luma of Rec. 601, 0..255: how bright the colour is in a greyscale print.
+/// Returns the luma of Rec. 601, 0..255: the brightness of the colour in a greyscale print.
 constexpr double luma(Rgba c) {
   return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b;
 }
@@ -59,10 +59,9 @@ inline constexpr Rgba kTransparent{0, 0, 0, 0};
 
 namespace lrb::render::palette {
 
-// The colours of all pictures; render/page_palette.hpp has those of pages. Categories are from Okabe and
-// Ito's palette, which people with any common colour vision can tell apart (M. Okabe, K. Ito, "Color
-// Universal Design", 2008); scalars are viridis. What must be told apart also differs in brightness, for
-// print in grey.
+// The colours of all pictures; render/page_palette.hpp has those of pages. Categories are Okabe and Ito's
+// palette, distinguishable with any common colour vision (M. Okabe, K. Ito, "Color Universal Design", 2008);
+// scalars are viridis. Colours that must be distinguished also differ in brightness, for greyscale print.
 
 inline constexpr Rgba kOrange{230, 159, 0};
 inline constexpr Rgba kSkyBlue{86, 180, 233};
@@ -72,35 +71,35 @@ inline constexpr Rgba kBlue{0, 114, 178};
 inline constexpr Rgba kVermillion{213, 94, 0};
 inline constexpr Rgba kPurple{204, 121, 167};
 
-/// Text, and what is less important.
+/// Text, and secondary text.
 inline constexpr Rgba kInk{28, 30, 34};
 inline constexpr Rgba kFaint{110, 114, 120};
 inline constexpr Rgba kRule{205, 208, 212};
 
-/// Faces that the picture is not about: their fronts, and their backs.
+/// Faces outside the picture's focus: fronts and backs.
 inline constexpr Rgba kPaleFront{233, 235, 238};
 inline constexpr Rgba kPaleBack{178, 170, 160};
 
-/// Contacts: darker than vermillion, so that they stand out from both bodies also in grey.
+/// Contacts: darker than vermillion, so that they contrast with both bodies in greyscale as well.
 inline constexpr Rgba kContact{196, 18, 48};
-inline constexpr Rgba kWrong{255, 0, 0};  ///< what another engine got wrong: brighter than contacts
+inline constexpr Rgba kWrong{255, 0, 0};  ///< errors of another engine: brighter than contacts
 inline constexpr Rgba kRefining = kGreen;
 inline constexpr Rgba kRefining2d = mix(kGreen, kWhite, 0.4);  ///< as a fill, under lines
 inline constexpr Rgba kUnderTest = kYellow;
 
-/// What edges and solids differ from their body's colour towards, and by how much.
+/// The colour that edges and solids are mixed towards from their body's colour, and the mixing shares.
 inline constexpr Rgba kEdgeInk{18, 20, 24};
 inline constexpr double kEdgeShare = 0.72;
 inline constexpr Rgba kSolidInk{10, 14, 20};
 inline constexpr double kSolidShare = 0.28;
 
-/// How far faces fade towards the paper: pseudo faces, real faces beside coloured regions, and faces without
-/// a value.
+/// Shares by which faces fade towards the paper: pseudo faces, real faces beside coloured regions, and faces
+/// without a value.
 inline constexpr double kLidPale = 0.70;
 inline constexpr double kGroundPale = 0.75;
 inline constexpr double kNoValuePale = 0.78;
 
-/// Returns the colour of a body: blue or orange, which differ in brightness too.
+/// Returns the colour of a body: blue or orange, which also differ in brightness.
 constexpr Rgba body(Side side) {
   return side == Side::a ? Rgba{52, 126, 190} : Rgba{236, 168, 52};
 }
@@ -108,8 +107,8 @@ constexpr Rgba body(Side side) {
 constexpr Rgba edge_of(Rgba c) {
   return mix(c, kEdgeInk, kEdgeShare);
 }
-/// Returns the colour of a solid under pseudo faces in 2D: darker than the regions around it (the paper's
-/// figure 1).
+/// Returns the colour of a solid under pseudo faces in 2D: darker than the regions around it (figure 1 of the
+/// paper).
 constexpr Rgba solid_2d(Rgba c) {
   return mix(c, kSolidInk, kSolidShare);
 }
@@ -117,7 +116,7 @@ constexpr Rgba region_2d(Rgba c) {
   return mix(c, kWhite, 0.62);
 }
 
-/// Returns the colour of a kind of events.
+/// Returns the colour of a kind of event.
 constexpr Rgba event(EventKind kind) {
   switch (kind) {
     case EventKind::step:
@@ -154,11 +153,12 @@ constexpr Rgba event(EventKind kind) {
   return kInk;
 }
 
-/// Maps t in [0, 1] to viridis, from dark blue to yellow, brighter all the way. Clamps t; a NaN counts as 0.
+/// Maps t in [0, 1] to viridis, from dark blue to yellow with increasing brightness. Clamps t; NaN counts as
+/// 0.
 Rgba viridis(double t);
 
-/// Returns a colour for each of many categories: hues go round by the golden angle, brightness in three
-/// steps, so that close numbers get colours that are not close.
+/// Returns a colour for each of many categories: hues advance by the golden angle, brightness in three steps,
+/// so that consecutive numbers get distinct colours.
 Rgba category(std::uint32_t index);
 
 }  // namespace lrb::render::palette
@@ -168,28 +168,28 @@ namespace lrb::render {
 enum class StyleName : std::uint8_t { screen, print, dark };
 
 struct Style {
-  Rgba paper;                  ///< the background, and what pale colours fade towards
-  Rgba ink, faint, rule;       ///< text; what is less important; thin frames
+  Rgba paper;                  ///< the background, which pale colours are mixed towards
+  Rgba ink, faint, rule;       ///< text; secondary text; thin frames
   std::array<Rgba, 2> bodies;  ///< A's and B's
   Rgba contact, refining, under_test;
-  Rgba front, back;    ///< of faces that a picture of findings is not about
-  Rgba edge_ink;       ///< what lines along bodies differ from them towards
-  Rgba solid_ink;      ///< the same of solids under regions, in 2D
-  double solid_share;  ///< how far those do
-  double lid_pale;     ///< how far pseudo faces fade towards the paper
-  float weight;        ///< factor of the widths of lines and points: paper shows finer ones than a screen
+  Rgba front, back;    ///< faces outside the focus of a picture of findings
+  Rgba edge_ink;       ///< colour that lines along bodies are mixed towards
+  Rgba solid_ink;      ///< the same for solids under regions, in 2D
+  double solid_share;  ///< mixing share of solid_ink
+  double lid_pale;     ///< share by which pseudo faces fade towards the paper
+  float weight;        ///< factor of the widths of lines and points: paper resolves finer ones than a screen
 
-  /// Returns the colour of lines along what has colour `c`: outlines, and edges of what one sees through.
-  /// (Edges on solid faces are palette::edge_of() in every style: a face is no paper.)
+  /// Returns the colour of lines along primitives of colour `c`: outlines, and edges of translucent faces.
+  /// (Edges on solid faces are palette::edge_of() in every style, because they are not on paper.)
   constexpr Rgba edge_of(Rgba c) const { return mix(c, edge_ink, palette::kEdgeShare); }
   /// Returns a colour faded by `share`.
   constexpr Rgba pale(Rgba c, double share) const { return mix(c, paper, share); }
-  /// Returns the colour of a solid under pseudo faces in 2D, which stands out from the regions around it (the
-  /// paper's figure 1).
+  /// Returns the colour of a solid under pseudo faces in 2D, which contrasts with the regions around it
+  /// (figure 1 of the paper).
   constexpr Rgba solid_2d(Rgba c) const { return mix(c, solid_ink, solid_share); }
   /// Returns the colour of a body.
   constexpr Rgba body(Side side) const { return bodies[static_cast<std::size_t>(side)]; }
-  /// Returns the colour that this style has for one of the palette's kinds; any other colour as it is.
+  /// Returns this style's colour for one of the palette's kinds; any other colour unchanged.
   Rgba of(Rgba kind) const;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Finds where two runs begin to differ: what a golden trace reports when it no longer matches.
+/// Finds the first difference between two runs, such as a golden trace and a new one.
 
 #include <cstddef>
 #include <optional>
@@ -10,21 +10,22 @@
 namespace lrb::trace {
 
 struct Divergence {
-  std::optional<EventId> event;     ///< the first event that differs (or that only one of the runs has)
-  std::optional<std::size_t> step;  ///< index into Trace::steps; nothing: the runs differ before any step
-  std::string what;                 ///< the field, e.g. "meet" or "body B: hash"
-  std::string expected, actual;     ///< its values, in words
+  std::optional<EventId> event;  ///< first event that differs or that only one run has
+  /// Index into Trace::steps; nullopt: the runs differ before the first step.
+  std::optional<std::size_t> step;
+  std::string what;              ///< the field, e.g. "meet" or "body B: hash"
+  std::string expected, actual;  ///< its values as text
 
   /// Returns one line, e.g. "event 12 (step 0): meet: expected cross, found touch".
   std::string message() const;
 };
 
-/// Returns the first difference in causal order: bodies and request, then step by step poses, events and
-/// results. Ignores wall-clock times, names, sources, versions and caps. Returns nothing if the runs are the
-/// same.
+/// Returns the first difference in causal order: bodies and request, then per step poses, events and results.
+/// Wall-clock times, names, sources, versions and event caps are ignored. Returns nullopt if the runs are
+/// equal.
 std::optional<Divergence> first_divergence(const Trace& expected, const Trace& actual);
 
-/// Describes an event in words, e.g. "refine: region 3 of A, faces added 5, wrapper faces 14, cause 7".
+/// Returns an event as text, e.g. "refine: region 3 of A, faces added 5, wrapper faces 14, cause 7".
 std::string describe(const Event& event);
 
 }  // namespace lrb::trace

@@ -1,6 +1,5 @@
 #pragma once
-/// Writes JSON as text into a buffer that empties itself into a sink: builds no tree and allocates nothing
-/// for a value.
+/// Writes JSON text into a buffer that is flushed to a sink. Builds no tree and does not allocate per value.
 
 #include <array>
 #include <charconv>
@@ -18,15 +17,16 @@
 
 namespace lrb::trace {
 
-/// Returns a number as 16 hexadecimal digits. Files hold 64-bit hashes so, because many readers take JSON's
-/// numbers for doubles.
+/// Returns a number as 16 hexadecimal digits. Files use this for 64-bit hashes, because many readers parse
+/// JSON numbers as doubles.
 inline std::string to_hex(std::uint64_t value) {
   std::string out(16, '0');
   for (std::size_t i = 16; i-- > 0; value >>= 4) out[i] = "0123456789abcdef"[value & 15];
   return out;
 }
 
-/// Reads what to_hex() returned; nothing unless it is exactly 16 lower-case digits.
+/// Parses the result of to_hex(). Returns nullopt unless the text is exactly 16 lower-case hexadecimal
+/// digits.
 inline std::optional<std::uint64_t> from_hex(std::string_view text) {
   if (text.size() != 16) return std::nullopt;
   std::uint64_t value = 0;
@@ -38,7 +38,7 @@ inline std::optional<std::uint64_t> from_hex(std::string_view text) {
   return value;
 }
 
-/// Takes bytes: a file, a string, ...
+/// Receives bytes: a file, a string, ...
 class ByteSink {
  public:
   virtual ~ByteSink() = default;
@@ -51,7 +51,8 @@ class StringSink final : public ByteSink {
   std::string text;
 };
 
-/// Writes values only; the caller writes brackets and commas. Made for the millions of events.
+/// Writes values only; the caller writes brackets and commas. Used for events, of which there can be
+/// millions.
 class JsonOut {
  public:
   explicit JsonOut(ByteSink& sink) : sink_(&sink), buffer_(kBuffer) {}
@@ -74,14 +75,14 @@ class JsonOut {
     used_ += static_cast<std::size_t>(std::to_chars(begin, begin + kNumber, value).ptr - begin);
   }
 
-  /// Writes the shortest decimal that reads back as the same double, or null if it is not finite (JSON has no
-  /// word for that). It always has a point or an exponent, so that -0.0 stays a double.
+  /// Writes the shortest decimal that parses to the same double, or null if it is not finite (JSON has no
+  /// such literal). The text always has a point or an exponent, so that -0.0 stays a double.
   void number(double value);
 
-  /// Does the same for a float: the shortest decimal that reads back as the same float.
+  /// As above for a float: the shortest decimal that parses to the same float.
   void number(float value);
 
-  /// Writes a string in quotes, escaped; bytes that are not UTF-8 become U+FFFD.
+  /// Writes a quoted, escaped string. Bytes that are not UTF-8 become U+FFFD.
   void string(std::string_view text);
 
   void flush() {
@@ -104,14 +105,14 @@ class JsonOut {
   std::size_t used_ = 0;
 };
 
-/// Writes brackets, commas and line breaks by itself. For metadata, summaries and answers.
+/// Writes JSON with brackets, commas and line breaks. For metadata, summaries and answers.
 class JsonWriter {
  public:
-  /// As `broken_levels`: everything on one line, without spaces.
+  /// Value of `broken_levels` for output on one line without spaces.
   static constexpr int kCompact = -1;
 
-  /// Puts each member of the outermost `broken_levels` containers on a line of its own; containers nested
-  /// deeper stay on one line. `indent` is the indentation of the outermost one, in levels.
+  /// Containers nested less than `broken_levels` deep get one line per member; deeper ones stay on one line.
+  /// `indent` is the indentation of the outermost container, in levels.
   JsonWriter(JsonOut& out, int broken_levels, int indent = 0)
       : out_(&out), broken_levels_(broken_levels), indent_(indent) {}
 
@@ -134,7 +135,7 @@ class JsonWriter {
       out_->string(v);
     return *this;
   }
-  /// Writes a value that is JSON already, on one line.
+  /// Writes text that is already JSON, on one line.
   JsonWriter& json(std::string_view text) {
     separate();
     out_->raw(text);
@@ -166,7 +167,7 @@ class JsonWriter {
   std::vector<Level> levels_;
 };
 
-/// Returns what write(writer) writes, with a newline at its end. indent: as JsonWriter has it.
+/// Returns the output of write(writer), followed by a newline. indent: as in JsonWriter.
 template <class Write>
 std::string json_text(int indent, const Write& write) {
   StringSink sink;

@@ -1,7 +1,7 @@
 #pragma once
-/// The tables of fields of the records that traces, scenarios and golden runs hold. From them come
-/// first_divergence(), the JSON of traces and summaries in both directions, the keys of a scenario's query
-/// and the options of the same names; a test compares them with the published schemas.
+/// Field tables of the records in traces, scenarios and golden runs. first_divergence(), reading and writing
+/// of trace and summary JSON, the keys of a scenario's query and the options of the same names are derived
+/// from them. A test compares them with the published schemas.
 
 #include <lrbscope/collide.hpp>
 #include <lrbscope/core/fields.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// A probe that writes down what the query does, as plain structs in a flat array.
+/// A probe that records the events of a query as plain structs in a flat array.
 ///
 ///   Recorder recorder(a, b, settings);
 ///   for each time step:
@@ -7,8 +7,8 @@
 ///     recorder.end_step(collide(a, pose_a, b, pose_b, request, workspace, &recorder).value());
 ///   Trace trace = recorder.take();
 ///
-/// An event costs some nanoseconds on the event clock (bench/micro/trace_bench.cpp measures it); the wall
-/// clock adds the time of reading steady_clock.
+/// An event costs some nanoseconds on the event clock (measured by bench/micro/trace_bench.cpp). The wall
+/// clock adds one read of steady_clock.
 
 #include <algorithm>
 #include <array>
@@ -26,11 +26,11 @@
 
 namespace lrb::trace {
 
-/// Times the events of a recording.
+/// Provides the time stamps of a recording.
 class WallClock {
  public:
-  /// Returns the nanoseconds since this began, and never the same number twice, so that no two events of a
-  /// timeline coincide.
+  /// Returns nanoseconds since construction. Strictly ascending, so that no two events of a timeline
+  /// coincide.
   std::uint64_t now_ns() {
     const auto elapsed = std::chrono::steady_clock::now() - began_;
     const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(elapsed).count();
@@ -45,14 +45,15 @@ class WallClock {
 struct RecorderSettings {
   std::string scenario;  ///< name
   std::uint64_t scenario_hash = 0;
-  std::array<std::string, 2> sources;  ///< where the bodies came from, as the user gave it
-  CollideRequest request;  ///< as given to collide(): decides what can be the cause of a refinement
+  std::array<std::string, 2> sources;  ///< origin of the bodies, as given by the user
+  CollideRequest request;              ///< as passed to collide(): determines what can cause a refinement
   Clock clock = Clock::event;
   std::uint32_t event_cap =
       1'000'000;  ///< events beyond this number are counted but not stored (at most kMaxId)
   EventLevel level = EventLevel::faces;
-  std::string engine;     ///< another one whose walk is told, over trees of its own; empty: ours
-  bool coherent = false;  ///< steps go on from the ones before
+  /// Name of another engine whose traversal is recorded over its own trees; empty: lrbscope.
+  std::string engine;
+  bool coherent = false;  ///< each step continues from the previous one
 };
 
 class Recorder final : public CollideProbe {
@@ -61,20 +62,20 @@ class Recorder final : public CollideProbe {
 
   /// Prepares to record queries of two bodies, which must outlive the recorder.
   Recorder(const LrbRep& a, const LrbRep& b, RecorderSettings settings);
-  /// Prepares to record one body; of the events, only refine() and coarsen() of Side::a make sense.
+  /// Prepares to record one body; only refine() and coarsen() of Side::a may be called.
   Recorder(const LrbRep& a, RecorderSettings settings);
 
-  /// Begins a time step: both wrappers are the outermost ones again. `index` must ascend and poses must be
-  /// finite, else throws InputError.
+  /// Begins a time step and resets both wrappers to the outermost ones. Throws InputError unless `index`
+  /// ascends and the poses are finite.
   void begin_step(std::uint32_t index, const Pose& pose_a, const Pose& pose_b = {});
-  /// Adds, before a step ends, what was asked about it besides.
+  /// Adds a measurement to the current step. Call before end_step().
   void add(MeasuredDistance distance);
   void add(MeasuredClash clash);
   void end_step(const CollideResult& result);
 
   void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a,
                  std::uint32_t depth_b) override {
-    // Whichever of the two refinements came later made the test possible. None is 0, and 0 - 1 is kNull.
+    // The cause is the later of the two refinements. None is 0, and 0 - 1 is kNull.
     const std::uint32_t cause = std::max(brought_in(0, a), brought_in(1, b)) - 1u;
     const EventId id = push(Event::of(
         payload::FaceTest{
@@ -88,12 +89,12 @@ class Recorder final : public CollideProbe {
     const EventId id =
         push(Event::of(payload::WrapperChange{.region = region, .faces = faces_added, .side = side},
                        EventKind::refine, cause_of_refinement()));
-    // In unregularised mode a region's second lid brings in no faces: the first one's refinement stays the
+    // In unregularised mode a region's second lid adds no faces; the refinement of the first lid stays the
     // cause.
     if (faces_added != 0 && id != kNull) refined_by_[static_cast<std::size_t>(side)][region] = id + 1;
   }
 
-  /// Records that a wrapper grew back over a region, in a coarse query.
+  /// Records that a wrapper covered a region again, in a coarse query.
   void coarsen(Side side, RegionId region, std::uint32_t faces_removed) override {
     push(Event::of(payload::WrapperChange{.region = region, .faces = faces_removed, .side = side},
                    EventKind::coarsen, cause_of_refinement()));
@@ -143,9 +144,9 @@ class Recorder final : public CollideProbe {
   std::uint64_t events_seen() const { return seen_; }
   std::uint64_t events_stored() const { return trace_.events.size(); }
 
-  /// Replays what was recorded to fill in the sizes of wrappers and where pairs of nodes ended, and hands the
-  /// trace over. The recorder is then empty and can begin another run with the same settings. Throws
-  /// std::logic_error if there were events before the first step.
+  /// Replays the recording to fill in wrapper sizes and the ends of node pairs, and returns the trace. The
+  /// recorder is then empty and can record another run with the same settings. Throws std::logic_error if
+  /// events came before the first step.
   Trace take();
 
  private:
@@ -154,13 +155,14 @@ class Recorder final : public CollideProbe {
   }
 
   /// In the paper's recursion, returns the face test that has just hit. Returns kNull for the complete query:
-  /// it opens regions before it tests what they hide, because bounds overlap, so that no event is the cause,
-  /// least of all the test that happened to come before.
+  /// it refines regions before it tests the faces behind them, because bounds overlap, so no event is the
+  /// cause.
   EventId cause_of_refinement() const {
     return settings_.request.recursion == Recursion::complete ? kNull : last_hit_;
   }
 
-  /// Returns 1 + the refine event of this step that put the simplex's face on the boundary; 0: there is none.
+  /// Returns 1 + the refine event of this step that put the simplex's face on the boundary, or 0 if there is
+  /// none.
   std::uint32_t brought_in(std::size_t side, SimplexId simplex) const {
     const LrbRep& rep = *reps_[side];
     const CellId cell = rep.outer_cell(rep.face_of_simplex(simplex));
@@ -184,7 +186,7 @@ class Recorder final : public CollideProbe {
   RecorderSettings settings_;
   Trace trace_;
   std::array<std::vector<std::uint32_t>, 2>
-      refined_by_;  ///< (regions) 1 + refine event, of this step or an old one
+      refined_by_;  ///< per region: 1 + refine event, of this step or an earlier one
   std::uint64_t seen_ = 0;
   std::uint64_t seen_before_step_ = 0;
   EventId step_event_ = 0;    ///< first event of the current step
@@ -193,7 +195,7 @@ class Recorder final : public CollideProbe {
   WallClock clock_;
 };
 
-// Writes down what a builder does, as events of a trace.
+// Records the events of a builder as a trace.
 //
 // ```
 // ConstructRecorder recorder(settings);
@@ -214,12 +216,11 @@ class ConstructRecorder final : public ConstructProbe {
   void end_pass(const PassEnd& end) override;
   void closed(std::uint32_t faces) override;
 
-  /// Returns true if no builder has told anything.
+  /// Returns true if no builder has reported an event.
   bool empty() const { return seen_ == 1; }
 
-  /// Replays what was recorded on the body that was built, which counts the faces of the hull, and hands the
-  /// trace over: one time step, at whose beginning the wrapper is the body itself. The recorder is then
-  /// empty.
+  /// Replays the recording on the built body, to count the faces of the front, and returns the trace: one
+  /// time step, which starts with the body itself as wrapper. The recorder is then empty.
   Trace take(const LrbRep& rep, const Pose& pose);
 
  private:
@@ -232,8 +233,8 @@ class ConstructRecorder final : public ConstructProbe {
   EventId pass_ = kNull, patch_ = kNull, cap_ = kNull;
 };
 
-/// Returns the trace of a body that came with its regions: what would have been told of passes that made
-/// them.
+/// Returns a construction trace for a body that was loaded with its regions: the events that the passes
+/// making these regions would have reported.
 Trace known_construction(const LrbRep& rep, const Pose& pose, const RecorderSettings& settings);
 
 }  // namespace lrb::trace

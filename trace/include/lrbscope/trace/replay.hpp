@@ -1,6 +1,6 @@
 #pragma once
-/// Applies events to wrappers. The recorder and the cursor both do it through here, so that a replay cannot
-/// differ from the recording.
+/// Applies events to wrappers. Used by both the recorder and the cursor, so that a replay cannot differ from
+/// the recording.
 
 #include <array>
 #include <cstdint>
@@ -17,18 +17,17 @@ namespace lrb::trace {
 /// The wrappers of one or two bodies, and the number of faces on the boundary of each.
 class Replay {
  public:
-  /// `bare`: wrappers begin with the body itself, as in constructions.
+  /// `bare`: wrappers start as the body itself, as in constructions.
   Replay(std::span<const LrbRep* const> reps, WrapperMode mode, bool bare = false);
 
-  /// Makes all wrappers the outermost ones again, or the bodies themselves.
+  /// Resets all wrappers to the outermost ones, or to the bodies themselves if `bare`.
   void reset();
-  /// Applies an event: a step resets all wrappers, a refinement or coarsening changes the wrapper of its
-  /// side, and so does a region that was built; other kinds do nothing. Returns true if it changes one.
-  /// `events` are those of the whole trace, in which causes are looked up; indices must be in range
-  /// (check_trace).
+  /// Applies an event. A step resets all wrappers; a refinement, a coarsening or a built region changes the
+  /// wrapper of its side; other kinds have no effect. Returns true if a wrapper changed. `events` are those
+  /// of the whole trace, used to look up causes; indices must be in range (check_trace).
   ///
-  /// In unregularised mode a wrapper is refined face by face: a refinement takes away the face that its
-  /// cause, a face test, compared. Without such a cause the whole region is refined.
+  /// In unregularised mode a wrapper is refined face by face: a refinement removes the face that its cause, a
+  /// face test, compared. Without such a cause the whole region is refined.
   bool apply(const Event& event, std::span<const Event> events);
 
   std::size_t body_count() const { return wrappers_.size(); }
@@ -42,9 +41,9 @@ class Replay {
   bool bare_;
 };
 
-// Rebuilds the state of a recorded run after any of its events, from the trace and the LRB-reps alone.
+// Restores the state of a recorded run after any of its events, from the trace and the LRB-reps alone.
 
-/// Throws InputError if an LRB-rep is not the one that was recorded. `who` names the body in the message.
+/// Throws InputError if an LRB-rep is not the recorded one. `who` names the body in the message.
 void require_same_body(const BodyInfo& recorded, const LrbRep& rep, const std::string& who);
 
 /// The two faces that a face test compared.
@@ -62,47 +61,47 @@ struct RefinedRegion {
   EventId event = kNull;
 };
 
-/// A position in a trace: after one of its events, or before all of them. The trace and the LRB-reps must
+/// A position in a trace: after one of its events, or before the first. The trace and the LRB-reps must
 /// outlive it.
 class Cursor {
  public:
-  /// Throws InputError if the trace is damaged (check_trace) or an LRB-rep is not the one that was recorded.
+  /// Throws InputError if the trace is damaged (check_trace) or an LRB-rep is not the recorded one.
   Cursor(const Trace& trace, const LrbRep& a, const LrbRep& b);
   Cursor(const Trace& trace, const LrbRep& a);
 
   const Trace& trace() const { return *trace_; }
   bool at_start() const { return position_ == kNull; }
-  /// Returns the event that the cursor stands after; kNull: it stands before the first.
+  /// Returns the event just before the cursor, or kNull if the cursor is before the first event.
   EventId position() const { return position_; }
 
-  /// Moves to just after `event`, forward or backward; kNull: to before the first. Takes time proportional to
-  /// the number of wrapper events in between or, when going backward, since the beginning of the event's
-  /// step. Throws std::out_of_range for an event that was not stored, and InputError if a wrapper does not
-  /// come out as recorded (the cursor is then at_start()).
+  /// Moves to just after `event`, forward or backward; kNull: before the first event. Takes time proportional
+  /// to the number of wrapper events in between or, when going backward, since the beginning of the event's
+  /// step. Throws std::out_of_range for an event that was not stored. Throws InputError if a wrapper differs
+  /// from the recording (the cursor is then at_start()).
   void seek(EventId event);
-  bool next();      ///< Moves on by one event; returns false at the end.
-  bool previous();  ///< Moves back by one event; returns false before the first.
-  /// Moves to the next event of a kind; returns false, and stays, if there is none.
+  bool next();      ///< Moves forward one event. Returns false at the end.
+  bool previous();  ///< Moves back one event. Returns false before the first.
+  /// Moves to the next event of a kind. Returns false without moving if there is none.
   bool next(EventKind kind);
 
-  /// Returns the event that the cursor stands after. Must not be called at_start().
+  /// Returns the event just before the cursor. Must not be called at_start().
   const Event& event() const { return trace_->events[position_]; }
-  /// Returns the time step that the cursor is in; nullptr at_start().
+  /// Returns the time step of the cursor, or nullptr at_start().
   const Step* step() const { return at_start() ? nullptr : &trace_->steps[step_]; }
-  /// Returns its index into Trace::steps. Must not be called at_start().
+  /// Returns the index of this step in Trace::steps. Must not be called at_start().
   std::size_t step_number() const { return step_; }
-  /// Returns the pose of a body in this step (body to world); the identity at_start().
+  /// Returns the pose of a body in this step (body to world). The identity at_start().
   Pose pose(Side side) const;
 
   std::size_t body_count() const { return replay_.body_count(); }
   const Wrapper& wrapper(Side side) const { return replay_.wrapper(side); }
   /// Returns the number of faces on the wrapper's boundary, in constant time.
   std::uint32_t boundary_size(Side side) const { return replay_.boundary_size(side); }
-  /// Returns the pair that is being compared: that of the event if it is a face test or a contact, that of
-  /// its cause if it is a refinement.
+  /// Returns the pair under test: the event's own if it is a face test or a contact, its cause's if it is a
+  /// refinement, else nullopt.
   std::optional<TestedPair> pair_under_test() const;
-  /// Returns the regions that are being refined together with the event: its own, and those of the events
-  /// just before it that have the same cause. Empty unless the event is a refinement.
+  /// Returns the regions refined together with the event: its own, and those of the events directly before it
+  /// with the same cause. Empty unless the event is a refinement.
   std::vector<RefinedRegion> refined() const;
 
  private:
@@ -113,7 +112,7 @@ class Cursor {
   const Trace* trace_;
   Replay replay_;
   std::vector<EventId> changes_;  ///< steps, and events that change a wrapper; ascending
-  std::size_t applied_ = 0;       ///< number of these events that the wrappers have gone through
+  std::size_t applied_ = 0;       ///< number of these events that have been applied to the wrappers
   EventId position_ = kNull;
   std::size_t step_ = 0;
 };

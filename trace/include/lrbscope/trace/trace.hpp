@@ -1,6 +1,6 @@
 #pragma once
-/// A recorded run: header, time steps and events as flat arrays. Everything else is made from it: replays
-/// (replay.hpp), numbers (counters.hpp), pictures (render/) and files (trace_json.hpp).
+/// A recorded run: header, time steps and events as flat arrays. Input of replays (replay.hpp), statistics
+/// (counters.hpp), pictures (render/) and files (trace_json.hpp).
 
 #include <array>
 #include <bit>
@@ -27,62 +27,61 @@
 
 namespace lrb::trace {
 
-// What is kept of further questions about a step: how far apart the bodies are, what kind of contact they
-// have, and how the bounds tightened while that was found out; and of the search for the first contact of a
-// whole motion.
+// Recorded results of further queries: distance, clash and the convergence of their bounds per step, and the
+// first contact of a whole motion.
 
 /// A DistanceResult without its features.
 struct MeasuredDistance {
-  double lower = 0, upper = 0;                    ///< hold the distance of the surfaces; 0 if they meet
-  bool solids_meet = false;                       ///< the surfaces do, or a body holds the other
-  std::array<std::array<double, 3>, 2> points{};  ///< of A's surface and of B's, `upper` apart
+  double lower = 0, upper = 0;  ///< bounds of the distance of the surfaces; 0 if they intersect
+  bool solids_meet = false;     ///< the surfaces intersect, or one body contains the other
+  std::array<std::array<double, 3>, 2> points{};  ///< on the surfaces of A and B, at distance `upper`
   std::vector<Bounds> course;
 
   friend bool operator==(const MeasuredDistance&, const MeasuredDistance&) = default;
 };
 
-/// A ClashResult without the pieces of the surfaces.
+/// A ClashResult without its contact regions.
 struct MeasuredClash {
   ClashKind kind = ClashKind::undecided;
   ClashReason reason = ClashReason::none;
   bool shares_faces = false;
   std::array<double, 2> distance{};                    ///< of the solids
-  std::optional<std::array<double, 2>> depth, volume;  ///< intervals; none: not known
-  std::array<double, 3> translation{};                 ///< of B, that parts the solids
+  std::optional<std::array<double, 2>> depth, volume;  ///< intervals; nullopt: not known
+  std::array<double, 3> translation{};                 ///< of B, that separates the solids
   std::vector<Bounds> course;                          ///< of the depth
 
   friend bool operator==(const MeasuredClash&, const MeasuredClash&) = default;
 };
 
-/// When the bodies first meet on the way that the steps are taken from, as a share of it.
+/// First contact of the motion that the steps sample. Times are shares of the motion.
 struct MeasuredApproach {
   MotionOutcome outcome = MotionOutcome::undecided;
-  double t0 = 0, t1 = 0;  ///< as FirstContactResult has them
-  /// The same two times as steps of the trace: 11.36 is after step 11 and before step 12. Below 0 if the
-  /// contact comes before step 0. None: no contact.
+  double t0 = 0, t1 = 0;  ///< as in FirstContactResult
+  /// The same two times in steps of the trace: 11.36 is between steps 11 and 12. Below 0 if the contact comes
+  /// before step 0. nullopt: no contact.
   std::optional<std::array<double, 2>> step;
-  std::optional<std::array<double, 2>> length;  ///< the way that B's origin has moved from step 0 by then
-  std::vector<ContactBounds> course;            ///< empty unless the search was watched
+  std::optional<std::array<double, 2>> length;  ///< path length of B's origin from step 0 until then
+  std::vector<ContactBounds> course;            ///< empty unless the search was probed
 
   friend bool operator==(const MeasuredApproach&, const MeasuredApproach&) = default;
 };
 
 MeasuredDistance measured(const DistanceResult& result, std::vector<Bounds> course);
 MeasuredClash measured(const ClashResult& result, std::vector<Bounds> course);
-/// Leaves step and length out, which the steps of the trace decide.
+/// Leaves step and length empty; they depend on the steps of the trace.
 MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> course);
 
-/// Return it in a few words: "[0.25, 0.25] in 31 looks".
+/// Return a one-line summary: "[0.25, 0.25] in 31 looks".
 std::string words(const MeasuredDistance& m);
 std::string words(const MeasuredClash& m);
 std::string words(const MeasuredApproach& m);
 
-/// The version of the trace format that is written. A reader takes it and older ones, and refuses newer ones.
-/// Version 3 has names of steps that say what was found, an arrow to each face test, the events from
-/// EventLevel::nodes on, and those of constructions.
+/// Version of the trace format that is written. Readers accept it and older ones, and reject newer ones.
+/// Version 3 added step names that state the result, a flow to each face test, the events at
+/// EventLevel::nodes and above, and construction events.
 inline constexpr std::uint32_t kTraceVersion = 3;
 
-/// The name of the format in a trace's metadata.
+/// Name of the format in a trace's metadata.
 inline constexpr std::string_view kTraceFormat = "lrbscope trace";
 
 /// Returns the version of lrbscope that this library was built from, e.g. "2.0.0".
@@ -91,17 +90,17 @@ const char* lrbscope_version();
 /// Index of an event in Trace::events; kNull: none.
 using EventId = std::uint32_t;
 
-/// The numbers of a node pair: see NodeVisit.
+/// Work at a node pair: see NodeVisit.
 struct NodeWork {
   std::uint8_t box_tests = 0, met = 0, parted = 0, certain = 0;
 
   friend bool operator==(const NodeWork&, const NodeWork&) = default;
 };
-/// Why a pair of nodes, of which no two boxes met, was not descended. All three fit a byte.
+/// Why a node pair without overlapping boxes was not descended. All three members fit a byte.
 struct NodeEnd {
   NodeStep step = NodeStep::descend_both;
-  BoxAxis axis = BoxAxis::a1;  ///< along which the nodes' own boxes are furthest apart, or overlap least
-  bool apart = false;          ///< these are apart
+  BoxAxis axis = BoxAxis::a1;  ///< axis of the largest separation, or least overlap, of the nodes' own boxes
+  bool apart = false;          ///< the nodes' own boxes are separate
 
   static NodeEnd from_bits(std::uint8_t bits) {
     return {static_cast<NodeStep>(bits & 7), static_cast<BoxAxis>(bits >> 3 & 7), (bits >> 6 & 1) != 0};
@@ -112,8 +111,7 @@ struct NodeEnd {
   }
 };
 
-/// What an event says, by its kind: the numbers of an Event. Event::of() packs them, and the accessor of the
-/// kind's name unpacks them.
+/// The data of an event, by kind. Event::of() packs them; the accessor named after the kind unpacks them.
 namespace payload {
 
 struct Step {
@@ -122,7 +120,8 @@ struct Step {
 struct FaceTest {
   SimplexId a{}, b{};
   exact::Meet meet = exact::Meet::disjoint;
-  std::uint16_t depth_a = 0, depth_b = 0;  ///< regions between a face and the outside; 65535: or more
+  /// Number of regions between a face and the outside; saturates at 65535.
+  std::uint16_t depth_a = 0, depth_b = 0;
   TestedBy tested_by = TestedBy::untold;
 };
 /// Refine, coarsen, region.
@@ -130,7 +129,7 @@ struct WrapperChange {
   RegionId region{};
   std::uint32_t faces = 0;              ///< added, removed, or covered
   std::uint32_t wrapper_faces = kNull;  ///< of the wrapper afterwards; kNull: not known
-  Side side = Side::a;                  ///< whose wrapper
+  Side side = Side::a;                  ///< the wrapper's body
 };
 struct Contact {
   SimplexId a{}, b{};
@@ -144,15 +143,15 @@ struct NodePair {
   std::uint32_t a = 0, b = 0;  ///< the nodes
   NodeWork work;
   NodeEnd end;
-  std::uint16_t pairs_above = 0;  ///< 65535: or more
+  std::uint16_t pairs_above = 0;  ///< saturates at 65535
 };
 struct PlaneTest {
   SimplexId a{}, b{};
-  Side whose = Side::a;  ///< whose plane
+  Side whose = Side::a;  ///< body of the plane
 };
 struct Point {
   VertexId vertex{};
-  Side whose = Side::a;  ///< whose vertex
+  Side whose = Side::a;  ///< body of the vertex
   Where where{};
 };
 struct PhaseBegin {
@@ -172,13 +171,13 @@ struct Pass {
 struct Patch {
   VertexId vertex{};
   std::uint32_t faces = 0;
-  std::uint16_t interior = 0;  ///< as GrownPatch::interior; 65535: or more
+  std::uint16_t interior = 0;  ///< as GrownPatch::interior; saturates at 65535
 };
 struct Cap {
   std::uint32_t faces = 0, covered = 0;
   CapVerdict verdict{};
   bool careful = false;
-  float off = std::numeric_limits<float>::quiet_NaN();  ///< mesh's unit; not finite: not measured
+  float off = std::numeric_limits<float>::quiet_NaN();  ///< mesh units; not finite: not measured
 };
 struct Merged {
   RegionId into{};
@@ -195,16 +194,16 @@ struct Closed {
 
 }  // namespace payload
 
-/// One event, 24 bytes. The numbers from `a` to `detail`, but for `cause`, are storage: what they mean
+/// One event, 24 bytes. Apart from `cause`, the members from `a` to `detail` are storage, and their meaning
 /// depends on the kind. Use of() and the accessors, each for events of its kind only.
 struct Event {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   /// An earlier event. Contact: the face test that found it. Refine: the face test that hit just before
-  /// (kNull in the complete query, which opens regions before it tests). Face test: the later of the
-  /// refinements that brought in its faces. Node pair: the pair above. Plane test: the pair of leaves. End:
-  /// the beginning of the phase. Patch, pass end: the pass. Cap: the patch. Region, merged: the cap, or the
-  /// pass if it has none.
+  /// (kNull in the complete query, which refines regions before it tests). Face test: the later of the
+  /// refinements that exposed its faces. Node pair: the parent pair. Plane test: the pair of leaves. End: the
+  /// beginning of the phase. Patch, pass end: the pass. Cap: the patch. Region, merged: the cap, or the pass
+  /// if it has none.
   EventId cause = kNull;
   std::uint32_t boundary = kNull;
   std::uint16_t depth_a = 0;
@@ -301,10 +300,10 @@ struct Event {
     return {.a = p.regions, .b = p.outer_faces, .kind = EventKind::closed};
   }
 
-  // What is known only later.
+  // Values known only later.
   void set_tested_by(TestedBy how) { detail = static_cast<std::uint8_t>(how); }  ///< face test
   void set_node_end(NodeEnd end) { detail = end.bits(); }                        ///< node pair
-  /// Refine, coarsen, region, pass end: the number of faces of the wrapper afterwards.
+  /// Refine, coarsen, region, pass end: number of faces of the wrapper after the event.
   void set_wrapper_faces(std::uint32_t faces) { boundary = faces; }
 
   payload::Step step() const { return {a}; }
@@ -326,7 +325,7 @@ struct Event {
   payload::PassEnd pass_end() const { return {a, b, depth_a != 0, boundary}; }
   payload::Closed closed() const { return {a, b}; }
 
-  // Single numbers of payloads, for readers that need no more.
+  // Single members of payloads.
   SimplexId simplex(Side of) const { return SimplexId(of == Side::a ? a : b); }  ///< face test, contact
   RegionId region() const { return RegionId(a); }                         ///< refine, coarsen, region, merged
   TestedBy tested_by() const { return static_cast<TestedBy>(detail); }    ///< face test
@@ -337,9 +336,9 @@ struct Event {
   BuildStage stage() const { return static_cast<BuildStage>(detail); }    ///< pass
   CapVerdict verdict() const { return static_cast<CapVerdict>(detail); }  ///< cap
   /// Pass: maximum deviation allowed for caps (0: unlimited). Cap: its deviation (not finite: not measured).
-  /// Mesh's unit.
+  /// Mesh units.
   float off() const { return std::bit_cast<float>(boundary); }
-  /// Returns true if it changes a wrapper: the event has a wrapper_change().
+  /// Returns true if the event changes a wrapper, that is, if it has a wrapper_change().
   bool changes_wrapper() const {
     return kind == EventKind::refine || kind == EventKind::coarsen || kind == EventKind::region;
   }
@@ -348,16 +347,16 @@ struct Event {
 };
 static_assert(sizeof(Event) == 24);
 
-/// Where the time stamps (`ts`) of a written trace come from.
+/// Source of the time stamps (`ts`) of a written trace.
 enum class Clock : std::uint8_t {
-  event,  ///< the event's number, so that the same run gives the same bytes
-  wall,   ///< steady_clock, read once for each event
+  event,  ///< event numbers, so that equal runs give equal bytes
+  wall,   ///< steady_clock, read once per event
 };
 constexpr auto words_of(Clock) {
   return std::to_array<EnumWord<Clock>>({{Clock::event, "event"}, {Clock::wall, "wall"}});
 }
 
-/// What a trace says about a body: enough to refuse a different one.
+/// Identity of a recorded body, used to reject a different one.
 struct BodyInfo {
   std::string name;
   std::string source;      ///< the file or generator, as given
@@ -377,7 +376,7 @@ struct BodyInfo {
 
 BodyInfo describe_body(const LrbRep& rep, std::string source);
 
-/// What a trace keeps of a time step's answer: CollideResult without its lists.
+/// A time step's answer: CollideResult without its lists.
 struct StepResult {
   Relation relation = Relation::separate;
   Answer interiors_overlap = Answer::unknown;
@@ -387,19 +386,19 @@ struct StepResult {
   double error_bound = 0;  ///< as in CollideResult; kept, like `finished`, for coarse queries only
   bool finished = true;
   std::optional<Separation> separation = {};
-  std::optional<MeasuredDistance> distance = {};  ///< if it was asked for
-  std::optional<MeasuredClash> clash = {};        ///< if it was asked for
+  std::optional<MeasuredDistance> distance = {};  ///< if requested
+  std::optional<MeasuredClash> clash = {};        ///< if requested
 
   friend bool operator==(const StepResult&, const StepResult&) = default;
 };
 
-/// One time step: one query of the two bodies, with both wrappers outermost at its beginning.
+/// One time step: one query of the two bodies, which starts with both outermost wrappers.
 struct Step {
-  std::uint32_t index = 0;        ///< number of the step, as the caller gave it; ascending
+  std::uint32_t index = 0;        ///< number of the step as given by the caller; ascending
   Pose pose_a, pose_b;            ///< body to world
-  EventId first_event = 0;        ///< its step event; events.size() if the cap had been reached before it
+  EventId first_event = 0;        ///< its step event; events.size() if the cap was reached before it
   std::uint64_t events_seen = 0;  ///< number of its events, stored or not
-  bool finished = false;          ///< end_step() was called: `result` is valid
+  bool finished = false;          ///< end_step() was called; `result` is valid
   StepResult result;
 };
 
@@ -407,18 +406,19 @@ struct TraceHeader {
   std::string lrbscope = lrbscope_version();
   std::string scenario;  ///< name
   std::uint64_t scenario_hash =
-      0;  ///< hash of the scenario file's bytes, or of whatever else defines the run's input
+      0;  ///< hash of the scenario file's bytes, or of the other input that defines the run
   std::vector<BodyInfo> bodies;  ///< A and B, or A alone
   CollideRequest request;
   Clock clock = Clock::event;
-  std::uint32_t event_cap = 0;  ///< largest number of events that are stored
+  std::uint32_t event_cap = 0;  ///< maximum number of stored events
   EventLevel level = EventLevel::faces;
-  std::string engine;     ///< the one that was recorded, in words; empty: ours
-  bool coherent = false;  ///< each step went on from the one before, by a CoherentQuery
-  /// The construction of one body: its wrapper, the hull, begins with the body itself, and grows.
+  std::string engine;     ///< name of the recorded engine; empty: lrbscope
+  bool coherent = false;  ///< each step continues from the previous one, by a CoherentQuery
+  /// The construction of one body: its wrapper, the front, starts as the body itself and grows.
   bool construction = false;
-  std::optional<MeasuredApproach> first_contact;  ///< of the motion; none: nobody looked for it
-  std::string pictures;  ///< how the run was drawn, as a JSON object that traces only carry; empty: not said
+  std::optional<MeasuredApproach> first_contact;  ///< of the motion; nullopt: not searched for
+  std::string pictures;  ///< rendering options of the run, as a JSON object that is stored unread; empty: not
+                         ///< recorded
 };
 
 struct Trace {
@@ -426,31 +426,31 @@ struct Trace {
   std::vector<Step> steps;
   std::vector<Event> events;
   std::vector<std::uint64_t>
-      wall_ns;  ///< (|events|), strictly ascending, since the recorder began; empty on the event clock
-  std::uint64_t events_seen = 0;  ///< more than events.size() if the cap cut the recording
+      wall_ns;  ///< (|events|), strictly ascending, since the recorder was made; empty on the event clock
+  std::uint64_t events_seen = 0;  ///< more than events.size() if the cap truncated the recording
 
   bool truncated() const { return events_seen > events.size(); }
   /// Returns the stored events of a step.
   std::span<const Event> events_of(std::size_t step) const;
-  /// Returns the step (index into `steps`) that an event belongs to.
+  /// Returns the step (index into `steps`) that contains an event.
   std::size_t step_of(EventId event) const;
 };
 
-/// Returns true if the traces are equal in every bit that a file must keep (of poses: the doubles' bits).
+/// Returns true if the traces are equal in every bit that a file stores (poses: the bits of the doubles).
 bool operator==(const Trace& x, const Trace& y);
 bool equal(const Pose& x, const Pose& y);
 
-/// Checks that all indices are in range and that steps and events fit together. Throws InputError: "`where`:
-/// event 12: ...". Whoever reads a trace that passes cannot be led out of bounds.
+/// Checks that all indices are in range and that steps and events agree. Throws InputError: "`where`: event
+/// 12: ...". A trace that passes can be read without further bounds checks.
 void check_trace(const Trace& trace, const std::string& where);
 
-// The words that files and messages use for what a trace holds.
+// Names of enumerators and fields in files and messages.
 
 using lrb::all_names;
 using lrb::from_name;
 using lrb::name_of;
 
-/// The names of an event's numbers `a` and `b`; empty: the kind has no such number.
+/// Names of an event's numbers `a` and `b`; empty if the kind has no such number.
 struct EventFields {
   std::string_view a, b;
 };
@@ -460,7 +460,7 @@ constexpr EventFields fields_of(EventKind kind) {
 #undef LRB_EVENT
   return fields[static_cast<std::size_t>(kind)];
 }
-/// Returns the name of a contact's number where it is a pseudo simplex, which happens in answers of coarse
+/// Returns the name of a contact's number if it is a pseudo simplex, which occurs in answers of coarse
 /// queries.
 constexpr std::string_view pseudo_simplex(Side side) {
   return side == Side::a ? "pseudo simplex of A" : "pseudo simplex of B";
