@@ -54,7 +54,7 @@ class FigureJob {
     Figure out;
     out.panels = words_.size();
     out.left_out = chosen_.left_out;
-    out.caption = caption();
+    out.caption = run::caption_of(recorded_, words_);
     layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
                       figure_.legend ? bar_ : std::nullopt, figure_.caption ? out.caption : "", options());
     const auto paint = [&](render::Canvas& canvas) { paint_all(canvas, progress); };
@@ -184,13 +184,6 @@ class FigureJob {
       for (std::size_t i = 0; i < block.seen.size(); ++i, ++panel)
         block.texts.push_back((letters ? render::panel_letter(panel) : "") +
                               (letters && figure_.titles ? " " : "") + (figure_.titles ? words_[panel] : ""));
-  }
-
-  std::string caption() const {
-    std::string text = recorded_.purpose.empty() ? recorded_.title + "." : recorded_.purpose;
-    for (std::size_t i = 0; i < words_.size(); ++i)
-      text += (i == 0 ? " " : "; ") + (words_.size() > 1 ? render::panel_letter(i) + " " : "") + words_[i];
-    return text + ".";
   }
 
   void paint_all(render::Canvas& canvas, const run::ProgressReport& progress) {

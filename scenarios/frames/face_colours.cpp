@@ -80,12 +80,12 @@ std::array<double, 2> scale_without_the_smallest(std::span<const std::vector<dou
 
 namespace {
 
-struct Look {
+struct LabelledStyle {
   BoxStyle lines;
-  const char* words;
+  const char* label;
 };
 
-Look look_of(Side side, bool met, const render::Style& style) {
+LabelledStyle style_of_boxes(Side side, bool met, const render::Style& style) {
   static constexpr const char* kWords[2][2] = {
       {"A: boxes of nodes that parted", "A: boxes of nodes that met"},
       {"B: boxes of nodes that parted", "B: boxes of nodes that met"}};
@@ -105,13 +105,14 @@ void add_node_boxes(render::Scene& scene, const trace::TreeShape& tree, Side sid
     const trace::ShapeBox box = tree.box(n);
     std::array<Eigen::Vector3d, 3> half;
     for (std::size_t i = 0; i < half.size(); ++i) half[i] = pose.r * box.half[i];
-    add_box(scene.list, pose.apply(box.centre), half, look_of(side, met, style).lines);
+    add_box(scene.list, pose.apply(box.centre), half, style_of_boxes(side, met, style).lines);
     any[met ? 1 : 0] = true;
   }
   for (const bool met : {true, false})
     if (any[met ? 1 : 0])
       scene.key.push_back({met ? render::LegendItem::Mark::line : render::LegendItem::Mark::dashed,
-                           look_of(side, met, style).lines.colour, look_of(side, met, style).words});
+                           style_of_boxes(side, met, style).lines.colour,
+                           style_of_boxes(side, met, style).label});
 }
 
 }  // namespace lrb::run

@@ -133,7 +133,9 @@ struct Montage {
     options.style = spec.style;
     std::vector<std::string> files = {"montage.png", "caption.txt"};
     writer.push(folder + "/montage.png", render::montage(panels, options), png);
-    const std::string words = caption(p.purpose.empty() ? p.title + "." : p.purpose);
+    std::vector<std::string> texts;
+    for (const render::Panel& panel : panels) texts.push_back(panel.caption);
+    const std::string words = caption_of(p, texts);
     io::write_text(folder + "/caption.txt", words + "\n");
     if (svgs.empty()) return files;
     render::SvgMontageOptions svg_options;
@@ -145,15 +147,6 @@ struct Montage {
                    render::svg_montage(svgs, render::lay_out(panels, options), svg_options));
     files.insert(files.begin() + 1, "montage.svg");
     return files;
-  }
-
- private:
-  /// Returns the caption to be printed under the figure.
-  std::string caption(std::string text) const {
-    for (std::size_t i = 0; i < panels.size(); ++i)
-      text += (i == 0 ? " " : "; ") + (panels.size() > 1 ? render::panel_letter(i) + " " : "") +
-              panels[i].caption;
-    return text + ".";
   }
 };
 
@@ -177,6 +170,13 @@ void check_colours(const RecordedRun& recorded, const render::FrameSpec& spec) {
 }
 
 }  // namespace
+
+std::string caption_of(const RecordedRun& recorded, const std::vector<std::string>& panels) {
+  std::string text = recorded.purpose.empty() ? recorded.title + "." : recorded.purpose;
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    text += (i == 0 ? " " : "; ") + (panels.size() > 1 ? render::panel_letter(i) + " " : "") + panels[i];
+  return text + ".";
+}
 
 const std::vector<CollideResult>& results_of(const RecordedRun& recorded) {
   static const std::vector<CollideResult> none;

@@ -33,6 +33,9 @@ struct RecordedRun {
   std::string value_name = {};
 };
 
+/// Returns the caption to print below a figure: the purpose, then the texts of its panels.
+std::string caption_of(const RecordedRun& recorded, const std::vector<std::string>& panels);
+
 /// Returns the results of a run's steps; empty if they are not known.
 const std::vector<CollideResult>& results_of(const RecordedRun& recorded);
 
