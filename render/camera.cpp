@@ -87,16 +87,20 @@ ViewDirection view_beside(const Vector3d& axis, const Vector3d& up, double eleva
   return {std::cos(elevation) * side.normalized() + std::sin(elevation) * vertical, up};
 }
 
+Eigen::AlignedBox3d bounds(std::span<const Vector3d> points) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : points) box.extend(p);
+  return box;
+}
+
 Camera fit_camera(std::span<const Vector3d> points, double width, double height, const FitOptions& options) {
   check_points(points);
   if (!(options.view.from.squaredNorm() > 0)) throw InputError("expected a camera direction other than zero");
   // Step 1: the direction is given, so only a translation is unknown. Work in the camera's axes.
   const Matrix3d axes = axes_of(-options.view.from, options.view.up);
-  // Points are relative to their centroid, for precision far from the origin.
-  Vector3d origin = Vector3d::Zero();
-  Eigen::AlignedBox3d box;
-  for (const Vector3d& p : points) box.extend(p);
-  origin = box.center();
+  // Points are relative to the centre of their box, for precision far from the origin.
+  const Eigen::AlignedBox3d box = bounds(points);
+  const Vector3d origin = box.center();
 
   // Step 2: the opening angles inside the margins.
   const double free = options.margin * std::min(width, height);
@@ -153,8 +157,7 @@ Camera fit_top(std::span<const Vector3d> points, double width, double height, do
 Camera fit_contact(std::span<const Vector3d> contact, const Eigen::AlignedBox3d& scene, double width,
                    double height, const FitOptions& options, double context, double least) {
   check_points(contact);
-  Eigen::AlignedBox3d box;
-  for (const Vector3d& p : contact) box.extend(p);
+  const Eigen::AlignedBox3d box = bounds(contact);
   // A cube inscribed in a ball around the contact; the ball grows with the contact and with the scene.
   const double radius = 0.5 * (context * box.diagonal().norm() + least * scene.diagonal().norm());
   const Vector3d r = Vector3d::Constant(radius / std::sqrt(3.0));

@@ -85,15 +85,11 @@ report::Gnuplot contact_chart(const std::vector<ContactBounds>& course) {
   return g;
 }
 
-run::AnswerLook look_of(const DrawOptions& options) {
-  run::AnswerLook look;
-  render::FrameSpec frame;
-  frame.width = look.width;
-  frame.height = look.height;
-  apply(options.look, frame);
-  look.width = frame.width;
-  look.height = frame.height;
-  if (!frame.views.empty()) look.up = frame.views[0].up;
+render::Look look_of(const DrawOptions& options) {
+  render::FrameSpec look;
+  look.width = run::kAnswerWidth;
+  look.height = run::kAnswerHeight;
+  apply(options.look, look);
   return look;
 }
 

@@ -29,9 +29,9 @@ struct DrawOptions {
   bool is_watched() const { return course || !chart.empty(); }
 };
 /// Returns the style of the pictures. Throws InputError for an unsupported size.
-run::AnswerLook look_of(const DrawOptions& options);
-/// Adds --draw, --size, --up, --chart and, unless another option sets it, --course. `picture`: description of
-/// the picture for --draw.
+render::Look look_of(const DrawOptions& options);
+/// Adds --draw, --size, --up, --chart and, unless there is another option for it, --course. `picture`: what
+/// --draw draws.
 void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture,
                       bool with_course = true);
 

@@ -123,7 +123,7 @@ Row headings(const ClashOptions& o) {
 int run_clash(ClashOptions o, const Globals& globals) {
   if (!o.along.empty()) o.request.along = Eigen::Vector3d(o.along[0], o.along[1], o.along[2]);
   const PoseLines list(o.poses);
-  const run::AnswerLook look = look_of(o.draw);
+  const render::Look look = look_of(o.draw);
   const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
   check_request(a.rep, o.request);
   note(globals, a.notes);
@@ -146,8 +146,8 @@ int run_clash(ClashOptions o, const Globals& globals) {
     else
       print(line_of(i, result, course, o, us));
     if (!o.draw.picture.empty())
-      run::draw_clash(a.rep, Pose{}, b.rep, list.poses[i], result, look,
-                      picture_name(o.draw.picture, i, list.poses.size()));
+      run::write_picture(run::picture_of(result, {a.rep, Pose{}, b.rep, list.poses[i]}, look),
+                         picture_name(o.draw.picture, i, list.poses.size()));
     if (!o.draw.chart.empty() && !course.empty())
       report::draw(bounds_chart(course, has_depth ? "depth" : "distance",
                                 has_depth ? "queries, expansion steps of the EPA polytope"

@@ -5,7 +5,7 @@
 
 #include "render/pictures/panel.hpp"
 #include "scenarios/frames/animation.hpp"
-#include "scenarios/frames/chosen_view.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"

@@ -57,7 +57,7 @@ std::string line_of(std::size_t pose, const DistanceResult& result, const std::v
 int run_distance(const DistanceOptions& o, const Globals& globals) {
   const PoseLines list(o.poses);
   check_request(o.request);
-  const run::AnswerLook look = look_of(o.draw);
+  const render::Look look = look_of(o.draw);
   const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
   note(globals, a.notes);
   note(globals, b.notes);
@@ -72,7 +72,7 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
     const DistanceResult result = ask(o.draw.is_watched() ? &told : nullptr);
     print(line_of(i, result, told.course, o, o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0));
     if (!o.draw.picture.empty())
-      run::draw_distance(a.rep, Pose{}, b.rep, list.poses[i], result, look,
+      run::write_picture(run::picture_of(result, {a.rep, Pose{}, b.rep, list.poses[i]}, look),
                          picture_name(o.draw.picture, i, list.poses.size()));
     if (!o.draw.chart.empty())
       report::draw(bounds_chart(told.course, "distance", "pairs of boxes expanded, pairs of faces measured"),

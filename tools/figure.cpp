@@ -6,7 +6,7 @@
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/crowd/crowd_trace.hpp"
-#include "scenarios/frames/chosen_view.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -119,7 +119,7 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source) {
   if (o.close_up) frames.views = whole_and_contact(frames.views);
   PictureOptions picture = o.picture;
   picture.dpi.reset();  // set for the whole figure
-  if (!picture.style) picture.style = render::FrameSpec::Style::print;
+  if (!picture.style) picture.style = render::StyleName::print;
   apply(picture, frames);
   run::check_views(frames.views, source.recording.bodies[0].rep.dim());
   if (source.own_view && picture.camera.from.empty()) {

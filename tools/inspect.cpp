@@ -16,8 +16,8 @@
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/bodies/region_figures.hpp"
-#include "scenarios/frames/chosen_view.hpp"
 #include "scenarios/frames/frames.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
@@ -229,7 +229,7 @@ Json layers_json(const LrbRep& rep) {
 }
 
 /// Returns the drawing options. For findings (`drawing`), the height is computed unless a size is given.
-render::FrameSpec sheet_frames(const InspectOptions& o, bool drawing) {
+render::Look sheet_look(const InspectOptions& o, bool drawing) {
   if (!o.render && o.drawing.empty()) {
     const CameraOptions& camera = o.pictures.camera;
     const std::pair<bool, const char*> of_pictures[] = {{!o.pictures.size.empty(), "--size"},
@@ -250,29 +250,27 @@ render::FrameSpec sheet_frames(const InspectOptions& o, bool drawing) {
   frames.height = drawing ? 0 : run::kBodySheetHeight;
   apply(o.pictures, frames);
   if (frames.height > 0) run::check_frame_size(frames);
+  run::to_pixels(frames);
   return frames;
 }
 
 void draw_findings(const run::FaultyMesh& faulty, const InspectOptions& o, Json& j,
                    std::vector<std::string>& notes) {
   const std::string& path = o.drawing;
-  const auto& findings = faulty.report.findings;
-  const bool any =
-      std::any_of(findings.begin(), findings.end(), [](const MeshFinding& f) { return f.count > 0; });
-  const render::FrameSpec frames = sheet_frames(o, true);
-  run::check_views(frames.views, faulty.mesh.dim);
-  if (any) make_folder_of(path);
-  if (any && run::draw_findings(faulty, path, frames)) {
+  const render::Look look = sheet_look(o, true);
+  run::check_views(look.views, faulty.mesh.dim);
+  j["drawing"] = nullptr;
+  if (const auto picture = run::picture_of(faulty, look)) {
+    run::write_picture(*picture, path, look.dpi);
     j["drawing"] = path;
     return;
   }
-  j["drawing"] = nullptr;
   notes.push_back(faulty.mesh.name + ": no findings to draw; " + path + " was not written");
 }
 
 /// Measures the regions, and draws the ten with the largest waste if pictures are requested (`picture` is not
 /// empty).
-void tell_regions(const LrbRep& rep, const InspectOptions& o, const render::FrameSpec& frames,
+void tell_regions(const LrbRep& rep, const InspectOptions& o, const render::Look& look,
                   const std::string& picture, Json& j) {
   if (rep.region_count() == 0)
     throw InputError(rep.name() +
@@ -285,8 +283,9 @@ void tell_regions(const LrbRep& rep, const InspectOptions& o, const render::Fram
     std::vector<run::ShownRegion> shown;
     for (std::size_t i = 0; i < std::min(kWorst, regions.size()); ++i)
       shown.push_back({regions[i].region, region_caption(regions[i])});
-    run::draw_region_sheet(rep, bodies::waste_over_faces(rep, regions), "waste per face", shown, picture,
-                           frames);
+    run::write_picture(
+        run::region_sheet(rep, bodies::waste_over_faces(rep, regions), "waste per face", shown, look),
+        picture, look.dpi);
   }
   if (!o.tried) return;
   const std::vector<bodies::Trial> trials = bodies::try_settings(rep, o.threads);
@@ -294,9 +293,9 @@ void tell_regions(const LrbRep& rep, const InspectOptions& o, const render::Fram
   j["advice"] = bodies::advice(rep, trials);
 }
 
-void look_broadside(const LrbRep& rep, render::FrameSpec& frames) {
-  if (frames.views.empty()) frames.views.emplace_back();
-  frames.views[0].from = run::broadside(run::box_of(rep), frames.views[0].up);
+void look_broadside(const LrbRep& rep, render::Look& look) {
+  if (look.views.empty()) look.views.emplace_back();
+  look.views[0].from = run::broadside(run::box_of(rep), look.views[0].up);
 }
 
 std::string as_text(const Json& j) {
@@ -327,7 +326,7 @@ std::string as_text(const Json& j) {
 }
 
 int run_inspect(const InspectOptions& o, const Globals& globals) {
-  render::FrameSpec frames = sheet_frames(o, false);
+  render::Look look = sheet_look(o, false);
   Json j;
   std::unique_ptr<LrbRep> rep;
   std::vector<std::string> notes;
@@ -369,16 +368,15 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
   }
   std::string picture;
   if (o.render) {
-    run::check_views(frames.views, rep->dim());
+    run::check_views(look.views, rep->dim());
     picture = o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() +
                                       (o.regions ? "-regions.png" : ".png")
                                 : o.picture;
-    make_folder_of(picture);
-    if (o.pictures.camera.from.empty()) look_broadside(*rep, frames);
-    if (!o.regions) run::draw_body_sheet(*rep, picture, frames);
+    if (o.pictures.camera.from.empty()) look_broadside(*rep, look);
+    if (!o.regions) run::write_picture(run::body_sheet(*rep, look), picture, look.dpi);
     j["picture"] = picture;
   }
-  if (o.regions) tell_regions(*rep, o, frames, picture, j);
+  if (o.regions) tell_regions(*rep, o, look, picture, j);
   note(globals, notes);
   print(o.json ? one_line(j) : as_text(j));
   return valid ? kOk : kMismatch;

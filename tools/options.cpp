@@ -144,7 +144,7 @@ void add_size_options(CLI::App& app, PictureOptions& options) {
 }
 
 void add_style_option(CLI::App& app, PictureOptions& options, const std::string& usual) {
-  add_choice<render::FrameSpec::Style>(
+  add_choice<render::StyleName>(
       app, "--style", options.style,
       "print: black on white, thin lines, distinguishable in greyscale; dark: for slides [" + usual + "]");
 }

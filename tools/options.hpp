@@ -134,7 +134,7 @@ struct PictureOptions {
   std::optional<double> dpi;
   std::optional<bool> svg;
   bool transparent = false;
-  std::optional<render::FrameSpec::Style> style;
+  std::optional<render::StyleName> style;
   bool titles = true, legend = true;
   std::optional<render::FrameSpec::At> at;
   std::optional<std::uint32_t> every, most;

@@ -2,7 +2,7 @@
 #include <optional>
 #include <utility>
 
-#include "render/pictures/explain_picture.hpp"
+#include "render/pictures/answer_picture.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
@@ -156,8 +156,8 @@ int run_query(const QueryOptions& o, const Globals& globals) {
     const double us = o.repeat > 0 ? repeated_us(a.rep, b.rep, poses[i], o, workspace) : 0;
     print(line_of(i, result, extra_answers(a.rep, b.rep, poses[i], o, workspace), o, us, a.rep, b.rep));
     if (!o.draw.empty() && result.separation)
-      run::draw_separation(a.rep, Pose{}, b.rep, poses[i], *result.separation,
-                           picture_name(o.draw, i, poses.size()));
+      run::write_picture(run::picture_of(*result.separation, {a.rep, Pose{}, b.rep, poses[i]}),
+                         picture_name(o.draw, i, poses.size()));
     progress.set(i + 1);
   }
   return kOk;

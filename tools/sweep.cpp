@@ -99,7 +99,7 @@ std::vector<Motion> motions_of(const std::vector<io::PosePair>& list, const std:
 int run_sweep(const SweepOptions& o, const Globals& globals) {
   const std::vector<io::PosePair> list = io::read_motions(o.motions);
   check_request(o.request);
-  const run::AnswerLook look = look_of(o.draw);
+  const render::Look look = look_of(o.draw);
   const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
   note(globals, a.notes);
   note(globals, b.notes);
@@ -116,8 +116,8 @@ int run_sweep(const SweepOptions& o, const Globals& globals) {
     const FirstContactResult result = ask(o.draw.is_watched() ? &told : nullptr);
     print(line_of(i, result, told.course, o, o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0));
     if (!o.draw.picture.empty())
-      run::draw_first_contact(a.rep, b.rep, motions[i], result, look,
-                              picture_name(o.draw.picture, i, motions.size()));
+      run::write_picture(run::picture_of(result, a.rep, b.rep, motions[i], look),
+                         picture_name(o.draw.picture, i, motions.size()));
     if (!o.draw.chart.empty())
       report::draw(contact_chart(told.course), picture_name(o.draw.chart, i, motions.size()));
     progress.set(i + 1);

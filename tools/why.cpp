@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "render/pictures/explain_picture.hpp"
+#include "render/pictures/answer_picture.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/io/poses.hpp"
@@ -28,13 +28,6 @@ struct WhyOptions {
   bool json = false;
 };
 
-/// Two bodies and their poses.
-struct Scene {
-  const LrbRep& a;
-  const LrbRep& b;
-  Pose pose_a, pose_b;
-};
-
 Pose pose_of(const WhyOptions& o) {
   if (o.poses.empty()) return {};
   const std::vector<Pose> poses = io::open_poses(o.poses).poses;
@@ -44,32 +37,27 @@ Pose pose_of(const WhyOptions& o) {
   return poses[o.pose];
 }
 
-int explain(const WhyOptions& o, const Scene& scene) {
+int explain(const WhyOptions& o, const run::PosedBodies& bodies) {
+  const auto& [a, pose_a, b, pose_b] = bodies;
   if (o.pair.empty()) {
-    const WalkExplanation e = explain_walk(scene.a, scene.pose_a, scene.b, scene.pose_b);
+    const WalkExplanation e = explain_walk(a, pose_a, b, pose_b);
     if (!o.picture.empty() && !e.result.pairs.empty())
       throw InputError(
           "-o: the bodies intersect, so there is no separation to draw; use --pair to draw two of their faces");
-    if (!o.picture.empty()) make_folder_of(o.picture);
-    if (!o.picture.empty()) run::draw_parting(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
+    if (!o.picture.empty()) run::write_picture(run::picture_of(e, bodies), o.picture);
     print(o.json ? one_line(run::explanation_json(e)) : run::explanation_text(e));
     return kOk;
   }
-  const PairExplanation e = explain_pair(scene.a, scene.pose_a, scene.b, scene.pose_b,
-                                         {SimplexId(o.pair[0]), SimplexId(o.pair[1])});
-  if (!o.picture.empty()) {
-    make_folder_of(o.picture);
-    run::draw_pair(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
-  }
-  print(o.json ? one_line(run::explanation_json(e, scene.a, scene.b))
-               : run::explanation_text(e, scene.a, scene.b));
+  const PairExplanation e = explain_pair(a, pose_a, b, pose_b, {SimplexId(o.pair[0]), SimplexId(o.pair[1])});
+  if (!o.picture.empty()) run::write_picture(run::picture_of(e, bodies), o.picture);
+  print(o.json ? one_line(run::explanation_json(e, a, b)) : run::explanation_text(e, a, b));
   return kOk;
 }
 
 int run_why(const WhyOptions& o, const Globals& globals) {
   if (!o.run.empty()) {
     const run::OpenStep open = run::open_step(o.run, o.step);
-    return explain(o, {open.bodies[0].rep, open.bodies[1].rep, open.step.pose_a, open.step.pose_b});
+    return explain(o, {open.bodies[0].rep, open.step.pose_a, open.bodies[1].rep, open.step.pose_b});
   }
   if (o.b.empty()) throw InputError("why: expected two bodies A and B, or --run DIR");
   const Pose pose = pose_of(o);
@@ -77,7 +65,7 @@ int run_why(const WhyOptions& o, const Globals& globals) {
                            b = bodies::load_body(o.b, {}, o.corners);
   note(globals, a.notes);
   note(globals, b.notes);
-  return explain(o, {a.rep, b.rep, {}, pose});
+  return explain(o, {a.rep, {}, b.rep, pose});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/lrb/thickness.hpp"
+#include "render/pictures/panel.hpp"
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/render/rasterize.hpp>
@@ -109,55 +110,34 @@ constexpr int kPanelWidth = 600, kPanelHeight = 480;
 constexpr float kCaptionHeight = 24;
 constexpr double kPieces = 120;  ///< pieces of lids along the largest side: about four pixels each
 
-/// Lighting in which the shape is seen and colours stay those of the scale.
-const render::Lighting kSoft{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
-
 /// Returns the camera that shows the body and the coarsest of the wrappers.
-render::Camera camera_for(const ShownBody& shown, std::span<const ShownLevel> levels) {
+run::CameraFit camera_for(const ShownBody& shown, std::span<const ShownLevel> levels) {
   const LrbRep& rep = *shown.rep;
   double coarsest = 0;
   for (const ShownLevel& l : levels) coarsest = std::max(coarsest, l.figures.tolerance);
   std::vector<Eigen::Vector3d> points;
   for (const FaceId f : bodies::wrapper_at(rep, coarsest, shown.threads).boundary())
-    for (const VertexId v : rep.face(f)) points.push_back(rep.vertices()[v]);
-  if (rep.dim() == 2) return render::fit_top(points, kPanelWidth, kPanelHeight);
+    for (const Eigen::Vector3d& x : run::corners_of(rep, f)) points.push_back(x);
   render::FitOptions fit;
   fit.view = shown.view;
-  return render::fit_camera(points, kPanelWidth, kPanelHeight, fit);
+  return run::fit_points(points, rep.dim(), fit);
 }
 
-render::RasterOptions panel_options() {
-  render::RasterOptions options;
-  options.width = kPanelWidth;
-  options.height = kPanelHeight;
-  return options;
-}
-
-render::MontageOptions montage_options() {
-  constexpr int kColumns = 4;
+render::Image draw_sheet(const std::vector<run::Panel>& panels, const render::Overlay& overlay) {
+  render::Look look;
+  look.width = kPanelWidth;
+  look.height = kPanelHeight;
   render::MontageOptions options;
-  options.columns = kColumns;
+  options.columns = 4;
   options.text_height = kCaptionHeight;
-  return options;
+  return run::with_overlay(run::draw_sheet(panels, look, options), overlay);
 }
 
-/// Puts a heading above panels, and a legend below them.
-render::Image with_overlay(const render::Image& panels, const render::Overlay& overlay) {
-  constexpr int kRoom = 600;  // more than the overlay needs; what it does not need is cut off
-  const int width = panels.width();
-  const render::OverlayLayout tentative = render::lay_out(overlay, width, panels.height() + kRoom);
-  const int height = 2 * panels.height() + kRoom - tentative.picture.height;
-  const render::OverlayLayout layout = render::lay_out(overlay, width, height);
-  return render::compose_frame(panels, layout.picture, overlay, width, height);
-}
-
-render::Image draw_scene(render::Rasterizer& rasterizer, const LrbRep& rep, const Wrapper& wrapper,
-                         const render::Camera& camera) {
+render::DrawList wrapper_list(const LrbRep& rep, const Wrapper& wrapper) {
   render::SceneBody body;
   body.rep = &rep;
   body.wrapper = &wrapper;
-  const render::Scene scene = render::build_scene(std::vector<render::SceneBody>{body});
-  return rasterizer.draw(scene.list, camera, panel_options());
+  return render::build_scene({&body, 1}).list;
 }
 
 void add_solid_2d(const LrbRep& rep, render::DrawList& list) {
@@ -219,8 +199,7 @@ render::DrawList distance_list(const LrbRep& rep, const std::vector<FaceId>& bou
   if (rep.dim() == 2) add_solid_2d(rep, list);
   for (const FaceId f : boundary) {
     if (!rep.is_real(f)) continue;
-    std::vector<Eigen::Vector3d> corners;
-    for (const VertexId v : rep.face(f)) corners.push_back(rep.vertices()[v]);
+    const std::vector<Eigen::Vector3d> corners = run::corners_of(rep, f);
     if (rep.dim() == 3) {
       render::DrawTriangle t;
       t.colour = render::palette::kPaleFront;
@@ -269,39 +248,35 @@ std::string caption_of(const bodies::LevelFigures& level, double size) {
 
 render::Image draw_wrappers(const ShownBody& shown, std::span<const ShownLevel> levels) {
   const LrbRep& rep = *shown.rep;
-  const render::Camera camera = camera_for(shown, levels);
-  render::Rasterizer rasterizer;
-  std::vector<render::Panel> panels;
+  const run::CameraFit camera = camera_for(shown, levels);
+  std::vector<run::Panel> panels;
   if (levels.front().figures.bound > 0) {  // none of them is the body itself
     Wrapper bare(rep);
     bare.refine_all();
-    panels.push_back({draw_scene(rasterizer, rep, bare, camera),
-                      "the body, " + render::group_digits(rep.real_face_count()) + " faces"});
+    panels.push_back({wrapper_list(rep, bare), camera,
+                      "the body, " + render::group_digits(rep.real_face_count()) + " faces", false});
   }
   for (const ShownLevel& l : levels)
-    panels.push_back(
-        {draw_scene(rasterizer, rep, bodies::wrapper_at(rep, l.figures.tolerance, shown.threads), camera),
-         caption_of(l.figures, shown.size)});
+    panels.push_back({wrapper_list(rep, bodies::wrapper_at(rep, l.figures.tolerance, shown.threads)), camera,
+                      caption_of(l.figures, shown.size), false});
   render::Overlay overlay;
   overlay.title = rep.name() + ": wrappers at several tolerances";
   overlay.event =
       "Each wrapper encloses the body. Below it: its proven maximum deviation, as a fraction of the longest "
       "side of the box.";
-  return with_overlay(render::montage(panels, montage_options()), overlay);
+  "side of the box.";
+  return draw_sheet(panels, overlay);
 }
 
 render::Image draw_distances(const ShownBody& shown, std::span<ShownLevel> levels) {
   const LrbRep& rep = *shown.rep;
-  const render::Camera camera = camera_for(shown, levels);
+  const run::CameraFit camera = camera_for(shown, levels);
   render::Overlay overlay;
   overlay.title = rep.name() + ": deviation of its wrappers";
   overlay.event = "Colours are measured at points; numbers are proven bounds.";
   overlay.key = {{render::LegendItem::Mark::solid, render::palette::kPaleFront, "real faces, deviation 0"}};
   overlay.scale = scale_for(levels);
-  render::RasterOptions raster = panel_options();
-  raster.lighting = kSoft;
-  render::Rasterizer rasterizer;
-  std::vector<render::Panel> panels;
+  std::vector<run::Panel> panels;
   for (ShownLevel& l : levels) {
     const std::vector<FaceId> boundary =
         bodies::wrapper_at(rep, l.figures.tolerance, shown.threads).boundary();
@@ -310,10 +285,10 @@ render::Image draw_distances(const ShownBody& shown, std::span<ShownLevel> level
       if (!rep.is_real(f)) lids.push_back(f);
     const MeasuredLids measured = measure_lids(rep, lids, shown.size / kPieces, shown.threads);
     l.sampled = measured.largest;
-    const render::DrawList list = distance_list(rep, boundary, measured, *overlay.scale, shown.size);
-    panels.push_back({rasterizer.draw(list, camera, raster), caption_of(l.figures, shown.size)});
+    panels.push_back({distance_list(rep, boundary, measured, *overlay.scale, shown.size), camera,
+                      caption_of(l.figures, shown.size), false, run::kScaleLighting});
   }
-  return with_overlay(render::montage(panels, montage_options()), overlay);
+  return draw_sheet(panels, overlay);
 }
 
 }  // namespace lrb::levels

@@ -8,7 +8,6 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
-#include "bench/stability/worst_case.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/style.hpp>
 
@@ -90,18 +89,9 @@ void add_fill(render::DrawList& list, const PosedBody& body, std::size_t i, cons
 
 }  // namespace
 
-render::Rgba found_colour() {
-  return render::palette::kGreen;
-}
-render::Rgba missed_colour() {
-  return render::palette::kContact;
-}
-render::Rgba extra_colour() {
-  return {150, 60, 170};
-}
-
 render::Rgba colour_of(Mark m) {
-  return m == Mark::missed ? missed_colour() : m == Mark::extra ? extra_colour() : found_colour();
+  if (m == Mark::missed) return render::palette::kContact;
+  return m == Mark::extra ? render::Rgba{150, 60, 170} : render::palette::kGreen;
 }
 
 Verdict compare(std::span<const SimplexPair> expected, const std::optional<Pairs>& answered) {

@@ -9,6 +9,7 @@
 
 #include "bench/stability/case_picture.hpp"
 #include "bench/stability/stability_report.hpp"
+#include "render/pictures/panel.hpp"
 #include "scenarios/io/files.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
@@ -112,23 +113,19 @@ struct View {
   render::ViewDirection direction;
 };
 
-render::Camera camera_of(const View& v, std::span<const Eigen::Vector3d> points,
-                         const render::PixelRect& place, bool flat) {
+run::CameraFit camera_of(const View& v, const std::vector<Eigen::Vector3d>& points, const CasePicture& s) {
   render::FitOptions options;
   options.view = v.direction;
-  return flat ? render::fit_top(points, place.width, place.height)
-              : render::fit_camera(points, place.width, place.height, options);
+  return run::fit_points(points, s.flat() ? 2 : 3, options);
 }
 
-render::Image draw_view(const CasePicture& s, const View& v, const render::Camera& camera,
-                        const render::PixelRect& place, render::Rasterizer& rasterizer) {
-  render::RasterOptions options;
-  options.width = place.width;
-  options.height = place.height;
+render::Image draw_view(const CasePicture& s, const View& v, const run::CameraFit& fit, int width, int height,
+                        render::Rasterizer& rasterizer) {
+  const render::Camera camera = fit(width, height);
   render::DrawList list = draw_list(s, v.frame, v.reach);
-  const render::Projection projection(camera, place.width, place.height, render::bounds(list));
+  const render::Projection projection(camera, width, height, render::bounds(list));
   add_dots(list, s, v.frame, v.reach, 7 * projection.unit_per_pixel(camera.target));
-  return rasterizer.draw(list, camera, options);
+  return run::draw_panel(rasterizer, {list, fit, "", false}, {}, width, height);
 }
 
 std::vector<Eigen::Vector3d> corners_of(const PictureFrame& frame, const Eigen::AlignedBox3d& box) {
@@ -185,21 +182,18 @@ render::Image both_views(const CasePicture& s, const Verdict& verdict, int width
   const int left = close ? (width - kGap) / 2 : width;
   const View whole{whole_frame, 2, direction};
   const std::vector<Eigen::Vector3d> points = all_points(s, whole_frame);
-  const render::Camera camera = camera_of(whole, points, {0, 0, left, height}, s.flat());
-  render::Image image = draw_view(s, whole, camera, {0, 0, left, height}, rasterizer);
+  const run::CameraFit fit = camera_of(whole, points, s);
+  render::Image image = draw_view(s, whole, fit, left, height, rasterizer);
   if (!close) return image;
 
-  const std::vector<Eigen::Vector3d> place = corners_of(whole_frame, close->box);
-  Eigen::AlignedBox3d scene;
-  for (const Eigen::Vector3d& p : points) scene.extend(p);
-  frame_place(image, camera, place, scene);
+  frame_place(image, fit(left, height), corners_of(whole_frame, close->box), render::bounds(points));
   write_caption(image, "whole");
 
-  const render::PixelRect right{left + kGap, 0, width - left - kGap, height};
   const View near{*near_frame, kReach, direction};
   std::vector<Eigen::Vector3d> shown = corners_of(*near_frame, close->box);
   for (Eigen::Vector3d& p : shown) p *= kContext / std::numbers::sqrt3;
-  render::Image detail = draw_view(s, near, camera_of(near, shown, right, s.flat()), right, rasterizer);
+  render::Image detail =
+      draw_view(s, near, camera_of(near, shown, s), width - left - kGap, height, rasterizer);
   write_caption(detail,
                 close->caption + ", " +
                     render::short_number(diagonal(s.box) / std::max(diagonal(close->box) * kContext,
@@ -207,7 +201,7 @@ render::Image both_views(const CasePicture& s, const Verdict& verdict, int width
                     " times as large");
   render::Image out(width, height, render::palette::kRule);
   out.paste(image, 0, 0);
-  out.paste(detail, right.x, 0);
+  out.paste(detail, left + kGap, 0);
   return out;
 }
 

@@ -22,11 +22,6 @@ struct WorstCaseText {
   std::vector<render::OverlayCounter> counters;
 };
 
-/// The colours of the marks.
-render::Rgba found_colour();   ///< expected, and answered
-render::Rgba missed_colour();  ///< expected, not answered
-render::Rgba extra_colour();   ///< answered, not expected
-
 /// Draws both bodies translucent, and the simplices of all expected and answered pairs in the colours of what
 /// became of them (with several marks: missed before extra before found). Beside it is a close-up of where
 /// the answer is wrong, if that is small against the bodies. `answered` is nothing if the method gave no

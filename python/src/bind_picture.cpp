@@ -1,7 +1,7 @@
 #include <mutex>
 
 #include "python/src/objects.hpp"
-#include "scenarios/frames/chosen_view.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/record/moments.hpp"
 #include <lrbscope/render/image.hpp>
 

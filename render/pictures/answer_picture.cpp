@@ -8,177 +8,132 @@
 #include <Eigen/Geometry>
 
 #include "render/pictures/marks.hpp"
-#include "render/pictures/panel.hpp"
-#include <lrbscope/collide.hpp>
-#include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
-#include <lrbscope/render/image.hpp>
-#include <lrbscope/render/overlay.hpp>
-#include <lrbscope/render/rasterize.hpp>
-#include <lrbscope/render/scene.hpp>
-#include <lrbscope/render/style.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::run {
-namespace {
 
+using namespace render;
 using Eigen::Vector3d;
 
-/// What is smaller than this share of the bodies is shown from nearby, too.
+namespace {
+
+/// A detail smaller than this share of the bodies gets a close-up.
 constexpr double kSmall = 0.12;
 constexpr int kGhosts = 4;
 
-/// A picture before it is drawn.
-struct AnswerPicture {
-  render::Scene scene;
-  render::Overlay overlay;
-  std::vector<Vector3d> whole;         ///< what it shows
-  std::vector<Vector3d> detail;        ///< what it is about; none: nothing in particular
-  Vector3d across = Vector3d::Zero();  ///< a way that is to be seen from beside; 0: none
-  int dim = 3;
-};
-
-Eigen::AlignedBox3d box_of_points(const std::vector<Vector3d>& points) {
-  Eigen::AlignedBox3d box;
-  for (const Vector3d& x : points) box.extend(x);
-  return box;
-}
-
-void add_points(std::vector<Vector3d>& points, const LrbRep& rep, const Pose& pose) {
-  for (FaceId f = 0; f < rep.real_face_count(); ++f)
-    for (const VertexId v : rep.face(f)) points.push_back(pose.apply(rep.vertices()[v]));
-}
-
-render::SceneBody body_of(const LrbRep& rep, const Pose& pose, const char* side) {
-  render::SceneBody body;
-  body.rep = &rep;
-  body.pose = pose;
-  body.name = std::string(side) + " " + rep.name();
-  return body;
-}
-
-render::Scene scene_of(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                       std::span<const ContactRegion> contacts = {}) {
-  const std::array<render::SceneBody, 2> bodies{body_of(a, pose_a, "A"), body_of(b, pose_b, "B")};
-  render::SceneHighlight highlight;
+Scene scene_of(const PosedBodies& bodies, std::span<const ContactRegion> contacts = {}) {
+  SceneHighlight highlight;
   highlight.contacts = contacts;
-  render::SceneOptions options;
+  SceneOptions options;
   options.contact_rims = true;
-  return render::build_scene(bodies, highlight, options);
+  return build_scene(bodies.in_scene(), highlight, options);
 }
 
-/// Makes all faces ones that are seen through, and drops their edges.
-void make_translucent(render::DrawList& list, std::uint8_t alpha) {
-  for (render::DrawTriangle& t : list.triangles) {
-    t.layer = render::Layer::translucent;
+/// Makes all faces translucent, and drops their edges.
+void make_translucent(DrawList& list, std::uint8_t alpha) {
+  for (DrawTriangle& t : list.triangles) {
+    t.layer = Layer::translucent;
     t.colour.a = alpha;
     t.edges = 0;
   }
-}
-
-/// Adds B where it is not, to be seen through.
-void add_ghost(render::Scene& scene, const LrbRep& b, const Pose& pose, std::uint8_t alpha) {
-  render::SceneBody body = body_of(b, pose, "B");
-  body.colour = render::palette::body(Side::b);
-  render::SceneOptions options;
-  options.real_edges = false;
-  render::DrawList list = render::build_scene({&body, 1}, {}, options).list;
-  make_translucent(list, alpha);
-  for (render::DrawFill& fill : list.fills) fill.colour = render::mix(fill.colour, render::kWhite, 0.75);
-  for (render::DrawLine& line : list.lines) line.colour.a = alpha;
-  list.append(scene.list);  // under what is there
-  scene.list = std::move(list);
-}
-
-render::FitOptions view_of(const AnswerPicture& p, const AnswerLook& look) {
-  const Vector3d way = p.across.norm() > 0 ? p.across : look.up.unitOrthogonal();
-  render::FitOptions fit;
-  fit.view = render::view_beside(way, look.up);
-  return fit;
-}
-
-render::Camera whole_camera(const AnswerPicture& p, const AnswerLook& look, const render::PixelRect& place) {
-  return p.dim == 2 ? render::fit_top(p.whole, place.width, place.height)
-                    : render::fit_camera(p.whole, place.width, place.height, view_of(p, look));
-}
-
-render::Camera near_camera(const AnswerPicture& p, const AnswerLook& look, const render::PixelRect& place) {
-  constexpr double kContext = 4, kLeast = 0.001;
-  if (p.dim == 3)
-    return render::fit_contact(p.detail, box_of_points(p.whole), place.width, place.height, view_of(p, look),
-                               kContext, kLeast);
-  const Eigen::AlignedBox3d box = box_of_points(p.detail);
-  const double half =
-      std::max(kContext * box.diagonal().norm(), kLeast * box_of_points(p.whole).diagonal().norm()) / 2;
-  const std::vector<Vector3d> corners{box.center() - Vector3d(half, half, 0),
-                                      box.center() + Vector3d(half, half, 0)};
-  return render::fit_top(corners, place.width, place.height);
-}
-
-/// Draws the whole and, if what it is about is small, that from nearby on its right.
-void write_picture(AnswerPicture& p, const AnswerLook& look, const std::string& path) {
-  p.overlay.key = p.scene.key;
-  const render::OverlayLayout layout = render::lay_out(p.overlay, look.width, look.height);
-  const double size = box_of_points(p.whole).diagonal().norm();
-  const bool is_small = !p.detail.empty() && box_of_points(p.detail).diagonal().norm() < kSmall * size;
-  render::FrameSpec spec;
-  spec.height = look.height;  // the views' titles follow it
-  std::vector<render::FrameSpec::View> views(is_small ? 2 : 1);
-  if (is_small) views[1].title = "from nearby";
-  const std::vector<render::PixelRect> places = view_places(layout.picture, views.size(), 1);
-  render::Image picture(layout.picture.width, layout.picture.height);
-  render::Rasterizer rasterizer;
-  paint_views(
-      rasterizer, spec, views, places, [&](const render::FrameSpec::View&) { return p.scene.list; },
-      [&](std::size_t view) {
-        return view == 0 ? whole_camera(p, look, places[0]) : near_camera(p, look, places[1]);
-      },
-      picture);
-  make_folder_of(path);
-  render::write_png(render::compose_frame(picture, layout.picture, p.overlay, look.width, look.height), path);
 }
 
 std::string digits(double value) {
   return io::number_text(value, 9);
 }
 
-void count_ends(render::Overlay& overlay, const std::string& what, double lower, double upper) {
-  overlay.counters.push_back({what + " at least", digits(lower)});
-  overlay.counters.push_back({"at most", std::isfinite(upper) ? digits(upper) : "not known"});
-}
+/// The picture of an answer: the whole and, if its subject is small, a close-up on its right.
+struct AnswerPicture {
+  AnswerPicture(const PosedBodies& posed, std::span<const ContactRegion> contacts = {})
+      : bodies(posed), scene(scene_of(posed, contacts)) {
+    overlay.title = posed.title();
+    add_points(posed.a, posed.pose_a);
+    add_points(posed.b, posed.pose_b);
+  }
 
-std::string title_of(const LrbRep& a, const LrbRep& b) {
-  return a.name() + "  ·  " + b.name();
-}
+  void add_points(const LrbRep& rep, const Pose& pose) {
+    for (const Vector3d& x : real_corners(rep, pose)) whole.push_back(x);
+  }
 
-AnswerPicture begin(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  AnswerPicture p;
-  p.dim = a.dim();
-  p.overlay.title = title_of(a, b);
-  add_points(p.whole, a, pose_a);
-  add_points(p.whole, b, pose_b);
-  return p;
-}
+  /// Draws B at another pose, translucent, under the rest of the list.
+  void add_ghost(const Pose& pose, std::uint8_t alpha) {
+    SceneBody body = bodies.in_scene()[1];
+    body.pose = pose;
+    body.colour = palette::body(Side::b);
+    SceneOptions options;
+    options.real_edges = false;
+    DrawList list = build_scene({&body, 1}, {}, options).list;
+    make_translucent(list, alpha);
+    for (DrawFill& fill : list.fills) fill.colour = mix(fill.colour, kWhite, 0.75);
+    for (DrawLine& line : list.lines) line.colour.a = alpha;
+    list.append(scene.list);
+    scene.list = std::move(list);
+    add_points(bodies.b, pose);
+  }
 
-void mark_point(render::Scene& scene, const Vector3d& x, const std::string& what) {
-  add_mark(scene.list, x, render::palette::kContact, 5);
-  scene.key.push_back({render::LegendItem::Mark::point, render::palette::kContact, what});
-}
+  void mark_point(const Vector3d& x, const std::string& what) {
+    add_mark(scene.list, x, palette::kContact, 5);
+    scene.key.push_back({Mark::point, palette::kContact, what});
+  }
 
-/// Draws the way of B's middle up to a time.
-void add_path(AnswerPicture& p, const LrbRep& b, const Motion& motion, double until) {
-  constexpr int kPieces = 64;
-  const Vector3d middle = box_of_points(render::body_points(b, {})).center();
-  render::DrawLine line;
-  for (int i = 0; i <= kPieces; ++i) line.points.push_back(motion.at(until * i / kPieces).apply(middle));
-  line.colour = render::palette::kFaint;
-  line.width = 1.5F;
-  line.dash = 6;
-  line.layer = render::Layer::on_top;
-  p.scene.list.lines.push_back(line);
-  p.scene.key.push_back({render::LegendItem::Mark::dashed, render::palette::kFaint, "way of B's middle"});
-}
+  /// Draws the path of B's centre up to a time.
+  void add_path(const Motion& motion, double until) {
+    constexpr int kPieces = 64;
+    const Vector3d centre = bounds(body_points(bodies.b, {})).center();
+    DrawLine line;
+    for (int i = 0; i <= kPieces; ++i) line.points.push_back(motion.at(until * i / kPieces).apply(centre));
+    line.colour = palette::kFaint;
+    line.width = 1.5F;
+    line.dash = 6;
+    line.layer = Layer::on_top;
+    scene.list.lines.push_back(line);
+    scene.key.push_back({Mark::dashed, palette::kFaint, "way of B's middle"});
+  }
 
-std::string outcome_words(const FirstContactResult& r) {
+  void show(const MarkedSegment& segment) {
+    detail = {segment.from, segment.to};
+    across = segment.to - segment.from;
+  }
+
+  void add_interval(const std::string& what, double lower, double upper) {
+    overlay.counters.push_back({what + " at least", digits(lower)});
+    overlay.counters.push_back({"at most", std::isfinite(upper) ? digits(upper) : "not known"});
+  }
+
+  Image draw(const Look& look) {
+    const Vector3d up = look.first_view().up;
+    FitOptions fit;
+    fit.view = view_beside(across.norm() > 0 ? across : up.unitOrthogonal(), up);
+    overlay.key = scene.key;
+    std::vector<Panel> panels = {{scene.list, fit_points(whole, bodies.dim(), fit), ""}};
+    const double size = bounds(whole).diagonal().norm();
+    if (!detail.empty() && bounds(detail).diagonal().norm() < kSmall * size)
+      panels.push_back({scene.list, close_up(fit), "from nearby"});
+    return draw_panels(panels, overlay, look);
+  }
+
+  PosedBodies bodies;
+  Scene scene;
+  Overlay overlay;
+  std::vector<Vector3d> whole;         ///< all that the picture shows
+  std::vector<Vector3d> detail;        ///< its subject; may be empty
+  Vector3d across = Vector3d::Zero();  ///< a direction that is seen from the side; 0: none
+
+ private:
+  CameraFit close_up(const FitOptions& fit) const {
+    constexpr double kContext = 4, kLeast = 0.001;
+    const Eigen::AlignedBox3d part = bounds(detail), all = bounds(whole);
+    if (bodies.dim() == 3)
+      return [this, all, fit](double width, double height) {
+        return fit_contact(detail, all, width, height, fit, kContext, kLeast);
+      };
+    const double half = std::max(kContext * part.diagonal().norm(), kLeast * all.diagonal().norm()) / 2;
+    return fit_points({part.center() - Vector3d(half, half, 0), part.center() + Vector3d(half, half, 0)}, 2);
+  }
+};
+
+std::string outcome_text(const FirstContactResult& r) {
   if (r.at_start) return "in contact from the start";
   if (r.outcome == MotionOutcome::never) return "they never meet";
   if (r.outcome == MotionOutcome::undecided) return "they come as near as rounding: undecided";
@@ -187,86 +142,228 @@ std::string outcome_words(const FirstContactResult& r) {
 
 }  // namespace
 
-void draw_distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                   const DistanceResult& result, const AnswerLook& look, const std::string& path) {
-  AnswerPicture p = begin(a, pose_a, b, pose_b);
-  p.scene = scene_of(a, pose_a, b, pose_b);
+Image picture_of(const DistanceResult& result, const PosedBodies& bodies, const Look& look) {
+  AnswerPicture p(bodies);
   p.overlay.event_colour = kGapColour;
   if (const auto gap =
           gap_of({result.lower, result.upper}, result.witness[0].point, result.witness[1].point)) {
-    add_gap(p.scene, *gap, render::style_of(render::StyleName::screen));
-    p.detail = {gap->from, gap->to};
-    p.across = gap->to - gap->from;
+    add_gap(p.scene, *gap, style_of(StyleName::screen));
+    p.show(*gap);
     p.overlay.event = gap->text + " apart" + (result.solids_meet() ? ", one inside the other" : "");
   } else if (result.meet) {
-    mark_point(p.scene, result.witness[0].point, "a point of both");
+    p.mark_point(result.witness[0].point, "a point of both");
     p.overlay.event = "the surfaces meet";
   } else {
     p.overlay.event = "not told apart";
   }
-  count_ends(p.overlay, "distance", result.lower, result.upper);
-  write_picture(p, look, path);
+  p.add_interval("distance", result.lower, result.upper);
+  return p.draw(look);
 }
 
-void draw_first_contact(const LrbRep& a, const LrbRep& b, const Motion& motion_b,
-                        const FirstContactResult& result, const AnswerLook& look, const std::string& path) {
+Image picture_of(const FirstContactResult& result, const LrbRep& a, const LrbRep& b, const Motion& motion_b,
+                 const Look& look) {
   const double last = result.is_contact() ? result.t1 : 1;
   const Pose at_last = motion_b.at(last);
-  AnswerPicture p = begin(a, {}, b, at_last);
-  p.scene = scene_of(a, {}, b, at_last);
-  for (int i = kGhosts - 1; i >= 0 && last > 0; --i) {
-    const Pose before = motion_b.at(last * i / kGhosts);
-    add_ghost(p.scene, b, before, 52);
-    add_points(p.whole, b, before);
-  }
+  AnswerPicture p({a, {}, b, at_last});
+  for (int i = kGhosts - 1; i >= 0 && last > 0; --i) p.add_ghost(motion_b.at(last * i / kGhosts), 52);
   if (last > 0) {
-    p.scene.key.push_back({render::LegendItem::Mark::translucent, render::palette::body(Side::b),
-                           "B at " + std::to_string(kGhosts) + " times before"});
-    add_path(p, b, motion_b, last);
+    p.scene.key.push_back(
+        {Mark::translucent, palette::body(Side::b), "B at " + std::to_string(kGhosts) + " times before"});
+    p.add_path(motion_b, last);
     p.across = at_last.t - motion_b.at(0).t;
   }
   if (result.is_contact() && result.witness[0].corner_count > 0)
-    mark_point(p.scene, result.witness[0].point, "first contact");
-  p.overlay.event = outcome_words(result);
-  p.overlay.event_colour = render::palette::kContact;
+    p.mark_point(result.witness[0].point, "first contact");
+  p.overlay.event = outcome_text(result);
+  p.overlay.event_colour = palette::kContact;
   p.overlay.counters.push_back({"no contact before t", digits(result.t0)});
-  if (result.is_contact())
-    p.overlay.counters.push_back({"interval", render::short_number(result.t1 - result.t0)});
-  write_picture(p, look, path);
+  if (result.is_contact()) p.overlay.counters.push_back({"interval", short_number(result.t1 - result.t0)});
+  return p.draw(look);
 }
 
-void draw_clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                const ClashResult& result, const AnswerLook& look, const std::string& path) {
-  AnswerPicture p = begin(a, pose_a, b, pose_b);
+Image picture_of(const ClashResult& result, const PosedBodies& bodies, const Look& look) {
   CollideRequest request;
   request.contacts = true;
-  const CollideResult found = collide(a, pose_a, b, pose_b, request);
-  p.scene = scene_of(a, pose_a, b, pose_b, found.regions);
+  const CollideResult found = collide(bodies.a, bodies.pose_a, bodies.b, bodies.pose_b, request);
+  AnswerPicture p(bodies, found.regions);
   p.overlay.title = kind_words(result.kind, result.reason) + "  ·  " + p.overlay.title;
-  p.overlay.event_colour = kWayOutColour;
-  if (const auto way = way_out_of(result.depth, result.translation, a, pose_a, b, pose_b, found.regions)) {
-    Pose apart = pose_b;
+  p.overlay.event_colour = kSeparationColour;
+  if (const auto vector = separation_vector_of(result.depth, result.translation, bodies, found.regions)) {
+    Pose apart = bodies.pose_b;
     apart.t += result.translation;
-    make_translucent(p.scene.list, 105);  // so that nothing hides the way out, nor contacts
-    std::erase_if(p.scene.key, [](const render::LegendItem& item) { return item.text.ends_with("hidden"); });
-    add_ghost(p.scene, b, apart, 26);
-    add_points(p.whole, b, apart);
-    add_way_out(p.scene, *way, p.dim);
-    p.detail = {way->from, way->to};
+    make_translucent(p.scene.list, 105);  // so that no face hides the vector or the contacts
+    std::erase_if(p.scene.key, [](const LegendItem& item) { return item.text.ends_with("hidden"); });
+    p.add_ghost(apart, 26);
+    add_separation_vector(p.scene, *vector, bodies.dim());
+    p.show(*vector);
     p.across = result.translation;
-    p.overlay.event = way->text + " deep: B is apart when it has moved by the arrow";
-    p.scene.key.push_back(
-        {render::LegendItem::Mark::translucent, render::palette::body(Side::b), "B when it is apart"});
+    p.overlay.event = vector->text + " deep: B is apart when it has moved by the arrow";
+    p.scene.key.push_back({Mark::translucent, palette::body(Side::b), "B when it is apart"});
   } else {
     p.overlay.event = result.distance.upper > 0
                           ? interval_words(result.distance.lower, result.distance.upper) + " apart"
                           : "nothing has to move";
   }
-  if (result.depth) count_ends(p.overlay, "depth", result.depth->lower, result.depth->upper);
+  if (result.depth) p.add_interval("depth", result.depth->lower, result.depth->upper);
   if (result.volume && result.volume->upper > 0)
     p.overlay.counters.push_back(
         {"volume shared", interval_words(result.volume->lower, result.volume->upper)});
-  write_picture(p, look, path);
+  return p.draw(look);
+}
+
+namespace {
+
+Look screen_of(int width, int height) {
+  Look look;
+  look.width = width;
+  look.height = height;
+  return look;
+}
+
+/// Returns a direction from which both faces are seen from their fronts; if they face opposite ways, A's from
+/// its front and B's from its back.
+ViewDirection onto_both(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
+  constexpr double kOpposite = 0.5;  // of unit normals' sum
+  const Vector3d of_a = (a[1] - a[0]).cross(a[2] - a[0]).stableNormalized(),
+                 of_b = (b[1] - b[0]).cross(b[2] - b[0]).stableNormalized();
+  const Vector3d sum = of_a + of_b;
+  ViewDirection out;
+  out.from = sum.norm() > kOpposite ? sum : Vector3d(of_a - of_b);
+  constexpr double kSteep = 0.95;
+  if (out.from.isZero()) return {};  // both are needles without a normal
+  if (std::abs(out.from.normalized().z()) > kSteep) out.up = {0, 1, 0};
+  return out;
+}
+
+/// Adds a square of the plane across the segment between two points, at its midpoint. `side`: its length.
+void add_plane(DrawList& list, const std::array<Vector3d, 2>& nearest, double side) {
+  const Vector3d normal = (nearest[1] - nearest[0]).normalized(), u = normal.unitOrthogonal() * (side / 2);
+  const Vector3d v = normal.cross(u), middle = (nearest[0] + nearest[1]) / 2;
+  add_sheet(list, {middle + u + v, middle - u + v, middle - u - v, middle + u - v});
+}
+
+}  // namespace
+
+Image picture_of(const PairExplanation& pair, const PosedBodies& bodies) {
+  const bool apart = pair.meet == exact::Meet::disjoint, in_3d = bodies.dim() == 3;
+  const std::vector<Vector3d> of_a = corners_of(bodies.a, bodies.pose_a, pair.pair.a),
+                              of_b = corners_of(bodies.b, bodies.pose_b, pair.pair.b);
+  std::vector<Vector3d> both = of_a;
+  both.insert(both.end(), of_b.begin(), of_b.end());
+  std::vector<SceneBody> named = bodies.in_scene();
+  for (SceneBody& body : named) body.name.clear();
+  SceneHighlight highlight;
+  highlight.under_test = {pair.pair.a, pair.pair.b};
+  Scene scene = build_scene(named, highlight);
+  outline(scene.list, of_a, palette::edge_of(palette::body(Side::a)), 3);
+  outline(scene.list, of_b, palette::edge_of(palette::body(Side::b)), 3);
+  // The contact's corners, or the closest points, and what they span.
+  std::vector<Vector3d> points(pair.nearest.begin(), pair.nearest.end());
+  if (!apart) points.clear();
+  for (int i = 0; i < pair.contact.corner_count && !apart; ++i) points.push_back(pair.contact.corners[i].x);
+  for (const Vector3d& x : points) add_mark(scene.list, x, palette::kContact, 5);
+  if (points.size() > 1) outline(scene.list, points, palette::kContact, 4);
+  if (apart && in_3d && pair.distance > 0)
+    add_plane(scene.list, pair.nearest, bounds(both).diagonal().norm());
+
+  Overlay overlay;
+  overlay.title = bodies.a.name() + ", simplex " + std::to_string(pair.pair.a) + "  ·  " + bodies.b.name() +
+                  ", simplex " + std::to_string(pair.pair.b);
+  overlay.event = apart                             ? "apart by " + short_number(pair.distance)
+                  : pair.meet == exact::Meet::cross ? "the faces cross"
+                                                    : "the faces touch";
+  overlay.key = std::move(scene.key);
+  overlay.key.push_back({Mark::line, palette::kContact, apart ? "nearest points" : "contact"});
+  if (apart && in_3d) overlay.key.push_back({Mark::translucent, palette::kGreen, "plane that parts them"});
+
+  FitOptions fit;
+  const Vector3d across = pair.nearest[1] - pair.nearest[0];
+  if (in_3d) fit.view = apart && across.norm() > 0 ? view_beside(across) : onto_both(of_a, of_b);
+  const auto camera = [&](double width, double height) {
+    return in_3d ? fit_contact(both, bounds(bodies.points()), width, height, fit, 2.5, 0.001)
+                 : fit_top(both, width, height, 0.3);
+  };
+  const Panel panel{std::move(scene.list), camera, "", false};
+  return draw_panels({&panel, 1}, overlay, screen_of(1200, 900));
+}
+
+namespace {
+
+/// Returns the points that a close-up shows: the points of both bodies that are closest to the plane, or both
+/// boxes.
+std::vector<Vector3d> close_points(const WalkExplanation& walk) {
+  if (walk.plane) return {walk.plane->reach.begin(), walk.plane->reach.end()};
+  std::vector<Vector3d> out;
+  for (const WorldBox& box : walk.nearest_boxes->boxes)
+    for (int i = 0; i < 8; ++i)
+      out.emplace_back(box.centre + (i & 1 ? 1 : -1) * box.half[0] + (i & 2 ? 1 : -1) * box.half[1] +
+                       (i & 4 ? 1 : -1) * box.half[2]);
+  return out;
+}
+
+/// Returns a camera close by that looks along the plane, so that the gap is visible.
+CameraFit camera_along(const WalkExplanation& walk, const Square& square, int dim,
+                       const Eigen::AlignedBox3d& whole) {
+  constexpr double kContext = 1.5, kLeast = 0.03;
+  std::vector<Vector3d> points = close_points(walk);
+  const Vector3d centre = bounds(points).center();
+  if (dim == 2) {
+    const double room = kLeast * whole.diagonal().norm();
+    for (const double way : {-room, room}) points.emplace_back(centre + Vector3d(way, way, 0));
+    return [points](double width, double height) { return fit_top(points, width, height, 0.2); };
+  }
+  FitOptions fit;
+  fit.view = view_beside((square[0] - square[2]).cross(square[1] - square[3]));
+  return [=](double width, double height) {
+    return fit_contact(points, whole, width, height, fit, kContext, kLeast);
+  };
+}
+
+}  // namespace
+
+Image picture_of(const WalkExplanation& walk, const PosedBodies& bodies) {
+  const int dim = bodies.dim();
+  Scene scene = build_scene(bodies.in_scene());
+  add_separating_plane(scene.list, walk, bodies, style_of(StyleName::screen), true);
+  const std::optional<Square> square = separating_square(walk, bodies);
+  Overlay overlay;
+  overlay.title = bodies.title();
+  overlay.event = std::string(name_of(walk.result.relation));
+  if (const std::string text = separating_plane_text(walk, bodies); !text.empty())
+    overlay.event += ": " + text;
+  overlay.event_colour = kSeparationColour;
+  overlay.key = scene.key;
+  const std::vector<Vector3d> points = bodies.points();
+  std::vector<Panel> panels = {{scene.list, fit_points(points, dim), square ? "Whole" : ""}};
+  if (square) {
+    for (const Side side : {Side::a, Side::b})
+      if (!walk.plane)
+        overlay.key.push_back({Mark::line, palette::edge_of(palette::body(side)),
+                               "box of " + std::string(name_of(side)) + "'s"});
+    overlay.key.push_back({dim == 2 ? Mark::line : Mark::translucent, kSeparationColour,
+                           walk.plane ? "plane that parts them" : "between the boxes"});
+    panels.push_back({scene.list, camera_along(walk, *square, dim, bounds(points)),
+                      "Where they come nearest to what parts them"});
+  }
+  return draw_panels(panels, overlay, screen_of(1600, 900));
+}
+
+Image picture_of(const Separation& separation, const PosedBodies& bodies) {
+  const CameraFit camera = fit_points(bodies.points(), bodies.dim());
+  Wrapper wrapper_a(bodies.a), wrapper_b(bodies.b);
+  std::vector<Panel> panels;
+  for (const char* what : {"outermost wrappers", "apart"}) {
+    std::vector<SceneBody> wrapped = bodies.in_scene();
+    wrapped[0].wrapper = &wrapper_a;
+    wrapped[1].wrapper = &wrapper_b;
+    panels.push_back({build_scene(wrapped).list, camera,
+                      std::string(what) + ": " + group_digits(wrapper_a.boundary_size()) + " and " +
+                          group_digits(wrapper_b.boundary_size()) + " faces",
+                      false});
+    for (const RegionId r : separation.refined[0]) wrapper_a.refine(r);
+    for (const RegionId r : separation.refined[1]) wrapper_b.refine(r);
+  }
+  return draw_sheet(panels, screen_of(900, 720));
 }
 
 }  // namespace lrb::run

@@ -1,34 +1,42 @@
 #pragma once
-/// Pictures of answers: how far apart two bodies are, where and when they first meet, how one leaves the
-/// other.
+/// Pictures of answers: distance, first contact, clash, intersecting faces, separating plane, separation.
 
-#include <string>
-
+#include "render/pictures/panel.hpp"
 #include <lrbscope/clash.hpp>
+#include <lrbscope/collide.hpp>
 #include <lrbscope/distance.hpp>
+#include <lrbscope/explain.hpp>
 #include <lrbscope/first_contact.hpp>
 
 namespace lrb::run {
 
-/// How large a picture is, and which way is up in it.
-struct AnswerLook {
-  int width = 1200, height = 750;  ///< pixels
-  Eigen::Vector3d up{0, 0, 1};     ///< of bodies in space
-};
+// `look` sets the size and the direction that points up. EnvironmentError if this machine cannot draw.
 
-/// Draws both bodies with the way between their nearest points and its length; beside it, where it is short,
-/// from nearby. Throws EnvironmentError if the file cannot be written.
-void draw_distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                   const DistanceResult& result, const AnswerLook& look, const std::string& path);
+/// Draws both bodies with the segment between their closest points and its length; beside it, if it is short,
+/// a close-up.
+render::Image picture_of(const DistanceResult& result, const PosedBodies& bodies, const render::Look& look);
 
-/// Draws both bodies at their first contact with ghosts of B on its way there, and the point where they meet;
-/// of bodies that do not meet, all of the way.
-void draw_first_contact(const LrbRep& a, const LrbRep& b, const Motion& motion_b,
-                        const FirstContactResult& result, const AnswerLook& look, const std::string& path);
+/// Draws both bodies at their first contact, B at earlier times as ghosts, and the path of B's centre.
+/// Without a contact it draws the entire motion.
+render::Image picture_of(const FirstContactResult& result, const LrbRep& a, const LrbRep& b,
+                         const Motion& motion_b, const render::Look& look);
 
-/// Draws both solids with their contacts, the kind of contact as title, and the way on which B leaves A, with
-/// B as a ghost where it is apart; of solids that are apart, them alone.
-void draw_clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                const ClashResult& result, const AnswerLook& look, const std::string& path);
+/// Draws both solids with their contacts and the separation vector of B, and as a ghost B moved by it. The
+/// title is the kind of contact.
+render::Image picture_of(const ClashResult& result, const PosedBodies& bodies, const render::Look& look);
+
+/// Draws two faces and the bodies around them: their intersection, or the segment between their closest
+/// points and a separating plane across it.
+render::Image picture_of(const PairExplanation& pair, const PosedBodies& bodies);
+
+/// Draws both bodies with the separating plane or boxes, and beside the whole a close-up along the plane.
+render::Image picture_of(const WalkExplanation& walk, const PosedBodies& bodies);
+
+/// Draws two separate bodies under the wrappers that prove it: outermost wrappers in panel (a), refined as
+/// far as was needed in panel (b).
+render::Image picture_of(const Separation& separation, const PosedBodies& bodies);
+
+/// The size of the pictures of the first three, unless `look` has another.
+inline constexpr int kAnswerWidth = 1200, kAnswerHeight = 750;
 
 }  // namespace lrb::run

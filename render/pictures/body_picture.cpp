@@ -6,125 +6,99 @@
 
 #include <Eigen/Geometry>
 
-#include "render/pictures/panel.hpp"
-#include <lrbscope/render/image.hpp>
-#include <lrbscope/render/overlay.hpp>
-#include <lrbscope/render/rasterize.hpp>
-#include <lrbscope/render/scene.hpp>
-#include <lrbscope/render/style.hpp>
 #include <lrbscope/wrapper.hpp>
 
 namespace lrb::run {
 
-void draw_body_sheet(const LrbRep& rep, const std::string& path, const render::FrameSpec& given) {
-  constexpr std::size_t kMostPanels = 6;
-  const render::FrameSpec frames = in_pixels(given);
-  Framing framing;
-  framing.points = render::body_points(rep, Pose{});
-  framing.dim = rep.dim();
-  const render::FrameSpec::View view = frames.views.empty() ? render::FrameSpec::View{} : frames.views[0];
-  const render::Camera camera = camera_for(view, framing, frames.width, frames.height, 0);
-  render::RasterOptions options;
-  options.width = frames.width;
-  options.height = frames.height;
-  options.background = style_of(frames).paper;
-  options.even_edges = true;
-  render::SceneOptions scene_options;
-  scene_options.style = style_name(frames);
-  scene_options.scale = static_cast<float>(frames.scale()) * style_of(frames).weight;
-  render::Rasterizer rasterizer;
-  std::vector<render::Panel> panels;
+using namespace render;
+using Eigen::Vector3d;
+
+namespace {
+
+/// Returns the camera of the look's first view.
+CameraFit first_camera(const Look& look, std::vector<Vector3d> points, int dim) {
+  return [view = look.first_view(), framing = Framing{std::move(points), {}, dim}](
+             double width, double height) { return camera_for(view, framing, width, height); };
+}
+
+}  // namespace
+
+Image body_sheet(const LrbRep& rep, const Look& look) {
+  constexpr std::size_t kMaxPanels = 6;
+  const CameraFit camera = first_camera(look, body_points(rep, Pose{}), rep.dim());
+  SceneOptions options;
+  options.style = look.style;
+  options.scale = static_cast<float>(look.scale()) * style_of(look.style).weight;
+  std::vector<Panel> panels;
   // Layers [0, hidden) are included: none is the body itself, all is the outermost wrapper.
-  for (const std::size_t hidden : evenly(rep.layer_count() + std::size_t{1}, kMostPanels)) {
+  for (const std::size_t hidden : evenly(rep.layer_count() + std::size_t{1}, kMaxPanels)) {
     Wrapper wrapper(rep);
     for (RegionId r = 0; r < rep.region_count(); ++r)
       if (rep.layer(r) >= hidden) wrapper.refine(r);
-    render::SceneBody body;
+    SceneBody body;
     body.rep = &rep;
     body.wrapper = &wrapper;
-    const render::Scene scene = render::build_scene(std::vector<render::SceneBody>{body}, {}, scene_options);
     panels.push_back(
-        {rasterizer.draw(scene.list, camera, options),
-         render::group_digits(wrapper.boundary_size()) +
+        {build_scene({&body, 1}, {}, options).list, camera,
+         group_digits(wrapper.boundary_size()) +
              (rep.region_count() > 0 ? " faces" : " faces: the body itself, which has no wrappers")});
   }
-  render::MontageOptions montage;
-  montage.style = style_name(frames);
-  montage.background = style_of(frames).paper;
-  render::write_png(render::montage(panels, montage), path, {{}, frames.dpi});
+  return draw_sheet(panels, look);
 }
 
 namespace {
 
-using Eigen::Vector3d;
-
-constexpr double kAround = 1.25;      // of a region's size: what is shown of its surroundings
+constexpr double kAround = 1.25;      // extent of a close-up, in sizes of the region
 constexpr double kLeastShown = 0.02;  // of the body's size, however small the region
-constexpr double kTilt = 0.45;        // of the usual direction, added to where the lids look
+constexpr double kTilt = 0.45;        // share of the usual direction, added to the outlook of the lids
 
-constexpr render::Rgba kLids = render::palette::kOrange;
+constexpr Rgba kLids = palette::kOrange;
 constexpr double kPseudoPale = 0.55;  // of the body's colour
 constexpr std::uint8_t kLidAlpha = 95, kGhostAlpha = 26;
 
-/// How faces are drawn.
-struct Drawn {
-  std::uint8_t style = 0;
-  bool edges = false, veil = false;
-};
-
-/// Draws the panels of a sheet.
+/// Makes the panels of a sheet of regions.
 class RegionSheet {
  public:
-  RegionSheet(const LrbRep& rep, const render::FrameSpec& frames)
-      : rep_(rep), frames_(frames), style_(style_of(frames)) {
+  RegionSheet(const LrbRep& rep, const Look& look) : rep_(rep), look_(look), style_(style_of(look.style)) {
     for (const FaceId f : rep.outermost_faces())
-      for (const VertexId v : rep.face(f)) whole_.push_back(rep.vertices()[v]);
-    for (const Vector3d& x : whole_) box_.extend(x);
-    raster_.width = frames.width;
-    raster_.height = frames.height;
-    raster_.background = style_.paper;
-    scale_ = static_cast<float>(frames.scale()) * style_.weight;
+      for (const Vector3d& x : corners_of(rep, f)) box_.extend(x);
+    scale_ = static_cast<float>(look.scale()) * style_.weight;
   }
 
-  /// Draws the body by values, on the scale of `overlay`.
-  render::Panel whole(std::span<const double> values, const std::string& name,
-                      const render::Overlay& overlay) {
-    Framing framing;
-    framing.dim = rep_.dim();
-    render::DrawList list;
+  /// Returns the panel of the body, coloured by values on a scale.
+  Panel whole(std::span<const double> values, const ScaleBar& scale) const {
+    DrawList list;
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
-      const std::vector<Vector3d> x = corners(f);
-      framing.points.insert(framing.points.end(), x.begin(), x.end());
-      add(list, x, render::palette::viridis(render::place_on(*overlay.scale, values[f])));
+      DrawTriangle like;
+      like.colour = palette::viridis(place_on(scale, values[f]));
+      add(list, f, like, 4);
     }
-    render::RasterOptions raster = raster_;
-    raster.lighting = {
-        .ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};  // colours stay those of the scale
-    const render::Camera camera =
-        camera_for(frames_.views.empty() ? render::FrameSpec::View{} : frames_.views[0], framing,
-                   raster_.width, raster_.height, 0);
-    return {rasterizer_.draw(list, camera, raster), name};
+    return {list, first_camera(look_, real_corners(rep_), rep_.dim()), scale.text, false, kScaleLighting};
   }
 
-  render::Panel close_up(const ShownRegion& shown) {
-    render::DrawList list;
-    const auto edges = list.edge_style({with_alpha(render::palette::kInk, 150), 0.9F * scale_});
-    const auto rims = list.edge_style({with_alpha(style_.edge_of(kLids), 230), 1.5F * scale_, 0.4F});
+  Panel close_up(const ShownRegion& shown) const {
+    DrawList list;
+    DrawTriangle floor, lid, rest;
+    floor.edges = lid.edges = 7;
+    floor.edge_style = list.edge_style({with_alpha(palette::kInk, 150), 0.9F * scale_});
+    lid.edge_style = list.edge_style({with_alpha(style_.edge_of(kLids), 230), 1.5F * scale_, 0.4F});
+    lid.layer = rest.layer = Layer::translucent;
+    lid.nudge = 1;  // in a region without volume a lid lies on its floor
+    lid.colour = with_alpha(kLids, kLidAlpha);
+    rest.colour = with_alpha(real_colour(), kGhostAlpha);
     std::vector<bool> of_region(rep_.face_count(), false);
     for (const FaceId f : rep_.collector(shown.region)) of_region[f] = true;
     for (const FaceId f : rep_.floor(shown.region)) {
-      const bool real = rep_.is_real(f);
-      add(list, corners(f), real ? real_colour() : pseudo_colour(), {.style = edges, .edges = true});
+      floor.colour = rep_.is_real(f) ? real_colour() : pseudo_colour();
+      add(list, f, floor, 4);
     }
-    for (const FaceId f : rep_.lids(shown.region))
-      add(list, corners(f), with_alpha(kLids, kLidAlpha), {.style = rims, .edges = true, .veil = true});
+    for (const FaceId f : rep_.lids(shown.region)) add(list, f, lid, 4);
     for (FaceId f = 0; f < rep_.real_face_count(); ++f)
-      if (!of_region[f]) add(list, corners(f), with_alpha(real_colour(), kGhostAlpha), {.veil = true});
-    return {rasterizer_.draw(list, camera_of(shown.region), raster_), shown.caption};
+      if (!of_region[f]) add(list, f, rest, 2);
+    return {list, camera_of(shown.region), shown.caption, false};
   }
 
-  std::vector<render::LegendItem> key() const {
-    using Mark = render::LegendItem::Mark;
+  std::vector<LegendItem> key() const {
     return {{Mark::translucent, kLids, "lids of the region"},
             {Mark::solid, real_colour(), "real faces that it hides"},
             {Mark::solid, pseudo_colour(), "lids that it hides"},
@@ -132,76 +106,44 @@ class RegionSheet {
   }
 
  private:
-  render::Rgba real_colour() const { return style_.body(Side::a); }
-  render::Rgba pseudo_colour() const { return style_.pale(real_colour(), kPseudoPale); }
+  Rgba real_colour() const { return style_.body(Side::a); }
+  Rgba pseudo_colour() const { return style_.pale(real_colour(), kPseudoPale); }
 
-  std::vector<Vector3d> corners(FaceId f) const {
-    std::vector<Vector3d> x;
-    for (const VertexId v : rep_.face(f)) x.push_back(rep_.vertices()[v]);
-    return x;
+  /// Adds a face; in 2D as a line of a width in pixels of a screen.
+  void add(DrawList& list, FaceId f, const DrawTriangle& like, float width) const {
+    if (rep_.dim() == 3) return list.add_polygon(corners_of(rep_, f), like);
+    DrawLine line;
+    line.points = corners_of(rep_, f);
+    line.colour = like.colour;
+    line.width = width * scale_;
+    list.lines.push_back(std::move(line));
   }
 
-  void add(render::DrawList& list, const std::vector<Vector3d>& x, render::Rgba colour,
-           Drawn how = {}) const {
+  CameraFit camera_of(RegionId r) const {
+    const std::vector<Vector3d> points = region_corners(rep_, r);
     if (rep_.dim() == 2) {
-      render::DrawLine line;
-      line.points = x;
-      line.colour = colour;
-      line.width = (how.veil && !how.edges ? 2.0F : 4.0F) * scale_;
-      list.lines.push_back(std::move(line));
-      return;
-    }
-    render::DrawTriangle t;
-    t.colour = colour;
-    t.edges = how.edges ? 7 : 0;
-    t.edge_style = how.style;
-    if (how.veil) t.layer = render::Layer::translucent;
-    if (how.veil && how.edges) t.nudge = 1;  // in a region without volume a lid lies on what it hides
-    list.add_polygon(x, t);
-  }
-
-  render::Camera camera_of(RegionId r) const {
-    const std::vector<Vector3d> points = points_of(rep_, r);
-    if (rep_.dim() == 2) {
-      Eigen::AlignedBox3d around;
-      for (const Vector3d& x : points) around.extend(x);
+      const Eigen::AlignedBox3d around = bounds(points);
       const Vector3d more =
           0.5 * (kAround - 1) * around.sizes() + Vector3d(1, 1, 0) * kLeastShown * box_.sizes().norm();
-      return render::fit_top(std::vector<Vector3d>{around.min() - more, around.max() + more}, raster_.width,
-                             raster_.height);
+      return fit_points({around.min() - more, around.max() + more}, 2);
     }
-    render::FitOptions fit;
-    const Vector3d out = outlook(rep_, r);
-    if (!frames_.views.empty()) {
-      fit.view = {frames_.views[0].from, frames_.views[0].up};
-      fit.orthographic = frames_.views[0].orthographic;
-    }
-    const Vector3d up = fit.view.up.normalized(), usual = fit.view.from.normalized();
-    const Vector3d from = out + kTilt * usual;
-    if (out.norm() > 0 && from.normalized().cross(up).norm() > 0.1) fit.view.from = from;
-    return render::fit_contact(points, box_, raster_.width, raster_.height, fit, kAround, kLeastShown);
+    const Look::View view = look_.first_view();
+    FitOptions fit;
+    fit.view = {view.from, view.up};
+    fit.orthographic = view.orthographic;
+    const Vector3d out = outlook(rep_, r), from = out + kTilt * view.from.normalized();
+    if (out.norm() > 0 && from.normalized().cross(view.up.normalized()).norm() > 0.1) fit.view.from = from;
+    return [points, box = box_, fit](double width, double height) {
+      return fit_contact(points, box, width, height, fit, kAround, kLeastShown);
+    };
   }
 
   const LrbRep& rep_;
-  const render::FrameSpec& frames_;
-  const render::Style& style_;
-  std::vector<Vector3d> whole_;
+  const Look& look_;
+  const Style& style_;
   Eigen::AlignedBox3d box_;
-  render::RasterOptions raster_;
   float scale_;
-  render::Rasterizer rasterizer_;
 };
-
-/// Puts a heading above panels, and the scale below them.
-render::Image with_overlay(const render::Image& panels, const render::Overlay& overlay, float scale) {
-  const int room = static_cast<int>(600 * scale);  // more than the overlay needs; the rest is cut off
-  const int width = panels.width();
-  const render::OverlayLayout tentative = render::lay_out(overlay, width, panels.height() + room, scale);
-  const int height = 2 * panels.height() + room - tentative.picture.height;
-  const render::OverlayLayout layout = render::lay_out(overlay, width, height, scale);
-  return render::compose_frame(panels, layout.picture, overlay, width, height,
-                               render::style_of(overlay.style).paper, scale);
-}
 
 }  // namespace
 
@@ -218,46 +160,33 @@ Vector3d outlook(const LrbRep& rep, RegionId r) {
       area += n.norm();
     }
   }
-  constexpr double kAllRound = 0.2;  // lids that look nearly all ways: their mean says nothing
+  constexpr double kAllRound = 0.2;  // of the lids' area; below it they face nearly all ways
   return area > 0 && sum.norm() > kAllRound * area ? Vector3d(sum.normalized()) : Vector3d::Zero();
 }
 
-std::vector<Vector3d> points_of(const LrbRep& rep, RegionId r) {
-  std::vector<Vector3d> points;
-  for (const FaceId f : rep.collector(r))
-    for (const VertexId v : rep.face(f)) points.push_back(rep.vertices()[v]);
-  return points;
-}
-
-void draw_region_sheet(const LrbRep& rep, std::span<const double> values, const std::string& name,
-                       std::span<const ShownRegion> regions, const std::string& path,
-                       const render::FrameSpec& given) {
-  const render::FrameSpec frames = in_pixels(given);
-  RegionSheet sheet(rep, frames);
-  constexpr double kRange = 1000;  // from the least colour to the last one
+Image region_sheet(const LrbRep& rep, std::span<const double> values, const std::string& name,
+                   std::span<const ShownRegion> regions, const Look& look) {
+  const RegionSheet sheet(rep, look);
+  constexpr double kRange = 1000;  // ratio of the ends of the scale
   const double most = values.empty() ? 0 : *std::max_element(values.begin(), values.end());
-  render::Overlay overlay;
+  Overlay overlay;
   overlay.title = rep.name() + ": where its wrappers waste most";
   overlay.event = "(a) the body; then the worst regions, seen from where their lids look";
-  overlay.scale = render::ScaleBar{name, most > 0 ? most / kRange : 1e-3, most > 0 ? most : 1, true};
+  overlay.scale = ScaleBar{name, most > 0 ? most / kRange : 1e-3, most > 0 ? most : 1, true};
   overlay.key = sheet.key();
-  overlay.style = style_name(frames);
-  std::vector<render::Panel> panels = {sheet.whole(values, name, overlay)};
+  overlay.style = look.style;
+  std::vector<Panel> panels = {sheet.whole(values, *overlay.scale)};
   for (const ShownRegion& r : regions) panels.push_back(sheet.close_up(r));
-  render::MontageOptions options;
+  MontageOptions options;
   options.columns = panels.size() > 6 ? 4 : 3;
   options.frame = true;
-  options.style = overlay.style;
-  options.background = style_of(frames).paper;
-  render::write_png(
-      with_overlay(render::montage(panels, options), overlay, static_cast<float>(frames.scale())), path,
-      {{}, frames.dpi});
+  return with_overlay(draw_sheet(panels, look, options), overlay, look.scale());
 }
 
 namespace {
 
 std::string number_and(std::size_t n, const char* what) {
-  return render::group_digits(n) + " " + what + (n == 1 ? "" : "s");
+  return group_digits(n) + " " + what + (n == 1 ? "" : "s");
 }
 
 /// Returns the first few regions of a set, by their numbers.
@@ -284,7 +213,7 @@ std::string words_of_one(const LrbRep& rep, RegionId r, const std::string& owner
   std::string out = "region " + std::to_string(r) + owner + ": layer " + std::to_string(rep.layer(r)) + ", " +
                     number_and(rep.lids(r).size(), "lid") + " over " +
                     number_and(rep.floor(r).size(), "face");
-  if (real > 0) out += ", " + render::group_digits(real) + " of them real";
+  if (real > 0) out += ", " + group_digits(real) + " of them real";
   out += "; parent " + (is_region(rep.parent(r)) ? std::to_string(rep.parent(r)) : "the outside");
   if (!outside.empty()) out += "; also under " + list_of(outside);
   if (!inside.empty()) out += "; hides " + list_of(inside);

@@ -1,28 +1,27 @@
 #pragma once
 
-#include <string>
+#include <optional>
 #include <vector>
 
-#include "render/pictures/frame_spec.hpp"
+#include "render/pictures/panel.hpp"
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/mesh_repair.hpp>
 
 namespace lrb::run {
 
-/// A mesh and what is wrong with it.
+/// A mesh and its faults.
 struct FaultyMesh {
   const Mesh& mesh;
   const MeshReport& report;
   const std::vector<BoundaryLoop>& loops;
 };
 
-/// Draws a mesh's findings: the whole mesh in panel (a), the first offender of each kind close up in a panel
-/// each. Of open edges all are drawn, and the longest loop close up. `frames` says how large the whole is to
-/// be (height 0: as it needs) and, by its first view, from where the whole is seen. Returns false, and writes
-/// nothing, if there is nothing to point at.
-bool draw_findings(const FaultyMesh& faulty, const std::string& path, const render::FrameSpec& frames);
+/// Draws a mesh's findings: the whole mesh in panel (a), seen from the look's first view, then the first
+/// offender of each kind close up. Open edges are all drawn, and the longest loop close up. `look`: in pixels
+/// of the file; height 0: as high as needed. Returns nullopt if no finding has a position.
+std::optional<render::Image> picture_of(const FaultyMesh& faulty, const render::Look& look);
 
-/// The width of the picture unless one is asked for.
+/// The width of the picture unless one is requested.
 inline constexpr int kFindingsSheetWidth = 1600;
 
 }  // namespace lrb::run

@@ -5,24 +5,23 @@
 
 #include <Eigen/Geometry>
 
-#include "render/pictures/panel.hpp"
 #include <lrbscope/core/strings.hpp>
-#include <lrbscope/explain.hpp>
+#include <lrbscope/distance.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/render/style.hpp>
 
 namespace lrb::run {
 
 void add_box(render::DrawList& list, const Eigen::Vector3d& centre,
-             const std::array<Eigen::Vector3d, 3>& half, const BoxLook& look) {
+             const std::array<Eigen::Vector3d, 3>& half, const BoxStyle& style) {
   const auto corner = [&](int x, int y, int z) -> Eigen::Vector3d {
     return centre + (x * 2 - 1) * half[0] + (y * 2 - 1) * half[1] + (z * 2 - 1) * half[2];
   };
   render::DrawLine line;
-  line.colour = look.colour;
-  line.width = look.width;
-  line.dash = look.dash;
-  line.layer = look.through ? render::Layer::on_top : render::Layer::translucent;
+  line.colour = style.colour;
+  line.width = style.width;
+  line.dash = style.dash;
+  line.layer = style.through ? render::Layer::on_top : render::Layer::translucent;
   for (int z = 0; z < 2; ++z) {
     line.points = {corner(0, 0, z), corner(1, 0, z), corner(1, 1, z), corner(0, 1, z)};
     line.closed = true;
@@ -47,7 +46,6 @@ std::vector<Vector3d> corners_of(const LrbRep& rep, const Pose& pose, SimplexId 
   return out;
 }
 
-/// Draws a segment, or the outline of a polygon, over everything that hides it.
 void outline(render::DrawList& list, const std::vector<Vector3d>& corners, render::Rgba colour, float width,
              render::Rgba halo) {
   render::DrawLine line;
@@ -59,6 +57,14 @@ void outline(render::DrawList& list, const std::vector<Vector3d>& corners, rende
   line.halo_width = kHalo;
   line.layer = render::Layer::on_top;
   list.lines.push_back(line);
+}
+
+void add_sheet(render::DrawList& list, const std::vector<Vector3d>& corners) {
+  render::DrawTriangle like;
+  like.colour = render::with_alpha(kSeparationColour, 90);
+  like.layer = render::Layer::translucent;
+  like.lit = false;
+  list.add_polygon(corners, like);
 }
 
 void add_mark(render::DrawList& list, const Vector3d& x, render::Rgba colour, float radius,
@@ -73,18 +79,20 @@ void add_mark(render::DrawList& list, const Vector3d& x, render::Rgba colour, fl
   list.points.push_back(point);
 }
 
-void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const LrbRep& a,
-                     const Pose& pose_a, const LrbRep& b, const Pose& pose_b, render::Rgba halo) {
+void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const PosedBodies& bodies,
+                     render::Rgba halo) {
   constexpr float kLineWidth = 2.5F;
   for (const WrongPair& wrong : pairs) {
-    outline(list, corners_of(a, pose_a, wrong.pair.a), render::palette::kWrong, kLineWidth, halo);
-    outline(list, corners_of(b, pose_b, wrong.pair.b), render::palette::kWrong, kLineWidth, halo);
+    outline(list, corners_of(bodies.a, bodies.pose_a, wrong.pair.a), render::palette::kWrong, kLineWidth,
+            halo);
+    outline(list, corners_of(bodies.b, bodies.pose_b, wrong.pair.b), render::palette::kWrong, kLineWidth,
+            halo);
   }
 }
 
 namespace {
 
-constexpr float kWayWidth = 4, kTextOff = 20, kTextHeight = 19;
+constexpr float kSegmentWidth = 4, kTextOff = 20, kTextHeight = 19;
 
 void write_beside(render::DrawList& list, const Vector3d& x, float below, const std::string& text,
                   render::Rgba colour) {
@@ -98,12 +106,13 @@ void write_beside(render::DrawList& list, const Vector3d& x, float below, const 
 }
 
 /// Draws the barbs of an arrow's head in the plane of the arrow and `across`.
-void add_barbs(render::DrawList& list, const MarkedWay& way, const Vector3d& across, render::Rgba colour) {
+void add_barbs(render::DrawList& list, const MarkedSegment& way, const Vector3d& across,
+               render::Rgba colour) {
   constexpr double kHeadLength = 0.24, kHeadWidth = 0.11;
   const Vector3d along = way.to - way.from;
   const Vector3d back = way.to - kHeadLength * along, aside = kHeadWidth * along.norm() * across;
   for (const Vector3d& end : {Vector3d(back + aside), Vector3d(back - aside)})
-    outline(list, {end, way.to}, colour, kWayWidth);
+    outline(list, {end, way.to}, colour, kSegmentWidth);
 }
 
 }  // namespace
@@ -140,43 +149,122 @@ std::string kind_words(ClashKind kind, ClashReason reason) {
   return kind_words(kind) + (reason == ClashReason::none ? "" : ": ") + std::string(name_of(reason));
 }
 
-std::optional<MarkedWay> gap_of(const ProvedInterval& distance, const Vector3d& point_a,
-                                const Vector3d& point_b) {
+std::optional<MarkedSegment> gap_of(const ProvedInterval& distance, const Vector3d& point_a,
+                                    const Vector3d& point_b) {
   if (!(distance.lower > 0) || !std::isfinite(distance.upper)) return std::nullopt;
-  return MarkedWay{point_a, point_b, interval_words(distance.lower, distance.upper)};
+  return MarkedSegment{point_a, point_b, interval_words(distance.lower, distance.upper)};
 }
 
-std::optional<MarkedWay> way_out_of(const std::optional<ProvedInterval>& depth, const Vector3d& translation,
-                                    const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                                    std::span<const ContactRegion> contacts) {
+std::optional<MarkedSegment> separation_vector_of(const std::optional<ProvedInterval>& depth,
+                                                  const Vector3d& translation, const PosedBodies& bodies,
+                                                  std::span<const ContactRegion> contacts) {
   if (!depth || !std::isfinite(depth->upper) || translation.isZero(0)) return std::nullopt;
-  Eigen::AlignedBox3d shared = box_of(a, pose_a).intersection(box_of(b, pose_b));
-  if (const std::vector<Vector3d> points = render::contact_points(contacts); !points.empty()) {
-    shared.setEmpty();
-    for (const Vector3d& x : points) shared.extend(x);
-  }
-  const Vector3d middle = shared.center();
-  return MarkedWay{middle - translation / 2, middle + translation / 2,
-                   interval_words(depth->lower, depth->upper)};
+  const std::vector<Vector3d> points = render::contact_points(contacts);
+  const Vector3d middle =
+      points.empty() ? box_of(bodies.a, bodies.pose_a).intersection(box_of(bodies.b, bodies.pose_b)).center()
+                     : render::bounds(points).center();
+  return MarkedSegment{middle - translation / 2, middle + translation / 2,
+                       interval_words(depth->lower, depth->upper)};
 }
 
-void add_gap(render::Scene& scene, const MarkedWay& gap, const render::Style& style) {
+void add_gap(render::Scene& scene, const MarkedSegment& gap, const render::Style& style) {
   const render::Rgba colour = style.of(kGapColour);
-  outline(scene.list, {gap.from, gap.to}, colour, kWayWidth);
+  outline(scene.list, {gap.from, gap.to}, colour, kSegmentWidth);
   for (const Vector3d& x : {gap.from, gap.to}) add_mark(scene.list, x, colour, 4, style.paper);
   write_beside(scene.list, (gap.from + gap.to) / 2, -kTextOff, gap.text, colour);
   scene.key.push_back({render::LegendItem::Mark::line, colour, "nearest points"});
 }
 
-void add_way_out(render::Scene& scene, const MarkedWay& way, int dim) {
-  outline(scene.list, {way.from, way.to}, kWayOutColour, kWayWidth);
+void add_separation_vector(render::Scene& scene, const MarkedSegment& way, int dim) {
+  outline(scene.list, {way.from, way.to}, kSeparationColour, kSegmentWidth);
   const Vector3d along = (way.to - way.from).normalized();
   const Vector3d across = dim == 2 ? Vector3d::UnitZ().cross(along) : along.unitOrthogonal();
-  add_barbs(scene.list, way, across, kWayOutColour);
-  if (dim == 3) add_barbs(scene.list, way, along.cross(across), kWayOutColour);
-  write_beside(scene.list, way.from, kTextOff, way.text, kWayOutColour);
-  scene.key.push_back({render::LegendItem::Mark::line, kWayOutColour, "B leaves A this way"});
+  add_barbs(scene.list, way, across, kSeparationColour);
+  if (dim == 3) add_barbs(scene.list, way, along.cross(across), kSeparationColour);
+  write_beside(scene.list, way.from, kTextOff, way.text, kSeparationColour);
+  scene.key.push_back({render::LegendItem::Mark::line, kSeparationColour, "B leaves A this way"});
 }
+
+// The separating plane.
+
+namespace {
+
+/// Returns a square around the projection of a point onto the plane n.x = at.
+Square square(const Vector3d& n, double at, Vector3d middle, double half, int dim) {
+  middle += n * (at - n.dot(middle));
+  if (dim == 2) {
+    const Vector3d u = half * Vector3d(-n.y(), n.x(), 0);
+    return {middle + u, middle - u, middle - u, middle + u};
+  }
+  const Vector3d u = half * n.unitOrthogonal(), v = n.cross(u);
+  return {middle + u, middle + v, middle - u, middle - v};
+}
+
+}  // namespace
+
+Square separating_square(const PartingPlane& plane, const PosedBodies& bodies) {
+  constexpr double kShare = 0.35;  // of the smaller body's diagonal, from the centre to a corner
+  const Eigen::AlignedBox3d of_a = render::bounds(render::body_points(bodies.a, bodies.pose_a)),
+                            of_b = render::bounds(render::body_points(bodies.b, bodies.pose_b));
+  const Eigen::AlignedBox3d& smaller = of_a.diagonal().norm() < of_b.diagonal().norm() ? of_a : of_b;
+  return square(plane.normal, (plane.of_a + plane.of_b) / 2, smaller.center(),
+                kShare * smaller.diagonal().norm(), bodies.dim());
+}
+
+Square separating_square(const PartedBoxes& parted, int dim) {
+  const auto axis = static_cast<std::size_t>(parted.pair.axis);
+  const auto& [a, b] = parted.boxes;
+  Vector3d normal = axis < 3 ? a.across[axis] : b.across[axis - 3];
+  if (normal.dot(b.centre - a.centre) < 0) normal = -normal;
+  double end_of_a = normal.dot(a.centre);
+  for (const Vector3d& h : a.half) end_of_a += std::abs(normal.dot(h));
+  const auto size = [](const WorldBox& box) { return (box.half[0] + box.half[1] + box.half[2]).norm(); };
+  return square(normal, end_of_a + parted.pair.gap / 2, (a.centre + b.centre) / 2, std::min(size(a), size(b)),
+                dim);
+}
+
+std::optional<Square> separating_square(const WalkExplanation& walk, const PosedBodies& bodies) {
+  if (walk.plane) return separating_square(*walk.plane, bodies);
+  if (walk.nearest_boxes) return separating_square(*walk.nearest_boxes, bodies.dim());
+  return {};
+}
+
+void add_separating_plane(render::DrawList& list, const WalkExplanation& walk, const PosedBodies& bodies,
+                          const render::Style& style, bool through) {
+  constexpr float kLine = 1.5F, kStrip = 3;
+  const std::optional<Square> square = separating_square(walk, bodies);
+  if (!square) return;
+  if (!walk.plane)
+    for (const Side side : {Side::a, Side::b}) {
+      const WorldBox& box = walk.nearest_boxes->boxes[static_cast<std::size_t>(side)];
+      add_box(list, box.centre, box.half, {style.edge_of(style.body(side)), kLine, 0, through});
+    }
+  render::DrawLine border;
+  border.colour = kSeparationColour;
+  border.layer = render::Layer::translucent;
+  if (bodies.dim() == 2) {
+    border.points = {(*square)[0], (*square)[1]};
+    border.width = kStrip;
+  } else {
+    border.points = {square->begin(), square->end()};
+    border.closed = true;
+    border.width = kLine;
+    add_sheet(list, border.points);
+  }
+  list.lines.push_back(border);
+}
+
+std::string separating_plane_text(const WalkExplanation& walk, const PosedBodies& bodies) {
+  if (!walk.plane && !walk.nearest_boxes) return {};
+  // Not the gap of the plane or of the boxes: it can grow while the bodies approach.
+  DistanceRequest request;
+  request.relation = false;
+  const double gap = distance(bodies.a, bodies.pose_a, bodies.b, bodies.pose_b, request).lower;
+  return std::string(walk.plane ? "a plane parts them" : "boxes part them") +
+         (gap > 0 ? ", gap >= " + io::lower_text(gap) : "");
+}
+
+// The boxes of a tree's nodes.
 
 namespace {
 
@@ -266,8 +354,8 @@ std::vector<std::uint32_t> nodes_by_depth(const ObbTree& tree) {
   return out;
 }
 
-std::vector<TreeBox> boxes_on_ways(const ObbTree& tree, std::uint32_t below, const std::vector<SimplexId>& to,
-                                   std::size_t most) {
+std::vector<TreeBox> boxes_on_paths(const ObbTree& tree, std::uint32_t below,
+                                    const std::vector<SimplexId>& to, std::size_t most) {
   std::vector<TreeBox> out;
   const std::vector<Place> places = places_of(tree);
   const std::vector<std::uint32_t> leaves = leaves_of(tree);

@@ -1,5 +1,5 @@
 #pragma once
-/// Draws what a distance or a clash found: the way between the nearest points, and the way out of an overlap.
+/// Marks of answers in a scene: closest points, separation vector, separating plane, faces, tree boxes.
 
 #include <array>
 #include <cstddef>
@@ -11,8 +11,10 @@
 
 #include <Eigen/Core>
 
+#include "render/pictures/panel.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/contact.hpp>
+#include <lrbscope/explain.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/obb_tree.hpp>
@@ -23,92 +25,113 @@
 
 namespace lrb::run {
 
-/// How the edges of a box look.
-struct BoxLook {
+/// The style of the edges of a box.
+struct BoxStyle {
   render::Rgba colour;
   float width = 1, dash = 0;
-  bool through = false;  ///< seen through what hides it
+  bool through = false;  ///< visible through faces in front of it
 };
 
-/// Adds the twelve edges of a box in the world: four round each end, and four between. `half`: from the
-/// centre to the middles of three sides.
+/// Adds the twelve edges of a box in the world. `half`: from the centre to the centres of three sides.
 void add_box(render::DrawList& list, const Eigen::Vector3d& centre,
-             const std::array<Eigen::Vector3d, 3>& half, const BoxLook& look);
+             const std::array<Eigen::Vector3d, 3>& half, const BoxStyle& style);
 
-/// Colours of both on a screen, and of the marks before words that say what they are.
+/// Colours on a screen, also of the marks before texts about them.
 inline constexpr render::Rgba kGapColour = render::palette::kInk;
-inline constexpr render::Rgba kWayOutColour = render::palette::kGreen;
+inline constexpr render::Rgba kSeparationColour = render::palette::kGreen;  ///< plane and vector
 
-/// A straight way in the world, with what is written beside it.
-struct MarkedWay {
+/// A segment in the world, and the text beside it.
+struct MarkedSegment {
   Eigen::Vector3d from, to;
   std::string text;
 };
 
-/// Return the way between the nearest points of bodies that are apart, or the way of B out of A, through the
-/// middle of the contacts; nothing if there is none. contacts: may be empty, and then the middle is that of
-/// what the boxes of the bodies share.
-std::optional<MarkedWay> gap_of(const ProvedInterval& distance, const Eigen::Vector3d& point_a,
-                                const Eigen::Vector3d& point_b);
-std::optional<MarkedWay> way_out_of(const std::optional<ProvedInterval>& depth,
-                                    const Eigen::Vector3d& translation, const LrbRep& a, const Pose& pose_a,
-                                    const LrbRep& b, const Pose& pose_b,
-                                    std::span<const ContactRegion> contacts);
+/// Returns the segment between the closest points; nullopt if the bodies are not separate.
+std::optional<MarkedSegment> gap_of(const ProvedInterval& distance, const Eigen::Vector3d& point_a,
+                                    const Eigen::Vector3d& point_b);
+/// Returns the separation vector of B, centred at the contacts or, without any, at the intersection of the
+/// bodies' boxes; nullopt if there is no vector.
+std::optional<MarkedSegment> separation_vector_of(const std::optional<ProvedInterval>& depth,
+                                                  const Eigen::Vector3d& translation,
+                                                  const PosedBodies& bodies,
+                                                  std::span<const ContactRegion> contacts);
 
-/// Add it to a scene, over everything that hides it, with its line in the key.
-void add_gap(render::Scene& scene, const MarkedWay& gap, const render::Style& style);
-void add_way_out(render::Scene& scene, const MarkedWay& way, int dim);
+/// Add it to a scene, visible through everything, and its line to the key.
+void add_gap(render::Scene& scene, const MarkedSegment& gap, const render::Style& style);
+void add_separation_vector(render::Scene& scene, const MarkedSegment& vector, int dim);
 
-/// Returns an interval in words: "0.25", or "0.2 to 0.3" where four digits tell its ends apart.
+/// Adds the separating plane that was found, else the closest of the separated boxes and a plane between
+/// them; nothing if the walk found neither. `through`: boxes are visible through faces in front of them.
+void add_separating_plane(render::DrawList& list, const WalkExplanation& walk, const PosedBodies& bodies,
+                          const render::Style& style, bool through = false);
+
+/// Returns a short text with a lower bound of the distance of the surfaces: "a plane parts them, gap >=
+/// 0.12"; empty if the walk found neither plane nor boxes.
+std::string separating_plane_text(const WalkExplanation& walk, const PosedBodies& bodies);
+
+/// The corners of a square in the world. In 2D it is a segment between corners 0 and 1.
+using Square = std::array<Eigen::Vector3d, 4>;
+/// Returns a square in the middle of the gap at a separating plane, beside the centre of the smaller body and
+/// in proportion to it.
+Square separating_square(const PartingPlane& plane, const PosedBodies& bodies);
+/// Returns a square in the gap between two boxes, in proportion to the smaller one.
+Square separating_square(const PartedBoxes& boxes, int dim);
+/// Returns the square of the plane that was found, else of the boxes; nullopt if there is neither.
+std::optional<Square> separating_square(const WalkExplanation& walk, const PosedBodies& bodies);
+
+/// Adds a translucent convex polygon in the colour of separating planes.
+void add_sheet(render::DrawList& list, const std::vector<Eigen::Vector3d>& corners);
+
+/// Returns an interval in words: "0.25", or "0.2 to 0.3" if its ends differ in four digits.
 std::string interval_words(double lower, double upper);
-/// Returns the kind of contact as people say it: "A inside B", "touching in a face".
+/// Returns the kind of contact in words: "A inside B", "touching in faces".
 std::string kind_words(ClashKind kind);
 /// Adds the reason of a kind that is undecided: "undecided: A intersects itself".
 std::string kind_words(ClashKind kind, ClashReason reason);
 
-// Outlines of faces that are to be seen through everything.
+// Outlines that are visible through everything.
 
-inline constexpr float kHalo = 1.5F;  ///< round lines and points that lie over others
+inline constexpr float kHalo = 1.5F;  ///< width around lines and points that lie over others
 
 /// Returns the corners of a simplex in the world.
 std::vector<Eigen::Vector3d> corners_of(const LrbRep& rep, const Pose& pose, SimplexId s);
 
-/// Draws a segment, or the outline of a polygon, over everything that hides it.
+/// Adds a segment or the outline of a polygon.
 void outline(render::DrawList& list, const std::vector<Eigen::Vector3d>& corners, render::Rgba colour,
              float width, render::Rgba halo = render::kWhite);
 
-/// Draws a point over everything that hides it. `radius`: pixels.
+/// Adds a point. `radius`: pixels.
 void add_mark(render::DrawList& list, const Eigen::Vector3d& x, render::Rgba colour, float radius,
               render::Rgba halo = render::kWhite);
 
-/// A pair that another engine got wrong: it reported faces that do not meet, or missed faces that do.
+/// A wrong pair in another engine's answer: disjoint faces that it reported, or intersecting ones it missed.
 struct WrongPair {
   SimplexPair pair;
   bool missed = false;
 };
 
-/// Draws the faces of pairs that another engine got wrong.
-void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const LrbRep& a,
-                     const Pose& pose_a, const LrbRep& b, const Pose& pose_b, render::Rgba halo);
+/// Adds the outlines of the faces of such pairs.
+void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const PosedBodies& bodies,
+                     render::Rgba halo);
 
-// The boxes of a tree's nodes, for looking at.
+// The boxes of a tree's nodes.
 
 struct TreeBox {
   std::uint32_t node = 0;   ///< index into ObbTree::nodes()
   std::uint32_t depth = 0;  ///< 0: the root
   Eigen::Vector3d centre;   ///< body frame
-  Eigen::Matrix3d half;     ///< columns: from the centre to the middles of three sides
+  Eigen::Matrix3d half;     ///< columns: from the centre to the centres of three sides
 };
 
-/// Returns the boxes of all nodes down to the greatest depth at which they are no more than `most`, by depth.
+/// Returns the boxes of all nodes by depth, down to the greatest depth at which there are at most `most`.
 std::vector<TreeBox> tree_boxes(const ObbTree& tree, std::size_t most);
 
-/// Returns how many nodes there are at each depth, from the root's on.
+/// Returns the number of nodes at each depth, from the root on.
 std::vector<std::uint32_t> nodes_by_depth(const ObbTree& tree);
 
-/// Returns the boxes of nodes below a depth that lie on the ways from the root to some simplices, in the
-/// order of these, no more than `most`.
-std::vector<TreeBox> boxes_on_ways(const ObbTree& tree, std::uint32_t below, const std::vector<SimplexId>& to,
-                                   std::size_t most);
+/// Returns the boxes of nodes below a depth on the paths from the root to some simplices, in the order of
+/// these, at most `most`.
+std::vector<TreeBox> boxes_on_paths(const ObbTree& tree, std::uint32_t below,
+                                    const std::vector<SimplexId>& to, std::size_t most);
 
 }  // namespace lrb::run

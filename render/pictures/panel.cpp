@@ -4,104 +4,115 @@
 #include <cmath>
 #include <numbers>
 
-#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/core/file.hpp>
 
 namespace lrb::run {
-namespace {
 
-void write_title(render::Image& view, const std::string& title, const render::FrameSpec& spec) {
-  render::TextStyle style;
-  const auto scale = static_cast<float>(spec.scale());
-  style.height = std::max(13.0F * scale, static_cast<float>(spec.height) / 42);
-  style.colour = style_of(spec).faint;
-  style.halo = style_of(spec).paper;
-  style.halo_width = 2 * scale;
-  render::default_font().draw(view, title, static_cast<int>(style.height / 2),
-                              static_cast<int>(style.height / 3), style);
+using namespace render;
+using Eigen::Vector3d;
+
+Image draw_panel(Rasterizer& rasterizer, const Panel& panel, const Look& look, int width, int height) {
+  RasterOptions options;
+  options.width = width;
+  options.height = height;
+  options.supersample = look.supersampling;
+  options.background = look.paper();
+  options.even_edges = panel.even_edges;
+  options.lighting = panel.lighting;
+  return rasterizer.draw(panel.list, panel.camera(width, height), options);
 }
 
-}  // namespace
-
-render::StyleName style_name(const render::FrameSpec& spec) {
-  switch (spec.style) {
-    case render::FrameSpec::Style::print:
-      return render::StyleName::print;
-    case render::FrameSpec::Style::dark:
-      return render::StyleName::dark;
-    case render::FrameSpec::Style::screen:
-      break;
+std::vector<PixelRect> panel_places(const PixelRect& picture, std::size_t panels, double scale) {
+  const int gap = static_cast<int>(std::lround(4 * scale)), n = static_cast<int>(panels);
+  const bool columns = picture.width >= picture.height;
+  const int whole = columns ? picture.width : picture.height, each = (whole - gap * (n - 1)) / n;
+  std::vector<PixelRect> out;
+  for (int i = 0; i < n; ++i) {
+    const int at = i * (each + gap), size = i + 1 == n ? whole - at : each;
+    out.push_back(columns ? PixelRect{at, 0, size, picture.height} : PixelRect{0, at, picture.width, size});
   }
-  return render::StyleName::screen;
+  return out;
 }
 
-const render::Style& style_of(const render::FrameSpec& spec) {
-  return render::style_of(style_name(spec));
+Image draw_row(Rasterizer& rasterizer, std::span<const Panel> panels, const Look& look,
+               const PixelRect& picture) {
+  const Style& style = style_of(look.style);
+  const auto scale = static_cast<float>(look.scale());
+  TextStyle text;
+  text.height = std::max(13.0F * scale, static_cast<float>(look.height) / 42);
+  text.colour = style.faint;
+  text.halo = style.paper;
+  text.halo_width = 2 * scale;
+  Image out(picture.width, picture.height,
+            panels.size() > 1 && !look.transparent ? style.rule : look.background());
+  const std::vector<PixelRect> places = panel_places(picture, panels.size(), look.scale());
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const PixelRect& place = places[i];
+    Image panel = draw_panel(rasterizer, panels[i], look, place.width, place.height);
+    if (look.titles && !panels[i].title.empty())
+      default_font().draw(panel, panels[i].title, static_cast<int>(text.height / 2),
+                          static_cast<int>(text.height / 3), text);
+    // Copied, not blended: a transparent panel keeps its alpha.
+    for (int y = 0; y < place.height; ++y)
+      std::copy_n(&panel.at(0, y), place.width, &out.at(place.x, place.y + y));
+  }
+  return out;
 }
 
-std::optional<render::Rgba> paper_of(const render::FrameSpec& spec) {
-  return spec.transparent ? std::nullopt : std::optional(style_of(spec).paper);
+Image draw_panels(std::span<const Panel> panels, const Overlay& overlay, const Look& look) {
+  const auto scale = static_cast<float>(look.scale());
+  const PixelRect place = lay_out(overlay, look.width, look.height, scale).picture;
+  Rasterizer rasterizer;
+  return compose_frame(draw_row(rasterizer, panels, look, place), place, overlay, look.width, look.height,
+                       look.background(), scale);
 }
 
-void leave_out_texts(render::Overlay& overlay, const render::FrameSpec& spec) {
-  if (!spec.titles) {
+Image draw_sheet(std::span<const Panel> panels, const Look& look, MontageOptions options) {
+  Rasterizer rasterizer;
+  std::vector<render::Panel> images;
+  for (const Panel& panel : panels)
+    images.push_back({draw_panel(rasterizer, panel, look, look.width, look.height), panel.title});
+  options.style = look.style;
+  options.background = look.background();
+  return montage(images, options);
+}
+
+Image with_overlay(const Image& picture, const Overlay& overlay, double scale) {
+  const auto s = static_cast<float>(scale);
+  const int room = static_cast<int>(600 * s);  // more than the overlay needs; the rest is cut off
+  const int width = picture.width();
+  const OverlayLayout tentative = lay_out(overlay, width, picture.height() + room, s);
+  const int height = 2 * picture.height() + room - tentative.picture.height;
+  return compose_frame(picture, lay_out(overlay, width, height, s).picture, overlay, width, height,
+                       style_of(overlay.style).paper, s);
+}
+
+void leave_out_texts(Overlay& overlay, const Look& look) {
+  if (!look.titles) {
     overlay.title.clear();
     overlay.event.clear();
-    overlay.event_colour = render::kTransparent;
+    overlay.event_colour = kTransparent;
     overlay.counters.clear();
   }
-  if (!spec.legend) {
+  if (!look.legend) {
     overlay.key.clear();
     overlay.scale.reset();
   }
 }
 
-render::FrameSpec in_pixels(render::FrameSpec spec) {
-  spec.width = static_cast<int>(std::lround(spec.width * spec.scale()));
-  spec.height = static_cast<int>(std::lround(spec.height * spec.scale()));
-  return spec;
+void to_pixels(Look& look) {
+  for (int* side : {&look.width, &look.height}) *side = static_cast<int>(std::lround(*side * look.scale()));
 }
 
-std::vector<render::PixelRect> view_places(const render::PixelRect& picture, std::size_t views,
-                                           double scale) {
-  const int gap = static_cast<int>(std::lround(4 * scale)), n = static_cast<int>(views);
-  const bool columns = picture.width >= picture.height;
-  const int whole = columns ? picture.width : picture.height, each = (whole - gap * (n - 1)) / n;
-  std::vector<render::PixelRect> out;
-  for (int i = 0; i < n; ++i) {
-    const int at = i * (each + gap), size = i + 1 == n ? whole - at : each;
-    out.push_back(columns ? render::PixelRect{at, 0, size, picture.height}
-                          : render::PixelRect{0, at, picture.width, size});
-  }
-  return out;
+void write_picture(const Image& picture, const std::string& path, double dpi) {
+  make_folder_of(path);
+  write_png(picture, path, {{}, dpi});
 }
 
-void paint_views(render::Rasterizer& rasterizer, const render::FrameSpec& spec,
-                 const std::vector<render::FrameSpec::View>& views,
-                 const std::vector<render::PixelRect>& places,
-                 const std::function<render::DrawList(const render::FrameSpec::View&)>& list_of,
-                 const std::function<render::Camera(std::size_t)>& camera_of, render::Image& picture) {
-  picture.pixels().assign(picture.pixels().size(), views.size() > 1 && !spec.transparent
-                                                       ? style_of(spec).rule
-                                                       : paper_of(spec).value_or(render::kTransparent));
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const render::PixelRect& place = places[i];
-    render::RasterOptions options;
-    options.width = place.width;
-    options.height = place.height;
-    options.supersample = spec.supersampling;
-    options.background = paper_of(spec);
-    options.even_edges = true;
-    render::Image view = rasterizer.draw(list_of(views[i]), camera_of(i), options);
-    if (spec.titles && !views[i].title.empty()) write_title(view, views[i].title, spec);
-    for (int y = 0; y < place.height; ++y)
-      std::copy_n(&view.at(0, y), place.width, &picture.at(place.x, place.y + y));
-  }
-}
-
-void merge_key(std::vector<render::LegendItem>& all, const std::vector<render::LegendItem>& some) {
-  for (const render::LegendItem& item : some)
+void merge_key(std::vector<LegendItem>& all, const std::vector<LegendItem>& some) {
+  for (const LegendItem& item : some)
     if (std::none_of(all.begin(), all.end(),
-                     [&](const render::LegendItem& known) { return known.text == item.text; }))
+                     [&](const LegendItem& known) { return known.text == item.text; }))
       all.push_back(item);
 }
 
@@ -113,11 +124,17 @@ std::vector<std::size_t> evenly(std::size_t count, std::size_t wanted) {
   return out;
 }
 
-render::Camera camera_for(const render::FrameSpec::View& view, const Framing& framing, double width,
-                          double height, double progress) {
-  using Kind = render::FrameSpec::Camera;
+CameraFit fit_points(std::vector<Vector3d> points, int dim, const FitOptions& options) {
+  return [points = std::move(points), dim, options](double width, double height) {
+    return dim == 2 ? fit_top(points, width, height) : fit_camera(points, width, height, options);
+  };
+}
+
+Camera camera_for(const Look::View& view, const Framing& framing, double width, double height,
+                  double progress) {
+  using Kind = Look::Camera;
   const bool close = view.camera == Kind::contact && !framing.contacts.empty();
-  render::Camera camera;
+  Camera camera;
   if (view.camera == Kind::fixed) {
     camera.eye = view.eye;
     camera.target = view.target;
@@ -125,18 +142,17 @@ render::Camera camera_for(const render::FrameSpec::View& view, const Framing& fr
     camera.orthographic = view.orthographic;
     camera.half_height = (view.eye - view.target).norm() * std::tan(camera.fov_y / 2);
   } else if (framing.dim == 2) {
-    camera = render::fit_top(close ? framing.contacts : framing.points, width, height);
+    camera = fit_top(close ? framing.contacts : framing.points, width, height);
   } else {
-    render::FitOptions options;
+    FitOptions options;
     options.view = {view.from, view.up};
     options.orthographic = view.orthographic;
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& p : framing.points) box.extend(p);
     constexpr double kRoomAround = 1.6;  // in sizes of the contacts
-    camera = close ? render::fit_contact(framing.contacts, box, width, height, options, kRoomAround)
-                   : render::fit_camera(framing.points, width, height, options);
+    camera = close
+                 ? fit_contact(framing.contacts, bounds(framing.points), width, height, options, kRoomAround)
+                 : fit_camera(framing.points, width, height, options);
     if (view.camera == Kind::orbit)
-      camera = render::orbit(camera, view.turn_degrees * progress * std::numbers::pi / 180);
+      camera = orbit(camera, view.turn_degrees * progress * std::numbers::pi / 180);
   }
   if (view.look_at) {
     camera.eye += *view.look_at - camera.target;
@@ -147,26 +163,54 @@ render::Camera camera_for(const render::FrameSpec::View& view, const Framing& fr
   return camera;
 }
 
-Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
-  Eigen::AlignedBox3d box;
+std::vector<SceneBody> PosedBodies::in_scene() const {
+  std::vector<SceneBody> out(2);
+  out[0].rep = &a;
+  out[0].pose = pose_a;
+  out[0].name = "A " + a.name();
+  out[1].rep = &b;
+  out[1].pose = pose_b;
+  out[1].name = "B " + b.name();
+  return out;
+}
+
+std::vector<Vector3d> PosedBodies::points() const {
+  std::vector<Vector3d> out = body_points(a, pose_a);
+  for (const Vector3d& x : body_points(b, pose_b)) out.push_back(x);
+  return out;
+}
+
+std::vector<Vector3d> corners_of(const LrbRep& rep, FaceId face, const Pose& pose) {
+  std::vector<Vector3d> out;
+  for (const VertexId v : rep.face(face)) out.push_back(pose.apply(rep.vertices()[v]));
+  return out;
+}
+
+std::vector<Vector3d> real_corners(const LrbRep& rep, const Pose& pose) {
+  std::vector<Vector3d> out;
   for (FaceId f = 0; f < rep.real_face_count(); ++f)
-    for (const VertexId v : rep.face(f)) box.extend(pose.apply(rep.vertices()[v]));
-  return box;
+    for (const VertexId v : rep.face(f)) out.push_back(pose.apply(rep.vertices()[v]));
+  return out;
 }
 
-Eigen::AlignedBox3d box_with_lids(const LrbRep& rep, const Pose& pose) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& v : rep.vertices()) box.extend(pose.apply(v));
-  return box;
+std::vector<Vector3d> region_corners(const LrbRep& rep, RegionId region) {
+  std::vector<Vector3d> out;
+  for (const FaceId f : rep.collector(region))
+    for (const VertexId v : rep.face(f)) out.push_back(rep.vertices()[v]);
+  return out;
 }
 
-Eigen::Vector3d broadside(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& up) {
+Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
+  return bounds(real_corners(rep, pose));
+}
+
+Vector3d broadside(const Eigen::AlignedBox3d& box, const Vector3d& up) {
   int vertical = 0;
   up.cwiseAbs().maxCoeff(&vertical);
   const int first = (vertical + 1) % 3, second = (vertical + 2) % 3;
-  const Eigen::Vector3d size = box.sizes();
+  const Vector3d size = box.sizes();
   constexpr double kClearly = 1.15;
-  Eigen::Vector3d out = 0.42 * up.normalized();
+  Vector3d out = 0.42 * up.normalized();
   // Two level sides of about one length are both seen; else most of the longer one.
   out[first] = size[first] > kClearly * size[second]   ? 0.38
                : size[second] > kClearly * size[first] ? 0.84

@@ -1,9 +1,9 @@
 #pragma once
-/// What all pictures have in common: style, sizes, places of the views.
+/// Panels: draws draw lists side by side, or in rows with captions, and fits the cameras.
 
 #include <cstddef>
 #include <functional>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,40 +15,72 @@
 #include <lrbscope/render/image.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/render/rasterize.hpp>
+#include <lrbscope/render/scene.hpp>
 #include <lrbscope/render/style.hpp>
 
 namespace lrb::run {
 
-/// Return how frames look, and what is behind them; nothing where they are transparent.
-render::StyleName style_name(const render::FrameSpec& spec);
-const render::Style& style_of(const render::FrameSpec& spec);
-std::optional<render::Rgba> paper_of(const render::FrameSpec& spec);
+using Mark = render::LegendItem::Mark;
 
-/// Leaves out of a frame's texts what is not asked for.
-void leave_out_texts(render::Overlay& overlay, const render::FrameSpec& spec);
+/// Returns the camera for a picture of this size in pixels.
+using CameraFit = std::function<render::Camera(double width, double height)>;
 
-/// Returns the same frames with their size in pixels of the file.
-render::FrameSpec in_pixels(render::FrameSpec spec);
+/// A draw list, its camera and its title.
+struct Panel {
+  render::DrawList list;
+  CameraFit camera;
+  std::string title;
+  bool even_edges = true;  ///< as RasterOptions
+  render::Lighting lighting = {};
+};
 
-/// Returns the views' places in a picture, side by side along its longer side.
-std::vector<render::PixelRect> view_places(const render::PixelRect& picture, std::size_t views, double scale);
+/// Lighting that shows the shape and keeps colours close to those of a scale.
+inline const render::Lighting kScaleLighting{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
 
-/// Draws each view, with its title, in its place of `picture`.
-void paint_views(render::Rasterizer& rasterizer, const render::FrameSpec& spec,
-                 const std::vector<render::FrameSpec::View>& views,
-                 const std::vector<render::PixelRect>& places,
-                 const std::function<render::DrawList(const render::FrameSpec::View&)>& list_of,
-                 const std::function<render::Camera(std::size_t)>& camera_of, render::Image& picture);
+/// Draws a panel without its title.
+render::Image draw_panel(render::Rasterizer& rasterizer, const Panel& panel, const render::Look& look,
+                         int width, int height);
 
-/// Adds the items that `all` does not have yet.
+/// Returns the places of panels in a picture, side by side along its longer side.
+std::vector<render::PixelRect> panel_places(const render::PixelRect& picture, std::size_t panels,
+                                            double scale);
+
+/// Draws panels, each with its title in it, side by side.
+render::Image draw_row(render::Rasterizer& rasterizer, std::span<const Panel> panels,
+                       const render::Look& look, const render::PixelRect& picture);
+
+/// Draws panels side by side, between the texts of an overlay.
+render::Image draw_panels(std::span<const Panel> panels, const render::Overlay& overlay,
+                          const render::Look& look);
+
+/// Draws panels of the look's size in rows, with letters and their titles below them.
+render::Image draw_sheet(std::span<const Panel> panels, const render::Look& look,
+                         render::MontageOptions options = {});
+
+/// Adds an overlay above and below a picture, which keeps its size.
+render::Image with_overlay(const render::Image& picture, const render::Overlay& overlay, double scale = 1);
+
+/// Clears the texts of a frame that `look` leaves out.
+void leave_out_texts(render::Overlay& overlay, const render::Look& look);
+
+/// Converts the size to pixels of the file.
+void to_pixels(render::Look& look);
+
+/// Writes a picture, and creates its folder. Throws EnvironmentError if it cannot be written.
+void write_picture(const render::Image& picture, const std::string& path, double dpi = 0);
+
+/// Adds the items whose text is not in `all` yet.
 void merge_key(std::vector<render::LegendItem>& all, const std::vector<render::LegendItem>& some);
 
 /// Returns `wanted` indices below `count`, as evenly spaced as can be, first and last among them.
 std::vector<std::size_t> evenly(std::size_t count, std::size_t wanted);
 
-// Where pictures are looked at from.
+// Cameras.
 
-/// What the cameras of a whole sequence have to show, so that the picture stands still while the bodies move.
+/// Returns cameras that show all points, from above in 2D.
+CameraFit fit_points(std::vector<Eigen::Vector3d> points, int dim, const render::FitOptions& options = {});
+
+/// The points that the cameras of a sequence show, so that the picture stands still while the bodies move.
 struct Framing {
   std::vector<Eigen::Vector3d> points;  ///< of both bodies, in all steps shown
   /// Corners of all contact regions, or of the faces of coarse answers. Empty: contact views show the whole.
@@ -57,13 +89,34 @@ struct Framing {
 };
 
 /// Returns a view's camera. `progress` in [0, 1] is the share of the sequence that has passed, for orbits.
-render::Camera camera_for(const render::FrameSpec::View& view, const Framing& framing, double width,
-                          double height, double progress);
+render::Camera camera_for(const render::Look::View& view, const Framing& framing, double width, double height,
+                          double progress = 0);
 
+// Bodies.
+
+/// Two posed bodies.
+struct PosedBodies {
+  const LrbRep& a;
+  Pose pose_a;
+  const LrbRep& b;
+  Pose pose_b;
+
+  int dim() const { return a.dim(); }
+  /// Returns both bodies for a scene, without wrappers.
+  std::vector<render::SceneBody> in_scene() const;
+  /// Returns all points that they can show.
+  std::vector<Eigen::Vector3d> points() const;
+  std::string title() const { return a.name() + "  ·  " + b.name(); }
+};
+
+/// Returns the corners of a face.
+std::vector<Eigen::Vector3d> corners_of(const LrbRep& rep, FaceId face, const Pose& pose = {});
+/// Returns the corners of all real faces, once for each face.
+std::vector<Eigen::Vector3d> real_corners(const LrbRep& rep, const Pose& pose = {});
+/// Returns the corners of a region's faces, once for each face.
+std::vector<Eigen::Vector3d> region_corners(const LrbRep& rep, RegionId region);
 /// Returns the box around a body's real faces.
 Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose = {});
-/// Returns the box around all of its vertices, those of lids among them.
-Eigen::AlignedBox3d box_with_lids(const LrbRep& rep, const Pose& pose = {});
 
 /// Returns a direction from which a box is seen from its longer level side, aslant and slightly from above.
 /// `up` is an axis.

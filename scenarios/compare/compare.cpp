@@ -30,15 +30,6 @@ trace::Chart chart_of_faces(const trace::Trace& trace) {
   return trace.header.construction ? trace::chart_over_construction(trace) : trace::chart_over_events(trace);
 }
 
-run::Framing framing_of_bodies(const Runs& runs) {
-  run::Framing out;
-  out.dim = rep_of(runs, 0).dim();
-  for (std::size_t i = 0; i < 2; ++i)
-    for (const Eigen::Vector3d& v : rep_of(runs, i).vertices())
-      out.points.push_back(runs.of[i]->trace.steps[0].pose_a.apply(v));
-  return out;
-}
-
 }  // namespace
 
 bool of_one_body(const Runs& runs) {
@@ -97,27 +88,20 @@ report::PageChart faces_chart(const Runs& runs) {
 }
 
 render::Image draw_bodies(const Runs& runs, const run::ProgressReport& progress) {
-  const run::Framing framing = framing_of_bodies(runs);
+  run::Framing framing{{}, {}, rep_of(runs, 0).dim()};
+  for (std::size_t i = 0; i < 2; ++i)
+    for (const Eigen::Vector3d& x : render::body_points(rep_of(runs, i), runs.of[i]->trace.steps[0].pose_a))
+      framing.points.push_back(x);
   std::vector<render::Panel> panels;
   for (std::size_t i = 0; i < 2; ++i) {
-    const run::Recording& recording = *runs.of[i];
-    const run::RecordedRun recorded = run::recorded_run_of(*runs.scenarios[i], recording);
+    const trace::Trace& trace = runs.of[i]->trace;
     render::FrameSpec frame = runs.scenarios[i]->frames;
     frame.colour_by = render::FrameSpec::ColourBy::region;
-    frame.at = render::FrameSpec::At::events;
-    frame.events = {static_cast<trace::EventId>(recording.trace.events.size() - 1)};
-    frame.width = 900;
-    frame.height = 700;
-    frame.montage = 0;
-    if (frame.views.empty()) frame.views.emplace_back();
-    frame.views.resize(1);
-    frame.views[0].title = runs.names[i];
-    panels.push_back({std::move(run::paint_frames(recorded, frame, progress, &framing).front().image), ""});
+    panels.push_back(panel_after(run::recorded_run_of(*runs.scenarios[i], *runs.of[i]), std::move(frame),
+                                 static_cast<trace::EventId>(trace.events.size() - 1), runs.names[i], framing,
+                                 progress));
   }
-  render::MontageOptions options;
-  options.columns = 2;
-  options.letters = false;
-  return render::montage(panels, options);
+  return in_a_row(panels);
 }
 
 namespace {

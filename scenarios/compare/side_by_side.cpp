@@ -45,48 +45,6 @@ FaceValues difference(const Runs& runs, const std::array<FaceValues, 2>& values)
   return out;
 }
 
-/// Returns the extent that a camera has to show: the bodies at one step.
-run::Framing framing_of(const run::RecordedRun& run, std::size_t step) {
-  const trace::Step& s = run.trace->steps[step];
-  run::Framing out;
-  out.dim = run.reps[0]->dim();
-  for (const auto& [rep, pose] : {std::pair{run.reps[0], &s.pose_a}, {run.reps[1], &s.pose_b}})
-    for (const Eigen::Vector3d& v : rep->vertices()) out.points.push_back(pose->apply(v));
-  return out;
-}
-
-struct Panels {
-  const Runs& runs;
-  std::size_t step;
-  const run::ProgressReport& progress;
-  run::Framing framing = {};
-  std::vector<render::Panel> all = {};
-
-  void add(std::size_t which, const std::string& title, ColourBy by, const FaceValues& values,
-           const std::string& value_name) {
-    const run::Recording& recording = *runs.of[which];
-    run::RecordedRun recorded = run::recorded_run_of(*runs.scenarios[which], recording);
-    if (framing.points.empty()) framing = framing_of(recorded, step);
-    render::FrameSpec frame = runs.scenarios[which]->frames;
-    frame.colour_by = by;
-    frame.at = render::FrameSpec::At::events;
-    frame.events = {run::last_event(recording.trace, step)};
-    frame.width = 900;
-    frame.height = 700;
-    frame.montage = 0;
-    if (frame.views.empty()) frame.views.emplace_back();
-    frame.views.resize(1);
-    frame.views[0].wrapper = false;
-    frame.views[0].title = title;
-    recorded.value_range = run::scale_without_the_smallest(values);
-    if (!value_name.empty()) {
-      recorded.face_values = &values;
-      recorded.value_name = value_name;
-    }
-    all.push_back({std::move(run::paint_frames(recorded, frame, progress, &framing).front().image), ""});
-  }
-};
-
 }  // namespace
 
 std::size_t step_count(const Runs& runs) {
@@ -132,21 +90,54 @@ ColourBy common_colours(const Runs& runs) {
   return runs.of[0]->trees.empty() || runs.of[1]->trees.empty() ? ColourBy::face_tests : ColourBy::box_tests;
 }
 
+render::Panel panel_after(const run::RecordedRun& recorded, render::FrameSpec frame, trace::EventId event,
+                          const std::string& title, const run::Framing& framing,
+                          const run::ProgressReport& progress) {
+  frame.at = render::FrameSpec::At::events;
+  frame.events = {event};
+  frame.width = 900;
+  frame.height = 700;
+  frame.views = {frame.first_view()};
+  frame.views[0].title = title;
+  return {std::move(run::paint_frames(recorded, frame, progress, &framing).front().image), ""};
+}
+
+render::Image in_a_row(const std::vector<render::Panel>& panels) {
+  render::MontageOptions options;
+  options.columns = static_cast<int>(panels.size());
+  options.letters = false;
+  return render::montage(panels, options);
+}
+
 render::Image draw(const Runs& runs, std::size_t step, const run::ProgressReport& progress) {
   const ColourBy by = common_colours(runs);
   const std::array<FaceValues, 2> values = {values_of(*runs.of[0], by, step),
                                             values_of(*runs.of[1], by, step)};
   const FaceValues& larger = largest(values[0]) > largest(values[1]) ? values[0] : values[1];
-  Panels panels{runs, step, progress};
-  for (std::size_t i = 0; i < 2; ++i) panels.add(i, runs.names[i], by, larger, "");
+  const auto& bodies = runs.of[0]->bodies;
+  const trace::Step& first = runs.of[0]->trace.steps[step];
+  const run::PosedBodies posed{bodies[0].rep, first.pose_a, bodies[1].rep, first.pose_b};
+  const run::Framing framing{posed.points(), {}, posed.dim()};
+  std::vector<render::Panel> panels;
+  const auto add = [&](std::size_t i, const std::string& title, const FaceValues& shown,
+                       const std::string& value_name) {
+    run::RecordedRun recorded = run::recorded_run_of(*runs.scenarios[i], *runs.of[i]);
+    recorded.value_range = run::scale_without_the_smallest(shown);
+    if (!value_name.empty()) recorded.face_values = &shown;
+    recorded.value_name = value_name;
+    render::FrameSpec frame = runs.scenarios[i]->frames;
+    frame.colour_by = by;
+    frame.views = {frame.first_view()};
+    frame.views[0].wrapper = false;
+    panels.push_back(panel_after(recorded, std::move(frame), run::last_event(runs.of[i]->trace, step), title,
+                                 framing, progress));
+  };
+  for (std::size_t i = 0; i < 2; ++i) add(i, runs.names[i], larger, "");
   const FaceValues off = difference(runs, values);
   if (largest(off) > 0)
-    panels.add(0, "Difference", by, off,
-               by == ColourBy::box_tests ? "difference of box tests" : "difference of face tests");
-  render::MontageOptions options;
-  options.columns = static_cast<int>(panels.all.size());
-  options.letters = false;
-  return render::montage(panels.all, options);
+    add(0, "Difference", off,
+        by == ColourBy::box_tests ? "difference of box tests" : "difference of face tests");
+  return in_a_row(panels);
 }
 
 report::PageChart chart_of(const Runs& runs, const std::string& title, const std::string& what,

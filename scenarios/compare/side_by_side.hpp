@@ -34,6 +34,13 @@ void refuse_folder_of_run(const std::string& folder);
 /// Meaning of the colours: box tests if both runs have recorded pairs of nodes, else face tests.
 render::FrameSpec::ColourBy common_colours(const Runs& runs);
 
+/// Draws one view of a run after an event. `framing`: what the camera shows.
+render::Panel panel_after(const run::RecordedRun& recorded, render::FrameSpec frame, trace::EventId event,
+                          const std::string& title, const run::Framing& framing,
+                          const run::ProgressReport& progress);
+/// Draws panels beside each other, without letters.
+render::Image in_a_row(const std::vector<render::Panel>& panels);
+
 /// Draws the bodies of both runs at the end of a step, coloured by common_colours() on one scale. If the
 /// bodies have the same numbers of faces in both and the values differ, a third picture shows the difference
 /// per face.

@@ -56,7 +56,7 @@ class FrameState {
     highlight.contacts = m.contacts;
     render::SceneOptions options;
     options.scale = static_cast<float>(spec_.scale());
-    options.style = run::style_name(spec_);
+    options.style = spec_.style;
     options.real_edges = false;  // thousands of small faces: one would see nothing but their edges
     render::Scene scene = render::build_scene(bodies, highlight, options);
     for (render::DrawLine& line : scene.list.lines)
@@ -71,7 +71,7 @@ class FrameState {
     o.title = crowd_.name + "  ·  step " + std::to_string(m.step);
     o.event = render::counted(count(step, Relation::crossing), "crossing pair of bodies",
                               "crossing pairs of bodies");
-    o.style = run::style_name(spec_);
+    o.style = spec_.style;
     o.event_colour = style().contact;
     const Counters c = sum(step);
     const std::uint64_t n = run_.motion.body_count();
@@ -107,7 +107,7 @@ class FrameState {
   }
 
  private:
-  const render::Style& style() const { return run::style_of(spec_); }
+  const render::Style& style() const { return style_of(spec_.style); }
   bool shows_wrappers() const {
     return spec_.views.empty() || std::any_of(spec_.views.begin(), spec_.views.end(),
                                               [](const render::FrameSpec::View& v) { return v.wrapper; });
@@ -173,46 +173,24 @@ std::string crowd_caption(const CrowdRun& run, std::uint32_t step) {
 run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
                             const std::vector<std::pair<std::string, std::string>>& text,
                             const run::ProgressReport& progress) {
-  const render::FrameSpec spec = run::in_pixels(crowd.frames);
+  render::FrameSpec spec = crowd.frames;
+  run::to_pixels(spec);
   make_folder(folder + "/frames");
   run::remove_old_frames(folder);
   run::DrawnFrames out;
   if (run.moments.empty()) return out;
   const FrameState state(crowd, run, spec);
-  const auto scale = static_cast<float>(spec.scale());
   std::vector<render::Overlay> overlays;
-  std::vector<render::OverlayLayout> layouts;
-  for (const CrowdMoment& m : run.moments) {
-    overlays.push_back(state.overlay(m));
-    run::leave_out_texts(overlays.back(), spec);
-    layouts.push_back(render::lay_out(overlays.back(), spec.width, spec.height, scale));
-  }
-  const render::PixelRect place = render::common_picture(layouts);
-  std::vector<render::FrameSpec::View> views = spec.views;
-  if (views.empty()) views.emplace_back();
-  const std::vector<render::PixelRect> places = run::view_places(place, views.size(), spec.scale());
-  const run::Framing framing = state.framing();
-  render::Rasterizer rasterizer;
+  for (const CrowdMoment& m : run.moments) overlays.push_back(state.overlay(m));
+  run::FrameSequence sequence(spec, std::move(overlays), state.framing());
   render::FrameWriter writer;
-  render::Image picture(place.width, place.height);
   for (std::size_t i = 0; i < run.moments.size(); ++i) {
     progress("draw", i, run.moments.size());
     const CrowdMoment& m = run.moments[i];
-    const double passed =
-        run.moments.size() > 1 ? static_cast<double>(i) / static_cast<double>(run.moments.size() - 1) : 0;
-    run::paint_views(
-        rasterizer, spec, views, places,
-        [&](const render::FrameSpec::View& v) { return state.list(m, v.wrapper); },
-        [&](std::size_t v) {
-          return run::camera_for(views[v], framing, places[v].width, places[v].height, passed);
-        },
-        picture);
     render::PngOptions png{text, spec.dpi};
     png.text.emplace_back("lrbscope:step", std::to_string(m.step));
-    writer.push(folder + "/" + run::frame_file(i),
-                render::compose_frame(picture, place, overlays[i], spec.width, spec.height,
-                                      run::paper_of(spec).value_or(render::kTransparent), scale),
-                png);
+    const auto list_of = [&](const render::Look::View& v) { return state.list(m, v.wrapper); };
+    writer.push(folder + "/" + run::frame_file(i), sequence.frame(i, list_of), png);
     out.frames.push_back({run::frame_file(i), crowd_caption(run, m.step), 0, m.step});
   }
   writer.finish();

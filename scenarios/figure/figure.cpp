@@ -32,7 +32,7 @@ std::string shortened(std::string words) {
 /// Returns the frames' spec with widths in points: a thin line, of width 1, is as wide as the figure's.
 render::FrameSpec in_points(render::FrameSpec frames, const FigureSpec& figure) {
   // The figure says how wide lines are, whatever the style.
-  frames.dpi = figure.line_width * render::FrameSpec::kScreenDpi / run::style_of(frames).weight;
+  frames.dpi = figure.line_width * render::FrameSpec::kScreenDpi / style_of(frames.style).weight;
   if (frames.views.empty()) frames.views.emplace_back();
   return frames;
 }
@@ -46,20 +46,19 @@ class FigureJob {
         dpi_(figure.dpi > 0 ? figure.dpi : default_dpi(figure.format)),
         chosen_(choose(recorded, figure.choice)),
         events_(chosen_.events),
-        framing_(run::frame_sequence(recorded.reps, *recorded.trace, results_of(recorded), frames_)),
-        extras_{recorded.trees, recorded.wrong, common_range(), recorded.face_values, recorded.value_name},
-        state_(*recorded.trace, recorded.reps, results_of(recorded), frames_, false, extras_) {}
+        framing_(run::frame_sequence(recorded, frames_)),
+        state_(in_common_range(), frames_, false) {}
 
   Figure draw(const run::ProgressReport& progress) {
     survey();
     Figure out;
     out.panels = words_.size();
     out.left_out = chosen_.left_out;
-    out.caption = caption();
+    out.caption = run::caption_of(recorded_, words_);
     layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
                       figure_.legend ? bar_ : std::nullopt, figure_.caption ? out.caption : "", options());
     const auto paint = [&](render::Canvas& canvas) { paint_all(canvas, progress); };
-    const std::optional<render::Rgba> background = run::paper_of(frames_);
+    const std::optional<render::Rgba> background = frames_.paper();
     const std::string program = "lrbscope " + recorded_.trace->header.lrbscope;
     const render::PaperPage page{figure_.width, layout_.height, background, recorded_.title, program};
     switch (figure_.format) {
@@ -87,7 +86,7 @@ class FigureJob {
  private:
   static constexpr double kPointsPerScreenPixel = 0.75;
 
-  const render::Style& style() const { return run::style_of(frames_); }
+  const render::Style& style() const { return style_of(frames_.style); }
   bool flat() const { return framing_.dim == 2; }
   std::size_t moments() const { return events_.size(); }
 
@@ -103,15 +102,12 @@ class FigureJob {
     return o;
   }
 
-  /// Returns the ends of the scale of colours over all panels: a bar for the whole figure means the same in
-  /// each.
-  std::optional<std::array<double, 2>> common_range() {
-    if (recorded_.value_range) return recorded_.value_range;
-    std::optional<std::array<double, 2>> range;
-    run::FrameState state(
-        *recorded_.trace, recorded_.reps, results_of(recorded_), frames_, false,
-        {recorded_.trees, recorded_.wrong, {}, recorded_.face_values, recorded_.value_name});
-    if (!shows_values()) return range;
+  /// Returns the run with one scale of colours for all panels, so that a single bar is valid for each.
+  run::RecordedRun in_common_range() {
+    run::RecordedRun out = recorded_;
+    if (out.value_range || !shows_values()) return out;
+    run::FrameState state(recorded_, frames_, false);
+    std::optional<std::array<double, 2>>& range = out.value_range;
     for (const trace::EventId event : events_) {
       state.seek(event);
       const render::Scene scene = state.scene();
@@ -119,7 +115,7 @@ class FigureJob {
       if (!range) range = {scene.scale->low, scene.scale->high};
       range = {std::min((*range)[0], scene.scale->low), std::max((*range)[1], scene.scale->high)};
     }
-    return range;
+    return out;
   }
 
   bool shows_values() const {
@@ -190,13 +186,6 @@ class FigureJob {
                               (letters && figure_.titles ? " " : "") + (figure_.titles ? words_[panel] : ""));
   }
 
-  std::string caption() const {
-    std::string text = recorded_.purpose.empty() ? recorded_.title + "." : recorded_.purpose;
-    for (std::size_t i = 0; i < words_.size(); ++i)
-      text += (i == 0 ? " " : "; ") + (words_.size() > 1 ? render::panel_letter(i) + " " : "") + words_[i];
-    return text + ".";
-  }
-
   void paint_all(render::Canvas& canvas, const run::ProgressReport& progress) {
     std::size_t panel = 0;
     for (std::size_t v = 0; v < views_.size(); ++v) {
@@ -263,7 +252,7 @@ class FigureJob {
     raster.unit = 1 / pixel;
     raster.labels = false;
     raster.even_edges = true;
-    raster.background = run::paper_of(frames_);
+    raster.background = frames_.paper();
     const render::Image picture = rasterizer_.draw(render::under_lines(list), camera, raster);
     render::Image part(size.x(), size.y(), render::kTransparent);
     part.paste(picture, -from.x(), -from.y());
@@ -282,7 +271,6 @@ class FigureJob {
   Chosen chosen_;
   const std::vector<trace::EventId>& events_;
   run::Framing framing_;
-  run::FrameExtras extras_;
   run::FrameState state_;
   render::Rasterizer rasterizer_;
   struct ViewPanels {

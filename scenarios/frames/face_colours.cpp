@@ -80,16 +80,16 @@ std::array<double, 2> scale_without_the_smallest(std::span<const std::vector<dou
 
 namespace {
 
-struct Look {
-  BoxLook lines;
-  const char* words;
+struct LabelledStyle {
+  BoxStyle lines;
+  const char* label;
 };
 
-Look look_of(Side side, bool met, const render::Style& style) {
+LabelledStyle style_of_boxes(Side side, bool met, const render::Style& style) {
   static constexpr const char* kWords[2][2] = {{"A: disjoint node boxes", "A: overlapping node boxes"},
                                                {"B: disjoint node boxes", "B: overlapping node boxes"}};
   const render::Rgba colour = style.edge_of(style.body(side));
-  return {met ? BoxLook{colour, 2, 0} : BoxLook{colour, 1, 4}, kWords[static_cast<int>(side)][met ? 1 : 0]};
+  return {met ? BoxStyle{colour, 2, 0} : BoxStyle{colour, 1, 4}, kWords[static_cast<int>(side)][met ? 1 : 0]};
 }
 
 }  // namespace
@@ -104,13 +104,14 @@ void add_node_boxes(render::Scene& scene, const trace::TreeShape& tree, Side sid
     const trace::ShapeBox box = tree.box(n);
     std::array<Eigen::Vector3d, 3> half;
     for (std::size_t i = 0; i < half.size(); ++i) half[i] = pose.r * box.half[i];
-    add_box(scene.list, pose.apply(box.centre), half, look_of(side, met, style).lines);
+    add_box(scene.list, pose.apply(box.centre), half, style_of_boxes(side, met, style).lines);
     any[met ? 1 : 0] = true;
   }
   for (const bool met : {true, false})
     if (any[met ? 1 : 0])
       scene.key.push_back({met ? render::LegendItem::Mark::line : render::LegendItem::Mark::dashed,
-                           look_of(side, met, style).lines.colour, look_of(side, met, style).words});
+                           style_of_boxes(side, met, style).lines.colour,
+                           style_of_boxes(side, met, style).label});
 }
 
 }  // namespace lrb::run

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "render/pictures/explain_picture.hpp"
 #include "render/pictures/marks.hpp"
 #include "scenarios/frames/face_colours.hpp"
 #include "scenarios/record/moments.hpp"
@@ -26,17 +25,13 @@ std::string short_name(const LrbRep& rep) {
 
 }  // namespace
 
-FrameState::FrameState(const trace::Trace& trace, std::vector<const LrbRep*> reps,
-                       const std::vector<CollideResult>& results, const render::FrameSpec& spec,
-                       bool point_out_refined, const FrameExtras& extras)
-    : trace_(trace),
-      reps_(std::move(reps)),
-      results_(results),
+FrameState::FrameState(RecordedRun run, const render::FrameSpec& spec, bool point_out_refined)
+    : run_(std::move(run)),
+      trace_(*run_.trace),
       spec_(spec),
-      extras_(extras),
       point_out_refined_(point_out_refined),
-      cursor_(make_cursor(trace, reps_)),
-      passes_(trace::passes_of(trace)) {}
+      cursor_(make_cursor(trace_, run_.reps)),
+      passes_(trace::passes_of(trace_)) {}
 
 void FrameState::seek(trace::EventId event) {
   cursor_.seek(event);
@@ -48,8 +43,8 @@ FrameState::Moment FrameState::moment() const {
   const std::size_t step = cursor_.step_number();
   m.is_step_end = cursor_.position() == last_event(trace_, step);
   if (m.is_step_end) {
-    if (step < results_.size()) m.result = &results_[step];
-    if (extras_.wrong != nullptr && step < extras_.wrong->size()) m.wrong = (*extras_.wrong)[step];
+    if (const auto& results = results_of(run_); step < results.size()) m.result = &results[step];
+    if (run_.wrong != nullptr && step < run_.wrong->size()) m.wrong = (*run_.wrong)[step];
     if (cursor_.step()->finished) add_answer(m);
   }
   add_pass(m);
@@ -63,12 +58,13 @@ void FrameState::add_answer(Moment& m) const {
   if (m.answer->clash) {
     std::span<const ContactRegion> contacts;
     if (m.result != nullptr) contacts = m.result->regions;
-    m.way_out = way_out_of(*m.answer->clash, *reps_[0], pose(Side::a), *reps_[1], pose(Side::b), contacts);
+    m.separation_vector = separation_vector_of(*m.answer->clash, bodies(), contacts);
   }
-  if (shows_parting(m)) m.parting = explain_walk(*reps_[0], pose(Side::a), *reps_[1], pose(Side::b));
+  if (shows_separating_plane(m))
+    m.separating = explain_walk(rep(Side::a), pose(Side::a), rep(Side::b), pose(Side::b));
 }
 
-bool FrameState::shows_parting(const Moment& m) const {
+bool FrameState::shows_separating_plane(const Moment& m) const {
   const CollideRequest& request = trace_.header.request;
   return !is_single() && m.proof == nullptr && !m.answer->distance &&
          m.answer->relation == Relation::separate && request.recursion == Recursion::complete &&
@@ -90,7 +86,7 @@ void FrameState::add_pass(Moment& m) const {
 
 std::vector<std::uint8_t> FrameState::met(Side side) const {
   if (!trace_.header.request.is_coarse()) return {};
-  const LrbRep& rep = *reps_[static_cast<std::size_t>(side)];
+  const LrbRep& rep = this->rep(side);
   std::vector<std::uint8_t> out(rep.face_count());
   for (trace::EventId e = cursor_.step()->first_event; e <= cursor_.position(); ++e) {
     const trace::Event& event = trace_.events[e];
@@ -100,8 +96,8 @@ std::vector<std::uint8_t> FrameState::met(Side side) const {
 }
 
 const trace::TreeShape* FrameState::tree_of(Side side) const {
-  if (extras_.trees == nullptr || extras_.trees->empty()) return nullptr;
-  return &(*extras_.trees)[static_cast<std::size_t>(side)];
+  if (run_.trees == nullptr || run_.trees->empty()) return nullptr;
+  return &(*run_.trees)[static_cast<std::size_t>(side)];
 }
 
 std::span<const trace::Event> FrameState::events_so_far() const {
@@ -111,31 +107,31 @@ std::span<const trace::Event> FrameState::events_so_far() const {
 
 std::vector<double> FrameState::values_of(Side side) const {
   const auto i = static_cast<std::size_t>(side);
-  if (extras_.face_values != nullptr) return (*extras_.face_values)[i];
-  return grouped(face_values(spec_.colour_by, *reps_[i], side, events_so_far(), tree_of(side)),
-                 spec_.colour_per, *reps_[i]);
+  if (run_.face_values != nullptr) return (*run_.face_values)[i];
+  return grouped(face_values(spec_.colour_by, *run_.reps[i], side, events_so_far(), tree_of(side)),
+                 spec_.colour_per, *run_.reps[i]);
 }
 
 FrameState::SceneParts FrameState::scene_parts(bool wrapper) const {
   SceneParts out;
-  for (std::size_t i = 0; i < reps_.size(); ++i) {
+  for (std::size_t i = 0; i < run_.reps.size(); ++i) {
     const Side side = static_cast<Side>(i);
     out.values[i] = values_of(side);
     if (!is_single()) out.in_contact[i] = met(side);
     if (now_.proof == nullptr) continue;
-    out.proving.emplace_back(*reps_[i]);
+    out.proving.emplace_back(*run_.reps[i]);
     for (const RegionId r : now_.proof->refined[i]) out.proving.back().refine(r);
   }
   // Bodies refer to the parts: these must be complete.
-  for (std::size_t i = 0; i < reps_.size(); ++i) {
+  for (std::size_t i = 0; i < run_.reps.size(); ++i) {
     const Side side = static_cast<Side>(i);
     render::SceneBody body;
-    body.rep = reps_[i];
+    body.rep = run_.reps[i];
     if (wrapper) body.wrapper = now_.proof != nullptr ? &out.proving[i] : &cursor_.wrapper(side);
     body.in_contact = out.in_contact[i];
     body.pose = cursor_.pose(side);
     body.face_values = out.values[i];
-    body.name = (is_single() ? "" : i == 0 ? "A " : "B ") + short_name(*reps_[i]);
+    body.name = (is_single() ? "" : i == 0 ? "A " : "B ") + short_name(*run_.reps[i]);
     out.bodies.push_back(std::move(body));
   }
   return out;
@@ -171,27 +167,26 @@ render::SceneOptions FrameState::scene_options(const SceneParts& parts) const {
         options.value_name += " in the " + std::string(name_of(spec_.colour_per));
       else if (spec_.colour_by == render::FrameSpec::ColourBy::box_tests)
         options.value_range = scale_without_the_smallest(parts.values);
-      if (!extras_.value_name.empty()) options.value_name = extras_.value_name;
-      if (extras_.value_range) options.value_range = extras_.value_range;
+      if (!run_.value_name.empty()) options.value_name = run_.value_name;
+      if (run_.value_range) options.value_range = run_.value_range;
       break;
   }
   options.explode = spec_.explode;
   options.contact_rims = true;
-  options.style = style_name(spec_);
-  options.scale = static_cast<float>(spec_.scale()) * style_of(spec_).weight;
+  options.style = spec_.style;
+  options.scale = static_cast<float>(spec_.scale()) * style_of(spec_.style).weight;
   options.isolate = spec_.isolate;
   options.ghost_rest = spec_.ghost_rest;
   return options;
 }
 
 void FrameState::add_marks(render::Scene& scene, bool plain) const {
-  const render::Style& style = style_of(spec_);
-  if (now_.parting && !plain)
-    add_parting(scene.list, *now_.parting, *reps_[0], pose(Side::a), *reps_[1], pose(Side::b), style);
+  const render::Style& style = style_of(spec_.style);
+  if (now_.separating && !plain) add_separating_plane(scene.list, *now_.separating, bodies(), style);
   if (now_.gap) add_gap(scene, *now_.gap, style);
-  if (now_.way_out) add_way_out(scene, *now_.way_out, reps_[0]->dim());
+  if (now_.separation_vector) add_separation_vector(scene, *now_.separation_vector, run_.reps[0]->dim());
   if (!plain && !now_.wrong.empty()) {
-    add_wrong_pairs(scene.list, now_.wrong, *reps_[0], pose(Side::a), *reps_[1], pose(Side::b), style.paper);
+    add_wrong_pairs(scene.list, now_.wrong, bodies(), style.paper);
     scene.key.push_back({render::LegendItem::Mark::line, render::palette::kWrong, "wrong pair"});
   }
   for (const Side side : {Side::a, Side::b})

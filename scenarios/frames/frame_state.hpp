@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "render/pictures/marks.hpp"
-#include "scenarios/record/recorded_run.hpp"
-#include "scenarios/spec/scenario.hpp"
+#include "scenarios/frames/frames.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/explain.hpp>
 #include <lrbscope/render/scene.hpp>
@@ -23,21 +22,20 @@ namespace lrb::run {
 /// Returns CollideResult::error_bound as a short text.
 std::string error_bound_text(double bound);
 
-/// Optional data of a run: see RecordedRun.
-struct FrameExtras {
-  const std::vector<trace::TreeShape>* trees = nullptr;
-  const std::vector<std::vector<WrongPair>>* wrong = nullptr;
-  std::optional<std::array<double, 2>> value_range = {};
-  const std::array<std::vector<double>, 2>* face_values = nullptr;
-  std::string value_name = {};
-};
+/// Returns the results of a pass: "pass 3: 47 regions, 1 064 to 340 faces, 12 caps refused: 9 met the hull, 3
+/// too thick".
+std::string pass_words(const trace::PassSummary& pass);
+
+/// Returns the purpose of a pass: "fitting, caps at most 0.002 off the body".
+std::string stage_words(const trace::PassSummary& pass);
+
+/// Returns the text of a construction event.
+std::string built_words(const trace::Event& e);
 
 class FrameState {
  public:
-  /// `results`: one for each step, for contact regions; may be empty. All arguments must outlive this object.
-  FrameState(const trace::Trace& trace, std::vector<const LrbRep*> reps,
-             const std::vector<CollideResult>& results, const render::FrameSpec& spec, bool point_out_refined,
-             const FrameExtras& extras = {});
+  /// The data that `run` points to, and `spec`, must outlive this object.
+  FrameState(RecordedRun run, const render::FrameSpec& spec, bool point_out_refined);
 
   FrameState(FrameState&&) = default;
 
@@ -57,7 +55,7 @@ class FrameState {
   bool in_contact() const { return now_.result != nullptr && !now_.result->regions.empty(); }
   std::uint32_t step() const { return cursor_.step()->index; }
   Pose pose(Side side) const { return cursor_.pose(side); }
-  const std::vector<const LrbRep*>& reps() const { return reps_; }
+  const std::vector<const LrbRep*>& reps() const { return run_.reps; }
 
  private:
   /// Data valid after the current event, in addition to the cursor's own state.
@@ -71,10 +69,10 @@ class FrameState {
     const Separation* proof = nullptr;
     /// The separating plane of a step that ends here without contact; nullopt for other events, and if face
     /// colours by value take precedence.
-    std::optional<WalkExplanation> parting;
+    std::optional<WalkExplanation> separating;
     /// The segment between the closest points, and the separating translation of B, of a step that ends here;
     /// nullopt if they were not requested.
-    std::optional<MarkedWay> gap, way_out;
+    std::optional<MarkedSegment> gap, separation_vector;
     /// The wrong pairs of another engine in the step; empty before the step's end.
     std::span<const WrongPair> wrong;
     /// The pass of a construction that the event belongs to; null before the first, and for other runs.
@@ -93,10 +91,11 @@ class FrameState {
   Moment moment() const;
   void add_answer(Moment& m) const;
   void add_pass(Moment& m) const;
-  bool shows_parting(const Moment& m) const;
+  bool shows_separating_plane(const Moment& m) const;
 
-  bool is_single() const { return reps_.size() == 1; }
-  const LrbRep& rep(Side side) const { return *reps_[static_cast<std::size_t>(side)]; }
+  bool is_single() const { return run_.reps.size() == 1; }
+  const LrbRep& rep(Side side) const { return *run_.reps[static_cast<std::size_t>(side)]; }
+  PosedBodies bodies() const { return {rep(Side::a), pose(Side::a), rep(Side::b), pose(Side::b)}; }
 
   // Pictures.
   SceneParts scene_parts(bool wrapper) const;
@@ -135,11 +134,9 @@ class FrameState {
   std::uint32_t boundary_size(Side side) const;
   trace::Totals totals() const;  ///< Counts the events of the step so far.
 
+  RecordedRun run_;
   const trace::Trace& trace_;
-  std::vector<const LrbRep*> reps_;
-  const std::vector<CollideResult>& results_;
   const render::FrameSpec& spec_;
-  FrameExtras extras_;
   bool point_out_refined_;  ///< frames follow refinements, so that the last one is the new part
   trace::Cursor cursor_;
   std::vector<trace::PassSummary> passes_;  ///< of a construction
@@ -152,17 +149,17 @@ inline Eigen::Vector3d vector_of(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
-inline std::optional<MarkedWay> gap_of(const trace::MeasuredDistance& distance) {
+inline std::optional<MarkedSegment> gap_of(const trace::MeasuredDistance& distance) {
   return gap_of({distance.lower, distance.upper}, vector_of(distance.points[0]),
                 vector_of(distance.points[1]));
 }
 
-inline std::optional<MarkedWay> way_out_of(const trace::MeasuredClash& clash, const LrbRep& a,
-                                           const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                                           std::span<const ContactRegion> contacts) {
+inline std::optional<MarkedSegment> separation_vector_of(const trace::MeasuredClash& clash,
+                                                         const PosedBodies& bodies,
+                                                         std::span<const ContactRegion> contacts) {
   std::optional<ProvedInterval> depth;
   if (clash.depth) depth = {(*clash.depth)[0], (*clash.depth)[1]};
-  return way_out_of(depth, vector_of(clash.translation), a, pose_a, b, pose_b, contacts);
+  return separation_vector_of(depth, vector_of(clash.translation), bodies, contacts);
 }
 
 }  // namespace lrb::run

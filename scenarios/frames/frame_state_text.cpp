@@ -3,12 +3,10 @@
 #include <cmath>
 
 #include "render/pictures/body_picture.hpp"
-#include "render/pictures/explain_picture.hpp"
 #include "render/pictures/marks.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/frames/face_colours.hpp"
 #include "scenarios/frames/frame_state.hpp"
-#include "scenarios/frames/pass_words.hpp"
 #include <lrbscope/render/style.hpp>
 #include <lrbscope/trace/trace.hpp>
 
@@ -28,16 +26,70 @@ std::string relation_words(Relation r) {
 
 }  // namespace
 
+std::string pass_words(const trace::PassSummary& pass) {
+  std::string out = "pass " + std::to_string(pass.number()) + ": " +
+                    render::counted(pass.regions, "region", "regions") + ", " +
+                    render::group_digits(pass.faces_before) + " to " +
+                    render::counted(pass.faces_after, "face", "faces");
+  if (pass.refused() > 0)
+    out += ", " + render::counted(pass.refused(), "cap", "caps") +
+           " rejected: " + trace::refusal_words(pass.caps);
+  return out;
+}
+
+std::string stage_words(const trace::PassSummary& pass) {
+  std::string out(name_of(pass.stage));
+  if (pass.most_off > 0) out += ", max. deviation " + render::short_number(pass.most_off);
+  return out;
+}
+
+namespace {
+
+std::string cap_words(const trace::Event& e) {
+  const trace::payload::Cap cap = e.cap();
+  const std::string size = cap.covered == 0 ? "no cap, because no vertex could be removed"
+                                            : "cap of " + render::counted(cap.faces, "face", "faces") +
+                                                  " over " + render::group_digits(cap.covered);
+  std::string out = size + ": " + std::string(name_of(cap.verdict));
+  if (std::isfinite(cap.off)) out += ", deviation " + render::short_number(cap.off);
+  return out;
+}
+
+}  // namespace
+
+std::string built_words(const trace::Event& e) {
+  switch (e.kind) {
+    case EventKind::pass:
+      return "pass " + std::to_string(e.pass().layer + 1) + " begins: " + std::string(name_of(e.stage()));
+    case EventKind::patch:
+      return "patch of " + render::counted(e.patch().faces, "face", "faces") + " grown from vertex " +
+             std::to_string(e.patch().vertex);
+    case EventKind::cap:
+      return cap_words(e);
+    case EventKind::region:
+      return "region " + std::to_string(e.region()) +
+             " created: " + render::counted(e.wrapper_change().faces, "face", "faces") + " covered";
+    case EventKind::merged:
+      return render::counted(e.merged().pieces, "inner shell", "inner shells") + " merged into region " +
+             std::to_string(e.merged().into);
+    case EventKind::closed:
+      return "built: " + render::counted(e.closed().regions, "region", "regions") +
+             ", outermost wrapper of " + render::counted(e.closed().outer_faces, "face", "faces");
+    default:
+      return {};
+  }
+}
+
 std::string error_bound_text(double bound) {
   return bound == 0 ? "0 (exact)" : std::isfinite(bound) ? render::short_number(bound) : "none yet";
 }
 
 std::string FrameState::isolated_text() const {
   std::string out;
-  for (std::size_t i = 0; i < reps_.size(); ++i) {
+  for (std::size_t i = 0; i < run_.reps.size(); ++i) {
     if (spec_.isolate[i].empty()) continue;
     const std::string owner = is_single() ? "" : i == 0 ? " of A" : " of B";
-    out += (out.empty() ? "" : "; ") + region_words(*reps_[i], spec_.isolate[i], owner);
+    out += (out.empty() ? "" : "; ") + region_words(*run_.reps[i], spec_.isolate[i], owner);
   }
   return out;
 }
@@ -88,14 +140,14 @@ std::string FrameState::event_text() const {
 std::string FrameState::construction_text() const {
   const trace::Event& e = cursor_.event();
   if (e.kind == EventKind::step)
-    return "the body, " + render::counted(reps_[0]->real_face_count(), "face", "faces");
+    return "the body, " + render::counted(run_.reps[0]->real_face_count(), "face", "faces");
   return e.kind == EventKind::pass_end ? pass_words(*now_.pass) : built_words(e);
 }
 
 std::string FrameState::first_wrappers_text() const {
   const auto has_none = [](const LrbRep* rep) { return rep->region_count() == 0; };
-  if (is_single()) return has_none(reps_[0]) ? "the body (it has no wrapper)" : "the outermost wrapper";
-  const bool a = has_none(reps_[0]), b = has_none(reps_[1]);
+  if (is_single()) return has_none(run_.reps[0]) ? "the body (it has no wrapper)" : "the outermost wrapper";
+  const bool a = has_none(run_.reps[0]), b = has_none(run_.reps[1]);
   if (a && b) return "the bodies (they have no wrappers)";
   if (a || b)
     return std::string(a ? "A (it has no wrapper) and B's" : "B (it has no wrapper) and A's") +
@@ -104,7 +156,7 @@ std::string FrameState::first_wrappers_text() const {
 }
 
 std::string FrameState::open_text() const {
-  const bool a = !reps_[0]->closed(), b = !reps_[1]->closed();
+  const bool a = !run_.reps[0]->closed(), b = !run_.reps[1]->closed();
   return a && b ? "undefined, because both bodies are open"
          : a    ? "undefined, because A is open"
                 : "undefined, because B is open";
@@ -129,7 +181,7 @@ std::string FrameState::measured_text() const {
   if (now_.gap) out = "distance " + now_.gap->text;
   if (now_.answer->clash && now_.answer->clash->kind != ClashKind::apart)
     out += (out.empty() ? "" : ", ") + kind_words(now_.answer->clash->kind, now_.answer->clash->reason);
-  if (now_.way_out) out += ", depth " + now_.way_out->text;
+  if (now_.separation_vector) out += ", depth " + now_.separation_vector->text;
   return out;
 }
 
@@ -158,12 +210,11 @@ std::string FrameState::relation_text() const {
     return std::isfinite(r.error_bound)
                ? "unresolved: in contact, or at a distance of at most " + render::short_number(r.error_bound)
                : "unresolved: the limit was reached before the coarsest wrappers were compared";
-  if (now_.parting) {
-    const trace::Step& step = *cursor_.step();
-    const std::string words = parting_words(*now_.parting, *reps_[0], step.pose_a, *reps_[1], step.pose_b);
+  if (now_.separating) {
+    const std::string words = separating_plane_text(*now_.separating, bodies());
     if (!words.empty()) return "separate: " + words;
   }
-  const bool open = !reps_[0]->closed() || !reps_[1]->closed();
+  const bool open = !run_.reps[0]->closed() || !run_.reps[1]->closed();
   return (r.relation == Relation::undefined && open ? open_text() : relation_words(r.relation)) + ": " +
          render::counted(r.pair_count, "intersecting pair of faces", "intersecting pairs of faces");
 }
@@ -173,10 +224,11 @@ render::Overlay FrameState::overlay(const std::string& title) const {
   o.title = title;
   if (!is_single()) o.title += "  ·  step " + std::to_string(step());
   o.event = event_text();
-  o.event_colour = now_.parting   ? kPartingColour
-                   : now_.way_out ? kWayOutColour
-                                  : style_of(spec_).of(render::palette::event(cursor_.event().kind));
-  o.style = style_name(spec_);
+  o.event_colour = now_.separating ? kSeparationColour
+                   : now_.separation_vector
+                       ? kSeparationColour
+                       : style_of(spec_.style).of(render::palette::event(cursor_.event().kind));
+  o.style = spec_.style;
   if (trace_.header.construction) {
     add_construction(o);
     return o;
@@ -190,7 +242,7 @@ void FrameState::add_counters(render::Overlay& o) const {
   const trace::Totals t = totals();
   o.counters = {{"wrapper", render::group_digits(cursor_.boundary_size(Side::a)) + " faces"},
                 {"refined", render::group_digits(t.refinements[0] - t.coarsenings[0]) + " of " +
-                                render::group_digits(reps_[0]->region_count()) + " regions"}};
+                                render::group_digits(run_.reps[0]->region_count()) + " regions"}};
 }
 
 void FrameState::add_pair_counters(render::Overlay& o) const {
@@ -226,7 +278,7 @@ void FrameState::add_construction(render::Overlay& o) const {
   }
   o.counters = {
       {"front", render::counted(cursor_.boundary_size(Side::a), "face", "faces")},
-      {"regions", render::group_digits(made) + " of " + render::group_digits(reps_[0]->region_count())}};
+      {"regions", render::group_digits(made) + " of " + render::group_digits(run_.reps[0]->region_count())}};
 }
 
 std::string FrameState::construction_caption() const {
@@ -248,7 +300,7 @@ std::string FrameState::construction_caption() const {
 std::string FrameState::short_caption() const {
   if (trace_.header.construction) {
     const std::uint32_t faces = cursor_.boundary_size(Side::a);
-    const bool built = faces == reps_[0]->outermost_faces().size();
+    const bool built = faces == run_.reps[0]->outermost_faces().size();
     const trace::PassSummary* pass = now_.pass;
     if (pass == nullptr) return "the body, " + render::counted(faces, "face", "faces");
     return "pass " + std::to_string(pass->number()) + (built ? ", the outermost wrapper" : "") + ", " +
@@ -256,7 +308,7 @@ std::string FrameState::short_caption() const {
   }
   if (is_single()) {
     const trace::Totals t = totals();
-    const std::uint64_t refined = t.refinements[0] - t.coarsenings[0], all = reps_[0]->region_count();
+    const std::uint64_t refined = t.refinements[0] - t.coarsenings[0], all = run_.reps[0]->region_count();
     const std::string state = all == 0         ? "the body (it has no wrappers)"
                               : refined == 0   ? "outermost wrapper"
                               : refined == all ? "the body"

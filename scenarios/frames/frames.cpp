@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/pictures/explain_picture.hpp"
+#include "render/pictures/answer_picture.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/frames/frame_state.hpp"
 #include "scenarios/frames/framing.hpp"
@@ -18,135 +18,104 @@
 #include <lrbscope/render/svg.hpp>
 
 namespace lrb::run {
-namespace {
 
-/// The texts of all frames. They are laid out first, because they determine the size of the pictures, which
-/// is the same in every frame.
-struct Script {
-  std::vector<render::Overlay> overlays;
-  render::PixelRect picture;
-};
-
-render::OverlayLayout lay_out_frame(const render::Overlay& overlay, const render::FrameSpec& spec) try {
-  return render::lay_out(overlay, spec.width, spec.height, static_cast<float>(spec.scale()));
-} catch (const InputError& e) {
-  throw InputError(std::string(e.what()) + " (--no-title, --no-legend); for print, use `lrbscope figure`");
+FrameSequence::FrameSequence(const render::Look& look, std::vector<render::Overlay> overlays, Framing framing)
+    : look_(look), overlays_(std::move(overlays)), framing_(std::move(framing)) {
+  if (look_.views.empty()) look_.views.emplace_back();
+  std::vector<render::OverlayLayout> layouts;
+  for (render::Overlay& overlay : overlays_) {
+    leave_out_texts(overlay, look_);
+    layouts.push_back(render::lay_out(overlay, look_.width, look_.height, static_cast<float>(look_.scale())));
+  }
+  place_ = render::common_picture(layouts);
 }
 
-Script write_script(FrameState& state, const std::vector<trace::EventId>& events, const std::string& title,
-                    const render::FrameSpec& spec) {
-  Script script;
+double FrameSequence::progress(std::size_t i) const {
+  return overlays_.size() > 1 ? static_cast<double>(i) / static_cast<double>(overlays_.size() - 1) : 0;
+}
+
+render::Image FrameSequence::picture(std::size_t i, const ListOf& list_of) {
+  std::vector<Panel> panels;
+  for (const render::Look::View& view : look_.views) {
+    const auto camera = [&, i](double width, double height) {
+      return camera_for(view, framing_, width, height, progress(i));
+    };
+    panels.push_back({list_of(view), camera, view.title});
+  }
+  return draw_row(rasterizer_, panels, look_, place_);
+}
+
+render::Image FrameSequence::frame(std::size_t i, const ListOf& list_of) {
+  return render::compose_frame(picture(i, list_of), place_, overlays_[i], look_.width, look_.height,
+                               look_.background(), static_cast<float>(look_.scale()));
+}
+
+std::vector<render::Camera> FrameSequence::cameras(std::size_t i) const {
+  const std::vector<render::PixelRect> places = panel_places(place_, look_.views.size(), look_.scale());
+  std::vector<render::Camera> out;
+  for (std::size_t view = 0; view < places.size(); ++view)
+    out.push_back(
+        camera_for(look_.views[view], framing_, places[view].width, places[view].height, progress(i)));
+  return out;
+}
+
+std::vector<std::string> FrameSequence::svgs(std::size_t i, const ListOf& list_of,
+                                             const std::string& title) const {
+  const std::vector<render::PixelRect> places = panel_places(place_, look_.views.size(), look_.scale());
+  const std::vector<render::Camera> cameras = this->cameras(i);
+  std::vector<std::string> out;
+  for (std::size_t view = 0; view < places.size(); ++view) {
+    render::SvgOptions options;
+    options.width = places[view].width;
+    options.height = places[view].height;
+    options.title = title;
+    options.units_per_pixel = look_.scale();
+    options.background = look_.paper();
+    out.push_back(render::svg(list_of(look_.views[view]), cameras[view], options));
+  }
+  return out;
+}
+
+namespace {
+
+std::vector<render::Overlay> overlays_of(FrameState& state, const std::vector<trace::EventId>& events,
+                                         const std::string& title) {
   std::vector<render::LegendItem> key;
+  std::vector<render::Overlay> out;
   for (const trace::EventId event : events) {
     state.seek(event);
     const render::Scene scene = state.scene();
     merge_key(key, scene.key);
-    script.overlays.push_back(state.overlay(title));
-    script.overlays.back().scale = scene.scale;
+    out.push_back(state.overlay(title));
+    out.back().scale = scene.scale;
   }
-  std::vector<render::OverlayLayout> layouts;
-  for (render::Overlay& overlay : script.overlays) {
-    overlay.key = key;
-    leave_out_texts(overlay, spec);
-    layouts.push_back(lay_out_frame(overlay, spec));
-  }
-  script.picture = render::common_picture(layouts);
-  return script;
+  for (render::Overlay& overlay : out) overlay.key = key;
+  return out;
 }
 
-class Painter {
- public:
-  Painter(const render::FrameSpec& spec, const render::PixelRect& picture, Framing framing)
-      : spec_(spec), views_(spec.views), framing_(std::move(framing)) {
-    if (views_.empty()) views_.emplace_back();
-    places_ = view_places(picture, views_.size(), spec.scale());
-    picture_ = render::Image(picture.width, picture.height);
-  }
+FrameSequence sequence_of(FrameState& state, const std::vector<trace::EventId>& events, const RecordedRun& p,
+                          const render::FrameSpec& spec, const Framing* framing) try {
+  return FrameSequence(spec, overlays_of(state, events, p.title),
+                       framing != nullptr ? *framing : frame_sequence(p, spec));
+} catch (const InputError& e) {
+  throw InputError(std::string(e.what()) + " (--no-title, --no-legend); for print, use `lrbscope figure`");
+}
 
-  /// `plain`: see FrameState::scene().
-  const render::Image& paint(const FrameState& state, double progress, bool plain = false) {
-    paint_views(
-        rasterizer_, spec_, views_, places_,
-        [&](const render::FrameSpec::View& view) { return state.scene(view.wrapper, plain).list; },
-        [&](std::size_t view) { return camera(view, progress); }, picture_);
-    return picture_;
-  }
-
-  std::vector<render::Camera> cameras(double progress) const {
-    std::vector<render::Camera> out;
-    for (std::size_t i = 0; i < views_.size(); ++i) out.push_back(camera(i, progress));
-    return out;
-  }
-
-  /// Returns each view as SVG. `plain`: see FrameState::scene().
-  std::vector<std::string> svgs(const FrameState& state, double progress, const std::string& title,
-                                bool plain = false) const {
-    std::vector<std::string> out;
-    for (std::size_t i = 0; i < views_.size(); ++i) {
-      render::SvgOptions options;
-      options.width = places_[i].width;
-      options.height = places_[i].height;
-      options.title = title;
-      options.units_per_pixel = spec_.scale();
-      options.background = paper_of(spec_);
-      out.push_back(render::svg(state.scene(views_[i].wrapper, plain).list, camera(i, progress), options));
-    }
-    return out;
-  }
-
-  /// Writes files named `name`.svg, or `name`_1.svg and so on.
-  void write_svg(const FrameState& state, double progress, const std::string& name,
-                 const std::string& title) const {
-    const std::vector<std::string> all = svgs(state, progress, title);
-    for (std::size_t i = 0; i < all.size(); ++i)
-      io::write_text(name + (all.size() > 1 ? "_" + std::to_string(i + 1) : "") + ".svg", all[i]);
-  }
-
- private:
-  render::Camera camera(std::size_t view, double progress) const {
-    const render::PixelRect& place = places_[view];
-    return camera_for(views_[view], framing_, place.width, place.height, progress);
-  }
-
-  const render::FrameSpec& spec_;
-  std::vector<render::FrameSpec::View> views_;
-  std::vector<render::PixelRect> places_;
-  Framing framing_;
-  render::Rasterizer rasterizer_;
-  render::Image picture_;
-};
-
-/// Data common to all frames of a run. There must be at least one event.
+/// The frames of a run. There must be at least one event.
 struct FrameJob {
-  const render::FrameSpec& spec;
-  std::vector<trace::EventId> events;
   FrameState state;
-  Script script;
-  Painter painter;
+  FrameSequence sequence;
 
-  FrameJob(const RecordedRun& p, const render::FrameSpec& s, std::vector<trace::EventId> at, Framing framing)
-      : spec(s),
-        events(std::move(at)),
-        state(*p.trace, p.reps, results_of(p), s, s.at != render::FrameSpec::At::step,
-              {p.trees, p.wrong, p.value_range, p.face_values, p.value_name}),
-        script(write_script(state, events, p.title, s)),
-        painter(s, script.picture, std::move(framing)) {}
+  FrameJob(const RecordedRun& p, const render::FrameSpec& spec, const std::vector<trace::EventId>& events,
+           const Framing* framing = nullptr)
+      : state(p, spec, spec.at != render::FrameSpec::At::step),
+        sequence(sequence_of(state, events, p, spec, framing)) {}
 
-  /// Returns the elapsed share of the sequence at frame i, for orbits.
-  double passed(std::size_t i) const {
-    return events.size() > 1 ? static_cast<double>(i) / static_cast<double>(events.size() - 1) : 0;
-  }
-  /// Draws frame i; `state` must be at its event.
-  render::Image frame(std::size_t i) {
-    const render::Rgba back = paper_of(spec).value_or(render::kTransparent);
-    return render::compose_frame(painter.paint(state, passed(i)), script.picture, script.overlays[i],
-                                 spec.width, spec.height, back, static_cast<float>(spec.scale()));
+  /// Returns the draw lists of the current state. `plain`: see FrameState::scene().
+  FrameSequence::ListOf lists(bool plain = false) const {
+    return [this, plain](const render::Look::View& view) { return state.scene(view.wrapper, plain).list; };
   }
 };
-
-Framing framing_of(const RecordedRun& p, const render::FrameSpec& spec) {
-  return frame_sequence(p.reps, *p.trace, results_of(p), spec);
-}
 
 /// The panels of a montage, collected while the frames are drawn.
 struct Montage {
@@ -159,33 +128,32 @@ struct Montage {
     render::MontageOptions options;
     options.columns = static_cast<int>(spec.montage_columns);
     options.letters = panels.size() > 1;
-    options.background = paper_of(spec).value_or(render::kTransparent);
-    options.style = style_name(spec);
+    options.background = spec.background();
+    options.style = spec.style;
     std::vector<std::string> files = {"montage.png", "caption.txt"};
     writer.push(folder + "/montage.png", render::montage(panels, options), png);
-    const std::string words = caption(p.purpose.empty() ? p.title + "." : p.purpose);
+    std::vector<std::string> texts;
+    for (const render::Panel& panel : panels) texts.push_back(panel.caption);
+    const std::string words = caption_of(p, texts);
     io::write_text(folder + "/caption.txt", words + "\n");
     if (svgs.empty()) return files;
     render::SvgMontageOptions svg_options;
     svg_options.title = words;
     svg_options.transparent = spec.transparent;
-    svg_options.style = style_name(spec);
+    svg_options.style = spec.style;
     svg_options.units_per_pixel = spec.scale();
     io::write_text(folder + "/montage.svg",
                    render::svg_montage(svgs, render::lay_out(panels, options), svg_options));
     files.insert(files.begin() + 1, "montage.svg");
     return files;
   }
-
- private:
-  /// Returns the caption to be printed under the figure.
-  std::string caption(std::string text) const {
-    for (std::size_t i = 0; i < panels.size(); ++i)
-      text += (i == 0 ? " " : "; ") + (panels.size() > 1 ? render::panel_letter(i) + " " : "") +
-              panels[i].caption;
-    return text + ".";
-  }
 };
+
+/// Writes files called `name`.svg, or `name`_1.svg and so on.
+void write_svgs(const std::vector<std::string>& views, const std::string& name) {
+  for (std::size_t i = 0; i < views.size(); ++i)
+    io::write_text(name + (views.size() > 1 ? "_" + std::to_string(i + 1) : "") + ".svg", views[i]);
+}
 
 /// Throws InputError for colours or boxes that need a recorded tree traversal if there is none.
 void check_colours(const RecordedRun& recorded, const render::FrameSpec& spec) {
@@ -202,12 +170,19 @@ void check_colours(const RecordedRun& recorded, const render::FrameSpec& spec) {
 
 }  // namespace
 
+std::string caption_of(const RecordedRun& recorded, const std::vector<std::string>& panels) {
+  std::string text = recorded.purpose.empty() ? recorded.title + "." : recorded.purpose;
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    text += (i == 0 ? " " : "; ") + (panels.size() > 1 ? render::panel_letter(i) + " " : "") + panels[i];
+  return text + ".";
+}
+
 const std::vector<CollideResult>& results_of(const RecordedRun& recorded) {
   static const std::vector<CollideResult> none;
   return recorded.results != nullptr ? *recorded.results : none;
 }
 
-void check_views(const std::vector<render::FrameSpec::View>& views, int dim) {
+void check_views(const std::vector<render::Look::View>& views, int dim) {
   if (dim == 2 && std::any_of(views.begin(), views.end(), [](const auto& view) { return view.directed; }))
     throw InputError(
         "--from, --up, --projection and --orbit: expected 3D bodies, found 2D bodies, which are always drawn "
@@ -223,9 +198,10 @@ void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec) {
   check_frame_size(spec);
 }
 
-void check_frame_size(const render::FrameSpec& spec) {
+void check_frame_size(const render::Look& spec) {
   constexpr int kMost = 8192;
-  const render::FrameSpec in_file = in_pixels(spec);
+  render::Look in_file = spec;
+  to_pixels(in_file);
   if (in_file.width > kMost || in_file.height > kMost)
     throw InputError("frames of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
                      " would have " + std::to_string(in_file.width) + "x" + std::to_string(in_file.height) +
@@ -234,15 +210,17 @@ void check_frame_size(const render::FrameSpec& spec) {
 
 std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render::FrameSpec& given,
                                        const ProgressReport& progress, const Framing* framing) {
-  const render::FrameSpec spec = in_pixels(given);
+  render::FrameSpec spec = given;
+  to_pixels(spec);
   std::vector<PaintedFrame> out;
   const std::vector<trace::EventId> events = moments(spec, *recorded.trace);
   if (events.empty()) return out;
-  FrameJob job(recorded, spec, events, framing != nullptr ? *framing : framing_of(recorded, spec));
+  FrameJob job(recorded, spec, events, framing);
   for (std::size_t i = 0; i < events.size(); ++i) {
     progress("draw", i, events.size());
     job.state.seek(events[i]);
-    out.push_back({job.frame(i), job.state.caption(), events[i], job.painter.cameras(job.passed(i))});
+    out.push_back(
+        {job.sequence.frame(i, job.lists()), job.state.caption(), events[i], job.sequence.cameras(i)});
   }
   return out;
 }
@@ -251,16 +229,16 @@ DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& gi
                         const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const ProgressReport& progress) {
-  const render::FrameSpec spec = in_pixels(given);
+  render::FrameSpec spec = given;
+  to_pixels(spec);
   DrawnFrames out;
   make_folder(folder + "/frames");
   remove_old_frames(folder);
   const std::vector<trace::EventId> events = moments(spec, *recorded.trace);
   if (events.empty()) return out;
 
-  FrameJob job(recorded, spec, events, framing_of(recorded, spec));
+  FrameJob job(recorded, spec, events);
   FrameState& state = job.state;
-  Painter& painter = job.painter;
   const std::vector<std::size_t> in_montage =
       spec.montage > 0 ? evenly(events.size(), spec.montage) : std::vector<std::size_t>();
   Montage together;
@@ -268,15 +246,15 @@ DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& gi
   for (std::size_t i = 0; i < events.size(); ++i) {
     progress("draw", i, events.size());
     state.seek(events[i]);
-    const double passed = job.passed(i);
-    if (spec.svg) painter.write_svg(state, passed, folder + "/" + numbered_frame(i), state.caption());
+    if (spec.svg)
+      write_svgs(job.sequence.svgs(i, job.lists(), state.caption()), folder + "/" + numbered_frame(i));
     render::PngOptions png{text, spec.dpi};
     png.text.emplace_back("lrbscope:event", std::to_string(events[i]));
-    writer.push(folder + "/" + frame_file(i), job.frame(i), png);
+    writer.push(folder + "/" + frame_file(i), job.sequence.frame(i, job.lists()), png);
     if (std::find(in_montage.begin(), in_montage.end(), i) != in_montage.end()) {
-      together.panels.push_back({painter.paint(state, passed, true), state.short_caption()});
+      together.panels.push_back({job.sequence.picture(i, job.lists(true)), state.short_caption()});
       if (spec.svg && spec.views.size() <= 1)
-        together.svgs.push_back(painter.svgs(state, passed, state.caption(), true).front());
+        together.svgs.push_back(job.sequence.svgs(i, job.lists(true), state.caption()).front());
     }
     out.frames.push_back({frame_file(i), state.caption(), events[i], state.step()});
   }
@@ -286,8 +264,9 @@ DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& gi
   for (const trace::Step& step : recorded.trace->steps)
     if (step.result.separation) out.proved = &step;
   if (out.proved != nullptr)
-    draw_separation(*recorded.reps[0], out.proved->pose_a, *recorded.reps[1], out.proved->pose_b,
-                    *out.proved->result.separation, folder + "/" + kSeparationFile);
+    write_picture(picture_of(*out.proved->result.separation,
+                             {*recorded.reps[0], out.proved->pose_a, *recorded.reps[1], out.proved->pose_b}),
+                  folder + "/" + kSeparationFile);
   return out;
 }
 

@@ -1,14 +1,17 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "scenarios/frames/framing.hpp"
+#include "render/pictures/panel.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/spec/scenario.hpp"
+#include <lrbscope/collide.hpp>
 #include <lrbscope/render/image.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::run {
 
@@ -29,6 +32,9 @@ struct RecordedRun {
   const std::array<std::vector<double>, 2>* face_values = nullptr;
   std::string value_name = {};
 };
+
+/// Returns the caption to print below a figure: the purpose, then the texts of its panels.
+std::string caption_of(const RecordedRun& recorded, const std::vector<std::string>& panels);
 
 /// Returns the results of a run's steps; empty if they are not known.
 const std::vector<CollideResult>& results_of(const RecordedRun& recorded);
@@ -57,10 +63,40 @@ struct PaintedFrame {
   std::vector<render::Camera> cameras;  ///< one for each view
 };
 
+/// Draws the frames of a sequence: pictures of one size, with texts above and below them.
+class FrameSequence {
+ public:
+  /// Returns the draw list of a view.
+  using ListOf = std::function<render::DrawList(const render::Look::View&)>;
+
+  /// Lays out the texts of all frames, which determine the size of the pictures. Throws InputError if they
+  /// do not fit. `look`: in pixels of the file.
+  FrameSequence(const render::Look& look, std::vector<render::Overlay> overlays, Framing framing);
+
+  /// Draws the views of frame i.
+  render::Image picture(std::size_t i, const ListOf& list_of);
+  /// Draws frame i with its texts.
+  render::Image frame(std::size_t i, const ListOf& list_of);
+  /// Returns the camera of each view.
+  std::vector<render::Camera> cameras(std::size_t i) const;
+  /// Returns each view as SVG (2D).
+  std::vector<std::string> svgs(std::size_t i, const ListOf& list_of, const std::string& title) const;
+
+ private:
+  /// Returns the share of the sequence that has passed at frame i, for orbits.
+  double progress(std::size_t i) const;
+
+  render::Look look_;
+  std::vector<render::Overlay> overlays_;
+  Framing framing_;
+  render::PixelRect place_;
+  render::Rasterizer rasterizer_;
+};
+
 /// Throws InputError if frames exceed the maximum number of pixels.
-void check_frame_size(const render::FrameSpec& spec);
+void check_frame_size(const render::Look& spec);
 /// Throws InputError for views that bodies of this dimension cannot have.
-void check_views(const std::vector<render::FrameSpec::View>& views, int dim);
+void check_views(const std::vector<render::Look::View>& views, int dim);
 /// Throws InputError for frames that cannot be drawn: of events that do not exist, as SVG in 3D, or too
 /// large.
 void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec);

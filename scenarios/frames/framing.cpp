@@ -4,22 +4,29 @@
 #include <cmath>
 #include <numbers>
 
+#include <lrbscope/render/rasterize.hpp>
 #include <lrbscope/render/scene.hpp>
 
 namespace lrb::run {
 namespace {
 
+using Eigen::Vector3d;
+
+const Pose& step_pose(const trace::Step& step, std::size_t body) {
+  return body == 0 ? step.pose_a : step.pose_b;
+}
+
 /// Returns a subset of points with almost the same extent: the extreme ones in a few dozen directions.
-std::vector<Eigen::Vector3d> extremes(const std::vector<Eigen::Vector3d>& points) {
+std::vector<Vector3d> extremes(const std::vector<Vector3d>& points) {
   constexpr int kTurns = 24, kRows = 7;
-  std::vector<Eigen::Vector3d> out;
+  std::vector<Vector3d> out;
   if (points.empty()) return out;
   for (int row = 0; row < kRows; ++row) {
     for (int turn = 0; turn < kTurns; ++turn) {
       const double azimuth = 2 * std::numbers::pi * turn / kTurns;
       const double elevation = std::numbers::pi * (row - kRows / 2) / (kRows - 1);
-      const Eigen::Vector3d d(std::cos(azimuth) * std::cos(elevation),
-                              std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
+      const Vector3d d(std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
+                       std::sin(elevation));
       out.push_back(*std::max_element(points.begin(), points.end(),
                                       [&](const auto& p, const auto& q) { return p.dot(d) < q.dot(d); }));
     }
@@ -28,63 +35,153 @@ std::vector<Eigen::Vector3d> extremes(const std::vector<Eigen::Vector3d>& points
 }
 
 /// Adds the corners of all intersecting faces: for coarse answers, which have no contact regions.
-void add_contacts(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
-                  std::vector<Eigen::Vector3d>& points) {
-  for (std::size_t step = 0; step < trace.steps.size(); ++step)
-    for (const trace::Event& e : trace.events_of(step)) {
-      if (e.kind != EventKind::contact) continue;
-      for (const VertexId v : reps[0]->face(reps[0]->face_of_simplex(e.simplex(Side::a))))
-        points.push_back(trace.steps[step].pose_a.apply(reps[0]->vertices()[v]));
-      for (const VertexId v : reps[1]->face(reps[1]->face_of_simplex(e.simplex(Side::b))))
-        points.push_back(trace.steps[step].pose_b.apply(reps[1]->vertices()[v]));
-    }
+void add_contacts(const RecordedRun& p, std::vector<Vector3d>& points) {
+  for (std::size_t i = 0; i < p.trace->steps.size(); ++i)
+    for (const trace::Event& e : p.trace->events_of(i))
+      for (std::size_t body = 0; e.kind == EventKind::contact && body < 2; ++body) {
+        const LrbRep& rep = *p.reps[body];
+        const FaceId face = rep.face_of_simplex(e.simplex(static_cast<Side>(body)));
+        for (const Vector3d& x : corners_of(rep, face, step_pose(p.trace->steps[i], body)))
+          points.push_back(x);
+      }
 }
 
-/// Returns the points that a body shows: all its wrappers, with displaced regions if exploded; or the
-/// isolated regions, with a margin around them if the rest is shown as well.
-std::vector<Eigen::Vector3d> shown_points(const LrbRep& rep, const std::vector<RegionId>& isolated,
-                                          bool alone, const render::FrameSpec& spec) {
-  std::vector<Eigen::Vector3d> out;
+/// Returns the points that a body shows: those of all its wrappers, with regions moved if it is exploded; or
+/// those of the isolated regions, with some room around them if the rest is drawn.
+std::vector<Vector3d> shown_points(const LrbRep& rep, const std::vector<RegionId>& isolated, bool alone,
+                                   const render::FrameSpec& spec) {
+  std::vector<Vector3d> out;
   if (alone) {
     for (const RegionId r : isolated)
-      for (const FaceId face : rep.collector(r))
-        for (const VertexId v : rep.face(face)) out.push_back(rep.vertices()[v]);
+      for (const Vector3d& x : region_corners(rep, r)) out.push_back(x);
     if (!spec.ghost_rest || out.empty()) return out;
     constexpr double kAround = 0.5;  // of the regions' size, on each side
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& x : out) box.extend(x);
-    const Eigen::Vector3d middle = box.center();
-    for (Eigen::Vector3d& x : out) x = middle + (1 + kAround) * (x - middle);
+    const Vector3d middle = render::bounds(out).center();
+    for (Vector3d& x : out) x = middle + (1 + kAround) * (x - middle);
     return out;
   }
   out = render::body_points(rep, Pose{});
   for (RegionId r = 0; spec.explode > 0 && r < rep.region_count(); ++r) {
-    const Eigen::Vector3d way = render::exploded_way(rep, Pose{}, r, spec.explode);
-    for (const FaceId face : rep.collector(r))
-      for (const VertexId v : rep.face(face)) out.push_back(rep.vertices()[v] + way);
+    const Vector3d way = render::exploded_way(rep, Pose{}, r, spec.explode);
+    for (const Vector3d& x : region_corners(rep, r)) out.push_back(x + way);
   }
   return out;
 }
 
+constexpr int kWidth = 240, kHeight = 180;  ///< of the pictures used to count hidden points
+/// Weight of closeness to `like`, relative to the visible share of the contacts.
+constexpr double kNearness = 0.15;
+
+/// Returns the last step with contacts, or the number of steps if there is none.
+std::size_t last_contact(const RecordedRun& recorded) {
+  if (recorded.results == nullptr) return recorded.trace->steps.size();
+  for (std::size_t i = recorded.results->size(); i-- > 0;)
+    if (!(*recorded.results)[i].regions.empty()) return i;
+  return recorded.trace->steps.size();
+}
+
+std::vector<Vector3d> points_at(const RecordedRun& recorded, std::size_t step) {
+  std::vector<Vector3d> out;
+  for (std::size_t i = 0; i < recorded.reps.size(); ++i)
+    for (const Vector3d& x : real_corners(*recorded.reps[i], step_pose(recorded.trace->steps[step], i)))
+      out.push_back(x);
+  return out;
+}
+
+/// Returns the share of the points that no face hides.
+double seen_share(const std::vector<Vector3d>& points, const render::Projection& projection,
+                  const render::DepthImage& depths) {
+  constexpr double kLift =
+      2.0 / kHeight;  // a curve lies on faces: it counts as visible up to two pixels behind them
+  std::size_t seen = 0;
+  for (const Vector3d& p : points) {
+    const Vector3d at = projection.to_screen(projection.to_eye(p));
+    const int x = std::clamp(static_cast<int>(at.x()), 0, kWidth - 1);
+    const int y = std::clamp(static_cast<int>(kHeight - at.y()), 0, kHeight - 1);
+    seen += projection.nearer(at.z(), kLift) <= depths.at(x, y) ? 1 : 0;
+  }
+  return static_cast<double>(seen) / static_cast<double>(points.size());
+}
+
+/// Returns directions all around, at two heights.
+std::vector<Vector3d> directions(const Vector3d& up) {
+  constexpr int kTurns = 16;
+  const Vector3d u = up.normalized(), side = u.unitOrthogonal(), third = u.cross(side);
+  std::vector<Vector3d> out;
+  for (const double height : {0.3, 0.7})
+    for (int i = 0; i < kTurns; ++i) {
+      const double angle = 2 * std::numbers::pi * (i + 0.5) / kTurns;
+      out.push_back((std::cos(angle) * side + std::sin(angle) * third + height * u).normalized());
+    }
+  return out;
+}
+
+/// Returns true if a close-up of the contacts would show almost as much as a view of both bodies.
+bool close_up_is_whole(const RecordedRun& recorded, const render::Look::View& close_up) {
+  const std::size_t step = last_contact(recorded);
+  if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return false;
+  constexpr double kCloser = 1.8;  // minimum magnification of a close-up
+  Framing framing;
+  framing.points = points_at(recorded, step);
+  for (const CollideResult& result : *recorded.results)
+    for (const Vector3d& p : render::contact_points(result.regions)) framing.contacts.push_back(p);
+  render::Look::View whole = close_up;
+  whole.camera = render::Look::Camera::scene;
+  const Eigen::AlignedBox3d box = render::bounds(framing.points);
+  const auto unit = [&](const render::Look::View& view) {
+    const render::Camera camera = camera_for(view, framing, kWidth, kHeight, 0);
+    return render::Projection(camera, kWidth, kHeight, box).unit_per_pixel(camera.target);
+  };
+  return unit(whole) < kCloser * unit(close_up);
+}
+
 }  // namespace
 
-Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
-                       const std::vector<CollideResult>& results, const render::FrameSpec& spec) {
+Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
   const bool regions_alone = !(spec.isolate[0].empty() && spec.isolate[1].empty());
   Framing f;
-  f.dim = reps[0]->dim();
-  for (std::size_t i = 0; i < reps.size(); ++i) {
-    const std::vector<Eigen::Vector3d> body =
-        extremes(shown_points(*reps[i], spec.isolate[i], regions_alone, spec));
-    for (const trace::Step& step : trace.steps) {
-      const Pose& pose = i == 0 ? step.pose_a : step.pose_b;
-      for (const Eigen::Vector3d& p : body) f.points.push_back(pose.apply(p));
-    }
+  f.dim = p.reps[0]->dim();
+  for (std::size_t i = 0; i < p.reps.size(); ++i) {
+    const std::vector<Vector3d> body =
+        extremes(shown_points(*p.reps[i], spec.isolate[i], regions_alone, spec));
+    for (const trace::Step& step : p.trace->steps)
+      for (const Vector3d& x : body) f.points.push_back(step_pose(step, i).apply(x));
   }
-  if (trace.header.request.is_coarse()) add_contacts(reps, trace, f.contacts);
-  for (const CollideResult& result : results)
-    for (const Eigen::Vector3d& p : render::contact_points(result.regions)) f.contacts.push_back(p);
+  if (p.trace->header.request.is_coarse()) add_contacts(p, f.contacts);
+  for (const CollideResult& result : results_of(p))
+    for (const Vector3d& x : render::contact_points(result.regions)) f.contacts.push_back(x);
   return f;
+}
+
+Vector3d least_hidden(const RecordedRun& recorded, const Vector3d& up, const Vector3d& like) {
+  const std::size_t step = last_contact(recorded);
+  if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return like;
+  const trace::Step& s = recorded.trace->steps[step];
+  const PosedBodies bodies{*recorded.reps[0], s.pose_a, *recorded.reps[1], s.pose_b};
+  const render::DrawList list = render::build_scene(bodies.in_scene()).list;
+  const std::vector<Vector3d> contact = render::contact_points((*recorded.results)[step].regions);
+  const std::vector<Vector3d> points = points_at(recorded, step);
+  render::Rasterizer rasterizer;
+  Vector3d best = like;
+  double most = -1;
+  for (const Vector3d& from : directions(up)) {
+    render::FitOptions fit;
+    fit.view = {from, up};
+    const render::Camera camera = render::fit_camera(points, kWidth, kHeight, fit);
+    const double seen = seen_share(contact, render::Projection(camera, kWidth, kHeight, render::bounds(list)),
+                                   rasterizer.depths(list, camera, kWidth, kHeight)) +
+                        kNearness * from.dot(like.normalized());
+    if (seen > most) most = seen, best = from;
+  }
+  return best;
+}
+
+void widen_close_ups(const RecordedRun& recorded, std::vector<render::Look::View>& views) {
+  for (render::Look::View& view : views) {
+    if (view.camera != render::Look::Camera::contact || !close_up_is_whole(recorded, view)) continue;
+    view.camera = render::Look::Camera::scene;
+    if (!view.wrapper) view.title = "Without wrappers";
+  }
 }
 
 }  // namespace lrb::run

@@ -1,17 +1,25 @@
 #pragma once
+/// The points that cameras show, and the directions that are chosen if none is given.
 
-#include <vector>
+#include <Eigen/Geometry>
 
-#include "render/pictures/frame_spec.hpp"
 #include "render/pictures/panel.hpp"
-#include <lrbscope/collide.hpp>
-#include <lrbscope/trace/trace.hpp>
+#include "scenarios/frames/frames.hpp"
 
 namespace lrb::run {
 
 /// Collects the points that a sequence shows. If `spec` isolates regions, these regions, with a margin if the
 /// rest is shown as a ghost; if it explodes bodies, the displaced regions.
-Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
-                       const std::vector<CollideResult>& results, const render::FrameSpec& spec);
+Framing frame_sequence(const RecordedRun& recorded, const render::FrameSpec& spec);
+
+/// Returns the direction, of many all around and from above, from which the bodies hide least of the contacts
+/// of the last step with contacts; of similar ones, the one closest to `like`. Returns `like` if there is no
+/// contact.
+Eigen::Vector3d least_hidden(const RecordedRun& recorded, const Eigen::Vector3d& up,
+                             const Eigen::Vector3d& like);
+
+/// Shows both bodies completely in close-ups of the contacts that would magnify little and only cut off
+/// parts.
+void widen_close_ups(const RecordedRun& recorded, std::vector<render::Look::View>& views);
 
 }  // namespace lrb::run

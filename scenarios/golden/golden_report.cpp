@@ -6,7 +6,8 @@
 #include <set>
 
 #include "render/canvas.hpp"
-#include "render/pictures/panel.hpp"
+#include "render/pictures/marks.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/report/assets.hpp"
@@ -52,27 +53,21 @@ struct SideShown {
   trace::EventId event;
 };
 
-/// Returns the corners of what an event is about: the pair that it compares, or the regions that it opens.
+/// Returns the corners of the subject of an event: the pair that it compares, or the region that it refines.
 std::vector<Eigen::Vector3d> subject_of(const SideShown& side, const std::vector<const LrbRep*>& reps) {
   trace::Cursor cursor =
       reps.size() == 1 ? trace::Cursor(side.trace, *reps[0]) : trace::Cursor(side.trace, *reps[0], *reps[1]);
   cursor.seek(side.event);
   std::vector<Eigen::Vector3d> out;
-  const auto add = [&](Side s, VertexId v) {
-    out.push_back(cursor.pose(s).apply(reps[static_cast<std::size_t>(s)]->vertices()[v]));
-  };
-  if (const auto pair = cursor.pair_under_test()) {
-    for (const Side s : {Side::a, Side::b}) {
-      const LrbRep& rep = *reps[static_cast<std::size_t>(s)];
-      VertexId corners[3];
-      rep.simplex(s == Side::a ? pair->simplex_a : pair->simplex_b, corners);
-      for (int i = 0; i < rep.simplex_size(); ++i) add(s, corners[i]);
-    }
-  }
+  if (const auto pair = cursor.pair_under_test())
+    for (const Side s : {Side::a, Side::b})
+      for (const Eigen::Vector3d& x : run::corners_of(*reps[static_cast<std::size_t>(s)], cursor.pose(s),
+                                                      s == Side::a ? pair->simplex_a : pair->simplex_b))
+        out.push_back(x);
   const trace::Event& e = cursor.event();
   if (e.changes_wrapper())
-    for (const FaceId f : reps[static_cast<std::size_t>(e.side)]->collector(e.region()))
-      for (const VertexId v : reps[static_cast<std::size_t>(e.side)]->face(f)) add(e.side, v);
+    for (const Eigen::Vector3d& x : run::region_corners(*reps[static_cast<std::size_t>(e.side)], e.region()))
+      out.push_back(cursor.pose(e.side).apply(x));
   return out;
 }
 
@@ -81,16 +76,14 @@ render::FrameSpec spec_for(const GoldenRun& run, bool close_up) {
   spec.at = render::FrameSpec::At::events;
   spec.width = kWidth;
   spec.height = kHeight;
-  render::FrameSpec::View whole;
-  if (!run.scenario.frames.views.empty()) {  // look from where the scenario looks
-    whole.from = run.scenario.frames.views[0].from;
-    whole.up = run.scenario.frames.views[0].up;
-  }
+  render::Look::View whole;
+  whole.from = run.scenario.frames.first_view().from;
+  whole.up = run.scenario.frames.first_view().up;
   whole.title = "Whole, with wrappers";
   spec.views = {whole};
   if (close_up) {
-    render::FrameSpec::View close = whole;
-    close.camera = render::FrameSpec::Camera::contact;
+    render::Look::View close = whole;
+    close.camera = render::Look::Camera::contact;
     close.title = "Close up, with wrappers";
     spec.views.push_back(close);
   }
@@ -133,7 +126,7 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
   const std::vector<const LrbRep*> reps = recorded_run_of(run).reps;
   try {
     // The cameras are fitted to this step alone: both runs' bodies, and what both events are about.
-    run::Framing framing = run::frame_sequence(reps, actual, run.recording.results, run.scenario.frames);
+    run::Framing framing = run::frame_sequence(recorded_run_of(run), run.scenario.frames);
     framing.contacts.clear();
     for (const SideShown& side : sides)
       for (const Eigen::Vector3d& p : subject_of(side, reps)) framing.contacts.push_back(p);

@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/pictures/panel.hpp"
 #include "scenarios/paper/paper_pictures.hpp"
-#include <lrbscope/render/overlay.hpp>
-#include <lrbscope/render/rasterize.hpp>
-#include <lrbscope/render/scene.hpp>
 #include <lrbscope/render/style.hpp>
 #include <lrbscope/trace/counters.hpp>
 #include <lrbscope/trace/replay.hpp>
@@ -13,13 +11,9 @@ namespace lrb::paper {
 namespace {
 
 constexpr int kPanelWidth = 560, kPanelHeight = 500;
-constexpr double kAside = 0.45;  ///< how far the viewer stands aside from the other body's place, over the
-                                 ///< distance
+constexpr double kAside = 0.45;  ///< the viewer's offset from the direction of the other body
 
-/// Lighting in which the shape is seen and colours stay those of the scale.
-const render::Lighting kSoft{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
-
-/// What one panel shows.
+/// The subject of a panel.
 struct PanelView {
   Side side;
   const CloseUp* collision;
@@ -39,17 +33,16 @@ Pose pose_of(const PanelView& view) {
   return view.side == Side::a ? last.pose_a : last.pose_x;
 }
 
-Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& p : render::body_points(rep, pose)) box.extend(p);
-  return box;
+/// Returns the box of all that a body can show.
+Eigen::AlignedBox3d whole_box(const LrbRep& rep, const Pose& pose) {
+  return render::bounds(render::body_points(rep, pose));
 }
 
-/// Returns the direction from the place of the other body, a little aside, onto the faces that it met.
+/// Returns the direction from the other body, at an angle, onto the faces that it intersects.
 render::ViewDirection view_of(const PaperPair& pair, const PanelView& view) {
   const ContactStep& last = view.collision->steps.back();
   const Eigen::Vector3d way =
-      box_of(pair.x.rep, last.pose_x).center() - box_of(pair.a.rep, last.pose_a).center();
+      whole_box(pair.x.rep, last.pose_x).center() - whole_box(pair.a.rep, last.pose_a).center();
   const Eigen::Vector3d from = (view.side == Side::a ? way : -way).normalized();
   int flat = 0;  // the axis that is most nearly perpendicular to the direction
   from.cwiseAbs().minCoeff(&flat);
@@ -57,7 +50,7 @@ render::ViewDirection view_of(const PaperPair& pair, const PanelView& view) {
   return {from + kAside * (aside + 0.7 * up), up};
 }
 
-/// Asks where the bodies meet in the last time step.
+/// Computes the contacts of the last time step.
 CollideResult contact_of(const PaperPair& pair, const CloseUp& c) {
   CollideRequest request;
   request.contacts = true;
@@ -73,25 +66,26 @@ std::vector<Eigen::Vector3d> largest_contact(const CollideResult& contact) {
   return render::contact_points(std::span(&*largest, 1));
 }
 
-render::Camera camera_of(const PaperPair& pair, const PanelView& view) {
+run::CameraFit camera_of(const PaperPair& pair, const PanelView& view) {
   const LrbRep& rep = pair.rep(view.side);
   render::FitOptions fit;
   fit.view = view_of(pair, view);
-  constexpr double kAround = 1.2, kLeast = 0.12;  // as shares of the contact's size and of the body's
-  return view.near
-             ? render::fit_contact(largest_contact(*view.contact), box_of(rep, pose_of(view)), kPanelWidth,
-                                   kPanelHeight, fit, kAround, kLeast)
-             : render::fit_camera(render::body_points(rep, pose_of(view)), kPanelWidth, kPanelHeight, fit);
+  if (!view.near) return run::fit_points(render::body_points(rep, pose_of(view)), 3, fit);
+  return [points = largest_contact(*view.contact), box = whole_box(rep, pose_of(view)), fit](double width,
+                                                                                             double height) {
+    constexpr double kAround = 1.2, kLeast = 0.12;  // as shares of the contact's size and of the body's
+    return render::fit_contact(points, box, width, height, fit, kAround, kLeast);
+  };
 }
 
-/// Returns the place of a count on the scale, which is logarithmic because a few faces get most of the tests:
-/// 0 for none, 1 for the largest of all.
+/// Returns the position of a count on the scale, from 0 for none to 1 for the largest of all. The scale is
+/// logarithmic because a few faces get most of the tests.
 double share(double tests, double most) {
   return most > 0 ? std::log1p(tests) / std::log1p(most) : 0;
 }
 
-/// Draws the wrapper as the last time step left it, without anything translucent, so that colours are those
-/// of the scale; and where the bodies meet.
+/// Draws the wrapper at the end of the last time step, opaque, so that colours are those of the scale; and
+/// the contact curves.
 render::DrawList wrapper_list(const PaperPair& pair, const PanelView& view, double most) {
   const LrbRep& rep = pair.rep(view.side);
   const std::vector<double> tests = tests_of(pair, view);
@@ -103,9 +97,7 @@ render::DrawList wrapper_list(const PaperPair& pair, const PanelView& view, doub
     render::DrawTriangle t;
     t.colour = tests[f] > 0 ? render::palette::viridis(share(tests[f], most)) : render::palette::kPaleFront;
     t.edges = 7;
-    std::vector<Eigen::Vector3d> corners;
-    for (const VertexId v : rep.face(f)) corners.push_back(pose_of(view).apply(rep.vertices()[v]));
-    list.add_polygon(corners, t);
+    list.add_polygon(run::corners_of(rep, f, pose_of(view)), t);
   }
   for (const ContactRegion& region : view.contact->regions)
     for (const ContactLoop& loop : region.loops) {
@@ -122,17 +114,12 @@ render::DrawList wrapper_list(const PaperPair& pair, const PanelView& view, doub
   return list;
 }
 
-render::Panel draw_panel(render::Rasterizer& rasterizer, const PaperPair& pair, const PanelView& view,
-                         double most) {
-  render::RasterOptions raster;
-  raster.width = kPanelWidth;
-  raster.height = kPanelHeight;
-  raster.lighting = kSoft;
+run::Panel panel_of(const PaperPair& pair, const PanelView& view, double most) {
   const std::string what = view.near ? ", close up"
                                      : ", " + std::string(view.which) + ": " +
                                            render::group_digits(view.collision->comparisons) + " face tests";
-  return {rasterizer.draw(wrapper_list(pair, view, most), camera_of(pair, view), raster),
-          pair.name(view.side) + what};
+  return {wrapper_list(pair, view, most), camera_of(pair, view), pair.name(view.side) + what, false,
+          run::kScaleLighting};
 }
 
 }  // namespace
@@ -150,22 +137,19 @@ render::Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, cons
     const std::vector<double> tests = tests_of(pair, view);
     most = std::max(most, *std::max_element(tests.begin(), tests.end()));
   }
-  render::Rasterizer rasterizer;
-  std::vector<render::Panel> panels;
-  for (const PanelView& view : views) panels.push_back(draw_panel(rasterizer, pair, view, most));
+  std::vector<run::Panel> panels;
+  for (const PanelView& view : views) panels.push_back(panel_of(pair, view, most));
+  render::Look look;
+  look.width = kPanelWidth;
+  look.height = kPanelHeight;
   render::MontageOptions options;
   options.columns = 4;
   options.text_height = 28;
-  const render::Image all = render::montage(panels, options);
-
   render::Overlay overlay;
   overlay.key = {{render::LegendItem::Mark::line, render::palette::kContact, "contact at the last step"},
                  {render::LegendItem::Mark::dashed, render::palette::kContact, "contact, hidden"}};
   overlay.scale = render::ScaleBar{"face tests per face (log scale)", 0, most};
-  constexpr int kRoom = 400;  // more than the legend needs; what it does not need is cut off
-  const render::OverlayLayout tentative = render::lay_out(overlay, all.width(), all.height() + kRoom);
-  const int height = all.height() + (all.height() + kRoom - tentative.picture.height);
-  return render::compose_frame(all, all.rect(), overlay, all.width(), height);
+  return run::with_overlay(run::draw_sheet(panels, look, options), overlay);
 }
 
 }  // namespace lrb::paper

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "render/pictures/explain_picture.hpp"
+#include "render/pictures/marks.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/report/assets.hpp"
@@ -171,13 +171,13 @@ json boxes_json(const PartedBoxes& boxes, int dim, const SceneFrame& frame) {
   json out = gap_json(boxes.pair);
   out["ofFaces"] = boxes.of_faces;
   out["places"] = packed(places);
-  out["square"] = packed_square(parting_square(boxes, dim), frame);
+  out["square"] = packed_square(separating_square(boxes, dim), frame);
   return out;
 }
 
 json plane_json(const PartingPlane& plane, const RecordedRun& p, const trace::Step& step,
                 const SceneFrame& frame) {
-  const Square square = parting_square(plane, *p.reps[0], step.pose_a, *p.reps[1], step.pose_b);
+  const Square square = separating_square(plane, {*p.reps[0], step.pose_a, *p.reps[1], step.pose_b});
   const Eigen::Vector3d& n = plane.normal;
   return {{"gap", rounded(plane.gap())},
           {"normal", {rounded(n.x()), rounded(n.y()), rounded(n.z())}},

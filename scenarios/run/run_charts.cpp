@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "scenarios/frames/pass_words.hpp"
+#include "scenarios/frames/frame_state.hpp"
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/trace/counters.hpp>
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "render/pictures/panel.hpp"
-#include "scenarios/frames/chosen_view.hpp"
 #include "scenarios/frames/face_colours.hpp"
+#include "scenarios/frames/framing.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/obb_tree.hpp>
 #include <lrbscope/render/overlay.hpp>

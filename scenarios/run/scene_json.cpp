@@ -10,9 +10,8 @@
 #include "render/page_palette.hpp"
 #include "render/pictures/marks.hpp"
 #include "render/pictures/panel.hpp"
-#include "scenarios/frames/chosen_view.hpp"
 #include "scenarios/frames/frame_state.hpp"
-#include "scenarios/frames/pass_words.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/report/assets.hpp"
 #include "scenarios/run/explanations.hpp"
@@ -27,12 +26,12 @@
 namespace lrb::run {
 namespace {
 
-std::optional<MarkedWay> way_out_in(const RecordedRun& p, std::size_t step) {
+std::optional<MarkedSegment> way_out_in(const RecordedRun& p, std::size_t step) {
   const trace::Step& s = p.trace->steps[step];
   if (!s.result.clash) return std::nullopt;
   std::span<const ContactRegion> contacts;
   if (p.results != nullptr && step < p.results->size()) contacts = (*p.results)[step].regions;
-  return way_out_of(*s.result.clash, *p.reps[0], s.pose_a, *p.reps[1], s.pose_b, contacts);
+  return separation_vector_of(*s.result.clash, {*p.reps[0], s.pose_a, *p.reps[1], s.pose_b}, contacts);
 }
 
 }  // namespace
@@ -41,7 +40,7 @@ nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame) {
   std::vector<std::uint32_t> steps, ways_out;
   std::vector<float> ends;
   nlohmann::json words = nlohmann::json::array();
-  const auto add = [&](const trace::Step& s, const MarkedWay& way, bool is_way_out) {
+  const auto add = [&](const trace::Step& s, const MarkedSegment& way, bool is_way_out) {
     steps.push_back(s.index);
     ways_out.push_back(is_way_out ? 1 : 0);
     frame.add_point(ends, way.from);
@@ -98,7 +97,7 @@ json colours() {
             {"lid", palette::kLidPale},
             {"ground", palette::kGroundPale},
             {"noValue", palette::kNoValuePale}}},
-          {"wayOut", css(kWayOutColour)},
+          {"wayOut", css(kSeparationColour)},
           {"scale", std::move(scale)},
           {"categories", std::move(categories)}};
 }
@@ -106,7 +105,8 @@ json colours() {
 // ---- where things are
 
 Eigen::Vector3d middle_of(const LrbRep& rep) {
-  return rep.vertices().empty() ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(box_with_lids(rep).center());
+  return rep.vertices().empty() ? Eigen::Vector3d(0, 0, 0)
+                                : Eigen::Vector3d(render::bounds(render::body_points(rep, {})).center());
 }
 
 const Pose& pose_in(const trace::Step& step, std::size_t body) {
@@ -190,7 +190,7 @@ json boxes_json(const LrbRep& rep, const SceneFrame& frame, std::size_t most,
   std::vector<TreeBox> boxes = tree_boxes(rep.tree(), most);
   const std::uint32_t whole = boxes.empty() ? 0 : boxes.back().depth;
   if (!boxes.empty() && boxes.size() < rep.tree().nodes().size()) {
-    const std::vector<TreeBox> deeper = boxes_on_ways(rep.tree(), whole, compared, most);
+    const std::vector<TreeBox> deeper = boxes_on_paths(rep.tree(), whole, compared, most);
     boxes.insert(boxes.end(), deeper.begin(), deeper.end());
   }
   const Eigen::Vector3d middle = middle_of(rep);

@@ -81,7 +81,7 @@ std::string pictures_text(const FrameSpec& frames) {
   nlohmann::json j;
   j["size"] = {frames.width, frames.height};
   if (frames.dpi > 0) j["dpi"] = frames.dpi;
-  if (frames.style != FrameSpec::Style::screen) j["style"] = name_of(frames.style);
+  if (frames.style != render::StyleName::screen) j["style"] = name_of(frames.style);
   for (const FrameSpec::View& v : frames.views) j["views"].push_back(to_json(v));
   if (frames.montage > 0) {
     j["montage"]["panels"] = frames.montage;
@@ -117,7 +117,7 @@ FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
     for (const io::JsonNode& item : n->items(1)) f.views.push_back(read_view(item));
   if (f.views.size() > 6) node.at("views").fail("expected at most 6 views");
   if (const auto n = node.get("transparent")) f.transparent = n->boolean();
-  if (const auto n = node.get("style")) f.style = n->choice<FrameSpec::Style>();
+  if (const auto n = node.get("style")) f.style = n->choice<render::StyleName>();
   if (const auto n = node.get("titles")) f.titles = n->boolean();
   if (const auto n = node.get("legend")) f.legend = n->boolean();
   if (const auto n = node.get("node_boxes"))

@@ -286,13 +286,13 @@ TEST_CASE("a 2D picture has exactly the colours of its marks") {
   c.b = c.a;
   c.pose_b = Pose::translation({0.5, 0.25, 0});
   const render::Image all = picture(c, 1, true);
-  CHECK(pixels_of(all, found_colour()) > 100);
-  CHECK(pixels_of(all, missed_colour()) > 100);
-  CHECK(pixels_of(all, extra_colour()) > 100);
+  CHECK(pixels_of(all, colour_of(Mark::found)) > 100);
+  CHECK(pixels_of(all, colour_of(Mark::missed)) > 100);
+  CHECK(pixels_of(all, colour_of(Mark::extra)) > 100);
   const render::Image right = picture(c, 0, false);
-  CHECK(pixels_of(right, found_colour()) > 100);
-  CHECK(pixels_of(right, missed_colour()) == 0);
-  CHECK(pixels_of(right, extra_colour()) == 0);
+  CHECK(pixels_of(right, colour_of(Mark::found)) > 100);
+  CHECK(pixels_of(right, colour_of(Mark::missed)) == 0);
+  CHECK(pixels_of(right, colour_of(Mark::extra)) == 0);
 }
 
 TEST_CASE("size and place of the world do not show in the picture") {

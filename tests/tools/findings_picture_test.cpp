@@ -5,12 +5,10 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/faulty_meshes.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/pixels.hpp"
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_check.hpp>
-#include <lrbscope/render/image.hpp>
 #include <lrbscope/render/scene.hpp>
-#include <lrbscope/render/style.hpp>
 
 namespace lrb::test {
 
@@ -19,18 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Pixels of a colour outside the legend, as it is or shaded: lit faces keep the proportions of its channels.
-std::size_t pixels_of(const render::Image& image, render::Rgba colour) {
-  const double size = std::hypot(colour.r, colour.g, colour.b);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < image.pixels().size() * 7 / 8; ++i) {  // below is the legend
-    const render::Rgba p = image.pixels()[i];
-    const double other = std::hypot(p.r, p.g, p.b), dot = p.r * colour.r + p.g * colour.g + p.b * colour.b;
-    const bool same_hue = size > 0 && other > 0.5 * size && dot > 0.998 * size * other;
-    count += p == colour || same_hue;
-  }
-  return count;
-}
+constexpr Part kAboveLegend{0, 0, 1, 7.0 / 8};
 
 struct Drawn {
   const char* kind;
@@ -77,15 +64,13 @@ TEST_CASE("the picture shows each kind of fault in its colour") {
     CAPTURE(std::string(d.kind));
     const Folder folder;
     write_mesh(d.mesh, folder / "m.obj");
-    const Outcome o = run(folder, {"inspect", "m.obj", "--json", "--no-join", "--draw", "new/m.png"});
-    CAPTURE(o.err);
-    REQUIRE(o.code == 0);
+    const Outcome o = succeed(folder, {"inspect", "m.obj", "--json", "--no-join", "--draw", "new/m.png"});
     CHECK(o.err.empty());
     CHECK(json::parse(o.out)["drawing"] == "new/m.png");
     const render::Image image = render::read_png(folder / "new/m.png").image;
     for (const render::Rgba& colour : d.colours) {
       CAPTURE(int(colour.r));
-      CHECK(pixels_of(image, colour) > 40);
+      CHECK(count_pixels(image, kAboveLegend, like(colour)) > 40);
     }
   }
 }
@@ -98,25 +83,20 @@ TEST_CASE("all rims are drawn, however many edges are open, and the picture is a
   for (std::uint32_t f = 0; f < ball.face_count(); f += 100) gone.insert(FaceId(f));
   write_mesh(without_faces(ball, gone), folder / "m.obj");
   write_mesh(without_faces(ball, {0}), folder / "one.obj");
-  const auto drawn = [&](const std::string& mesh, std::vector<std::string> more) {
-    more.insert(more.begin(), {"inspect", mesh, "--json", "--draw", "m.png"});
-    const Outcome o = run(folder, more);
-    CAPTURE(o.err);
-    REQUIRE(o.code == 0);
+  const auto draw = [&](const std::string& mesh, const std::vector<std::string>& more) {
+    const Outcome o = succeed(folder, {"inspect", mesh, "--json", "--draw", "m.png"}, more);
     CHECK(json::parse(o.out)["boundary_loops"].size() == (mesh == "one.obj" ? 1 : gone.size()));
     return render::read_png(folder / "m.png").image;
   };
-  const render::Image all = drawn("m.obj", {"--from", "0,-1,0.2"}),
-                      one = drawn("one.obj", {"--from", "0,-1,0.2"});
+  const render::Image all = draw("m.obj", {"--from", "0,-1,0.2"}),
+                      one = draw("one.obj", {"--from", "0,-1,0.2"});
   CHECK(all.width() == 1600);
   const auto whole = [](const render::Image& image) {  // the left half: the first of two panels
-    std::size_t count = 0;
-    for (int y = 0; y < image.height() * 7 / 8; ++y)
-      for (int x = 0; x < image.width() / 2; ++x) count += image.at(x, y) == render::palette::kVermillion;
-    return count;
+    return count_pixels(image, {0, 0, 0.5, 7.0 / 8},
+                        [](render::Rgba p) { return p == render::palette::kVermillion; });
   };
   CHECK(whole(all) > 3 * whole(one));
-  const render::Image small = drawn("m.obj", {"--size", "900x500"});
+  const render::Image small = draw("m.obj", {"--size", "900x500"});
   CHECK(small.width() == 900);
   CHECK(small.height() == 500);
 }

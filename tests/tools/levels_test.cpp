@@ -8,9 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/pixels.hpp"
 #include <lrbscope/mesh.hpp>
-#include <lrbscope/render/image.hpp>
 #include <lrbscope/render/overlay.hpp>
 
 namespace fs = std::filesystem;
@@ -31,11 +30,11 @@ double number_after(const std::string& text, const std::string& word) {
 
 /// Returns the share of a picture's pixels that are neither white, grey nor nearly so.
 double coloured_share(const lrb::render::Image& image) {
-  constexpr int kGrey = 60;
-  std::size_t count = 0;
-  for (const lrb::render::Rgba& c : image.pixels())
-    count += std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}) > kGrey;
-  return static_cast<double>(count) / static_cast<double>(image.pixels().size());
+  const auto is_coloured = [](lrb::render::Rgba c) {
+    return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}) > 60;
+  };
+  return static_cast<double>(count_pixels(image, {}, is_coloured)) /
+         static_cast<double>(image.pixels().size());
 }
 
 }  // namespace
@@ -43,9 +42,7 @@ double coloured_share(const lrb::render::Image& image) {
 TEST_CASE("levels: what pictures and page say is proved, and no less than what is measured") {
   const Folder folder;
   lrb::write_mesh(lrb::shapes::bumpy_sphere(3, 1), folder / "rock.obj");
-  const Outcome o = run(folder, {"levels", "rock.obj", "-o", "out", "--up", "y", "--json"});
-  CAPTURE(o.err);
-  REQUIRE(o.code == 0);
+  const Outcome o = succeed(folder, {"levels", "rock.obj", "-o", "out", "--up", "y", "--json"});
   const json said = json::parse(o.out), written = levels_json(folder, "out");
   CHECK(said["page"] == "out/index.html");
   REQUIRE(written["levels"].size() == said["levels"].size());
@@ -112,9 +109,7 @@ TEST_CASE("levels: a 2D body is drawn, too") {
   comb += "l";
   for (int i = 1; i <= corners; ++i) comb += " " + std::to_string(i);
   folder.write("comb.obj", comb + " 1\n");
-  const Outcome o = run(folder, {"levels", "comb.obj", "--at", "0.01", "0.2", "-o", "out"});
-  CAPTURE(o.err);
-  REQUIRE(o.code == 0);
+  const Outcome o = succeed(folder, {"levels", "comb.obj", "--at", "0.01", "0.2", "-o", "out"});
   const json levels = levels_json(folder, "out")["levels"];
   CHECK(levels[1]["faces"].get<int>() < levels[0]["faces"].get<int>());
   CHECK(levels[1]["sampled"].get<double>() > 0);

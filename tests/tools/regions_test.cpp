@@ -11,10 +11,9 @@
 #include "scenarios/bodies/region_figures.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/faulty_meshes.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/pixels.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/mesh.hpp>
-#include <lrbscope/render/image.hpp>
 #include <lrbscope/validate.hpp>
 #include <lrbscope/wrapper.hpp>
 
@@ -39,10 +38,7 @@ const char* const kThinGear = R"({"name": "thin", "purpose": "y", "show": "refin
 
 json run_json(const Folder& folder, std::vector<std::string> words) {
   words.emplace_back("--json");
-  const Outcome o = run(folder, words);
-  CAPTURE(o.err);
-  REQUIRE(o.code == 0);
-  return json::parse(o.out);
+  return json::parse(succeed(folder, words).out);
 }
 
 }  // namespace
@@ -108,9 +104,7 @@ TEST_CASE("inspect --regions lists all in JSON, the worst in text, and draws ten
         j["region_figures"]);
 
   const Outcome text =
-      run(folder, {"inspect", "bowl.lrb", "--regions", "--render", "-o", "r.png", "--size", "200x160"});
-  CAPTURE(text.err);
-  REQUIRE(text.code == 0);
+      succeed(folder, {"inspect", "bowl.lrb", "--regions", "--render", "-o", "r.png", "--size", "200x160"});
   const std::string more =
       "  and " + std::to_string(j["regions"].get<int>() - 25) + " more: --json lists all\n";
   CHECK(text.out.find(more) != std::string::npos);
@@ -212,10 +206,7 @@ TEST_CASE("an isolated region is drawn once, close up, and said to be what it is
   const json &most = j["region_figures"].front(), &least = j["region_figures"].back();
   const auto picture = [&](const json& region) {
     const std::string r = std::to_string(region["region"].get<int>());
-    const Outcome o =
-        run(folder, {"render", "run/trace.json", "-o", "r" + r, "--region", r, "--size", "480x360"});
-    CAPTURE(o.err);
-    REQUIRE(o.code == 0);
+    succeed(folder, {"render", "run/trace.json", "-o", "r" + r, "--region", r, "--size", "480x360"});
     CHECK_FALSE(std::filesystem::exists(folder / ("r" + r + "/frames/frame_0001.png")));
     const std::string page = slurp(folder / ("r" + r + "/index.html"));
     CHECK(page.find("region " + r + ": layer " + std::to_string(region["layer"].get<int>()) + ", ") !=
@@ -226,9 +217,7 @@ TEST_CASE("an isolated region is drawn once, close up, and said to be what it is
   // Close up: even a small region fills a good part of the picture.
   for (const json& region : {most, least}) {
     const render::Image image = picture(region);
-    std::size_t count = 0;
-    for (const render::Rgba& p : image.pixels()) count += p != render::kWhite;
-    CHECK(count > image.pixels().size() / 25);
+    CHECK(count_pixels(image, {}, is_painted) > image.pixels().size() / 25);
   }
   const Outcome layer = run(folder, {"render", "run/trace.json", "-o", "layer", "--layer", "0"});
   CHECK(layer.code == 0);
@@ -253,10 +242,8 @@ TEST_CASE("nothing of an exploded body is cut off") {
         R"({"name": "x", "purpose": "y", "show": "refinement", "bodies": {"a": {"generator": ")" +
             std::string(generator) +
             R"("}}, "frames": {"at": "refinement", "every": 1000000, "explode": 2, "size": [320, 300]}})");
-    const Outcome o = run(folder, {"run", "s.json", "-o", "run"});
-    CAPTURE(o.err);
-    REQUIRE(o.code == 0);
-    const render::Image image = render::read_png(folder / "run/frames/frame_0000.png").image;
+    const render::Image image =
+        drawn(folder, "run/frames/frame_0000.png", {"run", "s.json", "-o", "run"}).image;
     for (int y = image.height() / 4; y < image.height() * 3 / 4; ++y)
       for (const int x : {0, image.width() - 1}) CHECK(image.at(x, y) == render::kWhite);
   }
@@ -268,9 +255,9 @@ TEST_CASE("a direction to look from is refused for bodies in the plane") {
   write_mesh(without_faces(star(5), {0}), folder / "open.obj");
   for (const std::vector<std::string>& camera :
        {std::vector<std::string>{"--from", "1,1,1"}, {"--up", "y"}, {"--projection", "orthographic"}}) {
-    const auto with = [&](std::vector<std::string> words) {
-      words.insert(words.end(), camera.begin(), camera.end());
-      CHECK(check_refused(folder, words).err.find("are always drawn from above") != std::string::npos);
+    const auto with = [&](const std::vector<std::string>& words) {
+      CHECK(check_refused(folder, joined(words, camera)).err.find("are always drawn from above") !=
+            std::string::npos);
     };
     with({"inspect", "star.obj", "--render", "-o", "x.png"});
     with({"inspect", "open.obj", "--draw", "x.png"});

@@ -3,11 +3,10 @@
 #include <doctest/doctest.h>
 
 #include "render/pictures/panel.hpp"
-#include "scenarios/frames/chosen_view.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/spec/scenario.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/pixels.hpp"
 #include <lrbscope/error.hpp>
-#include <lrbscope/render/image.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;
@@ -51,15 +50,14 @@ TEST_CASE("render draws a trace as run drew it: view, projection, size") {
                R"({"name": "x", "purpose": "y", "show": "refinement", "bodies": {"a": {"generator": "gear"}},
     "frames": {"at": "refinement", "most": 2, "size": [320, 300], "montage": {"panels": 2, "columns": 1},
                "views": [{"from": [1, 0.2, 0.3], "projection": "orthographic", "zoom": 1.3, "look_at": [0.1, 0, 0]}]}})");
-  REQUIRE(test::run(folder, {"run", "s.json", "-o", "run"}).code == 0);
-  REQUIRE(test::run(folder, {"render", "run/trace.json", "--most", "2", "-o", "again"}).code == 0);
+  test::succeed(folder, {"run", "s.json", "-o", "run"});
+  test::succeed(folder, {"render", "run/trace.json", "--most", "2", "-o", "again"});
   for (const char* frame : {"frames/frame_0000.png", "frames/frame_0001.png", "montage.png"}) {
     CAPTURE(std::string(frame));
     const render::Image first = render::read_png(folder / (std::string("run/") + frame)).image;
     CHECK(first == render::read_png(folder / (std::string("again/") + frame)).image);
   }
-  REQUIRE(test::run(folder, {"render", "run/trace.json", "--most", "2", "--from", "0,-1,0.2", "-o", "turned"})
-              .code == 0);
+  test::succeed(folder, {"render", "run/trace.json", "--most", "2", "--from", "0,-1,0.2", "-o", "turned"});
   CHECK(render::read_png(folder / "run/frames/frame_0000.png").image !=
         render::read_png(folder / "turned/frames/frame_0000.png").image);
 }
@@ -67,11 +65,10 @@ TEST_CASE("render draws a trace as run drew it: view, projection, size") {
 TEST_CASE("--up turns what a scenario gives; --from is in the axes of the files") {
   const test::Folder folder;
   folder.write("cube.obj", test::kCube);
-  const auto picture = [&](std::vector<std::string> more, const std::string& name) {
-    std::vector<std::string> all = {"inspect", "cube.obj", "--render", "--size", "200x160", "-o", name};
-    all.insert(all.end(), more.begin(), more.end());
-    REQUIRE(test::run(folder, all).code == 0);
-    return render::read_png(folder / name).image;
+  const auto picture = [&](const std::vector<std::string>& more, const std::string& name) {
+    return test::drawn(folder, name, {"inspect", "cube.obj", "--render", "--size", "200x160", "-o", name},
+                       more)
+        .image;
   };
   const render::Image above = picture({"--from", "0.01,0,1", "--projection", "orthographic"}, "a.png");
   CHECK(above != picture({"--from", "1,0.01,0", "--projection", "orthographic", "--up", "z"}, "b.png"));
@@ -100,9 +97,7 @@ TEST_CASE("--animate: by ffmpeg; without it, refused before anything is drawn") 
   ::setenv("LRB_FFMPEG", "/no such program", 1);
   for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
            {"run", "s.json"}, {"render", "run"}, {"collide", "cube.obj", "cube.obj"}}) {
-    std::vector<std::string> arguments = command;
-    arguments.insert(arguments.end(), {"-o", "other", "--animate", "y.mp4"});
-    o = test::run(folder, arguments);
+    o = test::run(folder, test::joined(command, {"-o", "other", "--animate", "y.mp4"}));
     CAPTURE(o.err);
     CHECK(o.code == 3);
     CHECK(o.error_lines() == 1);
@@ -124,11 +119,10 @@ TEST_CASE("--animate: by ffmpeg; without it, refused before anything is drawn") 
 TEST_CASE("collide keeps the view that it chose in the trace") {
   const test::Folder folder;
   folder.write("cube.obj", test::kCube);
-  REQUIRE(test::run(folder, {"collide", "cube.obj", "cube.obj", "--frames", "none", "-o", "run"}).code == 0);
+  test::succeed(folder, {"collide", "cube.obj", "cube.obj", "--frames", "none", "-o", "run"});
   const std::string chosen = test::slurp(folder / "run/trace.json");
-  REQUIRE(test::run(folder, {"collide", "cube.obj", "cube.obj", "--frames", "none", "--from", "0.25,-1,0.5",
-                             "-o", "run"})
-              .code == 0);
+  test::succeed(
+      folder, {"collide", "cube.obj", "cube.obj", "--frames", "none", "--from", "0.25,-1,0.5", "-o", "run"});
   const std::string given = test::slurp(folder / "run/trace.json");
   CHECK(given.find("\"from\":[0.25,-1.0,0.5]") != std::string::npos);
   CHECK(chosen.find("\"from\":[0.25,-1.0,0.5]") == std::string::npos);

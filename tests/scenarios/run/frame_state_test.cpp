@@ -22,7 +22,11 @@ TEST_CASE("captions name faces, of bodies of polygons too") {
   recorder.end_step(results[0]);
   const trace::Trace trace = recorder.take();
   const render::FrameSpec spec;
-  run::FrameState state(trace, {&a, &b}, results, spec, true);
+  run::RecordedRun run;
+  run.reps = {&a, &b};
+  run.trace = &trace;
+  run.results = &results;
+  run::FrameState state(run, spec, true);
 
   std::size_t contacts = 0, beyond = 0;
   for (trace::EventId i = 0; i < trace.events.size(); ++i) {

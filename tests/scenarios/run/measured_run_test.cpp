@@ -53,7 +53,11 @@ std::string number(const report::Page& page, const std::string& label) {
 
 /// The state at the end of a step.
 run::FrameState at_end(const run::Recording& r, std::size_t step, const render::FrameSpec& spec) {
-  run::FrameState state(r.trace, {&r.bodies[0].rep, &r.bodies[1].rep}, r.results, spec, false);
+  run::RecordedRun run;
+  run.reps = {&r.bodies[0].rep, &r.bodies[1].rep};
+  run.trace = &r.trace;
+  run.results = &r.results;
+  run::FrameState state(run, spec, false);
   state.seek(r.trace.steps[step].first_event + static_cast<trace::EventId>(r.trace.events_of(step).size()) -
              1);
   return state;
@@ -87,13 +91,13 @@ TEST_CASE("measured runs: frames show the nearest points, and the way out, and s
   const render::FrameSpec spec;
   const run::FrameState apart = at_end(r, 0, spec), met = at_end(r, 6, spec);
   CHECK(draws_line(apart.scene().list, run::kGapColour));
-  CHECK_FALSE(draws_line(apart.scene().list, run::kWayOutColour));
+  CHECK_FALSE(draws_line(apart.scene().list, run::kSeparationColour));
   CHECK(apart.caption().find("distance ") != std::string::npos);
-  CHECK(draws_line(met.scene().list, run::kWayOutColour));
+  CHECK(draws_line(met.scene().list, run::kSeparationColour));
   CHECK(met.caption().find(", depth ") != std::string::npos);
   CHECK(met.caption().find("protrudes") != std::string::npos);
   CHECK_FALSE(draws_line(at_end(plain, 0, spec).scene().list, run::kGapColour));
-  CHECK_FALSE(draws_line(at_end(plain, 6, spec).scene().list, run::kWayOutColour));
+  CHECK_FALSE(draws_line(at_end(plain, 6, spec).scene().list, run::kSeparationColour));
 }
 
 TEST_CASE("measured runs: the page has the numbers, columns and charts, and others do not") {

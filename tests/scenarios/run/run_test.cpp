@@ -109,7 +109,7 @@ TEST_CASE("a construction's frames say what each pass made and refused, and noth
   const spec::Scenario s = one_rock(spec::Show::construction);
   const run::Recording r = run::record(s, run::kSilent);
   const run::RecordedRun p = run::recorded_run_of(s, r);
-  run::FrameState state(r.trace, p.reps, r.results, s.frames, false);
+  run::FrameState state(p, s.frames, false);
   std::string all;
   std::size_t refusals = 0;
   for (const trace::EventId e : run::moments(s.frames, r.trace)) {

@@ -155,7 +155,7 @@ TEST_CASE(
   REQUIRE(tree.height() > 2);
   std::vector<SimplexId> simplices;
   for (SimplexId s = 0; s < r.bodies[0].rep.real_simplex_count(); ++s) simplices.push_back(s);
-  const std::vector<run::TreeBox> deep = run::boxes_on_ways(tree, 0, simplices, 100'000);
+  const std::vector<run::TreeBox> deep = run::boxes_on_paths(tree, 0, simplices, 100'000);
   CHECK(deep.size() + 1 == all.size());  // every node is on the way to a face; the root is not below itself
   for (const run::TreeBox& box : deep) {
     const auto same = std::find_if(all.begin(), all.end(), [&](const auto& b) { return b.node == box.node; });
@@ -164,11 +164,11 @@ TEST_CASE(
     CHECK(same->centre == box.centre);
     CHECK(same->half == box.half);
   }
-  const auto one = run::boxes_on_ways(tree, 0, {SimplexId(0)}, 100'000);
+  const auto one = run::boxes_on_paths(tree, 0, {SimplexId(0)}, 100'000);
   CHECK(one.size() >= 1);
   CHECK(one.size() < tree.height());
-  CHECK(run::boxes_on_ways(tree, 0, simplices, 3).size() == 3);
-  CHECK(run::boxes_on_ways(tree, 0, {SimplexId(1'000'000)}, 3).empty());  // no real simplex
+  CHECK(run::boxes_on_paths(tree, 0, simplices, 3).size() == 3);
+  CHECK(run::boxes_on_paths(tree, 0, {SimplexId(1'000'000)}, 3).empty());  // no real simplex
   const std::vector<std::uint32_t> counts = run::nodes_by_depth(tree);
   CHECK(counts.size() == tree.height());
   CHECK(counts[0] == 1);

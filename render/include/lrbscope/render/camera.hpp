@@ -19,6 +19,9 @@ struct Camera {
   double half_height = 1;  ///< orthographic: from the centre to the top edge, world units
 };
 
+/// Returns the box around points; empty if there are none.
+Eigen::AlignedBox3d bounds(std::span<const Eigen::Vector3d> points);
+
 /// A view direction and an up vector.
 struct ViewDirection {
   Eigen::Vector3d from{0.62, -0.68, 0.42};  ///< from the target to the viewer, world frame; need not be unit

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "render/pictures/explain_picture.hpp"
+#include "render/pictures/marks.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/core/strings.hpp>
@@ -32,7 +32,7 @@ TEST_CASE("captions: a gap is a lower bound of the distance, and shrinks as the 
     through.t.x() = x;
     const WalkExplanation walk = explain_walk(ring, {}, ring, through);
     REQUIRE(walk.result.pairs.empty());
-    const std::string words = run::parting_words(walk, ring, {}, ring, through);
+    const std::string words = run::separating_plane_text(walk, {ring, {}, ring, through});
     CHECK(words.starts_with(walk.plane ? "a plane parts them, " : "boxes part them, "));
     if (x == 4 || x < 2) CHECK(walk.plane.has_value() == (x == 4));
     const double gap = gap_in(words), distance = lrb::distance(ring, {}, ring, through).upper;

@@ -1,0 +1,110 @@
+#include "render/pictures/panel.hpp"
+
+#include <doctest/doctest.h>
+
+#include "tests/render/font_guard.hpp"
+#include "tests/render/triangles.hpp"
+
+using namespace lrb;
+
+namespace {
+
+constexpr render::Rgba kRed{200, 0, 0};
+
+/// A panel that a red square fills, but for the margin.
+run::Panel red(const std::string& title) {
+  run::Panel panel;
+  render::DrawTriangle flat;
+  flat.colour = kRed;
+  flat.lit = false;
+  test::add(panel.list, test::box_triangles({0, 0, 0}, {1, 1, 0.1}), flat);
+  panel.camera = run::fit_points(render::extent_points(panel.list), 2);
+  panel.title = title;
+  return panel;
+}
+
+/// Returns the number of pixels of a rectangle that are not of a colour.
+int others(const render::Image& image, const render::PixelRect& r, render::Rgba colour) {
+  int n = 0;
+  for (int y = r.y; y < r.bottom(); ++y)
+    for (int x = r.x; x < r.right(); ++x) n += image.at(x, y) != colour;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("panels stand side by side along the longer side, each in its place, with a rule between") {
+  const render::Look look;
+  render::Rasterizer rasterizer;
+  for (const render::PixelRect& picture : {render::PixelRect{0, 0, 304, 150}, {0, 0, 150, 304}}) {
+    const std::vector<run::Panel> panels = {red(""), red("")};
+    const render::Image image = run::draw_row(rasterizer, panels, look, picture);
+    REQUIRE(image.rect() == picture);
+    const auto places = run::panel_places(picture, 2, 1);
+    for (const render::PixelRect& place : places) {
+      CHECK(picture.contains(place));
+      const render::PixelRect middle{place.x + 30, place.y + 30, place.width - 60, place.height - 60};
+      CHECK(others(image, middle, kRed) == 0);
+      CHECK(image.at(place.x, place.y) == render::kWhite);
+    }
+    CHECK(!places[0].overlaps(places[1]));
+    CHECK(image.at(places[0].right() % picture.width, places[0].bottom() % picture.height) ==
+          render::style_of(look.style).rule);
+  }
+}
+
+TEST_CASE("titles are in their panels, and a look leaves them out; transparent panels keep their alpha") {
+  if (!test::have_font()) return;
+  render::Look look;
+  render::Rasterizer rasterizer;
+  const render::PixelRect picture{0, 0, 300, 200}, strip{0, 0, 300, 12};
+  const std::vector<run::Panel> panels = {red("a title")};
+  CHECK(others(run::draw_row(rasterizer, panels, look, picture), strip, render::kWhite) > 50);
+  look.titles = false;
+  CHECK(others(run::draw_row(rasterizer, panels, look, picture), strip, render::kWhite) == 0);
+  look.transparent = true;
+  const render::Image clear = run::draw_row(rasterizer, panels, look, picture);
+  CHECK(clear.at(0, 0) == render::kTransparent);
+  CHECK(clear.at(150, 100) == kRed);
+}
+
+TEST_CASE("a picture between the texts of an overlay is as it is without them, at any resolution") {
+  if (!test::have_font()) return;
+  render::Overlay overlay;
+  overlay.title = "Title";
+  overlay.key = {{run::Mark::solid, kRed, "a square"}};
+  render::Look look;
+  look.width = 400;
+  look.height = 300;
+  for (const double dpi : {0.0, 192.0}) {
+    render::Look in_file = look;
+    in_file.dpi = dpi;
+    run::to_pixels(in_file);
+    CHECK(in_file.width == (dpi > 0 ? 800 : 400));
+    const std::vector<run::Panel> panels = {red("")};
+    const render::Image image = run::draw_panels(panels, overlay, in_file);
+    CHECK(image.rect() == render::PixelRect{0, 0, in_file.width, in_file.height});
+    CHECK(image.at(in_file.width / 2, in_file.height / 2) == kRed);
+    const render::Image sheet = run::draw_sheet(panels, in_file);
+    const render::Image framed = run::with_overlay(sheet, overlay, in_file.scale());
+    const int top =
+        render::lay_out(overlay, framed.width(), framed.height(), static_cast<float>(in_file.scale()))
+            .picture.y;
+    CHECK(framed.height() > sheet.height());
+    for (int y = 0; y < sheet.height(); y += 7)
+      for (int x = 1; x + 1 < sheet.width(); x += 7) REQUIRE(framed.at(x, top + y) == sheet.at(x, y));
+  }
+}
+
+TEST_CASE("a look without legend or titles clears these texts alone") {
+  render::Overlay overlay;
+  overlay.title = "t", overlay.event = "e", overlay.key = {{run::Mark::line, kRed, "k"}};
+  render::Look look;
+  look.legend = false;
+  run::leave_out_texts(overlay, look);
+  CHECK(overlay.key.empty());
+  CHECK(overlay.title == "t");
+  look.titles = false;
+  run::leave_out_texts(overlay, look);
+  CHECK(overlay.empty());
+}
