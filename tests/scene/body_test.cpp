@@ -223,6 +223,7 @@ TEST_CASE("a body that intersects itself says that it has no approximate answers
   const Mesh rock = shapes::bumpy_sphere(2, 1);
   const Body body = Body::from(shapes::several({rock, shapes::translated(rock, {0.3, 0.1, 0.05})})).value();
   REQUIRE(body.notes().size() == 1);
-  CHECK(body.notes()[0].find("approximate queries are not supported, because its surface intersects itself") !=
-        std::string::npos);
+  CHECK(
+      body.notes()[0].find("approximate queries are not supported, because its surface intersects itself") !=
+      std::string::npos);
 }

@@ -114,7 +114,8 @@ TEST_CASE("B2: clash answers the same through every door, and says why a kind is
 TEST_CASE("B2: a clash is no question of bodies in the plane, through any door") {
   const test::Folder folder;
   for (const Body& body : through_all_doors(shapes::circle(12), folder))
-    CHECK_THROWS_WITH_AS(clash(body, Pose{}, body, Pose{}), doctest::Contains("expected 3D bodies"), InputError);
+    CHECK_THROWS_WITH_AS(clash(body, Pose{}, body, Pose{}), doctest::Contains("expected 3D bodies"),
+                         InputError);
 }
 
 TEST_CASE("B2: whether interiors overlap does not depend on the door either") {

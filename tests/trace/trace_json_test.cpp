@@ -361,8 +361,8 @@ TEST_CASE("no damage to a trace does more than a refusal") {
 
 TEST_CASE("files that cannot be read are named") {
   const TempFolder folder;
-  CHECK_THROWS_WITH_AS(load_trace(folder.file("none.json")), doctest::Contains("none.json: cannot read the trace"),
-                       InputError);
+  CHECK_THROWS_WITH_AS(load_trace(folder.file("none.json")),
+                       doctest::Contains("none.json: cannot read the trace"), InputError);
   CHECK_THROWS_WITH_AS(load_trace(folder.path.string()), doctest::Contains("it is a directory"), InputError);
   const std::string path = folder.file("t.json.gz");
   save_trace(ordered_box_run(), path);
