@@ -31,8 +31,8 @@ void compare(const CrowdTrace& trace, const CrowdRun& run, std::size_t step) {
     if (x != nullptr && y != nullptr && x->bodies != y->bodies) (x->bodies < y->bodies ? y : x) = nullptr;
     const BodyPair bodies = x != nullptr ? x->bodies : y->bodies;
     throw InputError(trace.file + ": step " + std::to_string(step) + ", " + run.names[bodies.i] + " and " +
-                     run.names[bodies.j] + ": expected " + words(x) + " as recorded, but these bodies give " +
-                     words(y) + "; the trace is damaged; record it again");
+                     run.names[bodies.j] + ": expected " + words(x) + " as recorded, found " + words(y) +
+                     "; the trace is damaged; record it again");
   }
 }
 

@@ -42,7 +42,7 @@ std::string body_cause(const Golden& golden, const GoldenRun& run, std::size_t i
   if (i < golden.meshes.size() && golden.meshes[i])
     return who + "its mesh changed: " + mesh_difference(*golden.meshes[i], mesh);
   return who + "its mesh changed: " + render::group_digits(expected.real_faces) + " -> " +
-         render::group_digits(found.real_faces);
+         render::group_digits(found.real_faces) + " faces";
 }
 
 /// Names the fields of the request that are not as approved.
