@@ -334,7 +334,7 @@ Image picture_of(const WalkExplanation& walk, const PosedBodies& bodies) {
   overlay.event_colour = kSeparationColour;
   overlay.key = scene.key;
   const std::vector<Vector3d> points = bodies.points();
-  std::vector<Panel> panels = {{scene.list, fit_points(points, dim), square ? "Whole" : ""}};
+  std::vector<Panel> panels = {{scene.list, fit_points(points, dim), square ? "Overview" : ""}};
   if (square) {
     for (const Side side : {Side::a, Side::b})
       if (!walk.plane)
