@@ -85,7 +85,7 @@ NumberMethod ours(Quantity quantity, const char* title, NumberAnswer (*ask)(cons
   m.info.title = title;
   m.info.remark = "An interval, which is to hold the number.";
   m.info.role = methods::Role::ours;
-  m.info.style = {"lrbscope", "#0072b2", "circle", 7};
+  m.info.style = {"lrbscope", "#0072b2", "circle"};
   m.quantity = quantity;
   m.proves = true;
   m.ask = ask;
@@ -111,7 +111,7 @@ NumberMethod sampled_method(int n) {
   m.info.title = "exact query, " + std::to_string(n) + " steps";
   m.info.remark = "Our exact query at equal times; says the first at which bodies meet.";
   m.info.traits.set(methods::Trait::hard_cases, n > kTooFewForHardCases);
-  m.info.style = {"exact query at 10, 100, 1000 times", "#6b6b6b", "crossRot", 2};
+  m.info.style = {"exact query at 10, 100, 1000 times", "#6b6b6b", "crossRot"};
   m.quantity = Quantity::first_contact;
   m.ask = [n](const Asked& q, Setting) { return sampled(q, n); };
   return m;
@@ -124,11 +124,11 @@ std::vector<NumberMethod> own_number_methods() {
                     {0.1, 0.01, 1e-3, 1e-6, 0}),
           with_knob(less("ours-budget", "lrbscope, distance in so many steps",
                          "The interval that so many steps give: pairs of nodes opened.",
-                         {"lrbscope, within a budget", "#56b4e9", "rect", 4}, distance_in_steps),
+                         {"lrbscope, within a budget", "#56b4e9", "rect"}, distance_in_steps),
                     "steps", {3, 10, 30, 100, 300}),
           with_knob(less("ours-within", "lrbscope, within a twentieth of the diagonal?",
                          "A yes or no, proved; the interval is what was known by then.",
-                         {"lrbscope, yes or no: that near?", "#0072b2", "rectRounded", 15}, within),
+                         {"lrbscope, yes or no: that near?", "#0072b2", "rectRounded"}, within),
                     "within", {0.05}),
           with_knob(ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact), "tolerance",
                     {1e-6, 1e-9, 1e-12}),

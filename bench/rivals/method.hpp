@@ -96,7 +96,6 @@ struct MethodStyle {
   std::string title;   ///< for the key: "FCL"; empty: a style is chosen, under the method's name
   std::string colour;  ///< #rrggbb
   std::string shape;   ///< Chart.js's name of the point's shape
-  int point = 0;       ///< gnuplot's number of the point's shape
   friend bool operator==(const MethodStyle&, const MethodStyle&) = default;
 };
 

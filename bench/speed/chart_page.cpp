@@ -123,65 +123,57 @@ std::string note_of(const Point& p) {
   return out + "\nworst: question " + std::to_string(p.worst_question);
 }
 
-void add(report::PageSeries& series, const Point& p, double error, double slowest,
-         const std::function<std::string(const Point&)>& scene_of) {
-  series.x.push_back(error);
-  series.y.push_back(drawn_time(p, slowest));
-  series.notes.push_back(note_of(p));
-  series.targets.push_back(scene_of(p));
+report::Axis error_axis(Quantity quantity, const std::string& label) {
+  if (quantity == Quantity::pairs)
+    return {label, true, 0.3e-7, 3, {{1e-7, "0"}, {1e-5, "1e-5"}, {1e-3, "1e-3"}, {0.1, "0.1"}, {1, "1"}}};
+  return {
+      label, true, 0.3e-14, 3, {{1e-14, "0"}, {1e-10, "1e-10"}, {1e-6, "1e-6"}, {0.01, "0.01"}, {1, "1"}}};
 }
 
-report::PageSeries series_of(const char* colour, const char* shape, std::string label) {
-  report::PageSeries series;
-  series.label = std::move(label);
-  series.colour = colour;
-  series.shape = shape;
-  return series;
-}
-
-report::PageSeries frontier_series(const std::vector<const Point*>& panel, Quantity quantity) {
-  report::PageSeries best = series_of("#9fb4c2", "", "Pareto frontier");
-  best.line = true;
-  for (const Point* p : frontier(panel)) {
-    best.x.push_back(drawn_error(p->error(), quantity));
-    best.y.push_back(p->median);
-  }
-  return best;
-}
-
-report::PageChart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>& points,
-                           const SeriesStyles& styles,
-                           const std::function<std::string(const Point&)>& scene_of) {
+report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>& points,
+                       const SeriesStyles& styles, const std::function<std::string(const Point&)>& scene_of) {
   const double slowest = slowest_of(points, set.name);
   const std::vector<const Point*> here = panel(points, set.name, c);
   const ChartWords words = chart_words(set.quantity);
-  report::PageChart chart;
-  chart.title = set.name + ", " + title(c);
-  chart.x_label = words.error;
-  chart.y_label = "median, \u00b5s";
-  chart.log_x = chart.log_y = chart.scatter = true;
-  chart.least_x = no_error(set.quantity);
-  chart.most_x = 1;
-  const auto add_series = [&](report::PageSeries series, auto takes, auto error) {
-    for (const Point* p : here)
-      if (takes(*p)) add(series, *p, drawn_error(error(*p), set.quantity), slowest, scene_of);
-    if (!series.x.empty()) chart.series.push_back(std::move(series));
+  report::Chart chart{set.name + ", " + title(c),
+                      error_axis(set.quantity, words.error),
+                      {"median, \u00b5s", true, 0.05, 6 * slowest}};
+  const auto add = [&](report::Series& series, const Point& p, double error) {
+    series.x.push_back(drawn_error(error, set.quantity));
+    series.y.push_back(drawn_time(p, slowest));
+    series.notes.push_back(note_of(p));
+    series.targets.push_back(scene_of(p));
   };
-  const auto error = [](const Point& p) { return p.error(); };
+  report::Series best{"Pareto frontier", {}, {}, {report::Line::steps, "#9fb4c2", "none"}};
+  for (const Point* p : frontier(here)) {
+    best.x.push_back(drawn_error(p->error(), set.quantity));
+    best.y.push_back(p->median);
+  }
+  chart.series.push_back(std::move(best));
+  // The settings of a method are joined by a line.
   for (std::size_t i = 0; i < styles.count(); ++i) {
     const methods::MethodStyle& style = styles.style(i);
-    add_series(
-        series_of(style.colour.c_str(), style.shape.c_str(), style.title),
-        [&](const Point& p) { return styles.series_of(p.method) == i; }, error);
+    std::string last;
+    for (const Point* p : here) {
+      if (styles.series_of(p->method) != i) continue;
+      const report::Line line = p->setting ? report::Line::straight : report::Line::none;
+      const std::string label = last.empty() ? style.title : "";
+      if (p->method != last || !p->setting)
+        chart.series.push_back({label, {}, {}, {line, style.colour, style.shape}});
+      add(chart.series.back(), *p, p->error());
+      last = p->method;
+    }
   }
-  chart.series.push_back(frontier_series(here, set.quantity));
-  add_series(
-      series_of("#0072b2", "cross", words.proved),
-      [](const Point& p) { return p.proved_off.value_or(0) > 0; },
-      [](const Point& p) { return *p.proved_off; });
-  add_series(
-      series_of("#d00000", "crossRot", "crash, refusal or time-out"),
-      [](const Point& p) { return p.failed() > 0; }, error);
+  report::Series proved{words.proved, {}, {}, {report::Line::none, "#0072b2", "cross"}};
+  report::Series failed{"crash, refusal or time-out", {}, {}, {report::Line::none, "#d00000", "crossRot"}};
+  for (const Point* p : here) {
+    if (p->failed() > 0) add(failed, *p, p->error());
+    if (p->proved_off.value_or(0) <= 0) continue;
+    add(proved, *p, *p->proved_off);
+    proved.from.push_back(drawn_error(p->error(), set.quantity));
+  }
+  for (report::Series* s : {&proved, &failed})
+    if (!s->x.empty()) chart.series.push_back(std::move(*s));
   return chart;
 }
 
@@ -194,10 +186,8 @@ std::vector<std::size_t> errors_in(const std::vector<Point>& points) {
   return out;
 }
 
-report::PageTable table_of_points(const std::vector<Point>& points) {
-  report::PageTable t;
-  t.title = "All points";
-  t.columns = {"bodies", "pose", "method", "median \u00b5s", "p95", "p99"};
+report::Table table_of_points(const std::vector<Point>& points) {
+  report::Table t{"All points", {"bodies", "pose", "method", "median \u00b5s", "p95", "p99"}};
   const std::vector<std::size_t> errors = errors_in(points);
   const bool built =
       std::any_of(points.begin(), points.end(), [](const Point& p) { return p.build_seconds > 0; });
@@ -228,10 +218,8 @@ report::PageTable table_of_points(const std::vector<Point>& points) {
   return t;
 }
 
-report::PageTable table_of_metrics(const std::vector<Point>& points) {
-  report::PageTable t;
-  t.title = "Errors";
-  t.columns = {"name", "what it is", "worst value"};
+report::Table table_of_metrics(const std::vector<Point>& points) {
+  report::Table t{"Errors", {"name", "definition", "worst value"}};
   for (const std::size_t m : errors_in(points)) {
     const MetricInfo& info = metric_info(static_cast<Metric>(m));
     t.rows.push_back({info.name, info.what, render::short_number(info.worst)});
@@ -241,10 +229,8 @@ report::PageTable table_of_metrics(const std::vector<Point>& points) {
   return t;
 }
 
-report::PageTable table_of_methods(const std::vector<methods::MethodInfo>& methods) {
-  report::PageTable t;
-  t.title = "Methods";
-  t.columns = {"name", "what", "how it was asked"};
+report::Table table_of_methods(const std::vector<methods::MethodInfo>& methods) {
+  report::Table t{"Methods", {"name", "title", "how it is called"}};
   for (const methods::MethodInfo& m : methods)
     t.rows.push_back({m.name, m.title + (m.present ? "" : " (absent)"), m.remark});
   return t;
@@ -252,177 +238,28 @@ report::PageTable table_of_methods(const std::vector<methods::MethodInfo>& metho
 
 }  // namespace
 
-report::Page accuracy_page(const std::vector<DataSet>& sets, const std::vector<Point>& points,
-                           const std::vector<methods::MethodInfo>& methods,
-                           const std::function<std::string(const Point&)>& scene_of) {
-  report::Page page;
-  ChartWords words = chart_words(sets.front().quantity);
-  page.title = std::move(words.title);
-  page.purpose = std::move(words.purpose);
-  page.texts = std::move(words.texts);
-  const SeriesStyles styles(methods);
+std::vector<report::Chart> accuracy_charts(const std::vector<DataSet>& sets, const std::vector<Point>& points,
+                                           const std::vector<methods::MethodInfo>& methods,
+                                           const std::function<std::string(const Point&)>& scene_of) {
+  std::vector<report::Chart> out;
   for (const DataSet& set : sets)
     for (const PoseClass c : classes_of(set.quantity))
-      page.charts.push_back(chart_of(set, c, points, styles, scene_of));
-  page.tables = {table_of_metrics(points), table_of_methods(methods), table_of_points(points)};
-  page.footer = report::footer();
-  return page;
+      out.push_back(chart_of(set, c, points, SeriesStyles(methods), scene_of));
+  return out;
 }
 
-namespace {
-
-constexpr double kPanelWidth = 50, kPanelHeight = 46, kLeft = 19, kTop = 7, kBottom = 12,
-                 kKeyHeight = 16;  // mm
-constexpr const char* kProvedPoint = "pt 1 ps 0.5 lw 0.9 lc rgb '#0072b2'";
-
-std::string style_text(const methods::MethodStyle& s, double size) {
-  return " lc rgb '" + s.colour + "' pt " + std::to_string(s.point) + " ps " + io::number_text(size);
+report::Document accuracy_page(Quantity quantity, const std::vector<Point>& points,
+                               const std::vector<methods::MethodInfo>& methods,
+                               const std::vector<report::Chart>& charts) {
+  const ChartWords words = chart_words(quantity);
+  report::Document doc(words.title, words.purpose);
+  doc.each(words.texts, &report::Document::text).each(charts, &report::Document::chart);
+  return doc.table(table_of_metrics(points)).table(table_of_methods(methods)).table(table_of_points(points));
 }
 
-/// Sizes of the whole, in millimetres from the lower left corner.
-struct Layout {
-  double width, height;
-  std::string margins(double x0, double x1, double y0, double y1) const {
-    return "set lmargin at screen " + io::number_text(x0 / width) + "\nset rmargin at screen " +
-           io::number_text(x1 / width) + "\nset bmargin at screen " + io::number_text(y0 / height) +
-           "\nset tmargin at screen " + io::number_text(y1 / height) + "\n";
-  }
-};
-
-/// One panel: faint points, the frontier over them, and crosses where something failed.
-std::string plots_of(report::Gnuplot& chart, const SeriesStyles& styles, const std::string& id,
-                     const std::vector<const Point*>& panel, Quantity quantity, double slowest) {
-  std::vector<std::vector<std::string>> rows(styles.count());
-  std::vector<std::string> failed, best, proved;
-  std::string last;
-  for (const Point* p : panel) {
-    const double error = drawn_error(p->error(), quantity);
-    const std::string at = io::number_text(error) + " " + io::number_text(drawn_time(*p, slowest));
-    if (styles.series_of(p->method) == styles.count()) continue;
-    std::vector<std::string>& r = rows[styles.series_of(p->method)];
-    if (!r.empty() && !(p->setting && p->method == last))
-      r.emplace_back();  // a gap, so that no line joins
-                         // two methods
-    r.push_back(at);
-    last = p->method;
-    if (p->failed() > 0) failed.push_back(at);
-    if (p->proved_off && *p->proved_off > 0)
-      proved.push_back(at + " " + io::number_text(drawn_error(*p->proved_off, quantity) - error));
-  }
-  for (const Point* p : frontier(panel))
-    best.push_back(io::number_text(drawn_error(p->error(), quantity)) + " " + io::number_text(p->median));
-  std::string plots;
-  const auto add = [&](const std::string& name, const std::vector<std::string>& data,
-                       const std::string& how) {
-    if (data.empty()) return;
-    chart.add_data(name, data);
-    plots += (plots.empty() ? "plot $" : ", $") + name + " using 1:2 with " + how;
-  };
-  add(id + "best", best, "steps lw 2.2 lc rgb '#c9d6df'");
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    add(id + "m" + std::to_string(i), rows[i],
-        "linespoints lw 0.6" + style_text(styles.style(i), i == 0 ? 0.75 : 0.5));
-  if (!proved.empty()) {
-    chart.add_data(id + "proved", proved);
-    plots += ", $" + id + "proved using 1:2:3:(0) with vectors nohead lw 0.5 dt 3 lc rgb '#0072b2', $" + id +
-             "proved using ($1+$3):2 with points " + kProvedPoint;
-  }
-  add(id + "failed", failed, "points pt 2 ps 0.9 lw 1.6 lc rgb '#d00000'");
-  return plots.empty() ? "" : plots + "\n";
-}
-
-std::string key_of(report::Gnuplot& chart, const SeriesStyles& styles, const Layout& layout,
-                   Quantity quantity) {
-  const auto n = static_cast<int>(styles.count()) + 3;
-  const auto columns = static_cast<int>(classes_of(quantity).size());
-  const int lines = (n + columns - 1) / columns;
-  std::string out =
-      layout.margins(2, layout.width - 2, 1, kKeyHeight - 1) +
-      "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nunset logscale\nunset grid\n"
-      "set xrange [0:" +
-      std::to_string(columns) + "]\nset yrange [0:" + std::to_string(lines) + "]\n";
-  std::vector<std::string> titles;
-  std::string plots;
-  for (int i = 0; i < n; ++i) {
-    const double x = i / lines, y = lines - 0.5 - i % lines;
-    const std::string name = "key" + std::to_string(i);
-    const auto k = static_cast<std::size_t>(i);
-    const bool frontier = k == styles.count(), failed = k == styles.count() + 1,
-               proved = k == styles.count() + 2;
-    std::vector<std::string> at = {io::number_text(x + 0.05) + " " + io::number_text(y)};
-    if (frontier) at.push_back(io::number_text(x + 0.09) + " " + io::number_text(y));
-    chart.add_data(name, at);
-    plots += (i == 0 ? "plot $" : ", $") + name + " using 1:2 with " +
-             (frontier ? std::string("lines lw 2.2 lc rgb '#c9d6df'")
-              : failed ? std::string("points pt 2 ps 0.9 lw 1.6 lc rgb '#d00000'")
-              : proved ? std::string("points ") + kProvedPoint
-                       : "points" + style_text(styles.style(k), 0.75));
-    titles.push_back(io::number_text(x + 0.11) + " " + io::number_text(y) + " " +
-                     report::gnuplot_data_text(frontier ? "Pareto frontier"
-                                               : failed ? "crash, refusal or time-out: the worst"
-                                               : proved ? chart_words(quantity).proved
-                                                        : styles.style(k).title));
-  }
-  chart.add_data("titles", titles);
-  return out + plots + ", $titles using 1:2:3 with labels left\n";
-}
-
-/// Sets the x axis of a panel, which is labelled in the last row.
-std::string x_axis(Quantity quantity, bool labelled) {
-  const std::vector<std::pair<const char*, const char*>> ticks =
-      quantity == Quantity::pairs
-          ? std::vector<std::pair<const char*, const char*>>{{"0", "1e-7"},
-                                                             {"1e-5", "1e-5"},
-                                                             {"1e-3", "1e-3"},
-                                                             {"0.1", "0.1"},
-                                                             {"1", "1"}}
-          : std::vector<std::pair<const char*, const char*>>{
-                {"0", "1e-14"}, {"1e-10", "1e-10"}, {"1e-6", "1e-6"}, {"0.01", "0.01"}, {"1", "1"}};
-  std::string out;
-  for (const auto& [label, at] : ticks)
-    out += (out.empty() ? "set xtics ('" : ", '") + std::string(labelled ? label : "") + "' " + at;
-  const std::string label = report::gnuplot_text(chart_words(quantity).error);
-  return (labelled ? "set xlabel " + label + " offset 0,0.2\n" : "unset xlabel\n") + out + ") nomirror\n";
-}
-
-}  // namespace
-
-report::Gnuplot accuracy_chart(const std::vector<DataSet>& sets, const std::vector<Point>& points,
-                               const std::vector<methods::MethodInfo>& methods) {
-  const SeriesStyles styles(methods);
-  const Quantity quantity = sets.front().quantity;
-  const auto classes = classes_of(quantity);
-  const auto rows = static_cast<double>(sets.size());
-  const Layout layout{kLeft + static_cast<double>(classes.size()) * kPanelWidth + 3,
-                      kTop + rows * kPanelHeight + kBottom + kKeyHeight};
-  report::Gnuplot chart;
-  chart.width = layout.width;
-  chart.height = layout.height;
-  chart.font = 6.5;
-  std::string plots;
-  for (std::size_t row = 0; row < sets.size(); ++row) {
-    const double slowest = slowest_of(points, sets[row].name);
-    for (std::size_t column = 0; column < classes.size(); ++column) {
-      const auto here = panel(points, sets[row].name, classes[column]);
-      const double x0 = kLeft + static_cast<double>(column) * kPanelWidth;
-      const double y1 = layout.height - kTop - static_cast<double>(row) * kPanelHeight;
-      plots += layout.margins(x0, x0 + kPanelWidth - 2, y1 - kPanelHeight + 3, y1);
-      plots += row == 0 ? "set title " + report::gnuplot_text(title(classes[column])) + " offset 0,-0.6\n"
-                        : "unset title\n";
-      plots += x_axis(quantity, row + 1 == sets.size());
-      plots += column == 0 ? "set ylabel " + report::gnuplot_text(sets[row].name + ": median, µs") +
-                                 " offset 0.4,0\nset ytics 10 format '%g' nomirror\n"
-                           : "unset ylabel\nset ytics 10 format '' nomirror\n";
-      plots += "set yrange [0.05:" + io::number_text(6 * slowest) + "]\n";
-      plots += plots_of(chart, styles, "r" + std::to_string(row) + "c" + std::to_string(column), here,
-                        quantity, slowest);
-    }
-  }
-  chart.script +=
-      "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset logscale xy\nset xrange [" +
-      io::number_text(0.3 * no_error(quantity)) + ":3]\nset grid lw 0.4 lc rgb '#e2e4e6' dt 1\n" + plots +
-      key_of(chart, styles, layout, quantity) + "unset multiplot\n";
-  return chart;
+report::Gnuplot accuracy_print(Quantity quantity, const std::vector<report::Chart>& charts) {
+  const int columns = static_cast<int>(classes_of(quantity).size());
+  return report::gnuplot(charts, {columns, 42, 40, 6.5, "", columns});
 }
 
 }  // namespace lrb::bench

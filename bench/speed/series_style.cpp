@@ -9,19 +9,18 @@ namespace {
 struct Spare {
   const char* colour;
   const char* shape;
-  int point;
 };
 
 /// Styles for methods that do not say how they are drawn, taken in turn; none of our methods looks like this.
 constexpr std::array<Spare, 8> kSpares = {{
-    {"#2f4b7c", "triangle", 11},
-    {"#f95d6a", "rectRot", 12},
-    {"#4f7942", "star", 3},
-    {"#8f5bd9", "cross", 2},
-    {"#c04000", "rectRounded", 14},
-    {"#00798c", "rect", 5},
-    {"#a0522d", "circle", 6},
-    {"#b0006d", "crossRot", 1},
+    {"#2f4b7c", "triangle"},
+    {"#f95d6a", "rectRot"},
+    {"#4f7942", "star"},
+    {"#8f5bd9", "cross"},
+    {"#c04000", "rectRounded"},
+    {"#00798c", "rect"},
+    {"#a0522d", "circle"},
+    {"#b0006d", "crossRot"},
 }};
 
 }  // namespace
@@ -32,7 +31,7 @@ SeriesStyles::SeriesStyles(const std::vector<methods::MethodInfo>& methods) {
     methods::MethodStyle style = m.style;
     if (style.title.empty()) {
       const Spare& spare = kSpares[spares++ % kSpares.size()];
-      style = {m.name, spare.colour, spare.shape, spare.point};
+      style = {m.name, spare.colour, spare.shape};
     }
     const auto same = std::find_if(series_.begin(), series_.end(),
                                    [&](const methods::MethodStyle& s) { return s.title == style.title; });
