@@ -236,17 +236,8 @@ Document& Document::scene(const std::string& json) {
   scene_ = json;
   for (const char* name : {"three.min.js", "OrbitControls.js"}) libraries_ += "\n" + embedded(name);
   // Each after those that it builds on.
-  for (const char* name : {"packed",         "scene_dom",          "scene_body",
-                           "scene_events",   "scene_explanations", "scene_wrappers",
-                           "scene_words",    "scene_selection",    "scene_filter",
-                           "scene_table",    "scene_form",         "scene_panel",
-                           "scene_why",      "scene_work",         "scene_counts",
-                           "scene_colours",  "scene_meshes",       "scene_fill",
-                           "scene_bodyview", "scene_marks",        "scene_why_marks",
-                           "scene_measured", "scene_legend",       "scene_camera",
-                           "scene_pick",     "scene_view",         "scene_time",
-                           "scene_keys",     "scene_controls",     "scene_together",
-                           "scene_rows",     "scene_load",         "scene"})
+  for (const char* name :
+       {"scene_run", "scene_panels", "scene_bodies", "scene_marks", "scene_view", "scene_controls", "scene"})
     scripts_ += embedded(name + std::string(".js"));
   styles_ += render::scene_root_css() + embedded("scene.css");
   return add(embedded("scene.html"));
