@@ -1,10 +1,10 @@
 #include "bench/speed/chart_page.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <array>
+#include <map>
 #include <utility>
 
-#include "bench/speed/series_style.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/render/overlay.hpp>
 
@@ -94,6 +94,13 @@ ChartWords of_number(Quantity quantity) {
 
 }  // namespace
 
+std::vector<const Point*> panel(const std::vector<Point>& points, const std::string& set, PoseClass c) {
+  std::vector<const Point*> out;
+  for (const Point& p : points)
+    if (p.set == set && p.pose_class == c) out.push_back(&p);
+  return out;
+}
+
 ChartWords chart_words(Quantity quantity) {
   return quantity == Quantity::pairs ? of_pairs() : of_number(quantity);
 }
@@ -123,6 +130,78 @@ std::string note_of(const Point& p) {
   return out + "\nworst: question " + std::to_string(p.worst_question);
 }
 
+struct Spare {
+  const char* colour;
+  const char* shape;
+};
+
+/// Styles for methods that do not say how they are drawn, taken in turn; none of our methods looks like this.
+constexpr std::array<Spare, 8> kSpares = {{
+    {"#2f4b7c", "triangle"},
+    {"#f95d6a", "rectRot"},
+    {"#4f7942", "star"},
+    {"#8f5bd9", "cross"},
+    {"#c04000", "rectRounded"},
+    {"#00798c", "rect"},
+    {"#a0522d", "circle"},
+    {"#b0006d", "crossRot"},
+}};
+
+/// How the series of a chart are drawn: what every method says of itself, a series for each title (variants
+/// of ours, and engines of one house, may share one). A method without a style gets a series of its own
+/// under its name, with a colour and a shape that differ from those of the others as far as there are enough.
+std::vector<methods::MethodStyle> styles_of(const std::vector<methods::MethodInfo>& methods,
+                                            std::map<std::string, std::size_t>& series_of) {
+  std::vector<methods::MethodStyle> out;
+  std::size_t spares = 0;
+  for (const methods::MethodInfo& m : methods) {
+    methods::MethodStyle style = m.style;
+    if (style.title.empty()) {
+      const Spare& spare = kSpares[spares++ % kSpares.size()];
+      style = {m.name, spare.colour, spare.shape};
+    }
+    const auto same = std::find_if(out.begin(), out.end(),
+                                   [&](const methods::MethodStyle& s) { return s.title == style.title; });
+    series_of[m.name] = static_cast<std::size_t>(same - out.begin());
+    if (same == out.end()) out.push_back(std::move(style));
+  }
+  return out;
+}
+
+/// Returns the value at which an error of zero is drawn on a logarithmic axis. Numbers are known to about
+/// 1e-12.
+double no_error(Quantity quantity) {
+  return quantity == Quantity::pairs ? 1e-7 : 1e-14;
+}
+double drawn_error(double error, Quantity quantity) {
+  return std::max(error, no_error(quantity));
+}
+
+/// Points without a single answer stand above all others of their panel.
+double drawn_time(const Point& p, double slowest) {
+  constexpr double kAbove = 3;
+  return p.median > 0 ? p.median : kAbove * slowest;
+}
+
+/// The slowest median on a data set, over all classes of poses.
+double slowest_of(const std::vector<Point>& points, const std::string& set) {
+  double slowest = 1;
+  for (const Point& p : points)
+    if (p.set == set) slowest = std::max(slowest, p.median);
+  return slowest;
+}
+
+/// A panel's frontier, from exact to coarse.
+std::vector<const Point*> frontier(const std::vector<const Point*>& panel) {
+  std::vector<const Point*> out;
+  for (const Point* p : panel)
+    if (p->frontier) out.push_back(p);
+  std::sort(out.begin(), out.end(), [](const Point* p, const Point* q) {
+    return p->error() != q->error() ? p->error() < q->error() : p->median < q->median;
+  });
+  return out;
+}
+
 report::Axis error_axis(Quantity quantity, const std::string& label) {
   if (quantity == Quantity::pairs)
     return {label, true, 0.3e-7, 3, {{1e-7, "0"}, {1e-5, "1e-5"}, {1e-3, "1e-3"}, {0.1, "0.1"}, {1, "1"}}};
@@ -131,7 +210,8 @@ report::Axis error_axis(Quantity quantity, const std::string& label) {
 }
 
 report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>& points,
-                       const SeriesStyles& styles, const std::function<std::string(const Point&)>& scene_of) {
+                       const std::vector<methods::MethodInfo>& methods,
+                       const std::function<std::string(const Point&)>& scene_of) {
   const double slowest = slowest_of(points, set.name);
   const std::vector<const Point*> here = panel(points, set.name, c);
   const ChartWords words = chart_words(set.quantity);
@@ -151,11 +231,13 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
   }
   chart.series.push_back(std::move(best));
   // The settings of a method are joined by a line.
-  for (std::size_t i = 0; i < styles.count(); ++i) {
-    const methods::MethodStyle& style = styles.style(i);
+  std::map<std::string, std::size_t> series_of;
+  const std::vector<methods::MethodStyle> styles = styles_of(methods, series_of);
+  for (std::size_t i = 0; i < styles.size(); ++i) {
+    const methods::MethodStyle& style = styles[i];
     std::string last;
     for (const Point* p : here) {
-      if (styles.series_of(p->method) != i) continue;
+      if (const auto it = series_of.find(p->method); it == series_of.end() || it->second != i) continue;
       const report::Line line = p->setting ? report::Line::straight : report::Line::none;
       const std::string label = last.empty() ? style.title : "";
       if (p->method != last || !p->setting)
@@ -244,7 +326,7 @@ std::vector<report::Chart> accuracy_charts(const std::vector<DataSet>& sets, con
   std::vector<report::Chart> out;
   for (const DataSet& set : sets)
     for (const PoseClass c : classes_of(set.quantity))
-      out.push_back(chart_of(set, c, points, SeriesStyles(methods), scene_of));
+      out.push_back(chart_of(set, c, points, methods, scene_of));
   return out;
 }
 

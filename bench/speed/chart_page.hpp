@@ -25,6 +25,9 @@ report::Document accuracy_page(Quantity quantity, const std::vector<Point>& poin
 /// Lays them out for print: a row for each pair of bodies, a column for each class of poses.
 report::Gnuplot accuracy_print(Quantity quantity, const std::vector<report::Chart>& charts);
 
+/// Returns the points of a panel.
+std::vector<const Point*> panel(const std::vector<Point>& points, const std::string& set, PoseClass c);
+
 // What charts of speed against accuracy say, by what methods were asked for.
 
 struct ChartWords {
