@@ -185,7 +185,8 @@ int run_render(const RenderOptions& given, const Globals& globals) {
   const report::Folder locked(folder);
   const run::DrawnFrames drawn = run::draw_frames(p, spec, folder, text, progress_report(globals.quiet));
   const std::string file = std::filesystem::relative(o.trace, folder).generic_string();
-  run::ReportText report{trace.header.scenario, kFromTrace, globals.command_line, file, {run::trace_link(file)}};
+  run::ReportText report{
+      trace.header.scenario, kFromTrace, globals.command_line, file, {run::trace_link(file)}};
   if (o.bodies.empty()) report.why = "lrbscope why --run " + shell_word(o.trace);
   run::run_page(p, drawn, folder, report).write(locked);
   animate_frames(o.picture, folder);

@@ -12,32 +12,29 @@ namespace lrb::bench {
 namespace {
 
 constexpr const char* kHowToRead =
-    "Down is faster, left is more accurate; what has no error stands at the left end. The frontier joins "
-    "what nothing beats in both. Hover for all numbers; a click leads to the scene of the panel, with its "
-    "trace and pictures.";
+    "Down is faster, left is more accurate; the left end is no error. The Pareto frontier joins the points that no other beats "
+    "in both. The tooltip of a point has all of its numbers; a click leads to the panel's scene, with trace and pictures.";
 
 ChartWords of_pairs() {
   return {
       "Speed against accuracy",
-      "Every method at every setting of its knob, on the same bodies and poses: how long the median query "
-      "takes, and how far what it calls the contact is from the exact contact.",
+      "Every method at every setting of its parameter, on the same bodies and poses: median time of a query, and deviation of "
+      "the reported contact from the exact one.",
       "error of the contact region / diagonal",
-      "off the bodies by no more than this: proved",
-      {{"How to read it", kHowToRead},
-       {"What counts as error",
-        "The Hausdorff distance between the exact contact region and that of the answer, over the larger "
-        "body's diagonal, averaged over poses; for methods that say only yes or no, the share of wrong "
-        "ones. Contact where there is none, or none where there is, counts as one whole diagonal, and so "
-        "does what is no answer."},
-       {"What is proved",
-        "Ours alone proves what it says. Its exact answers are off by nothing; those to a tolerance, or of "
-        "a level that a budget allowed, come with a bound (a cross at the same height): where listed faces "
-        "meet, the distances from the two bodies add up to no more. That is another length than the error "
-        "on the axis: where surfaces graze each other, moving them by a little moves the contact by far "
-        "more. Column \"off\" is the length that is proved, measured."}}};
+      "max deviation: proven",
+      {{"Axes", kHowToRead},
+       {"Error",
+        "The Hausdorff distance between the exact contact region and that of the answer, over the larger body's diagonal, "
+        "averaged over poses; for methods with boolean answers, the share of wrong ones. Contact where there is none, or none "
+        "where there is, counts as one diagonal, and so does a missing answer."},
+       {"Proof",
+        "Only lrbscope proves its answers. Exact ones have no deviation; approximate ones come with a bound (a cross at the "
+        "same height) on the sum of the distances from both bodies where listed faces intersect. This is another length than the "
+        "error on the axis: where surfaces graze each other, a small deviation moves the contact far. Column \"off\" is the "
+        "measured deviation."}}};
 }
 
-/// What counts as error, and what is proved, for one number.
+/// Purpose, definition of the error and proof for one number.
 struct NumberWords {
   const char *name, *purpose, *error, *judged, *proved;
 };
@@ -46,32 +43,27 @@ NumberWords words_of_number(Quantity quantity) {
   if (quantity == Quantity::first_contact)
     return {
         "time of first contact",
-        "B moves straight, two diagonals far, past A or into it: how long every method takes to say when "
-        "they first meet, and how far off that is.",
+        "B moves in a straight line, two diagonals far, past A or into it: time of a query, and error of the time of impact.",
         "error of the time of contact / motion",
-        "The time at which a method first finds the bodies in contact, beside the true one, in parts of "
-        "the motion, averaged over motions. Never, where they meet, or a time, where they never do, counts "
-        "as the whole motion, and so does what is no answer. An interval stands for its later end, at "
-        "which contact was found.",
-        "Ours gives an interval: no contact before it, a contact at its end."};
+        "The difference of the time of impact from the true one, as a share of the motion, averaged over motions. A contact "
+        "reported as none, or the reverse, counts as the whole motion, and so does a missing answer. An interval counts by "
+        "its upper end, at which contact was found.",
+        "lrbscope reports an interval: no contact before it, contact at its end."};
   if (quantity == Quantity::depth)
     return {
-        "penetration depth",
-        "Two bodies that overlap: how long every method takes to say how far one must move to leave the "
-        "other, and how far off that is.",
+        "penetration depth", "Two overlapping bodies: time of a query, and error of the penetration depth.",
         "error of the depth / diagonal",
-        "How far the depth is outside the interval that is known to hold it, over the larger body's "
-        "diagonal, averaged over poses: the error is at least this. An interval stands for its upper end, "
-        "the length of a translation that parts the bodies. What is no answer counts as one whole diagonal.",
-        "Ours gives an interval: a shorter translation than its lower end parts nothing, and one as long "
-        "as its upper end does."};
-  return {"distance",
-          "Two bodies apart: how long every method takes to say how far, and how far off that is.",
-          "error of the distance / diagonal",
-          "The distance that a method says, beside the true one, over the larger body's diagonal, averaged "
-          "over poses. An interval stands for its upper end, that of two points which were found. What is no "
-          "answer counts as one whole diagonal.",
-          "Ours gives an interval that holds the distance, at every tolerance and within every budget."};
+        "The distance of the depth from the interval that is known to contain it, over the larger body's diagonal, averaged "
+        "over poses: a lower bound of the error. An interval counts by its upper end, the length of a separating "
+        "translation. A missing answer counts as one diagonal.",
+        "lrbscope reports an interval: no translation shorter than its lower end separates the bodies, one as long as its "
+        "upper end does."};
+  return {
+      "distance", "Two separate bodies: time of a query, and error of the distance.",
+      "error of the distance / diagonal",
+      "The difference of the distance from the true one, over the larger body's diagonal, averaged over poses. An interval "
+      "counts by its upper end, the distance of two points that were found. A missing answer counts as one diagonal.",
+      "lrbscope reports an interval that contains the distance, at every tolerance and within every budget."};
 }
 
 ChartWords of_number(Quantity quantity) {
@@ -80,16 +72,16 @@ ChartWords of_number(Quantity quantity) {
       std::string("Speed against accuracy: ") + n.name,
       n.purpose,
       n.error,
-      "the interval is no wider than this: proved",
-      {{"How to read it", kHowToRead},
-       {"What counts as error",
+      "width of the interval: proven",
+      {{"Axes", kHowToRead},
+       {"Error",
         std::string(n.judged) +
-            " The truth is our own proved interval at its finest setting, which the command stability "
-            "--quantity holds against rational arithmetic on small bodies."},
-       {"What is proved",
+            " The true number is lrbscope's certified interval at its finest setting, which `lrbscope stability "
+            "--quantity` checks against rational arithmetic on small bodies."},
+       {"Proof",
         std::string(n.proved) +
-            " How wide it is, in the unit of the error, is a cross at the same height: the error is never "
-            "more. Other methods prove nothing."}}};
+            " Its width, in the unit of the error, is a cross at the same height: an upper bound of the error. "
+            "Other methods prove nothing."}}};
 }
 
 }  // namespace
@@ -111,7 +103,7 @@ std::string percent_or_dash(const std::optional<double>& x) {
   return x ? render::short_number(*x) : "\u2013";
 }
 
-/// Returns what the page says about a point when the mouse is over it, line by line.
+/// Returns the tooltip of a point, line by line.
 std::string note_of(const Point& p) {
   std::string out = name_of(p.method, p.setting) + "\nmedian " + render::short_number(p.median) +
                     " \u00b5s, p95 " + render::short_number(p.p95) + ", p99 " + render::short_number(p.p99);
@@ -120,7 +112,7 @@ std::string note_of(const Point& p) {
       out += std::string("\n") + metric_info(static_cast<Metric>(m)).name + " " +
              render::short_number(*p.errors[m]);
   if (p.error() <= 0) out += "\nno error";
-  if (p.proved_off) out += "\nproved: off by no more than " + render::short_number(*p.proved_off);
+  if (p.proved_off) out += "\nproven max deviation " + render::short_number(*p.proved_off);
   if (p.failed() > 0)
     out += "\n" + std::to_string(p.crashed) + " crashed, " + std::to_string(p.timed_out) + " timed out, " +
            std::to_string(p.refused) + " refused, of " + std::to_string(p.questions);
@@ -274,7 +266,7 @@ report::Table table_of_points(const std::vector<Point>& points) {
   const bool built =
       std::any_of(points.begin(), points.end(), [](const Point& p) { return p.build_seconds > 0; });
   for (const std::size_t m : errors) t.columns.emplace_back(metric_info(static_cast<Metric>(m)).name);
-  for (const char* c : {"proved off", "failed", "frontier"}) t.columns.emplace_back(c);
+  for (const char* c : {"proven bound", "failed", "frontier"}) t.columns.emplace_back(c);
   if (built) t.columns.insert(t.columns.end(), {"build s", "MB", "face tests"});
   for (const Point& p : points) {
     std::vector<std::string> row = {p.set,
@@ -295,8 +287,7 @@ report::Table table_of_points(const std::vector<Point>& points) {
     t.rows.push_back(std::move(row));
   }
   t.note =
-      "A dash: the method does not answer that, or proves nothing. Proved off: what \"off\" is proved to be "
-      "at most, or how wide an interval of the number is.";
+      "A dash: not reported, or not proven. Proven bound: of \"off\", or the width of the number's interval.";
   return t;
 }
 
@@ -306,8 +297,7 @@ report::Table table_of_metrics(const std::vector<Point>& points) {
     const MetricInfo& info = metric_info(static_cast<Metric>(m));
     t.rows.push_back({info.name, info.what, render::short_number(info.worst)});
   }
-  t.note =
-      "A crash, a refusal and a time-out score the worst value of every error that the method answers for.";
+  t.note = "A crash, a refusal and a time-out score the worst value of every error that the method reports.";
   return t;
 }
 

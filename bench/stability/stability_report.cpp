@@ -14,7 +14,7 @@
 namespace lrb::stability {
 namespace {
 
-/// Returns a setting of the dial, with what it means if that is known: "7 of 0 to 10 (4e-13)".
+/// Returns a difficulty, with its parameter if that is known: "7 of 0 to 10 (4e-13)".
 std::string setting_words(const FamilyRow& family, int dial) {
   std::string out = std::to_string(dial) + " of 0 to " + std::to_string(kDialSettings - 1);
   if (!family.values.empty()) out += " (" + family.values[static_cast<std::size_t>(dial)] + ")";
@@ -31,7 +31,7 @@ std::string sentence(const CellSummary& s, const FamilyRow& family) {
   add(s.crashed, "by a crash");
   add(s.timed_out, "by a time-out");
   add(s.refused, "refused");
-  if (s.first_failing >= 0) out += "; first at setting " + setting_words(family, s.first_failing);
+  if (s.first_failing >= 0) out += "; first at difficulty " + setting_words(family, s.first_failing);
   return out;
 }
 
@@ -82,7 +82,7 @@ report::GridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, c
   const bool answered = r.outcome == Outcome::right || r.outcome == Outcome::wrong;
   d.facts = {{"Outcome", words(r.outcome)}};
   if (grid.quantity == Quantity::pairs) {
-    d.facts.emplace_back("Pairs that meet", render::group_digits(r.expected));
+    d.facts.emplace_back("Intersecting pairs", render::group_digits(r.expected));
     if (answered) {
       d.facts.emplace_back("Missed", render::group_digits(r.missed));
       d.facts.emplace_back("In excess", render::group_digits(r.extra));
@@ -93,10 +93,10 @@ report::GridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, c
     d.facts.emplace_back("Right", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
     if (answered) d.facts.emplace_back("Answered", r.relation);
   }
-  d.facts.emplace_back("Dial", setting_words(family, r.dial));
+  d.facts.emplace_back("Difficulty", setting_words(family, r.dial));
   d.facts.emplace_back("Case, seed", render::group_digits(r.case_index) + ", " + std::to_string(r.seed));
   if (answered) d.facts.emplace_back("Query", render::short_number(r.microseconds) + " \u00b5s");
-  d.note = "Of this family, with this method: " + sentence(s, family) + ".";
+  d.note = "This family, this method: " + sentence(s, family) + ".";
   if (options.command) d.command = options.command(r);
   return d;
 }
@@ -104,7 +104,7 @@ report::GridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, c
 report::Grid page_grid(const Grid& grid, const ReportOptions& options) {
   report::Grid out;
   out.title = "Families of cases \u00d7 methods";
-  out.corner = "family, and its dial from benign to degenerate";
+  out.corner = "family, and its difficulty from benign to degenerate";
   out.level_names.assign(kLevelNames.begin(), kLevelNames.end());
   out.part_names = {"wrong answer", "crashed", "timed out", "refused"};
   for (const workers::MethodColumn& m : grid.methods) out.columns.push_back({m.title, m.remark});
@@ -134,56 +134,41 @@ report::Grid page_grid(const Grid& grid, const ReportOptions& options) {
 
 /// Returns the texts of a page about numbers.
 std::vector<report::Text> texts_of_numbers(Quantity quantity) {
-  const char* asked =
-      quantity == Quantity::distance ? "Two bodies at two poses: how far are their surfaces apart?"
+  const char* query =
+      quantity == Quantity::distance ? "The distance between the surfaces of two bodies at two poses."
       : quantity == Quantity::depth
-          ? "Two convex bodies at two poses: how long is the shortest translation after which their interiors "
-            "share no point?"
-          : "B comes straight to its pose, from the side of A on which it is, and goes on: at which time, from 0 "
-            "to 1, do the surfaces first meet?";
+          ? "The penetration depth of two convex bodies: the length of the shortest translation that separates them."
+          : "The time of impact, from 0 to 1: B moves in a straight line to its pose and beyond.";
   return {
-      {"What was asked", std::string(asked) +
-                             " Every method gets the same bodies, in the world's doubles. The families are "
-                             "those of the page on pairs, with the same dials."},
-      {"How answers are judged",
-       "By rational arithmetic on the very doubles: brute force over all pairs of triangles, or over all planes "
-       "that may part convex bodies. An answer is wrong if it says that bodies meet (never meet) and they do "
-       "not (do), or the other way round; if an interval that claims a proof does not hold the number; or if "
-       "another is further off than a millionth of the bodies' size, or a thousandth of the motion. Bodies of "
-       "too many faces for rational arithmetic, in the plane, or, for depths, not convex are not asked about: "
-       "they count as refused."},
-      {"What is not claimed",
-       "The cases are made to be hard, and most methods never promised exact answers. Families are samples: no "
-       "failure among them is no proof."},
+      {"Query", std::string(query) + " Every method gets the same bodies, in double precision. Families and "
+                                     "difficulties are those of the page on pairs."},
+      {"Verdicts",
+       "By rational arithmetic on the same doubles: brute force over all pairs of triangles, or over all separating planes of "
+       "convex bodies. An answer is wrong if it reports contact where there is none or the reverse; if a certified interval "
+       "does not contain the number; or if any other answer is off by more than a millionth of the bodies' size, or a "
+       "thousandth of the motion. Refused: 2D bodies, bodies of too many faces for rational arithmetic and, for depths, "
+       "bodies that are not convex."},
+      {"Limits",
+       "The cases are made to be hard, and most methods do not promise exact answers. Families are samples: no failure among "
+       "them is no proof."},
   };
 }
 
 std::vector<report::Text> texts() {
   return {
-      {"What was asked",
-       "Two bodies at two poses: which pairs of faces meet, and how do the bodies lie to each other? Every "
-       "method "
-       "gets the same bodies and poses, in doubles. Each family is one way in which collision engines are "
-       "known to "
-       "fail, with a dial that goes from where everybody is right to where it is hardest; random numbers are "
-       "the "
-       "same at all settings, so that only the dial differs."},
-      {"How answers are judged",
-       "Against every pair of faces tested with exact arithmetic on the very doubles that the poses give: a "
-       "touch "
-       "counts as meeting, a gap of one unit in the last place does not. A method is held to what it claims "
-       "to "
-       "answer: pairs missed or in excess, or a wrong relation, make a case wrong. Each runs in a process of "
-       "its "
-       "own: crashes and time-outs count as failures. Refusals are shown and counted, but are no failures: "
-       "they "
-       "mislead nobody."},
-      {"What is not claimed",
-       "The cases are made to be hard: shares say where a method breaks, not how often it would in a game or "
-       "a "
-       "robot. Most methods never promised exact answers, and some take a touch for a miss on purpose. "
-       "Nothing here "
-       "compares speed. Families are samples: no failure among them is no proof."},
+      {"Query",
+       "The intersecting pairs of faces of two bodies at two poses, and the relation of the bodies. Every method gets the same "
+       "bodies and poses, in double precision. A family is one known cause of failures, with a difficulty from benign to "
+       "degenerate; random numbers are the same at all difficulties."},
+      {"Verdicts",
+       "Against brute force in exact arithmetic on the same doubles: touching faces intersect, faces with a gap of one unit "
+       "in the last place do not. Only what a method claims to report is judged: a case is wrong if pairs are missed or in "
+       "excess, or the relation is wrong. Each case runs in a process of its own: crashes and time-outs are failures. "
+       "Refusals are counted, but are no failures."},
+      {"Limits",
+       "The cases are made to be hard: shares show where a method breaks, not how often it would in a game or a robot. Most "
+       "methods do not promise exact answers, and some take touching for separate on purpose. Speed is not compared. Families "
+       "are samples: no failure among them is no proof."},
   };
 }
 

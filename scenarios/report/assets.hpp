@@ -1,6 +1,6 @@
 #pragma once
-/// Numbers as text that a page's script turns into arrays (scene_run.js): "u1:", "u2:", "u4:" or "f4:", for what
-/// each of them is and its bytes, then base64 of them all, little-endian.
+/// Numbers as text that a page's script turns into arrays (scene_run.js): "u1:", "u2:", "u4:" or "f4:", for
+/// what each of them is and its bytes, then base64 of them all, little-endian.
 
 #include <cstddef>
 #include <cstdint>

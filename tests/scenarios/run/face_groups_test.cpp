@@ -6,8 +6,8 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/frames/face_colours.hpp"
-#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/run_charts.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include <lrbscope/trace/counters.hpp>
 
 using namespace lrb;
