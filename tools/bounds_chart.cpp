@@ -1,88 +1,49 @@
 #include "tools/bounds_chart.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include <lrbscope/core/strings.hpp>
+#include "scenarios/report/chart.hpp"
 
 namespace lrb::cli {
 namespace {
 
-constexpr const char* kLower = "#0072b2";
-constexpr const char* kUpper = "#d55e00";
-constexpr const char* kAxes =
-    "set grid lc rgb '#dddddd'\nset border 3\nset tics nomirror out\nset format '%g'\n";
-
-/// Adds a curve as data, if it has any points. Returns the plot command for it.
-std::string curve(report::Gnuplot& chart, const std::string& name, const std::vector<std::string>& rows,
-                  const std::string& title, const char* colour) {
-  if (rows.empty()) return {};
-  chart.add_data(name, rows);
-  const std::string look = rows.size() > 1 ? "steps lw 2" : "points pt 7";
-  return "$" + name + " using 1:2 with " + look + " lc rgb '" + colour + "' title " +
-         report::gnuplot_text(title);
+/// Two panels, one above the other.
+report::Gnuplot stacked(const report::Chart& upper, const report::Chart& lower) {
+  const report::Chart panels[] = {upper, lower};
+  return report::gnuplot(panels, {1, 140, 58});
 }
-
-std::string joined(const std::vector<std::string>& plots) {
-  std::string out;
-  for (const std::string& plot : plots)
-    if (!plot.empty()) out += (out.empty() ? "plot " : ", ") + plot;
-  return out.empty() ? out : out + "\n";
-}
-
-std::string row(std::uint64_t work, double value) {
-  return std::to_string(work) + " " + io::number_text(value);
-}
-
-/// Two curves that bracket a number, as rows of data.
-struct Ends {
-  std::vector<std::string> lower, upper;
-  void add(std::uint64_t work, double low, double high) {
-    lower.push_back(row(work, low));
-    if (std::isfinite(high)) upper.push_back(row(work, high));
-  }
-};
 
 }  // namespace
 
 report::Gnuplot bounds_chart(const std::vector<Bounds>& course, const std::string& what,
                              const std::string& work) {
-  report::Gnuplot g;
-  g.height = 150;
-  Ends ends;
-  std::vector<std::string> widths;
+  report::Ends ends(what, report::Line::steps);
+  report::Series width{"width of the interval", {}, {}, {report::Line::steps, "#333333"}};
   for (const Bounds& b : course) {
-    ends.add(b.work, b.lower, b.upper);
-    if (b.upper > b.lower && std::isfinite(b.upper)) widths.push_back(row(b.work, b.upper - b.lower));
+    const auto x = static_cast<double>(b.work);
+    ends.add(x, b.lower, b.upper);
+    if (!(b.upper > b.lower) || !std::isfinite(b.upper)) continue;
+    width.x.push_back(x);
+    width.y.push_back(b.upper - b.lower);
   }
-  const std::string lower = curve(g, "lower", ends.lower, what + ", lower bound", kLower);
-  const std::string upper = curve(g, "upper", ends.upper, what + ", upper bound", kUpper);
-  const std::string width = curve(g, "width", widths, "width of the interval", "#333333");
-  g.script += std::string(kAxes) + "set multiplot layout 2,1\nset xrange [0:*]\nset key right\nset ylabel " +
-              report::gnuplot_text(what) + "\n" + joined({lower, upper}) + "set xlabel " +
-              report::gnuplot_text(work) + "\nset ylabel 'width'\nset logscale y\n" + joined({width}) +
-              "unset multiplot\n";
-  return g;
+  const report::Axis x{work, false, 0, course.empty() ? 0 : static_cast<double>(course.back().work)};
+  report::Chart bounds{"", x, {what}};
+  ends.move_to(bounds);
+  return stacked(bounds, {"", x, {"width", true}, {width}});
 }
 
 report::Gnuplot contact_chart(const std::vector<ContactBounds>& course) {
-  report::Gnuplot g;
-  g.height = 150;
-  Ends time, distance;
+  report::Ends time("time of impact", report::Line::steps),
+      distance("distance at the lower bound", report::Line::steps);
   for (const ContactBounds& b : course) {
-    time.add(b.work, b.t0, b.t1);
-    distance.add(b.work, b.lower, b.upper);
+    time.add(static_cast<double>(b.work), b.t0, b.t1);
+    distance.add(static_cast<double>(b.work), b.lower, b.upper);
   }
-  const std::string t0 = curve(g, "t0", time.lower, "no contact before this t", kLower);
-  const std::string t1 = curve(g, "t1", time.upper, "in contact by this t", kUpper);
-  const std::string low = curve(g, "low", distance.lower, "distance at that t, lower bound", kLower);
-  const std::string high = curve(g, "high", distance.upper, "upper bound", kUpper);
-  g.script += std::string(kAxes) +
-              "set multiplot layout 2,1\nset key bottom right\nset ylabel 't'\nset yrange [0:1]\n" +
-              joined({t0, t1}) +
-              "set xlabel 'time intervals, steps and exact queries'\nset ylabel 'distance'\n" +
-              "set yrange [0:*]\nset key top right\n" + joined({low, high}) + "unset multiplot\n";
-  return g;
+  const report::Axis work{"work: intervals, steps and exact queries"};
+  report::Chart times{"", work, {"t", false, 0, 1}}, distances{"", work, {"distance"}};
+  time.move_to(times);
+  distance.move_to(distances);
+  return stacked(times, distances);
 }
 
 render::Look look_of(const DrawOptions& options) {

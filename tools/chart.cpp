@@ -8,8 +8,6 @@
 #include "bench/speed/make_sets.hpp"
 #include "bench/speed/peer_table.hpp"
 #include "bench/speed/survey.hpp"
-#include "scenarios/io/files.hpp"
-#include "scenarios/report/gnuplot.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
@@ -66,7 +64,8 @@ void measure(const ChartOptions& o, const std::vector<workers::WorkerMethod>& me
   print(o.folder + "/records.jsonl\n");
 }
 
-void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& methods, const Globals& globals) {
+void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& methods,
+          const report::Folder& folder, const Globals& globals) {
   const std::vector<bench::DataSet> sets = read_sets(o.folder, o.set.quantity);
   std::vector<methods::MethodInfo> infos;
   std::transform(methods.begin(), methods.end(), std::back_inserter(infos),
@@ -80,31 +79,22 @@ void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& metho
                                      bar.set(done);
                                    });
   }
-  io::write_text(o.folder + "/points.jsonl", bench::to_lines(points));
   std::map<bench::SceneKey, std::string> scenes;
   if (o.scenes) scenes = bench::write_scenes(sets, points, o.folder, progress_report(globals.quiet));
-  report::Page page = bench::accuracy_page(sets, points, infos, [&](const bench::Point& p) {
+  const auto charts = bench::accuracy_charts(sets, points, infos, [&](const bench::Point& p) {
     const auto it = scenes.find({p.set, p.pose_class});
     return it == scenes.end() ? std::string() : it->second;
   });
-  page.numbers = {{"Machine", bench::machine(), bench::build_flags()}};
-  page.command = globals.command_line;
-  page.links = {{"records.jsonl", "records.jsonl", "every answer of every method"},
-                {"points.jsonl", "points.jsonl", "points of the charts, computed from the answers"}};
+  report::Document page = bench::accuracy_page(o.set.quantity, points, infos, charts);
+  page.number({"Machine", bench::machine(), bench::build_flags()}).command(globals.command_line);
+  page.link({"records.jsonl", "every answer of every method"});
+  page.file("points.jsonl", bench::to_lines(points), "computed from them");
   for (const auto& [key, target] : scenes)
-    page.links.push_back({key.first + ", " + bench::title(key.second), target, "scene, trace and pictures"});
-  try {
-    const report::Gnuplot chart = bench::accuracy_chart(sets, points, infos);
-    for (const char* ending : {".svg", ".png"}) {
-      report::draw(chart, o.folder + "/chart" + ending);
-      page.links.push_back({std::string("chart") + ending, std::string("chart") + ending, "for print"});
-      print(o.folder + "/chart" + ending + "\n");
-    }
-  } catch (const EnvironmentError& e) {
-    std::cerr << "lrbscope: " << e.what() << "\n";
-  }
-  io::write_text(o.folder + "/index.html", report::page_html(page));
-  print(o.folder + "/index.html\n");
+    page.link({target, "scene, trace and pictures", key.first + ", " + bench::title(key.second)});
+  page.print("chart", "for print", bench::accuracy_print(o.set.quantity, charts));
+  page.write(folder);
+  for (const std::string& line : page.notes()) std::cerr << "lrbscope: " << line << "\n";
+  for (const std::string& file : page.written()) print(o.folder + "/" + file + "\n");
 }
 
 int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals) {
@@ -114,10 +104,9 @@ int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals)
   const std::vector<workers::WorkerMethod> methods =
       chosen(pairs ? workers::find_all_methods() : workers::find_number_methods(quantity), o.methods,
              "method", [](const workers::WorkerMethod& m) { return m.info.name; });
-  make_folder(o.folder);
-  const io::FolderLock lock(o.folder);
+  const report::Folder folder(o.folder);
   if (measures) measure(o, methods, globals);
-  if (draws) draw(o, methods, globals);
+  if (draws) draw(o, methods, folder, globals);
   return kOk;
 }
 

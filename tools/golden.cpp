@@ -163,10 +163,9 @@ int run_test(const GoldenOptions& o, const Globals& globals, bool report) {
   const std::vector<NamedGolden> todo = goldens_to_test(o);
   std::vector<std::string> names;
   for (const NamedGolden& g : todo) names.push_back(g.name);
-  std::optional<io::FolderLock> lock;
+  std::optional<report::Folder> locked;
   const auto lock_folder = [&] {
-    make_folder(o.folder);
-    if (!lock) lock.emplace(o.folder);
+    if (!locked) locked.emplace(o.folder);
   };
   if (report || std::filesystem::exists(o.folder)) lock_folder();
   golden::clear_golden_report(o.folder, names);
@@ -182,7 +181,7 @@ int run_test(const GoldenOptions& o, const Globals& globals, bool report) {
     print(o.json ? as_json(results.back()) : golden::result_text(results.back()));
   }
   if (report || !passed) {
-    golden::write_golden_page(results, o.folder, globals.command_line);
+    golden::write_golden_page(results, *locked, globals.command_line);
     if (!o.json) print(o.folder + "/index.html\n");
   }
   if (!o.junit.empty()) io::write_text(o.junit, golden::junit_xml(results));

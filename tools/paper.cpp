@@ -201,8 +201,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
       clock.run("the paper's objects", [&] { return paper::make_objects(experiment, notes); });
   note(globals, notes);
   if (merging) paper::check_records({objects, steps, experiment, globals.command_line});
-  make_folder(o.folder);
-  const io::FolderLock lock(o.folder);
+  const report::Folder folder(o.folder);
   const LrbRep& a = objects[0].rep;
   if (!merging && experiment.collides())
     steps = clock.run("their collisions", [&] { return sweep_objects(objects, sweep, globals); });
@@ -217,7 +216,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
   const paper::SeriesReport series_report{a, series, series_steps, sweep.jobs};
   note(globals, paper::write_paper_report({objects, steps, experiment, globals.command_line,
                                            with_series ? &series_report : nullptr, clock.taken},
-                                          o.folder));
+                                          folder));
   print(o.json ? io::read_text(o.folder + "/tables.json") : o.folder + "/index.html\n");
   return kOk;
 }

@@ -181,16 +181,13 @@ int run_render(const RenderOptions& given, const Globals& globals) {
     throw InputError("--colour-by or --node-boxes: " + printable_name(o.trace) + " is of " +
                      trace.header.engine + " and does not contain its trees; draw them with `lrbscope xray`");
   run::check_frames(p, spec);  // throws before anything is written
-  make_folder(folder);
-  const io::FolderLock lock(folder);
-  io::refuse_links(folder);
+  const report::Folder locked(folder);
   const run::DrawnFrames drawn = run::draw_frames(p, spec, folder, text, progress_report(globals.quiet));
-  const std::string trace_link = std::filesystem::relative(o.trace, folder).generic_string();
-  run::ReportText report{trace.header.scenario, kFromTrace, globals.command_line, trace_link, {}};
+  const std::string file = std::filesystem::relative(o.trace, folder).generic_string();
+  run::ReportText report{
+      trace.header.scenario, kFromTrace, globals.command_line, file, {run::trace_link(file)}};
   if (o.bodies.empty()) report.why = "lrbscope why --run " + shell_word(o.trace);
-  report::Page page = run::run_page(p, drawn, folder, report);
-  std::erase_if(page.links, [](const report::PageLink& l) { return l.target == "summary.json"; });
-  io::write_text(folder + "/index.html", report::page_html(page));
+  run::run_page(p, drawn, folder, report).write(locked);
   animate_frames(o.picture, folder);
   print(folder + "/index.html\n");
   return kOk;

@@ -134,10 +134,10 @@ std::string command_of(const stability::Record& r, Quantity quantity) {
 
 /// Writes the page and its pictures, for which the worst cases are rerun.
 void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
-                  const Grid& grid, const Globals& globals) {
+                  const Grid& grid, const report::Folder& folder, const Globals& globals) {
   Progress bar("pictures", 0, globals.quiet);
-  ReportOptions report;
-  report.pictures = draw_worst_cases(
+  ReportOptions options;
+  options.pictures = draw_worst_cases(
       grid, o.folder,
       [&](const stability::Record& r) {
         const auto method = std::find_if(methods.begin(), methods.end(), [&](const workers::WorkerMethod& m) {
@@ -151,12 +151,11 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
         bar.set(done, "worst cases");
       });
   bar.finish();
-  report.command = [&](const stability::Record& r) { return command_of(r, o.quantity); };
-  report.links = {
-      {"records.jsonl", "records.jsonl", "every answer of every method, one JSON object per line"}};
-  const ReportFiles files = write_stability_report(grid, o.folder, report);
-  if (!files.missing.empty()) std::cerr << "lrbscope: " << files.missing << "\n";
-  for (const std::string& f : files.written) print(o.folder + "/" + f + "\n");
+  options.command = [&](const stability::Record& r) { return command_of(r, o.quantity); };
+  options.links = {{"records.jsonl", "every answer of every method, one JSON object a line"}};
+  const report::Document page = write_stability_report(grid, folder, options);
+  for (const std::string& line : page.notes()) std::cerr << "lrbscope: " << line << "\n";
+  for (const std::string& f : page.written()) print(o.folder + "/" + f + "\n");
 }
 
 /// lrbscope's methods must not fail; others may.
@@ -197,12 +196,11 @@ int run_stability(StabilityOptions o, const Globals& globals) {
   const auto methods = chosen(methods_for(o.quantity), o.methods, "method",
                               [](const workers::WorkerMethod& m) { return m.column.name; });
   if (o.only) return replay_one(o, methods, families);
-  make_folder(o.folder);
-  const io::FolderLock lock(o.folder);
+  const report::Folder folder(o.folder);
   const Grid grid = run_grid(o, methods, families, globals);
   print(table(grid));
   print(o.folder + "/records.jsonl\n");
-  write_report(o, methods, grid, globals);
+  write_report(o, methods, grid, folder, globals);
   if (!ours_failed(grid, methods)) return kOk;
   std::cerr << "lrbscope: mismatch: lrbscope's answers differ from exact brute force\n";
   return kMismatch;

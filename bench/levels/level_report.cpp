@@ -1,9 +1,7 @@
 #include "bench/levels/level_report.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -15,7 +13,6 @@
 #include "bench/workers/workers.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/run/run_page.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
@@ -24,52 +21,6 @@
 #include <lrbscope/wrapper.hpp>
 
 namespace lrb::levels {
-namespace {
-
-constexpr const char* kDistance = "distance from the body / largest side of its box";
-
-/// A series: distances as shares, faces, and how it is drawn.
-struct CurveSeries {
-  const char* name;
-  const char* title;
-  const char* print_style;
-  const char* colour;
-  std::vector<double> distances, faces;
-  void add(double distance, std::uint32_t count) {
-    if (!(distance > 0)) return;  // has no place on a logarithmic axis
-    distances.push_back(distance);
-    faces.push_back(count);
-  }
-};
-
-std::vector<CurveSeries> series_of(const LevelCurve& c) {
-  CurveSeries proved{
-      "proved", "wrappers that enclose the body: proved", "linespoints lw 1.5 pt 7 ps 0.35", "#0072b2", {},
-      {}};
-  CurveSeries measured{"measured", "the same, measured", "points lw 1.2 pt 6 ps 0.9", "#56b4e9", {}, {}};
-  CurveSeries both{"both_ways",
-                   "free simplification (CGAL), both ways: measured",
-                   "linespoints lw 1.5 pt 5 ps 0.6",
-                   "#d55e00",
-                   {},
-                   {}};
-  CurveSeries one{
-      "one_way", "the same, from it to the body only: measured", "points lw 1.2 pt 4 ps 1", "#e69f00", {},
-      {}};
-  for (const bodies::LevelFigures& l : c.proved) proved.add(l.bound / c.size, l.faces);
-  for (const ShownLevel& l : c.shown) measured.add(l.sampled / c.size, l.figures.faces);
-  for (const FreeMesh& m : c.free) {
-    both.add(std::max(m.to_body, m.from_body) / c.size, m.faces);
-    one.add(m.to_body / c.size, m.faces);
-  }
-  std::vector<CurveSeries> out;
-  for (CurveSeries& s : {std::ref(proved), std::ref(measured), std::ref(both), std::ref(one)})
-    if (!s.faces.empty()) out.push_back(std::move(s));
-  return out;
-}
-
-}  // namespace
-
 std::vector<bodies::LevelFigures> many_levels(const LrbRep& rep, std::span<const double> shares,
                                               unsigned threads) {
   constexpr double kStep = 1.25, kBelow = 2;
@@ -83,58 +34,45 @@ std::vector<bodies::LevelFigures> many_levels(const LrbRep& rep, std::span<const
   return levels;
 }
 
-report::Gnuplot curve_for_print(const LevelCurve& c) {
-  report::Gnuplot g;
-  g.width = 130;
-  g.height = 95;
-  std::string plots;
-  double least = 1, most = 0;
-  for (const CurveSeries& s : series_of(c)) {
-    std::vector<std::string> rows;
-    for (std::size_t i = 0; i < s.faces.size(); ++i) {
-      rows.push_back(io::number_text(s.distances[i]) + " " + io::number_text(s.faces[i]));
-      least = std::min(least, s.distances[i]);
-      most = std::max(most, s.distances[i]);
-    }
-    g.add_data(s.name, rows);
-    plots += (plots.empty() ? "plot $" : ", $") + std::string(s.name) + " using 1:2 with " + s.print_style +
-             " lc rgb '" + s.colour + "' title " + report::gnuplot_text(s.title);
-  }
+report::Chart curve_chart(const LevelCurve& c) {
   constexpr double kRoom = 1.25;
-  g.script +=
-      "set logscale xy\nset xlabel " + report::gnuplot_text(kDistance) + "\nset ylabel 'faces'\n" +
-      "set xrange [" + io::number_text(least / kRoom) + ":" + io::number_text(most * kRoom) + "]\n" +
-      "set yrange [10:" + io::number_text(3.0 * c.real_faces) + "]\n" +
-      "set key bottom left reverse Left\nset grid lc rgb '#dddddd'\nset border 3\nset tics nomirror out\n" +
-      "set format y '%g'\nset format x '%g'\n" + plots + ", " + std::to_string(c.real_faces) +
-      " with lines dt 3 lc rgb '#777777' title " +
-      report::gnuplot_text("the body: " + std::to_string(c.real_faces) + " faces") + "\n";
-  return g;
-}
-
-report::PageChart curve_for_page(const LevelCurve& c) {
-  report::PageChart chart;
-  chart.title = "Faces against distance";
-  chart.x_label = kDistance;
-  chart.y_label = "faces";
-  chart.note =
-      "A wrapper is off to one side only, because it encloses the body; a free mesh may cut through it, and "
-      "for the same distance needs about half of the faces.";
-  chart.log_x = chart.log_y = true;
-  for (CurveSeries& s : series_of(c)) {
-    // The page wants x ascending.
-    std::vector<std::pair<double, double>> points;
-    for (std::size_t i = 0; i < s.faces.size(); ++i) points.emplace_back(s.distances[i], s.faces[i]);
-    std::sort(points.begin(), points.end());
-    report::PageSeries series;
-    series.label = s.title;
-    for (const auto& [x, y] : points) {
-      series.x.push_back(x);
-      series.y.push_back(y);
-    }
-    chart.series.push_back(std::move(series));
+  std::vector<report::Series> all = {
+      {"enclosing wrappers: proven", {}, {}, {report::Line::straight, "#0072b2", "circle"}},
+      {"the same, measured", {}, {}, {report::Line::none, "#56b4e9", "rectRot"}},
+      {"free simplification (CGAL), both ways: measured",
+       {},
+       {},
+       {report::Line::straight, "#d55e00", "rect"}},
+      {"the same, from it to the body only: measured", {}, {}, {report::Line::none, "#e69f00", "triangle"}}};
+  double least = 1, most = 0;
+  const auto add = [&](std::size_t series, double distance, std::uint32_t faces) {
+    const double x = distance / c.size;
+    if (!(x > 0)) return;  // has no place on a logarithmic axis
+    const auto at = std::upper_bound(all[series].x.begin(), all[series].x.end(), x) - all[series].x.begin();
+    all[series].x.insert(all[series].x.begin() + at, x);
+    all[series].y.insert(all[series].y.begin() + at, faces);
+    least = std::min(least, x);
+    most = std::max(most, x);
+  };
+  for (const bodies::LevelFigures& l : c.proved) add(0, l.bound, l.faces);
+  for (const ShownLevel& l : c.shown) add(1, l.sampled, l.figures.faces);
+  for (const FreeMesh& m : c.free) {
+    add(2, std::max(m.to_body, m.from_body), m.faces);
+    add(3, m.to_body, m.faces);
   }
-  return chart;
+  const double faces = c.real_faces;
+  all.push_back({"the body: " + std::to_string(c.real_faces) + " faces",
+                 {least / kRoom, most * kRoom},
+                 {faces, faces},
+                 {report::Line::dashed, "#777777", "none"}});
+  std::erase_if(all, [](const report::Series& s) { return s.x.empty(); });
+  return {
+      "Faces by deviation",
+      {"deviation / largest side of the body's box", true, least / kRoom, most * kRoom},
+      {"faces", true},
+      std::move(all),
+      "A wrapper deviates to one side only, because it encloses the body; a free mesh may cut through it, and for the "
+      "same deviation needs about half of the faces."};
 }
 
 namespace {
@@ -160,11 +98,9 @@ Json report_json(const LrbRep& rep, const LevelCurve& curve) {
   return j;
 }
 
-report::PageTable level_table(const LevelCurve& c) {
-  report::PageTable t;
-  t.title = "Wrappers";
-  t.columns = {"tolerance", "faces", "proved off", "measured", "proved / measured"};
-  if (!c.free.empty()) t.columns.emplace_back("a free mesh of as many faces: measured");
+report::Table level_table(const LevelCurve& c) {
+  report::Table t{"Wrappers", {"tolerance", "faces", "proven deviation", "measured", "proven / measured"}};
+  if (!c.free.empty()) t.columns.emplace_back("free mesh of as many faces: measured");
   for (const ShownLevel& l : c.shown) {
     t.rows.push_back({render::short_number(l.figures.share), render::group_digits(l.figures.faces),
                       l.figures.bound > 0 ? upward_text(l.figures.bound / c.size) : "0",
@@ -178,45 +114,9 @@ report::PageTable level_table(const LevelCurve& c) {
                                 : render::short_number(std::max(free->to_body, free->from_body) / c.size));
   }
   t.note =
-      "Distances as shares of the largest side of the body's box. Proved: no point of the wrapper is "
-      "further from the body. Measured: the largest distance found at points of the lids, which cannot be "
-      "more.";
+      "Deviations as shares of the largest side of the body's box. Proven: an upper bound for all points of the wrapper. "
+      "Measured: the maximum over sampled points of the lids, a lower bound.";
   return t;
-}
-
-report::Page page_of(const LrbRep& rep, const LevelCurve& curve, const std::string& command) {
-  report::Page page;
-  page.title = rep.name() + ", no finer than a scene needs";
-  page.purpose =
-      "Wrappers of the body, each with as few faces as its LRB-rep has for a tolerance, and how far they "
-      "are off.";
-  page.numbers = {
-      {"Real faces", render::group_digits(curve.real_faces), ""},
-      {"Faces in all", render::group_digits(rep.face_count()),
-       render::short_number(static_cast<double>(rep.face_count()) / curve.real_faces) + " per real one"},
-      {"Regions", render::group_digits(rep.region_count()),
-       "in " + std::to_string(rep.layer_count()) + " layers"},
-      {"Largest side of the box", render::short_number(curve.size), "in the mesh's unit"}};
-  page.charts = {curve_for_page(curve)};
-  page.tables = {level_table(curve)};
-  page.command = command;
-  page.links = {{"levels.json", "levels.json", "all of these numbers"}};
-  page.footer = report::footer();
-  return page;
-}
-
-/// Draws the curve for print; without gnuplot it is left out.
-void write_curve(const LevelCurve& curve, const std::string& folder, report::Page& page,
-                 std::vector<std::string>& notes) {
-  try {
-    const report::Gnuplot chart = curve_for_print(curve);
-    for (const char* file : {"curve.svg", "curve.png"}) {
-      report::draw(chart, folder + "/" + file);
-      page.links.push_back({file, file, "faces against distance, for print"});
-    }
-  } catch (const EnvironmentError& e) {
-    notes.emplace_back(e.what());
-  }
 }
 
 }  // namespace
@@ -246,7 +146,6 @@ std::vector<std::string> write_level_report(const LrbRep& rep, const LevelReport
       shown.size, rep.real_face_count(), many_levels(rep, options.shares, options.threads), {}, {}};
   for (const bodies::LevelFigures& l : bodies::level_figures(rep, options.shares, options.threads))
     curve.shown.push_back({l, 0});
-  const render::Image wrappers = draw_wrappers(shown, curve.shown);
   const render::Image distances = draw_distances(shown, curve.shown);
   std::vector<std::uint32_t> counts;
   for (const ShownLevel& l : curve.shown)
@@ -257,21 +156,29 @@ std::vector<std::string> write_level_report(const LrbRep& rep, const LevelReport
     notes.emplace_back(
         "no free simplification to compare with: it needs libcgal-dev, and the target lrbscope-simplify");
 
-  make_folder(folder);
-  const io::FolderLock lock(folder);
-  io::refuse_links(folder);
-  report::Page page = page_of(rep, curve, options.command);
-  render::write_png(wrappers, folder + "/wrappers.png");
-  run::add_figure(page, folder, "Wrappers", "What stays of the body at each tolerance.", "wrappers.png");
-  render::write_png(distances, folder + "/distances.png");
-  run::add_figure(
-      page, folder, "Where they are off",
-      "Distance from the body over the lids of each wrapper, on one scale. Real faces, which are off by "
-      "nothing, are pale.",
-      "distances.png");
-  write_curve(curve, folder, page, notes);
-  io::write_text(folder + "/levels.json", report_json(rep, curve).dump(1) + "\n");
-  io::write_text(folder + "/index.html", report::page_html(page));
+  report::Document doc(
+      rep.name() + ", levels of detail",
+      "Wrappers of the body, each with as few faces as its LRB-rep has for a tolerance, and their deviation.");
+  doc.command(options.command)
+      .number({"Real faces", render::group_digits(curve.real_faces)})
+      .number(
+          {"All faces", render::group_digits(rep.face_count()),
+           render::short_number(static_cast<double>(rep.face_count()) / curve.real_faces) + " per real one"})
+      .number({"Regions", render::group_digits(rep.region_count()),
+               "in " + std::to_string(rep.layer_count()) + " layers"})
+      .number({"Largest side of the box", render::short_number(curve.size), "mesh units"});
+  const report::Chart chart = curve_chart(curve);
+  doc.file("levels.json", report_json(rep, curve).dump(1) + "\n", "all of these numbers").chart(chart);
+  doc.table(level_table(curve))
+      .picture("wrappers.png", draw_wrappers(shown, curve.shown), "Wrappers",
+               "The wrapper at each tolerance.")
+      .picture(
+          "distances.png", distances, "Deviation",
+          "Distance from the body over the lids of each wrapper, on one scale. Real faces, without deviation, are pale.")
+      .print("curve", "faces by deviation, for print",
+             report::gnuplot({&chart, 1}, {1, 110, 78, 8, "bottom left"}));
+  notes.insert(notes.end(), doc.notes().begin(), doc.notes().end());
+  doc.write(folder);
   return notes;
 }
 

@@ -8,7 +8,6 @@
 #include "bench/levels/level_pictures.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/report/document.hpp"
-#include "scenarios/report/gnuplot.hpp"
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/render/camera.hpp>
 
@@ -38,10 +37,8 @@ struct LevelCurve {
 std::vector<bodies::LevelFigures> many_levels(const LrbRep& rep, std::span<const double> shares,
                                               unsigned threads);
 
-/// Returns the curve for print, both axes logarithmic.
-report::Gnuplot curve_for_print(const LevelCurve& curve);
-/// Returns the curve for the page.
-report::PageChart curve_for_page(const LevelCurve& curve);
+/// Returns faces against deviation, both axes logarithmic.
+report::Chart curve_chart(const LevelCurve& curve);
 
 struct LevelReportOptions {
   std::vector<double> shares;  ///< tolerances of the panels, as shares of the largest side of the body's box

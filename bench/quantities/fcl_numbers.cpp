@@ -108,8 +108,8 @@ NumberMethod fcl_sweep(const char* name, const char* what, const char* remark, f
 }  // namespace
 
 std::vector<NumberMethod> fcl_number_methods() {
-  const methods::MethodStyle rss = {"FCL, RSS", "#d55e00", "rect", 5},
-                             obbrss = {"FCL, OBBRSS", "#a3132f", "triangle", 9};
+  const methods::MethodStyle rss = {"FCL, RSS", "#d55e00", "rect"},
+                             obbrss = {"FCL, OBBRSS", "#a3132f", "triangle"};
   const std::vector<double> tolerances = {0.1, 0.01, 1e-3, 0};
   return {
       with_knob(fcl_method("fcl-rss", "distance, RSS", "distance() of two BVHModel<RSS>.", Quantity::distance,
@@ -123,15 +123,15 @@ std::vector<NumberMethod> fcl_number_methods() {
               "fcl-naive", "continuousCollide, naive",
               "Its default solver: the first of N equally spaced times at which the bodies collide; N is 1000 "
               "by default.",
-              fcl::CCDC_NAIVE, 1000, {"FCL, naive", "#d55e00", "rect", 5}),
+              fcl::CCDC_NAIVE, 1000, {"FCL, naive", "#d55e00", "rect"}),
           "times", {10, 100, 1000}),
       fcl_sweep("fcl-advancement", "continuousCollide, advancement", "Conservative advancement.",
                 fcl::CCDC_CONSERVATIVE_ADVANCEMENT, 10,
-                {"FCL, conservative advancement", "#a3132f", "triangle", 9}),
+                {"FCL, conservative advancement", "#a3132f", "triangle"}),
       fcl_sweep("fcl-polynomials", "continuousCollide, polynomials", "Its polynomial solver.",
-                fcl::CCDC_POLYNOMIAL_SOLVER, 10, {"FCL, polynomials", "#8a5a2b", "star", 3}),
+                fcl::CCDC_POLYNOMIAL_SOLVER, 10, {"FCL, polynomials", "#8a5a2b", "star"}),
       fcl_method("fcl-contacts", "collide, contacts", "The largest penetration depth of its contacts.",
-                 Quantity::depth, fcl_depth, {"FCL, contacts", "#d55e00", "rect", 5})};
+                 Quantity::depth, fcl_depth, {"FCL, contacts", "#d55e00", "rect"})};
 }
 
 }  // namespace lrb::stability

@@ -86,7 +86,7 @@ NumberMethod ours(Quantity quantity, const char* title, NumberAnswer (*ask)(cons
   m.info.title = title;
   m.info.remark = "An interval that must contain the number.";
   m.info.role = methods::Role::ours;
-  m.info.style = {"lrbscope", "#0072b2", "circle", 7};
+  m.info.style = {"lrbscope", "#0072b2", "circle"};
   m.quantity = quantity;
   m.proves = true;
   m.ask = ask;
@@ -113,7 +113,7 @@ NumberMethod sampled_method(int n) {
   m.info.remark =
       "lrbscope's exact query at equally spaced times; returns the first at which the bodies collide.";
   m.info.traits.set(methods::Trait::hard_cases, n > kTooFewForHardCases);
-  m.info.style = {"exact query at 10, 100, 1000 times", "#6b6b6b", "crossRot", 2};
+  m.info.style = {"exact query at 10, 100, 1000 times", "#6b6b6b", "crossRot"};
   m.quantity = Quantity::first_contact;
   m.ask = [n](const Asked& q, Setting) { return sampled(q, n); };
   return m;
@@ -126,11 +126,11 @@ std::vector<NumberMethod> own_number_methods() {
                     {0.1, 0.01, 1e-3, 1e-6, 0}),
           with_knob(less("ours-budget", "lrbscope, distance in N steps",
                          "The interval after N steps (pairs of nodes expanded).",
-                         {"lrbscope, within a budget", "#56b4e9", "rect", 4}, distance_in_steps),
+                         {"lrbscope, within a budget", "#56b4e9", "rect"}, distance_in_steps),
                     "steps", {3, 10, 30, 100, 300}),
           with_knob(less("ours-within", "lrbscope, within 5 % of the diagonal?",
                          "A proven yes or no; the interval is the bound known by then.",
-                         {"lrbscope, yes or no: within a distance?", "#0072b2", "rectRounded", 15}, within),
+                         {"lrbscope, yes or no: within a distance?", "#0072b2", "rectRounded"}, within),
                     "within", {0.05}),
           with_knob(ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact), "tolerance",
                     {1e-6, 1e-9, 1e-12}),

@@ -68,7 +68,7 @@ class PlainDouble : public Method {
 std::vector<MethodEntry> plain_double_methods() {
   MethodInfo info;
   info.rank = 20;
-  info.style = {"brute force", "#6b6b6b", "crossRot", 2};
+  info.style = {"brute force", "#6b6b6b", "crossRot"};
   info.name = "plain";
   info.role = Role::no_peer;  // takes minutes
   info.title = "brute force, double, epsilon 1e-6";
@@ -198,7 +198,7 @@ class Spheres : public Method {
 std::vector<MethodEntry> spheres_methods() {
   MethodInfo info;
   info.rank = 80;
-  info.style = {"sphere tree, by level", "#1c1e22", "star", 3};
+  info.style = {"sphere tree, by level", "#1c1e22", "star"};
   info.name = "spheres";
   info.title = "sphere tree, stopped at a level";
   info.remark =

@@ -4,7 +4,7 @@
 
 namespace lrb::methods {
 namespace {
-const MethodStyle kStyle = {"Bullet", "#cc79a7", "rectRot", 13};
+const MethodStyle kStyle = {"Bullet", "#cc79a7", "rectRot"};
 #ifdef BT_USE_DOUBLE_PRECISION
 #define LRB_BULLET_METHODS bullet_double_methods
 constexpr int kRank = 100;

@@ -4,8 +4,8 @@
 
 namespace lrb::methods {
 namespace {
-const MethodStyle kStyle = {"CGAL, yes or no", "#009e73", "triangle", 8};
-const MethodStyle kPairsStyle = {"CGAL, pairs", "#009e73", "triangle", 9};
+const MethodStyle kStyle = {"CGAL, yes or no", "#009e73", "triangle"};
+const MethodStyle kPairsStyle = {"CGAL, pairs", "#009e73", "triangle"};
 constexpr int kRank = 40;
 }  // namespace
 }  // namespace lrb::methods

@@ -5,7 +5,7 @@
 
 namespace lrb::methods {
 namespace {
-const MethodStyle kStyle = {"Embree", "#b58900", "rectRounded", 11};
+const MethodStyle kStyle = {"Embree", "#b58900", "rectRounded"};
 constexpr int kRank = 60;
 }  // namespace
 }  // namespace lrb::methods

@@ -6,7 +6,7 @@
 
 namespace lrb::methods {
 namespace {
-const MethodStyle kStyle = {"FCL", "#d55e00", "rect", 5};
+const MethodStyle kStyle = {"FCL", "#d55e00", "rect"};
 #ifdef LRB_FCL_HEADERS
 constexpr int kRank = 110;
 #else

@@ -4,8 +4,8 @@
 
 namespace lrb::methods {
 namespace {
-const MethodStyle kOctreeStyle = {"octree (FCL), by cells", "#8a5a2b", "rect", 4};
-const MethodStyle kGjkStyle = {"convex hulls, GJK (FCL)", "#a3132f", "triangle", 10};
+const MethodStyle kOctreeStyle = {"octree (FCL), by cells", "#8a5a2b", "rect"};
+const MethodStyle kGjkStyle = {"convex hulls, GJK (FCL)", "#a3132f", "triangle"};
 constexpr int kRank = 90;
 }  // namespace
 }  // namespace lrb::methods

@@ -95,7 +95,6 @@ struct MethodStyle {
   std::string title;   ///< in the key: "FCL"; empty: a style is chosen, under the method's name
   std::string colour;  ///< #rrggbb
   std::string shape;   ///< Chart.js's name of the point shape
-  int point = 0;       ///< gnuplot's number of the point shape
   friend bool operator==(const MethodStyle&, const MethodStyle&) = default;
 };
 

@@ -3,7 +3,7 @@
 
 namespace lrb::methods {
 namespace {
-const MethodStyle kStyle = {"ODE", "#7f3c8d", "cross", 1};
+const MethodStyle kStyle = {"ODE", "#7f3c8d", "cross"};
 constexpr int kRank = 70;
 }  // namespace
 }  // namespace lrb::methods

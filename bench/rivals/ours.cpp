@@ -174,7 +174,7 @@ MethodInfo our_info(const char* name, const char* title, const char* remark, int
   info.traits.set(Trait::own_rep);
   info.rank = rank;
   info.role = Role::ours_other;
-  info.style = {"lrbscope, variants", "#4aa3dc", "circle", 6};
+  info.style = {"lrbscope, variants", "#4aa3dc", "circle"};
   return info;
 }
 
@@ -188,7 +188,7 @@ void coarse(MethodInfo& info) {
 MethodEntry ours() {
   MethodInfo info = our_info("ours", "lrbscope, complete",
                              "All pairs and the relation; given the bodies and their poses.", 10);
-  info.style = {"lrbscope, exact", "#0072b2", "circle", 7};
+  info.style = {"lrbscope, exact", "#0072b2", "circle"};
   info.role = Role::ours;
   return {info, []() -> std::unique_ptr<Method> {
             return std::make_unique<Ours>(Recursion::complete, Predicates::exact);
@@ -235,7 +235,7 @@ MethodEntry ours_one_pair() {
       our_info("ours-one-pair", "lrbscope, one pair",
                "Whether they intersect, exactly, and the contact of one crossing pair of faces.", 14);
   coarse(info);
-  info.style = {"lrbscope, one pair", "#0072b2", "rectRounded", 15};
+  info.style = {"lrbscope, one pair", "#0072b2", "rectRounded"};
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(Content::one_pair); }};
 }
 
@@ -248,7 +248,7 @@ MethodEntry ours_tolerance() {
   coarse(info);
   info.knob = "tolerance";
   info.settings = {0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001};
-  info.style = {"lrbscope, to a tolerance", "#0072b2", "rectRot", 13};
+  info.style = {"lrbscope, to a tolerance", "#0072b2", "rectRot"};
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(Content::tolerance); }};
 }
 
@@ -261,7 +261,7 @@ MethodEntry ours_budget() {
   coarse(info);
   info.knob = "tests";
   info.settings = {16, 32, 64, 128, 256, 1024};
-  info.style = {"lrbscope, within a budget", "#56b4e9", "rect", 4};
+  info.style = {"lrbscope, within a budget", "#56b4e9", "rect"};
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(Content::tests); }};
 }
 

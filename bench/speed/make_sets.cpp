@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 
 #include "bench/speed/bench_runner.hpp"
+#include "bench/speed/chart_page.hpp"
 #include "bench/speed/data_set.hpp"
-#include "bench/speed/series_style.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/bodies/shapes.hpp"

@@ -1,9 +1,8 @@
-#include "bench/stability/stability_print.hpp"
-
 #include <algorithm>
 #include <array>
 
 #include "bench/stability/outcome_grid.hpp"
+#include "bench/stability/stability_report.hpp"
 #include "render/page_palette.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/render/overlay.hpp>
@@ -169,113 +168,31 @@ void add_legend(Sheet& sheet, double y, double columns, const std::string& absen
   sheet.text(-kLeft + 0.1, y - 0.72, Sheet::small, absent, render::palette::kFaint);
 }
 
-// ---- the profiles
-
-constexpr int kProfileColumns = 4;
-
-/// Returns the style of line i; lines differ in colour, dash and mark.
-std::string line_style(std::size_t i) {
-  namespace palette = render::palette;
-  static constexpr std::array<render::Rgba, 8> kColours = {
-      palette::kBlue,   palette::kVermillion, palette::kGreen,  palette::kPurple,
-      page::kInk.light, palette::kSkyBlue,    palette::kOrange, {122, 81, 149}};
-  static constexpr std::array<int, 8> kPoints = {7, 5, 9, 11, 13, 6, 4, 8};
-  return "lc rgb '" + render::css(kColours[i % kColours.size()]) + "' pt " +
-         std::to_string(kPoints[i % kPoints.size()]) + " ps 0.35 dt " +
-         std::to_string(1 + i / kColours.size()) + " lw 1.1";
-}
-
-std::string margins(double left, double right, double bottom, double top) {
-  return "set lmargin at screen " + io::number_text(left) + "\nset rmargin at screen " +
-         io::number_text(right) + "\nset bmargin at screen " + io::number_text(bottom) +
-         "\nset tmargin at screen " + io::number_text(top) + "\n";
-}
-
-/// Returns a tick's label: gnuplot takes these for formats.
-std::string tick_text(std::string text) {
-  for (std::size_t at = text.find('%'); at != std::string::npos; at = text.find('%', at + 2))
-    text.insert(at, 1, '%');
-  return report::gnuplot_text(text);
-}
-
-/// Returns the commands that name a family, say under its axis what every third setting means, and below that
-/// the ends, each on a line of its own: together they are wider than a panel.
-std::string panel_heading(const FamilyRow& family, bool first) {
-  constexpr int kEvery = 3;
-  std::string out =
-      "set title " + report::gnuplot_text(family.name) + " font 'DejaVu Sans Bold,6.5' offset 0,-0.6\n";
-  std::string marks;
+/// The failures of each method by difficulty, in percent. The ends of the dial are below the axis.
+report::Chart profile(const Grid& grid, std::size_t family) {
+  const FamilyRow& row = grid.families[family];
+  report::Axis dial{"", false, -0.6, kDialSettings - 0.4};
+  if (!row.benign.empty() || !row.degenerate.empty()) dial.label = row.benign + " \u2192 " + row.degenerate;
+  constexpr std::size_t kEvery = 3;
   for (std::size_t i = 0; i < kDialSettings; i += kEvery)
-    marks += (i > 0 ? ", " : "") + tick_text(family.values.empty() ? "" : family.values[i]) + " " +
-             std::to_string(i);
-  out += "set xtics (" + marks + ") nomirror scale 0.4 offset 0,0.5 font 'DejaVu Sans,5' tc rgb '" +
-         render::css(page::kSoft.light) + "'\n";
-  const auto end = [&](int number, const std::string& text, const char* where) {
-    out += "set label " + std::to_string(number) + " " + report::gnuplot_text(text) + " at graph " + where +
-           " font 'DejaVu Sans,5' tc rgb '" + render::css(page::kSoft.light) + "'\n";
-  };
-  end(1, family.benign.empty() ? " " : family.benign + " \u2192", "0,-0.23 left");
-  end(2, family.degenerate.empty() ? " " : family.degenerate, "1,-0.34 right");
-  return out + (first ? "set ylabel 'failures, %' offset 1.5,0\n" : "unset ylabel\n");
-}
-
-std::vector<std::string> profile_rows(const Cell& cell, double shift) {
-  std::vector<std::string> rows;
-  for (std::size_t i = 0; i < kDialSettings; ++i) {
-    if (cell.cases[i] == 0) continue;
-    const double failed = static_cast<double>(cell.wrong[i] + cell.crashed[i] + cell.timed_out[i]);
-    rows.push_back(io::number_text(static_cast<double>(i) + shift) + " " +
-                   io::number_text(100 * failed / static_cast<double>(cell.cases[i])));
-  }
-  return rows;
-}
-
-constexpr int kKeyColumns = 2;
-constexpr double kPanelHeight = 40, kKeyLine = 3.6;  // millimetres
-
-/// Returns the commands that draw a family's panel, and adds its data to the chart.
-std::string family_panel(const Grid& grid, std::size_t family, const std::vector<std::size_t>& present,
-                         report::Gnuplot& chart) {
-  const int row = static_cast<int>(family) / kProfileColumns,
-            column = static_cast<int>(family) % kProfileColumns;
-  // The space that axis, title and labels need at the panel's sides.
-  constexpr double kLeftSide = 0.045, kPanelWidth = (1 - kLeftSide) / kProfileColumns;
-  std::string plots =
-      margins(kLeftSide + (column + 0.1) * kPanelWidth, kLeftSide + (column + 0.97) * kPanelWidth,
-              1 - (row + 0.74) * kPanelHeight / chart.height, 1 - (row + 0.15) * kPanelHeight / chart.height);
-  plots += panel_heading(grid.families[family], column == 0);
-  for (std::size_t line = 0; line < present.size(); ++line) {
-    const std::string name = "f" + std::to_string(family) + "m" + std::to_string(present[line]);
+    dial.ticks.push_back({static_cast<double>(i), row.values.empty() ? "" : row.values[i]});
+  report::Chart chart{row.name, dial, {"failures, %", false, -3, 103}};
+  for (std::size_t m = 0; m < grid.methods.size(); ++m) {
+    if (!grid.methods[m].present) continue;
+    const Cell& cell = grid.at(family, m);
+    report::Series s{grid.methods[m].title, {}, {}};
     // Points stand side by side where lines would hide each other.
     constexpr double kApart = 0.07;
-    const double shift = kApart * (static_cast<double>(line) - static_cast<double>(present.size() - 1) / 2);
-    chart.add_data(name, profile_rows(grid.at(family, present[line]), shift));
-    plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
+    const double shift = kApart * (static_cast<double>(m) - static_cast<double>(grid.methods.size() - 1) / 2);
+    for (std::size_t i = 0; i < kDialSettings; ++i) {
+      if (cell.cases[i] == 0) continue;
+      const double failed = static_cast<double>(cell.wrong[i] + cell.crashed[i] + cell.timed_out[i]);
+      s.x.push_back(static_cast<double>(i) + shift);
+      s.y.push_back(100 * failed / static_cast<double>(cell.cases[i]));
+    }
+    chart.series.push_back(std::move(s));
   }
-  return plots + "\n";
-}
-
-/// Returns the commands that draw the key, lines and titles in a panel of their own, in units of its columns
-/// and lines; adds its data to the chart.
-std::string profile_key(const Grid& grid, const std::vector<std::size_t>& present, int key_rows,
-                        report::Gnuplot& chart) {
-  std::string plots =
-      margins(0.03, 1, 0, kKeyLine * key_rows / chart.height) +
-      "unset border\nunset tics\nunset title\nunset label\nunset xlabel\nunset ylabel\nset xrange [0:" +
-      std::to_string(kKeyColumns) + "]\nset yrange [0:" + std::to_string(key_rows) + "]\n";
-  std::vector<std::string> titles;
-  for (std::size_t line = 0; line < present.size(); ++line) {
-    const double x = static_cast<double>(static_cast<int>(line) / key_rows);
-    const double y = key_rows - 0.5 - static_cast<int>(line) % key_rows;
-    const std::string name = "key" + std::to_string(line);
-    chart.add_data(name, {io::number_text(x) + " " + io::number_text(y),
-                          io::number_text(x + 0.12) + " " + io::number_text(y)});
-    titles.push_back(io::number_text(x + 0.15) + " " + io::number_text(y) + " " +
-                     report::gnuplot_data_text(grid.methods[present[line]].title));
-    plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
-  }
-  chart.add_data("titles", titles);
-  return plots + (present.empty() ? "plot" : ",") + " $titles using 1:2:3 with labels left";
+  return chart;
 }
 
 }  // namespace
@@ -317,41 +234,9 @@ report::Gnuplot grid_chart(const Grid& whole) {
 }
 
 report::Gnuplot profile_chart(const Grid& grid) {
-  const auto families = static_cast<int>(grid.families.size());
-  const int rows = (families + kProfileColumns - 1) / kProfileColumns;
-  std::vector<std::size_t> present;
-  for (std::size_t m = 0; m < grid.methods.size(); ++m)
-    if (grid.methods[m].present) present.push_back(m);
-  const int key_rows = std::max(1, (static_cast<int>(present.size()) + kKeyColumns - 1) / kKeyColumns);
-  report::Gnuplot chart;
-  chart.width = 180;
-  chart.height = kPanelHeight * rows + kKeyLine * key_rows + 3;
-  chart.font = 6;
-  std::string plots;
-  for (std::size_t f = 0; f < grid.families.size(); ++f) plots += family_panel(grid, f, present, chart);
-  plots += profile_key(grid, present, key_rows, chart);
-  chart.script +=
-      "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset yrange [-3:103]\nset ytics "
-      "0,50,100 nomirror scale 0.4 offset 0.6,0 tc rgb '" +
-      render::css(render::palette::kInk) +
-      "'\n"
-      "set grid ytics lw 0.4 lc rgb '#d8dadc' dt 1\n";
-  chart.script +=
-      "set xrange [-0.6:" + io::number_text(kDialSettings - 0.4) + "]\n" + plots + "\nunset multiplot\n";
-  return chart;
-}
-
-std::vector<PrintFile> print_stability(const Grid& grid, const std::string& folder) {
-  const report::Gnuplot whole = grid_chart(grid), profiles = profile_chart(grid);
-  std::vector<PrintFile> files;
-  for (const char* ending : {".svg", ".png"}) {
-    report::draw(whole, folder + "/stability" + ending);
-    files.push_back({std::string("stability") + ending, "table for print"});
-    report::draw(profiles, folder + "/stability-profiles" + ending);
-    files.push_back(
-        {std::string("stability-profiles") + ending, "fraction of failures by difficulty, per family"});
-  }
-  return files;
+  std::vector<report::Chart> panels;
+  for (std::size_t f = 0; f < grid.families.size(); ++f) panels.push_back(profile(grid, f));
+  return report::gnuplot(panels, {4, 38, 28, 6, "", 2});
 }
 
 }  // namespace lrb::stability

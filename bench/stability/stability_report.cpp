@@ -4,7 +4,6 @@
 #include <cctype>
 
 #include "bench/stability/outcome_grid.hpp"
-#include "bench/stability/stability_print.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/assets.hpp"
 #include <lrbscope/core/file.hpp>
@@ -15,13 +14,7 @@
 namespace lrb::stability {
 namespace {
 
-constexpr const char* kPage = "index.html";
-
-std::string count_of(std::uint64_t n, const char* one, const char* many) {
-  return render::group_digits(n) + " " + (n == 1 ? one : many);
-}
-
-/// Returns a setting of the dial, with what it means if that is known: "7 of 0 to 10 (4e-13)".
+/// Returns a difficulty, with its parameter if that is known: "7 of 0 to 10 (4e-13)".
 std::string setting_words(const FamilyRow& family, int dial) {
   std::string out = std::to_string(dial) + " of 0 to " + std::to_string(kDialSettings - 1);
   if (!family.values.empty()) out += " (" + family.values[static_cast<std::size_t>(dial)] + ")";
@@ -30,7 +23,7 @@ std::string setting_words(const FamilyRow& family, int dial) {
 
 std::string sentence(const CellSummary& s, const FamilyRow& family) {
   std::string out =
-      render::group_digits(s.failures()) + " of " + count_of(s.answered(), "case fails", "cases fail");
+      render::group_digits(s.failures()) + " of " + render::counted(s.answered(), "case fails", "cases fail");
   const auto add = [&](std::uint64_t n, const std::string& what) {
     if (n > 0) out += ", " + render::group_digits(n) + " " + what;
   };
@@ -38,14 +31,14 @@ std::string sentence(const CellSummary& s, const FamilyRow& family) {
   add(s.crashed, "by a crash");
   add(s.timed_out, "by a time-out");
   add(s.refused, "refused");
-  if (s.first_failing >= 0) out += "; first at setting " + setting_words(family, s.first_failing);
+  if (s.first_failing >= 0) out += "; first at difficulty " + setting_words(family, s.first_failing);
   return out;
 }
 
-report::PageGridCell page_cell(const Cell& cell, const FamilyRow& family, const std::string& where) {
+report::GridCell page_cell(const Cell& cell, const FamilyRow& family, const std::string& where) {
   const CellSummary s = summarise(cell);
-  report::PageGridCell out;
-  out.level = s.only_refused() ? report::PageGridCell::kOnlyRefused : s.level();
+  report::GridCell out;
+  out.level = s.only_refused() ? report::GridCell::kOnlyRefused : s.level();
   out.count = s.answered() > 0 ? render::group_digits(s.failures()) : "\u2013";
   out.of = s.answered() > 0 ? "of " + render::group_digits(s.answered()) : "all refused";
   const auto mark = [](std::uint64_t n) { return n > 0 ? render::group_digits(n) : std::string(); };
@@ -76,11 +69,10 @@ std::string words(Outcome o) {
   return io::in_words(name_of(o));
 }
 
-report::PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m,
-                                   const ReportOptions& options) {
+report::GridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, const ReportOptions& options) {
   const Record& r = *grid.at(f, m).worst;
   const FamilyRow& family = grid.families[f];
-  report::PageGridDetail d;
+  report::GridDetail d;
   d.id = "case-" + plain(family.name) + "-" + plain(grid.methods[m].name);
   d.title = family.name + " \u00d7 " + grid.methods[m].title;
   d.text = answer_text(r);
@@ -90,7 +82,7 @@ report::PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t 
   const bool answered = r.outcome == Outcome::right || r.outcome == Outcome::wrong;
   d.facts = {{"Outcome", words(r.outcome)}};
   if (grid.quantity == Quantity::pairs) {
-    d.facts.emplace_back("Pairs that meet", render::group_digits(r.expected));
+    d.facts.emplace_back("Intersecting pairs", render::group_digits(r.expected));
     if (answered) {
       d.facts.emplace_back("Missed", render::group_digits(r.missed));
       d.facts.emplace_back("In excess", render::group_digits(r.extra));
@@ -101,36 +93,21 @@ report::PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t 
     d.facts.emplace_back("Right", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
     if (answered) d.facts.emplace_back("Answered", r.relation);
   }
-  d.facts.emplace_back("Dial", setting_words(family, r.dial));
+  d.facts.emplace_back("Difficulty", setting_words(family, r.dial));
   d.facts.emplace_back("Case, seed", render::group_digits(r.case_index) + ", " + std::to_string(r.seed));
   if (answered) d.facts.emplace_back("Query", render::short_number(r.microseconds) + " \u00b5s");
-  d.note = "Of this family, with this method: " + sentence(s, family) + ".";
+  d.note = "This family, this method: " + sentence(s, family) + ".";
   if (options.command) d.command = options.command(r);
   return d;
 }
 
-/// Reads the pictures of all details, as far as a page may hold them.
-std::string inline_pictures(std::vector<report::PageGridDetail>& details, const std::string& folder) {
-  std::vector<report::PngBytes> pngs;
-  for (const report::PageGridDetail& d : details) {
-    if (d.file.empty()) continue;
-    const std::string bytes = io::read_text(folder + "/" + d.file);
-    pngs.emplace_back(bytes.begin(), bytes.end());
-  }
-  report::InlinedImages images = report::inline_pngs(pngs);
-  std::size_t next = 0;
-  for (report::PageGridDetail& d : details)
-    if (!d.file.empty()) d.data_uri = std::move(images.uris[next++]);
-  return images.note;
-}
-
-report::PageGrid page_grid(const Grid& grid, const std::string& folder, const ReportOptions& options) {
-  report::PageGrid out;
+report::Grid page_grid(const Grid& grid, const ReportOptions& options) {
+  report::Grid out;
   out.title = "Families of cases \u00d7 methods";
-  out.corner = "family, and its dial from benign to degenerate";
+  out.corner = "family, and its difficulty from benign to degenerate";
   out.level_names.assign(kLevelNames.begin(), kLevelNames.end());
   out.part_names = {"wrong answer", "crashed", "timed out", "refused"};
-  for (const workers::MethodColumn& m : grid.methods) out.columns.push_back({m.title, m.remark, "", "", {}});
+  for (const workers::MethodColumn& m : grid.methods) out.columns.push_back({m.title, m.remark});
   for (std::size_t f = 0; f < grid.families.size(); ++f) {
     const FamilyRow& family = grid.families[f];
     out.rows.push_back({family.name, family.what, family.benign, family.degenerate, family.values});
@@ -142,75 +119,56 @@ report::PageGrid page_grid(const Grid& grid, const std::string& folder, const Re
       out.details.push_back(page_detail(grid, f, m, options));
     }
   }
-  out.rows.push_back({"all families", "", "", "", {}});
+  out.rows.push_back({"all families"});
   out.total_rows = 1;
   for (std::size_t m = 0; m < grid.methods.size(); ++m) {
     const std::string where = "all families \u00d7 " + grid.methods[m].title;
     out.cells.push_back(page_cell(sum_of_column(grid, m), {}, where));
   }
   out.note =
-      "In each cell: failures of the cases that were not refused, and below them one bar per setting of the "
-      "dial, benign on the left, "
-      "degenerate on the right; its height is the share of that setting's cases. A cell that leads to its "
-      "worst "
-      "case can be clicked; arrow keys then go from case to case.";
-  const std::string note = inline_pictures(out.details, folder);
-  if (!note.empty()) out.note += " " + note;
+      "In each cell: failures of the cases that were not refused, and below them one bar per difficulty, benign on the left, "
+      "degenerate on the right; its height is the share of that difficulty's cases. A click on a cell with failures shows its "
+      "worst case; arrow keys then go from case to case.";
   return out;
 }
 
 /// Returns the texts of a page about numbers.
-std::vector<report::PageText> texts_of_numbers(Quantity quantity) {
-  const char* asked =
-      quantity == Quantity::distance ? "Two bodies at two poses: how far are their surfaces apart?"
+std::vector<report::Text> texts_of_numbers(Quantity quantity) {
+  const char* query =
+      quantity == Quantity::distance ? "The distance between the surfaces of two bodies at two poses."
       : quantity == Quantity::depth
-          ? "Two convex bodies at two poses: how long is the shortest translation after which their interiors "
-            "share no point?"
-          : "B comes straight to its pose, from the side of A on which it is, and goes on: at which time, from 0 "
-            "to 1, do the surfaces first meet?";
+          ? "The penetration depth of two convex bodies: the length of the shortest translation that separates them."
+          : "The time of impact, from 0 to 1: B moves in a straight line to its pose and beyond.";
   return {
-      {"What was asked", std::string(asked) +
-                             " Every method gets the same bodies, in the world's doubles. The families are "
-                             "those of the page on pairs, with the same dials."},
-      {"How answers are judged",
-       "By rational arithmetic on the very doubles: brute force over all pairs of triangles, or over all planes "
-       "that may part convex bodies. An answer is wrong if it says that bodies meet (never meet) and they do "
-       "not (do), or the other way round; if an interval that claims a proof does not hold the number; or if "
-       "another is further off than a millionth of the bodies' size, or a thousandth of the motion. Bodies of "
-       "too many faces for rational arithmetic, in the plane, or, for depths, not convex are not asked about: "
-       "they count as refused."},
-      {"What is not claimed",
-       "The cases are made to be hard, and most methods never promised exact answers. Families are samples: no "
-       "failure among them is no proof."},
+      {"Query", std::string(query) + " Every method gets the same bodies, in double precision. Families and "
+                                     "difficulties are those of the page on pairs."},
+      {"Verdicts",
+       "By rational arithmetic on the same doubles: brute force over all pairs of triangles, or over all separating planes of "
+       "convex bodies. An answer is wrong if it reports contact where there is none or the reverse; if a certified interval "
+       "does not contain the number; or if any other answer is off by more than a millionth of the bodies' size, or a "
+       "thousandth of the motion. Refused: 2D bodies, bodies of too many faces for rational arithmetic and, for depths, "
+       "bodies that are not convex."},
+      {"Limits",
+       "The cases are made to be hard, and most methods do not promise exact answers. Families are samples: no failure among "
+       "them is no proof."},
   };
 }
 
-std::vector<report::PageText> texts() {
+std::vector<report::Text> texts() {
   return {
-      {"What was asked",
-       "Two bodies at two poses: which pairs of faces meet, and how do the bodies lie to each other? Every "
-       "method "
-       "gets the same bodies and poses, in doubles. Each family is one way in which collision engines are "
-       "known to "
-       "fail, with a dial that goes from where everybody is right to where it is hardest; random numbers are "
-       "the "
-       "same at all settings, so that only the dial differs."},
-      {"How answers are judged",
-       "Against every pair of faces tested with exact arithmetic on the very doubles that the poses give: a "
-       "touch "
-       "counts as meeting, a gap of one unit in the last place does not. A method is held to what it claims "
-       "to "
-       "answer: pairs missed or in excess, or a wrong relation, make a case wrong. Each runs in a process of "
-       "its "
-       "own: crashes and time-outs count as failures. Refusals are shown and counted, but are no failures: "
-       "they "
-       "mislead nobody."},
-      {"What is not claimed",
-       "The cases are made to be hard: shares say where a method breaks, not how often it would in a game or "
-       "a "
-       "robot. Most methods never promised exact answers, and some take a touch for a miss on purpose. "
-       "Nothing here "
-       "compares speed. Families are samples: no failure among them is no proof."},
+      {"Query",
+       "The intersecting pairs of faces of two bodies at two poses, and the relation of the bodies. Every method gets the same "
+       "bodies and poses, in double precision. A family is one known cause of failures, with a difficulty from benign to "
+       "degenerate; random numbers are the same at all difficulties."},
+      {"Verdicts",
+       "Against brute force in exact arithmetic on the same doubles: touching faces intersect, faces with a gap of one unit "
+       "in the last place do not. Only what a method claims to report is judged: a case is wrong if pairs are missed or in "
+       "excess, or the relation is wrong. Each case runs in a process of its own: crashes and time-outs are failures. "
+       "Refusals are counted, but are no failures."},
+      {"Limits",
+       "The cases are made to be hard: shares show where a method breaks, not how often it would in a game or a robot. Most "
+       "methods do not promise exact answers, and some take touching for separate on purpose. Speed is not compared. Families "
+       "are samples: no failure among them is no proof."},
   };
 }
 
@@ -233,7 +191,7 @@ std::string answer_text(const Record& r) {
   return out;
 }
 
-report::Page stability_page(const Grid& whole, const std::string& folder, const ReportOptions& given) {
+report::Document stability_page(const Grid& whole, const std::string& folder, const ReportOptions& given) {
   check(whole);
   const Grid grid = present_part(whole);
   ReportOptions options = given;
@@ -243,43 +201,30 @@ report::Page stability_page(const Grid& whole, const std::string& folder, const 
   std::uint64_t answers = 0;
   for (const Cell& c : grid.cells) answers += summarise(c).cases;
   const std::size_t absent = whole.methods.size() - grid.methods.size();
-  report::Page page;
-  page.title = grid.quantity == Quantity::pairs
-                   ? "Where collision methods fail"
-                   : "Where methods fail: " + io::in_words(name_of(grid.quantity));
-  page.texts = grid.quantity == Quantity::pairs ? texts() : texts_of_numbers(grid.quantity);
-  page.numbers = {
-      {"Families", render::group_digits(grid.families.size()),
-       std::to_string(kDialSettings) + " settings of the dial each"},
-      {"Methods", render::group_digits(grid.methods.size()),
-       absent == 0 ? "all that are known" : render::group_digits(absent) + " more not installed here"},
-      {"Answers judged", render::group_digits(answers), "one per case and method"},
-      {"Time taken", render::short_number(grid.seconds) + " s", ""}};
-  page.grid = page_grid(grid, folder, options);
-  page.grid.missing = absent_words(whole);
-  page.command = grid.command;
-  page.links = options.links;
-  page.footer = report::footer();
-  return page;
+  const bool pairs = grid.quantity == Quantity::pairs;
+  report::Document doc(pairs ? "Where collision methods fail"
+                             : "Where methods fail: " + io::in_words(name_of(grid.quantity)));
+  doc.each(pairs ? texts() : texts_of_numbers(grid.quantity), &report::Document::text)
+      .number({"Families", render::group_digits(grid.families.size()),
+               std::to_string(kDialSettings) + " difficulties each"})
+      .number(
+          {"Methods", render::group_digits(grid.methods.size()),
+           absent == 0 ? "all that are known" : render::group_digits(absent) + " more not installed here"})
+      .number({"Answers judged", render::group_digits(answers), "one per case and method"})
+      .number({"Running time", render::short_number(grid.seconds) + " s"});
+  report::Grid shown = page_grid(grid, options);
+  shown.missing = absent_words(whole);
+  return doc.grid(shown, folder).command(grid.command).each(options.links, &report::Document::link);
 }
 
-ReportFiles write_stability_report(const Grid& grid, const std::string& folder,
-                                   const ReportOptions& options) {
-  check(grid);
-  make_folder(folder);
-  ReportFiles out;
-  ReportOptions with_files = options;
-  try {
-    for (const PrintFile& f : print_stability(grid, folder)) {
-      out.written.push_back(f.name);
-      with_files.links.push_back({f.name, f.name, f.what});
-    }
-  } catch (const EnvironmentError& e) {
-    out.missing = e.what();
-  }
-  io::write_text(folder + "/" + kPage, report::page_html(stability_page(grid, folder, with_files)));
-  out.written.insert(out.written.begin(), kPage);
-  return out;
+report::Document write_stability_report(const Grid& grid, const report::Folder& folder,
+                                        const ReportOptions& options) {
+  report::Document doc = stability_page(grid, folder, options);
+  doc.print("stability", "the grid, for print", grid_chart(grid));
+  if (doc.notes().empty())
+    doc.print("stability-profiles", "failures by difficulty, for print", profile_chart(grid));
+  doc.write(folder);
+  return doc;
 }
 
 }  // namespace lrb::stability

@@ -16,24 +16,25 @@ struct ReportOptions {
   std::vector<std::string> pictures;
   /// Returns the command that shows one case again; may be null.
   std::function<std::string(const Record&)> command;
-  std::vector<report::PageLink> links;  ///< such as one to the raw records
+  std::vector<report::Link> links;  ///< such as one to the raw records
 };
 
-struct ReportFiles {
-  std::vector<std::string> written;  ///< relative to the folder
-  std::string missing;  ///< one line on what could not be drawn because gnuplot is missing; else empty
-};
+/// Writes index.html, and as .svg and .png stability (the grid) and stability-profiles (failures by
+/// difficulty, family by family). Without gnuplot it writes the page alone, and the document's notes say so.
+/// Throws InputError if the grid's arrays do not fit together, EnvironmentError if a file cannot be written.
+report::Document write_stability_report(const Grid& grid, const report::Folder& folder,
+                                        const ReportOptions& options = {});
 
-/// Writes index.html, and as .svg and .png stability (the grid) and stability-profiles (failures along the
-/// dial, family by family). Without gnuplot it writes the page alone. Throws InputError if the grid's arrays
-/// do not fit together, EnvironmentError if a file cannot be written.
-ReportFiles write_stability_report(const Grid& grid, const std::string& folder,
-                                   const ReportOptions& options = {});
+/// The grid, and for each family a chart of failures by difficulty with a line for each method that is
+/// present.
+report::Gnuplot grid_chart(const Grid& grid);
+report::Gnuplot profile_chart(const Grid& grid);
 
-/// Says in words what became of a case.
+/// Returns the outcome of a case as text.
 std::string answer_text(const Record& r);
 
 /// Makes the page alone, with pictures read from the folder.
-report::Page stability_page(const Grid& grid, const std::string& folder, const ReportOptions& options = {});
+report::Document stability_page(const Grid& grid, const std::string& folder,
+                                const ReportOptions& options = {});
 
 }  // namespace lrb::stability

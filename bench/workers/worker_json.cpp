@@ -7,7 +7,7 @@ namespace lrb {
 template <>
 inline constexpr auto kFields<methods::MethodStyle> =
     std::tuple{field("title", &methods::MethodStyle::title), field("colour", &methods::MethodStyle::colour),
-               field("shape", &methods::MethodStyle::shape), field("point", &methods::MethodStyle::point)};
+               field("shape", &methods::MethodStyle::shape)};
 
 template <>
 inline constexpr auto kFields<methods::MethodInfo> = std::tuple{

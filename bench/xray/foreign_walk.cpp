@@ -368,11 +368,10 @@ using render::group_digits;
 
 constexpr const char* kHeatFile = "heat.png";
 
-report::PageTable wrong_table(const Xray& x, std::uint64_t& wrong) {
+report::Table wrong_table(const Xray& x, std::uint64_t& wrong) {
   constexpr std::size_t kMostRows = 30;
-  report::PageTable t;
-  t.title = "Wrong pairs of " + x.walk.title;
-  t.columns = {"step", "triangle of A", "triangle of B", "error", "why"};
+  report::Table t{"Wrong pairs of " + x.walk.title,
+                  {"step", "triangle of A", "triangle of B", "error", "explanation"}};
   wrong = 0;
   for (std::size_t i = 0; i < x.walk.steps.size(); ++i) {
     const WrongPairs w = wrong_pairs(x.walk.steps[i], x.ours.results[i].pairs);
@@ -390,8 +389,8 @@ report::PageTable wrong_table(const Xray& x, std::uint64_t& wrong) {
   t.note += wrong == 1 ? " pair is wrong." : " pairs are wrong.";
   if (x.method == "cgal")
     t.note +=
-        " CGAL is called as in its manual, with A's triangles transformed into B's frame: its predicates are "
-        "exact, but the transformed corners are rounded.";
+        " CGAL is called as in its manual, with A's triangles transformed to B's frame: its predicates are exact, but their "
+        "corners were rounded by the transformation.";
   return t;
 }
 
@@ -403,9 +402,7 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
   const std::size_t step = compare::busiest_step(runs);
   std::vector<std::string> notes;
   compare::refuse_folder_of_run(folder);
-  make_folder(folder);
-  const io::FolderLock lock(folder);
-  io::refuse_links(folder);
+  const report::Folder locked(folder);
   for (const auto& [recording, name] : {std::pair{&x.theirs, x.method}, {&x.ours, std::string("ours")}}) {
     spec::Scenario scenario = x.scenario;
     scenario.purpose = recording == &x.theirs
@@ -416,44 +413,36 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
         scenario, *recording, (std::filesystem::path(folder) / name).string(), x.command, progress);
     notes.insert(notes.end(), outcome.notes.begin(), outcome.notes.end());
   }
-  report::Page page;
-  page.title = x.scenario.name;
-  page.purpose = "What " + x.walk.title + " does for two bodies at " + std::to_string(x.walk.steps.size()) +
-                 (x.walk.steps.size() == 1 ? " pose" : " poses") +
-                 ", recorded in its own traversal, next to that of lrbscope.";
-  if (const std::string cut = compare::cut_words(runs); !cut.empty()) page.purpose += " " + cut;
-  page.command = x.command;
+  report::Document doc(x.scenario.name, "The traversal of " + x.walk.title + " for two bodies at " +
+                                            render::counted(x.walk.steps.size(), "pose", "poses") +
+                                            ", beside that of lrbscope.");
+  if (const std::string cut = compare::cut_words(runs); !cut.empty()) doc.purpose(cut);
+  doc.command(x.command).version(x.ours.trace.header.lrbscope);
   std::uint64_t wrong = 0;
-  report::PageTable wrong_pairs = wrong_table(x, wrong);
-  page.numbers = {
-      {"Box tests", group_digits(compare::sum_of(x.theirs, &Counters::box_tests)),
-       "lrbscope: " + group_digits(compare::sum_of(x.ours, &Counters::box_tests))},
-      {"Pairs of triangles tested", group_digits(compare::sum_of(x.theirs, &Counters::face_tests)),
-       "lrbscope: " + group_digits(compare::sum_of(x.ours, &Counters::face_tests))},
-      {"Pairs found", group_digits(compare::pairs_of(x.theirs)),
-       "lrbscope: " + group_digits(compare::pairs_of(x.ours))},
-      {"Wrong pairs", group_digits(wrong), "compared with exact results"}};
-  page.charts = {compare::chart_of(runs, "Box tests by step", "box tests", &Counters::box_tests),
-                 compare::chart_of(runs, "Face tests by step", "face tests", &Counters::face_tests)};
-  if (!wrong_pairs.rows.empty()) page.tables.push_back(std::move(wrong_pairs));
-  page.tables.push_back(compare::totals_of(runs));
-  page.tables.back().note =
+  const report::Table wrong_pairs = wrong_table(x, wrong);
+  const auto number = [&](const char* label, const auto& count) {
+    doc.number({label, group_digits(count(x.theirs)), "lrbscope: " + group_digits(count(x.ours))});
+  };
+  number("Box tests", [](const run::Recording& r) { return compare::sum_of(r, &Counters::box_tests); });
+  number("Triangle pairs tested",
+         [](const run::Recording& r) { return compare::sum_of(r, &Counters::face_tests); });
+  number("Pairs found", compare::pairs_of);
+  doc.number({"Wrong pairs", group_digits(wrong), "compared with exact answers"});
+  doc.views({{x.walk.title, x.method + "/index.html"}, {"lrbscope", "ours/index.html"}});
+  compare::add_work_charts(doc, runs);
+  if (!wrong_pairs.rows.empty()) doc.table(wrong_pairs);
+  report::Table totals = compare::totals_of(runs);
+  totals.note =
       "A pair of nodes of " + x.walk.title +
-      " is one test of two bounding volumes; a pair of lrbscope is two nodes with up to eight boxes each, "
-      "compared eight at a time. Faces separated by planes, eight at a time, are not counted as face tests of "
-      "lrbscope.";
-  render::write_png(compare::draw(runs, step, progress), folder + "/" + kHeatFile);
-  run::add_figure(
-      page, folder, "Distribution of the box tests at step " + std::to_string(x.ours.trace.steps[step].index),
-      "The tests of a node are distributed evenly over the faces below it; both engines on one scale, and "
-      "their difference. Pale faces have less than 2 % of the maximum.",
-      kHeatFile);
-  page.links.push_back({x.method + "/index.html", x.method + "/index.html",
-                        "the run of " + x.walk.title + ", with its trace"});
-  page.links.push_back({"ours/index.html", "ours/index.html", "the run of lrbscope, with its trace"});
-  page.views = {{x.walk.title, x.method + "/index.html"}, {"lrbscope", "ours/index.html"}};
-  page.footer = report::footer(x.ours.trace.header.lrbscope);
-  io::write_text(folder + "/index.html", report::page_html(page));
+      " is one test of two bounding volumes; of lrbscope's it is two nodes with up to eight boxes each, compared eight at a "
+      "time. Faces that planes separate, eight at a time, are not among lrbscope's face tests.";
+  doc.table(totals).picture(
+      kHeatFile, compare::draw(runs, step, progress),
+      "Box tests by face, step " + std::to_string(x.ours.trace.steps[step].index),
+      "The tests of each node, shared evenly by the faces below it; both engines on one scale, and their difference. Pale: less "
+      "than a fiftieth of the maximum.");
+  doc.link({x.method + "/index.html", "the run of " + x.walk.title + ", with its trace"});
+  doc.link({"ours/index.html", "the run of lrbscope, with its trace"}).write(locked);
   return notes;
 }
 

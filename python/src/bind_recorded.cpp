@@ -117,9 +117,7 @@ void save(const Recorded& r, py::handle file) {
 
 std::string html_of(const Recorded& r) {
   const py::gil_scoped_release unlocked;
-  report::Page page = run::run_page(r.shown(), {}, "", {r.title, r.purpose, "", "the trace", {}});
-  page.links.clear();  // these refer to files next to a run's page
-  return report::page_html(page);
+  return run::run_page(r.shown(), {}, "", {r.title, r.purpose, "", "the trace"}).html();
 }
 
 /// Returns the page in an iframe, so that its style does not affect the notebook.

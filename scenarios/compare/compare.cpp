@@ -30,16 +30,15 @@ trace::Chart chart_of_faces(const trace::Trace& trace) {
   return trace.header.construction ? trace::chart_over_construction(trace) : trace::chart_over_events(trace);
 }
 
-}  // namespace
-
 bool of_one_body(const Runs& runs) {
   return runs.of[0]->bodies.size() == 1 && runs.of[1]->bodies.size() == 1;
 }
 
-report::PageTable body_table(const Runs& runs) {
-  report::PageTable t;
-  t.title = "The LRB-reps";
-  t.columns = {"run", "real faces", "faces for each", "regions", "layers", "outermost wrapper", "events"};
+/// Returns numbers of both LRB-reps: faces, regions, layers, outermost wrapper.
+report::Table body_table(const Runs& runs) {
+  report::Table t{
+      "The LRB-reps",
+      {"run", "real faces", "faces for each", "regions", "layers", "outermost wrapper", "events"}};
   for (std::size_t i = 0; i < 2; ++i) {
     const LrbRep& rep = rep_of(runs, i);
     t.rows.push_back({runs.names[i], group_digits(rep.real_face_count()),
@@ -51,10 +50,9 @@ report::PageTable body_table(const Runs& runs) {
   return t;
 }
 
-report::PageTable pass_table(const Runs& runs) {
-  report::PageTable t;
-  t.title = "Pass by pass";
-  t.columns = {"pass"};
+/// Returns the results of each pass of two constructions; a table without rows for other runs.
+report::Table pass_table(const Runs& runs) {
+  report::Table t{"Passes", {"pass"}};
   for (const char* what : {"stage", "faces", "regions", "caps"})
     for (const std::string& name : runs.names) t.columns.push_back(std::string(what) + ", " + name);
   const std::array<std::vector<trace::PassSummary>, 2> passes = {trace::passes_of(runs.of[0]->trace),
@@ -67,26 +65,24 @@ report::PageTable pass_table(const Runs& runs) {
                             +[](const trace::PassSummary& p) { return group_digits(p.accepted()); }})
       for (const auto& of : passes) t.rows.back().push_back(k < of.size() ? text(of[k]) : "");
   }
-  t.note = "Faces: of the hull after the pass. Passes that made nothing are counted.";
+  t.note = "Faces: of the front after the pass. Passes that built nothing are counted.";
   return t;
 }
 
-report::PageChart faces_chart(const Runs& runs) {
-  report::PageChart c;
+/// Returns the faces of front or wrapper from event to event in both.
+report::Chart faces_chart(const Runs& runs) {
   const bool built = runs.of[0]->trace.header.construction;
-  c.title = built ? "The hull, event by event" : "The wrapper, event by event";
-  c.x_label = "event";
-  c.y_label = "faces";
-  c.stepped = true;
+  report::Chart c{built ? "The front by event" : "The wrapper by event", {"event"}, {"faces"}};
   for (std::size_t i = 0; i < 2; ++i) {
     trace::Chart chart = chart_of_faces(runs.of[i]->trace);
     for (trace::Series& s : chart.series)
       if (s.unit == "faces" && std::any_of(s.values.begin(), s.values.end(), [](double v) { return v > 0; }))
-        c.series.push_back({runs.names[i], chart.x, std::move(s.values)});
+        c.series.push_back({runs.names[i], chart.x, std::move(s.values), {report::Line::steps}});
   }
   return c;
 }
 
+/// Draws both wrappers as they are after the last event, coloured by region, seen by one camera.
 render::Image draw_bodies(const Runs& runs, const run::ProgressReport& progress) {
   run::Framing framing{{}, {}, rep_of(runs, 0).dim()};
   for (std::size_t i = 0; i < 2; ++i)
@@ -103,8 +99,6 @@ render::Image draw_bodies(const Runs& runs, const run::ProgressReport& progress)
   }
   return in_a_row(panels);
 }
-
-namespace {
 
 constexpr const char* kPicture = "compare.png";
 constexpr std::size_t kMostSteps = 200;
@@ -127,10 +121,8 @@ std::optional<std::string> different_event(const Runs& runs) {
   return {};
 }
 
-report::PageTable steps_table(const Runs& runs) {
-  report::PageTable t;
-  t.title = "Step by step";
-  t.columns = {"step", "answer"};
+report::Table steps_table(const Runs& runs) {
+  report::Table t{"Steps", {"step", "answer"}};
   for (const char* what : {"pairs", "face tests", "box tests"})
     for (const std::string& name : runs.names) t.columns.push_back(std::string(what) + ", " + name);
   for (std::size_t i = 0; i < std::min(step_count(runs), kMostSteps); ++i) {
@@ -158,21 +150,6 @@ void check_runs(const Runs& runs) {
   if (step_count(runs) == 0) throw InputError("there is no step that both runs have");
 }
 
-void add_steps(report::Page& page, const Runs& runs) {
-  page.charts = {chart_of(runs, "Tests of boxes, step by step", "box tests", &Counters::box_tests),
-                 chart_of(runs, "Tests of faces, step by step", "face tests", &Counters::face_tests)};
-  page.tables = {totals_of(runs), steps_table(runs)};
-}
-
-void add_bodies(report::Page& page, const Runs& runs) {
-  page.charts = {faces_chart(runs)};
-  page.tables = {body_table(runs)};
-  if (report::PageTable passes = pass_table(runs); !passes.rows.empty())
-    page.tables.push_back(std::move(passes));
-}
-
-}  // namespace
-
 std::optional<std::string> first_difference(const Runs& runs) {
   const std::optional<trace::Divergence> first =
       trace::first_divergence(runs.of[0]->trace, runs.of[1]->trace);
@@ -184,8 +161,9 @@ std::optional<std::string> first_difference(const Runs& runs) {
   return first->message() + (event ? "; " + *event : std::string("; all events are the same"));
 }
 
-std::vector<report::PageView> views_of(const Runs& runs, const std::string& folder) {
-  std::vector<report::PageView> out;
+/// Returns the views of both runs' pages for a page in `folder`; none if one of them has no page.
+std::vector<report::View> views_of(const Runs& runs, const std::string& folder) {
+  std::vector<report::View> out;
   for (std::size_t i = 0; i < 2; ++i) {
     std::error_code error;
     const std::filesystem::path page = std::filesystem::absolute(runs.pages[i], error).lexically_normal();
@@ -196,6 +174,8 @@ std::vector<report::PageView> views_of(const Runs& runs, const std::string& fold
   return out;
 }
 
+}  // namespace
+
 std::optional<std::string> write_comparison(const Runs& runs, const std::string& command,
                                             const std::string& folder, const run::ProgressReport& progress) {
   check_runs(runs);
@@ -204,34 +184,25 @@ std::optional<std::string> write_comparison(const Runs& runs, const std::string&
   const std::size_t step = alone ? 0 : busiest_step(runs);
   const render::Image picture = alone ? draw_bodies(runs, progress) : draw(runs, step, progress);
   std::optional<std::string> difference = first_difference(runs);
-  report::Page page;
-  page.title = runs.names[0] + " and " + runs.names[1];
-  page.purpose = alone ? "Two recorded runs of one body each." : "Two recorded runs, step by step.";
-  page.verdict = difference ? "differ" : "the same";
-  if (const std::string cut = cut_words(runs); !cut.empty()) page.purpose += " " + cut;
-  page.texts = {
-      {"The first difference", difference.value_or("There is none: all events and answers are the same.")}};
-  page.command = command;
-  if (alone)
-    add_bodies(page, runs);
-  else
-    add_steps(page, runs);
-  page.views = views_of(runs, folder);
-  page.footer = report::footer(runs.of[0]->trace.header.lrbscope);
-  make_folder(folder);
-  const io::FolderLock lock(folder);
-  io::refuse_links(folder);
-  render::write_png(picture, folder + "/" + kPicture);
-  if (alone)
-    run::add_figure(page, folder, "After the last event", "A colour for each region, seen by one camera.",
-                    kPicture);
-  else
-    run::add_figure(
-        page, folder, "Where the work went, at step " + std::to_string(runs.of[0]->trace.steps[step].index),
-        "Both runs on one scale, seen by one camera; and how much they differ, face by face, where the bodies have "
-        "the same faces. Pale faces have fewer than a fiftieth of the most.",
-        kPicture);
-  io::write_text(folder + "/index.html", report::page_html(page));
+  report::Document doc(runs.names[0] + " and " + runs.names[1],
+                       alone ? "Two recorded runs of one body each." : "Two recorded runs, step by step.");
+  if (const std::string cut = cut_words(runs); !cut.empty()) doc.purpose(cut);
+  doc.verdict(difference ? "differ" : "the same").command(command).version(runs.of[0]->trace.header.lrbscope);
+  doc.text({"First difference", difference.value_or("None: all events and answers are the same.")});
+  doc.views(views_of(runs, folder));
+  if (alone) {
+    doc.chart(faces_chart(runs)).table(body_table(runs));
+    if (const report::Table passes = pass_table(runs); !passes.rows.empty()) doc.table(passes);
+    doc.picture(kPicture, picture, "After the last event", "Coloured by region, seen by one camera.");
+  } else {
+    add_work_charts(doc, runs);
+    doc.table(totals_of(runs)).table(steps_table(runs));
+    doc.picture(
+        kPicture, picture, "Work by face, step " + std::to_string(runs.of[0]->trace.steps[step].index),
+        "Both runs on one scale, seen by one camera; and their difference, face by face, where the bodies have the "
+        "same faces. Pale: less than a fiftieth of the maximum.");
+  }
+  doc.write(folder);
   return difference;
 }
 

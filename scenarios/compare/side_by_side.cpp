@@ -140,23 +140,20 @@ render::Image draw(const Runs& runs, std::size_t step, const run::ProgressReport
   return in_a_row(panels);
 }
 
-report::PageChart chart_of(const Runs& runs, const std::string& title, const std::string& what,
-                           std::uint64_t Counters::*counter) {
-  report::PageChart c;
-  c.title = title;
-  c.x_label = "time step";
-  c.y_label = what;
-  c.log_y = true;
-  c.note = "0 is drawn as 1.";
-  for (std::size_t i = 0; i < 2; ++i) {
-    report::PageSeries s{runs.names[i], {}, {}};
-    for (const trace::Step& step : runs.of[i]->trace.steps) {
-      s.x.push_back(step.index);
-      s.y.push_back(static_cast<double>(std::max<std::uint64_t>(step.result.counters.*counter, 1)));
+void add_work_charts(report::Document& doc, const Runs& runs) {
+  for (const auto& [what, counter] :
+       {std::pair{"Box tests", &Counters::box_tests}, {"Face tests", &Counters::face_tests}}) {
+    report::Chart c{std::string(what) + " by step", {"time step"}, {what, true}, {}, "0 is drawn as 1."};
+    for (std::size_t i = 0; i < 2; ++i) {
+      report::Series s{runs.names[i], {}, {}};
+      for (const trace::Step& step : runs.of[i]->trace.steps) {
+        s.x.push_back(step.index);
+        s.y.push_back(static_cast<double>(std::max<std::uint64_t>(step.result.counters.*counter, 1)));
+      }
+      c.series.push_back(std::move(s));
     }
-    c.series.push_back(std::move(s));
+    doc.chart(c);
   }
-  return c;
 }
 
 std::uint64_t sum_of(const run::Recording& run, std::uint64_t Counters::*counter) {
@@ -171,10 +168,9 @@ std::uint64_t pairs_of(const run::Recording& run) {
   return out;
 }
 
-report::PageTable totals_of(const Runs& runs) {
-  report::PageTable t;
-  t.title = "All steps";
-  t.columns = {"run", "pairs of nodes", "box tests", "face tests", "regions refined", "pairs found"};
+report::Table totals_of(const Runs& runs) {
+  report::Table t{"All steps together",
+                  {"run", "pairs of nodes", "box tests", "face tests", "refined regions", "pairs found"}};
   for (std::size_t i = 0; i < 2; ++i) {
     const run::Recording& r = *runs.of[i];
     t.rows.push_back({runs.names[i], group_digits(sum_of(r, &Counters::node_pairs)),

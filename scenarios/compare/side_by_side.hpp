@@ -46,15 +46,14 @@ render::Image in_a_row(const std::vector<render::Panel>& panels);
 /// per face.
 render::Image draw(const Runs& runs, std::size_t step, const run::ProgressReport& progress);
 
-/// Returns a chart of a counter over the steps of both.
-report::PageChart chart_of(const Runs& runs, const std::string& title, const std::string& what,
-                           std::uint64_t Counters::*counter);
+/// Adds charts of the tests of boxes and of faces by step.
+void add_work_charts(report::Document& doc, const Runs& runs);
 
 /// Return a counter, and the number of pairs found, summed over all steps.
 std::uint64_t sum_of(const run::Recording& run, std::uint64_t Counters::*counter);
 std::uint64_t pairs_of(const run::Recording& run);
 
 /// Returns a table of counters and pairs, summed over all steps: a row for each run.
-report::PageTable totals_of(const Runs& runs);
+report::Table totals_of(const Runs& runs);
 
 }  // namespace lrb::compare

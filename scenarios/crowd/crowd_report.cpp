@@ -35,7 +35,7 @@ class FileSink final : public trace::ByteSink {
   AtomicFile file_;
 };
 
-std::vector<report::PageNumber> numbers(const spec::Crowd& crowd, const CrowdRun& run) {
+void add_numbers(report::Document& doc, const spec::Crowd& crowd, const CrowdRun& run) {
   const std::uint64_t n = run.motion.body_count(), all = n * (n - 1) / 2;
   std::uint64_t asked = 0, met = 0, faces = 0, tests = 0;
   for (const CrowdStep& s : run.steps) {
@@ -51,68 +51,60 @@ std::vector<report::PageNumber> numbers(const spec::Crowd& crowd, const CrowdRun
     return mean < kWholeFrom ? render::short_number(mean)
                              : render::group_digits(static_cast<std::uint64_t>(std::round(mean)));
   };
-  return {{"Bodies", render::group_digits(n),
-           "of " + std::to_string(crowd.kinds.size()) + (crowd.kinds.size() == 1 ? " kind, " : " kinds, ") +
-               render::group_digits(faces) + " real faces"},
-          {"Time steps", render::group_digits(run.steps.size()), ""},
-          {"Boxes that meet", a_step(asked), "of " + render::group_digits(all) + " pairs of bodies, a step"},
-          {"Bodies that meet", a_step(met), "pairs a step"},
-          {"Face tests", a_step(tests), "exact comparisons of two faces, a step"}};
+  doc.number({"Bodies", render::group_digits(n),
+              "of " + render::counted(crowd.kinds.size(), "kind", "kinds") + ", " +
+                  render::group_digits(faces) + " real faces"})
+      .number({"Time steps", render::group_digits(run.steps.size())})
+      .number({"Overlapping boxes", a_step(asked),
+               "of " + render::group_digits(all) + " pairs of bodies, a step"})
+      .number({"Intersecting bodies", a_step(met), "pairs a step"})
+      .number({"Face tests", a_step(tests), "exact, a step"});
 }
 
-report::PageChart chart(const char* title, const char* y_label) {
-  report::PageChart c;
-  c.title = title;
-  c.x_label = "time step";
-  c.y_label = y_label;
-  c.cursor = report::PageCursor::step;
-  return c;
-}
+/// A curve over the steps.
+struct Curve {
+  const char* label;
+  std::function<std::uint64_t(const CrowdStep&)> value;
+};
 
-void add_series(report::PageChart& c, const CrowdRun& run, const char* label,
-                const std::function<double(const CrowdStep&)>& value) {
-  report::PageSeries s;
-  s.label = label;
-  for (std::size_t i = 0; i < run.steps.size(); ++i) {
-    s.x.push_back(static_cast<double>(i));
-    s.y.push_back(value(run.steps[i]));
+void add_chart(report::Document& doc, const CrowdRun& run, const char* title, const char* y_label,
+               const std::vector<Curve>& curves) {
+  if (run.steps.size() < 2) return;
+  report::Chart chart{title, {"time step"}, {y_label}, {}, {}, report::Cursor::step};
+  for (const Curve& curve : curves) {
+    report::Series s{curve.label, {}, {}};
+    for (std::size_t i = 0; i < run.steps.size(); ++i) {
+      s.x.push_back(static_cast<double>(i));
+      s.y.push_back(static_cast<double>(curve.value(run.steps[i])));
+    }
+    if (std::any_of(s.y.begin(), s.y.end(), [](double y) { return y > 0; })) chart.series.push_back(s);
   }
-  if (std::any_of(s.y.begin(), s.y.end(), [](double y) { return y > 0; })) c.series.push_back(std::move(s));
+  if (!chart.series.empty()) doc.chart(chart);
 }
 
-std::vector<report::PageChart> charts(const CrowdRun& run) {
+void add_charts(report::Document& doc, const CrowdRun& run) {
+  using S = const CrowdStep&;
   const std::size_t n = run.motion.body_count();
-  const auto number = [](std::size_t x) { return static_cast<double>(x); };
-  report::PageChart bodies = chart("Pairs of bodies, step by step", "pairs in the step");
-  add_series(bodies, run, "boxes meet", [&](const CrowdStep& s) { return number(s.queries.size()); });
-  add_series(bodies, run, "crossing",
-             [&](const CrowdStep& s) { return number(count(s, Relation::crossing)); });
-  add_series(bodies, run, "touching",
-             [&](const CrowdStep& s) { return number(count(s, Relation::touching)); });
-  add_series(bodies, run, "one inside the other", [&](const CrowdStep& s) {
-    return number(count(s, Relation::a_inside_b) + count(s, Relation::b_inside_a));
-  });
-  add_series(bodies, run, "bodies in contact",
-             [&](const CrowdStep& s) { return number(bodies_in_contact(s, n)); });
-  report::PageChart work = chart("Work, step by step", "number in the step");
-  add_series(work, run, "face tests", [&](const CrowdStep& s) { return number(sum(s).face_tests); });
-  add_series(work, run, "refinements", [&](const CrowdStep& s) { return number(sum(s).refinements); });
-  report::PageChart broad = chart("Broad phase, step by step", "number in the step");
-  add_series(broad, run, "box tests", [&](const CrowdStep& s) { return number(s.broad_phase.box_tests); });
-  add_series(broad, run, "swaps in the order",
-             [&](const CrowdStep& s) { return number(s.broad_phase.swaps); });
-  std::vector<report::PageChart> out;
-  for (report::PageChart* c : {&bodies, &work, &broad})
-    if (run.steps.size() > 1 && !c->series.empty()) out.push_back(std::move(*c));
-  return out;
+  add_chart(doc, run, "Pairs of bodies by step", "pairs in the step",
+            {{"overlapping boxes", [](S s) { return s.queries.size(); }},
+             {"crossing", [](S s) { return count(s, Relation::crossing); }},
+             {"touching", [](S s) { return count(s, Relation::touching); }},
+             {"one inside the other",
+              [](S s) { return count(s, Relation::a_inside_b) + count(s, Relation::b_inside_a); }},
+             {"bodies in contact", [n](S s) { return bodies_in_contact(s, n); }}});
+  add_chart(doc, run, "Work by step", "number in the step",
+            {{"face tests", [](S s) { return sum(s).face_tests; }},
+             {"refinements", [](S s) { return sum(s).refinements; }}});
+  add_chart(doc, run, "Broad phase by step", "number in the step",
+            {{"box tests", [](S s) { return s.broad_phase.box_tests; }},
+             {"swaps in the order", [](S s) { return s.broad_phase.swaps; }}});
 }
 
-report::PageTable last_queries(const spec::Crowd& crowd, const CrowdRun& run) {
+report::Table last_queries(const spec::Crowd& crowd, const CrowdRun& run) {
   constexpr std::size_t kMostRows = 200;
-  report::PageTable t;
-  t.title = "Bodies that meet at step " + std::to_string(run.steps.size() - 1);
-  t.columns = {"A",          "B",           "relation",   "pairs of faces", "contact regions",
-               "face tests", "refinements", "fingerprint"};
+  report::Table t{"Intersecting bodies at step " + std::to_string(run.steps.size() - 1),
+                  {"A", "B", "relation", "pairs of faces", "contact regions", "face tests", "refinements",
+                   "fingerprint"}};
   const bool regions = crowd.request.contacts;
   if (!regions) t.columns.erase(t.columns.begin() + 4);
   std::size_t left_out = 0;
@@ -129,40 +121,19 @@ report::PageTable last_queries(const spec::Crowd& crowd, const CrowdRun& run) {
                       render::group_digits(r.counters.refinements), trace::to_hex(r.fingerprint)});
     if (!regions) t.rows.back().erase(t.rows.back().begin() + 4);
   }
-  t.note = "Of pairs whose boxes do not meet nothing is asked: they have no point in common.";
+  t.note = "Pairs with disjoint boxes are not queried: they have no point in common.";
   if (left_out > 0) t.note += " " + std::to_string(left_out) + " more are left out here.";
   return t;
 }
 
-report::Page crowd_page(const spec::Crowd& crowd, const CrowdRun& run, const run::DrawnFrames& drawn,
-                        const std::string& folder, const std::string& command,
-                        std::vector<report::PageLink> links) {
-  report::Page page;
-  page.title = crowd.name;
-  page.purpose = crowd.purpose;
-  page.verdict = std::to_string(run.motion.body_count()) + " bodies";
-  page.command = command;
-  page.numbers = numbers(crowd, run);
-  run::add_frames(page, drawn, folder);
-  page.charts = charts(run);
-  page.tables.push_back(last_queries(crowd, run));
-  page.links = std::move(links);
-  if (!drawn.frames.empty())
-    page.links.push_back(
-        {"frames/", "frames/", std::to_string(drawn.frames.size()) + " full pictures (PNG)"});
-  page.footer = report::footer(trace::lrbscope_version());
-  return page;
+report::Link trace_link(const spec::Crowd& crowd, const std::string& file) {
+  return {file, std::string("queries on the tracks of their ") +
+                    (crowd.clock == trace::Clock::event ? "bodies" : "threads") +
+                    "; opens in ui.perfetto.dev"};
 }
 
-report::PageLink trace_link(const spec::Crowd& crowd, const std::string& file) {
-  return {file, file,
-          crowd.clock == trace::Clock::event
-              ? "every query on the tracks of its bodies; drag it onto ui.perfetto.dev"
-              : "every query on the track of its thread; drag it onto ui.perfetto.dev"};
-}
-
-void write_pictures_and_page(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
-                             const std::string& command, std::vector<report::PageLink> links,
+void write_pictures_and_page(const spec::Crowd& crowd, const CrowdRun& run, const report::Folder& folder,
+                             const std::string& command, const std::vector<report::Link>& links,
                              const run::ProgressReport& progress) {
   const std::vector<std::pair<std::string, std::string>> text = {
       {"Software", std::string("lrbscope ") + trace::lrbscope_version()},
@@ -171,8 +142,13 @@ void write_pictures_and_page(const spec::Crowd& crowd, const CrowdRun& run, cons
   };
   const run::DrawnFrames drawn = draw_crowd(crowd, run, folder, text, progress);
   progress("page", 0, 1);
-  io::write_text(folder + "/index.html",
-                 report::page_html(crowd_page(crowd, run, drawn, folder, command, std::move(links))));
+  report::Document doc(crowd.name, crowd.purpose);
+  doc.verdict(std::to_string(run.motion.body_count()) + " bodies").command(command);
+  doc.each(links, &report::Document::link);
+  add_numbers(doc, crowd, run);
+  run::add_frames(doc, drawn, folder);
+  add_charts(doc, run);
+  doc.table(last_queries(crowd, run)).write(folder);
 }
 
 }  // namespace
@@ -180,9 +156,7 @@ void write_pictures_and_page(const spec::Crowd& crowd, const CrowdRun& run, cons
 std::string write_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
                         const std::string& command, const run::ProgressReport& progress) {
   run::check_frame_size(crowd.frames);
-  make_folder(folder);
-  const io::FolderLock lock(folder);
-  io::refuse_links(folder);
+  const report::Folder locked(folder);
   FileSink sink(folder + "/trace.json");
   write_crowd_trace(crowd, run, sink);
   sink.commit();
@@ -191,10 +165,10 @@ std::string write_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std
   io::write_text(folder + "/timing.json", crowd_timing(run));
   for (std::size_t k = 0; k < run.kinds.size(); ++k)
     save_lrb(run.kinds[k].rep, folder + "/" + crowd.kinds[k].name + ".lrb");
-  write_pictures_and_page(crowd, run, folder, command,
+  write_pictures_and_page(crowd, run, locked, command,
                           {trace_link(crowd, "trace.json"),
-                           {"summary.json", "summary.json", "every step and every answer as JSON"},
-                           {"timing.json", "timing.json", "how long each step took"}},
+                           {"summary.json", "steps and answers, as JSON"},
+                           {"timing.json", "times of the steps"}},
                           progress);
   return summary;
 }
@@ -202,9 +176,6 @@ std::string write_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std
 void redraw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
                   const std::string& command, const std::string& trace_file,
                   const run::ProgressReport& progress) {
-  make_folder(folder);
-  const io::FolderLock lock(folder);
-  io::refuse_links(folder);
   const std::string file = std::filesystem::relative(trace_file, folder).generic_string();
   write_pictures_and_page(crowd, run, folder, command, {trace_link(crowd, file)}, progress);
 }

@@ -157,36 +157,33 @@ report::PngBytes png_of(const render::Image& image) {
   return image.empty() ? report::PngBytes() : render::encode_png(image);
 }
 
-void add_comparison(GoldenResult& result, report::PageComparison comparison, const render::Image& expected,
+void add_comparison(GoldenResult& result, report::Comparison comparison, const render::Image& expected,
                     const render::Image& actual) {
   const render::Image difference =
       expected.empty() || actual.empty() ? render::Image() : render::difference_image(expected, actual);
-  result.pngs.push_back({png_of(expected), png_of(actual), png_of(difference)});
+  comparison.pngs = {png_of(expected), png_of(actual), png_of(difference)};
+  if (!comparison.passed) comparison.command = result.approve;
   result.comparisons.push_back(std::move(comparison));
 }
 
 void add_divergence(GoldenResult& result, const Golden& golden, const GoldenRun& run) {
   const DivergencePictures pictures = draw_divergence(golden, run, *result.verdict.divergence);
-  report::PageComparison c;
-  c.id = result.name + "-" + kDivergence;
-  c.title = result.name + ": where the runs part";
-  c.text = result.verdict.divergence->message();
-  if (!result.verdict.diagnosis.empty()) c.text += ". " + result.verdict.diagnosis;
-  c.text += (pictures.note.empty() ? "" : ". " + pictures.note);
-  c.captions = {pictures.expected_caption, pictures.actual_caption};
-  c.command = result.approve;
-  add_comparison(result, std::move(c), pictures.expected, pictures.actual);
+  std::string text = result.verdict.divergence->message();
+  for (const std::string& more : {result.verdict.diagnosis, pictures.note})
+    if (!more.empty()) text += ". " + more;
+  add_comparison(result,
+                 {result.name + "-" + kDivergence,
+                  result.name + ": first difference",
+                  text,
+                  false,
+                  {},
+                  {pictures.expected_caption, pictures.actual_caption}},
+                 pictures.expected, pictures.actual);
 }
 
 void add_image(GoldenResult& result, const Golden& golden, const GoldenRun& run, const ImageVerdict& v) {
-  report::PageComparison c;
   const std::string frame = fs::path(golden_image_file(v.frame)).stem().string();
-  c.id = result.name + "-" + frame;
-  c.title = result.name + ": " + v.file;
-  c.text = v.text;
-  c.passed = v.passed;
-  if (!v.passed) c.command = result.approve;
-  add_comparison(result, std::move(c),
+  add_comparison(result, {result.name + "-" + frame, result.name + ": " + v.file, v.text, v.passed},
                  v.has_expected ? golden.frames[v.frame][v.variant].png.image : render::Image(),
                  v.has_actual ? run.frames[v.frame].image : render::Image());
 }
@@ -223,12 +220,10 @@ std::string events_words(const GoldenResult& r) {
                               : render::counted(r.events, "event", "events") + ": equal";
 }
 
-/// What came out otherwise, step by step, with what may be behind it below.
-report::PageTable effects_table(const GoldenResult& r) {
+/// The differences by step, and their possible causes.
+report::Table effects_table(const GoldenResult& r) {
   constexpr std::size_t kMostRows = 200;
-  report::PageTable t;
-  t.title = r.name + ": what came out otherwise";
-  t.columns = {"step", "what", "approved", "found"};
+  report::Table t{r.name + ": differences", {"step", "quantity", "approved", "found"}};
   for (std::size_t i = 0; i < std::min(r.verdict.effects.size(), kMostRows); ++i) {
     const Effect& e = r.verdict.effects[i];
     t.rows.push_back({std::to_string(e.step), e.what, e.expected, e.found});
@@ -238,8 +233,7 @@ report::PageTable effects_table(const GoldenResult& r) {
   if (r.verdict.effects.empty()) t.rows.push_back({"all", "answers and counters", "", "as approved"});
   for (const std::string& cause : r.verdict.causes) t.note += "Cause: " + cause + ". ";
   if (r.verdict.causes.empty())
-    t.note +=
-        "Scenario, bodies, poses, request and version are as approved: the program itself answers otherwise.";
+    t.note += "Scenario, bodies, poses, request and version are as approved: the program itself has changed.";
   return t;
 }
 
@@ -299,64 +293,43 @@ void write_failures(const GoldenResult& result, const GoldenRun& run, const std:
   make_folder(folder + "/" + result.name);
   if (result.verdict.divergence)
     trace::save_trace(run.recording.trace, folder + "/" + result.name + "/" + kActualTrace);
-  for (std::size_t i = 0; i < result.comparisons.size(); ++i) {
-    if (result.comparisons[i].passed) continue;
-    for (std::size_t kind = 0; kind < std::size(kKinds); ++kind) {
-      const report::PngBytes& png = result.pngs[i][kind];
-      if (png.empty()) continue;
-      write_file(folder + "/" + file_of(result.comparisons[i].id, result.name, kKinds[kind]),
-                 {reinterpret_cast<const char*>(png.data()), png.size()});
-    }
-  }
+  for (const report::Comparison& c : result.comparisons)
+    for (std::size_t kind = 0; kind < std::size(kKinds); ++kind)
+      if (const report::PngBytes& png = c.pngs[kind]; !c.passed && !png.empty())
+        write_file(folder + "/" + file_of(c.id, result.name, kKinds[kind]),
+                   {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
-void write_golden_page(const std::vector<GoldenResult>& results, const std::string& folder,
+void write_golden_page(const std::vector<GoldenResult>& results, const report::Folder& folder,
                        const std::string& command) {
-  report::Page page;
-  page.title = kTitle;
-  page.command = command;
   std::size_t failed = 0, images = 0, images_failed = 0, events = 0;
-  report::PageTable table;
-  table.title = "Scenarios";
-  table.columns = {"scenario", "verdict", "answers", "events and counters", "images", "seconds"};
-  std::vector<report::PageTable> effect_tables;
-  std::vector<report::PngBytes> pngs;
+  report::Table scenarios{"Scenarios",
+                          {"scenario", "verdict", "answers", "events and counters", "images", "seconds"}};
   for (const GoldenResult& r : results) {
     const GoldenVerdict& v = r.verdict;
     failed += v.passed() ? 0 : 1;
     images += v.images.size();
     for (const ImageVerdict& image : v.images) images_failed += image.passed ? 0 : 1;
     events += r.events;
-    table.rows.push_back({r.name, v.passed() ? "passed" : "FAILED", answers_words(r), events_words(r),
-                          images_words(r), io::fixed_text(r.seconds, 1)});
-    if (!v.effects.empty() || !v.causes.empty()) effect_tables.push_back(effects_table(r));
-    for (const auto& three : r.pngs)
-      for (const report::PngBytes& png : three)
-        if (!png.empty()) pngs.push_back(png);
+    scenarios.rows.push_back({r.name, v.passed() ? "passed" : "FAILED", answers_words(r), events_words(r),
+                              images_words(r), io::fixed_text(r.seconds, 1)});
   }
-  page.verdict = failed == 0 ? "passed" : render::counted(failed, "failure", "failures");
-  page.purpose =
-      "Runs against what was approved of them: events and counters must be equal; pictures may differ by "
-      "what "
-      "processors differ by.";
-  page.numbers = {{"scenarios", std::to_string(results.size()), std::to_string(failed) + " failed"},
-                  {"events compared", render::group_digits(events), "each field, exactly"},
-                  {"images", std::to_string(images), std::to_string(images_failed) + " failed"}};
-  page.is_bad = failed > 0;
-  page.tables = std::move(effect_tables);
-  page.tables.insert(page.tables.begin(), std::move(table));
-  const report::InlinedImages inlined = report::inline_pngs(pngs);
-  std::size_t next = 0;
+  report::Document doc(
+      kTitle,
+      "Runs against their approved goldens: events and counters must be equal; pictures may differ by the "
+      "rounding of other processors.");
+  doc.verdict(failed == 0 ? "passed" : render::counted(failed, "failure", "failures"), failed == 0)
+      .command(command)
+      .number({"Scenarios", std::to_string(results.size()), std::to_string(failed) + " failed"})
+      .number({"Events compared", render::group_digits(events), "each field, exactly"})
+      .number({"Images", std::to_string(images), std::to_string(images_failed) + " failed"})
+      .table(scenarios);
+  std::vector<report::Comparison> comparisons;
   for (const GoldenResult& r : results) {
-    for (std::size_t i = 0; i < r.comparisons.size(); ++i) {
-      report::PageComparison c = r.comparisons[i];
-      for (std::size_t kind = 0; kind < std::size(kKinds); ++kind)
-        if (!r.pngs[i][kind].empty()) c.data_uris[kind] = inlined.uris[next++];
-      page.comparisons.push_back(std::move(c));
-    }
+    if (!r.verdict.effects.empty() || !r.verdict.causes.empty()) doc.table(effects_table(r));
+    comparisons.insert(comparisons.end(), r.comparisons.begin(), r.comparisons.end());
   }
-  page.footer = inlined.note;
-  io::write_text(folder + "/index.html", report::page_html(page));
+  doc.comparisons(comparisons).write(folder);
 }
 
 std::string result_text(const GoldenResult& r) {
@@ -386,7 +359,7 @@ std::string result_text(const GoldenResult& r) {
   for (const ImageVerdict& image : v.images)
     if (!image.passed) out += "      " + image.file + ": " + image.text + "\n";
   if (!r.page.empty())
-    for (const report::PageComparison& c : r.comparisons)
+    for (const report::Comparison& c : r.comparisons)
       if (!c.passed) out += "      " + r.page + "#" + c.id + "\n";
   out += "      approve it: " + r.approve + "\n";
   return out;

@@ -1,14 +1,12 @@
 #pragma once
 /// Writes what a test of goldens leaves behind: files of what differs, and a page.
 
-#include <array>
 #include <string>
 #include <vector>
 
 #include "scenarios/golden/check.hpp"
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/golden/golden_run.hpp"
-#include "scenarios/report/assets.hpp"
 #include "scenarios/report/document.hpp"
 #include <lrbscope/trace/divergence.hpp>
 
@@ -23,9 +21,7 @@ struct GoldenResult {
   double seconds = 0;   ///< that the test took: the run, its pictures and the comparison
   std::string approve;  ///< the command
   std::string page;     ///< that will show it, for people; empty: none
-  std::vector<report::PageComparison> comparisons;  ///< for the page, pictures without their data
-  std::vector<std::array<report::PngBytes, 3>>
-      pngs;  ///< of each: expected, actual, difference; empty: there is none
+  std::vector<report::Comparison> comparisons;
 };
 
 /// Tests a run. With `all`, keeps the pictures of what passed, too.
@@ -43,7 +39,7 @@ void clear_golden_report(const std::string& folder, const std::vector<std::strin
 void write_failures(const GoldenResult& result, const GoldenRun& run, const std::string& folder);
 
 /// Writes folder/index.html.
-void write_golden_page(const std::vector<GoldenResult>& results, const std::string& folder,
+void write_golden_page(const std::vector<GoldenResult>& results, const report::Folder& folder,
                        const std::string& command);
 
 /// Returns the lines that tell people about a scenario's test.

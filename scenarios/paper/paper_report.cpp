@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <map>
 #include <optional>
-#include <sstream>
 
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/io/files.hpp"
@@ -13,7 +11,6 @@
 #include "scenarios/paper/sweep.hpp"
 #include "scenarios/paper/tables.hpp"
 #include "scenarios/report/document.hpp"
-#include "scenarios/run/run_page.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/image.hpp>
@@ -24,86 +21,56 @@ namespace {
 
 constexpr double kBinWidth = 250;  // comparisons
 
-// Okabe and Ito's colours, which people with any colour vision tell apart; dash and point types are told
-// apart in grey, too.
-constexpr const char* kColours[] = {"#0072B2", "#E69F00", "#009E73", "#D55E00",
-                                    "#56B4E9", "#CC79A7", "#000000"};
-
-}  // namespace
-
-report::Gnuplot figure_3_1(std::span<const ObjectRow> rows) {
+/// Figure 3.1: the other object's size (real and pseudo faces, log axis) against comparisons: minimum,
+/// average and maximum, measured with the paper's recursion and as published.
+report::Chart figure_3_1(std::span<const ObjectRow> rows) {
   constexpr double kBeside = 1.06;  // published bars stand to the right of ours by this factor
-  const auto bar = [](double size, double average, double min, double max) {
-    return io::fixed_text(size) + " " + io::fixed_text(average) + " " + io::fixed_text(min) + " " +
-           io::fixed_text(max);
+  report::Series measured{"measured: average, minimum, maximum", {}, {}},
+      paper{"published", {}, {}, {report::Line::dashed}};
+  const auto add = [](report::Series& s, double size, double average, double min, double max) {
+    s.x.push_back(size);
+    s.y.push_back(average);
+    s.low.push_back(min);
+    s.high.push_back(max);
   };
-  std::vector<std::string> measured, as_published, names;
+  report::Axis sizes{"the other object: its real and pseudo faces", true, 80, 90000};
   for (const ObjectRow& row : rows) {
     const Spread& s = row.recursions[kPaper].comparisons;
-    measured.push_back(bar(row.total_faces, s.average, s.min, s.max));
-    double top = s.max;
-    if (const PublishedRow* p = published(row.object)) {
-      as_published.push_back(bar(row.total_faces * kBeside, p->average, p->min, p->max));
-      top = std::max(top, p->max);
-    }
-    names.push_back(io::fixed_text(row.total_faces) + " " + io::fixed_text(top) + " " +
-                    report::gnuplot_data_text(row.object));
+    add(measured, row.total_faces, s.average, s.min, s.max);
+    if (const PublishedRow* p = published(row.object))
+      add(paper, row.total_faces * kBeside, p->average, p->min, p->max);
+    sizes.ticks.push_back(
+        {static_cast<double>(row.total_faces), row.object + ": " + std::to_string(row.total_faces)});
   }
-  report::Gnuplot g;
-  g.add_data("measured", measured);
-  g.add_data("published", as_published);
-  g.add_data("names", names);
-  g.script += R"(set logscale x
-set xrange [80:90000]
-set yrange [0:*]
-set offsets 0, 0, graph 0.05, 0
-set xlabel 'size of the object that A meets: real and pseudo faces'
-set ylabel 'face comparisons in a time step'
-set key top left reverse Left
-set grid y lc rgb '#dddddd'
-set border 3
-set tics nomirror out
-plot $measured using 1:2:3:4 with yerrorbars lw 1.5 pt 7 ps 0.6 lc rgb '#0072B2' title 'measured: average, minimum, maximum', \
-     $measured using 1:2 with lines lw 1.5 lc rgb '#0072B2' notitle, \
-     $published using 1:2:3:4 with yerrorbars lw 1.5 pt 5 ps 0.6 lc rgb '#D55E00' title 'published', \
-     $published using 1:2 with lines dt 2 lw 1.5 lc rgb '#D55E00' notitle, \
-     $names using 1:2:3 with labels offset 0.3, 0.7 tc rgb '#555555' notitle
-)";
-  return g;
+  return {
+      "Figure 3.1", sizes, {"face comparisons in a time step"}, {measured, paper}, "The paper's recursion."};
 }
 
-report::Gnuplot figure_3_2(std::span<const ObjectRow> rows, std::span<const ContactStep> steps) {
-  report::Gnuplot g;
-  std::string plot = "plot ";
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+/// Figure 3.2: for each number of comparisons, how many time steps needed it, a line for each object, with
+/// the paper's recursion.
+report::Chart figure_3_2(std::span<const ObjectRow> rows, std::span<const ContactStep> steps) {
+  report::Chart chart{
+      "Figure 3.2",
+      {"face comparisons in a time step (bins of " + io::fixed_text(kBinWidth) + ")", false, 0, 8000},
+      {"time steps"},
+      {},
+      "The paper's recursion, a line for each object."};
+  for (const ObjectRow& row : rows) {
     std::map<std::uint64_t, int> bins;
     for (const ContactStep& s : steps)
-      if (s.object == rows[i].object)
+      if (s.object == row.object)
         ++bins[static_cast<std::uint64_t>(static_cast<double>(s.counts[kPaper].comparisons) / kBinWidth)];
-    std::vector<std::string> points;
+    report::Series line{
+        row.object + ": " + std::to_string(row.total_faces) + " faces", {}, {}, {{}, {}, "none"}};
     const std::uint64_t last = bins.empty() ? 0 : bins.rbegin()->first;
-    for (std::uint64_t b = 0; b <= last; ++b)
-      points.push_back(io::fixed_text((static_cast<double>(b) + 0.5) * kBinWidth) + " " +
-                       std::to_string(bins[b]));
-    g.add_data("object_" + rows[i].object, points);
-    plot += (i > 0 ? ", " : "") + std::string("$object_") + rows[i].object +
-            " using 1:2 with lines lw 1.5 dt " + std::to_string(i % 5 + 1) + " lc rgb '" +
-            kColours[i % std::size(kColours)] + "' title " +
-            report::gnuplot_text(rows[i].object + ": " + std::to_string(rows[i].total_faces) + " faces");
+    for (std::uint64_t b = 0; b <= last; ++b) {
+      line.x.push_back((static_cast<double>(b) + 0.5) * kBinWidth);
+      line.y.push_back(bins[b]);
+    }
+    chart.series.push_back(std::move(line));
   }
-  g.script += "set xlabel 'face comparisons in a time step (bins of " + io::fixed_text(kBinWidth) + ")'\n";
-  g.script += R"(set ylabel 'time steps'
-set xrange [0:8000]
-set yrange [0:*]
-set key top right
-set grid y lc rgb '#dddddd'
-set border 3
-set tics nomirror out
-)" + plot + "\n";
-  return g;
+  return chart;
 }
-
-namespace {
 
 const PaperObject& object_called(const PaperReport& r, const std::string& name) {
   return *std::find_if(r.objects.begin(), r.objects.end(),
@@ -165,25 +132,6 @@ void check_records(const PaperReport& r) {
   static_cast<void>(close_ups_of(r));
 }
 
-void draw_close_ups(const PaperReport& r, const std::string& folder, report::Page& page,
-                    std::vector<std::string>& notes) {
-  const std::optional<CloseUps> c = close_ups_of(r);
-  if (!c) return;
-  if (r.experiment.reports(PaperPart::heat_maps)) try {
-      render::write_png(draw_heat_maps(c->pair, c->easiest, c->hardest), folder + "/heat_maps.png");
-      run::add_figure(page, folder, "Face tests over the bodies",
-                      heat_caption(c->pair, c->easiest, c->hardest, r.experiment.protocol.collisions),
-                      "heat_maps.png");
-    } catch (const EnvironmentError& e) {
-      notes.push_back(std::string("heat maps were not drawn: ") + e.what());
-    }
-  if (r.experiment.reports(PaperPart::refinement_tree)) {
-    io::write_text(folder + "/refinement_tree.svg", icicle_svg(c->pair, c->hardest));
-    run::add_live_figure(page, folder, "The refinement tree of one collision",
-                         tree_caption(c->pair, c->hardest), "refinement_tree.svg");
-  }
-}
-
 namespace {
 
 constexpr std::array<const char*, 3> kTitles = {"the paper's recursion, each pair of regions once",
@@ -202,8 +150,8 @@ bool all_as_published(const PaperReport& r) {
   return std::all_of(r.objects.begin(), r.objects.end(), as_published);
 }
 
-report::PageTable table1(const PaperReport& r) {
-  report::PageTable t{
+report::Table table1(const PaperReport& r) {
+  report::Table t{
       "Table 1: object sizes", {"object", "real faces", "total faces", "outermost wrapper"}, {}, {}};
   t.note = all_as_published(r)
                ? "Equal to the paper's, face by face: the generator is given its numbers. The bodies' shapes "
@@ -216,11 +164,10 @@ report::PageTable table1(const PaperReport& r) {
   return t;
 }
 
-report::PageTable table2(std::span<const ObjectRow> rows, std::size_t recursion) {
-  report::PageTable t;
-  t.title = std::string("Table 2, ") + kTitles[recursion];
-  t.columns = {"A against", "steps", "minimum",           "average",      "maximum", "published min",
-               "avg",       "max",   "refinements (avg)", "pairs missed", "n log n", "n²"};
+report::Table table2(std::span<const ObjectRow> rows, std::size_t recursion) {
+  report::Table t{std::string("Table 2, ") + kTitles[recursion],
+                  {"A against", "steps", "minimum", "average", "maximum", "published min", "avg", "max",
+                   "refinements (avg)", "pairs missed", "n log n", "n²"}};
   if (kRecursions[recursion] == Recursion::complete)
     t.columns.insert(t.columns.begin() + 9, "bound tests (avg)");
   for (const ObjectRow& row : rows) {
@@ -288,8 +235,8 @@ std::string protocol_text(const PaperProtocol& p) {
          std::to_string(p.steps_after) + " more; seed " + std::to_string(p.seed) + ".";
 }
 
-report::PageTable time_table(const std::vector<std::pair<std::string, double>>& seconds) {
-  report::PageTable t{"What it took", {"part", "seconds"}, {}, "Of the clock on the wall."};
+report::Table time_table(const std::vector<std::pair<std::string, double>>& seconds) {
+  report::Table t{"Running time", {"part", "seconds"}, {}, "Wall-clock time."};
   double sum = 0;
   for (const auto& [part, took] : seconds) {
     t.rows.push_back({part, fixed(took, 1)});
@@ -299,7 +246,7 @@ report::PageTable time_table(const std::vector<std::pair<std::string, double>>& 
   return t;
 }
 
-void add_markdown(std::string& md, const report::PageTable& t) {
+void add_markdown(std::string& md, const report::Table& t) {
   md += "\n## " + t.title + "\n\n|";
   for (const std::string& c : t.columns) md += " " + c + " |";
   md += "\n|";
@@ -311,111 +258,73 @@ void add_markdown(std::string& md, const report::PageTable& t) {
   md += "\n\n" + t.note + "\n";
 }
 
-report::PageChart sizes_chart(std::span<const ObjectRow> rows) {
-  report::PageChart sizes{"Object size against comparisons",
-                          "real and pseudo faces of the other object",
-                          "comparisons",
-                          "Figure 3.1: the paper's recursion, measured and published.",
-                          {},
-                          report::PageCursor::none,
-                          true,
-                          false,
-                          false,
-                          false};
-  report::PageSeries measured{"measured average", {}, {}}, most{"measured maximum", {}, {}},
-      paper{"published average", {}, {}}, paper_most{"published maximum", {}, {}};
-  for (const ObjectRow& row : rows) {
-    const double size = row.total_faces;
-    measured.x.push_back(size);
-    measured.y.push_back(row.recursions[0].comparisons.average);
-    most.x.push_back(size);
-    most.y.push_back(row.recursions[0].comparisons.max);
-    if (const PublishedRow* p = published(row.object)) {
-      paper.x.push_back(size);
-      paper.y.push_back(p->average);
-      paper_most.x.push_back(size);
-      paper_most.y.push_back(p->max);
-    }
-  }
-  sizes.series = {measured, paper, most, paper_most};
-  return sizes;
-}
-
-/// Draws figures 3.1 and 3.2, as far as they are wanted and gnuplot is there.
-void draw_charts(const PaperReport& r, std::span<const ObjectRow> rows, const std::string& folder,
-                 report::Page& page, std::vector<std::string>& notes) {
-  struct Figure {
-    PaperPart part;
-    const char *name, *title, *caption;
-  };
-  for (const Figure& f :
-       {Figure{PaperPart::figure_3_1, "figure3-1", "Figure 3.1",
-               "Size of the object that A meets, real and pseudo faces, against face comparisons in a time "
-               "step by the paper's recursion: average, minimum and maximum, measured and published."},
-        Figure{PaperPart::figure_3_2, "figure3-2", "Figure 3.2",
-               "In how many time steps so many face comparisons were needed by the paper's recursion, a line "
-               "for each object."}}) {
-    if (!r.experiment.reports(f.part)) continue;
-    if (!report::has_gnuplot()) {
-      notes.push_back(std::string(f.title) + " was not drawn: gnuplot is missing (Debian: gnuplot-nox)");
-      continue;
-    }
-    const report::Gnuplot chart =
-        f.part == PaperPart::figure_3_1 ? figure_3_1(rows) : figure_3_2(rows, r.steps);
-    for (const char* ending : {".svg", ".png"}) report::draw(chart, folder + "/" + f.name + ending);
-    run::add_figure(page, folder, f.title, f.caption, std::string(f.name) + ".svg");
-    page.links.push_back({std::string(f.name) + ".png", std::string(f.name) + ".png", "300 dpi"});
-  }
-}
-
 }  // namespace
 
-std::vector<std::string> write_paper_report(const PaperReport& r, const std::string& folder) {
+std::vector<std::string> write_paper_report(const PaperReport& r, const report::Folder& folder) {
   const auto wants = [&](PaperPart part) { return r.experiment.reports(part); };
   const std::vector<ObjectRow> rows =
       r.experiment.collides() ? make_table(r.objects, r.steps) : std::vector<ObjectRow>();
-  std::vector<std::string> notes;
-  io::write_text(folder + "/tables.json", tables_json(r.objects, rows, r.experiment.protocol));
-
-  report::Page page;
-  page.title = "The paper's experiment";
-  page.purpose =
-      "C. Gonzalez-Ochoa, \"2-Body Collision Detection using LRB-reps\", tables 1 and 2 and figures 3.1 and "
-      "3.2, measured beside the published numbers.";
-  if (r.experiment.name != "paper") page.purpose = r.experiment.purpose;
-  const std::string protocol = protocol_text(r.experiment.protocol);
-  std::string md = "# " + page.title + "\n\n" + page.purpose + "\n\n";
+  const std::string purpose =
+      r.experiment.name != "paper"
+          ? r.experiment.purpose
+          : "C. Gonzalez-Ochoa, \"2-Body Collision Detection using LRB-reps\", tables 1 and 2 and figures 3.1 and "
+            "3.2, measured beside the published numbers.";
+  report::Document doc("The paper's experiment", purpose);
+  doc.command(r.command);
+  std::string md = "# " + doc.title() + "\n\n" + purpose + "\n\n", figures;
   if (!rows.empty()) {
-    md += "Protocol: " + protocol + "\n\nMade by `" + r.command + "`.\n\n## What differs\n\n";
-    report::PageTable what{"What differs", {"remark"}, {}, "Protocol: " + protocol};
+    const std::string protocol = "Protocol: " + protocol_text(r.experiment.protocol);
+    md += protocol + "\n\nMade by `" + r.command + "`.\n\n## Differences from the paper\n\n";
+    report::Table remarks{"Differences from the paper", {"remark"}, {}, protocol};
     for (const std::string& s : differences(r, rows)) {
       md += "- " + s + "\n";
-      what.rows.push_back({s});
+      remarks.rows.push_back({s});
     }
-    page.tables.push_back(what);
+    doc.table(remarks);
   }
-  const std::size_t said = page.tables.size();
-  if (wants(PaperPart::table1)) page.tables.push_back(table1(r));
+  const auto figure = [&](const std::string& title, const std::string& file, const std::string& caption) {
+    figures += "\n## " + title + "\n\n![" + title + "](" + file + ")\n\n" + caption + "\n";
+  };
+  const auto chart = [&](const report::Chart& c, const std::string& name, const report::PrintLayout& layout) {
+    if (!doc.chart(c).print(name, c.title, report::gnuplot({&c, 1}, layout)).empty())
+      figure(c.title, name + ".svg", c.note);
+  };
+  if (wants(PaperPart::figure_3_1)) chart(figure_3_1(rows), "figure3-1", {1, 135, 85, 8, "top left"});
+  if (wants(PaperPart::figure_3_2)) chart(figure_3_2(rows, r.steps), "figure3-2", {});
+  std::vector<report::Table> tables;
+  if (wants(PaperPart::table1)) tables.push_back(table1(r));
   if (wants(PaperPart::table2))
-    for (std::size_t i = 0; i < kRecursions.size(); ++i) page.tables.push_back(table2(rows, i));
-  const std::string series = r.series ? add_series(*r.series, folder, report::has_gnuplot(), page) : "";
-  if (!r.seconds.empty()) page.tables.push_back(time_table(r.seconds));
-  for (std::size_t i = said; i < page.tables.size(); ++i) add_markdown(md, page.tables[i]);
-
-  if (wants(PaperPart::figure_3_1)) page.charts.push_back(sizes_chart(rows));
-  draw_charts(r, rows, folder, page, notes);
-  draw_close_ups(r, folder, page, notes);
-  for (const report::PageFigure& f : page.figures)
-    md += "\n## " + f.title + "\n\n![" + f.title + "](" + f.file + ")\n\n" + f.caption + "\n";
-  md += series;
-  if (!rows.empty()) {
-    io::write_text(folder + "/records.jsonl", to_json_lines(r.steps));
-    page.links.push_back({"records.jsonl", "records.jsonl", "every counted time step"});
+    for (std::size_t i = 0; i < kRecursions.size(); ++i) tables.push_back(table2(rows, i));
+  if (r.series) {
+    for (report::Table& t : add_series(*r.series, doc)) tables.push_back(std::move(t));
+    if (doc.notes().empty())
+      for (const char* name : {"series-comparisons", "series-time"})
+        figures += std::string("\n![") + name + "](" + name + ".svg)\n";
   }
-  page.links.push_back({"tables.json", "tables.json", "both tables as data"});
-  page.command = r.command;
-  io::write_text(folder + "/report.md", md);
-  io::write_text(folder + "/index.html", report::page_html(page));
+  if (!r.seconds.empty()) tables.push_back(time_table(r.seconds));
+  for (const report::Table& t : tables) add_markdown(md, t);
+  doc.each(tables, &report::Document::table);
+  std::vector<std::string> notes = doc.notes();
+  if (const std::optional<CloseUps> c = close_ups_of(r)) {
+    if (wants(PaperPart::heat_maps)) try {
+        const std::string title = "Face tests over the bodies",
+                          caption =
+                              heat_caption(c->pair, c->easiest, c->hardest, r.experiment.protocol.collisions);
+        doc.picture("heat_maps.png", draw_heat_maps(c->pair, c->easiest, c->hardest), title, caption);
+        figure(title, "heat_maps.png", caption);
+      } catch (const EnvironmentError& e) {
+        notes.push_back(std::string("heat maps were not drawn: ") + e.what());
+      }
+    if (wants(PaperPart::refinement_tree)) {
+      const std::string title = "The refinement tree of one collision",
+                        caption = tree_caption(c->pair, c->hardest);
+      doc.picture("refinement_tree.svg", icicle_svg(c->pair, c->hardest), title, caption, true);
+      figure(title, "refinement_tree.svg", caption);
+    }
+  }
+  if (!rows.empty()) doc.file("records.jsonl", to_json_lines(r.steps), "every counted time step");
+  doc.file("tables.json", tables_json(r.objects, rows, r.experiment.protocol), "both tables as data");
+  doc.file("report.md", md + figures, "this report as Markdown").write(folder);
   return notes;
 }
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <iomanip>
 #include <limits>
+#include <ranges>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
 
-#include "scenarios/io/files.hpp"
 #include "scenarios/paper/tables.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/trace/trace.hpp>
@@ -17,119 +17,70 @@
 namespace lrb::paper {
 namespace {
 
-// Okabe and Ito's colours, which people with any colour vision tell apart; point types are told apart in
-// grey, too.
-constexpr std::array<const char*, 7> kBodyColours = {"#0072B2", "#D55E00", "#009E73", "#E69F00",
-                                                     "#56B4E9", "#CC79A7", "#000000"};
-constexpr std::array<int, 7> kPoints = {7, 5, 9, 13, 11, 4, 6};
-constexpr std::array<const char*, 3> kRecursionTitles = {"paper", "paper, strict", "complete"};
+constexpr std::array<const char*, 3> kRecursionNames = {"the paper's recursion",
+                                                        "the paper's recursion, strict", "complete"};
 
-constexpr double kPanelRows = 2;
-constexpr double kKeyLine = 3.4;  // millimetres
+const char* against(SeriesPartner p) {
+  return p == SeriesPartner::a ? "A" : "itself";
+}
 
-/// What a figure shows of a row.
-struct Measured {
-  double low, average, high;
-};
-
-using Measure = Measured (*)(const SeriesRow&, std::size_t recursion);
-using FitOf = const std::optional<resolutions::PowerFit>& (*)(const SeriesFit&);
-
-/// One panel: its data blocks, and its plot command.
-class Panel {
- public:
-  Panel(report::Gnuplot& g, std::span<const SeriesRow> rows, std::span<const SeriesFit> fits, Measure measure,
-        FitOf fit_of)
-      : g_(g), rows_(rows), fits_(fits), measure_(measure), fit_of_(fit_of) {}
-
-  void add(SeriesPartner partner, std::size_t recursion) {
-    std::string plot;
-    double lowest = std::numeric_limits<double>::infinity(), highest = 0;
-    std::size_t bodies = 0;
-    for (std::size_t i = 0; i < fits_.size(); ++i) {
-      const SeriesFit& fit = fits_[i];
-      if (fit.partner != partner || fit.recursion != recursion) continue;
-      std::vector<std::string> points;
-      double first = std::numeric_limits<double>::infinity(), last = 0;  // sizes
-      for (const SeriesRow& row : rows_) {
-        if (row.body != fit.body || row.partner != partner) continue;
-        const Measured m = measure_(row, recursion);
-        if (!(m.low > 0)) continue;
-        points.push_back(io::number_text(row.counts.total_faces) + " " + io::number_text(m.average) + " " +
-                         io::number_text(m.low) + " " + io::number_text(m.high));
-        first = std::min<double>(first, row.counts.total_faces);
-        last = std::max<double>(last, row.counts.total_faces);
-        lowest = std::min(lowest, m.low);
-        highest = std::max(highest, m.high);
-      }
-      if (points.empty()) continue;
-      const std::string name = "series_" + std::to_string(panel_) + "_" + std::to_string(bodies);
-      g_.add_data(name, points);
-      const std::string colour = kBodyColours[bodies % kBodyColours.size()];
-      const std::optional<resolutions::PowerFit>& power = fit_of_(fit);
-      plot += (plot.empty() ? "plot $" : ", $") + name + " using 1:2:3:4 with yerrorbars lw 0.7 pt " +
-              std::to_string(kPoints[bodies % kPoints.size()]) + " ps 0.5 lc rgb '" + colour + "' title " +
-              report::gnuplot_text(fit.body + (power ? ": " + power_text(*power) : ""));
-      if (power)
-        plot += ", x < " + io::number_text(first) + " || x > " + io::number_text(last) +
-                " ? 1/0 : " + io::number_text(power->factor) + " * x**(" + io::number_text(power->exponent) +
-                ") with lines lw 1 dt 2 lc rgb '" + colour + "' notitle";
-      ++bodies;
+/// The chart of one recursion against one partner: a series for each body, with its fitted power.
+report::Chart chart(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits, SeriesPartner partner,
+                    std::size_t recursion, bool time) {
+  report::Chart c{std::string(time ? "Time" : "Comparisons") + " against " + against(partner) + ", " +
+                      kRecursionNames[recursion],
+                  {"real and pseudo faces", true},
+                  {time ? "median of a query, µs" : "face comparisons", true}};
+  std::vector<report::Series> powers;
+  for (const SeriesFit& fit : fits) {
+    if (fit.partner != partner || fit.recursion != recursion) continue;
+    const std::optional<resolutions::PowerFit>& power = time ? fit.microseconds : fit.comparisons;
+    report::Series s{fit.body + (power ? ": " + power_text(*power) : ""), {}, {}, {report::Line::none}};
+    s.style.colour = report::series_colour(c.series.size());
+    // Rows begin with the finest resolution, charts with the coarsest.
+    for (const SeriesRow& row : rows | std::views::reverse) {
+      const Spread& n = row.counts.recursions[recursion].comparisons;
+      const double y = time ? row.microseconds[recursion] : n.average;
+      if (row.body != fit.body || row.partner != partner || !(y > 0)) continue;
+      s.x.push_back(row.counts.total_faces);
+      s.y.push_back(y);
+      if (time) continue;
+      s.low.push_back(n.min);
+      s.high.push_back(n.max);
     }
-    ++panel_;
-    const std::string grown = partner == SeriesPartner::a ? "A against the body" : "the body against itself";
-    g_.script +=
-        "set title " + report::gnuplot_text(grown + ", " + kRecursionTitles[recursion]) + " offset 0,-0.7\n";
-    if (plot.empty()) {
-      g_.script += "set multiplot next\n";
-      return;
+    if (s.x.empty()) continue;
+    if (power) {
+      const auto value = [&](double x) { return power->factor * std::pow(x, power->exponent); };
+      powers.push_back({"",
+                        {s.x.front(), s.x.back()},
+                        {value(s.x.front()), value(s.x.back())},
+                        {report::Line::dashed, s.style.colour, "none"}});
     }
-    // The key needs room above the points.
-    const double share = static_cast<double>(bodies + 1) * kKeyLine * kPanelRows / g_.height;
-    const double room = std::log10(highest / lowest) * share / (1 - share);
-    g_.script += "set yrange [" + io::number_text(lowest / 1.3) + ":" +
-                 io::number_text(highest * 1.2 * std::pow(10, room)) + "]\n" + plot + "\n";
+    c.series.push_back(std::move(s));
   }
+  c.series.insert(c.series.end(), powers.begin(), powers.end());
+  return c;
+}
 
- private:
-  report::Gnuplot& g_;
-  std::span<const SeriesRow> rows_;
-  std::span<const SeriesFit> fits_;
-  Measure measure_;
-  FitOf fit_of_;
-  std::size_t panel_ = 0;
-};
-
-report::Gnuplot panels(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits, const char* y_label,
-                       Measure measure, FitOf fit_of) {
-  report::Gnuplot g;
-  g.width = 210;
-  g.height = 112 + 12 * static_cast<double>(fits.size()) / (kSeriesPartners.size() * kRecursions.size());
-  g.font = 7;
-  g.script = std::string(R"(set multiplot layout 2,3 margins 0.085,0.99,0.085,0.95 spacing 0.06,0.11
-set logscale xy
-set format xy '%.0s%c'
-set key top left reverse Left samplen 1 spacing 1.1
-set grid x y lc rgb '#dddddd'
-set border 3
-set tics nomirror out
-)") + "set xlabel 'real and pseudo faces' offset 0,0.5\n";
-  double smallest = std::numeric_limits<double>::infinity(), largest = 0;
-  for (const SeriesRow& row : rows) {
-    smallest = std::min<double>(smallest, row.counts.total_faces);
-    largest = std::max<double>(largest, row.counts.total_faces);
-  }
-  g.script += "set xrange [" + io::number_text(smallest / 1.5) + ":" + io::number_text(largest * 1.5) + "]\n";
-  Panel panel(g, rows, fits, measure, fit_of);
-  for (const SeriesPartner partner : kSeriesPartners) {
-    for (std::size_t i = 0; i < kRecursions.size(); ++i) {
-      g.script +=
-          i == 0 ? "set ylabel " + report::gnuplot_text(y_label) + " offset 0.3,0\n" : "unset ylabel\n";
-      panel.add(partner, i);
+/// Makes room for each panel's key above its points.
+report::Gnuplot panels(std::vector<report::Chart> charts) {
+  constexpr double kHeight = 40, kKeyLine = 3.4;  // millimetres
+  const report::PrintLayout layout{static_cast<int>(kRecursions.size()), 55, kHeight, 7, "top left"};
+  for (report::Chart& c : charts) {
+    double lowest = std::numeric_limits<double>::infinity(), highest = 0, lines = 1;
+    for (const report::Series& s : c.series) {
+      for (const std::vector<double>* values : {&s.y, &s.low, &s.high})
+        for (const double y : *values) {
+          lowest = std::min(lowest, y);
+          highest = std::max(highest, y);
+        }
+      lines += s.label.empty() ? 0 : 1;
     }
+    const double share = std::min(0.8, lines * kKeyLine / kHeight);
+    c.y.min = lowest / 1.3;
+    c.y.max = 1.2 * highest * std::pow(highest / lowest, share / (1 - share));
   }
-  g.script += "unset multiplot\n";
-  return g;
+  return report::gnuplot(charts, layout);
 }
 
 }  // namespace
@@ -141,45 +92,16 @@ std::string power_text(const resolutions::PowerFit& fit) {
   return out.str();
 }
 
-report::Gnuplot series_comparisons(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits) {
-  return panels(
-      rows, fits, "face comparisons",
-      [](const SeriesRow& row, std::size_t i) {
-        const Spread& s = row.counts.recursions[i].comparisons;
-        return Measured{s.min, s.average, s.max};
-      },
-      [](const SeriesFit& f) -> const std::optional<resolutions::PowerFit>& { return f.comparisons; });
-}
-
-report::Gnuplot series_time(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits) {
-  return panels(
-      rows, fits, "median of a query, microseconds",
-      [](const SeriesRow& row, std::size_t i) {
-        const double us = row.microseconds[i];
-        return Measured{us, us, us};
-      },
-      [](const SeriesFit& f) -> const std::optional<resolutions::PowerFit>& { return f.microseconds; });
-}
-
 namespace {
-
-constexpr std::array<const char*, 3> kRecursionNames = {"the paper's recursion",
-                                                        "the paper's recursion, strict", "complete"};
-
-const char* against(SeriesPartner p) {
-  return p == SeriesPartner::a ? "A" : "itself";
-}
 
 std::string text_of(const std::optional<resolutions::PowerFit>& fit) {
   return fit ? power_text(*fit) : "–";
 }
 
-report::PageTable table(std::span<const SeriesRow> rows, SeriesPartner partner, std::size_t recursion) {
-  report::PageTable t;
-  t.title = std::string("Resolutions against ") + against(partner) + ", " + kRecursionNames[recursion];
-  t.columns = {
-      "body",    "real faces",        "total faces",  "outermost",        "steps", "minimum", "average",
-      "maximum", "refinements (avg)", "pairs missed", "time (median, µs)"};
+report::Table table(std::span<const SeriesRow> rows, SeriesPartner partner, std::size_t recursion) {
+  report::Table t{std::string("Resolutions against ") + against(partner) + ", " + kRecursionNames[recursion],
+                  {"body", "real faces", "total faces", "outermost", "steps", "minimum", "average", "maximum",
+                   "refinements (avg)", "pairs missed", "time (median, µs)"}};
   const bool complete = kRecursions[recursion] == Recursion::complete;
   if (complete) t.columns.insert(t.columns.begin() + 9, "bound tests (avg)");
   for (const SeriesRow& row : rows) {
@@ -198,8 +120,8 @@ report::PageTable table(std::span<const SeriesRow> rows, SeriesPartner partner, 
   return t;
 }
 
-report::PageTable fit_table(std::span<const SeriesFit> fits, std::uint32_t jobs) {
-  report::PageTable t{
+report::Table fit_table(std::span<const SeriesFit> fits, std::uint32_t jobs) {
+  report::Table t{
       "Growth with the resolution",
       {"body", "against", "recursion", "comparisons", "refinements", "time"},
       {},
@@ -212,27 +134,6 @@ report::PageTable fit_table(std::span<const SeriesFit> fits, std::uint32_t jobs)
     t.rows.push_back({f.body, against(f.partner), kRecursionNames[f.recursion], text_of(f.comparisons),
                       text_of(f.refinements), text_of(f.microseconds)});
   return t;
-}
-
-report::PageChart chart(std::span<const SeriesRow> rows, SeriesPartner partner, bool time) {
-  report::PageChart c;
-  c.title = std::string(time ? "Time" : "Comparisons") + " against size: " +
-            (partner == SeriesPartner::a ? "A against each body" : "each body against itself");
-  c.x_label = "real and pseudo faces";
-  c.y_label = time ? "median of a query, µs" : "face comparisons, average";
-  c.log_x = c.log_y = true;
-  for (std::size_t i = 0; i < kRecursions.size(); ++i) {
-    for (const SeriesRow& row : rows) {
-      const std::string label = row.body + ", " + kRecursionNames[i];
-      const double y = time ? row.microseconds[i] : row.counts.recursions[i].comparisons.average;
-      if (row.partner != partner || !(y > 0)) continue;
-      if (c.series.empty() || c.series.back().label != label) c.series.push_back({label, {}, {}});
-      // Rows begin with the finest resolution, charts with the coarsest.
-      c.series.back().x.insert(c.series.back().x.begin(), row.counts.total_faces);
-      c.series.back().y.insert(c.series.back().y.begin(), y);
-    }
-  }
-  return c;
 }
 
 nlohmann::ordered_json to_json(const std::optional<resolutions::PowerFit>& fit) {
@@ -306,33 +207,27 @@ std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows) {
   return fits;
 }
 
-std::string add_series(const SeriesReport& report, const std::string& folder, bool figures,
-                       report::Page& page) {
+std::vector<report::Table> add_series(const SeriesReport& report, report::Document& doc) {
   const std::vector<SeriesRow> rows = series_rows(report.a, report.objects, report.steps);
   const std::vector<SeriesFit> fits = series_fits(rows);
-  io::write_text(folder + "/series.jsonl", to_json_lines(report.steps));
-  io::write_text(folder + "/series_times.jsonl", times_to_json_lines(report.steps));
-  io::write_text(folder + "/series.json", series_json(rows, fits));
-  page.tables.push_back(fit_table(fits, report.jobs));
-  for (const SeriesPartner partner : kSeriesPartners)
-    for (std::size_t i = 0; i < kRecursions.size(); ++i) page.tables.push_back(table(rows, partner, i));
-  for (const bool time : {false, true})
-    for (const SeriesPartner partner : kSeriesPartners) page.charts.push_back(chart(rows, partner, time));
-  page.links.push_back({"series.jsonl", "series.jsonl", "every counted time step of the resolutions"});
-  page.links.push_back({"series_times.jsonl", "series_times.jsonl", "what the queries took"});
-  page.links.push_back({"series.json", "series.json", "tables and fitted exponents as data"});
-  if (!figures) return "";
-  std::string markdown;
-  for (const auto& [name, what, chart] :
-       {std::tuple{"series-comparisons", "Comparisons against size", series_comparisons(rows, fits)},
-        std::tuple{"series-time", "Time against size", series_time(rows, fits)}}) {
-    for (const char* ending : {".svg", ".png"}) {
-      report::draw(chart, folder + "/" + name + ending);
-      page.links.push_back({std::string(name) + ending, std::string(name) + ending, ""});
-    }
-    markdown += std::string("\n![") + what + "](" + name + ".svg)\n";
+  for (const bool time : {false, true}) {
+    std::vector<report::Chart> charts;
+    for (const SeriesPartner partner : kSeriesPartners)
+      for (std::size_t i = 0; i < kRecursions.size(); ++i)
+        charts.push_back(chart(rows, fits, partner, i, time));
+    std::erase_if(charts, [](const report::Chart& c) { return c.series.empty(); });
+    doc.each(charts, &report::Document::chart);
+    if (!charts.empty())
+      doc.print(time ? "series-time" : "series-comparisons", time ? "time by size" : "comparisons by size",
+                panels(charts));
   }
-  return markdown;
+  doc.file("series.jsonl", to_json_lines(report.steps), "time steps of the resolutions");
+  doc.file("series_times.jsonl", times_to_json_lines(report.steps), "times of the queries");
+  doc.file("series.json", series_json(rows, fits), "tables and fitted exponents as data");
+  std::vector<report::Table> tables = {fit_table(fits, report.jobs)};
+  for (const SeriesPartner partner : kSeriesPartners)
+    for (std::size_t i = 0; i < kRecursions.size(); ++i) tables.push_back(table(rows, partner, i));
+  return tables;
 }
 
 }  // namespace lrb::paper

@@ -5,7 +5,6 @@
 
 #include "scenarios/paper/series.hpp"
 #include "scenarios/report/document.hpp"
-#include "scenarios/report/gnuplot.hpp"
 
 namespace lrb::paper {
 
@@ -26,18 +25,9 @@ struct SeriesFit {
 };
 std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows);
 
-/// Writes series.jsonl (records), series_times.jsonl, series.json (rows and fits, without times) and, if
-/// `figures`, series-comparisons and series-time as SVG and PNG. Adds tables, charts and links to the page;
-/// returns what Markdown shows beside them.
-std::string add_series(const SeriesReport& report, const std::string& folder, bool figures,
-                       report::Page& page);
-
-// Draws the series' figures for print: a panel for each partner and recursion, sizes and counts on log axes.
-
-/// Draws faces against comparisons: average with minimum and maximum, and the fitted power.
-report::Gnuplot series_comparisons(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits);
-/// Draws faces against the median time of a query, and the fitted power.
-report::Gnuplot series_time(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits);
+/// Adds charts, on the page and for print (series-comparisons, series-time), series.jsonl (records),
+/// series_times.jsonl and series.json (rows and fits, without times). Returns the tables.
+std::vector<report::Table> add_series(const SeriesReport& report, report::Document& doc);
 
 /// Returns a fitted power in words, such as "n^0.52 ± 0.01".
 std::string power_text(const resolutions::PowerFit& fit);

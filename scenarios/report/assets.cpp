@@ -16,6 +16,32 @@ void put(std::vector<std::uint8_t>& bytes, std::uint32_t number, int size) {
 
 }  // namespace
 
+std::string fill(std::string_view pattern, std::initializer_list<std::string_view> texts) {
+  std::string out;
+  for (const std::string_view text : texts) {
+    const std::size_t open = std::min(pattern.find("{}"), pattern.find("{!}"));
+    const bool raw = pattern[open + 1] == '!';
+    out += pattern.substr(0, open);
+    out += raw ? std::string(text) : render::escape_markup(text);
+    pattern.remove_prefix(open + (raw ? 3 : 2));
+  }
+  return out.append(pattern);
+}
+
+std::string filled(std::string_view shape,
+                   std::initializer_list<std::pair<std::string_view, std::string_view>> texts) {
+  std::string out;
+  for (std::size_t open = shape.find("{{"); open != std::string_view::npos; open = shape.find("{{")) {
+    const std::size_t close = shape.find("}}", open);
+    const std::string_view key = shape.substr(open + 2, close - open - 2);
+    out += shape.substr(0, open);
+    for (const auto& [name, text] : texts)
+      if (name == key) out += text;
+    shape.remove_prefix(close + 2);
+  }
+  return out.append(shape);
+}
+
 std::string packed(std::span<const std::uint32_t> numbers) {
   std::uint32_t largest = 0;
   for (const std::uint32_t n : numbers)

@@ -1,11 +1,14 @@
 #pragma once
-/// Numbers as text that a page's script turns into arrays (packed.js): "u1:", "u2:", "u4:" or "f4:", for what
-/// each of them is and its bytes, then base64 of them all, little-endian.
+/// Numbers as text that a page's script turns into arrays (scene_run.js): "u1:", "u2:", "u4:" or "f4:", for
+/// what each of them is and its bytes, then base64 of them all, little-endian.
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "render/canvas.hpp"
@@ -31,6 +34,15 @@ InlinedImages inline_pngs(const std::vector<PngBytes>& pngs, std::size_t budget 
 std::string data_uri(const std::string& type, const std::uint8_t* bytes, std::size_t size);
 
 using render::base64;
+
+/// Returns HTML: each "{}" of a pattern becomes the next of the texts, escaped, each "{!}" the next one as it
+/// is.
+std::string fill(std::string_view pattern, std::initializer_list<std::string_view> texts);
+
+/// Returns a template with each "{{key}}" replaced by its text, in one pass: keys inside the texts are left
+/// alone.
+std::string filled(std::string_view shape,
+                   std::initializer_list<std::pair<std::string_view, std::string_view>> texts);
 
 /// Packs the numbers into as few bytes each as the largest needs. The largest number of so many bytes stands
 /// for kNull.

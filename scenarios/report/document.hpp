@@ -1,184 +1,198 @@
 #pragma once
-/// Two pictures that should be the same: side by side, under a swipe, and as their difference.
+/// Reports: HTML files that open from disk, with style, script, charting library and pictures inside, and
+/// nothing fetched from anywhere; and the files beside them.
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "scenarios/io/files.hpp"
+#include "scenarios/report/assets.hpp"
+#include "scenarios/report/chart.hpp"
+#include <lrbscope/render/image.hpp>
+
 namespace lrb::report {
 
-struct PageComparison {
-  std::string id;     ///< letters, digits, _ and -: the page's address ends with it
-  std::string title;  ///< and the text under it
-  std::string text;
-  bool passed = false;
-  std::array<std::string, 3> data_uris;  ///< expected, actual, difference; an empty one is left out
-  std::array<std::string, 2> captions;   ///< of expected and actual; may be empty
-  std::string command;                   ///< the command that approves it; may be empty
-};
-
-std::string comparisons_html(const std::vector<PageComparison>& comparisons);
-
-// A table of small pictures: rows x columns, a count and a profile in each cell, and a sheet with the
-// details of those cells that have any.
-
-/// The parts that the bars of a profile are stacked of, from the bottom. Each has a colour and a mark.
-enum class PagePart : std::uint8_t { wrong, crashed, timed_out, refused };
-inline constexpr std::size_t kPageParts = 4;
-
-struct PageGridHead {
-  std::string title;
-  std::string text;               ///< small print under it
-  std::string low, high;          ///< rows: what the ends of the profiles mean; may be empty
-  std::vector<std::string> axis;  ///< rows: what each bar of the profiles means, "1e-6"; or empty
-};
-
-struct PageGridCell {
-  /// The background: from 0, nothing to report, to 4; kOnlyRefused has one of its own.
-  static constexpr int kOnlyRefused = -1;
-  int level = 0;
-  std::string count, of;                             ///< "12", "of 55"
-  std::array<std::string, kPageParts> marks;         ///< numbers shown beside the parts' marks; empty: none
-  std::vector<std::array<double, kPageParts>> bars;  ///< shares in [0, 1]; a negative first one: not tried
-  std::string label;                                 ///< the whole cell in words
-  int detail = -1;                                   ///< index into PageGrid::details
-};
-
-struct PageGridDetail {
-  std::string id;     ///< letters, digits and dashes: the page's address ends with it
-  std::string title;  ///< and the text under it
-  std::string text;
-  std::string data_uri;  ///< of its picture; may be empty
-  std::string file;      ///< link to the full picture; may be empty
-  std::vector<std::pair<std::string, std::string>> facts;
-  std::string note;
-  std::string command;
-};
-
-struct PageGrid {
-  std::string title, corner;             ///< corner: over the rows' heads
-  std::vector<std::string> level_names;  ///< of levels 0 to 4
-  std::array<std::string, kPageParts> part_names;
-  std::string note;
-  std::string missing;  ///< what could have a column and has none, in a sentence; may be empty
-  std::vector<PageGridHead> columns, rows;
-  std::vector<PageGridCell> cells;  ///< (|rows| x |columns|), row by row
-  std::size_t total_rows = 0;       ///< this many of the last rows are sums over those above
-  std::vector<PageGridDetail> details;
-
-  bool empty() const { return cells.empty(); }
-};
-
-std::string grid_html(const PageGrid& grid);
-
-// Makes every HTML page and chart of the project: one file that opens from disk, with style, script,
-// charting library and pictures inside, and nothing fetched from anywhere.
-
-/// A number that is worth reading first.
-struct PageNumber {
+/// A key figure, shown in a tile.
+struct Number {
   std::string label, value;
-  std::string note;  ///< small print under it; may be empty
-};
-
-/// A picture of a sequence.
-struct PageFrame {
-  std::string data_uri;  ///< see assets.hpp
-  std::string caption;
-  std::string file;   ///< link to the full picture, relative to the page; may be empty
-  double event = -1;  ///< where it stands on charts over events; negative: nowhere
-  double step = -1;   ///< where it stands on charts over time steps; negative: nowhere
-};
-
-struct PageSeries {
-  std::string label;
-  std::vector<double> x, y;  ///< of one length, x ascending
-  // For scatter charts only:
-  std::string colour = {}, shape = {};    ///< #rrggbb and Chart.js's name of a shape; empty: the page chooses
-  bool line = false;                      ///< points are joined by steps and not drawn
-  std::vector<std::string> notes = {};    ///< (|x|) what is said about each point, in lines; or empty
-  std::vector<std::string> targets = {};  ///< (|x|) where a click on each point leads, relative to the page;
-                                          ///< or empty
-};
-
-enum class PageCursor { none, event, step };
-
-/// A chart of lines, or of points if `scatter`. The frame that is shown is marked on it, and a click leads to
-/// a frame.
-struct PageChart {
-  std::string title, x_label, y_label;
-  std::string note;  ///< one sentence on how to read the chart; may be empty
-  std::vector<PageSeries> series;
-  PageCursor cursor = PageCursor::none;  ///< what x counts
-  bool log_x = false, log_y = false;
-  bool stepped = false;  ///< values hold until the next point
-  bool scatter = false;
-  double least_x = 0, most_x = 0;  ///< ends of the x axis; equal: as the data have it
+  std::string note = {};
 };
 
 /// What the first cells of a table's rows number: a click on a row leads to it in the view of the run.
-enum class PageRows : std::uint8_t { plain, regions_of_a, regions_of_b, steps };
+enum class Rows : std::uint8_t { plain, regions_of_a, regions_of_b, steps };
 
-struct PageTable {
+struct Table {
   std::string title;
   std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;  ///< numbers in them are aligned right
-  std::string note;
-  PageRows rows_are = PageRows::plain;
+  std::vector<std::vector<std::string>> rows = {};  ///< numbers in them are aligned right
+  std::string note = {};
+  Rows rows_are = Rows::plain;
 };
 
-/// A picture with its caption.
-struct PageFigure {
-  std::string title, caption;
-  std::string data_uri;  ///< see assets.hpp
-  std::string file;      ///< link to the full picture, relative to the page; may be empty
-  std::string svg =
-      {};  ///< in place of data_uri: the picture's own markup, so that its parts can say what they are
+/// A heading and a paragraph.
+struct Text {
+  std::string title, text;
+};
+
+/// A picture of a sequence, which is in the report's folder.
+struct Frame {
+  std::string file, caption;
+  double event = -1;  ///< its x on charts over events; negative: none
+  double step = -1;   ///< its x on charts over time steps; negative: none
+};
+
+/// Two pictures that should be the same: side by side, under a swipe, and as their difference.
+struct Comparison {
+  std::string id;  ///< letters, digits, _ and -: the page's address ends with it
+  std::string title, text;
+  bool passed = false;
+  std::array<PngBytes, 3> pngs = {};         ///< expected, actual, difference; an empty one is left out
+  std::array<std::string, 2> captions = {};  ///< of expected and actual; may be empty
+  std::string command = {};                  ///< the command that approves it; may be empty
+};
+
+/// The parts that the bars of a grid's profiles are stacked of, from the bottom. Each has a colour and a
+/// mark.
+enum class Part : std::uint8_t { wrong, crashed, timed_out, refused };
+inline constexpr std::size_t kParts = 4;
+
+struct GridHead {
+  std::string title;
+  std::string text = {};               ///< small print under it
+  std::string low = {}, high = {};     ///< rows: what the ends of the profiles mean; may be empty
+  std::vector<std::string> axis = {};  ///< rows: what each bar of the profiles means, "1e-6"; or empty
+};
+
+struct GridCell {
+  /// The background: from 0, nothing to report, to 4; kOnlyRefused has one of its own.
+  static constexpr int kOnlyRefused = -1;
+  int level = 0;
+  std::string count, of;                         ///< "12", "of 55"
+  std::array<std::string, kParts> marks;         ///< numbers shown beside the parts' marks; empty: none
+  std::vector<std::array<double, kParts>> bars;  ///< shares in [0, 1]; a negative first one: not tried
+  std::string label;                             ///< the whole cell in words
+  int detail = -1;                               ///< index into Grid::details
+};
+
+struct GridDetail {
+  std::string id;  ///< letters, digits and dashes: the page's address ends with it
+  std::string title, text;
+  std::string file;  ///< its picture, in the report's folder; may be empty
+  std::vector<std::pair<std::string, std::string>> facts;
+  std::string note, command;
+};
+
+/// A table of small pictures: rows x columns, a count and a profile in each cell, and a sheet with the
+/// details of those cells that have any.
+struct Grid {
+  std::string title, corner;             ///< corner: over the rows' heads
+  std::vector<std::string> level_names;  ///< of levels 0 to 4
+  std::array<std::string, kParts> part_names;
+  std::string note;
+  std::string missing;  ///< columns that are not available, in a sentence; may be empty
+  std::vector<GridHead> columns, rows;
+  std::vector<GridCell> cells;  ///< (|rows| x |columns|), row by row
+  std::size_t total_rows = 0;   ///< this many of the last rows are sums over those above
+  std::vector<GridDetail> details;
 };
 
 /// The view in three dimensions of another page, beside this one.
-struct PageView {
+struct View {
   std::string title;
   std::string target;  ///< of the page that has it, relative to this one
 };
 
-/// A heading and a paragraph.
-struct PageText {
-  std::string title, text;
+/// Returns a grid as HTML; `images`: of the details that have a file, in their order.
+std::string grid_html(const Grid& grid, const InlinedImages& images);
+
+/// A file of a report, listed on its page. `text`: what the link shows, if it is not the target.
+struct Link {
+  std::string target, note = {}, text = {};
 };
 
-struct PageLink {
-  std::string text, target;  ///< target: relative to the page
-  std::string note;
+/// An output folder that is written to: made if it is missing, locked for other processes, and without links
+/// under names that reports write (see refuse_links()).
+class Folder {
+ public:
+  Folder(std::string path);  // NOLINT(google-explicit-constructor): a path names the folder
+  Folder(const char* path) : Folder(std::string(path)) {}  // NOLINT(google-explicit-constructor)
+  operator const std::string&() const { return path_; }    // NOLINT(google-explicit-constructor)
+
+ private:
+  std::string path_;
+  io::FolderLock lock_;
 };
 
-/// What a page shows, from top to bottom; empty parts are left out.
-struct Page {
-  std::string title;
-  std::string purpose;          ///< one or two sentences under the title
-  std::string verdict;          ///< a short word beside the title, such as the relation of the bodies
-  bool is_bad = false;          ///< the verdict is shown as a failure
-  std::vector<PageText> texts;  ///< what a reader should know first, side by side
-  std::vector<PageNumber> numbers;
-  PageGrid grid;
-  std::vector<PageComparison> comparisons;
-  std::vector<PageView> views;  ///< side by side, with one camera and one time step
-  std::string scene;            ///< a run as JSON, for the view in three dimensions (scene.js); empty: none
-  std::vector<PageFrame> frames;
-  std::string frames_note;
-  std::vector<PageChart> charts;
-  std::vector<PageTable> tables;
-  std::vector<PageFigure> figures;
-  std::string command;  ///< that made it, ready to copy
-  std::vector<PageLink> links;
-  std::string footer;
+/// What a report contains, in order: each part follows those that were added before it. Texts and key figures
+/// come first, the command and the files last.
+class Document {
+ public:
+  explicit Document(std::string title, std::string purpose = {});
+
+  Document& purpose(std::string_view more);  ///< appends a sentence to the text under the title
+  Document& verdict(std::string word, bool good = true);
+  Document& version(std::string lrbscope);  ///< in the footer, instead of this program's version
+  Document& command(std::string command);   ///< the command that made the report
+  Document& link(const Link& link);
+
+  Document& text(const Text& text);        ///< at the top, side by side
+  Document& number(const Number& number);  ///< below the texts, in a row
+  Document& chart(const Chart& chart);
+  Document& table(const Table& table);
+  Document& grid(const Grid& grid, const std::string& folder);
+  Document& comparisons(const std::vector<Comparison>& comparisons);
+  Document& views(const std::vector<View>& views);  ///< with one camera and one time step
+  Document& scene(const std::string& json);         ///< a run, for the view in three dimensions
+  /// Pictures of a sequence, whose files are in `folder`. `budget`: see inline_pngs().
+  Document& frames(const std::vector<Frame>& frames, const std::string& folder,
+                   std::size_t budget = kInlineBudget);
+  /// A picture, .png or .svg, which write() writes. The parts of a `live` .svg report what they are under the
+  /// pointer.
+  Document& picture(const std::string& file, std::string bytes, const std::string& title,
+                    const std::string& caption, bool live = false);
+  Document& picture(const std::string& file, const render::Image& image, const std::string& title,
+                    const std::string& caption);
+  /// A file beside the page, which write() writes.
+  Document& file(const std::string& name, std::string bytes, const std::string& note);
+  /// Charts for print: NAME.svg and NAME.png. Without gnuplot they are left out, and notes() says so. Returns
+  /// the .svg.
+  std::string print(const std::string& name, const std::string& note, const Gnuplot& chart);
+
+  /// Adds all of some parts, such as tables.
+  template <class Parts, class P>
+  Document& each(const Parts& parts, Document& (Document::*adder)(const P&)) {
+    for (const P& part : parts) (this->*adder)(part);
+    return *this;
+  }
+
+  const std::string& title() const { return title_; }
+  const std::vector<std::string>& notes() const { return notes_; }
+  /// Returns the names of the files that write() writes, the page first.
+  std::vector<std::string> written() const;
+
+  std::string html() const;
+  /// Writes index.html and the files.
+  void write(const Folder& folder) const;
+
+ private:
+  /// Appends to the body. Consecutive charts are side by side.
+  Document& add(std::string_view html, bool is_chart = false);
+  /// Adds a style sheet and a script, each once.
+  void use(const std::string& style, std::string_view script);
+
+  std::string title_, purpose_, verdict_, footer_, command_;
+  std::string texts_, numbers_, body_;
+  std::string styles_, libraries_, scripts_, scene_, charts_, frames_ = "[]";
+  bool framing_ = false, in_charts_ = false;
+  std::size_t chart_count_ = 0;
+  std::vector<Link> links_;
+  std::vector<std::pair<std::string, std::string>> files_;
+  std::vector<std::string> notes_;
 };
-
-/// Returns what stands at a page's foot: the version that made it, if given, and that it is complete.
-std::string footer(const std::string& version = {});
-
-/// Returns the page as HTML.
-std::string page_html(const Page& page);
 
 }  // namespace lrb::report

@@ -152,14 +152,17 @@ std::string gnuplot_data_text(std::string_view text) {
   return out + "\"";
 }
 
-void draw(const Gnuplot& chart, const std::string& path) {
+std::string drawn(const Gnuplot& chart, const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
-  const Finished finished =
-      run("set terminal " + terminal(chart, ending) + "\nset encoding utf8\n" + chart.script);
+  Finished finished = run("set terminal " + terminal(chart, ending) + "\nset encoding utf8\n" + chart.script);
   if (!finished.started) throw EnvironmentError(path + ": there is no program " + program() + kInstall);
   if (!finished.good || finished.output.empty())
     throw EnvironmentError(path + ": " + program() + " failed: " + last_words(finished.errors));
-  io::write_text(path, finished.output);
+  return std::move(finished.output);
+}
+
+void draw(const Gnuplot& chart, const std::string& path) {
+  io::write_text(path, drawn(chart, path));
 }
 
 }  // namespace lrb::report

@@ -30,9 +30,11 @@ std::string gnuplot_text(std::string_view text);
 /// Quotes text as one field of a data block.
 std::string gnuplot_data_text(std::string_view text);
 
-/// Runs gnuplot, without a shell, and writes the chart to `path` (.svg, .png at 300 dpi, or .pdf), whole or
-/// not at all. Throws EnvironmentError in one line if gnuplot is missing or fails, InputError for other
-/// endings.
+/// Runs gnuplot, without a shell, and returns the chart as a file of the path's extension: .svg, .png at 300
+/// dpi, or .pdf. Throws EnvironmentError in one line if gnuplot is missing or fails, InputError for other
+/// extensions.
+std::string drawn(const Gnuplot& chart, const std::string& path);
+/// Writes it to the path, whole or not at all.
 void draw(const Gnuplot& chart, const std::string& path);
 
 }  // namespace lrb::report

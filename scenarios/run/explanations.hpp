@@ -1,5 +1,5 @@
 #pragma once
-/// Explains a run's pairs of faces, and its steps without any, for its page (report/web/scene_why.js).
+/// Explains a run's pairs of faces, and its steps without any, for its page (report/web/scene_panels.js).
 
 #include <cstddef>
 #include <cstdint>

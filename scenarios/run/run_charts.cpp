@@ -17,6 +17,8 @@ using render::group_digits;
 using render::short_number;
 using Passes = std::vector<trace::PassSummary>;
 
+constexpr const char* kLength = "length, mesh units";
+
 /// What verdicts mean, in their order.
 constexpr std::array<std::string_view, kWords<CapVerdict>.size()> kMeanings = {
     "it became part of the hull",
@@ -60,16 +62,15 @@ std::vector<std::string> pass_row(const trace::PassSummary& p) {
           trace::refusal_words(p.caps)};
 }
 
-report::PageTable pass_table(const Passes& passes) {
-  report::PageTable t;
-  t.title = "Pass by pass";
-  t.columns = {"pass",    "stage",   "allowed", "farthest", "faces",   "then",
-               "regions", "patches", "caps",    "cost",     "refused", "why"};
+report::Table pass_table(const Passes& passes) {
+  report::Table t{"Passes",
+                  {"pass", "stage", "max deviation", "deviation", "faces before", "after", "regions",
+                   "patches", "caps", "cost", "rejected", "reasons"}};
   for (const trace::PassSummary& p : passes) t.rows.push_back(pass_row(p));
   t.note =
-      "A pass covers the hull with patches and tries a cap on each. Allowed, farthest: how far caps may stand off the "
-      "body and how far the farthest does, in the mesh's unit, estimates by which the builder chooses. Cost: new faces "
-      "for each that the hull loses. Passes without a number made nothing; the next one allows more.";
+      "A pass covers the front with patches and tries a cap on each. Max deviation: allowed for caps; deviation: the largest of "
+      "its caps; both estimated, in mesh units. Cost: new faces for each that the front loses. Passes without a number "
+      "built nothing; the next one allows more.";
   const auto sum = [&](auto member) {
     std::uint64_t n = 0;
     for (const trace::PassSummary& p : passes) n += p.*member;
@@ -77,14 +78,21 @@ report::PageTable pass_table(const Passes& passes) {
   };
   if (const std::uint64_t merged = sum(&trace::PassSummary::merged); merged > 0)
     t.note +=
-        " " + render::counted(merged, "piece", "pieces") + " of space became part of the region around.";
+        " " + render::counted(merged, "piece", "pieces") + " of space merged into the surrounding region.";
   if (const std::uint64_t retried = sum(&trace::PassSummary::retried); retried > 0)
     t.note += " " + render::counted(retried, "cap", "caps") +
-              " met something at first, and another was made with a proof for each collapse.";
+              " intersected something at first and were rebuilt with a check of each collapse.";
+  std::uint32_t barred = 0;
+  for (const trace::PassSummary& p : passes) barred = std::max(barred, p.barred);
+  if (barred > 0)
+    t.note +=
+        " " + render::counted(barred, "face was", "faces were") +
+        " left to the outermost wrapper alone: they intersect others, lie within another component, or belong to a "
+        "very large polygon or fan.";
   return t;
 }
 
-report::PageTable refusal_table(const Passes& passes) {
+report::Table refusal_table(const Passes& passes) {
   const auto caps = trace::caps_of(passes);
   std::uint64_t all = 0;
   for (const std::uint32_t n : caps) all += n;
@@ -93,137 +101,91 @@ report::PageTable refusal_table(const Passes& passes) {
     if (caps[v] > 0) order.push_back(v);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t x, std::size_t y) { return caps[x] > caps[y]; });
-  report::PageTable t;
-  t.title = "What became of the caps";
-  t.columns = {"verdict", "caps", "share", "meaning"};
+  report::Table t{"Caps by verdict", {"verdict", "caps", "share", "meaning"}};
   for (const std::size_t v : order)
     t.rows.push_back({std::string(name_of(static_cast<CapVerdict>(v))), group_digits(caps[v]),
                       percent(caps[v], all), std::string(kMeanings[v])});
   t.note =
-      "Over all passes: a part of the hull that gets no cap in one pass is tried again in later ones. A cap that leaves "
-      "too many faces counts by what forbids most of the collapses that are left, limits before geometry.";
+      "Over all passes; a part of the front without a cap is tried again in later ones. A cap with too many faces counts by the "
+      "reason that rejects most of the remaining collapses, limits before geometry.";
   return t;
 }
 
-/// Says what no patch could have, if there is any.
-std::string left_out_words(const Passes& passes) {
-  std::uint32_t barred = 0;
-  for (const trace::PassSummary& p : passes) barred = std::max(barred, p.barred);
-  if (barred == 0) return {};
-  return render::counted(barred, "face was", "faces were") +
-         " left to the outermost wrapper alone: they meet others, lie within another component, or belong to a very "
-         "large polygon or fan.";
-}
-
-report::PageChart chart_of(const trace::Chart& chart, const char* title, const char* y) {
-  report::PageChart out;
-  out.title = title;
-  out.x_label = std::string(chart.x_name);
-  out.y_label = y;
-  for (const trace::Series& s : chart.series) out.series.push_back({std::string(s.name), chart.x, s.values});
+report::Chart chart_of(const trace::Chart& chart, const char* title, const char* y, report::Line line) {
+  report::Chart out{title, {std::string(chart.x_name)}, {y}};
+  for (const trace::Series& s : chart.series)
+    out.series.push_back({std::string(s.name), chart.x, s.values, {line}});
   return out;
 }
 
 }  // namespace
 
-void add_construction(report::Page& page, const RecordedRun& p) {
+void add_construction(report::Document& doc, const RecordedRun& p) {
   const Passes passes = trace::passes_of(*p.trace);
   const auto made = std::count_if(passes.begin(), passes.end(), [](const auto& s) { return s.regions > 0; });
-  page.numbers.push_back({"Passes", std::to_string(made),
-                          std::to_string(passes.size() - static_cast<std::size_t>(made)) + " more in vain"});
+  doc.number({"Passes", std::to_string(made),
+              std::to_string(passes.size() - static_cast<std::size_t>(made)) + " more without effect"});
   const auto caps = trace::caps_of(passes);
   std::uint64_t refused = 0;
   for (std::size_t v = 1; v < caps.size(); ++v) refused += caps[v];
-  if (caps[0] + refused > 0)
-    page.numbers.push_back({"Caps", group_digits(caps[0]), group_digits(refused) + " refused"});
-  report::PageChart hull = chart_of(trace::chart_over_construction(*p.trace),
-                                    "The hull, from the body to the outermost wrapper", "faces");
-  hull.cursor = report::PageCursor::event;
-  hull.stepped = true;
-  page.charts.push_back(std::move(hull));
-  if (caps[0] + refused > 0) {
-    page.charts.push_back(
-        chart_of(trace::chart_over_passes(*p.trace), "What became of caps, pass by pass", "caps"));
-    page.tables.push_back(refusal_table(passes));
+  const bool tried = caps[0] + refused > 0;
+  if (tried) doc.number({"Caps", group_digits(caps[0]), group_digits(refused) + " rejected"});
+  report::Chart front =
+      chart_of(trace::chart_over_construction(*p.trace), "The front, from the body to the outermost wrapper",
+               "faces", report::Line::steps);
+  front.cursor = report::Cursor::event;
+  doc.chart(front);
+  if (tried) {
+    doc.chart(chart_of(trace::chart_over_passes(*p.trace), "Caps by pass", "caps", report::Line::straight));
+    doc.table(refusal_table(passes));
   }
-  page.tables.push_back(pass_table(passes));
-  if (const std::string left = left_out_words(passes); !left.empty()) page.tables.back().note += " " + left;
+  doc.table(pass_table(passes));
 }
 
 namespace {
 
-/// Two curves that hold a number between them.
-struct Ends {
-  report::PageSeries lower, upper;
-
-  explicit Ends(const std::string& what) {
-    lower.label = what + ", lower end";
-    upper.label = what + ", upper end";
-  }
-  void add(double x, double low, double high) {
-    lower.x.push_back(x);
-    lower.y.push_back(low);
-    if (!std::isfinite(high)) return;
-    upper.x.push_back(x);
-    upper.y.push_back(high);
-  }
-  void move_to(report::PageChart& chart) {
-    if (lower.x.empty()) return;
-    chart.series.push_back(std::move(lower));
-    if (!upper.x.empty()) chart.series.push_back(std::move(upper));
-  }
-};
-
-report::PageChart steps_chart(const trace::Trace& trace) {
-  report::PageChart chart;
-  chart.title = "Distance and depth, step by step";
-  chart.x_label = "step";
-  chart.y_label = "length in the meshes' unit";
-  chart.cursor = report::PageCursor::step;
-  Ends distance("distance"), depth("depth");
+report::Chart steps_chart(const trace::Trace& trace) {
+  report::Ends distance("distance"), depth("depth");
   for (const trace::Step& step : trace.steps) {
     const trace::StepResult& r = step.result;
     if (r.distance) distance.add(step.index, r.distance->lower, r.distance->upper);
     if (r.clash && r.clash->depth) depth.add(step.index, (*r.clash->depth)[0], (*r.clash->depth)[1]);
   }
+  report::Chart chart{"Distance and depth by step", {"step"}, {kLength}, {}, {}, report::Cursor::step};
   distance.move_to(chart);
   depth.move_to(chart);
   return chart;
 }
 
-report::PageChart course_chart(const std::vector<Bounds>& course, const std::string& what,
-                               std::uint32_t step) {
-  report::PageChart chart;
-  chart.title = "How the bounds of the " + what + " tightened, step " + std::to_string(step);
-  chart.x_label = "work";
-  chart.y_label = "length in the meshes' unit";
-  chart.stepped = true;
-  Ends ends(what);
+report::Chart course_chart(const std::vector<Bounds>& course, const std::string& what, std::uint32_t step) {
+  report::Ends ends(what, report::Line::steps);
   for (const Bounds& b : course) ends.add(static_cast<double>(b.work), b.lower, b.upper);
+  report::Chart chart{
+      "Convergence of the " + what + " bounds, step " + std::to_string(step), {"work"}, {kLength}};
   ends.move_to(chart);
   return chart;
 }
 
-report::PageChart search_chart(const trace::MeasuredApproach& search) {
-  report::PageChart chart;
-  chart.title = "How the first contact was found";
-  chart.x_label = "percent of the way without a contact";
-  chart.y_label = "distance there";
-  chart.note = "Each point is where the search stood: until there the bodies are proved not to meet.";
-  Ends distance("distance");
+report::Chart search_chart(const trace::MeasuredApproach& search) {
+  report::Ends distance("distance");
   for (const ContactBounds& b : search.course) {
     const double percent = 100 * b.t0;
     if (distance.lower.x.empty() || percent > distance.lower.x.back())
       distance.add(percent, b.lower, b.upper);
   }
+  report::Chart chart{"Search for the first contact",
+                      {"proven collision-free part of the path, percent"},
+                      {"distance there"},
+                      {},
+                      "A point for each stage of the search."};
   distance.move_to(chart);
   return chart;
 }
 
 }  // namespace
 
-std::vector<report::PageChart> measure_charts(const trace::Trace& trace) {
-  std::vector<report::PageChart> out;
+std::vector<report::Chart> measure_charts(const trace::Trace& trace) {
+  std::vector<report::Chart> out;
   const trace::Step *of_distance = nullptr, *of_depth = nullptr;
   std::size_t most_distance = 1, most_depth = 1;  // a curve has two points at least
   for (const trace::Step& step : trace.steps) {
@@ -246,7 +208,7 @@ std::vector<report::PageChart> measure_charts(const trace::Trace& trace) {
     out.push_back(course_chart(of_depth->result.clash->course, "depth", of_depth->index));
   if (trace.header.first_contact && trace.header.first_contact->course.size() > 1)
     out.push_back(search_chart(*trace.header.first_contact));
-  std::erase_if(out, [](const report::PageChart& c) { return c.series.empty(); });
+  std::erase_if(out, [](const report::Chart& c) { return c.series.empty(); });
   return out;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
-/// Charts of what was measured in a run besides the pairs of faces: distances and depths step by step, and
-/// how their bounds tightened with the work.
+/// The charts and tables of a run's page.
 
 #include <vector>
 
@@ -10,9 +9,9 @@
 
 namespace lrb::run {
 
-/// Puts a construction into its page: its numbers, charts of the hull and of caps, and tables of its passes
-/// and of why caps were refused.
-void add_construction(report::Page& page, const RecordedRun& recorded);
+/// Adds a construction: its numbers, charts of the front and of caps, and tables of passes and of verdicts on
+/// caps.
+void add_construction(report::Document& doc, const RecordedRun& recorded);
 
 /// Returns true if a step of a trace has it.
 template <class Measured>
@@ -22,8 +21,19 @@ bool was_measured(const trace::Trace& trace, Measured trace::StepResult::*what) 
   return false;
 }
 
-/// Returns the charts; none if nothing was measured. Of bounds, those of the step that narrowed them most
-/// often.
-std::vector<report::PageChart> measure_charts(const trace::Trace& trace);
+/// Returns charts of distances and depths step by step, and of the convergence of their bounds in the step
+/// that narrowed them most often; none if nothing was measured.
+std::vector<report::Chart> measure_charts(const trace::Trace& trace);
+
+/// Returns the counters by region depth, and those of the regions with the most tests, for each body; none
+/// for a run of one body.
+std::vector<report::Table> group_tables(const RecordedRun& run);
+
+/// Returns the parts of the queries with what each cost, and the walk by depth of each body's tree beside
+/// what the surface area heuristic expects; none for a trace without these events.
+std::vector<report::Table> work_tables(const RecordedRun& run);
+
+/// Returns the quality sheet of the bodies.
+report::Table quality_table(const RecordedRun& run);
 
 }  // namespace lrb::run

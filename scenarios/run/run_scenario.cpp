@@ -56,9 +56,7 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
                      const std::string& command, const ProgressReport& progress) {
   const RecordedRun recorded = recorded_run_of(scenario, recording);
   check(scenario, recorded);
-  make_folder(folder);
-  const io::FolderLock lock(folder);
-  io::refuse_links(folder);
+  const report::Folder locked(folder);
   const std::string trace_file = scenario.gzip ? "trace.json.gz" : "trace.json";
   std::error_code error;
   std::filesystem::remove(folder + (scenario.gzip ? "/trace.json" : "/trace.json.gz"),
@@ -80,9 +78,18 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
   const DrawnFrames drawn = draw_frames(recorded, scenario.frames, folder, text, progress);
   out.frames = drawn.frames.size();
   progress("page", 0, 1);
-  const ReportText report{scenario.name, scenario.purpose, command,
-                          trace_file,    out.mismatches,   "lrbscope why --run " + io::shell_word(folder)};
-  io::write_text(folder + "/index.html", report::page_html(run_page(recorded, drawn, folder, report)));
+  const report::Link summary{"summary.json", recording.trace.header.construction
+                                                 ? "passes with their caps and reasons of rejection, as JSON"
+                                                 : "totals, statistics and time steps, as JSON"};
+  run_page(recorded, drawn, folder,
+           {scenario.name,
+            scenario.purpose,
+            command,
+            trace_file,
+            {trace_link(trace_file), summary},
+            out.mismatches,
+            "lrbscope why --run " + io::shell_word(folder)})
+      .write(locked);
   return out;
 }
 

@@ -1,5 +1,3 @@
-#include "scenarios/run/run_tables.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -8,7 +6,7 @@
 
 #include "render/pictures/panel.hpp"
 #include "scenarios/frames/face_colours.hpp"
-#include "scenarios/frames/framing.hpp"
+#include "scenarios/run/run_charts.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/obb_tree.hpp>
 #include <lrbscope/render/overlay.hpp>
@@ -80,14 +78,12 @@ void append(std::vector<std::string>& row, const std::vector<std::string>& cells
   row.insert(row.end(), cells.begin(), cells.end());
 }
 
-report::PageTable level_table(const RecordedRun& p, Side side) {
+report::Table level_table(const RecordedRun& p, Side side) {
   const LrbRep& rep = *p.reps[static_cast<std::size_t>(side)];
   std::uint32_t levels = 0;
   for (FaceId f = 0; f < rep.face_count(); ++f) levels = std::max(levels, level_of(rep, f) + 1);
   const Groups groups(p, side, levels, level_of);
-  report::PageTable t;
-  t.title = "Counters of " + std::string(name_of(side)) + " by level";
-  t.columns = {"level"};
+  report::Table t{"Counters of " + std::string(name_of(side)) + " by level", {"level"}};
   append(t.columns, groups.columns());
   for (std::uint32_t level = 0; level < levels; ++level) {
     t.rows.push_back({std::to_string(level)});
@@ -100,7 +96,7 @@ report::PageTable level_table(const RecordedRun& p, Side side) {
   return t;
 }
 
-report::PageTable region_table(const RecordedRun& p, Side side) {
+report::Table region_table(const RecordedRun& p, Side side) {
   constexpr std::size_t kMostRows = 20;
   const LrbRep& rep = *p.reps[static_cast<std::size_t>(side)];
   Groups groups(p, side, rep.region_count(), region_of);
@@ -111,10 +107,11 @@ report::PageTable region_table(const RecordedRun& p, Side side) {
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
     return groups.sums[x].tests > groups.sums[y].tests;
   });
-  report::PageTable t;
-  t.title = "Counters of " + std::string(name_of(side)) + " by region";
-  t.rows_are = side == Side::a ? report::PageRows::regions_of_a : report::PageRows::regions_of_b;
-  t.columns = {"region", "layer", "depth"};
+  report::Table t{"Counters of " + std::string(name_of(side)) + " by region",
+                  {"region", "layer", "depth"},
+                  {},
+                  {},
+                  side == Side::a ? report::Rows::regions_of_a : report::Rows::regions_of_b};
   append(t.columns, groups.columns());
   t.columns.emplace_back("refined");
   const auto add = [&](std::vector<std::string> first, const GroupSums& s) {
@@ -142,9 +139,9 @@ report::PageTable region_table(const RecordedRun& p, Side side) {
 
 }  // namespace
 
-std::vector<report::PageTable> group_tables(const RecordedRun& run) {
+std::vector<report::Table> group_tables(const RecordedRun& run) {
   if (run.reps.size() != 2) return {};
-  std::vector<report::PageTable> out;
+  std::vector<report::Table> out;
   for (const Side side : {Side::a, Side::b}) out.push_back(level_table(run, side));
   for (const Side side : {Side::a, Side::b})
     if (run.reps[static_cast<std::size_t>(side)]->region_count() > 0) out.push_back(region_table(run, side));
@@ -159,10 +156,8 @@ std::string percent(double share) {
   return short_number(100 * share) + " %";
 }
 
-report::PageTable share_table(const trace::Trace& trace) {
-  report::PageTable t;
-  t.title = "Where the work went";
-  t.columns = {"part of the query", "events", "box tests", "count", "of"};
+report::Table share_table(const trace::Trace& trace) {
+  report::Table t{"Where the work went", {"part of the query", "events", "box tests", "count", "of"}};
   const bool timed = !trace.wall_ns.empty();
   if (timed) t.columns.insert(t.columns.end(), {"microseconds", "share"});
   const std::vector<trace::WorkShare> shares = trace::work_shares(trace);
@@ -183,11 +178,10 @@ report::PageTable share_table(const trace::Trace& trace) {
   return t;
 }
 
-report::PageTable depth_table(const RecordedRun& p, Side side) {
+report::Table depth_table(const RecordedRun& p, Side side) {
   const trace::TreeShape& tree = (*p.trees)[static_cast<std::size_t>(side)];
-  report::PageTable t;
-  t.title = "The walk of " + std::string(name_of(side)) + "'s tree, by depth";
-  t.columns = {"depth", "nodes", "expected", "visited", "visits", "ended here", "box tests"};
+  report::Table t{"The walk of " + std::string(name_of(side)) + "'s tree, by depth",
+                  {"depth", "nodes", "expected", "visited", "visits", "ended here", "box tests"}};
   const auto depths = trace::work_by_depth(tree, trace::count_nodes(tree, side, p.trace->events));
   for (std::size_t d = 0; d < depths.size(); ++d) {
     const trace::DepthWork& w = depths[d];
@@ -249,15 +243,13 @@ const std::vector<Quality>& qualities() {
 
 }  // namespace
 
-std::vector<report::PageTable> work_tables(const RecordedRun& run) {
+std::vector<report::Table> work_tables(const RecordedRun& run) {
   if (run.trees == nullptr || run.trees->empty()) return {};
   return {share_table(*run.trace), depth_table(run, Side::a), depth_table(run, Side::b)};
 }
 
-report::PageTable quality_table(const RecordedRun& run) {
-  report::PageTable t;
-  t.title = "Quality of the bodies";
-  t.columns = {"figure"};
+report::Table quality_table(const RecordedRun& run) {
+  report::Table t{"Quality of the bodies", {"figure"}};
   std::vector<TreeQuality> trees;
   for (std::size_t i = 0; i < run.reps.size(); ++i) {
     t.columns.push_back(run.reps.size() == 1 ? "body" : i == 0 ? "A" : "B");

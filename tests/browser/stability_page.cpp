@@ -3,7 +3,6 @@
 #include <cstdio>
 
 #include "bench/stability/stability_report.hpp"
-#include "scenarios/io/files.hpp"
 #include "tests/stability/made_up_grid.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/render/image.hpp>
@@ -22,5 +21,5 @@ int main(int argc, char** argv) {
   options.pictures.resize(grid.cells.size());
   options.pictures[1] = "worst.png";
   options.command = [](const Record& r) { return "lrbscope stability --family " + r.family; };
-  io::write_text(folder + "/index.html", report::page_html(stability_page(grid, folder, options)));
+  stability_page(grid, folder, options).write(folder);
 }

@@ -71,8 +71,8 @@ int main(int argc, char** argv) {
       sheet.clear();
     }
   }
-  options.links = {{"records.jsonl", "records.jsonl", "every answer, one line each"}};
-  const ReportFiles files = write_stability_report(grid, folder, options);
-  for (const std::string& w : files.written) std::printf("%s\n", w.c_str());
-  if (!files.missing.empty()) std::printf("%s\n", files.missing.c_str());
+  options.links = {{"records.jsonl", "every answer, one line each"}};
+  const report::Document page = write_stability_report(grid, folder, options);
+  for (const std::vector<std::string>& lines : {page.written(), page.notes()})
+    for (const std::string& line : lines) std::printf("%s\n", line.c_str());
 }

@@ -11,7 +11,6 @@
 
 #include "bench/stability/case_picture.hpp"
 #include "bench/stability/outcome_grid.hpp"
-#include "bench/stability/stability_print.hpp"
 #include "bench/stability/worst_case.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/io/files.hpp"
@@ -131,7 +130,7 @@ TEST_CASE("the page is whole, and fetches nothing") {
   options.pictures.resize(grid.cells.size());
   render::write_png(render::Image(8, 8, render::palette::kBlue), folder + "/first.png");
   options.pictures[1] = "first.png";
-  const std::string html = report::page_html(stability_page(grid, folder, options));
+  const std::string html = stability_page(grid, folder, options).html();
   CHECK(unbalanced(html) == "");
   CHECK(html.find("http:") == std::string::npos);
   CHECK(html.find("https:") == std::string::npos);
@@ -155,7 +154,7 @@ TEST_CASE("dials have their physical values on page and charts") {
   CHECK(off[9] == "1e-16");
   CHECK(off[10] == "0");
   CHECK(family("far")->values[10] == "1e16");
-  const std::string html = report::page_html(stability_page(grid, ".", {}));
+  const std::string html = stability_page(grid, ".", {}).html();
   CHECK(html.find(">1e-6</i>") != std::string::npos);
   CHECK(html.find("of 0 to 10 (1e-11)") != std::string::npos);
   CHECK(profile_chart(grid).script.find("'1e-11' 6") != std::string::npos);
@@ -163,7 +162,7 @@ TEST_CASE("dials have their physical values on page and charts") {
 
 TEST_CASE("the page has every cell, every mark and every worst case") {
   const Grid grid = made_up_grid();
-  const std::string html = report::page_html(stability_page(grid, ".", {}));
+  const std::string html = stability_page(grid, ".", {}).html();
   const std::size_t families = grid.families.size(), methods = grid.methods.size();
   CHECK(count(html, "<td ") == (families + 1) * (methods - 1));  // one is absent, and named
   CHECK(html.find("1 method is not installed here: Bullet 3.24, GImpact.") != std::string::npos);
@@ -195,7 +194,7 @@ TEST_CASE("names are escaped, and their addresses are plain") {
   Grid grid = made_up_grid();
   grid.methods[1].name = "a\"><script>x";
   grid.methods[1].title = "<script>alert(1)</script>";
-  const std::string html = report::page_html(stability_page(grid, ".", {}));
+  const std::string html = stability_page(grid, ".", {}).html();
   CHECK(html.find("<script>alert") == std::string::npos);
   CHECK(html.find("<b>&\"quoted\"") == std::string::npos);
   CHECK(html.find("&lt;b&gt;&amp;") != std::string::npos);
@@ -230,10 +229,11 @@ TEST_CASE("a grid that does not fit together is refused") {
 TEST_CASE("without gnuplot there is the page, and one line on what is missing") {
   const GnuplotIs none("lrbscope-has-no-such-program");
   const std::string folder = scratch_folder("no_gnuplot");
-  const ReportFiles files = write_stability_report(made_up_grid(), folder);
-  CHECK(files.written == std::vector<std::string>{"index.html"});
-  CHECK(files.missing.find("gnuplot-nox") != std::string::npos);
-  CHECK(files.missing.find('\n') == std::string::npos);
+  const report::Document page = write_stability_report(made_up_grid(), folder);
+  CHECK(page.written() == std::vector<std::string>{"index.html"});
+  REQUIRE(page.notes().size() == 1);
+  CHECK(page.notes()[0].find("gnuplot-nox") != std::string::npos);
+  CHECK(page.notes()[0].find('\n') == std::string::npos);
   CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
   CHECK_FALSE(report::has_gnuplot());
 }
@@ -243,8 +243,7 @@ TEST_CASE("the charts are drawn, and texts in them are no commands" * doctest::s
   Grid grid = made_up_grid();
   grid.methods[0].title = "it's `touch " + folder + "/ran` <& @x $y \\n \"q\" ";
   grid.families[0].name = "`touch " + folder + "/ran`'; system('touch " + folder + "/ran')";
-  const ReportFiles files = write_stability_report(grid, folder);
-  CHECK(files.missing == "");
+  CHECK(write_stability_report(grid, folder).notes().empty());
   CHECK_FALSE(std::filesystem::exists(folder + "/ran"));
   for (const char* name : {"stability.svg", "stability-profiles.svg"}) {
     const std::string svg = io::read_text(folder + "/" + name);

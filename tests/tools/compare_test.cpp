@@ -87,7 +87,7 @@ TEST_CASE("compare: two constructions of a body, pass by pass; not one body with
   CHECK(differ.code == 0);
   CHECK(differ.out.find("step 0, event ") != std::string::npos);
   const std::string page = slurp(runs.folder / "built/index.html");
-  for (const char* part : {"Pass by pass", "regions, few", "The hull, event by event", "outermost wrapper"})
+  for (const char* part : {"<h2>Passes</h2>", "regions, few", "The front by event", "outermost wrapper"})
     CHECK(page.find(part) != std::string::npos);
   CHECK(render::read_png(runs.folder / "built/compare.png").image.width() > 900);
   const Outcome same = run(runs.folder, {"--quiet", "compare", "few", "few", "-o", "same"});

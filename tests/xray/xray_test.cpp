@@ -178,7 +178,7 @@ TEST_CASE("xray: a page with both runs, or one clear error") {
     const Outcome outcome = with("poses.txt");
     CHECK(outcome.code == 0);
     CHECK(outcome.out == "out/index.html\n");
-    CHECK(slurp(folder / "out/index.html").find("Distribution of the box tests") != std::string::npos);
+    CHECK(slurp(folder / "out/index.html").find("Box tests by face, step ") != std::string::npos);
     CHECK(render::read_png(folder / "out/heat.png").image.width() > 1500);
     const auto theirs = nlohmann::json::parse(slurp(folder / ("out/" + engine + "/summary.json")));
     const auto ours = nlohmann::json::parse(slurp(folder / "out/ours/summary.json"));

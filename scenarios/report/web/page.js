@@ -79,17 +79,24 @@ function startPlayer() {
 }
 
 // ---- the charts
-/** Marks where the moment on show stands. */
-const cursorPlugin = {
-  id: "cursor",
+/** Draws error bars, thin lines to points, and a mark at the frame or event on show. */
+const marksPlugin = {
+  id: "marks",
   afterDatasetsDraw(chart) {
-    const at = chart.config.options.cursorAt;
-    if (at === undefined || at < 0) return;
-    const { left, right, top, bottom } = chart.chartArea, x = chart.scales.x.getPixelForValue(at);
-    if (x < left - 1 || x > right + 1) return;
-    const c = chart.ctx;
-    c.save(); c.strokeStyle = style("--soft"); c.setLineDash([4, 3]);
-    c.beginPath(); c.moveTo(x, top); c.lineTo(x, bottom); c.stroke(); c.restore();
+    const { left, right, top, bottom } = chart.chartArea, { x, y } = chart.scales, c = chart.ctx;
+    const line = (colour, dash, x0, y0, x1, y1) => {
+      c.strokeStyle = colour; c.setLineDash(dash);
+      c.beginPath(); c.moveTo(x0, y0); c.lineTo(x1, y1); c.stroke();
+    };
+    c.save();
+    for (const set of chart.data.datasets) if (chart.isDatasetVisible(chart.data.datasets.indexOf(set))) for (const p of set.data) {
+      const px = x.getPixelForValue(p.x), py = y.getPixelForValue(p.y);
+      if (p.high !== undefined) line(set.borderColor, [], px, y.getPixelForValue(p.low), px, y.getPixelForValue(p.high));
+      if (p.from !== undefined) line(set.borderColor, [2, 3], x.getPixelForValue(p.from), py, px, py);
+    }
+    const at = chart.config.options.cursorAt, px = x.getPixelForValue(at);
+    if (at >= 0 && px > left - 1 && px < right + 1) line(style("--soft"), [4, 3], px, top, px, bottom);
+    c.restore();
   },
 };
 
@@ -101,19 +108,18 @@ function ticksWithin(axis) {
   axis.ticks = within.length ? within.filter((t) => within.length < many || isPower(t)) : [{ value: axis.min }, { value: axis.max }];
 }
 
-function axis(title, log) {
+function axis({ label, log, min, max, ticks }) {
+  const given = new Map(ticks.map((t) => [t.at, t.label]));
   return {
-    ...(log ? { afterBuildTicks: ticksWithin } : {}),
-    type: log ? "logarithmic" : "linear", bounds: "data", title: { display: true, text: title, color: style("--soft") },
-    grid: { color: style("--grid"), borderColor: style("--line") }, ticks: { color: style("--soft"), maxRotation: 0, precision: log ? undefined : 0 },
+    ...(given.size ? { afterBuildTicks: (a) => { a.ticks = ticks.map((t) => ({ value: t.at })); } } : log ? { afterBuildTicks: ticksWithin } : {}),
+    ...(max > min ? { min, max } : {}),
+    type: log ? "logarithmic" : "linear", bounds: "data", title: { display: true, text: label, color: style("--soft") },
+    grid: { color: style("--grid"), borderColor: style("--line") },
+    ticks: {
+      color: style("--soft"), maxRotation: 0, precision: log ? undefined : 0,
+      ...(given.size ? { callback: (value) => given.get(value) } : {}),
+    },
   };
-}
-
-/** An axis with fixed ends, the left one of which stands for 0. */
-function ends(spec) {
-  const power = (v) => Math.round(Math.log10(v) * 1e6) / 1e6;
-  const label = (v) => (v <= spec.leastX * 1.001 ? "0" : power(v) % 2 === 0 ? v.toExponential(0) : "");
-  return { min: spec.leastX, max: spec.mostX, ticks: { color: style("--soft"), maxRotation: 0, autoSkip: false, callback: label } };
 }
 
 function nearestFrame(key, value) {
@@ -138,13 +144,15 @@ function seen(colour) {
   }
 }
 
+const hasLegend = (spec) => spec.series.filter((s) => s.label).length > 1;
+
 /** Returns how high a chart's legend is, in pixels, if it is so wide: as Chart.js lays it out. */
 function legendHeight(spec, canvas, width) {
   const { font } = Chart.defaults, gap = 10, context = canvas.getContext("2d");
-  if (spec.series.length < 2) return 0;
+  if (!hasLegend(spec)) return 0;
   context.font = `${font.size}px ${font.family}`;
   let rows = 1, used = gap;
-  for (const s of spec.series) {
+  for (const s of spec.series.filter((s) => s.label)) {
     const item = 14 + font.size / 2 + context.measureText(s.label).width + gap;
     if (used > gap && used + item > width - gap) {
       rows++;
@@ -164,25 +172,31 @@ function makeRoom(spec, canvas, width) {
 
 function makeChart(spec, canvas) {
   const colours = spec.series.map((s, i) => seen(s.colour || style(`--s${i % 7}`)));
+  const scatter = spec.series.some((s) => s.line === "none"), shaped = spec.series.some((s) => s.shape && s.shape !== "none");
+  const radius = (s) => (s.shape === "none" ? 0 : scatter ? 4 : s.data.length > 80 ? 0 : 2.2);
   const datasets = spec.series.map((s, i) => ({
-    label: s.label, data: s.data, borderColor: colours[i], backgroundColor: colours[i],
-    borderWidth: 1.8, stepped: spec.stepped || s.line ? "before" : false, showLine: !spec.scatter || s.line,
-    pointRadius: s.line ? 0 : spec.scatter ? 4 : s.data.length > 80 ? 0 : 2.2, pointHitRadius: s.line ? 0 : 8,
-    pointStyle: s.shape || "circle", clip: 12,
+    label: s.label, data: s.data, borderColor: colours[i], backgroundColor: colours[i], borderWidth: 1.8,
+    stepped: s.line === "steps" ? "before" : false, showLine: s.line !== "none", borderDash: s.line === "dashed" ? [5, 4] : [],
+    pointRadius: radius(s), pointHitRadius: radius(s) || !scatter ? 8 : 0, pointStyle: s.shape === "none" ? "line" : s.shape || "circle", clip: 12,
   }));
+  const bars = spec.series.flatMap((s) => s.data.filter((p) => p.high !== undefined).map((p) => p.high)); // of errors
   const room = makeRoom(spec, canvas, canvas.parentElement.clientWidth);
   const chart = new Chart(canvas, {
-    type: spec.scatter ? "scatter" : "line", data: { datasets }, plugins: [cursorPlugin],
+    type: scatter ? "scatter" : "line", data: { datasets }, plugins: [marksPlugin],
     options: {
       animation: false, parsing: false, normalized: true, maintainAspectRatio: false,
-      interaction: { mode: spec.scatter ? "nearest" : "index", intersect: false },
-      scales: { x: { ...axis(spec.x, spec.logX), ...(spec.mostX > spec.leastX ? ends(spec) : {}) }, y: { ...axis(spec.y, spec.logY), bounds: "ticks", beginAtZero: !spec.logY } },
+      interaction: { mode: scatter ? "nearest" : "index", intersect: false },
+      scales: { x: axis(spec.x), y: { ...axis(spec.y), bounds: "ticks", beginAtZero: !spec.y.log, ...(bars.length ? { suggestedMax: Math.max(...bars) } : {}) } },
       plugins: {
-        legend: { display: datasets.length > 1, position: "bottom", maxHeight: room, labels: { color: style("--ink"), boxWidth: 14, boxHeight: spec.series.some((s) => s.shape) ? 6 : 2, usePointStyle: spec.series.some((s) => s.shape) } },
-        decimation: { enabled: !spec.scatter, algorithm: "min-max" },
+        legend: {
+          display: hasLegend(spec), position: "bottom", maxHeight: room,
+          labels: { color: style("--ink"), boxWidth: 14, boxHeight: shaped ? 6 : 2, usePointStyle: shaped, filter: (item) => item.text },
+        },
+        decimation: { enabled: !scatter, algorithm: "min-max" },
         tooltip: { callbacks: {
-          title: (items) => (!items.length ? "" : items[0].raw.note ? items[0].dataset.label : `${spec.x} ${items[0].parsed.x.toLocaleString()}`),
-          label: (item) => (item.raw.note ? item.raw.note.split("\n") : `${item.dataset.label}: ${item.formattedValue}`),
+          title: (items) => (!items.length ? "" : items[0].raw.note ? items[0].dataset.label : `${spec.x.label} ${items[0].parsed.x.toLocaleString()}`),
+          label: ({ raw, dataset, formattedValue }) =>
+            raw.note ? raw.note.split("\n") : `${dataset.label}: ${formattedValue}${raw.high === undefined ? "" : `, ${raw.low} to ${raw.high}`}`,
         } },
       },
       onResize(chart, size) {

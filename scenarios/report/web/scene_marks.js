@@ -80,3 +80,274 @@ class Marks {
     this.shown.delete(name);
   }
 }
+
+// ---- in the view: where two faces meet, or what keeps them apart; and what parts the bodies
+class WhyMarks {
+  /** `why`: the panel that says the same in words. */
+  constructor(view, why) {
+    Object.assign(this, { view, why, group: new THREE.Group(), key: null });
+    view.stage.add(this.group);
+    why.listeners.push(() => view.redraw());
+  }
+
+  draw() {
+    const { view, why } = this,
+      nodes = why.nodes();
+    view.marks.setBoxes("way", nodes.map((n) => n.number).join(" "), nodes, view.colours.selected);
+    const key = why.now && view.now.why ? why.now.key : "";
+    if (key === this.key) return;
+    this.key = key;
+    this.clear();
+    if (!key) return;
+    if (why.now.kind === "pair") this.addPair(why.now.found);
+    else this.addParting(why.now.found);
+  }
+
+  addPair({ meet, points }) {
+    const { colours } = this.view;
+    this.addPath(points, points.length > 2, meet === 0 ? colours.selected : colours.underTest, 3);
+    const { radius } = this.view.ballOfFaces(this.view.comparedFaces());
+    if (meet === 0 && this.view.events.dim === 3) this.addSquare(squareBetween(...points, radius));
+    this.view.legend.also(
+      meet === 0
+        ? [
+            [colours.selected, "between the nearest points"],
+            [colours.refining, "plane that parts the faces"],
+          ]
+        : [[colours.underTest, "where they meet"]],
+      "why",
+    );
+  }
+
+  addParting({ plane, boxes }) {
+    const { colours } = this.view;
+    if (boxes) {
+      const places = unpack(boxes.places);
+      this.view.bodies.forEach((_, side) =>
+        this.addLines(boxEdges(places, [side]), mixed(colours.bodies[side], colours.ink, 0.3), 1.8),
+      );
+    }
+    const square = unpack((plane || boxes || { square: "f4:" }).square);
+    if (square.length) this.addSquare([0, 3, 6, 9].map((i) => [...square.subarray(i, i + 3)]));
+    this.view.legend.also(
+      [
+        ...(boxes ? [[mixed(colours.bodies[0], colours.ink, 0.3), "nearest of the boxes found apart"]] : []),
+        ...(square.length
+          ? [[colours.refining, plane ? "plane that parts the bodies" : "plane that parts these boxes"]]
+          : []),
+      ],
+      "why",
+    );
+  }
+
+  /** Joins points in their order. */
+  addPath(points, closed, colour, width) {
+    const ends = [];
+    for (let i = 0; i + 1 < points.length + (closed ? 1 : 0); i++)
+      ends.push(...points[i], ...points[(i + 1) % points.length]);
+    if (ends.length) this.addLines(ends, colour, width);
+  }
+
+  addLines(ends, colour, width) {
+    const lines = thickLines(ends, thickMaterial(colour, width, this.view.size));
+    lines.renderOrder = 7;
+    this.group.add(lines);
+  }
+
+  addSquare(corners) {
+    const colour = this.view.colours.refining,
+      geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(corners.flat()), 3));
+    geometry.setIndex([0, 1, 2, 0, 2, 3]);
+    const square = new THREE.Mesh(
+      geometry,
+      new THREE.MeshBasicMaterial({
+        color: new THREE.Color(...colour),
+        transparent: true,
+        opacity: 0.35,
+        depthWrite: false,
+        side: THREE.DoubleSide,
+      }),
+    );
+    square.renderOrder = 4;
+    square.frustumCulled = false;
+    this.group.add(square);
+    this.addPath(corners, true, colour, 1.2);
+  }
+
+  clear() {
+    this.view.legend.also([], "why");
+    for (const object of this.group.children.slice()) discard(this.group, object);
+  }
+}
+
+/** Returns a square across the line between two points, at its middle. `half`: from there to its corners. */
+function squareBetween(p, q, half) {
+  const a = new THREE.Vector3(...p),
+    b = new THREE.Vector3(...q),
+    n = b.clone().sub(a);
+  if (n.length() === 0) return [p, p, p, p];
+  n.normalize();
+  const u = new THREE.Vector3(Math.abs(n.x) < 0.6 ? 1 : 0, Math.abs(n.x) < 0.6 ? 0 : 1, 0)
+      .cross(n)
+      .setLength(half),
+    v = n.clone().cross(u),
+    middle = a.add(b).multiplyScalar(0.5);
+  return [u, v, u.clone().negate(), v.clone().negate()].map((way) => middle.clone().add(way).toArray());
+}
+
+// ---- in the view: how far apart the bodies are in the step on show, and how B leaves A where they overlap
+class MeasuredMarks {
+  /** `measured`: as the page has it; null: the run did not ask. */
+  constructor(view, measured) {
+    Object.assign(this, { view, group: new THREE.Group(), shown: null });
+    this.ofStep = new Map(); // by number: {wayOut, from, to, words}
+    if (measured) {
+      const ends = unpack(measured.ends),
+        wayOut = unpack(measured.wayOut),
+        at = (i) => new THREE.Vector3(...ends.subarray(i, i + 3));
+      unpack(measured.step).forEach((step, i) =>
+        this.ofStep.set(step, { wayOut: wayOut[i] === 1, from: at(6 * i), to: at(6 * i + 3), words: measured.words[i] }),
+      );
+    }
+    view.stage.add(this.group);
+  }
+
+  /** Makes the lines anew where the step has changed. */
+  draw() {
+    const { events, selection, legend, colours } = this.view,
+      now = this.ofStep.get(events.stepNumber(selection.event)) || null;
+    if (now === this.shown) return;
+    this.shown = now;
+    for (const object of this.group.children.slice()) discard(this.group, object);
+    if (now) {
+      const colour = now.wayOut ? colours.wayOut : colours.ink;
+      this.addLines(now.wayOut ? arrowOf(now.from, now.to, events.dim) : [now.from, now.to], colour);
+    }
+    const wayOut = [colours.wayOut, "B leaves A this way"],
+      gap = [colours.ink, "between the nearest points of the bodies", WHITE];
+    legend.also(now ? [now.wayOut ? wayOut : gap] : [], "measured");
+  }
+
+  /** A pale line under each, so that they are seen on bodies of any colour. */
+  addLines(points, colour) {
+    const ends = points.flatMap((p) => p.toArray());
+    for (const [c, width, order] of [
+      [WHITE, 7, 8],
+      [colour, 3.5, 9],
+    ]) {
+      const lines = thickLines(ends, thickMaterial(c, width, this.view.size));
+      lines.renderOrder = order;
+      this.group.add(lines);
+    }
+  }
+
+  /** Writes the length over the middle of the way, or under it where there is no room. */
+  write() {
+    const label = byId("measured"),
+      { shown, view } = this;
+    label.hidden = !shown;
+    if (!shown) return;
+    const at = shown.from.clone().add(shown.to).multiplyScalar(0.5).project(view.camera.camera);
+    label.hidden = Math.abs(at.x) > 1 || Math.abs(at.y) > 1 || at.z > 1;
+    if (label.hidden) return;
+    label.textContent = shown.words;
+    const { x: width, y: height } = view.size,
+      half = label.offsetWidth / 2 + 4,
+      y = (height * (1 - at.y)) / 2,
+      off = 14;
+    label.style.left = `${Math.max(half, Math.min(width - half, (width * (1 + at.x)) / 2))}px`;
+    label.style.top = `${y > label.offsetHeight + off ? y - label.offsetHeight - off : y + off}px`;
+  }
+}
+
+/** Returns the ends of an arrow's lines. */
+function arrowOf(from, to, dim) {
+  const along = to.clone().sub(from),
+    length = along.length(),
+    n = along.clone().normalize(),
+    across = dim === 2 ? new THREE.Vector3(0, 0, 1).cross(n) : new THREE.Vector3(Math.abs(n.x) < 0.6 ? 1 : 0, Math.abs(n.x) < 0.6 ? 0 : 1, 0).cross(n);
+  across.setLength(0.11 * length);
+  const sides = [across, across.clone().negate()];
+  if (dim === 3) for (const s of sides.slice()) sides.push(n.clone().cross(s));
+  const back = to.clone().addScaledVector(along, -0.24);
+  return [from, to, ...sides.flatMap((side) => [back.clone().add(side), to])];
+}
+
+// ---- what the colours of the view mean
+class Legend {
+  constructor(view) {
+    this.view = view;
+    this.items = [];
+    this.more = {};
+  }
+
+  /** Adds what is pointed out at the moment, in place of what the same `who` had: [[colour, words, colour of the rim]]; a rim
+      where the colour alone is not seen on a dark card. */
+  also(items, who) {
+    this.more[who] = items.map(([colour, text, rim]) => [Legend.css(colour), text, rim ? Legend.css(rim) : ""]);
+    this.write();
+  }
+
+  static css(c) {
+    return `rgb(${c.map((x) => Math.round(255 * x)).join(" ")})`;
+  }
+
+  write() {
+    byId("legend").replaceChildren(
+      ...[...this.items, ...Object.values(this.more).flat()].map(([colour, text, rim]) => {
+        const item = document.createElement("span"),
+          dot = document.createElement("i");
+        dot.style.background = colour;
+        if (rim) dot.style.outline = `1.5px solid ${rim}`;
+        item.append(dot, text);
+        return item;
+      }),
+    );
+  }
+
+  /** `key`: the scale of the colours; null: bodies have one colour each. */
+  show(key) {
+    const { colours, bodies, now } = this.view,
+      { passes } = this.view.events,
+      { css } = Legend,
+      items = [];
+    bodies.forEach((b) => {
+      const name = bodies.length > 1 ? `${SIDES[b.side]} ${b.name}` : b.name,
+        colour = colours.bodies[b.side];
+      items.push([
+        css(key ? mixed(colour, WHITE, colours.shares.noValue) : colour),
+        `${name}, real faces${key && COUNTERS.includes(now.by) ? ` without ${now.by}` : ""}`,
+        key ? css(colours.edge(b.side)) : "",
+      ]);
+      if (!key && now.by === "kind" && b.regionCount)
+        items.push([css(colours.lid(b.side)), `${name}, pseudo faces`, css(colours.edge(b.side))]);
+    });
+    if (now.by === "region")
+      items.push([css(colours.categories[0]), `pseudo faces, a colour for each region${passes ? "; pale: of earlier passes" : ""}`, ""]);
+    if (this.view.events.passes) items.push([css(colours.refining), "lids that are new in this pass", ""]);
+    else
+      items.push(
+        [css(colours.contact), "faces that meet", ""],
+        [css(colours.refining), "region being refined", ""],
+        [css(colours.underTest), "pair under test", ""],
+      );
+    items.push([css(colours.selected), "selected", ""]);
+    if (this.view.events.wrong.some((pairs) => pairs.length))
+      items.push([css(colours.wrong), `pairs that ${this.view.events.engine} got wrong`, ""]);
+    this.items = items;
+    this.write();
+    this.showScale(key);
+  }
+
+  showScale(key) {
+    const { colours, bodies, now } = this.view;
+    byId("scale").hidden = !key;
+    if (!key) return;
+    byId("scale-bar").style.background = `linear-gradient(to right, ${colours.stops.join(", ")})`;
+    byId("scale-most").textContent = digits(key.most);
+    const whose = bodies.length > 1 ? " of both bodies" : "";
+    const when = now.scope === "run" ? "in the whole run" : "in this step so far";
+    byId("scale-title").textContent = key.title || `${now.by}, for each ${now.per}${whose}, ${when}`;
+  }
+}

@@ -1,3 +1,267 @@
+// ---- where one looks from. The same camera as a scenario's: perspective over 0.6 radians, or orthographic.
+const FIELD = 0.6; // radians from bottom to top, as render/include/lrbscope/render/camera.hpp has it
+const VIEW_FROM = [0.62, -0.68, 0.42]; // and the direction that frames are seen from
+
+class SceneCamera {
+  /** `scene` says how the page's unit is the world's (origin and unit: x_world = origin + unit * x), and from where frames are seen
+      (view: from, up, orthographic; null: not said). */
+  constructor(canvas, scene, changed) {
+    this.frame = scene;
+    this.perspective = new THREE.PerspectiveCamera((FIELD * 180) / Math.PI, 1, 0.01, 100);
+    this.flat = new THREE.OrthographicCamera(-1, 1, 1, -1, -100, 100);
+    this.camera = this.perspective;
+    this.plane = scene.dim === 2; // seen from above, without turning
+    const { from, up, orthographic } = scene.view || { from: VIEW_FROM, up: [0, 0, 1], orthographic: false };
+    this.from = this.plane ? [0, 0, 1] : from;
+    this.up = this.plane ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(...up).normalize();
+    this.lamp = new THREE.DirectionalLight(0xffffff, 0.5);
+    this.lamp.position.set(-0.4, 0.7, 1);
+    for (const camera of [this.perspective, this.flat]) camera.up.copy(this.up);
+    this.camera.add(this.lamp);
+    this.controls = new THREE.OrbitControls(this.camera, canvas);
+    this.controls.enableKeys = false;
+    if (this.plane) {
+      this.controls.enableRotate = false;
+      this.controls.mouseButtons.LEFT = THREE.MOUSE.PAN;
+      this.controls.touches.ONE = THREE.TOUCH.PAN;
+      this.perspective.position.set(0, 0, 1);
+      this.setOrthographic(true);
+    }
+    if (orthographic && !this.plane) {
+      this.perspective.position.set(...this.from);
+      this.setOrthographic(true);
+    }
+    this.controls.enableZoom = false; // until the view has the focus: the wheel scrolls the page
+    canvas.addEventListener("focus", () => {
+      this.controls.enableZoom = true;
+    });
+    canvas.addEventListener("blur", () => {
+      this.controls.enableZoom = false;
+    });
+    canvas.addEventListener(
+      "touchstart",
+      () => {
+        this.controls.enableZoom = true;
+      },
+      { passive: true, capture: true },
+    );
+    this.controls.addEventListener("change", changed);
+    this.fitted = false; // all is shown, until somebody looks closer: then all is shown in another window, too
+    this.controls.addEventListener("start", () => {
+      this.fitted = false;
+    });
+  }
+
+  get orthographic() {
+    return this.camera === this.flat;
+  }
+  get distance() {
+    return this.camera.position.distanceTo(this.controls.target);
+  }
+
+  resize(width, height) {
+    this.aspect = width / height;
+    this.perspective.aspect = this.aspect;
+    this.flat.left = -this.aspect;
+    this.flat.right = this.aspect;
+  }
+
+  /** Called before drawing: the range of depths follows the distance. */
+  prepare(radius) {
+    const d = this.distance;
+    this.perspective.near = Math.max(d / 500, d - 4 * radius);
+    this.perspective.far = d + 6 * radius;
+    this.flat.near = -6 * radius;
+    this.flat.far = d + 6 * radius;
+    this.camera.updateProjectionMatrix();
+  }
+
+  /** Looks at a ball from where one stands. */
+  lookAt(centre, radius) {
+    this.fitted = false;
+    const way = this.camera.position.clone().sub(this.controls.target);
+    const least = Math.min(1, this.aspect),
+      half = FIELD / 2;
+    const d = radius / Math.sin(Math.atan(Math.tan(half) * least));
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(way.normalize(), d);
+    this.flat.zoom = 1 / (d * Math.tan(half));
+    this.controls.update();
+  }
+
+  /** Shows all points as large as can be, from where one stands or from a direction; as render/include/lrbscope/render/camera.hpp
+      does. */
+  fit(points, from) {
+    this.fitted = true;
+    const out = (
+      from ? new THREE.Vector3(...from) : this.camera.position.clone().sub(this.controls.target)
+    ).normalize();
+    const right = this.up.clone().cross(out).normalize(),
+      up = out.clone().cross(right);
+    const share = 0.92,
+      slopeY = Math.tan(FIELD / 2) * share,
+      slopeX = slopeY * this.aspect; // the rest stays free
+    const most = {
+      right: -Infinity,
+      left: -Infinity,
+      top: -Infinity,
+      bottom: -Infinity,
+      near: -Infinity,
+      far: Infinity,
+    };
+    for (const p of points) {
+      // depth towards the eye moves a point away from the middle
+      const x = p.dot(right),
+        y = p.dot(up),
+        z = p.dot(out);
+      most.right = Math.max(most.right, x + slopeX * z);
+      most.left = Math.max(most.left, -x + slopeX * z);
+      most.top = Math.max(most.top, y + slopeY * z);
+      most.bottom = Math.max(most.bottom, -y + slopeY * z);
+      most.near = Math.max(most.near, z);
+      most.far = Math.min(most.far, z);
+    }
+    const depth = Math.max((most.right + most.left) / 2 / slopeX, (most.top + most.bottom) / 2 / slopeY),
+      middle = (most.near + most.far) / 2;
+    const centre = right
+      .clone()
+      .multiplyScalar((most.right - most.left) / 2)
+      .addScaledVector(up, (most.top - most.bottom) / 2);
+    this.controls.target.copy(centre).addScaledVector(out, middle);
+    this.camera.position.copy(centre).addScaledVector(out, Math.max(depth, most.near + 1e-6));
+    this.flat.zoom = 1 / (this.distance * Math.tan(FIELD / 2));
+    this.controls.update();
+  }
+
+  /** Zooms by a factor; above 1: closer. */
+  zoom(factor) {
+    this.fitted = false;
+    this.camera.position.sub(this.controls.target).divideScalar(factor).add(this.controls.target);
+    this.flat.zoom *= factor;
+    this.controls.update();
+  }
+
+  /** Turns about the target, in radians. */
+  turn(azimuth, elevation) {
+    if (this.plane) return;
+    const upright = new THREE.Quaternion().setFromUnitVectors(this.up, new THREE.Vector3(0, 1, 0));
+    const s = new THREE.Spherical().setFromVector3(
+      this.camera.position.clone().sub(this.controls.target).applyQuaternion(upright),
+    );
+    s.theta += azimuth;
+    s.phi = Math.max(0.01, Math.min(Math.PI - 0.01, s.phi - elevation));
+    this.camera.position
+      .setFromSpherical(s)
+      .applyQuaternion(upright.inverse())
+      .add(this.controls.target);
+    this.controls.update();
+  }
+
+  /** Returns half the height of what an orthographic camera shows. */
+  get halfHeight() {
+    return this.orthographic ? 1 / this.flat.zoom : this.distance * Math.tan(FIELD / 2);
+  }
+
+  setOrthographic(on) {
+    const half = this.halfHeight,
+      next = on ? this.flat : this.perspective;
+    next.position.copy(this.camera.position);
+    if (!on)
+      next.position
+        .sub(this.controls.target)
+        .setLength(half / Math.tan(FIELD / 2))
+        .add(this.controls.target);
+    this.flat.zoom = 1 / half;
+    next.add(this.lamp);
+    this.camera = this.controls.object = next;
+    this.controls.update();
+    this.controls.dispatchEvent({ type: "change" }); // which update() only does if the camera has moved
+  }
+
+  /** Looks as json() of another view says. */
+  set({ projection, eye, target }) {
+    this.fitted = false;
+    const { origin, unit } = this.frame,
+      local = (x) => new THREE.Vector3(...x.map((v, i) => (v - origin[i]) / unit));
+    if ((projection === "orthographic") !== this.orthographic) this.setOrthographic(!this.orthographic);
+    this.controls.target.copy(local(target));
+    this.camera.position.copy(local(eye));
+    this.flat.zoom = 1 / (this.distance * Math.tan(FIELD / 2));
+    this.controls.update();
+  }
+
+  /** Returns the camera as a view of a scenario's frames ("views", scenario.schema.json). */
+  json() {
+    const { origin, unit } = this.frame,
+      target = this.controls.target;
+    // An orthographic camera of a scenario shows as much as a perspective one would at its target.
+    const eye = target.clone().add(
+      this.camera.position
+        .clone()
+        .sub(target)
+        .setLength(this.halfHeight / Math.tan(FIELD / 2)),
+    );
+    const world = (v) => v.toArray().map((x, i) => Number((origin[i] + unit * x).toPrecision(9)));
+    return {
+      camera: "fixed",
+      projection: this.orthographic ? "orthographic" : "perspective",
+      eye: world(eye),
+      target: world(target),
+      up: this.up.toArray(),
+    };
+  }
+}
+
+// ---- clicks in the view: which face is meant
+class Picker {
+  constructor(view) {
+    this.view = view;
+    const { canvas, selection } = view;
+    let down = null;
+    canvas.addEventListener("pointerdown", (e) => {
+      down = [e.clientX, e.clientY];
+    });
+    canvas.addEventListener("click", (e) => {
+      if (down && Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return; // the view was turned
+      const hit = this.under(e.clientX, e.clientY, e.altKey);
+      if (hit) selection.pickFace(hit.side, hit.face, hit.simplex);
+      else selection.pick(null);
+    });
+    canvas.addEventListener("dblclick", (e) => {
+      if (this.under(e.clientX, e.clientY, e.altKey)) view.frameSelection();
+      else view.frameAll();
+    });
+  }
+
+  /** Returns the face under a point of the screen, {side, face, simplex}; `through`: lids are looked through. */
+  under(x, y, through = false) {
+    const { views, now } = this.view;
+    const pieces = views.flatMap((v) => v.pieces);
+    const lids = through ? [] : views.filter((v) => v.lids.mesh.visible).map((v) => v.lids);
+    const real = views.map((v) => v.real);
+    if (now.isolate) return this.nearest(x, y, pieces) || this.nearest(x, y, real);
+    // What is seen through is not what is clicked, unless there is nothing else.
+    return now.ghost && lids.length
+      ? this.nearest(x, y, lids)
+      : this.nearest(x, y, [...pieces, ...lids, ...real]);
+  }
+
+  /** Returns the nearest face of some FaceMesh. */
+  nearest(x, y, among) {
+    const { canvas, camera } = this.view;
+    const box = canvas.getBoundingClientRect();
+    const at = new THREE.Vector2((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height);
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(at, camera.camera);
+    const [hit] = ray.intersectObjects(
+      among.filter((faces) => faces.triangles > 0).map((faces) => faces.mesh),
+    );
+    if (!hit) return null;
+    const faces = hit.object.userData.faces;
+    return { side: faces.body.side, ...faces.at(hit) };
+  }
+}
+
 // ---- the view in three dimensions: draws what is selected, and selects what is clicked
 class SceneView {
   constructor(scene, selection, wrappers, why) {
@@ -344,4 +608,34 @@ function ballOf(box) {
     centre: box.getCenter(centre),
     radius: Math.max(1e-6, box.getSize(new THREE.Vector3()).length() / 2),
   };
+}
+
+// ---- the same view beside another run's, in a page that compares them (index.html?alone in a frame): one camera, one step
+class Together {
+  constructor(view, selection, events) {
+    this.view = view;
+    this.selection = selection;
+    this.events = events;
+    this.listening = false; // to what the other view does: not to be told back
+    document.documentElement.classList.add("alone");
+    view.camera.controls.addEventListener("change", () => this.tell({ camera: view.camera.json() }));
+    selection.listeners.push((what) => what === "event" && this.tell({ step: this.step }));
+    window.addEventListener("message", (e) => e.source === parent && e.data.lrbscope && this.hear(e.data.lrbscope));
+    this.tell({ camera: view.camera.json(), step: this.step }); // the view that comes last sets both
+  }
+
+  get step() {
+    return this.events.stepNumber(this.selection.event);
+  }
+
+  tell(what) {
+    if (!this.listening) parent.postMessage({ lrbscope: what }, "*");
+  }
+
+  hear({ camera, step }) {
+    this.listening = true;
+    if (camera) this.view.camera.set(camera);
+    if (step !== undefined && step !== this.step) seek("step", step);
+    this.listening = false;
+  }
 }

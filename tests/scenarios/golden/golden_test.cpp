@@ -250,9 +250,9 @@ TEST_CASE("goldens: a contact that is lost is called lost, one that is new is ca
   CHECK(lost.verdict.diagnosis.starts_with("event " + std::to_string(e) + " lost: " + contact));
   CHECK(has(lost.verdict.diagnosis, "instead of"));
   CHECK(has(golden::result_text(lost), " lost: contact: "));
-  REQUIRE(lost.pngs.size() == 1);  // the pictures of the run are as approved
-  CHECK_FALSE(lost.pngs[0][0].empty());
-  CHECK(lost.pngs[0][0] != lost.pngs[0][1]);
+  REQUIRE(lost.comparisons.size() == 1);  // the pictures of the run are as approved
+  CHECK_FALSE(lost.comparisons[0].pngs[0].empty());
+  CHECK(lost.comparisons[0].pngs[0] != lost.comparisons[0].pngs[1]);
 
   std::swap(golden.trace, run.recording.trace);
   const golden::GoldenVerdict added = golden::check_golden(golden, run);
@@ -424,7 +424,7 @@ TEST_CASE("goldens: effects come first, then which vertex moved and by how much"
   CHECK(o.out.find("face tests: expected") < o.out.find("cause: "));
   CHECK(has(o.out, "out/golden/index.html#tips-frame_1\n"));
   const std::string page = slurp(folder / "out/golden/index.html");
-  CHECK(has(page, "tips: what came out otherwise"));
+  CHECK(has(page, "tips: differences"));
   CHECK(has(page, "id=\"tips-frame_1\""));
   const std::string junit = slurp(folder / "results.xml");
   CHECK(has(junit, "<testsuite name=\"lrbscope golden\" tests=\"1\" failures=\"1\" errors=\"0\""));

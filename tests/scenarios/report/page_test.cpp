@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <regex>
 #include <string>
 
@@ -6,7 +7,9 @@
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/assets.hpp"
 #include "scenarios/report/document.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/text.hpp"
+#include <lrbscope/error.hpp>
 #include <lrbscope/render/image.hpp>
 
 using namespace lrb;
@@ -14,37 +17,29 @@ using lrb::test::count;
 
 namespace {
 
-report::Page full_page() {
-  report::Page page;
-  page.title = "A < B & \"C\" {{data}}";
-  page.purpose = "</script><script>alert(1)</script>";
-  page.verdict = "crossing";
-  page.numbers = {{"pairs", "12", "at step 3"}};
-  page.frames = {{"data:image/png;base64,AAAA", "</script>first", "frames/a.png", 0, 0},
-                 {"data:image/png;base64,BBBB", "second", "frames/b.png", 7, 1}};
-  report::PageChart chart;
-  chart.title = "chart";
-  chart.series = {{"s", {0, 1, 2}, {3, 4, 5}}};
-  chart.cursor = report::PageCursor::event;
-  page.charts = {chart};
-  page.tables = {{"table", {"a", "b"}, {{"1", "x"}}, "note"}};
-  page.command = "lrbscope run x";
-  page.links = {{"trace.json", "trace.json", "opens in Perfetto"}};
-  return page;
+/// `scene`: a run for the view; empty: none.
+std::string full_page(const std::string& scene = {}) {
+  const test::Folder folder;
+  for (const char* file : {"a.png", "b.png"}) render::write_png(render::Image(4, 4), folder / file);
+  report::Document doc("A < B & \"C\" {{data}}", "</script><script>alert(1)</script>");
+  doc.verdict("crossing").number({"pairs", "12", "at step 3"}).command("lrbscope run x");
+  if (!scene.empty()) doc.scene(scene);
+  doc.frames({{"a.png", "</script>first", 0, 0}, {"b.png", "second", 7, 1}}, folder.path.string());
+  report::Chart chart{"chart", {"event"}, {"</script>faces"}, {{"s", {0, 1, 2}, {3, 4, 5}}}};
+  chart.cursor = report::Cursor::event;
+  doc.chart(chart).table({"table", {"a", "b"}, {{"1", "x"}}, "note"});
+  doc.table({"grouped", {"a", "b", "c"}, {{"1\u202f234", "0.5", "gear 3"}}});
+  return doc.link({"trace.json", "opens in Perfetto"}).html();
 }
 
 }  // namespace
 
 TEST_CASE("numbers in tables are aligned right, with their digits in groups, too") {
-  report::Page page = full_page();
-  page.tables = {{"table", {"a", "b", "c"}, {{"1\u202f234", "0.5", "gear 3"}}, ""}};
-  const std::string html = report::page_html(page);
-  CHECK(html.find("<td class=\"n\">1\u202f234</td><td class=\"n\">0.5</td><td>gear 3</td>") !=
-        std::string::npos);
+  CHECK(count(full_page(), "<td class=\"n\">1\u202f234</td><td class=\"n\">0.5</td><td>gear 3</td>") == 1);
 }
 
 TEST_CASE("a page fetches nothing: no address outside, all scripts and pictures inside") {
-  std::string html = report::page_html(full_page());
+  std::string html = full_page();
   // The charting library's own banner names its home page; nothing is loaded from there.
   const std::string library(io::embedded_file("chart.min.js"));
   const std::size_t at = html.find(library);
@@ -59,17 +54,15 @@ TEST_CASE("a page fetches nothing: no address outside, all scripts and pictures 
 }
 
 TEST_CASE("text cannot become markup or end the data") {
-  const std::string html = report::page_html(full_page());
+  const std::string html = full_page();
   CHECK(html.find("<script>alert") == std::string::npos);
-  CHECK(html.find("</script>first") == std::string::npos);
+  for (const char* text : {"</script>first", "</script>faces"}) CHECK(html.find(text) == std::string::npos);
   CHECK(html.find("A &lt; B &amp; &quot;C&quot; {{data}}") != std::string::npos);  // marks in texts are texts
   CHECK(count(html, "<script") == count(html, "</script>"));
 }
 
 TEST_CASE("a page with a run's data has the view in three dimensions, and nothing of it comes from outside") {
-  report::Page page = full_page();
-  page.scene = R"({"name":"</script><b>"})";
-  std::string html = report::page_html(page);
+  std::string html = full_page(R"({"name":"</script><b>"})");
   for (const char* name : {"three.min.js", "OrbitControls.js", "chart.min.js"}) {
     const std::string library(io::embedded_file(name));
     const std::size_t at = html.find(library);
@@ -86,23 +79,48 @@ TEST_CASE("a page with a run's data has the view in three dimensions, and nothin
 }
 
 TEST_CASE("every script of the view is in the page, none twice") {
-  report::Page page;
-  page.scene = "{}";
-  const std::string html = report::page_html(page);
+  const std::string html = report::Document("t").scene("{}").html();
   for (const io::EmbeddedFile& file : io::embedded_files())
     if (file.name.starts_with("scene") && file.name.ends_with(".js"))
       CHECK_MESSAGE(count(html, std::string(file.text)) == 1, file.name);
 }
 
 TEST_CASE("parts that a page does not have leave nothing behind") {
-  report::Page page;
-  page.title = "t";
-  const std::string html = report::page_html(page);
+  const std::string html = report::Document("t").html();
   CHECK(html.find("<canvas") == std::string::npos);
   CHECK(html.find("id=\"player\"") == std::string::npos);
   CHECK(html.find("<table") == std::string::npos);
   CHECK(html.find("id=\"scene\"") == std::string::npos);
   CHECK(html.size() < 40'000);  // nor the libraries
+}
+
+TEST_CASE("a document writes its page and the files that it names, and locks its folder meanwhile") {
+  const test::Folder folder;
+  const std::string out = folder / "out";
+  report::Document doc("t");
+  doc.file("a.txt", "text", "a note").picture("b.png", render::Image(2, 2), "picture", "caption").write(out);
+  for (const std::string& name : doc.written()) CHECK(std::filesystem::exists(folder / ("out/" + name)));
+  CHECK(doc.written() == std::vector<std::string>{"index.html", "a.txt", "b.png"});
+  for (const char* part :
+       {"<a href=\"a.txt\">a.txt</a> <span>a note</span>", "<a href=\"b.png\"><img src=\"data:image/png"})
+    CHECK(count(io::read_text(out + "/index.html"), part) == 1);
+  const report::Folder locked(out);
+  CHECK_THROWS_AS(doc.write(out), EnvironmentError);
+  doc.write(locked);
+}
+
+TEST_CASE("charts for print: each panel has its series, and one key has each label once") {
+  report::Chart chart{
+      "left", {"x", true, 1, 100, {{1, "0"}, {10, "10 %"}}}, {"y"}, {{"it's", {1, 2}, {3, 4}}}};
+  chart.series.push_back({"bars", {1, 2}, {3, 4}, {report::Line::none, "#123456", "rect"}, {2, 3}, {4, 5}});
+  const report::Chart panels[] = {chart, chart};
+  const std::string script = report::gnuplot(panels, {2, 40, 40, 8, ""}).script;
+  for (const char* part :
+       {"$p0s0 << ", "$p1s1 << ", "set title 'left'", "set logscale x", "('0' 1, '10 %%' 10)"})
+    CHECK_MESSAGE(script.find(part) != std::string::npos, std::string(part));
+  CHECK(count(script, "with yerrorbars lc rgb '#123456' pt 5") == 2);
+  CHECK(count(script, "\"it's\"") == 1);
+  CHECK(count(report::gnuplot(panels).script, " title 'it''s'") == 2);
 }
 
 TEST_CASE("base64") {

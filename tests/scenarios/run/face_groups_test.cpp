@@ -6,8 +6,8 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/frames/face_colours.hpp"
+#include "scenarios/run/run_charts.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/run_tables.hpp"
 #include <lrbscope/trace/counters.hpp>
 
 using namespace lrb;
@@ -44,7 +44,7 @@ std::uint64_t number(const std::string& cell) {
   return digits.empty() ? 0 : std::stoull(digits);
 }
 
-std::size_t column(const report::PageTable& t, const std::string& name) {
+std::size_t column(const report::Table& t, const std::string& name) {
   return static_cast<std::size_t>(std::find(t.columns.begin(), t.columns.end(), name) - t.columns.begin());
 }
 
@@ -82,10 +82,10 @@ TEST_CASE("tables by level and by region add up to the run's totals") {
   const spec::Scenario s = rocks();
   const run::Recording r = recorded(s);
   const trace::Totals totals = trace::count_events(r.trace.events);
-  const std::vector<report::PageTable> tables = run::group_tables(run::recorded_run_of(s, r));
+  const std::vector<report::Table> tables = run::group_tables(run::recorded_run_of(s, r));
   REQUIRE(tables.size() == 4);
   for (std::size_t i = 0; i < tables.size(); ++i) {
-    const report::PageTable& t = tables[i];
+    const report::Table& t = tables[i];
     CAPTURE(t.title);
     const auto sum = [&](const std::string& name) {
       std::uint64_t out = 0;

@@ -1,5 +1,6 @@
 // Scenarios that ask for distances and kinds of contact: what is recorded, said, drawn and charted.
 #include <algorithm>
+#include <string>
 
 #include <doctest/doctest.h>
 
@@ -7,10 +8,12 @@
 #include "scenarios/run/run_charts.hpp"
 #include "scenarios/run/run_page.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/style.hpp>
 
 using namespace lrb;
+using lrb::test::count;
 
 namespace {
 
@@ -34,21 +37,12 @@ bool draws_line(const render::DrawList& list, render::Rgba colour) {
   });
 }
 
-bool has_column(const report::Page& page, const std::string& name) {
-  return std::any_of(page.tables.begin(), page.tables.end(), [&](const report::PageTable& t) {
-    return std::find(t.columns.begin(), t.columns.end(), name) != t.columns.end();
-  });
-}
-
-bool has_chart(const report::Page& page, const std::string& part) {
-  return std::any_of(page.charts.begin(), page.charts.end(),
-                     [&](const report::PageChart& c) { return c.title.find(part) != std::string::npos; });
-}
-
-std::string number(const report::Page& page, const std::string& label) {
-  for (const report::PageNumber& n : page.numbers)
-    if (n.label == label) return n.value;
-  return {};
+/// Returns a key figure and its note as the page has them.
+std::string number(const std::string& page, const std::string& label) {
+  const std::string head = "<dt>" + label + "</dt><dd>";
+  const std::size_t at = page.find(head);
+  if (at == std::string::npos) return {};
+  return page.substr(at + head.size(), page.find("</dd>", at) - at - head.size());
 }
 
 /// The state at the end of a step.
@@ -100,44 +94,39 @@ TEST_CASE("measured runs: frames show the nearest points, and the way out, and s
   CHECK_FALSE(draws_line(at_end(plain, 6, spec).scene().list, run::kSeparationColour));
 }
 
-TEST_CASE("measured runs: the page has the numbers, columns and charts, and others do not") {
-  const auto page_of = [](const run::Recording& r) {
-    return run::run_page(run::recorded_run_of("gap", "", r), {}, ".", {});
-  };
-  const run::Recording r = recorded(R"({"distance": true, "clash": true})");
-  const report::Page page = page_of(r);
-  CHECK(number(page, "Distance") == "0");
-  CHECK(number(page, "Kind of contact") == "one protrudes into the other");
-  CHECK_FALSE(number(page, "Penetration depth").empty());
-  CHECK(has_column(page, "distance"));
-  CHECK(has_column(page, "depth"));
-  CHECK(has_chart(page, "Distance and depth"));
-  CHECK(has_chart(page, "bounds of the distance"));
-  CHECK(has_chart(page, "bounds of the depth"));
-  CHECK(has_chart(page, "first contact"));
-  const report::Page plain = page_of(recorded("{}"));
-  CHECK(number(plain, "Distance").empty());
-  CHECK_FALSE(has_column(plain, "distance"));
-  CHECK_FALSE(has_chart(plain, "Distance"));
-  CHECK_FALSE(has_chart(plain, "first contact"));
+std::string page_of(const run::Recording& r) {
+  return run::run_page(run::recorded_run_of("gap", "", r), {}, ".", {}).html();
 }
 
-TEST_CASE("B2: frames and page say why a kind of contact is undecided") {
+TEST_CASE("measured runs: the page has the numbers, columns and charts, and others do not") {
+  const std::string page = page_of(recorded(R"({"distance": true, "clash": true})")),
+                    plain = page_of(recorded("{}"));
+  CHECK(number(page, "Distance").starts_with("0<small>"));
+  CHECK(number(page, "Contact kind").starts_with("one protrudes into the other<small>"));
+  CHECK_FALSE(number(page, "Penetration depth").empty());
+  CHECK(number(plain, "Distance").empty());
+  for (const char* part :
+       {">distance</th>", "<th>contact kind</th>", "<h2>Distance and depth by step</h2>",
+        "<h2>Convergence of the distance bounds, step ", "<h2>Convergence of the depth bounds, step "}) {
+    CHECK_MESSAGE(count(page, part) == 1, std::string(part));
+    CHECK_MESSAGE(count(plain, part) == 0, std::string(part));
+  }
+  CHECK(count(page, "<h2>Search for the first contact</h2>") == 1);
+  CHECK(count(plain, "<h2>Search for the first contact</h2>") == 0);
+}
+
+TEST_CASE("B2: frames and page state why a contact kind is undecided") {
   run::Recording r = recorded(R"({"clash": true})");
   trace::MeasuredClash& last = *r.trace.steps.back().result.clash;
   last.kind = ClashKind::undecided;
   last.reason = ClashReason::b_overlaps;
   last.volume.reset();
   CHECK(at_end(r, 6, {}).caption().find("undecided: B intersects itself, ") != std::string::npos);
-  const report::Page page = run::run_page(run::recorded_run_of("gap", "", r), {}, ".", {});
-  CHECK(number(page, "Kind of contact") == "undecided");
-  CHECK(std::any_of(page.numbers.begin(), page.numbers.end(), [](const report::PageNumber& n) {
-    return n.label == "Kind of contact" && n.note.ends_with("; B intersects itself");
-  }));
-  CHECK(std::any_of(page.tables.begin(), page.tables.end(), [](const report::PageTable& t) {
-    return !t.rows.empty() &&
-           std::count(t.rows.back().begin(), t.rows.back().end(), "undecided: B intersects itself");
-  }));
+  const std::string page = page_of(r);
+  CHECK(number(page, "Contact kind") == "undecided<small>at step " +
+                                            std::to_string(r.trace.steps.back().index) +
+                                            "; B intersects itself</small>");
+  CHECK(count(page, "<td>undecided: B intersects itself</td>") == 1);
 }
 
 TEST_CASE("measured runs: a clash of bodies in the plane is refused by step") {

@@ -1,0 +1,220 @@
+#include "scenarios/report/chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "render/page_palette.hpp"
+#include <lrbscope/core/strings.hpp>
+
+namespace lrb::report {
+namespace {
+
+using io::number_text;
+using nlohmann::json;
+
+struct Shape {
+  const char* name;  ///< Chart.js's
+  int point;         ///< gnuplot's number
+};
+
+/// Series without a shape take those of the first seven in turn.
+constexpr Shape kShapes[] = {{"circle", 7},   {"rect", 5},  {"triangle", 9},
+                             {"rectRot", 13}, {"star", 3},  {"rectRounded", 4},
+                             {"crossRot", 2}, {"cross", 1}, {"none", 0}};
+
+json axis_json(const Axis& axis) {
+  json ticks = json::array();
+  for (const Tick& t : axis.ticks) ticks.push_back({{"at", t.at}, {"label", t.label}});
+  return {{"label", axis.label}, {"log", axis.log}, {"min", axis.min}, {"max", axis.max}, {"ticks", ticks}};
+}
+
+json series_json(const Series& s) {
+  constexpr const char* kLines[] = {"straight", "steps", "dashed", "none"};
+  json points = json::array();
+  for (std::size_t i = 0; i < s.x.size(); ++i) {
+    json point = {{"x", s.x[i]}, {"y", s.y[i]}};
+    for (const auto& [key, values] : {std::pair{"low", &s.low}, {"high", &s.high}, {"from", &s.from}})
+      if (!values->empty()) point[key] = (*values)[i];
+    if (!s.notes.empty()) point["note"] = s.notes[i];
+    if (!s.targets.empty() && !s.targets[i].empty()) point["target"] = s.targets[i];
+    points.push_back(std::move(point));
+  }
+  return {{"label", s.label},
+          {"data", std::move(points)},
+          {"colour", s.style.colour},
+          {"shape", s.style.shape},
+          {"line", kLines[static_cast<std::size_t>(s.style.line)]}};
+}
+
+/// Returns how gnuplot draws the i-th series: colour, point and dashes.
+std::string look(const SeriesStyle& style, std::size_t i) {
+  const std::size_t colours = render::page::kSeries.size();
+  const Shape* shape = std::find_if(std::begin(kShapes), std::end(kShapes),
+                                    [&](const Shape& s) { return s.name == style.shape; });
+  const int point = (shape == std::end(kShapes) ? kShapes[i % colours] : *shape).point;
+  return " lc rgb '" + (style.colour.empty() ? series_colour(i) : style.colour) + "' pt " +
+         std::to_string(point) + " ps 0.5 dt " +
+         (style.line == Line::dashed ? "2" : std::to_string(1 + i / colours)) + " lw 1.2";
+}
+
+const char* form(const Series& s) {
+  if (s.style.line == Line::none || s.x.size() == 1) return "points";
+  if (s.style.line == Line::steps) return "steps";
+  return s.style.shape == "none" ? "lines" : "linespoints";
+}
+
+/// Returns the plot commands of a series, and adds its data to the chart.
+std::string plot(Gnuplot& chart, const Series& s, std::size_t i, const std::string& name) {
+  std::vector<std::string> rows;
+  for (std::size_t k = 0; k < s.x.size(); ++k)
+    rows.push_back(number_text(s.x[k]) + " " + number_text(s.y[k]) +
+                   (s.low.empty() ? "" : " " + number_text(s.low[k]) + " " + number_text(s.high[k])) +
+                   (s.from.empty() ? "" : " " + number_text(s.from[k])));
+  chart.add_data(name, rows);
+  const std::string style = look(s.style, i), data = "$" + name + " using ";
+  const std::string title = s.label.empty() ? " notitle" : " title " + gnuplot_text(s.label);
+  std::string out;
+  if (!s.low.empty()) out += data + "1:2:3:4 with yerrorbars" + style + " notitle, ";
+  if (!s.from.empty()) out += data + "3:2:($1-$3):(0) with vectors nohead" + style + " dt 3 notitle, ";
+  return out + data + "1:2 with " + form(s) + style + title;
+}
+
+std::string axis_commands(const std::string& name, const Axis& axis, bool labelled) {
+  std::string out =
+      (axis.log ? "set logscale " : "unset logscale ") + name + "\nset " + name + "range " +
+      (axis.max > axis.min ? "[" + number_text(axis.min) + ":" + number_text(axis.max) + "]" : "[*:*]") +
+      "\nset " + name + "label " + gnuplot_text(labelled ? axis.label : "") + "\nset " + name + "tics ";
+  if (axis.ticks.empty()) return out + "autofreq\n";
+  for (std::size_t i = 0; i < axis.ticks.size(); ++i) {
+    std::string label;
+    for (const char c : axis.ticks[i].label) label += c == '%' ? std::string("%%") : std::string(1, c);
+    out += (i == 0 ? "(" : ", ") + gnuplot_text(label) + " " + number_text(axis.ticks[i].at);
+  }
+  return out + ")\n";
+}
+
+/// The sizes of the whole, in millimetres from the upper left corner.
+struct Sheet {
+  double width, height;
+  std::string margins(double left, double right, double top, double bottom) const {
+    std::string out;
+    for (const auto& [side, at] : {std::pair{"l", left / width},
+                                   {"r", right / width},
+                                   {"t", 1 - top / height},
+                                   {"b", 1 - bottom / height}})
+      out += std::string("set ") + side + "margin at screen " + number_text(at) + "\n";
+    return out;
+  }
+};
+
+/// The labels of all panels, each once, with the series that shows it and its number.
+std::vector<std::pair<const Series*, std::size_t>> key_of(std::span<const Chart> panels) {
+  std::vector<std::pair<const Series*, std::size_t>> out;
+  for (const Chart& panel : panels)
+    for (std::size_t i = 0; i < panel.series.size(); ++i) {
+      const Series& s = panel.series[i];
+      const auto same = [&](const auto& entry) { return entry.first->label == s.label; };
+      if (!s.label.empty() && std::none_of(out.begin(), out.end(), same)) out.emplace_back(&s, i);
+    }
+  return out;
+}
+
+/// Returns the commands that draw a key in a panel of its own, in units of its columns and lines.
+std::string key_commands(Gnuplot& chart, const std::vector<std::pair<const Series*, std::size_t>>& key,
+                         int columns, int lines) {
+  std::string out =
+      "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nunset grid\nunset logscale\n"
+      "set xrange [0:" +
+      std::to_string(columns) + "]\nset yrange [0:" + std::to_string(lines) + "]\nplot ";
+  std::vector<std::string> labels;
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    const double x = static_cast<int>(i) / lines, y = lines - 0.5 - static_cast<int>(i) % lines;
+    const bool points = key[i].first->style.line == Line::none;
+    const Series sample{"", points ? std::vector{x + 0.05} : std::vector{x + 0.02, x + 0.08},
+                        std::vector(points ? 1 : 2, y), key[i].first->style};
+    out += plot(chart, sample, key[i].second, "key" + std::to_string(i)) + ", ";
+    labels.push_back(number_text(x + 0.1) + " " + number_text(y) + " " +
+                     gnuplot_data_text(key[i].first->label));
+  }
+  chart.add_data("labels", labels);
+  return out + "$labels using 1:2:3 with labels left\n";
+}
+
+}  // namespace
+
+std::string series_colour(std::size_t i) {
+  return render::css(render::page::kSeries[i % render::page::kSeries.size()].light);
+}
+
+void Ends::add(double x, double low, double high) {
+  lower.x.push_back(x);
+  lower.y.push_back(low);
+  if (!std::isfinite(high)) return;
+  upper.x.push_back(x);
+  upper.y.push_back(high);
+}
+
+void Ends::move_to(Chart& chart) {
+  for (Series* s : {&lower, &upper})
+    if (!s->x.empty()) chart.series.push_back(std::move(*s));
+}
+
+std::string chart_json(const Chart& chart) {
+  constexpr const char* kCursors[] = {"", "event", "step"};
+  json series = json::array();
+  for (const Series& s : chart.series) series.push_back(series_json(s));
+  const json out = {{"x", axis_json(chart.x)},
+                    {"y", axis_json(chart.y)},
+                    {"cursor", kCursors[static_cast<std::size_t>(chart.cursor)]},
+                    {"series", std::move(series)}};
+  return out.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& layout) {
+  constexpr double kPoint = 25.4 / 72;  // millimetres
+  const double line = 1.3 * kPoint * layout.font;
+  const double left = 5.5 * line, right = line, top = panels.size() > 1 ? 2 * line : line,
+               bottom = 3.5 * line;
+  const int count = static_cast<int>(panels.size()), columns = std::min(count, layout.columns);
+  const int rows = (count + columns - 1) / columns;
+  const auto key = layout.key.empty() ? key_of(panels) : key_of({});
+  const int lines = (static_cast<int>(key.size()) + layout.key_columns - 1) / layout.key_columns;
+  const double column_width = left + layout.panel_width + right,
+               row_height = top + layout.panel_height + bottom;
+  const Sheet sheet{columns * column_width, rows * row_height + (lines > 0 ? 1.2 * line * lines + line : 0)};
+  Gnuplot out{"", sheet.width, sheet.height, layout.font};
+  std::string commands;
+  for (int p = 0; p < count; ++p) {
+    const Chart& panel = panels[static_cast<std::size_t>(p)];
+    if (std::all_of(panel.series.begin(), panel.series.end(), [](const Series& s) { return s.x.empty(); }))
+      continue;
+    const auto at = [&](int other) -> const Chart& { return panels[static_cast<std::size_t>(other)]; };
+    const int column = p % columns, row = p / columns;
+    const double x = column * column_width + left, y = row * row_height + top;
+    commands +=
+        sheet.margins(x, x + layout.panel_width, y, y + layout.panel_height) + "set title " +
+        gnuplot_text(count > 1 ? panel.title : "") + " offset 0,-0.6\n" +
+        axis_commands("x", panel.x, p + columns >= count || at(p + columns).x.label != panel.x.label) +
+        axis_commands("y", panel.y, column == 0 || at(p - 1).y.label != panel.y.label);
+    std::string plots;
+    for (std::size_t i = 0; i < panel.series.size(); ++i)
+      if (!panel.series[i].x.empty())
+        plots += (plots.empty() ? "plot " : ", ") +
+                 plot(out, panel.series[i], i, "p" + std::to_string(p) + "s" + std::to_string(i));
+    commands += plots + "\n";
+  }
+  if (lines > 0)
+    commands +=
+        sheet.margins(line, sheet.width - line, rows * row_height + 0.5 * line, sheet.height - 0.5 * line) +
+        key_commands(out, key, layout.key_columns, lines);
+  out.script +=
+      "set multiplot\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset tics nomirror scale 0.5\nset format '%g'\n"
+      "set grid lw 0.4 lc rgb '#dddddd' dt 1\n" +
+      (layout.key.empty() ? "unset key" : "set key " + layout.key + " reverse Left samplen 1.5") + "\n" +
+      commands + "unset multiplot\n";
+  return out;
+}
+
+}  // namespace lrb::report

@@ -1,0 +1,87 @@
+#pragma once
+/// Charts: one record each, drawn by a page's script and by gnuplot for print.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/report/gnuplot.hpp"
+
+namespace lrb::report {
+
+struct Tick {
+  double at;
+  std::string label;
+};
+
+struct Axis {
+  std::string label;
+  bool log = false;
+  double min = 0, max = 0;       ///< ends; equal: those of the data
+  std::vector<Tick> ticks = {};  ///< in print; empty: gnuplot's
+};
+
+/// How the points of a series are joined. `steps`: a value holds until the next point.
+enum class Line : std::uint8_t { straight, steps, dashed, none };
+
+struct SeriesStyle {
+  Line line = Line::straight;
+  std::string colour = {};  ///< #rrggbb; empty: the next one of the palette
+  std::string shape =
+      {};  ///< of the points, by Chart.js's name; "none": no points; empty: the next one in print
+};
+
+struct Series {
+  std::string label;         ///< empty: not in the key
+  std::vector<double> x, y;  ///< of one length, x ascending
+  SeriesStyle style = {};
+  std::vector<double> low = {}, high = {};  ///< (|x|) ends of an error bar; or empty
+  std::vector<double> from = {};            ///< (|x|) start of a thin level line to each point; or empty
+  std::vector<std::string> notes = {};      ///< (|x|) tooltip of each point, in lines; or empty
+  std::vector<std::string> targets = {};    ///< (|x|) link of each point, relative to the page; or empty
+};
+
+/// What the x axis counts: the frame that is shown is marked on it, and a click leads to a frame.
+enum class Cursor : std::uint8_t { none, event, step };
+
+struct Chart {
+  std::string title;
+  Axis x, y;
+  std::vector<Series> series = {};
+  std::string note = {};  ///< how to read the chart, in a sentence
+  Cursor cursor = Cursor::none;
+};
+
+/// Returns the colour of the i-th series of a chart without a colour of its own.
+std::string series_colour(std::size_t i);
+
+/// Two curves that bound a number.
+struct Ends {
+  Series lower, upper;
+
+  explicit Ends(const std::string& what, Line line = Line::straight)
+      : lower{what + ", lower bound", {}, {}, {line}}, upper{what + ", upper bound", {}, {}, {line}} {}
+  /// An infinite `high` is left out.
+  void add(double x, double low, double high);
+  /// Adds the curves that have points.
+  void move_to(Chart& chart);
+};
+
+/// Returns the chart for the page's script.
+std::string chart_json(const Chart& chart);
+
+/// Sizes are in millimetres.
+struct PrintLayout {
+  int columns = 1;
+  double panel_width = 135, panel_height = 85;  ///< between the axes' ends
+  double font = 8;                              ///< points
+  std::string key = "top right";  ///< where each panel's key is, in gnuplot's words; empty: one key below all
+  int key_columns = 2;            ///< of the key below all
+};
+
+/// Lays out panels in rows. The axes are labelled at the left and the lower ends of rows and columns, and
+/// where a label differs from that of the neighbour.
+Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& layout = {});
+
+}  // namespace lrb::report

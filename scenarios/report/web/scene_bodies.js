@@ -1,0 +1,698 @@
+// ---- counters as colours: one number for each face, on a scale that both bodies share
+const COUNTERS = ["tests", "hits", "misses"];
+
+/** Returns tests, hits and misses of each body's faces in a step, up to an event: those that the page has. */
+function countsSoFar(events, event) {
+  const out = events.bodies.map((b) =>
+    Object.fromEntries(COUNTERS.map((name) => [name, new Uint32Array(b.faceCount)])),
+  );
+  for (let i = events.firstOfStep[events.step(event)]; i <= event; i++) {
+    if (events.kind[i] !== events.FACE_TEST) continue;
+    for (const f of events.faces(i)) {
+      out[f.side].tests[f.face]++;
+      out[f.side][events.isHit(i) ? "hits" : "misses"][f.face]++;
+    }
+  }
+  return out;
+}
+
+/** Gives each face the sum over the faces of its group, "region" or "level". A real face belongs to the region that covers
+    it, a pseudo face to the one that it hides; a face without one keeps its own number. */
+function sumsOfGroups(body, per, counts) {
+  const groupOf = per === "region" ? (f) => body.regionOf(f) : (f) => body.depth(body.outer[f]),
+    sums = new Map();
+  const groups = Uint32Array.from(counts, (_, f) => groupOf(f));
+  counts.forEach((n, f) => sums.set(groups[f], (sums.get(groups[f]) || 0) + n));
+  return counts.map((n, f) => (groups[f] === NONE ? n : sums.get(groups[f])));
+}
+
+// ---- colours of faces, those of the frames (render/include/lrbscope/render/style.hpp, which the page's data repeat)
+const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255);
+const mixed = (from, to, t) => from.map((c, i) => c + (to[i] - c) * t);
+const WHITE = [1, 1, 1];
+
+class Colours {
+  constructor(json) {
+    this.bodies = json.bodies.map(rgb);
+    this.scale = json.scale.map(rgb);
+    this.categories = json.categories.map(rgb);
+    for (const name of ["contact", "refining", "underTest", "selected", "ink", "wrong", "wayOut"]) this[name] = rgb(json[name]);
+    this.stops = json.scale;
+    this.edgeInk = rgb(json.edgeInk);
+    this.shares = json.shares; // how far colours move: of edges towards edgeInk, of pale faces towards white
+  }
+
+  onScale(t) {
+    const at = Math.max(0, Math.min(1, t)) * (this.scale.length - 1),
+      i = Math.min(Math.floor(at), this.scale.length - 2);
+    return mixed(this.scale[i], this.scale[i + 1], at - i);
+  }
+  edge(side) {
+    return mixed(this.bodies[side], this.edgeInk, this.shares.edge);
+  }
+
+  lid(side) {
+    return mixed(this.bodies[side], WHITE, this.shares.lid);
+  }
+
+  /** Returns what colours faces in a mode: {of(side, face), key: {most, title} or null}. `newest`: regions of earlier layers
+      are pale; 0: none is. */
+  mode(bodies, by, counts, newest = 0) {
+    const layers = 1 + bodies.reduce((most, b) => b.layer.reduce((m, l) => Math.max(m, l), most), 0);
+    const pale = (side) => mixed(this.bodies[side], WHITE, this.shares.ground);
+    if (by === "kind")
+      return {
+        of: (side, face) =>
+          bodies[side].isReal(face) ? this.bodies[side] : this.lid(side),
+        key: null,
+      };
+    if (by === "layer")
+      return {
+        of: (side, face) =>
+          bodies[side].isReal(face)
+            ? pale(side)
+            : this.onScale(layers > 1 ? bodies[side].layer[bodies[side].inner[face]] / (layers - 1) : 1),
+        key: { most: layers - 1, title: "layer" },
+      };
+    if (by === "region")
+      return {
+        of: (side, face) =>
+          bodies[side].isReal(face)
+            ? pale(side)
+            : mixed(
+                this.categories[bodies[side].inner[face] % this.categories.length],
+                WHITE,
+                bodies[side].layer[bodies[side].inner[face]] < newest ? 0.68 : 0,
+              ),
+        key: null,
+      };
+    const most = counts.reduce((m, values) => values.reduce((x, v) => Math.max(x, v), m), 0);
+    return {
+      of: (side, face) =>
+        counts[side][face] > 0
+          ? this.onScale(counts[side][face] / most)
+          : mixed(this.bodies[side], WHITE, this.shares.noValue),
+      key: { most, title: "" },
+    };
+  }
+}
+
+// ---- triangles and lines of faces, for three.js
+/** Some faces of a body as a mesh that can be coloured, and shown in part, face by face. `shifts`, if any,
+    moves each of them. */
+class FaceMesh {
+  constructor(body, faces, material, shifts) {
+    this.body = body;
+    this.flat = body.dim === 2 ? { faces, shifts, width: 0 } : null;
+    this.triangles = this.flat
+      ? 2 * faces.length
+      : faces.reduce((n, f) => n + Math.max(0, body.offsets[f + 1] - body.offsets[f] - 2), 0);
+    this.faceOf = new Uint32Array(this.triangles); // of each triangle
+    const positions = new Float32Array(9 * this.triangles),
+      normals = new Float32Array(9 * this.triangles);
+    let t = 0;
+    if (this.flat) faces.forEach((face, k) => this.faceOf.fill(face, 2 * k, 2 * k + 2));
+    faces.forEach((face, k) => {
+      if (this.flat) return;
+      const corners = body.face(face);
+      for (let i = 1; i + 1 < corners.length; i++, t++) {
+        this.faceOf[t] = face;
+        this.place(
+          positions,
+          normals,
+          9 * t,
+          [corners[0], corners[i], corners[i + 1]],
+          shifts ? shifts[k] : [0, 0, 0],
+        );
+      }
+    });
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
+    geometry.setAttribute("normal", new THREE.BufferAttribute(normals, 3));
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Uint8Array(9 * this.triangles), 3, true));
+    this.mesh = new THREE.Mesh(geometry, material);
+    this.mesh.userData.faces = this;
+  }
+
+  place(positions, normals, at, corners, shift) {
+    const v = this.body.vertices,
+      p = corners.map((c) => [0, 1, 2].map((i) => v[3 * c + i] + shift[i]));
+    const u = [0, 1, 2].map((i) => p[1][i] - p[0][i]),
+      w = [0, 1, 2].map((i) => p[2][i] - p[0][i]);
+    const n = [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]],
+      length = Math.hypot(...n) || 1;
+    for (let c = 0; c < 3; c++)
+      for (let i = 0; i < 3; i++) {
+        positions[at + 3 * c + i] = p[c][i];
+        normals[at + 3 * c + i] = n[i] / length;
+      }
+  }
+
+  /** Makes the segments of a flat body strips of a width. */
+  widen(width) {
+    if (!this.flat || Math.abs(this.flat.width - width) < 0.1 * width) return;
+    this.flat.width = width;
+    const { position, normal } = this.mesh.geometry.attributes,
+      v = this.body.vertices;
+    this.flat.faces.forEach((face, k) => {
+      const [p, q] = this.body.face(face),
+        shift = this.flat.shifts ? this.flat.shifts[k] : [0, 0, 0],
+        at = (c) => [v[3 * c] + shift[0], v[3 * c + 1] + shift[1]],
+        [a, b] = [at(p), at(q)],
+        length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1,
+        along = [((b[0] - a[0]) / length) * (width / 2), ((b[1] - a[1]) / length) * (width / 2)],
+        // A little longer than the segment, so that strips join at corners.
+        corner = (end, s, t) => [end[0] + 0.7 * s * along[0] - t * along[1], end[1] + 0.7 * s * along[1] + t * along[0], 0];
+      const [w, x, y, z] = [corner(a, -1, -1), corner(b, 1, -1), corner(b, 1, 1), corner(a, -1, 1)];
+      position.array.set([w, x, y, w, y, z].flat(), 18 * k);
+      for (let i = 0; i < 6; i++) normal.array.set([0, 0, 1], 18 * k + 3 * i);
+    });
+    position.needsUpdate = normal.needsUpdate = true;
+    this.mesh.geometry.computeBoundingSphere();
+  }
+
+  paint(colourOf) {
+    const colour = this.mesh.geometry.attributes.color;
+    for (let t = 0; t < this.triangles; t++) {
+      const c = colourOf(this.faceOf[t]);
+      for (let k = 0; k < 9; k++) colour.array[9 * t + k] = Math.round(255 * c[k % 3]);
+    }
+    colour.needsUpdate = true;
+  }
+
+  /** Shows the faces that pass, alone. */
+  show(passes) {
+    const geometry = this.mesh.geometry;
+    if (!geometry.index) geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(3 * this.triangles), 1));
+    let n = 0;
+    for (let t = 0; t < this.triangles; t++)
+      if (passes(this.faceOf[t])) for (let c = 0; c < 3; c++) geometry.index.array[n++] = 3 * t + c;
+    geometry.index.needsUpdate = true;
+    geometry.setDrawRange(0, n);
+  }
+
+  /** Returns the face and the simplex that a hit of a ray is on. */
+  at(hit) {
+    const triangle = (hit.face.a / 3) | 0,
+      face = this.faceOf[triangle];
+    if (this.flat) return { face, simplex: this.body.firstSimplex[face] };
+    let first = triangle;
+    while (first > 0 && this.faceOf[first - 1] === face) first--;
+    return { face, simplex: this.body.firstSimplex[face] + triangle - first };
+  }
+  dispose() {
+    this.mesh.geometry.dispose();
+  }
+}
+
+/** Returns the edges of faces, each once, as pairs of corners; `rim`: those of one face alone. */
+function edgesOf(body, faces, rim = false) {
+  const vertices = body.vertices.length / 3,
+    keys = [];
+  for (const face of faces) {
+    const corners = body.face(face);
+    for (let i = 0; i < corners.length; i++) {
+      const a = corners[i],
+        b = corners[(i + 1) % corners.length];
+      keys.push(Math.min(a, b) * vertices + Math.max(a, b));
+    }
+  }
+  const sorted = Float64Array.from(keys).sort(),
+    out = [];
+  for (let first = 0, end = 0; first < sorted.length; first = end) {
+    while (end < sorted.length && sorted[end] === sorted[first]) end++;
+    if (!rim || end - first === 1 || body.dim === 2) out.push(Math.floor(sorted[first] / vertices), sorted[first] % vertices);
+  }
+  return out;
+}
+
+/** Takes an object out of its group, and frees what the graphics card holds of it. */
+function discard(group, object) {
+  group.remove(object);
+  object.geometry.dispose();
+  object.material.dispose();
+}
+
+/** Returns lines one pixel wide along edges. */
+function thinLines(body, edges, material) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(body.vertices, 3));
+  geometry.setIndex(new THREE.BufferAttribute(Uint32Array.from(edges), 1));
+  return new THREE.LineSegments(geometry, material);
+}
+
+/** Returns lines of any width, in pixels: browsers draw those of WebGL one pixel wide. `ends`: six numbers
+    for each line. */
+function thickLines(ends, material) {
+  const count = ends.length / 6,
+    at = new Float32Array(12 * count),
+    other = new Float32Array(12 * count),
+    side = new Float32Array(4 * count),
+    index = new Uint32Array(6 * count);
+  for (let l = 0; l < count; l++) {
+    const a = ends.slice(6 * l, 6 * l + 3),
+      b = ends.slice(6 * l + 3, 6 * l + 6);
+    [
+      [a, b, 1],
+      [a, b, -1],
+      [b, a, -1],
+      [b, a, 1],
+    ].forEach(([here, there, s], k) => {
+      at.set(here, 12 * l + 3 * k);
+      other.set(there, 12 * l + 3 * k);
+      side[4 * l + k] = s;
+    });
+    index.set(
+      [0, 1, 2, 2, 1, 3].map((i) => 4 * l + i),
+      6 * l,
+    );
+  }
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(at, 3));
+  geometry.setAttribute("other", new THREE.BufferAttribute(other, 3));
+  geometry.setAttribute("side", new THREE.BufferAttribute(side, 1));
+  geometry.setIndex(new THREE.BufferAttribute(index, 1));
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.frustumCulled = false;
+  return mesh;
+}
+
+function thickMaterial(colour, width, size, opacity = 1) {
+  return new THREE.ShaderMaterial({
+    uniforms: {
+      colour: { value: new THREE.Color(...colour) },
+      opacity: { value: opacity },
+      width: { value: width },
+      size: { value: size },
+    },
+    vertexShader: `
+      attribute vec3 other;
+      attribute float side;
+      uniform vec2 size;
+      uniform float width;
+      void main() {
+        vec4 a = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+        vec4 b = projectionMatrix * modelViewMatrix * vec4(other, 1.0);
+        vec2 way = (b.xy / b.w - a.xy / a.w) * size;
+        way = length(way) > 0.0 ? normalize(way) : vec2(1.0, 0.0);
+        a.xy += vec2(-way.y, way.x) * side * width / size * a.w;
+        gl_Position = a;
+      }`,
+    fragmentShader:
+      "uniform vec3 colour; uniform float opacity; void main() { gl_FragColor = vec4(colour, opacity); }",
+    side: THREE.DoubleSide,
+    transparent: true,
+    depthTest: false,
+    depthWrite: false,
+  });
+}
+
+/** Returns the twelve edges of boxes, six numbers each. `places`: centre and three half axes of each box. */
+function boxEdges(places, boxes) {
+  const out = [],
+    corner = (at, signs, i) =>
+      places[at + i] + signs.reduce((x, s, axis) => x + s * places[at + 3 + 3 * axis + i], 0);
+  for (const box of boxes)
+    for (let axis = 0; axis < 3; axis++)
+      for (const s of [-1, 1])
+        for (const t of [-1, 1])
+          for (const end of [-1, 1]) {
+            const signs = [0, 0, 0];
+            signs[axis] = end;
+            signs[(axis + 1) % 3] = s;
+            signs[(axis + 2) % 3] = t;
+            for (let i = 0; i < 3; i++) out.push(corner(12 * box, signs, i));
+          }
+  return out;
+}
+
+// ---- the inside of a flat body, filled: what lies within an odd number of its loops
+class FlatFill {
+  /** `place`: fills of a higher one lie over those of lower ones; `depth`: how far below the segments. */
+  constructor(body, colour, opacity, place, depth) {
+    this.body = body;
+    const material = (stencil, more) =>
+      new THREE.MeshBasicMaterial({
+        transparent: true,
+        depthWrite: false,
+        side: THREE.DoubleSide,
+        stencilWrite: true,
+        stencilFail: stencil,
+        stencilZFail: stencil,
+        stencilZPass: stencil,
+        ...more,
+      });
+    // Each triangle from one point to a segment turns over what it covers; what stays turned is inside. Then a sheet over
+    // all of it takes the colour there, and leaves nothing turned for the next fill.
+    this.fan = new THREE.Mesh(
+      new THREE.BufferGeometry(),
+      material(THREE.InvertStencilOp, { colorWrite: false, stencilFunc: THREE.AlwaysStencilFunc }),
+    );
+    this.sheet = new THREE.Mesh(
+      new THREE.BufferGeometry(),
+      material(THREE.ZeroStencilOp, {
+        color: new THREE.Color(...colour),
+        opacity,
+        stencilFunc: THREE.NotEqualStencilFunc,
+        stencilRef: 0,
+      }),
+    );
+    this.fan.renderOrder = 2 * place - 100;
+    this.sheet.renderOrder = 2 * place - 99;
+    for (const mesh of [this.fan, this.sheet]) {
+      mesh.position.z = -depth;
+      mesh.frustumCulled = false;
+    }
+    this.show([]);
+  }
+
+  /** Fills what these faces bound; nothing if they bound nothing, because a loop is open. */
+  show(faces) {
+    const { vertices } = this.body,
+      closed = this.areLoops(faces),
+      segments = closed ? faces.map((f) => this.body.face(f)) : [],
+      ends = segments.flatMap(([p, q]) => [p, q]),
+      xs = ends.map((v) => vertices[3 * v]),
+      ys = ends.map((v) => vertices[3 * v + 1]);
+    const least = (all) => all.reduce((m, x) => Math.min(m, x), Infinity),
+      most = (all) => all.reduce((m, x) => Math.max(m, x), -Infinity),
+      [left, right, low, high] = [least(xs), most(xs), least(ys), most(ys)];
+    const fan = segments.flatMap((_, k) => [
+      left,
+      low,
+      0,
+      ...[2 * k, 2 * k + 1].flatMap((end) => [xs[end], ys[end], 0]),
+    ]);
+    const sheet = segments.length
+      ? [left, low, 0, right, low, 0, right, high, 0, left, low, 0, right, high, 0, left, high, 0]
+      : [];
+    this.fan.geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(fan), 3));
+    this.sheet.geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(sheet), 3));
+    this.filled = segments.length > 0;
+    this.look(this.visible);
+  }
+
+  /** Returns whether the faces are closed loops: an even number of them ends at each corner. */
+  areLoops(faces) {
+    const odd = new Set();
+    for (const face of faces)
+      for (const v of this.body.face(face)) if (!odd.delete(v)) odd.add(v);
+    return odd.size === 0;
+  }
+
+  look(visible = true) {
+    this.visible = visible;
+    this.fan.visible = this.sheet.visible = visible && this.filled;
+  }
+}
+
+// ---- one body in the view: its real faces, the lids of its wrapper, regions on their own, and the boxes
+// of its tree
+// Exploded: extra way for each layer, as a share of the body's radius; as in the frames.
+const LAYER_STEP = 0.12;
+
+class BodyView {
+  constructor(body, colours) {
+    this.body = body;
+    this.group = new THREE.Group();
+    this.group.matrixAutoUpdate = false;
+    this.materials = BodyView.materialsOf(new THREE.Color(...colours.edge(body.side)));
+    const range = (from, to) => Uint32Array.from({ length: to - from }, (_, i) => from + i);
+    this.real = new FaceMesh(body, range(0, body.realCount), this.materials.real);
+    this.lids = new FaceMesh(body, range(body.realCount, body.faceCount), this.materials.lids);
+    this.edges = thinLines(body, edgesOf(body, range(0, body.realCount)), this.materials.edges);
+    this.lidEdges = thinLines(
+      body,
+      new Uint32Array(2 * (body.corners.length - body.offsets[body.realCount])),
+      this.materials.lidEdges,
+    );
+    this.lids.mesh.renderOrder = 1;
+    this.lidEdges.renderOrder = 2;
+    this.edges.frustumCulled = this.lidEdges.frustumCulled = this.lids.mesh.frustumCulled = false;
+    this.group.add(this.real.mesh, this.edges, this.lids.mesh, this.lidEdges);
+    this.pieces = [];
+    this.boxLines = null;
+    this.measure();
+    this.fills = body.dim === 2 ? this.makeFills(colours.bodies[body.side]) : null;
+  }
+
+  /** Returns fills of a flat body: of the solid, and under it, paler, of the wrapper. */
+  makeFills(colour) {
+    const { realCount, side } = this.body,
+      fill = (shade, opacity, place) =>
+        new FlatFill(this.body, shade, opacity, 2 * side + place, (0.02 - 0.005 * place) * this.radius);
+    const fills = { wrapper: fill(mixed(colour, WHITE, 0.5), 0.45, 0), solid: fill(colour, 0.6, 1) };
+    fills.solid.show(Array.from({ length: realCount }, (_, face) => face));
+    for (const f of [fills.wrapper, fills.solid]) this.group.add(f.fan, f.sheet);
+    return fills;
+  }
+
+  /** Shows or hides the insides of a flat body and of its wrapper. */
+  lookInside(solid, wrapper) {
+    if (!this.fills) return;
+    this.fills.solid.look(solid);
+    this.fills.wrapper.look(wrapper);
+  }
+
+  /** Draws the segments of a flat body as strips; `pixel`: how wide a pixel is. */
+  widen(pixel) {
+    this.real.widen(3 * pixel);
+    this.lids.widen(3 * pixel);
+    for (const piece of this.pieces) piece.widen(3 * pixel);
+    if (this.counted) this.counted.widen(4 * pixel);
+  }
+
+  /** Returns what faces and lines are made of; `edge`: the colour of lines. */
+  static materialsOf(edge) {
+    const faces = (Material, before, more = {}) =>
+        new Material({
+          vertexColors: THREE.VertexColors,
+          side: THREE.DoubleSide,
+          polygonOffset: true,
+          polygonOffsetFactor: before,
+          polygonOffsetUnits: before,
+          ...more,
+        }),
+      lines = (opacity, depthWrite = false) =>
+        new THREE.LineBasicMaterial({ color: edge, transparent: true, opacity, depthWrite }),
+      glass = { transparent: true, depthWrite: false };
+    return {
+      real: faces(THREE.MeshLambertMaterial, 2),
+      lids: faces(THREE.MeshLambertMaterial, 1, glass),
+      piece: faces(THREE.MeshLambertMaterial, 1),
+      counted: faces(THREE.MeshBasicMaterial, 1),
+      openLids: faces(THREE.MeshLambertMaterial, 0, { ...glass, opacity: 0.6 }),
+      edges: lines(0.35),
+      lidEdges: lines(0.6),
+      boxes: lines(0.8, true),
+    };
+  }
+
+  /** Finds the middle of the outermost wrapper and how far it reaches. */
+  measure() {
+    const outermost = [];
+    this.body.outer.forEach((cell, face) => {
+      if (cell === NONE) outermost.push(face);
+    });
+    this.middle = this.middleOf(outermost);
+    this.extremes = this.reached = this.farthest((visit) => this.eachCorner(outermost, visit));
+    this.radius = 0;
+    this.eachCorner(outermost, (x, y, z) => {
+      this.radius = Math.max(
+        this.radius,
+        Math.hypot(x - this.middle[0], y - this.middle[1], z - this.middle[2]),
+      );
+    });
+  }
+
+  /** Returns the points that reach farthest in some directions; `each` calls its argument with every
+      point. */
+  farthest(each) {
+    const ways = [];
+    for (const x of [-1, 0, 1])
+      for (const y of [-1, 0, 1]) for (const z of [-1, 0, 1]) if (x || y || z) ways.push([x, y, z]);
+    const best = ways.map(() => [-Infinity, this.middle]);
+    each((x, y, z) =>
+      ways.forEach((w, i) => {
+        const way = w[0] * x + w[1] * y + w[2] * z;
+        if (way > best[i][0]) best[i] = [way, [x, y, z]];
+      }),
+    );
+    return best.map(([, p]) => p);
+  }
+
+  point(vertex) {
+    return [0, 1, 2].map((i) => this.body.vertices[3 * vertex + i]);
+  }
+  eachCorner(faces, visit) {
+    const { vertices, corners, offsets } = this.body;
+    for (const f of faces)
+      for (let i = offsets[f]; i < offsets[f + 1]; i++)
+        visit(vertices[3 * corners[i]], vertices[3 * corners[i] + 1], vertices[3 * corners[i] + 2]);
+  }
+  middleOf(faces) {
+    const sum = [0, 0, 0];
+    let count = 0;
+    this.eachCorner(faces, (x, y, z) => {
+      sum[0] += x;
+      sum[1] += y;
+      sum[2] += z;
+      count++;
+    });
+    return sum.map((x) => x / Math.max(1, count));
+  }
+  toWorld(p) {
+    return new THREE.Vector3(...p).applyMatrix4(this.group.matrix);
+  }
+
+  /** Takes a pose as rows of [R | t]. */
+  setPose(p) {
+    this.group.matrix.set(
+      p[0],
+      p[1],
+      p[2],
+      p[3],
+      p[4],
+      p[5],
+      p[6],
+      p[7],
+      p[8],
+      p[9],
+      p[10],
+      p[11],
+      0,
+      0,
+      0,
+      1,
+    );
+    this.group.matrixWorldNeedsUpdate = true;
+  }
+
+  /** `veil`: how much lids cover. */
+  paint(mode, veil) {
+    const of = (face) => mode.of(this.body.side, face);
+    for (const faces of [this.real, this.lids, ...this.pieces]) faces.paint(of);
+    this.materials.lids.opacity = veil;
+    this.materials.lidEdges.opacity = Math.min(0.6, 1.2 * veil);
+  }
+
+  /** Shows the lids of the wrapper: its pseudo faces. */
+  showLids(onBoundary) {
+    this.lids.show(onBoundary);
+    if (this.fills)
+      this.fills.wrapper.show([...Array(this.body.faceCount).keys()].filter((face) => onBoundary(face)));
+    const shown = [];
+    for (let f = this.body.realCount; f < this.body.faceCount; f++) if (onBoundary(f)) shown.push(f);
+    const edges = edgesOf(this.body, shown),
+      { geometry } = this.lidEdges;
+    geometry.index.array.set(edges);
+    geometry.index.needsUpdate = true;
+    geometry.setDrawRange(0, edges.length);
+  }
+
+  ghost(on) {
+    const { real, edges } = this.materials;
+    Object.assign(real, {
+      transparent: on,
+      opacity: on ? 0.13 : 1,
+      depthWrite: !on,
+      side: on ? THREE.FrontSide : THREE.DoubleSide,
+    });
+    edges.opacity = on ? 0.1 : 0.35;
+    real.needsUpdate = true;
+    this.real.mesh.renderOrder = on ? 3 : 0;
+  }
+
+  clearPieces() {
+    for (const piece of this.pieces) {
+      this.group.remove(piece.mesh);
+      piece.dispose();
+    }
+    if (this.pieceEdges) {
+      this.group.remove(this.pieceEdges);
+      this.pieceEdges.geometry.dispose();
+      this.pieceEdges = null;
+    }
+    this.pieces = [];
+    this.reached = this.extremes;
+  }
+
+  /** Shows regions on their own, moved outward by a share of their way; `open`: lids are translucent. */
+  showRegions(regions, share, open) {
+    this.clearPieces();
+    const solid = { faces: [], shifts: [] },
+      glass = { faces: [], shifts: [] },
+      ends = [];
+    for (const r of regions) {
+      const shift = share > 0 ? this.wayOut(r, share) : [0, 0, 0];
+      for (const [list, faces] of [
+        [open ? glass : solid, this.body.lids(r)],
+        [solid, this.body.floor(r)],
+      ])
+        for (const face of faces) {
+          list.faces.push(face);
+          list.shifts.push(shift);
+        }
+      const edges = edgesOf(this.body, [...this.body.lids(r), ...this.body.floor(r)]);
+      for (const v of edges) ends.push(...this.point(v).map((x, i) => x + shift[i]));
+    }
+    this.pieces = [
+      new FaceMesh(this.body, solid.faces, this.materials.piece, solid.shifts),
+      new FaceMesh(this.body, glass.faces, this.materials.openLids, glass.shifts),
+    ];
+    this.pieces[1].mesh.renderOrder = 2;
+    if (share > 0 && ends.length)
+      this.reached = this.farthest((visit) => {
+        for (let i = 0; i < ends.length; i += 3) visit(ends[i], ends[i + 1], ends[i + 2]);
+      });
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(ends), 3));
+    this.pieceEdges = new THREE.LineSegments(geometry, this.materials.lidEdges);
+    this.group.add(...this.pieces.map((p) => p.mesh), this.pieceEdges);
+  }
+
+  wayOut(region, share) {
+    const middle = this.middleOf([...this.body.lids(region), ...this.body.floor(region)]);
+    const out = middle.map((x, i) => x - this.middle[i]),
+      length = Math.hypot(...out);
+    if (length === 0) return out;
+    const way = length + LAYER_STEP * this.radius * (1 + this.body.layer[region]);
+    return out.map((x) => (x * share * way) / length);
+  }
+
+  /** Shows faces that have a counter in exactly the colour that the scale has, without light; of a ghost,
+      these are solid. */
+  showCounted(faces, colourOf) {
+    if (this.counted) {
+      this.group.remove(this.counted.mesh);
+      this.counted.dispose();
+      this.counted = null;
+    }
+    if (!faces.length) return;
+    this.counted = new FaceMesh(this.body, faces, this.materials.counted);
+    this.counted.paint(colourOf);
+    this.group.add(this.counted.mesh);
+  }
+
+  /** Shows the tree's boxes at a depth; below 0: none. */
+  showBoxes(depth) {
+    if (this.boxLines) {
+      this.group.remove(this.boxLines);
+      this.boxLines.geometry.dispose();
+      this.boxLines = null;
+    }
+    const boxes = [];
+    this.body.boxes.depth.forEach((d, i) => {
+      if (d === depth) boxes.push(i);
+    });
+    if (!boxes.length) return;
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute(
+      "position",
+      new THREE.BufferAttribute(Float32Array.from(boxEdges(this.body.boxes.places, boxes)), 3),
+    );
+    this.boxLines = new THREE.LineSegments(geometry, this.materials.boxes);
+    this.boxLines.renderOrder = 2;
+    this.group.add(this.boxLines);
+  }
+}

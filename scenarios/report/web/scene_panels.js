@@ -1,0 +1,955 @@
+// ---- pieces of the page that several of its parts make
+function textButton(text, action, title = "") {
+  const button = document.createElement("button");
+  button.type = "button";
+  button.className = "text";
+  button.textContent = text;
+  button.title = title;
+  button.onclick = action;
+  return button;
+}
+
+/** Fills a list of terms: [[term, value or element, title of the term]]. */
+function fillList(list, rows) {
+  list.replaceChildren(
+    ...rows.flatMap(([term, value, title]) => {
+      const dt = document.createElement("dt"),
+        dd = document.createElement("dd");
+      dt.textContent = term;
+      if (title) dt.title = title;
+      dd.append(value);
+      return [dt, dd];
+    }),
+  );
+}
+
+/** Copies text; returns whether that worked. `element` holds the text, and is selected where there is no
+    clipboard, as on pages from disk. */
+async function copyText(text, element) {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    getSelection().selectAllChildren(element);
+    return document.execCommand("copy");
+  }
+}
+
+// ---- what all views show: one event, and perhaps a face or a region. Views change it here and are told
+// by their listeners.
+class Selection {
+  constructor(events) {
+    this.events = events;
+    this.event = 0;
+    // {side, face, region}: face NONE: a region as a whole; region NONE: a face that no region hides.
+    this.picked = null;
+    this.chosen = [NONE, NONE]; // simplices of A and B that were picked one after the other
+    this.listeners = [];
+  }
+
+  tell(what) {
+    for (const listener of this.listeners) listener(what);
+  }
+
+  /** Moves to an event, by its index, where frames and charts stand already. */
+  standAt(event) {
+    this.event = Math.max(0, Math.min(this.events.count - 1, event));
+    this.chosen = [NONE, NONE];
+    this.tell("event");
+  }
+  /** Moves to an event; frames and charts follow. */
+  goTo(event) {
+    this.standAt(event);
+    showEvent(this.events.id(this.event), this.events.stepNumber(this.event));
+  }
+
+  /** `simplex`: the one of the face that is meant; without it the first. */
+  pickFace(side, face, simplex) {
+    const body = this.events.bodies[side],
+      meant = simplex === undefined ? body.firstSimplex[face] : simplex;
+    this.chosen = this.chosen.map((s, i) => (i !== side ? s : body.isReal(face) ? meant : NONE));
+    this.pickOnly({ side, face, region: body.regionOf(face) });
+  }
+  pickRegion(side, region) {
+    this.pick({ side, face: NONE, region });
+  }
+  /** Picks a simplex of A and one of B. */
+  choose(simplices) {
+    this.chosen = simplices.slice();
+    this.pickOnly(null);
+  }
+  pick(picked) {
+    this.chosen = [NONE, NONE];
+    this.pickOnly(picked);
+  }
+  pickOnly(picked) {
+    this.picked = picked;
+    this.tell("pick");
+  }
+}
+
+// ---- which events the table lists
+class EventFilter {
+  constructor() {
+    this.clear();
+  }
+
+  clear() {
+    this.kind = -1; // all
+    this.side = -1;
+    this.region = NONE;
+    this.leastLevel = 0;
+    this.mostLevel = Infinity;
+    this.work = null; // {name, phase, parts: numbers of parts of the work}; null: any
+    this.pair = [NONE, NONE]; // faces of A and B; NONE: any
+  }
+
+  /** Takes "12, 34", "12," or ",34"; returns false if it is none of these. */
+  setPair(text) {
+    const match = /^\s*(\d*)\s*[,–-]?\s*(\d*)\s*$/.exec(text);
+    if (!match) return false;
+    this.pair = [match[1], match[2]].map((n) => (n === "" ? NONE : Number(n)));
+    return true;
+  }
+
+  /** Takes "3", "2-5", "2-" or "" (all). */
+  setLevel(text) {
+    const match = /^\s*(\d*)\s*([–-]?)\s*(\d*)\s*$/.exec(text);
+    if (!match) return false;
+    this.leastLevel = match[1] === "" ? 0 : Number(match[1]);
+    this.mostLevel =
+      match[3] !== "" ? Number(match[3]) : match[2] || match[1] === "" ? Infinity : this.leastLevel;
+    return true;
+  }
+
+  /** Returns the indices of the events that pass. */
+  apply(events) {
+    const out = new Uint32Array(events.count),
+      tests = this.tests(events);
+    let n = 0;
+    for (let i = 0; i < events.count; i++) if (tests.every((test) => test(i))) out[n++] = i;
+    return out.subarray(0, n);
+  }
+
+  tests(events) {
+    const out = [],
+      { side, region, leastLevel, mostLevel, pair } = this;
+    if (this.kind >= 0) out.push((i) => events.kind[i] === this.kind);
+    if (this.work) out.push((i) => this.work.parts.has(events.work[i]));
+    if (side >= 0) out.push((i) => events.concerns(i, side));
+    if (region !== NONE) out.push((i) => this.concernsRegion(events, i));
+    if (leastLevel > 0 || mostLevel < Infinity)
+      out.push((i) => {
+        const level = events.level(i);
+        return level >= leastLevel && level <= mostLevel;
+      });
+    if (pair.some((face) => face !== NONE))
+      out.push((i) => {
+        const faces = events.faces(i);
+        return faces.length > 0 && faces.every((f) => pair[f.side] === NONE || pair[f.side] === f.face);
+      });
+    return out;
+  }
+
+  /** Tells whether an event changes the region, or compares one of its faces. */
+  concernsRegion(events, i) {
+    const { side, region } = this;
+    if (events.regions(i).some((r) => r.region === region && (side < 0 || r.side === side))) return true;
+    return events.faces(i).some((f) => {
+      const body = events.bodies[f.side];
+      return (
+        (side < 0 || f.side === side) && (body.inner[f.face] === region || body.outer[f.face] === region)
+      );
+    });
+  }
+}
+
+// ---- the events as a table. Only the rows that can be seen are in the document, so that a million is as
+// quick as ten.
+const TALLEST = 5e6; // pixels: browsers cannot scroll much further
+
+class EventTable {
+  constructor(events, selection, filter) {
+    this.events = events;
+    this.selection = selection;
+    this.filter = filter;
+    this.box = byId("event-rows");
+    this.body = byId("event-body");
+    this.spacer = byId("event-spacer");
+    this.rows = new Uint32Array(0); // events that pass the filter
+    this.first = 0; // of these, the uppermost that is shown
+    this.known = 0; // where the bar was put for `first`, which is then not to be rounded
+    this.box.addEventListener("scroll", () => {
+      if (Math.abs(this.box.scrollTop - this.known) >= 1) this.first = this.rowAt(this.box.scrollTop);
+      this.draw();
+    });
+    this.body.addEventListener("click", (e) => {
+      const row = e.target.closest("[data-event]");
+      if (row) this.selection.goTo(Number(row.dataset.event));
+    });
+    selection.listeners.push((what) => {
+      if (what === "event") this.follow();
+    });
+    new ResizeObserver(() => this.resize()).observe(this.box);
+    this.refilter();
+  }
+
+  get rowHeight() {
+    return parseFloat(getComputedStyle(this.box).getPropertyValue("--row"));
+  } // pixels
+  get fitting() {
+    return Math.max(1, Math.floor(this.box.clientHeight / this.rowHeight) - 1);
+  } // below the row of titles
+  get height() {
+    return Math.min(TALLEST, (this.rows.length + 1) * this.rowHeight);
+  }
+  get slack() {
+    return Math.max(1, this.height - this.box.clientHeight);
+  }
+  get lastFirst() {
+    return Math.max(0, this.rows.length - this.fitting);
+  }
+  rowAt(top) {
+    return Math.round(Math.min(1, top / this.slack) * this.lastFirst);
+  }
+
+  resize() {
+    this.spacer.style.height = `${this.height}px`;
+    this.follow();
+  }
+
+  refilter() {
+    this.rows = this.filter.apply(this.events);
+    this.spacer.style.height = `${this.height}px`;
+    byId("event-count").textContent =
+      this.rows.length === this.events.count
+        ? plural(this.rows.length, "event")
+        : `${digits(this.rows.length)} of ${plural(this.events.count, "event")}`;
+    this.follow();
+  }
+
+  /** Scrolls, if need be, to the event that is selected, or the last one before it that is listed. */
+  follow() {
+    this.row = Math.max(0, lastAtMost(this.rows, this.selection.event));
+    if (this.row < this.first || this.row >= this.first + this.fitting - 1)
+      this.scrollTo(this.row - Math.floor(this.fitting / 3));
+    this.draw();
+  }
+
+  scrollTo(row) {
+    this.first = Math.max(0, Math.min(this.lastFirst, row));
+    this.box.scrollTop = this.lastFirst > 0 ? (this.first / this.lastFirst) * this.slack : 0;
+    this.known = this.box.scrollTop;
+  }
+
+  /** Moves the selection by so many listed events. */
+  step(by) {
+    if (!this.rows.length) return;
+    const here = lastAtMost(this.rows, this.selection.event),
+      exact = here >= 0 && this.rows[here] === this.selection.event;
+    const row = here + by + (by < 0 && !exact ? 1 : 0);
+    this.selection.goTo(this.rows[Math.max(0, Math.min(this.rows.length - 1, row))]);
+  }
+
+  draw() {
+    const end = Math.min(this.rows.length, this.first + this.fitting);
+    this.body.style.top = `${this.box.scrollTop + this.rowHeight}px`;
+    this.body.replaceChildren(
+      ...Array.from({ length: end - this.first }, (_, k) => this.line(this.first + k)),
+    );
+    byId("event-none").hidden = this.rows.length > 0;
+  }
+
+  line(row) {
+    const i = this.rows[row],
+      events = this.events,
+      line = document.createElement("div"),
+      level = events.level(i);
+    line.className = "row";
+    line.setAttribute("role", "row");
+    line.setAttribute("aria-rowindex", row + 1);
+    line.setAttribute("aria-selected", i === this.selection.event);
+    line.dataset.event = i;
+    const cause = events.cause[i];
+    const cells = [
+      digits(events.id(i)),
+      digits(events.stepNumber(i)),
+      events.kindOf(i).name,
+      eventWords(events, i),
+      outcomeWords(events, i),
+      level < 0 ? "" : level,
+      cause === NONE ? "" : digits(cause),
+    ];
+    cells.forEach((text, column) => {
+      const cell = document.createElement("span");
+      cell.setAttribute("role", "cell");
+      cell.textContent = text;
+      cell.title = text; // which may not fit
+      if (column === 2) cell.style.setProperty("--kind", events.kindOf(i).colour);
+      line.append(cell);
+    });
+    return line;
+  }
+}
+
+// ---- the fields that filter the table
+class FilterForm {
+  constructor(events, filter, table) {
+    Object.assign(this, { events, filter, table });
+    this.listeners = []; // told when another part of the work is listed
+    this.listKinds();
+    byId("filter-side").closest("label").hidden = byId("filter-pair").closest("label").hidden =
+      events.bodies.length < 2;
+    for (const field of ["kind", "side", "region", "level", "pair"])
+      byId(`filter-${field}`).addEventListener("input", () => this.read());
+    byId("filters").addEventListener("submit", (e) => e.preventDefault());
+    byId("filter-clear").onclick = () => this.clear();
+  }
+
+  /** Offers the kinds of events that there are. */
+  listKinds() {
+    const kind = byId("filter-kind"),
+      present = new Set(this.events.kind),
+      chosen = kind.value;
+    kind.replaceChildren(new Option("all", -1));
+    this.events.kinds.forEach((k, i) => {
+      if (present.has(i)) kind.append(new Option(k.name, i));
+    });
+    kind.value = chosen;
+  }
+
+  read() {
+    const value = (field) => byId(`filter-${field}`).value.trim(),
+      valid = (field, is) => byId(`filter-${field}`).setAttribute("aria-invalid", !is);
+    this.filter.kind = Number(value("kind"));
+    this.filter.side = Number(value("side"));
+    valid("region", /^\d*$/.test(value("region")));
+    this.filter.region = /^\d+$/.test(value("region")) ? Number(value("region")) : NONE;
+    valid("level", this.filter.setLevel(value("level")));
+    valid("pair", this.filter.setPair(value("pair")));
+    byId("filter-work").hidden = !this.filter.work;
+    byId("filter-work").textContent = this.filter.work ? `part: ${this.filter.work.name}` : "";
+    this.table.refilter();
+    for (const listener of this.listeners) listener();
+  }
+
+  clear() {
+    this.filter.work = null;
+    byId("filter-kind").value = byId("filter-side").value = "-1";
+    for (const field of ["region", "level", "pair"]) byId(`filter-${field}`).value = "";
+    this.read();
+  }
+
+  /** Lists the events of a part of the work; null: all. */
+  showWork(work) {
+    this.clear();
+    this.filter.work = work;
+    this.read();
+  }
+
+  /** Lists the events of a face, or of a region. */
+  showPicked(picked) {
+    this.clear();
+    if (picked.face !== NONE)
+      byId("filter-pair").value = picked.side === 0 ? `${picked.face},` : `,${picked.face}`;
+    else {
+      byId("filter-side").value = String(picked.side);
+      byId("filter-region").value = String(picked.region);
+    }
+    this.read();
+  }
+}
+
+// ---- beside the view: the event, and the face or region that is selected, in words and numbers
+class Panel {
+  constructor(events, selection, wrappers) {
+    this.events = events;
+    this.bodies = events.bodies;
+    this.selection = selection;
+    this.wrappers = wrappers;
+    this.filterBy = () => {}; // called with a face or region, to list its events
+    selection.listeners.push((what) => (what === "event" ? this.showEvent() : this.showPicked()));
+  }
+
+  name(side) {
+    return this.bodies.length > 1 ? ` of ${SIDES[side]}` : "";
+  }
+
+  showEvent() {
+    const i = this.selection.event,
+      events = this.events,
+      kind = events.kindOf(i),
+      level = events.level(i),
+      cause = events.find(events.cause[i]);
+    byId("event-title").textContent = eventPlace(events, i);
+    const rows = [
+      ["kind", kind.name],
+      ["what", eventWords(events, i)],
+    ];
+    if (outcomeWords(events, i)) rows.push(["result", outcomeWords(events, i)]);
+    if (level >= 0) rows.push(["level", level, "number of regions between it and the outside"]);
+    if (cause >= 0)
+      rows.push([
+        "cause",
+        textButton(`event ${digits(events.id(cause))}`, () => this.selection.goTo(cause)),
+      ]);
+    if (this.wrappers)
+      rows.push([
+        events.passes ? "hull" : "wrapper",
+        events.passes ? `${digits(this.wrappers.sizes[0])} faces` : sizeWords(this.bodies, this.wrappers.sizes),
+      ]);
+    const wrong = events.wrong[events.step(i)];
+    if (wrong.length) rows.push(["wrong", this.wrongButton(wrong), "Pairs that the engine got wrong in this step"]);
+    fillList(byId("event-facts"), rows);
+    const parts = [
+      ...events
+        .faces(i)
+        .map((f) =>
+          textButton(this.bodies[f.side].faceWords(f.face) + this.name(f.side), () =>
+            this.selection.pickFace(f.side, f.face),
+          ),
+        ),
+      ...events
+        .regions(i)
+        .filter((r) => this.bodies[r.side].complete)
+        .map((r) =>
+          textButton(`region ${digits(r.region)}${this.name(r.side)}`, () =>
+            this.selection.pickRegion(r.side, r.region),
+          ),
+        ),
+    ];
+    byId("event-parts").replaceChildren(...parts);
+  }
+
+  /** Goes from one wrong pair of the step to the next, and asks why. */
+  wrongButton(wrong) {
+    let next = 0;
+    const button = textButton(plural(wrong.length, "wrong pair"), () => {
+      const { simplices, missed } = wrong[next % wrong.length];
+      button.textContent = `${(next++ % wrong.length) + 1} of ${wrong.length}: ${missed ? "missed" : "reported"}`;
+      this.selection.choose(simplices);
+    });
+    return button;
+  }
+
+  showPicked() {
+    const picked = this.selection.picked;
+    byId("picked").hidden = !picked;
+    byId("nothing-picked").hidden = Boolean(picked);
+    if (!picked) return;
+    const body = this.bodies[picked.side],
+      hasFace = picked.face !== NONE;
+    const name = hasFace ? body.faceWords(picked.face) : `region ${digits(picked.region)}`;
+    byId("picked-title").textContent = name[0].toUpperCase() + name.slice(1) + this.name(picked.side);
+    fillList(byId("picked-facts"), [
+      ...(hasFace ? this.faceRows(body, picked.face) : []),
+      ...this.regionRows(body, picked.region),
+      ...(this.events.passes ? [] : this.countRows(body, picked)),
+    ]);
+    byId("picked-isolate").disabled = picked.region === NONE;
+  }
+
+  faceRows(body, face) {
+    const cell = (region, none) => (region === NONE ? none : `region ${digits(region)}`);
+    return [
+      ["sort", body.isReal(face) ? "real: the body's own" : "pseudo: hides details"],
+      ["behind it", cell(body.inner[face], "the solid")],
+      ["in front", cell(body.outer[face], "the outside")],
+    ];
+  }
+
+  regionRows(body, region) {
+    if (region === NONE) return [["region", "none hides it"]];
+    const parent = body.parent[region],
+      side = body.side;
+    return [
+      ["region", textButton(digits(region), () => this.selection.pickRegion(side, region))],
+      ["layer", body.layer[region], "pass of the builder that made the region; 0 lies on the solid"],
+      ["depth", body.depth(region), "number of steps to the outside, along parents"],
+      [
+        "parent",
+        parent === NONE
+          ? "the outside"
+          : textButton(digits(parent), () => this.selection.pickRegion(side, parent)),
+      ],
+      ["lids", body.lids(region).length, "faces that hide the region"],
+      ["floor", body.floor(region).length, "faces that the region hides"],
+    ];
+  }
+
+  countRows(body, { face, region }) {
+    const faces = face !== NONE ? [face] : [...body.lids(region), ...body.floor(region)];
+    const sum = (name) => digits(faces.reduce((n, f) => n + body.counts[name][f], 0));
+    const of = face !== NONE ? "in the whole run" : "of all its faces, in the whole run";
+    return [
+      ["tests", sum("tests"), `exact comparisons ${of}`],
+      ["hits", sum("hits"), `tests that found faces to meet, ${of}`],
+      ["misses", sum("misses"), `tests that found faces apart, ${of}`],
+      ["contacts", sum("contacts"), of],
+    ];
+  }
+}
+
+// ---- beside the view: why the two faces of an event, or two that were clicked, come out as they do; and for a
+// step without contact what parts the bodies
+/** Returns a number with four digits. */
+const short = (x) => {
+  const text = Math.abs(x) >= 1e6 ? x.toExponential(2) : String(Number(x.toPrecision(4)));
+  return text.replace("e+", "e").replace("-", "\u2212");
+};
+
+/** Returns a positive number rounded down to four digits: of a lower bound, one. */
+const least = (x) => {
+  const near = Number(x.toPrecision(4));
+  return short(near > x ? x - 0.5 * 10 ** (Math.floor(Math.log10(x)) - 3) : x);
+};
+/** Distances of more ulps are shown without them: doubles decide these easily. */
+const MOST_ULPS = 1e6;
+
+class WhyPanel {
+  constructor(explanations, events, selection) {
+    Object.assign(this, { explanations, events, selection });
+    this.listeners = []; // told when what is explained, or the row that is pointed out, has changed
+    this.now = null; // {kind: "pair" | "step", key, found}
+    this.row = -1; // of the way, whose boxes the view shows
+    byId("why-copy").onclick = () => this.copy();
+    byId("why-way").addEventListener("click", (e) => this.point(e.target.closest("[data-row]")));
+    if (!explanations.none) selection.listeners.push(() => this.show());
+  }
+
+  tell() {
+    for (const listener of this.listeners) listener();
+  }
+
+  /** Returns the two simplices that are to be explained; null: none. */
+  asked() {
+    const { events, selection } = this,
+      chosen = selection.chosen;
+    if (chosen.every((s) => s !== NONE)) return chosen;
+    const test = events.test(selection.event);
+    if (test < 0) return null;
+    const simplices = [NONE, NONE];
+    for (const s of events.about(test, "simplex")) simplices[s.side] = s.number;
+    return simplices.some((s) => s === NONE) ? null : simplices;
+  }
+
+  show() {
+    const { events, selection, explanations } = this,
+      step = events.stepNumber(selection.event),
+      simplices = this.asked(),
+      parting = simplices ? null : explanations.step(step);
+    this.row = -1;
+    const found = simplices ? explanations.pair(step, simplices) : parting;
+    this.now = found && {
+      kind: simplices ? "pair" : "step",
+      key: `${step} ${simplices || ""}`,
+      found,
+    };
+    byId("why").hidden = !simplices && !parting;
+    if (simplices) this.showPair(simplices, found);
+    else if (parting) this.showStep(parting);
+    this.command = explanations.commandFor(events.stepNumber(selection.event), simplices);
+    byId("why-command").textContent = this.command;
+    byId("why-ask").hidden = !this.command;
+    byId("why-copied").textContent = "";
+    this.tell();
+  }
+
+  title(text) {
+    const engine = this.events.engine ? ", by lrbscope\u2019s own walk" : "";
+    byId("why-title").textContent = text + engine;
+  }
+
+  // -- a pair
+  showPair(simplices, e) {
+    const { events } = this;
+    const names = simplices.map((s, side) => {
+      const body = events.bodies[side];
+      return body.complete
+        ? `${body.faceWords(body.faceOfSimplex(s))} of ${SIDES[side]}`
+        : `simplex ${digits(s)} of ${SIDES[side]}`;
+    });
+    this.title(`Why: ${names.join(", ")}`);
+    byId("why-note").textContent = e
+      ? ""
+      : `${this.explanations.cut || "Not among the pairs that were compared one by one here."} ` +
+        "The command below explains it.";
+    byId("why-verdict").textContent = e
+      ? `${["The faces are apart", "The faces touch", "The faces cross"][e.meet]}. Decided by ${e.by}.`
+      : "";
+    this.showWay(e ? e.rows : []);
+    this.showFacts(e ? this.pairFacts(e) : []);
+    this.showRegions(simplices);
+  }
+
+  pairFacts(e) {
+    const rows = e.corners.map((corners, side) => [
+      `${SIDES[side]}\u2019s corners`,
+      corners
+        .slice(0, this.events.dim)
+        .map(({ distance, exact, inDouble }) => {
+          const where = exact > 0 ? "in front" : exact < 0 ? "behind" : "in it";
+          const wrong = inDouble === exact ? "" : `, where doubles say ${inDouble}`;
+          return `${where}${exact ? ` ${short(Math.abs(distance))}` : ""}${wrong}`;
+        })
+        .join("; "),
+      `On which side of the other face\u2019s ${this.events.dim === 3 ? "plane" : "line"}, exactly, and how far off`,
+    ]);
+    if (e.meet === 0)
+      rows.push(
+        e.ulps < MOST_ULPS
+          ? ["distance", `${short(e.distance)}, ${short(e.ulps)} ulps`, "Of the largest coordinate"]
+          : ["distance", short(e.distance)],
+      );
+    else {
+      // Those that look alike, once.
+      const points = [...new Set(e.points.map((p) => `(${this.world(p).map(short).join(", ")})`))];
+      rows.push([
+        "contact",
+        `${["nothing", "a point", "a segment"][points.length] || "a polygon"}, ${points.join(" to ")}`,
+      ]);
+    }
+    return rows;
+  }
+
+  world(p) {
+    return p.map((x, i) => this.events.frame.origin[i] + this.events.frame.unit * x);
+  }
+
+  /** The regions that hide the faces, from the outside inward. */
+  showRegions(simplices) {
+    const lines = simplices.map((s, side) => {
+      const body = this.events.bodies[side],
+        line = document.createElement("p");
+      if (!body.complete) return line;
+      const regions = [];
+      for (let r = body.outer[body.faceOfSimplex(s)]; r !== NONE; r = body.parent[r]) regions.unshift(r);
+      line.className = "parts";
+      const words = regions.length ? `hidden by ${plural(regions.length, "region")}:` : "hidden by no region";
+      line.append(
+        `${SIDES[side]}\u2019s face is ${words} `,
+        ...regions.map((r) =>
+          textButton(
+            digits(r),
+            () => this.selection.pickRegion(side, r),
+            `Region ${digits(r)} of ${SIDES[side]}, layer ${body.layer[r]}`,
+          ),
+        ),
+      );
+      return line;
+    });
+    byId("why-regions").replaceChildren(...lines);
+  }
+
+  // -- a step
+  showStep(e) {
+    this.title("What parts the bodies");
+    byId("why-note").textContent = "";
+    byId("why-regions").replaceChildren();
+    byId("why-verdict").textContent = this.stepWords(e);
+    this.showWay([]);
+    const pairs = e.depths.reduce((n, [all]) => n + all, 0);
+    this.showFacts([
+      ["boxes round them", e.roots.gap > 0 ? `${short(e.roots.gap)} apart` : `overlap by ${short(-e.roots.gap)}`],
+      ["pairs of nodes", `${digits(pairs)}, to depth ${e.depths.length - 1}`],
+      [
+        "pairs of faces",
+        e.facePairs > 0
+          ? `${digits(e.facePairs)} whose boxes meet; planes part ${digits(e.facePairs - e.left)}, ` +
+            `${digits(e.left)} are compared`
+          : "none: the walk did not come so far",
+      ],
+      ...(e.boxes ? [["nearest boxes", this.boxWords(e.boxes)]] : []),
+      ...(e.plane
+        ? [["plane", `across (${e.plane.normal.map(short).join(", ")}), gap >= ${least(e.plane.gap)}`]]
+        : []),
+      ...(e.near ? [["nearest faces", this.nearButton(e.near)]] : []),
+    ]);
+  }
+
+  stepWords(e) {
+    const inside = e.relation !== "separate";
+    if (e.plane)
+      return `Apart: a plane has all of A on one side and all of B on the other, gap >= ${least(e.plane.gap)}.`;
+    const what = inside
+      ? "No two faces meet, though one body is inside the other"
+      : "Apart, though no plane was found that has one body on each side";
+    const last =
+      e.left > 0
+        ? ", or in faces that planes and tests part"
+        : e.facePairs > 0
+          ? ", or in faces that planes part"
+          : "";
+    return `${what}: the walk ended in pairs of boxes that are apart${last}.`;
+  }
+
+  boxWords(boxes) {
+    const of = boxes.ofFaces ? "faces in nodes" : "nodes";
+    return `${of} ${digits(boxes.a)} of A and ${digits(boxes.b)} of B, ${short(boxes.gap)} apart along ${boxes.axis}`;
+  }
+
+  nearButton(near) {
+    return textButton("why they do not meet", () => this.selection.choose(near));
+  }
+
+  // -- the way from the roots, and facts
+  showWay(rows) {
+    byId("why-table").hidden = !rows.length;
+    byId("why-way").replaceChildren(
+      ...rows.map((row, k) => {
+        const line = document.createElement("tr"),
+          cell = (content, numeric) => {
+            const td = document.createElement("td");
+            if (numeric) td.className = "n";
+            td.append(content);
+            line.append(td);
+          };
+        const button = textButton(row.nodes.map(digits).join(", "), null, "Show the two boxes");
+        button.dataset.row = k;
+        button.setAttribute("aria-pressed", false);
+        if (row.faces) cell("the faces\u2019 own");
+        else cell(button);
+        cell(short(row.gap), true);
+        cell(row.axis);
+        return line;
+      }),
+    );
+  }
+
+  /** Points out the boxes of a row, or no longer. */
+  point(button) {
+    if (!button) return;
+    const row = Number(button.dataset.row);
+    this.row = this.row === row ? -1 : row;
+    for (const b of byId("why-way").querySelectorAll("[data-row]"))
+      b.setAttribute("aria-pressed", Number(b.dataset.row) === this.row);
+    this.tell();
+  }
+
+  /** Returns the nodes of the row that is pointed out. */
+  nodes() {
+    if (this.row < 0 || !this.now || this.now.kind !== "pair") return [];
+    return this.now.found.rows[this.row].nodes.map((number, side) => ({ side, number }));
+  }
+
+  showFacts(rows) {
+    fillList(byId("why-facts"), rows);
+  }
+
+  async copy() {
+    byId("why-copied").textContent = (await copyText(this.command, byId("why-command"))) ? "Copied." : "";
+  }
+}
+
+// ---- where the work went, as an icicle: the query above, its phases, and beneath each what decided
+const SVG = document.querySelector(".about svg").namespaceURI;
+
+class WorkIcicle {
+  /** `work`: {outcomes: [{phase, outcome, events, operations, micros}], timed}; null: was not recorded. */
+  constructor(work, events, filter, form, selection) {
+    if (!work) return;
+    Object.assign(this, { work, events, filter, form, selection });
+    this.box = byId("work-chart");
+    byId("work").hidden = false;
+    byId("work-measure").closest("label").hidden = !work.timed;
+    if (!work.timed) byId("work-measure").value = "operations";
+    byId("work-measure").addEventListener("input", () => this.draw());
+    byId("work-scope").addEventListener("input", () => this.draw());
+    byId("work-scope").closest("label").hidden = work.steps.index.length < 2;
+    this.ofStep = WorkIcicle.bySteps(work);
+    new ResizeObserver(() => this.draw()).observe(this.box);
+    form.listeners.push(() => this.draw());
+    selection.listeners.push((what) => {
+      if (what !== "event") return;
+      if (this.scope === "step" && this.shownStep !== events.stepNumber(selection.event)) this.draw();
+      else this.mark();
+    });
+    this.draw();
+  }
+
+  /** Returns the parts of each step, by its number. */
+  static bySteps({ outcomes, steps }) {
+    const columns = Object.fromEntries(
+      ["events", "operations", "micros"].map((name) => [name, unpack(steps[name])]),
+    );
+    return new Map(
+      [...unpack(steps.index)].map((number, k) => [
+        number,
+        outcomes.map((o, i) => {
+          const at = k * outcomes.length + i;
+          return { ...o, events: columns.events[at], operations: columns.operations[at], micros: columns.micros[at] };
+        }),
+      ]),
+    );
+  }
+
+  get scope() {
+    return byId("work-scope").value;
+  }
+  /** The parts that the chart shows: of the run, or of the step that is on show. */
+  get outcomes() {
+    return this.scope === "run" ? this.work.outcomes : this.ofStep.get(this.shownStep) || [];
+  }
+
+  /** The phase that fills the chart; null: all do. */
+  get zoom() {
+    return this.filter.work ? this.filter.work.phase : null;
+  }
+
+  /** Returns the parts, a row for each depth: {key, name, value, from, parts: numbers of outcomes}. `wide`: returns the
+      value of an outcome that shows. */
+  rows(wide) {
+    const { outcomes } = this;
+    const row = (nameOf) => {
+      const out = [];
+      let from = 0;
+      outcomes.forEach((o, i) => {
+        const name = nameOf(o),
+          last = out.at(-1);
+        if (last && last.key === name) {
+          last.value += wide(o);
+          last.parts.push(i);
+        } else if (name !== null) out.push({ key: name, name, value: wide(o), from, parts: [i] });
+        from += wide(o);
+      });
+      return out;
+    };
+    return [
+      row(() => "query"),
+      row((o) => o.phase),
+      row((o) => (o.outcome ? `${o.phase}: ${o.outcome}` : null)).map((p) => ({
+        ...p,
+        name: outcomes[p.parts[0]].outcome,
+      })),
+    ];
+  }
+
+  draw() {
+    this.shownStep = this.events.stepNumber(this.selection.event);
+    const width = Math.max(240, this.box.clientWidth),
+      height = 30,
+      gap = 2;
+    const measure = byId("work-measure").value,
+      { zoom } = this,
+      rows = this.rows((o) => (zoom === null || o.phase === zoom ? o[measure] : 0)),
+      shown = rows[0].length ? rows[0][0].value : 0,
+      svg = document.createElementNS(SVG, "svg");
+    svg.setAttribute("viewBox", `0 0 ${width} ${rows.length * (height + gap)}`);
+    svg.setAttribute("role", "group");
+    svg.setAttribute("aria-label", "Parts of the query by their work");
+    const all = this.outcomes.reduce((n, o) => n + o[measure], 0);
+    const phases = [...new Set(this.outcomes.map((o) => o.phase))];
+    rows.forEach((row, depth) => {
+      for (const part of row) {
+        if (!(part.value > 0)) continue;
+        const x = (part.from / shown) * width,
+          w = Math.max(1.5, (part.value / shown) * width - gap);
+        const phase = phases.indexOf(this.outcomes[part.parts[0]].phase),
+          colour = depth === 0 ? "" : `var(--s${phase % 7})`;
+        svg.append(this.part(depth === 0 ? { ...part, value: all } : part, all, { x, y: depth * (height + gap), w, height, colour, depth }));
+      }
+    });
+    this.box.replaceChildren(svg);
+    this.mark();
+  }
+
+  /** Makes a rectangle with its name, if that fits, that is a button for the filter. */
+  part(part, all, { x, y, w, height, colour, depth }) {
+    const group = document.createElementNS(SVG, "g"),
+      rect = document.createElementNS(SVG, "rect"),
+      title = document.createElementNS(SVG, "title"),
+      text = document.createElementNS(SVG, "text");
+    const share = `${short((100 * part.value) / all)} %`,
+      events = part.parts.reduce((n, i) => n + this.outcomes[i].events, 0),
+      micros = byId("work-measure").value === "micros",
+      amount = micros ? `${short(part.value)} \u00b5s` : plural(part.value, "operation");
+    title.textContent = `${part.name}: ${amount}, ${share}; ${plural(events, "event")}`;
+    for (const [name, value] of Object.entries({ x, y, width: w, height, rx: 3 }))
+      rect.setAttribute(name, value);
+    if (colour) rect.style.fill = colour;
+    rect.style.fillOpacity = depth === 2 ? 0.18 : 0.38;
+    text.setAttribute("x", x + 7);
+    text.setAttribute("y", y + height / 2);
+    const fits = (words) => 7.2 * words.length + 14 <= w;
+    text.textContent = [`${part.name}  ${share}`, part.name].find(fits) || "";
+    group.append(title, rect, text);
+    group.setAttribute("tabindex", 0);
+    group.setAttribute("role", "button");
+    group.setAttribute("aria-label", title.textContent);
+    group.dataset.parts = part.parts.join(" ");
+    const phase = depth === 1 ? part.name : this.zoom;
+    const choose = () => this.choose(depth === 0 ? null : { ...part, phase });
+    group.addEventListener("click", choose);
+    group.addEventListener("keydown", (e) => {
+      if (e.key !== "Enter" && e.key !== " ") return;
+      e.preventDefault();
+      e.stopPropagation();
+      choose();
+    });
+    return group;
+  }
+
+  /** Lists the events of a part, and fills the chart with a phase; null, or the same part again: all. */
+  choose(part) {
+    const key = part ? part.parts.join(" ") : "",
+      same = this.filter.work && [...this.filter.work.parts].join(" ") === key;
+    this.form.showWork(part && !same ? { name: part.key, phase: part.phase, parts: new Set(part.parts) } : null);
+  }
+
+  /** Marks the part that is listed, and the one that the event belongs to. */
+  mark() {
+    const listed = this.filter.work ? [...this.filter.work.parts].join(" ") : "",
+      here = this.events.work[this.selection.event];
+    for (const group of this.box.querySelectorAll("[data-parts]")) {
+      const { parts } = group.dataset;
+      group.setAttribute("aria-pressed", parts === listed);
+      group.classList.toggle("here", parts === String(here));
+    }
+  }
+}
+
+// ---- rows of the page's tables lead to regions and time steps, and show which of them is selected
+class RowLinks {
+  constructor(events, selection) {
+    Object.assign(this, { events, selection, rows: [] });
+    for (const table of document.querySelectorAll("table[data-rows]")) this.take(table);
+    selection.listeners.push(() => this.mark());
+    this.mark();
+  }
+
+  take(table) {
+    const [sort, side] = table.dataset.rows.split(" ");
+    if (sort === "region" && !this.events.bodies[side].complete) return;
+    for (const row of table.tBodies[0].rows) {
+      const text = row.cells[0].textContent;
+      if (!/^[\d\u202f]+$/.test(text)) continue; // sums of others
+      const link = { row, sort, side: Number(side), number: Number(text.replaceAll("\u202f", "")) };
+      row.className = "leads";
+      row.tabIndex = 0;
+      row.addEventListener("click", () => this.follow(link));
+      row.addEventListener("keydown", (e) => {
+        if (e.key !== "Enter") return;
+        e.preventDefault();
+        this.follow(link);
+      });
+      this.rows.push(link);
+    }
+  }
+
+  follow({ sort, side, number }) {
+    if (sort === "region") this.selection.pickRegion(side, number);
+    else seek("step", number);
+    byId("stage").scrollIntoView({ block: "nearest" });
+  }
+
+  mark() {
+    const { picked, event } = this.selection,
+      step = this.events.stepNumber(event);
+    for (const { row, sort, side, number } of this.rows) {
+      const is =
+        sort === "region" ? picked && picked.side === side && picked.region === number : step === number;
+      if (is) row.setAttribute("aria-current", "true");
+      else row.removeAttribute("aria-current");
+    }
+  }
+}
