@@ -1,5 +1,6 @@
 #include "scenarios/bodies/loaded_body.hpp"
 
+#include <cstddef>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -42,7 +43,7 @@ TEST_CASE("two files are loaded as one after the other") {
   const std::string a = folder.write("a.obj", kTetrahedron), b = folder.write("b.obj", kOpen);
   const auto two = bodies::load_faces_of_two(a, b);
   const bodies::LoadedBody one[2] = {bodies::load_faces(a), bodies::load_faces(b)};
-  for (int i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < 2; ++i) {
     CHECK(two[i].rep.name() == one[i].rep.name());
     CHECK(two[i].rep.hash() == one[i].rep.hash());
     CHECK(two[i].notes == one[i].notes);
