@@ -124,7 +124,8 @@ int run_clash(ClashOptions o, const Globals& globals) {
   if (!o.along.empty()) o.request.along = Eigen::Vector3d(o.along[0], o.along[1], o.along[2]);
   const PoseLines list(o.poses);
   const render::Look look = look_of(o.draw);
-  const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
+  const auto loaded = bodies::load_faces_of_two(o.a, o.b, o.corners);
+  const bodies::LoadedBody &a = loaded[0], &b = loaded[1];
   check_request(a.rep, o.request);
   note(globals, a.notes);
   note(globals, b.notes);

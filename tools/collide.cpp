@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <iterator>
 #include <memory>
 
 #include <Eigen/Geometry>
@@ -108,11 +109,11 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
   if (!o.poses.empty()) io::open_poses(o.poses);  // check the file before an expensive build
   if (!o.picture.animation.empty()) run::check_animation(o.picture.animation);
   const run::ProgressReport progress = progress_report(globals.quiet);
-  std::vector<bodies::LoadedBody> bodies;
-  for (const std::string& path : {o.a, o.b}) {
-    progress("build", bodies.size(), 2);
-    bodies.push_back(bodies::load_body(path, {}, o.corners));
-  }
+  progress("build", 0, 2);
+  auto both = bodies::load_two_bodies(o.a, o.b, {}, o.corners);
+  progress("build", 2, 2);
+  std::vector<bodies::LoadedBody> bodies(std::make_move_iterator(both.begin()),
+                                         std::make_move_iterator(both.end()));
   if (bodies[0].rep.dim() != bodies[1].rep.dim())
     throw InputError(o.a + " and " + o.b +
                      ": expected two bodies of the same dimension, found a 2D and a 3D body");

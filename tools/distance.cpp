@@ -58,7 +58,8 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
   const PoseLines list(o.poses);
   check_request(o.request);
   const render::Look look = look_of(o.draw);
-  const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
+  const auto loaded = bodies::load_faces_of_two(o.a, o.b, o.corners);
+  const bodies::LoadedBody &a = loaded[0], &b = loaded[1];
   note(globals, a.notes);
   note(globals, b.notes);
   list.check(a.rep, b.rep);

@@ -61,8 +61,8 @@ int run_why(const WhyOptions& o, const Globals& globals) {
   }
   if (o.b.empty()) throw InputError("why: expected two bodies A and B, or --run DIR");
   const Pose pose = pose_of(o);
-  const bodies::LoadedBody a = bodies::load_body(o.a, {}, o.corners),
-                           b = bodies::load_body(o.b, {}, o.corners);
+  const auto loaded = bodies::load_two_bodies(o.a, o.b, {}, o.corners);
+  const bodies::LoadedBody &a = loaded[0], &b = loaded[1];
   note(globals, a.notes);
   note(globals, b.notes);
   return explain(o, {a.rep, {}, b.rep, pose});

@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <iterator>
 #include <memory>
 
 #include "bench/rivals/triangles.hpp"
@@ -68,14 +69,17 @@ std::vector<xray::PosePair> rigid_poses(const std::string& path) {
 int run_xray(const XrayOptions& o, const Globals& globals) {
   const std::vector<xray::PosePair> poses = rigid_poses(o.poses);
   const run::ProgressReport progress = progress_report(globals.quiet);
-  std::vector<bodies::LoadedBody> bodies;
-  for (const std::string& path : {o.a, o.b}) {
-    progress("build", bodies.size(), 2);
-    bodies.push_back(bodies::load_body(path, {}, o.corners));
-    if (bodies.back().rep.dim() != 3)
+  progress("build", 0, 2);
+  auto both = bodies::load_two(o.a, o.b, [&](const std::string& path) {
+    bodies::LoadedBody body = bodies::load_body(path, {}, o.corners);
+    if (body.rep.dim() != 3)
       throw InputError(printable_name(path) +
                        ": expected a 3D body, found a 2D body; the other engines support only 3D");
-  }
+    return body;
+  });
+  progress("build", 2, 2);
+  std::vector<bodies::LoadedBody> bodies(std::make_move_iterator(both.begin()),
+                                         std::make_move_iterator(both.end()));
   const xray::ForeignWalk walk = xray::walk_of(o.method, bodies[0].rep, bodies[1].rep, poses);
   const spec::Scenario scenario = scenario_of(o, bodies);
   const run::Recording ours = run::record(scenario, std::move(bodies), progress);

@@ -94,8 +94,9 @@ std::string read_file(const std::string& path, std::uint64_t most) {
   // Reject large files before reading. Pipes have no size, so the limit is checked again after each chunk.
   const auto size = std::filesystem::file_size(path, ignored);
   if (!ignored && size > most) too_large(path, most);
-  if (!ignored) bytes.reserve(size + 1);  // pipes have no size; the buffer grows with them
   static constexpr std::size_t kChunk = std::size_t{1} << 18;
+  // Room for one chunk beyond the size, so that the buffer of a file does not grow. Pipes have no size.
+  if (!ignored) bytes.reserve(size + kChunk);
   for (;;) {
     const std::size_t before = bytes.size();
     bytes.resize(before + kChunk);

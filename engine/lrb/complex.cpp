@@ -87,7 +87,7 @@ std::vector<VertexId> piece_vertices(const LrbRep& rep, std::span<const FaceId> 
   // Union-find over vertices: the corners of one face are in one component.
   DisjointSets pieces(rep.vertices().size());
   for (const FaceId f : faces)
-    for (const VertexId v : rep.face(f)) pieces.join(rep.face(f)[0], v);
+    for (const VertexId v : rep.face(f).subspan(1)) pieces.join(rep.face(f)[0], v);
   // The leader of a set is a vertex of its component. Each is listed at its first face.
   std::vector<VertexId> out;
   std::vector<bool> seen(rep.vertices().size(), false);

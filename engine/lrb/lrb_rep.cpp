@@ -97,15 +97,21 @@ struct LrbRep::FoundOverlap {
   bool value = false;
 };
 
+/// The result of hash(), once computed.
+struct LrbRep::FoundHash {
+  std::once_flag once;
+  std::uint64_t value = 0;
+};
+
 LrbRep::LrbRep(LrbData data, unsigned threads) : d_(std::move(data)) {
   derive();
-  hash_ = hash_of(d_);
   tree_ = ObbTree(simplices(), threads);
 }
 
 LrbRep::LrbRep(LrbData data, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks, std::uint64_t hash)
-    : d_(std::move(data)), hash_(hash) {
+    : d_(std::move(data)) {
   derive();
+  std::call_once(hash_->once, [&] { hash_->value = hash; });
   tree_ = ObbTree(simplices(), std::move(nodes), std::move(blocks));
 }
 
@@ -135,6 +141,12 @@ void LrbRep::derive() {
   serial_ = next_serial++;
   levels_ = std::make_shared<MadeLevels>();
   overlap_ = std::make_shared<FoundOverlap>();
+  hash_ = std::make_shared<FoundHash>();
+}
+
+std::uint64_t LrbRep::hash() const {
+  std::call_once(hash_->once, [this] { hash_->value = hash_of(d_); });
+  return hash_->value;
 }
 
 bool LrbRep::overlaps_itself() const {
@@ -170,7 +182,7 @@ void LrbRep::keep_levels(WrapperLevels levels) {
   levels_->keep(std::move(levels));
 }
 
-LrbRep LrbRep::without_regions(const Mesh& mesh, bool closed, bool self_intersecting) {
+LrbRep LrbRep::without_regions(const Mesh& mesh, bool closed, bool self_intersecting, unsigned threads) {
   LrbData d;
   d.dim = mesh.dim;
   d.vertices = mesh.vertices;
@@ -182,7 +194,7 @@ LrbRep LrbRep::without_regions(const Mesh& mesh, bool closed, bool self_intersec
   d.closed = closed;
   d.self_intersecting = self_intersecting;
   d.name = mesh.name;
-  return LrbRep(std::move(d));
+  return LrbRep(std::move(d), threads);
 }
 
 LrbRep LrbRep::without_regions(const LrbRep& rep) {

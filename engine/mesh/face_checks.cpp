@@ -6,6 +6,8 @@
 
 #include "engine/exact/predicates.hpp"
 #include "engine/mesh/polygon_shape.hpp"
+#include "engine/mesh/vertex_buckets.hpp"
+#include "engine/mesh/vertex_merger.hpp"
 #include <lrbscope/mesh_check.hpp>
 
 namespace lrb {
@@ -71,18 +73,25 @@ FaceUse check_face(const Mesh& mesh, FaceId f, const std::vector<bool>& finite,
 class CornerSets {
  public:
   CornerSets(const Mesh& mesh, const std::vector<FaceUse>& use) : offsets_(mesh.face_offsets) {
+    // The sorted corners identify the set, independent of the first corner and the direction.
     sorted_ = mesh.face_vertices;
-    for (FaceId f = 0; f < mesh.face_count(); ++f) {
-      // The sorted corners identify the set, independent of the first corner and the direction.
+    for (FaceId f = 0; f < mesh.face_count(); ++f)
       std::sort(sorted_.begin() + offsets_[f], sorted_.begin() + offsets_[f + 1]);
-      if (use[f] != FaceUse::nothing && offsets_[f] != offsets_[f + 1]) order_.push_back(f);
-    }
-    // Ties by face number: the first of several equal faces comes first.
-    std::sort(order_.begin(), order_.end(), [&](FaceId f, FaceId g) {
-      const auto a = set(f), b = set(g);
-      const auto difference = std::lexicographical_compare_three_way(a.begin(), a.end(), b.begin(), b.end());
-      return difference != 0 ? difference < 0 : f < g;
+    // By the smallest corner first, which leaves few faces to compare.
+    VertexBuckets<FaceId> by_smallest(mesh.vertices.size(), [&](const auto& visit) {
+      for (FaceId f = 0; f < mesh.face_count(); ++f)
+        if (use[f] != FaceUse::nothing && offsets_[f] != offsets_[f + 1]) visit(sorted_[offsets_[f]], f);
     });
+    by_smallest.for_each_group([&](VertexId, std::span<FaceId> faces) {
+      // Ties by face number: the first of several equal faces comes first.
+      std::sort(faces.begin(), faces.end(), [&](FaceId f, FaceId g) {
+        const auto x = set(f), y = set(g);
+        const auto difference =
+            std::lexicographical_compare_three_way(x.begin(), x.end(), y.begin(), y.end());
+        return difference != 0 ? difference < 0 : f < g;
+      });
+    });
+    order_ = std::move(by_smallest.items());
   }
 
   const std::vector<FaceId>& order() const { return order_; }
@@ -155,24 +164,13 @@ void check_vertices(const Mesh& mesh, MeshReport& report) {
   const auto is_joined = [&](VertexId v) {
     return std::binary_search(mesh.joined.begin(), mesh.joined.end(), v);
   };
-  std::vector<VertexId> order;
+  FirstAtPosition first_at(x);
   for (VertexId v = 0; v < used.size(); ++v) {
     if (!used[v] && is_joined(v)) continue;
     if (!used[v]) note(report, MeshFault::unused_vertex, v);
-    if (x[v].allFinite()) order.push_back(v);
-  }
-  // Lexicographic order makes equal points neighbours, the smallest index first.
-  std::sort(order.begin(), order.end(), [&](VertexId v, VertexId w) {
-    for (int axis = 0; axis < 3; ++axis)
-      if (x[v][axis] != x[w][axis]) return x[v][axis] < x[w][axis];
-    return v < w;
-  });
-  // Runs of equal points, as with faces. 0 and -0 are equal in the comparison, as in the sort.
-  for (std::size_t first = 0, i = 1; i < order.size(); ++i) {
-    if (x[order[first]] == x[order[i]])
-      note(report, MeshFault::duplicate_vertex, order[first], order[i]);
-    else
-      first = i;
+    if (!x[v].allFinite()) continue;
+    const VertexId first = first_at(v);
+    if (first != v) note(report, MeshFault::duplicate_vertex, first, v);
   }
 }
 

@@ -1,5 +1,5 @@
 // Merging of coincident vertices along open edges:
-// 1. Number the distinct positions of vertices. Sort the sides of faces by the positions of their ends.
+// 1. Find the first vertex at each position. Sort the sides of faces by the positions of their ends.
 // 2. A side is open if no other side at the same positions has the same (merged) vertices.
 // 3. Merge the ends of open sides that match one to one in opposite directions, until nothing changes.
 // 4. Then merge all open sides at each position once. If that changed anything, return to step 3.
@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/mesh/vertex_buckets.hpp"
 #include "engine/mesh/vertex_merger.hpp"
 #include <lrbscope/core/disjoint_sets.hpp>
 #include <lrbscope/mesh_repair.hpp>
@@ -18,9 +19,9 @@ namespace {
 
 /// A side of a face (2D: an end of a segment), by the positions of its ends and by its vertices there.
 struct PlacedSide {
-  std::array<std::uint32_t, 2> place;  ///< smaller, larger position (2D: the same twice)
-  std::array<VertexId, 2> vertex;      ///< vertices at these positions
-  bool forward;  ///< runs from the first to the second (2D: the segment starts at the position)
+  std::array<VertexId, 2> place{};   ///< smaller, larger position (2D: the same twice)
+  std::array<VertexId, 2> vertex{};  ///< vertices at these positions
+  bool forward = false;  ///< runs from the first to the second (2D: the segment starts at the position)
 };
 
 class CornerJoiner {
@@ -28,13 +29,12 @@ class CornerJoiner {
   explicit CornerJoiner(Mesh& mesh) : mesh_(mesh), sets_(mesh.vertices.size()), used_(mesh.vertices.size()) {}
 
   JoinedCorners run() {
-    find_places();
-    for (FaceId f = 0; f < mesh_.face_count(); ++f) add_sides(f);
+    const bool all_distinct = find_places();
+    mark_used();
     out_.before = out_.after = static_cast<std::uint32_t>(std::count(used_.begin(), used_.end(), true));
     // All vertices have distinct positions: nothing can be merged.
-    if (places_ == mesh_.vertices.size()) return out_;
-    std::sort(sides_.begin(), sides_.end(),
-              [](const PlacedSide& a, const PlacedSide& b) { return a.place < b.place; });
+    if (all_distinct) return out_;
+    sort_sides();
     out_.open_before = count_open();
     // Pairs to a fixed point first, because each merge may make further sides unambiguous. Each round merges
     // sets, so the loop terminates.
@@ -51,33 +51,58 @@ class CornerJoiner {
   /// The representatives of the vertices at a side's ends, and its index.
   using NamedSide = std::pair<std::array<std::uint32_t, 2>, std::size_t>;
 
-  void find_places() {
-    std::vector<Eigen::Vector3d> places;
-    VertexMerger merger(places);
-    for (const Eigen::Vector3d& x : mesh_.vertices) place_.push_back(merger.id(x));
-    places_ = places.size();
+  /// Returns true if all positions are distinct.
+  bool find_places() {
+    FirstAtPosition first_at(mesh_.vertices);
+    bool distinct = true;
+    place_.reserve(mesh_.vertices.size());
+    finite_.reserve(mesh_.vertices.size());
+    for (VertexId v = 0; v < mesh_.vertices.size(); ++v) {
+      place_.push_back(first_at(v));
+      finite_.push_back(mesh_.vertices[v].allFinite());
+      distinct &= place_.back() == v;
+    }
+    return distinct;
   }
 
   bool can_be_used(FaceId f) const {
     const auto corners = mesh_.face(f);
-    return std::all_of(corners.begin(), corners.end(), [&](VertexId v) {
-      return v < mesh_.vertices.size() && mesh_.vertices[v].allFinite();
-    });
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](VertexId v) { return v < finite_.size() && finite_[v] != 0; });
   }
 
-  void add_sides(FaceId f) {
-    if (!can_be_used(f)) return;
-    const auto corners = mesh_.face(f);
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const VertexId v = corners[i], w = corners[(i + 1) % corners.size()];
-      used_[v] = true;
-      // Sides between coincident vertices have no length and are skipped.
-      const std::uint32_t p = place_[v], q = place_[w];
-      if (mesh_.dim == 2)
-        sides_.push_back({{p, p}, {v, v}, i == 0});
-      else if (p != q)
-        sides_.push_back(p < q ? PlacedSide{{p, q}, {v, w}, true} : PlacedSide{{q, p}, {w, v}, false});
+  void mark_used() {
+    for (FaceId f = 0; f < mesh_.face_count(); ++f)
+      if (can_be_used(f))
+        for (const VertexId v : mesh_.face(f)) used_[v] = true;
+  }
+
+  /// Calls visit(smaller position, side) for each side of a usable face.
+  template <class Visit>
+  void for_each_side(const Visit& visit) const {
+    for (FaceId f = 0; f < mesh_.face_count(); ++f) {
+      if (!can_be_used(f)) continue;
+      const auto corners = mesh_.face(f);
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const VertexId v = corners[i], w = corners[i + 1 < corners.size() ? i + 1 : 0];
+        // Sides between coincident vertices have no length and are skipped.
+        const VertexId p = place_[v], q = place_[w];
+        if (mesh_.dim == 2)
+          visit(p, PlacedSide{{p, p}, {v, v}, i == 0});
+        else if (p != q)
+          visit(std::min(p, q), p < q ? PlacedSide{{p, q}, {v, w}, true} : PlacedSide{{q, p}, {w, v}, false});
+      }
     }
+  }
+
+  void sort_sides() {
+    VertexBuckets<PlacedSide> by_place(mesh_.vertices.size(),
+                                       [&](const auto& visit) { for_each_side(visit); });
+    by_place.for_each_group([](VertexId, std::span<PlacedSide> sides) {
+      std::sort(sides.begin(), sides.end(),
+                [](const PlacedSide& a, const PlacedSide& b) { return a.place[1] < b.place[1]; });
+    });
+    sides_ = std::move(by_place.items());
   }
 
   /// Calls visit(open) for each pair of positions with sides. open: the sides whose (merged) vertices no
@@ -136,8 +161,8 @@ class CornerJoiner {
   Mesh& mesh_;
   DisjointSets sets_;  ///< sets of merged vertices
   std::vector<bool> used_;
-  std::vector<VertexId> place_;  ///< (|V|) number of the position
-  std::size_t places_ = 0;
+  std::vector<VertexId> place_;  ///< (|V|) the position, named by the first vertex there
+  std::vector<char> finite_;     ///< (|V|) all coordinates are finite
   std::vector<PlacedSide> sides_;
   JoinedCorners out_;
 };

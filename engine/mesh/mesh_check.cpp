@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <array>
-#include <map>
 #include <string>
 #include <string_view>
 
 #include "engine/mesh/nesting.hpp"
 #include "engine/mesh/polygon_shape.hpp"
 #include "engine/mesh/self_intersections.hpp"
+#include "engine/mesh/vertex_buckets.hpp"
 #include <lrbscope/ids.hpp>
 #include <lrbscope/mesh_check.hpp>
 
@@ -66,23 +66,39 @@ void turn(Mesh& mesh, FaceId f) {
 /// Returns true if the directed edges (2D: ends of segments) cancel: the boundary of the sum of the faces is
 /// empty.
 bool is_cycle(const Mesh& mesh, const std::vector<FaceUse>& use) {
-  // Signed count of each edge: +1 from the smaller to the larger vertex.
-  std::map<std::array<VertexId, 2>, std::int64_t> sum;
-  for (FaceId f = 0; f < mesh.face_count(); ++f) {
-    if (use[f] == FaceUse::nothing) return false;
-    const auto c = mesh.face(f);
-    // 2D: the boundary of a segment is its start minus its end.
-    if (mesh.dim == 2) {
-      ++sum[{c[0], c[0]}];
-      --sum[{c[1], c[1]}];
+  if (std::find(use.begin(), use.end(), FaceUse::nothing) != use.end()) return false;
+  // The sides by their smaller vertex: the larger one, and +1 for sides that run to it, else -1.
+  struct Side {
+    VertexId to{};
+    std::int32_t sign = 0;
+  };
+  VertexBuckets<Side> sides(mesh.vertices.size(), [&](const auto& visit) {
+    for (FaceId f = 0; f < mesh.face_count(); ++f) {
+      const auto c = mesh.face(f);
+      // 2D: the boundary of a segment is its start minus its end.
+      if (mesh.dim == 2) {
+        visit(c[0], Side{c[0], 1});
+        visit(c[1], Side{c[1], -1});
+      }
+      for (std::size_t i = 0; mesh.dim == 3 && i < c.size(); ++i) {
+        const VertexId v = c[i], w = c[i + 1 < c.size() ? i + 1 : 0];
+        if (v != w) visit(std::min(v, w), Side{std::max(v, w), v < w ? 1 : -1});
+      }
     }
-    for (std::size_t i = 0; mesh.dim == 3 && i < c.size(); ++i) {
-      const VertexId v = c[i], w = c[(i + 1) % c.size()];
-      if (v != w) sum[{std::min(v, w), std::max(v, w)}] += v < w ? 1 : -1;
+  });
+  bool cancel = !sides.items().empty();
+  sides.for_each_group([&](VertexId, std::span<Side> group) {
+    std::sort(group.begin(), group.end(), [](const Side& s, const Side& t) { return s.to < t.to; });
+    // Runs of equal edges: each must sum to zero.
+    std::int64_t sum = 0;
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      sum += group[i].sign;
+      if (i + 1 < group.size() && group[i + 1].to == group[i].to) continue;
+      cancel &= sum == 0;
+      sum = 0;
     }
-  }
-  return !sum.empty() &&
-         std::all_of(sum.begin(), sum.end(), [](const auto& edge) { return edge.second == 0; });
+  });
+  return cancel;
 }
 
 /// Returns for each component whether it is a sheet: it has an open edge and is planar. Exact.

@@ -1,5 +1,7 @@
 // Topology of a polygon mesh by sorting and union-find, in O(n log n):
-// 1. Sort all sides of faces by edge (2D: ends of segments by vertex).
+// 1. Sort all sides of faces by edge (2D: ends of segments by vertex): by counting for the smaller vertex,
+// then
+//    the few sides of each vertex by the larger one.
 // 2. Unite the faces at each edge to components, and the corners of these faces to fans around the edge's
 //    vertices.
 // 3. Classify each edge: closed manifold edges have two sides in opposite directions.
@@ -8,6 +10,7 @@
 #include <algorithm>
 #include <span>
 
+#include "engine/mesh/vertex_buckets.hpp"
 #include <lrbscope/core/disjoint_sets.hpp>
 #include <lrbscope/mesh_check.hpp>
 
@@ -16,13 +19,16 @@ namespace {
 
 /// One side of a face at an edge (2D: one end of a segment at a vertex).
 struct SideUse {
-  std::uint64_t key;  ///< the edge: smaller vertex, larger vertex (2D: the vertex)
-  FaceId face;
-  std::uint32_t corner;  ///< corner at which the side starts, index into Mesh::face_vertices
-  bool forward;  ///< runs from the smaller to the larger vertex (2D: the segment starts at the vertex)
+  std::uint64_t key = 0;  ///< the edge: smaller vertex, larger vertex (2D: the vertex)
+  FaceId face{};
+  std::uint32_t corner = 0;  ///< corner at which the side starts, index into Mesh::face_vertices
+  bool forward =
+      false;  ///< runs from the smaller to the larger vertex (2D: the segment starts at the vertex)
 };
 
 bool has_different_corners(std::span<const VertexId> corners, int needed) {
+  if (corners.size() == 3 && needed == 3)  // nearly every face is a triangle
+    return corners[0] != corners[1] && corners[1] != corners[2] && corners[0] != corners[2];
   int found = 0;
   for (std::size_t i = 0; i < corners.size() && found < needed; ++i)
     found += std::find(corners.begin(), corners.begin() + i, corners[i]) == corners.begin() + i;
@@ -42,11 +48,9 @@ class Analysis {
     all_usable_ = true;
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
       all_usable_ &= use[f] != FaceUse::nothing;
-      if (use[f] != FaceUse::nothing && has_different_corners(mesh.face(f), mesh.dim)) add_sides(f);
+      if (use[f] != FaceUse::nothing && has_different_corners(mesh.face(f), mesh.dim)) add_face(f);
     }
-    std::sort(sides_.begin(), sides_.end(), [](const SideUse& a, const SideUse& b) {
-      return a.key != b.key ? a.key < b.key : a.corner < b.corner;
-    });
+    sort_sides();
   }
 
   SurfaceTopology run() {
@@ -63,21 +67,40 @@ class Analysis {
   }
 
  private:
-  void add_sides(FaceId f) {
-    const auto corners = mesh_.face(f);
-    const std::uint32_t first = mesh_.face_offsets[f];
+  void add_face(FaceId f) {
     out_.component_of_face[f] = f;  // preliminary: marks a usable face
     ++faces_used_;
     // Each corner starts as a fan of its own. Every union of two fans decrements the count.
-    for (const VertexId v : corners) ++fans_[v];
-    for (std::uint32_t i = 0; i < corners.size(); ++i) {
-      const VertexId a = corners[i], b = corners[(i + 1) % corners.size()];
-      // 2D: the key is the vertex. The segment starts at its first end.
-      if (mesh_.dim == 2)
-        sides_.push_back({a, f, first + i, i == 0});
-      else if (a != b)
-        sides_.push_back({std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), f, first + i, a < b});
+    for (const VertexId v : mesh_.face(f)) ++fans_[v];
+  }
+
+  /// Calls visit(vertex, side) for each side of the faces added, in their order; vertex: the smaller one.
+  template <class Visit>
+  void for_each_side(const Visit& visit) const {
+    for (FaceId f = 0; f < mesh_.face_count(); ++f) {
+      if (out_.component_of_face[f] == kNull) continue;
+      const auto corners = mesh_.face(f);
+      const std::uint32_t first = mesh_.face_offsets[f];
+      for (std::uint32_t i = 0; i < corners.size(); ++i) {
+        const VertexId a = corners[i], b = corners[i + 1 < corners.size() ? i + 1 : 0];
+        // 2D: the key is the vertex. The segment starts at its first end.
+        if (mesh_.dim == 2)
+          visit(a, SideUse{a, f, first + i, i == 0});
+        else if (a != b)
+          visit(std::min(a, b),
+                SideUse{std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), f, first + i, a < b});
+      }
     }
+  }
+
+  void sort_sides() {
+    VertexBuckets<SideUse> by_vertex(mesh_.vertices.size(), [&](const auto& visit) { for_each_side(visit); });
+    by_vertex.for_each_group([](VertexId, std::span<SideUse> sides) {
+      std::sort(sides.begin(), sides.end(), [](const SideUse& a, const SideUse& b) {
+        return a.key != b.key ? a.key < b.key : a.corner < b.corner;
+      });
+    });
+    sides_ = std::move(by_vertex.items());
   }
 
   template <class Visit>

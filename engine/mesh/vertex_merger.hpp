@@ -1,7 +1,9 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,6 +11,41 @@
 #include <lrbscope/ids.hpp>
 
 namespace lrb {
+
+/// Returns a hash of a point that is equal for 0 and -0.
+inline std::uint64_t hash_of_point(const Eigen::Vector3d& v) {
+  std::uint64_t h = 0;
+  for (int i = 0; i < 3; ++i) {
+    h ^= std::bit_cast<std::uint64_t>(v[i] + 0.0);  // -0 + 0 is 0
+    h *= 0x9e3779b97f4a7c15u;  // 2^64 divided by the golden ratio: disperses neighbouring keys
+    h ^= h >> 32;
+  }
+  return h;
+}
+
+/// Finds the first of several vertices with equal coordinates (0 and -0 are equal).
+class FirstAtPosition {
+ public:
+  /// Has room for all `points`, which must outlive it.
+  explicit FirstAtPosition(std::span<const Eigen::Vector3d> points)
+      : points_(points), slots_(std::bit_ceil(2 * points.size() + 1), kNull) {}
+
+  /// Returns the first vertex at the position of v among those passed so far, which is v itself if there is
+  /// no other. Points with a NaN equal none. Pass each vertex once.
+  VertexId operator()(VertexId v) {
+    const Eigen::Vector3d& x = points_[v];
+    if (x.hasNaN()) return v;
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t i = hash_of_point(x) & mask;
+    while (slots_[i] != kNull && points_[slots_[i]] != x) i = (i + 1) & mask;
+    if (slots_[i] == kNull) slots_[i] = v;
+    return slots_[i];
+  }
+
+ private:
+  std::span<const Eigen::Vector3d> points_;
+  std::vector<VertexId> slots_;
+};
 
 /// Merges equal points (bitwise, except that 0 and -0 are equal) to vertices, numbered in order of first
 /// appearance. There is no tolerance: points an ulp apart stay distinct, and check_mesh() reports the gap.
@@ -27,21 +64,11 @@ class VertexMerger {
   }
 
  private:
-  static std::uint64_t hash(const Eigen::Vector3d& v) {
-    std::uint64_t h = 0;
-    for (int i = 0; i < 3; ++i) {
-      h ^= std::bit_cast<std::uint64_t>(v[i] + 0.0);  // -0 + 0 is 0
-      h *= 0x9e3779b97f4a7c15u;  // 2^64 divided by the golden ratio: disperses neighbouring keys
-      h ^= h >> 32;
-    }
-    return h;
-  }
-
   /// Returns the slot of v, or the free slot for it. The number of slots is a power of two, and at most half
   /// of them are used.
   VertexId& find(const Eigen::Vector3d& v) {
     const std::size_t mask = slots_.size() - 1;
-    for (std::size_t i = hash(v) & mask;; i = (i + 1) & mask)
+    for (std::size_t i = hash_of_point(v) & mask;; i = (i + 1) & mask)
       if (slots_[i] == kNull || vertices_[slots_[i]] == v) return slots_[i];
   }
 

@@ -121,11 +121,12 @@ MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
   notes.push_back(note_without_regions(mesh, turn));
   Workers workers(options.threads);
   const bool self_intersecting = !mesh.self_intersecting_faces(workers).empty();
-  return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, self_intersecting),
-          std::move(notes)};
+  return {
+      LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, self_intersecting, options.threads),
+      std::move(notes)};
 }
 
-MadeBody make_body_of_faces(CheckedMesh mesh, bool turn) {
+MadeBody make_body_of_faces(CheckedMesh mesh, bool turn, unsigned threads) {
   refuse_unless_queryable(mesh);
   std::vector<std::string> notes;
   std::uint32_t turned = 0;
@@ -134,8 +135,8 @@ MadeBody make_body_of_faces(CheckedMesh mesh, bool turn) {
   else if (turn)
     turned = turn_outward(mesh, notes);
   constexpr bool kNotAsked = false;  // self-intersection matters only for regions
-  return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, kNotAsked), std::move(notes), 0,
-          turned};
+  return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, kNotAsked, threads),
+          std::move(notes), 0, turned};
 }
 
 namespace {
@@ -230,8 +231,9 @@ void add_notes_on(const LrbRep& rep, std::vector<std::string>& notes) {
 Body Body::made(Mesh mesh, const BodyOptions& options, std::vector<std::string> notes) {
   // Check, then build, with or without regions. Both throw InputError if the mesh cannot be queried at all.
   CheckedMesh checked = check(std::move(mesh));
-  MadeBody made = options.regions ? make_body(std::move(checked), options.build, options.turn)
-                                  : make_body_of_faces(std::move(checked), options.turn);
+  MadeBody made = options.regions
+                      ? make_body(std::move(checked), options.build, options.turn)
+                      : make_body_of_faces(std::move(checked), options.turn, options.build.threads);
   notes.insert(notes.end(), made.notes.begin(), made.notes.end());
   add_notes_on(made.rep, notes);
   auto rep = std::make_shared<const LrbRep>(std::move(made.rep));

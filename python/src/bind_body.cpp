@@ -37,9 +37,9 @@ BodyPtr body_of_arrays(py::handle vertices, py::handle faces, py::handle regions
   const bool with_regions = flag(regions, "regions", true);
   const std::size_t n = mesh.vertices.size();
   const py::gil_scoped_release unlocked;
-  return std::make_shared<Body>(
-      with_regions ? bodies::body_of_mesh(std::move(mesh), options) : bodies::faces_of_mesh(std::move(mesh)),
-      n);
+  return std::make_shared<Body>(with_regions ? bodies::body_of_mesh(std::move(mesh), options)
+                                             : bodies::faces_of_mesh(std::move(mesh), options.threads),
+                                n);
 }
 
 BodyPtr load(py::handle file, py::handle regions, py::handle lean, py::handle seed, py::handle threads) {
@@ -47,7 +47,9 @@ BodyPtr load(py::handle file, py::handle regions, py::handle lean, py::handle se
   const BuildOptions options = build_options(lean, seed, threads);
   const bool with_regions = flag(regions, "regions", true);
   const py::gil_scoped_release unlocked;
-  return std::make_shared<Body>(with_regions ? bodies::load_body(name, options) : bodies::load_faces(name));
+  return std::make_shared<Body>(with_regions
+                                    ? bodies::load_body(name, options)
+                                    : bodies::load_faces(name, bodies::Corners::joined, options.threads));
 }
 
 Mesh real_mesh(const Body& body) {

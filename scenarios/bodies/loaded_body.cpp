@@ -1,5 +1,10 @@
 #include "scenarios/bodies/loaded_body.hpp"
 
+#include <filesystem>
+#include <future>
+#include <new>
+#include <system_error>
+
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/mesh.hpp>
@@ -52,17 +57,59 @@ LoadedBody load_body(const std::string& path, const BuildOptions& options, Corne
   return body;
 }
 
-LoadedBody load_faces(const std::string& path, Corners corners) {
+LoadedBody load_faces(const std::string& path, Corners corners, unsigned threads) {
   if (is_lrb_file(path)) return saved_body(path);
   std::vector<std::string> notes;
   Mesh mesh = read_body(path, corners, notes);
-  LoadedBody body = faces_of_mesh(std::move(mesh));
+  LoadedBody body = faces_of_mesh(std::move(mesh), threads);
   body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
   return body;
 }
 
-LoadedBody faces_of_mesh(Mesh mesh) {
-  return loaded(make_body_of_faces(check(std::move(mesh))));
+LoadedBody faces_of_mesh(Mesh mesh, unsigned threads) {
+  return loaded(make_body_of_faces(check(std::move(mesh)), true, threads));
+}
+
+namespace {
+
+using Load = std::function<LoadedBody(const std::string&)>;
+
+/// Loads B on a second thread. If no thread can be started, loads it afterwards.
+std::array<LoadedBody, 2> load_at_once(const std::string& a, const std::string& b, const Load& load) {
+  std::future<LoadedBody> second;
+  try {
+    second = std::async(std::launch::async, [&] { return load(b); });
+  } catch (const std::system_error&) {
+  }
+  // If this throws, the destructor of `second` waits for the other thread.
+  LoadedBody first = load(a);
+  return {std::move(first), second.valid() ? second.get() : load(b)};
+}
+
+}  // namespace
+
+std::array<LoadedBody, 2> load_two(const std::string& a, const std::string& b, const Load& load) {
+  // Both paths may be the same pipe, whose reader must not be split.
+  std::error_code ignored;
+  const auto is_file = [&](const std::string& path) {
+    return std::filesystem::is_regular_file(path, ignored);
+  };
+  if (is_file(a) && is_file(b)) try {
+      return load_at_once(a, b, load);
+    } catch (const std::bad_alloc&) {
+      // One at a time needs less memory.
+    }
+  LoadedBody first = load(a);
+  return {std::move(first), load(b)};
+}
+
+std::array<LoadedBody, 2> load_faces_of_two(const std::string& a, const std::string& b, Corners corners) {
+  return load_two(a, b, [=](const std::string& path) { return load_faces(path, corners); });
+}
+
+std::array<LoadedBody, 2> load_two_bodies(const std::string& a, const std::string& b,
+                                          const BuildOptions& options, Corners corners) {
+  return load_two(a, b, [&](const std::string& path) { return load_body(path, options, corners); });
 }
 
 }  // namespace lrb::bodies

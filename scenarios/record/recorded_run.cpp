@@ -83,7 +83,11 @@ std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
                      std::to_string(paths.size()));
   std::vector<bodies::LoadedBody> out;
   out.reserve(paths.size());
-  for (const std::string& path : paths) out.push_back(bodies::load_body(path));
+  if (paths.size() == 2)
+    for (bodies::LoadedBody& body : bodies::load_two_bodies(paths[0], paths[1]))
+      out.push_back(std::move(body));
+  else
+    for (const std::string& path : paths) out.push_back(bodies::load_body(path));
   return out;
 }
 

@@ -131,8 +131,8 @@ struct MadeBody {
 MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn = true);
 
 /// Creates a body without regions, for callers that need only pairs of faces, distances and the relation.
-/// Proves only what these answers need. Faces keep their numbers.
-MadeBody make_body_of_faces(CheckedMesh mesh, bool turn = true);
+/// Proves only what these answers need. Faces keep their numbers. `threads`: see BuildOptions.
+MadeBody make_body_of_faces(CheckedMesh mesh, bool turn = true, unsigned threads = 1);
 
 /// Returns a note with the first violation if the proof of an LRB-rep's cells fails (validate_cells()), or an
 /// empty string if they are proven.

@@ -69,8 +69,8 @@ class LrbRep {
   /// the data.
   LrbRep(LrbData data, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks, std::uint64_t hash);
   /// Creates a body without regions: its outermost wrapper is its own surface. `closed`: as check_mesh()
-  /// reports.
-  static LrbRep without_regions(const Mesh& mesh, bool closed, bool self_intersecting);
+  /// reports. `threads`: as for the constructor.
+  static LrbRep without_regions(const Mesh& mesh, bool closed, bool self_intersecting, unsigned threads = 1);
   /// Creates a body without regions from the real faces of another. Faces and vertices keep their numbers.
   static LrbRep without_regions(const LrbRep& rep);
 
@@ -159,8 +159,9 @@ class LrbRep {
   bool has_levels() const;
   /// Stores levels of detail that were created for this LRB-rep and loaded from a file.
   void keep_levels(WrapperLevels levels);
-  /// Returns hash_of(data()), which identifies this complex in traces and files.
-  std::uint64_t hash() const { return hash_; }
+  /// Returns hash_of(data()), which identifies this complex in traces and files. The first call computes it,
+  /// unless it was stored, and concurrent calls wait.
+  std::uint64_t hash() const;
   /// Returns a number that is unique among the LRB-reps created by this process (copies share it), so that
   /// caches detect a new body at an old address.
   std::uint64_t serial() const { return serial_; }
@@ -170,6 +171,7 @@ class LrbRep {
  private:
   struct MadeLevels;
   struct FoundOverlap;
+  struct FoundHash;
 
   void derive();
   void link_faces_to_regions();
@@ -187,11 +189,11 @@ class LrbRep {
   std::uint32_t whole_faces_ = 0;         ///< faces [0, whole_faces_) consist of one simplex each
   std::vector<FaceId> face_of_simplex_;   ///< (simplices) empty if every face is one simplex
   std::uint32_t layer_count_ = 0;
-  std::uint64_t hash_ = 0;
   std::uint64_t serial_ = 0;
   ObbTree tree_;
   std::shared_ptr<MadeLevels> levels_;
   std::shared_ptr<FoundOverlap> overlap_;
+  std::shared_ptr<FoundHash> hash_;
 };
 
 /// The version of the file format that save_lrb() writes, and the newest one that load_lrb() reads.

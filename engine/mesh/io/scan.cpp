@@ -12,11 +12,22 @@
 namespace lrb {
 namespace {
 
-constexpr bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+enum class ByteKind : std::uint8_t { other, blank, newline, backslash };
+
+/// The kind of each byte: one look-up per character.
+constexpr std::array<ByteKind, 256> kByteKinds = [] {
+  std::array<ByteKind, 256> kinds{};
+  for (const char c : {' ', '\t', '\v', '\f'}) kinds[static_cast<unsigned char>(c)] = ByteKind::blank;
+  for (const char c : {'\n', '\r'}) kinds[static_cast<unsigned char>(c)] = ByteKind::newline;
+  kinds[static_cast<unsigned char>('\\')] = ByteKind::backslash;
+  return kinds;
+}();
+
+ByteKind kind_of_byte(char c) {
+  return kByteKinds[static_cast<unsigned char>(c)];
 }
-constexpr bool is_newline(char c) {
-  return c == '\n' || c == '\r';
+bool is_newline(char c) {
+  return kind_of_byte(c) == ByteKind::newline;
 }
 
 /// Removes a plus sign, which is used in files but rejected by std::from_chars.
@@ -52,22 +63,25 @@ void TextCursor::skip_newline() {
 
 std::string_view TextCursor::token() {
   // Skip blanks and continuations before the token.
-  while (at_ != end_) {
-    if (is_blank(*at_))
-      ++at_;
-    else if (!skip_continuation())
-      break;
-  }
-  const char* start = at_;
+  do {
+    while (at_ != end_ && kind_of_byte(*at_) == ByteKind::blank) ++at_;
+  } while (at_ != end_ && skip_continuation());
+  const char* const start = at_;
   // A comment ends the tokens of this line; the cursor stays at the line end.
   if (rules_.hash_comments && at_ != end_ && *at_ == '#') {
     at_ = std::find_if(at_, end_, is_newline);
     return {};
   }
   // The token ends at a blank, at the line end, or at a continuation directly after it.
-  for (; !at_line_end() && !is_blank(*at_); ++at_)
-    if (*at_ == '\\' && rules_.continuation && at_ + 1 != end_ && is_newline(at_[1])) break;
-  return {start, static_cast<std::size_t>(at_ - start)};
+  const char* stop = start;
+  for (; stop != end_; ++stop) {
+    const ByteKind kind = kind_of_byte(*stop);
+    if (kind == ByteKind::other) continue;
+    if (kind != ByteKind::backslash || (rules_.continuation && stop + 1 != end_ && is_newline(stop[1])))
+      break;
+  }
+  at_ = stop;
+  return {start, static_cast<std::size_t>(stop - start)};
 }
 
 bool TextCursor::next_line() {

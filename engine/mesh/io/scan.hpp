@@ -63,7 +63,6 @@ class TextCursor {
   std::string shown(std::string_view token) const;
 
  private:
-  bool at_line_end() const { return at_ == end_ || *at_ == '\n' || *at_ == '\r'; }
   bool skip_continuation();
   void skip_newline();
 
