@@ -22,8 +22,8 @@ constexpr double kNearFocus = 0.02;
 constexpr double kDepthSlack = 0.01;
 /// A scene that is a single point is shown with an extent of this share of its coordinates, or of this
 /// length.
-constexpr double kLeastExtent = 1e-9;
-constexpr double kLeastLength = 1e-30;
+constexpr double kMinExtent = 1e-9;
+constexpr double kMinLength = 1e-30;
 /// Minimum ratio of height to width of the visible extent: for a flat scene seen edge-on.
 constexpr double kFlattest = 1e-3;
 /// The eye keeps a distance of this share of the scene's size from it.
@@ -118,7 +118,7 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
     z.add(e.z(), 0);
   }
   const double size =
-      std::max({box.diagonal().norm(), kLeastExtent * origin.cwiseAbs().maxCoeff(), kLeastLength});
+      std::max({box.diagonal().norm(), kMinExtent * origin.cwiseAbs().maxCoeff(), kMinLength});
 
   // Step 4: centre the eye between opposite planes, and move it back until both pairs enclose the points.
   Camera camera;
@@ -214,7 +214,7 @@ Projection::Projection(const Camera& camera, double width, double height, const 
       lo = std::min(lo, z), hi = std::max(hi, z);
     }
   }
-  const double slack = kDepthSlack * std::max(hi - lo, kLeastExtent * std::abs(hi)) + kLeastLength;
+  const double slack = kDepthSlack * std::max(hi - lo, kMinExtent * std::abs(hi)) + kMinLength;
   far_ = hi + slack;
   near_ = lo - slack;
   if (!orthographic_) {

@@ -94,7 +94,7 @@ Vector3d normal(const Mesh& mesh, FaceId f) {
 
 /// Cuts shorter than this share of the faces' sizes are ignored: with rounded coordinates, coplanar faces
 /// appear to intersect in specks.
-constexpr double kLeastCut = 1e-6;
+constexpr double kMinCut = 1e-6;
 
 using Triangle = std::array<Vector3d, 3>;
 
@@ -152,7 +152,7 @@ std::vector<Vector3d> cut(const Mesh& mesh, FaceId f, FaceId g) {
   // The points are collinear up to rounding, so two steps find both ends.
   const Vector3d one = far(found[0], found), other = far(one, found);
   const double size = (x[1] - x[0]).norm() + (y[1] - y[0]).norm();
-  if (!((other - one).norm() > kLeastCut * size)) return {};
+  if (!((other - one).norm() > kMinCut * size)) return {};
   return {one, other};
 }
 
@@ -264,12 +264,12 @@ ViewDirection tilted(const Vector3d& n) {
 
 /// Returns " in 3 loops, of 9, 4 and 3"; lists the first few loops.
 std::string loops_text(std::span<const BoundaryLoop> loops) {
-  constexpr std::size_t kMost = 8;
+  constexpr std::size_t kMax = 8;
   std::string out = " in " + group_digits(loops.size()) + (loops.size() == 1 ? " loop" : " loops");
   if (loops.size() == 1) return out;
-  for (std::size_t i = 0; i < std::min(loops.size(), kMost); ++i)
+  for (std::size_t i = 0; i < std::min(loops.size(), kMax); ++i)
     out += (i == 0 ? ", of " : i + 1 == loops.size() ? " and " : ", ") + group_digits(loops[i].edges());
-  return out + (loops.size() > kMost ? ", …" : "");
+  return out + (loops.size() > kMax ? ", …" : "");
 }
 
 Eigen::AlignedBox3d box_of_faces(const Mesh& mesh) {

@@ -117,13 +117,13 @@ namespace {
 std::size_t mesas_address_space() {
   constexpr std::size_t kMiB = std::size_t{1} << 20, kStack = 8 * kMiB, kArena = 64 * kMiB,
                         kRest = 100 * kMiB;
-  constexpr std::size_t kMostRasterThreads = 32, kArenasPerCore = 8;
+  constexpr std::size_t kMaxRasterThreads = 32, kArenasPerCore = 8;
   // llvmpipe's default number of threads, unless the environment sets it.
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   const char* given = std::getenv("LP_NUM_THREADS");
   const std::size_t raster =
       given != nullptr ? static_cast<std::size_t>(std::max(0L, std::strtol(given, nullptr, 10))) : cores;
-  const std::size_t threads = 2 * std::min(raster, kMostRasterThreads) + 2;
+  const std::size_t threads = 2 * std::min(raster, kMaxRasterThreads) + 2;
   return threads * kStack + std::min(threads, kArenasPerCore * cores) * kArena + kRest;
 }
 

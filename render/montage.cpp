@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kGutterShare = 1.0 / 24;
 constexpr double kLabelShare = 1.0 / 20;
-constexpr float kLeastLabel = 12;
+constexpr float kMinLabel = 12;
 constexpr double kShape = 4.0 / 3;  ///< target ratio of width to height for automatic columns
 
 int columns_for(const std::vector<Panel>& panels) {
@@ -72,7 +72,7 @@ MontageLayout lay_out(const std::vector<Panel>& panels, const MontageOptions& op
   MontageLayout out;
   out.text_height = options.text_height > 0
                         ? options.text_height
-                        : std::max(kLeastLabel, static_cast<float>(kLabelShare * panels[0].image.height()));
+                        : std::max(kMinLabel, static_cast<float>(kLabelShare * panels[0].image.height()));
   const bool text = options.letters || std::any_of(panels.begin(), panels.end(),
                                                    [](const Panel& p) { return !p.caption.empty(); });
   const TextStyle style = caption_style(out.text_height);

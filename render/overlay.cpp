@@ -10,7 +10,7 @@ namespace lrb::render {
 namespace {
 
 constexpr double kTextShare = 0.0275;  ///< height of text, as a share of the frame's
-constexpr float kLeastText = 10.5F, kMostText = 44;
+constexpr float kMinText = 10.5F, kMaxText = 44;
 constexpr double kPictureShare = 0.5;  ///< minimum share of the frame's height
 constexpr const char* kNarrowSpace = "\u202f";
 constexpr const char* kRoom = "0\u202f000";
@@ -273,13 +273,13 @@ OverlayLayout lay_out(const Overlay& overlay, int width, int height, float scale
   // Text size depends on the frame's smaller side: a frame higher than wide has no more space for a line than
   // its width.
   const double side = std::min<double>(height, width * 0.75) / scale;
-  float text = std::clamp(static_cast<float>(std::round(2 * kTextShare * side) / 2), kLeastText, kMostText);
+  float text = std::clamp(static_cast<float>(std::round(2 * kTextShare * side) / 2), kMinText, kMaxText);
   // Reduce the text until everything fits.
   for (;; text -= 0.5F) {
     OverlayLayout layout = Layouter(overlay, width, height, text * scale).run();
     layout.scale = scale;
     if (fits(layout, width, height)) return layout;
-    if (text <= kLeastText) break;
+    if (text <= kMinText) break;
   }
   throw InputError("a frame of " + std::to_string(width) + "x" + std::to_string(height) +
                    " is too small for its title, counters and legend; make it larger or omit some of them");

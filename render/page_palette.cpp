@@ -43,7 +43,7 @@ std::string scene_root_css() {
 
 std::string grid_root_css() {
   using namespace page;
-  return root_css(Colours{kWrong, kCrashed, kTimedOut, kRefused, kOnlyRefused} + kLevels +
+  return root_css(Colours{kWrong, kCrashed, kTimedOut, kRejected, kOnlyRejected} + kLevels +
                   Colours{kOnLevel4});
 }
 

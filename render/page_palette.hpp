@@ -48,8 +48,8 @@ inline constexpr PageColour kSketchBare{"sketch-bare", palette::kRefining, palet
 inline constexpr PageColour kWrong{"wrong", palette::kVermillion, {255, 154, 82}};
 inline constexpr PageColour kCrashed{"crashed", {20, 22, 26}, kWhite};
 inline constexpr PageColour kTimedOut{"timed", {160, 69, 138}, {231, 155, 211}};
-inline constexpr PageColour kRefused{"refused", {154, 160, 166}, {132, 139, 148}};
-inline constexpr PageColour kOnlyRefused{"hatch", {228, 230, 232}, {51, 56, 63}};
+inline constexpr PageColour kRejected{"refused", {154, 160, 166}, {132, 139, 148}};
+inline constexpr PageColour kOnlyRejected{"hatch", {228, 230, 232}, {51, 56, 63}};
 /// Backgrounds of cells: pale blue for no failures, then increasingly orange.
 inline constexpr std::array<PageColour, 5> kLevels = {{{"level-0", {226, 238, 246}, {27, 48, 64}},
                                                        {"level-1", {253, 241, 220}, {58, 49, 34}},

@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 /// dashes in half widths; radius of rings to their centre line, and their width, as shares of the radius.
 constexpr double kGhostWidth = 0.6, kGhostDash = 5, kRingRadius = 0.8, kRingWidth = 0.4;
 /// Visible or hidden runs shorter than this many pixels of the depth image are merged with their neighbours.
-constexpr double kLeastRun = 1.5;
+constexpr double kMinRun = 1.5;
 
 struct Less {
   bool operator()(const Vector3d& a, const Vector3d& b) const {
@@ -192,7 +192,7 @@ class HiddenLines {
     std::vector<Run> out;
     // Runs below the resolution of the depth image are noise, as at the silhouette of a face.
     for (Run& run : runs) {
-      if (runs.size() > 1 && length_of(run) < kLeastRun * unit_ && !out.empty()) run.seen = out.back().seen;
+      if (runs.size() > 1 && length_of(run) < kMinRun * unit_ && !out.empty()) run.seen = out.back().seen;
       if (!out.empty() && out.back().seen == run.seen) {
         out.back().points.insert(out.back().points.end(), run.points.begin(), run.points.end());
       } else {

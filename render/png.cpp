@@ -24,7 +24,7 @@ constexpr double kInchesPerMetre = 1 / 0.0254;
 /// Limits of chunks other than pixels: lrbscope's texts are far below; a file with millions of chunks is
 /// rejected.
 constexpr png_alloc_size_t kLongestChunk = png_alloc_size_t{1} << 20;
-constexpr png_uint_32 kMostChunks = 100;
+constexpr png_uint_32 kMaxChunks = 100;
 
 static_assert(sizeof(Rgba) == 4);
 
@@ -137,7 +137,7 @@ class PngReader {
     png_set_read_fn(png_, this, take);
     png_set_benign_errors(png_, 0);  // surplus pixel data are an error
     png_set_chunk_malloc_max(png_, kLongestChunk);
-    png_set_chunk_cache_max(png_, kMostChunks);
+    png_set_chunk_cache_max(png_, kMaxChunks);
   }
   ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
   PngReader(const PngReader&) = delete;
@@ -196,11 +196,11 @@ class PngReader {
 
 /// Rejects, before allocating, a picture with far more pixels than its file can contain.
 void check_size(const PngReader& reader, std::size_t file_bytes, const std::string& name,
-                std::uint64_t most_pixels) {
+                std::uint64_t max_pixels) {
   const std::string size = std::to_string(reader.width()) + "x" + std::to_string(reader.height()) + " pixels";
   // No allocation before these checks: the header may be forged.
-  if (reader.width() * reader.height() > most_pixels)
-    throw InputError(name + ": has " + size + ", expected at most " + std::to_string(most_pixels));
+  if (reader.width() * reader.height() > max_pixels)
+    throw InputError(name + ": has " + size + ", expected at most " + std::to_string(max_pixels));
   if (std::max(reader.width(), reader.height()) > Image::kMaxSide)
     throw InputError(name + ": has " + size + ", a side of more than " + std::to_string(Image::kMaxSide));
   // Deflate cannot expand by more than this, so larger pictures cannot be in the file.
@@ -225,13 +225,13 @@ Bytes encode_png(const Image& image, const PngOptions& options) {
 }
 
 DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name,
-                      std::uint64_t most_pixels) {
+                      std::uint64_t max_pixels) {
   PngReader reader(bytes);
-  const auto refuse_unless = [&](bool readable) {
+  const auto reject_unless = [&](bool readable) {
     if (!readable) throw InputError(name + ": not a readable PNG (" + reader.complaint() + ")");
   };
-  refuse_unless(reader.read_header());
-  check_size(reader, bytes.size(), name, most_pixels);
+  reject_unless(reader.read_header());
+  check_size(reader, bytes.size(), name, max_pixels);
   DecodedPng out;
   out.image = Image(static_cast<int>(reader.width()), static_cast<int>(reader.height()));
   // libpng decodes directly into the image.
@@ -239,7 +239,7 @@ DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& na
   rows.reserve(reader.height());
   for (int y = 0; y < out.image.height(); ++y)
     rows.push_back(reinterpret_cast<png_bytep>(&out.image.at(0, y)));
-  refuse_unless(reader.read_pixels(rows));
+  reject_unless(reader.read_pixels(rows));
   out.text = reader.text();
   out.dpi = reader.dpi();
   return out;
@@ -250,10 +250,10 @@ void write_png(const Image& image, const std::string& path, const PngOptions& op
   write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-DecodedPng read_png(const std::string& path, std::uint64_t most_pixels) {
+DecodedPng read_png(const std::string& path, std::uint64_t max_pixels) {
   const std::string bytes = read_file(path);
   return decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, printable_name(path),
-                    most_pixels);
+                    max_pixels);
 }
 
 }  // namespace lrb::render

@@ -27,7 +27,7 @@ constexpr double kGuard = 8;
 /// least the first number of edge widths, and invisible at the second, ...
 constexpr double kEdgesFull = 9, kEdgesGone = 1.5;
 /// ... where their width is reduced to this share.
-constexpr double kLeastWidth = 0.6;
+constexpr double kMinWidth = 0.6;
 /// Factor by which the shading of translucent faces is weaker than that of opaque ones.
 constexpr double kSoften = 0.6;
 /// Margin for the soft border of lines, pixels.
@@ -221,7 +221,7 @@ class ScreenMeshBuilder {
     // Fade colour and width where the face is small on the screen.
     const double room = room_[static_cast<std::size_t>(&t - list_.triangles.data())] / (style.width * scale_);
     const double fade = fade_between(room, kEdgesGone, kEdgesFull), back = shows_back(t) ? style.back : 1;
-    const double width = style.width * (kLeastWidth + (1 - kLeastWidth) * fade) * (0.5 + 0.5 * back);
+    const double width = style.width * (kMinWidth + (1 - kMinWidth) * fade) * (0.5 + 0.5 * back);
     v.half_width = to_float(0.5 * width * scale_);
     v.edge_colour =
         to_bytes(with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade * back + 0.5)));

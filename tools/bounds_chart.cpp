@@ -15,27 +15,27 @@ report::Gnuplot stacked(const report::Chart& upper, const report::Chart& lower) 
 
 }  // namespace
 
-report::Gnuplot bounds_chart(const std::vector<Bounds>& course, const std::string& what,
+report::Gnuplot bounds_chart(const std::vector<Bounds>& history, const std::string& what,
                              const std::string& work) {
   report::Ends ends(what, report::Line::steps);
   report::Series width{"width of the interval", {}, {}, {report::Line::steps, "#333333"}};
-  for (const Bounds& b : course) {
+  for (const Bounds& b : history) {
     const auto x = static_cast<double>(b.work);
     ends.add(x, b.lower, b.upper);
     if (!(b.upper > b.lower) || !std::isfinite(b.upper)) continue;
     width.x.push_back(x);
     width.y.push_back(b.upper - b.lower);
   }
-  const report::Axis x{work, false, 0, course.empty() ? 0 : static_cast<double>(course.back().work)};
+  const report::Axis x{work, false, 0, history.empty() ? 0 : static_cast<double>(history.back().work)};
   report::Chart bounds{"", x, {what}};
   ends.move_to(bounds);
   return stacked(bounds, {"", x, {"width", true}, {width}});
 }
 
-report::Gnuplot contact_chart(const std::vector<ContactBounds>& course) {
+report::Gnuplot contact_chart(const std::vector<ContactBounds>& history) {
   report::Ends time("time of impact", report::Line::steps),
       distance("distance at the lower bound", report::Line::steps);
-  for (const ContactBounds& b : course) {
+  for (const ContactBounds& b : history) {
     time.add(static_cast<double>(b.work), b.t0, b.t1);
     distance.add(static_cast<double>(b.work), b.lower, b.upper);
   }
@@ -54,7 +54,7 @@ render::Look look_of(const DrawOptions& options) {
   return look;
 }
 
-void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture, bool with_course) {
+void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture, bool with_history) {
   app.add_option("--draw", options.picture, picture + "; for several poses, one numbered file each")
       ->type_name("PNG");
   app.add_option("--size", options.look.size, "Picture size, in pixels [1200x750]")->type_name("WxH");
@@ -69,8 +69,8 @@ void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& pi
           },
           ""))
       ->type_name("FILE");
-  if (with_course)
-    app.add_flag("--course", options.course, "Add the convergence history: [work, lower, upper]");
+  if (with_history)
+    app.add_flag("--course", options.history, "Add the convergence history: [work, lower, upper]");
 }
 
 }  // namespace lrb::cli

@@ -15,24 +15,24 @@ namespace lrb::cli {
 
 /// Returns the chart of lower and upper bounds against work; `what` names the number, `work` the unit of the
 /// work.
-report::Gnuplot bounds_chart(const std::vector<Bounds>& course, const std::string& what,
+report::Gnuplot bounds_chart(const std::vector<Bounds>& history, const std::string& what,
                              const std::string& work);
 /// Returns the chart of t0 and t1, and of the distance at t0, against work.
-report::Gnuplot contact_chart(const std::vector<ContactBounds>& course);
+report::Gnuplot contact_chart(const std::vector<ContactBounds>& history);
 
 /// Options for the pictures of a command's answers.
 struct DrawOptions {
   std::string picture, chart;
-  PictureOptions look;  ///< of the picture: --size and --up
-  bool course = false;  ///< add the bound history to the line
+  PictureOptions look;   ///< of the picture: --size and --up
+  bool history = false;  ///< add the bound history to the line
 
-  bool is_watched() const { return course || !chart.empty(); }
+  bool is_watched() const { return history || !chart.empty(); }
 };
 /// Returns the style of the pictures. Throws InputError for an unsupported size.
 render::Look look_of(const DrawOptions& options);
 /// Adds --draw, --size, --up, --chart and, unless there is another option for it, --course. `picture`: what
 /// --draw draws.
 void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture,
-                      bool with_course = true);
+                      bool with_history = true);
 
 }  // namespace lrb::cli

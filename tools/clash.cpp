@@ -41,11 +41,11 @@ void write_pieces(trace::JsonWriter& w, const char* name, const SurfacePieces& p
   w.key(name).begin_object().member("inside", pieces.inside).member("outside", pieces.outside).end_object();
 }
 
-bool is_apart(const ClashResult& r) {
+bool is_separated(const ClashResult& r) {
   return r.kind == ClashKind::apart || r.kind == ClashKind::within_clearance;
 }
 
-std::string line_of(std::size_t pose, const ClashResult& result, const std::vector<Bounds>& course,
+std::string line_of(std::size_t pose, const ClashResult& result, const std::vector<Bounds>& history,
                     const ClashOptions& o, double us) {
   return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
     w.begin_object().member("pose", std::uint64_t{pose}).member("kind", to_string(result.kind));
@@ -60,11 +60,11 @@ std::string line_of(std::size_t pose, const ClashResult& result, const std::vect
     }
     write_interval(w, "along", result.along);
     write_interval(w, "volume", result.volume);
-    if (!is_apart(result) && result.kind != ClashKind::undecided) {
+    if (!is_separated(result) && result.kind != ClashKind::undecided) {
       write_pieces(w, "pieces_a", result.pieces[0]);
       write_pieces(w, "pieces_b", result.pieces[1]);
     }
-    if (o.draw.course) trace::write_course(w, course);
+    if (o.draw.history) trace::write_history(w, history);
     if (o.repeat > 0) w.member("us", us);
     w.end_object();
   });
@@ -137,20 +137,20 @@ int run_clash(ClashOptions o, const Globals& globals) {
     const auto ask = [&](ClashProbe* probe) {
       return clash(a.rep, Pose{}, b.rep, list.poses[i], o.request, workspace, probe).value();
     };
-    ClashCourse told;
-    const ClashResult result = ask(o.draw.is_watched() ? &told : nullptr);
-    const bool has_depth = !told.of_depth.empty();
-    const std::vector<Bounds>& course = has_depth ? told.of_depth : told.of_distance;
+    ClashHistory reported;
+    const ClashResult result = ask(o.draw.is_watched() ? &reported : nullptr);
+    const bool has_depth = !reported.of_depth.empty();
+    const std::vector<Bounds>& history = has_depth ? reported.of_depth : reported.of_distance;
     const double us = o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0;
     if (o.table)
       rows.push_back(row_of(i, result, o));
     else
-      print(line_of(i, result, course, o, us));
+      print(line_of(i, result, history, o, us));
     if (!o.draw.picture.empty())
       run::write_picture(run::picture_of(result, {a.rep, Pose{}, b.rep, list.poses[i]}, look),
                          picture_name(o.draw.picture, i, list.poses.size()));
-    if (!o.draw.chart.empty() && !course.empty())
-      report::draw(bounds_chart(course, has_depth ? "depth" : "distance",
+    if (!o.draw.chart.empty() && !history.empty())
+      report::draw(bounds_chart(history, has_depth ? "depth" : "distance",
                                 has_depth ? "queries, expansion steps of the EPA polytope"
                                           : "pairs of boxes expanded, pairs of faces measured"),
                    picture_name(o.draw.chart, i, list.poses.size()));

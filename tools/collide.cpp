@@ -62,7 +62,7 @@ void choose_views(const CollideOptions& o, spec::Scenario& scenario, run::Record
   std::vector<render::FrameSpec::View>& views = scenario.frames.views;
   const Eigen::Vector3d up = views[0].up;
   if (o.picture.camera.from.empty()) {
-    const Eigen::Vector3d from = run::least_hidden(recorded, up, beside(scenario.motion, up, views[0].from));
+    const Eigen::Vector3d from = run::min_hidden(recorded, up, beside(scenario.motion, up, views[0].from));
     for (render::FrameSpec::View& view : views) view.from = from;
   }
   run::widen_close_ups(recorded, views);

@@ -31,7 +31,7 @@ void write_feature(trace::JsonWriter& w, const char* name, const Witness& witnes
   w.end_object();
 }
 
-std::string line_of(std::size_t pose, const DistanceResult& result, const std::vector<Bounds>& course,
+std::string line_of(std::size_t pose, const DistanceResult& result, const std::vector<Bounds>& history,
                     const DistanceOptions& o, double us) {
   return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
     w.begin_object().member("pose", std::uint64_t{pose});
@@ -48,7 +48,7 @@ std::string line_of(std::size_t pose, const DistanceResult& result, const std::v
       write_feature(w, "on_a", result.witness[0]);
       write_feature(w, "on_b", result.witness[1]);
     }
-    if (o.draw.course) trace::write_course(w, course);
+    if (o.draw.history) trace::write_history(w, history);
     if (o.repeat > 0) w.member("us", us);
     w.end_object();
   });
@@ -69,15 +69,17 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
     const auto ask = [&](BoundsProbe* probe) {
       return distance(a.rep, Pose{}, b.rep, list.poses[i], o.request, workspace, probe).value();
     };
-    BoundsCourse told;
-    const DistanceResult result = ask(o.draw.is_watched() ? &told : nullptr);
-    print(line_of(i, result, told.course, o, o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0));
+    BoundsHistory reported;
+    const DistanceResult result = ask(o.draw.is_watched() ? &reported : nullptr);
+    print(line_of(i, result, reported.history, o,
+                  o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0));
     if (!o.draw.picture.empty())
       run::write_picture(run::picture_of(result, {a.rep, Pose{}, b.rep, list.poses[i]}, look),
                          picture_name(o.draw.picture, i, list.poses.size()));
     if (!o.draw.chart.empty())
-      report::draw(bounds_chart(told.course, "distance", "pairs of boxes expanded, pairs of faces measured"),
-                   picture_name(o.draw.chart, i, list.poses.size()));
+      report::draw(
+          bounds_chart(reported.history, "distance", "pairs of boxes expanded, pairs of faces measured"),
+          picture_name(o.draw.chart, i, list.poses.size()));
     progress.set(i + 1);
   }
   return kOk;

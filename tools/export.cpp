@@ -134,20 +134,20 @@ std::string title(const std::string& what) {
   return std::string("lrbscope ") + trace::lrbscope_version() + ": " + printable_name(what);
 }
 
-void refuse(bool given, const char* option, const char* why) {
+void reject(bool given, const char* option, const char* why) {
   if (given) throw InputError(std::string(option) + ": " + why);
 }
 
 int export_body(const ExportOptions& given, const Globals& globals) {
   ExportOptions o = given;
   const char* const kNoRun = "needs a run; a body file has neither steps nor a second body";
-  refuse(o.step.has_value(), "--step", kNoRun);
-  refuse(o.event.has_value(), "--event", kNoRun);
-  refuse(o.asks_for("contacts"), "--what contacts", kNoRun);
-  refuse(o.asks_for("poses"), "--what poses", kNoRun);
-  refuse(!o.of.empty(), "--of", kNoRun);
+  reject(o.step.has_value(), "--step", kNoRun);
+  reject(o.event.has_value(), "--event", kNoRun);
+  reject(o.asks_for("contacts"), "--what contacts", kNoRun);
+  reject(o.asks_for("poses"), "--what poses", kNoRun);
+  reject(!o.of.empty(), "--of", kNoRun);
   using ColourBy = render::FrameSpec::ColourBy;
-  refuse(o.picture.colour_by.value_or(ColourBy::kind) >= ColourBy::face_tests, "--colour-by",
+  reject(o.picture.colour_by.value_or(ColourBy::kind) >= ColourBy::face_tests, "--colour-by",
          "expected kind, layer or region for a body; the other quantities need a run");
   if (o.what.empty()) o.what = {o.chooses_wrapper() ? "wrapper" : "body"};
   const bool needs_regions = o.asks_for("wrapper") || o.picture.colour_by;
@@ -172,7 +172,7 @@ int export_body(const ExportOptions& given, const Globals& globals) {
 
 int export_run(const ExportOptions& given, Input kind, const Globals& globals) {
   ExportOptions o = given;
-  refuse(o.chooses_wrapper(), "--faces, --layer and --tolerance",
+  reject(o.chooses_wrapper(), "--faces, --layer and --tolerance",
          "need a body file; choose a run's wrappers with --event");
   const run::Recording run = open_recording(o, kind, globals);
   note(globals, run.notes);
@@ -181,8 +181,8 @@ int export_run(const ExportOptions& given, Input kind, const Globals& globals) {
     o.what = {"wrapper"};
     if (two) o.what.emplace_back("contacts");
   }
-  refuse(!two && o.asks_for("contacts"), "--what contacts", "the run has only one body");
-  refuse(!two && !o.of.empty(), "--of", "the run has only one body");
+  reject(!two && o.asks_for("contacts"), "--what contacts", "the run has only one body");
+  reject(!two && !o.of.empty(), "--of", "the run has only one body");
   const trace::EventId event = event_of(o, run.trace);
   trace::Cursor cursor = two ? trace::Cursor(run.trace, run.bodies[0].rep, run.bodies[1].rep)
                              : trace::Cursor(run.trace, run.bodies[0].rep);
@@ -210,7 +210,7 @@ int export_run(const ExportOptions& given, Input kind, const Globals& globals) {
 
 /// Writes the poses of a run's steps, or those of another file.
 int export_poses(const ExportOptions& o, Input kind, const Globals& globals) {
-  refuse(o.what.size() > 1, "--what", "poses need a file of their own");
+  reject(o.what.size() > 1, "--what", "poses need a file of their own");
   std::vector<Pose> poses;
   if (kind == Input::poses) {
     poses = io::open_poses(o.input).poses;

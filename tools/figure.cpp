@@ -105,8 +105,8 @@ figure::Choice choice_of(const FigureOptions& o) {
 figure::FigureSpec figure_spec(const FigureOptions& o, const std::string& file) {
   figure::FigureSpec spec = o.figure;
   spec.format = figure::format_of(file);
-  constexpr double kLeast = 20 * figure::kPointsPerMm, kMost = 500 * figure::kPointsPerMm;
-  if (!o.width.empty()) spec.width = figure::parse_length(o.width, "--width", kLeast, kMost);
+  constexpr double kLeast = 20 * figure::kPointsPerMm, kMax = 500 * figure::kPointsPerMm;
+  if (!o.width.empty()) spec.width = figure::parse_length(o.width, "--width", kLeast, kMax);
   if (!o.line_width.empty())
     spec.line_width = figure::parse_length(o.line_width, "--line-width", figure::kHairline, 3);
   if (o.picture.dpi) spec.dpi = *o.picture.dpi;
@@ -159,7 +159,7 @@ void add_panel_options(CLI::App& app, FigureOptions& o) {
   auto* panels = app.add_option("--panels", o.figure.choice.panels,
                                 "Maximum number of panels, placed where the picture changes [6; for two "
                                 "bodies 4]")
-                     ->check(CLI::Range(std::size_t{1}, figure::kMostPanels))
+                     ->check(CLI::Range(std::size_t{1}, figure::kMaxPanels))
                      ->type_name("N");
   const auto add = [&](const char* name, std::vector<std::uint32_t>& numbers, const char* what) {
     return app.add_option(name, numbers, what)->delimiter(',')->type_name("N,N,...")->excludes(panels);
@@ -189,7 +189,7 @@ void add_paper_options(CLI::App& app, FigureOptions& o) {
       ->type_name("LENGTH");
   app.add_option("--dpi", o.picture.dpi,
                  "Resolution of 3D faces and of PNG files, in pixels per inch [600; PNG 300]")
-      ->check(CLI::Range(spec::kLeastDpi, spec::kMostDpi))
+      ->check(CLI::Range(spec::kMinDpi, spec::kMaxDpi))
       ->type_name("N");
   app.add_flag("--title,!--no-title", o.figure.titles,
                "Show or hide a title below each panel, after its letter [hidden]");

@@ -80,7 +80,7 @@ std::string as_json(const golden::GoldenResult& r) {
                                {"found", e.found},
                                {"answer", e.kind == golden::Effect::Kind::answer}});
   for (const std::string& cause : r.verdict.causes) line["causes"].push_back(cause);
-  if (!r.verdict.refusal.empty()) line["refusal"] = r.verdict.refusal;
+  if (!r.verdict.rejection.empty()) line["refusal"] = r.verdict.rejection;
   if (r.verdict.divergence) line["divergence"] = r.verdict.divergence->message();
   if (!r.verdict.diagnosis.empty()) line["diagnosis"] = r.verdict.diagnosis;
   if (!r.verdict.passed()) line["approve"] = r.approve;
@@ -91,7 +91,7 @@ std::string as_json(const golden::GoldenResult& r) {
 struct Tried {
   std::optional<golden::Golden> golden;
   std::optional<golden::GoldenRun> run;
-  std::string refusal;
+  std::string rejection;
   double seconds = 0;
 };
 
@@ -112,7 +112,7 @@ Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressR
         g.scenario ? *g.scenario : golden::golden_scenario(o.goldens, g.name, out.golden->spec);
     out.run = golden::record_golden(std::move(scenario), out.golden->spec, progress);
   } catch (const InputError& e) {
-    out.refusal = e.what();
+    out.rejection = e.what();
   }
   out.seconds = seconds_since(began);
   return out;
@@ -146,7 +146,7 @@ golden::GoldenResult judge(Tried& tried, const NamedGolden& g, const GoldenOptio
   const std::string approve = approve_command(o, g.name);
   golden::GoldenResult result;
   try {
-    if (!tried.refusal.empty()) throw InputError(tried.refusal);
+    if (!tried.rejection.empty()) throw InputError(tried.rejection);
     golden::paint_golden(*tried.run, tried.golden->spec, progress_report(globals.quiet));
     result = golden::test_golden(*tried.golden, *tried.run, approve, report);
   } catch (const InputError& e) {
@@ -229,7 +229,7 @@ int run_list(const GoldenOptions& o) {
 
 /// Throws InputError if the golden belongs to another scenario that still exists: two scenarios of one name
 /// would overwrite each other's folder.
-void refuse_another(const GoldenOptions& o, const std::string& name, const std::string& kept,
+void reject_another(const GoldenOptions& o, const std::string& name, const std::string& kept,
                     const std::string& reference, const std::string& word) {
   if (kept == reference) return;
   golden::GoldenSpec other;
@@ -252,7 +252,7 @@ golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& na
     spec = golden::read_golden_spec(o.goldens, name);
     if (name != word) {
       const std::string reference = golden::scenario_reference(o.goldens, scenario, word);
-      refuse_another(o, name, spec.scenario, reference, word);
+      reject_another(o, name, spec.scenario, reference, word);
       spec.scenario = reference;
     }
   } else {

@@ -57,20 +57,19 @@ Json regions_json(std::span<const bodies::RegionFigures> regions) {
 
 /// Returns the first regions as a text table.
 std::string regions_text(const Json& regions) {
-  constexpr std::size_t kMostRows = 25;
+  constexpr std::size_t kMaxRows = 25;
   constexpr int kWidth = 11;
   std::ostringstream out;
   out << "regions:\n";
   for (const char* title : {"region", "layer", "lids", "floor", "volume", "distance", "parent", "waste"})
     out << std::setw(kWidth) << title;
   out << "\n";
-  for (std::size_t i = 0; i < std::min(regions.size(), kMostRows); ++i) {
+  for (std::size_t i = 0; i < std::min(regions.size(), kMaxRows); ++i) {
     for (const auto& [key, value] : regions[i].items())
       out << std::setw(kWidth) << (value.is_null() ? "-" : for_people(value, kRegionDigits));
     out << "\n";
   }
-  if (regions.size() > kMostRows)
-    out << "  and " << regions.size() - kMostRows << " more: --json lists all\n";
+  if (regions.size() > kMaxRows) out << "  and " << regions.size() - kMaxRows << " more: --json lists all\n";
   return out.str() +
          "(distance: maximum distance from a point of the lids to the body. waste: expected number of faces "
          "exposed needlessly by a random point in the outermost wrapper, that is the region's share of the "
@@ -160,20 +159,20 @@ Json loops_json(const std::vector<BoundaryLoop>& loops) {
 
 /// Returns boundary loops as text: the longest, one per line.
 std::string loops_text(const Json& loops) {
-  constexpr std::size_t kMostLines = 20;
+  constexpr std::size_t kMaxLines = 20;
   constexpr int kDigits = 4;
   std::size_t edges = 0;
   for (const Json& l : loops) edges += l["edges"].get<std::size_t>();
   std::ostringstream out;
   out << "boundary: " << edges << " open edges in " << loops.size()
       << (loops.size() == 1 ? " loop" : " loops") << (loops.empty() ? "\n" : ", longest first:\n");
-  for (std::size_t i = 0; i < std::min(loops.size(), kMostLines); ++i) {
+  for (std::size_t i = 0; i < std::min(loops.size(), kMaxLines); ++i) {
     const Json& l = loops[i];
     out << "  " << i << ": " << l["edges"] << " edges, length " << for_people(l["length"], kDigits) << ", "
         << (l["planar"] ? "flat" : "not flat") << (l["is_loop"] ? "" : ", not a simple loop") << ", from "
         << for_people(l["low"], kDigits) << " to " << for_people(l["high"], kDigits) << "\n";
   }
-  if (loops.size() > kMostLines) out << "  and " << loops.size() - kMostLines << " more: --json lists all\n";
+  if (loops.size() > kMaxLines) out << "  and " << loops.size() - kMaxLines << " more: --json lists all\n";
   return out.str();
 }
 
@@ -270,8 +269,8 @@ void draw_findings(const run::FaultyMesh& faulty, const InspectOptions& o, Json&
 
 /// Measures the regions, and draws the ten with the largest waste if pictures are requested (`picture` is not
 /// empty).
-void tell_regions(const LrbRep& rep, const InspectOptions& o, const render::Look& look,
-                  const std::string& picture, Json& j) {
+void report_regions(const LrbRep& rep, const InspectOptions& o, const render::Look& look,
+                    const std::string& picture, Json& j) {
   if (rep.region_count() == 0)
     throw InputError(rep.name() +
                      ": no regions to list, because the mesh is open or an LRB-rep cannot be built");
@@ -342,10 +341,9 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     j.update(bodies::body_figures(*rep));
     j["layers_from_the_solid"] = layers_json(*rep);
   } else {
-    constexpr std::size_t kMostElements =
-        1'000'000;  // per kind, so that the output is not larger than a mesh
+    constexpr std::size_t kMaxElements = 1'000'000;  // per kind, so that the output is not larger than a mesh
     CheckedMesh mesh =
-        check(bodies::read_body(o.file, o.corners, notes), o.json ? kMostElements : MeshFinding::kShown);
+        check(bodies::read_body(o.file, o.corners, notes), o.json ? kMaxElements : MeshFinding::kShown);
     mesh.find_self_intersections();
     const std::vector<BoundaryLoop> loops = find_boundary_loops(mesh.mesh(), mesh.use());
     j = mesh_json(mesh, loops);
@@ -376,7 +374,7 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     if (!o.regions) run::write_picture(run::body_sheet(*rep, look), picture, look.dpi);
     j["picture"] = picture;
   }
-  if (o.regions) tell_regions(*rep, o, look, picture, j);
+  if (o.regions) report_regions(*rep, o, look, picture, j);
   note(globals, notes);
   print(o.json ? one_line(j) : as_text(j));
   return valid ? kOk : kMismatch;

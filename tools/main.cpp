@@ -146,13 +146,13 @@ std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std:
 }
 
 /// Throws InputError for an option or argument with an empty value: usually an unset shell variable.
-void refuse_empty_values(const CLI::App& app) {
+void reject_empty_values(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options())
     for (const std::string& value : option->results())
       if (value.empty())
         throw InputError(option->get_name() +
                          ": expected a value, found an empty string; is a shell variable unset?");
-  for (const CLI::App* below : app.get_subcommands()) refuse_empty_values(*below);
+  for (const CLI::App* below : app.get_subcommands()) reject_empty_values(*below);
 }
 
 int parse_and_run(int argc, char** argv) {
@@ -176,7 +176,7 @@ int parse_and_run(int argc, char** argv) {
     if (e.get_exit_code() == 0) return print_help(app, e);
     return complain("", usage_error(app, e, std::string(command_word(argc, argv))), kBadInput);
   }
-  refuse_empty_values(app);
+  reject_empty_values(app);
   for (const Command& command : commands)
     if (command.app->parsed()) return command.run();
   return kBadInput;

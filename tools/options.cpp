@@ -49,9 +49,9 @@ void apply_size(const std::string& size, render::FrameSpec& spec) {
   const bool has_x = e1 == std::errc() && x != end && *x == 'x';
   const auto [last, e2] = has_x ? std::from_chars(x + 1, end, spec.height)
                                 : std::from_chars_result{x, std::errc::invalid_argument};
-  constexpr int kLeast = 64, kMost = 8192;
-  if (e2 != std::errc() || last != end || spec.width < kLeast || spec.height < kLeast || spec.width > kMost ||
-      spec.height > kMost)
+  constexpr int kLeast = 64, kMax = 8192;
+  if (e2 != std::errc() || last != end || spec.width < kLeast || spec.height < kLeast || spec.width > kMax ||
+      spec.height > kMax)
     throw InputError("--size: expected WIDTHxHEIGHT from 64x64 to 8192x8192, found \"" + size + "\"");
 }
 
@@ -77,8 +77,8 @@ void add_request_options(CLI::App& app, CollideRequest& request) {
       app, option_of(&CollideRequest::predicates), request.predicates,
       "floating: no exact fallback; wrong wherever double precision cannot decide the sign");
   add_count(app, option_of(&CollideRequest::max_pairs), request.max_pairs,
-            "Maximum number of pairs; a query that finds more is an error [" + std::to_string(kMostPairs) +
-                "; with contacts " + std::to_string(kMostPairsWithContacts) + "]");
+            "Maximum number of pairs; a query that finds more is an error [" + std::to_string(kMaxPairs) +
+                "; with contacts " + std::to_string(kMaxPairsWithContacts) + "]");
 }
 
 void add_coarse_options(CLI::App& app, CollideRequest& request) {
@@ -138,7 +138,7 @@ void add_size_options(CLI::App& app, PictureOptions& options) {
          "--dpi", options.dpi,
          "Print resolution: same physical size as --size at 96 dpi, with more pixels; lines and text scale "
          "with it")
-      ->check(CLI::Range(spec::kLeastDpi, spec::kMostDpi))
+      ->check(CLI::Range(spec::kMinDpi, spec::kMaxDpi))
       ->type_name("N");
   add_style_option(app, options, "screen");
 }
@@ -181,7 +181,7 @@ void add_colour_options(CLI::App& app, PictureOptions& options) {
       "Colour a face by its own value, or by the sum over its region or level");
   app.add_option("--node-boxes", options.node_boxes,
                  "Draw the visited tree-node boxes at this depth; solid: overlapping, dashed: disjoint")
-      ->check(CLI::Range(0U, spec::kMostDepth))
+      ->check(CLI::Range(0U, spec::kMaxDepth))
       ->type_name("DEPTH");
 }
 

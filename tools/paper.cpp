@@ -236,13 +236,13 @@ Command add_paper(CLI::App& root, const Globals& globals) {
       ->capture_default_str();
   app->add_flag("--print", o->print, "Only print the shipped experiment, as a starting point for your own");
   app->add_option("--collisions", o->collisions, "Number of collisions of A with each object [100]")
-      ->check(CLI::Range(1u, paper::kMostCollisions))
+      ->check(CLI::Range(1u, paper::kMaxCollisions))
       ->type_name("N");
   app->add_option("--step", o->step, "Time step, as a fraction of the diagonal [0.005]")
-      ->check(CLI::Range(paper::kLeastStep, paper::kMostStep))
+      ->check(CLI::Range(paper::kMinStep, paper::kMaxStep))
       ->type_name("SHARE");
   app->add_option("--steps-after", o->steps_after, "Number of time steps counted after first contact [5]")
-      ->check(CLI::Range(0u, paper::kMostStepsAfter))
+      ->check(CLI::Range(0u, paper::kMaxStepsAfter))
       ->type_name("N");
   app->add_option("--seed", o->seed, "Random seed for directions and rotations [1]")->type_name("N");
   app->add_option("--jobs", o->jobs, "Number of threads; the result does not depend on it")

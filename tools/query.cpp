@@ -42,7 +42,7 @@ double repeated_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const Que
 
 /// The interiors of touching bodies may still overlap (see Relation::touching). This is decided for a query
 /// that found all pairs exactly, up to this number of pairs: 1000 take 0.1 s or more (docs/measurements.md).
-constexpr std::size_t kMostPairsToDecide = 1000;
+constexpr std::size_t kMaxPairsToDecide = 1000;
 
 bool tells_overlap(const CollideRequest& request) {
   return request.mode == Mode::all_pairs && request.recursion == Recursion::complete &&
@@ -51,7 +51,7 @@ bool tells_overlap(const CollideRequest& request) {
 
 void decide_overlap(const LrbRep& a, const LrbRep& b, const Pose& pose, const CollideRequest& request,
                     Workspace& workspace, CollideResult& result) {
-  if (result.relation != Relation::touching || result.pairs.size() > kMostPairsToDecide) return;
+  if (result.relation != Relation::touching || result.pairs.size() > kMaxPairsToDecide) return;
   CollideRequest overlap = request;
   overlap.interiors_overlap = true;
   describe_contact(a, Pose{}, b, pose, overlap, workspace, result).value();

@@ -116,7 +116,7 @@ spec::Show show_of(const trace::Trace& trace, std::size_t bodies) {
 }
 
 /// Throws for options that frames of a crowd do not support.
-void refuse_for_crowd(const RenderOptions& o) {
+void reject_for_crowd(const RenderOptions& o) {
   using At = render::FrameSpec::At;
   const auto& at = o.picture.at;
   const std::pair<bool, const char*> none[] = {
@@ -136,7 +136,7 @@ void refuse_for_crowd(const RenderOptions& o) {
 }
 
 int render_crowd(const RenderOptions& o, const Globals& globals, const std::string& text) {
-  refuse_for_crowd(o);
+  reject_for_crowd(o);
   crowd::CrowdTrace trace = crowd::read_crowd_trace(text, o.trace);
   trace.crowd.purpose = kFromTrace;
   trace.crowd.frames = frame_spec(o, spec::Show::collision);
@@ -203,7 +203,7 @@ Command add_render(CLI::App& root, const Globals& globals) {
   app->add_option("--bodies", o->bodies,
                   "Bodies of the trace [a.lrb and b.lrb next to it; crowd: KIND.lrb for each kind]")
       ->type_name("FILE")
-      ->expected(1, static_cast<int>(spec::kMostCrowdBodies));
+      ->expected(1, static_cast<int>(spec::kMaxCrowdBodies));
   app->add_option("--events", o->events, "Draw a frame after each of these events")
       ->delimiter(',')
       ->type_name("N,N,...");

@@ -26,7 +26,7 @@ int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
   if (o.clock) crowd.clock = *o.clock;
   if (o.no_frames) crowd.frames.at = render::FrameSpec::At::none;
   const std::string folder = o.folder.empty() ? "out/" + crowd.name : o.folder;
-  if (o.folder.empty()) io::refuse_run_of_another(folder, o.crowd);
+  if (o.folder.empty()) io::reject_run_of_another(folder, o.crowd);
   const std::uint32_t jobs = o.jobs > 0 ? o.jobs : all_cores();
   const run::ProgressReport progress = progress_report(globals.quiet);
   const crowd::CrowdRun run = crowd::run_crowd(crowd, jobs, progress);
@@ -79,7 +79,7 @@ int run_run(const RunCommandOptions& o, const Globals& globals) {
   if (o.recursion) scenario.request.recursion = *o.recursion;
   if (o.events) scenario.events = *o.events;
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
-  if (o.folder.empty()) io::refuse_run_of_another(folder, o.scenario);
+  if (o.folder.empty()) io::reject_run_of_another(folder, o.scenario);
   run::RunOutcome outcome =
       run::run_scenario(scenario, folder, globals.command_line, progress_report(globals.quiet));
   if (o.folder.empty()) io::mark_run(folder, o.scenario);

@@ -88,7 +88,7 @@ int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMetho
     const Replay r = replay(m, families[0].name, *o.dial, *o.only, o.seed, o.timeout, o.quantity);
     print(describe(r, o.quantity, o.pairs));
     all_right = all_right && (r.record.outcome == stability::Outcome::right ||
-                              r.record.outcome == stability::Outcome::refused);
+                              r.record.outcome == stability::Outcome::rejected);
   }
   return all_right ? kOk : kMismatch;
 }

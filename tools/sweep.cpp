@@ -59,7 +59,7 @@ void write_history(trace::JsonWriter& w, const FirstContactResult& result) {
 }
 
 std::string line_of(std::size_t motion, const FirstContactResult& result,
-                    const std::vector<ContactBounds>& course, const SweepOptions& o, double us) {
+                    const std::vector<ContactBounds>& history, const SweepOptions& o, double us) {
   return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
     w.begin_object().member("motion", std::uint64_t{motion});
     w.key("contact");
@@ -75,7 +75,7 @@ std::string line_of(std::size_t motion, const FirstContactResult& result,
     if (result.at_begin == Relation::a_inside_b || result.at_begin == Relation::b_inside_a)
       w.member("inside", to_string(result.at_begin));
     if (o.request.history) write_history(w, result);
-    if (o.draw.course) trace::write_course(w, course);
+    if (o.draw.history) trace::write_history(w, history);
     if (o.repeat > 0) w.member("us", us);
     w.end_object();
   });
@@ -113,14 +113,15 @@ int run_sweep(const SweepOptions& o, const Globals& globals) {
     const auto ask = [&](FirstContactProbe* probe) {
       return std::move(first_contact(a.rep, still, b.rep, motions[i], o.request, workspace, probe).value());
     };
-    FirstContactCourse told;
-    const FirstContactResult result = ask(o.draw.is_watched() ? &told : nullptr);
-    print(line_of(i, result, told.course, o, o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0));
+    FirstContactHistory reported;
+    const FirstContactResult result = ask(o.draw.is_watched() ? &reported : nullptr);
+    print(line_of(i, result, reported.history, o,
+                  o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0));
     if (!o.draw.picture.empty())
       run::write_picture(run::picture_of(result, a.rep, b.rep, motions[i], look),
                          picture_name(o.draw.picture, i, motions.size()));
     if (!o.draw.chart.empty())
-      report::draw(contact_chart(told.course), picture_name(o.draw.chart, i, motions.size()));
+      report::draw(contact_chart(reported.history), picture_name(o.draw.chart, i, motions.size()));
     progress.set(i + 1);
   }
   return kOk;
@@ -146,7 +147,7 @@ Command add_sweep(CLI::App& root, const Globals& globals) {
   app->add_flag("--features", o->features, "Add the features (vertex, edge or face) in first contact");
   app->add_flag("--history", o->request.history,
                 "Add the intervals of t that were examined, with the result of each");
-  app->add_flag("--course", o->draw.course,
+  app->add_flag("--course", o->draw.history,
                 "Add the convergence history: [work, t0, t1, lower and upper bound of the distance at t0]");
   add_draw_options(*app, o->draw, "Draw the bodies at first contact, with ghosts of B along its motion",
                    false);

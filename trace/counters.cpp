@@ -297,7 +297,7 @@ PassSummary begin_pass(EventId id, const Event& e, std::uint32_t faces) {
   p.stage = pass.stage;
   p.layer = pass.layer;
   p.barred = pass.barred;
-  p.most_off = pass.most_off;
+  p.max_deviation = pass.max_deviation;
   p.faces_before = p.faces_after = faces;
   return p;
 }
@@ -395,11 +395,11 @@ Chart chart_over_construction(const Trace& trace) {
 }
 
 Chart chart_over_passes(const Trace& trace) {
-  constexpr std::size_t kMostReasons = 4;
+  constexpr std::size_t kMaxReasons = 4;
   const std::vector<PassSummary> passes = passes_of(trace);
   // Accepted caps first, then the most frequent reasons for rejection.
   std::vector<std::size_t> shown = by_frequency(caps_of(passes));
-  shown.resize(std::min(shown.size(), kMostReasons));
+  shown.resize(std::min(shown.size(), kMaxReasons));
   shown.insert(shown.begin(), std::size_t{0});
   Chart chart{"pass, including those without effect", {}, {}};
   for (const std::size_t v : shown)
@@ -412,7 +412,7 @@ Chart chart_over_passes(const Trace& trace) {
   return chart;
 }
 
-std::string refusal_words(const Caps& caps) {
+std::string rejection_text(const Caps& caps) {
   std::string out;
   for (const std::size_t v : by_frequency(caps))
     out += (out.empty() ? "" : ", ") + std::to_string(caps[v]) + " " +

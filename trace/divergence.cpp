@@ -95,11 +95,11 @@ void compare_bodies(Comparison& c, const TraceHeader& x, const TraceHeader& y) {
     const BodyInfo &p = x.bodies[i], &q = y.bodies[i];
     // The hash covers the whole LRB-rep; face and region counts only make the message clearer.
     if (p.hash == q.hash) continue;
-    const auto tell = [](const BodyInfo& b) {
+    const auto notify = [](const BodyInfo& b) {
       return to_hex(b.hash) + " (" + std::to_string(b.real_faces) + " real faces, " +
              std::to_string(b.regions) + " regions)";
     };
-    c.found("hash of body " + std::string(name_of(static_cast<Side>(i))), tell(p), tell(q));
+    c.found("hash of body " + std::string(name_of(static_cast<Side>(i))), notify(p), notify(q));
   }
 }
 
@@ -125,7 +125,7 @@ void compare_nodes(Comparison& c, const Event& x, const Event& y) {
   c.same("step", x.node_end().step, y.node_end().step);
   c.same("box tests", std::uint64_t{p.box_tests}, std::uint64_t{q.box_tests});
   c.same("boxes that meet", std::uint64_t{p.met}, std::uint64_t{q.met});
-  c.same("parted by planes", std::uint64_t{p.parted}, std::uint64_t{q.parted});
+  c.same("parted by planes", std::uint64_t{p.rejected}, std::uint64_t{q.rejected});
   c.same("certain", std::uint64_t{p.certain}, std::uint64_t{q.certain});
   c.same("axis", x.node_end().axis, y.node_end().axis);
   c.same("boxes apart", x.node_end().apart, y.node_end().apart);

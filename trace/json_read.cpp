@@ -231,13 +231,13 @@ void read_vector(const TraceNode& node, std::array<double, n>& vector) {
   for (std::size_t i = 0; i < n; ++i) vector[i] = node.at(i).number();
 }
 
-void read_course(const TraceNode& node, std::vector<Bounds>& course) {
+void read_history(const TraceNode& node, std::vector<Bounds>& history) {
   const std::size_t count = node.array_size();
   for (std::size_t i = 0; i < count; ++i) {
     const TraceNode item = node.at(i);
     if (item.array_size() != 3) item.fail("work, lower bound and upper bound");
-    course.push_back({item.at(std::size_t{0}).integer<std::uint64_t>(), item.at(std::size_t{1}).least(0),
-                      read_end(item.at(std::size_t{2}))});
+    history.push_back({item.at(std::size_t{0}).integer<std::uint64_t>(), item.at(std::size_t{1}).least(0),
+                       read_end(item.at(std::size_t{2}))});
   }
 }
 
@@ -247,7 +247,7 @@ void read_value(const TraceNode& node, MeasuredDistance& m) {
   m.solids_meet = node.at("solids_meet").boolean();
   read_vector(node.at("point_a"), m.points[0]);
   read_vector(node.at("point_b"), m.points[1]);
-  read_course(node.at("course"), m.course);
+  read_history(node.at("course"), m.history);
 }
 
 void read_value(const TraceNode& node, MeasuredClash& m) {
@@ -260,7 +260,7 @@ void read_value(const TraceNode& node, MeasuredClash& m) {
     read_vector(node.at("translation"), m.translation);
   }
   if (node.has("volume")) read_ends(node.at("volume"), m.volume.emplace());
-  read_course(node.at("course"), m.course);
+  read_history(node.at("course"), m.history);
 }
 
 template <class Record>
@@ -337,14 +337,14 @@ MeasuredApproach read_approach(const TraceNode& node) {
     read_vector(node.at("step"), m.step.emplace());
     read_vector(node.at("length"), m.length.emplace());
   }
-  const TraceNode course = node.at("course");
-  const std::size_t count = course.array_size();
+  const TraceNode history = node.at("course");
+  const std::size_t count = history.array_size();
   for (std::size_t i = 0; i < count; ++i) {
-    const TraceNode item = course.at(i);
+    const TraceNode item = history.at(i);
     if (item.array_size() != 5) item.fail("work, t0, t1, lower bound and upper bound");
-    m.course.push_back({item.at(std::size_t{0}).integer<std::uint64_t>(), item.at(std::size_t{1}).least(0),
-                        read_end(item.at(std::size_t{2})), read_end(item.at(std::size_t{3})),
-                        read_end(item.at(std::size_t{4}))});
+    m.history.push_back({item.at(std::size_t{0}).integer<std::uint64_t>(), item.at(std::size_t{1}).least(0),
+                         read_end(item.at(std::size_t{2})), read_end(item.at(std::size_t{3})),
+                         read_end(item.at(std::size_t{4}))});
   }
   return m;
 }

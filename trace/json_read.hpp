@@ -72,7 +72,7 @@ class JsonText {
 
 /// Throws InputError if a text has a NUL byte: nlohmann-json would take it for the end of the text and ignore
 /// the rest.
-void refuse_nul(const std::string& text, const std::string& file);
+void reject_nul(const std::string& text, const std::string& file);
 /// Throws InputError "file:line:column: ..." for a text that nlohmann-json rejected. The arguments are those
 /// of nlohmann::json_sax::parse_error().
 [[noreturn]] void fail_json(const std::string& text, const std::string& file, std::size_t position,

@@ -209,7 +209,7 @@ void parse_with(const std::string& text, const char*& seen, nlohmann::json_sax<n
   nlohmann::json::sax_parse(Reading(text.data(), seen), Reading(text.data() + text.size(), seen), &handler);
 }
 
-void refuse_nul(const std::string& text, const std::string& file) {
+void reject_nul(const std::string& text, const std::string& file) {
   const std::size_t nul = text.find('\0');
   if (nul != std::string::npos)
     throw InputError(place(text, file, nul) + "not JSON: found a NUL byte, expected text (UTF-8)");
@@ -234,7 +234,7 @@ std::size_t JsonIndex::offset(const std::string& pointer) const {
 }
 
 JsonText::JsonText(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
-  refuse_nul(text_, file_);
+  reject_nul(text_, file_);
   const Check check(text_, file_);
   root_ = nlohmann::json::parse(text_);
   index_ = std::make_unique<JsonIndex>(text_);

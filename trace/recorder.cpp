@@ -41,7 +41,7 @@ EventId ConstructRecorder::push(const Event& event) {
 void ConstructRecorder::pass(const PassStart& start) {
   cap_ = kNull;
   pass_ = push(Event::of(payload::Pass{
-      .stage = start.stage, .layer = start.layer, .most_off = static_cast<float>(start.most_off)}));
+      .stage = start.stage, .layer = start.layer, .max_deviation = static_cast<float>(start.max_deviation)}));
 }
 
 void ConstructRecorder::patch(const GrownPatch& patch) {

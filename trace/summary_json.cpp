@@ -78,7 +78,7 @@ void write_caps(JsonWriter& w, const std::array<std::uint32_t, kWords<CapVerdict
 void write_pass(JsonWriter& w, const PassSummary& p) {
   w.begin_object().member("stage", name_of(p.stage));
   if (p.regions > 0) w.member("layer", p.layer);
-  if (p.most_off > 0) w.member("distance_allowed", p.most_off);
+  if (p.max_deviation > 0) w.member("distance_allowed", p.max_deviation);
   w.member("faces_before", p.faces_before).member("faces_after", p.faces_after);
   w.member("regions", p.regions).member("pieces_merged", p.merged);
   w.member("patches", p.patches).member("accepted", p.accepted()).member("retried", p.retried);

@@ -31,15 +31,15 @@ std::string interval_words(double lower, double upper, std::size_t looks) {
 
 }  // namespace
 
-MeasuredDistance measured(const DistanceResult& result, std::vector<Bounds> course) {
+MeasuredDistance measured(const DistanceResult& result, std::vector<Bounds> history) {
   return {result.lower,
           result.upper,
           result.solids_meet(),
           {array_of(result.witness[0].point), array_of(result.witness[1].point)},
-          std::move(course)};
+          std::move(history)};
 }
 
-MeasuredClash measured(const ClashResult& result, std::vector<Bounds> course) {
+MeasuredClash measured(const ClashResult& result, std::vector<Bounds> history) {
   return {result.kind,
           result.reason,
           result.shares_faces,
@@ -47,26 +47,26 @@ MeasuredClash measured(const ClashResult& result, std::vector<Bounds> course) {
           ends_of(result.depth),
           ends_of(result.volume),
           array_of(result.translation),
-          std::move(course)};
+          std::move(history)};
 }
 
-MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> course) {
-  return {result.outcome, result.t0, result.t1, std::nullopt, std::nullopt, std::move(course)};
+MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> history) {
+  return {result.outcome, result.t0, result.t1, std::nullopt, std::nullopt, std::move(history)};
 }
 
 std::string words(const MeasuredDistance& m) {
-  return interval_words(m.lower, m.upper, m.course.size());
+  return interval_words(m.lower, m.upper, m.history.size());
 }
 
 std::string words(const MeasuredClash& m) {
   std::string out(name_of(m.kind));
   if (m.reason != ClashReason::none) out += ": " + std::string(name_of(m.reason));
-  if (m.depth) out += ", depth " + interval_words((*m.depth)[0], (*m.depth)[1], m.course.size());
+  if (m.depth) out += ", depth " + interval_words((*m.depth)[0], (*m.depth)[1], m.history.size());
   return out;
 }
 
 std::string words(const MeasuredApproach& m) {
-  std::string out = std::string(name_of(m.outcome)) + " " + interval_words(m.t0, m.t1, m.course.size());
+  std::string out = std::string(name_of(m.outcome)) + " " + interval_words(m.t0, m.t1, m.history.size());
   if (m.step) out += ", step " + digits((*m.step)[1]);
   return out;
 }
@@ -239,7 +239,7 @@ class Checker {
       case EventKind::node_pair:
         if (bodies < 2) bad("needs two bodies");
         if (static_cast<std::size_t>(e.node_end().step) >= kWords<NodeStep>.size()) bad("unknown step");
-        if (e.work().parted + e.work().certain > e.work().met)
+        if (e.work().rejected + e.work().certain > e.work().met)
           bad("more pairs are rejected or decided than intersect");
         if (static_cast<std::size_t>(e.node_end().axis) >= kWords<BoxAxis>.size()) bad("unknown axis");
         break;

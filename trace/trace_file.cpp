@@ -75,7 +75,7 @@ struct GzClose {
 
 /// Maximum decompressed size of a compressed file. Traces compressed at gzip's highest level expand 15 times;
 /// a file of zeros expands 1000 times.
-std::uint64_t most_unpacked(std::uint64_t packed) {
+std::uint64_t max_unpacked(std::uint64_t packed) {
   constexpr std::uint64_t kFree = std::uint64_t{8} << 20, kRatio = 60;
   return kFree + kRatio * packed;
 }
@@ -105,9 +105,9 @@ std::string read_all(const std::string& path, std::uint64_t max_bytes) {
       fail_to_read(path, "it has more than " + std::to_string(max_bytes) + " bytes of uncompressed text");
     // Protection from decompression bombs: limit the ratio as well as the total.
     const auto packed = static_cast<std::uint64_t>(std::max<z_off_t>(gzoffset(file.get()), 0));
-    if (gzdirect(file.get()) == 0 && text.size() + static_cast<std::size_t>(got) > most_unpacked(packed))
+    if (gzdirect(file.get()) == 0 && text.size() + static_cast<std::size_t>(got) > max_unpacked(packed))
       fail_to_read(path, "its first " + std::to_string(packed) + " bytes unpack to more than " +
-                             std::to_string(most_unpacked(packed)) + ", which is not plausible for a trace");
+                             std::to_string(max_unpacked(packed)) + ", which is not plausible for a trace");
     text.append(chunk.data(), static_cast<std::size_t>(got));
   }
 }

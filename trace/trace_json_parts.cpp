@@ -75,15 +75,15 @@ void write_json(JsonWriter& w, const Separation& separation) {
   w.end_array().end_object();
 }
 
-void write_course(JsonWriter& w, const std::vector<Bounds>& course) {
+void write_history(JsonWriter& w, const std::vector<Bounds>& history) {
   w.key("course").begin_array();
-  for (const Bounds& b : course) w.begin_array().value(b.work).value(b.lower).value(b.upper).end_array();
+  for (const Bounds& b : history) w.begin_array().value(b.work).value(b.lower).value(b.upper).end_array();
   w.end_array();
 }
 
-void write_course(JsonWriter& w, const std::vector<ContactBounds>& course) {
+void write_history(JsonWriter& w, const std::vector<ContactBounds>& history) {
   w.key("course").begin_array();
-  for (const ContactBounds& b : course) {
+  for (const ContactBounds& b : history) {
     w.begin_array().value(b.work).value(b.t0).value(b.t1).value(b.lower).value(b.upper);
     w.end_array();
   }
@@ -96,7 +96,7 @@ void write_json(JsonWriter& w, const MeasuredDistance& m) {
   write_array(w, m.points[0]);
   w.key("point_b");
   write_array(w, m.points[1]);
-  write_course(w, m.course);
+  write_history(w, m.history);
   w.end_object();
 }
 
@@ -116,7 +116,7 @@ void write_json(JsonWriter& w, const MeasuredClash& m) {
     w.key("volume");
     write_array(w, *m.volume);
   }
-  write_course(w, m.course);
+  write_history(w, m.history);
   w.end_object();
 }
 
@@ -132,7 +132,7 @@ void write_answer(JsonWriter& w, const MeasuredApproach& m) {
 void write_json(JsonWriter& w, const MeasuredApproach& m) {
   w.begin_object();
   write_answer(w, m);
-  write_course(w, m.course);
+  write_history(w, m.history);
   w.end_object();
 }
 
@@ -180,7 +180,7 @@ void write_step(JsonWriter& w, const Step& s, const TraceHeader& header) {
 }
 
 /// Returns true if a trace can have events of a kind.
-bool is_told(EventKind kind, const TraceHeader& header) {
+bool is_reported(EventKind kind, const TraceHeader& header) {
   if (kind <= EventKind::result) return true;
   return kind < EventKind::pass ? header.level != EventLevel::faces : header.construction;
 }
@@ -190,7 +190,8 @@ void write_totals(JsonWriter& w, const Trace& t) {
   for (const Event& e : t.events) ++totals[static_cast<std::size_t>(e.kind)];
   w.begin_object();
   for (std::size_t k = 0; k < kEventKinds; ++k)
-    if (is_told(static_cast<EventKind>(k), t.header)) w.member(name_of(static_cast<EventKind>(k)), totals[k]);
+    if (is_reported(static_cast<EventKind>(k), t.header))
+      w.member(name_of(static_cast<EventKind>(k)), totals[k]);
   w.end_object();
 }
 

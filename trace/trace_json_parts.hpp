@@ -13,8 +13,8 @@ void write_json(JsonWriter& w, const CollideRequest& request);
 void write_json(JsonWriter& w, const Separation& separation);
 /// Writes "course", the convergence of bounds: a list of [work, lower, upper], or of [work, t0, t1, lower,
 /// upper]. Infinite values are written as null.
-void write_course(JsonWriter& w, const std::vector<Bounds>& course);
-void write_course(JsonWriter& w, const std::vector<ContactBounds>& course);
+void write_history(JsonWriter& w, const std::vector<Bounds>& history);
+void write_history(JsonWriter& w, const std::vector<ContactBounds>& history);
 void write_json(JsonWriter& w, const MeasuredDistance& m);
 void write_json(JsonWriter& w, const MeasuredClash& m);
 /// Writes the members of a first contact except its course, without brackets.

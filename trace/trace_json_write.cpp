@@ -315,7 +315,7 @@ class TraceWriter {
       out_.number(std::uint64_t{e.face_test().depth_a});
       out_.raw(",\"depth of B\":");
       out_.number(std::uint64_t{e.face_test().depth_b});
-      if (e.tested_by() != TestedBy::untold) write_word("decided by", name_of(e.tested_by()));
+      if (e.tested_by() != TestedBy::unreported) write_word("decided by", name_of(e.tested_by()));
     }
     // From here on, fields that depend on the kind of the event and on the detail of the trace.
     if (e.kind == EventKind::node_pair) return write_node_pair(e);
@@ -358,7 +358,7 @@ class TraceWriter {
     write_number("box tests", work.box_tests);
     write_number("boxes that meet", work.met);
     if (end.step == NodeStep::leaves) {
-      write_number("parted by planes", work.parted);
+      write_number("parted by planes", work.rejected);
       write_number("certain", work.certain);
     }
     if (work.met == 0) write_word(end.apart ? "apart along" : "overlap least along", name_of(end.axis));
@@ -510,7 +510,7 @@ class TraceWriter {
     // The pair itself is done. Its overlapping child pairs, or face pairs at leaves, are what it adds.
     if (pending_pairs_ > 0) --pending_pairs_;
     if (e.node_end().step == NodeStep::leaves)
-      pending_tests_ += work.met - std::min(work.met, work.parted);
+      pending_tests_ += work.met - std::min(work.met, work.rejected);
     else
       pending_pairs_ += work.met;
   }
@@ -556,9 +556,9 @@ class TraceWriter {
 
   /// Writes the convergence of bounds, spread by work over the half of an event's slice that begins at
   /// `begin`.
-  void write_course(std::string_view name, EventId i, double begin, const std::vector<Bounds>& course) {
-    for (const Bounds& b : course) {
-      const double all = static_cast<double>(course.back().work) + 1;
+  void write_history(std::string_view name, EventId i, double begin, const std::vector<Bounds>& history) {
+    for (const Bounds& b : history) {
+      const double all = static_cast<double>(history.back().work) + 1;
       begin_counter_within(name, i, begin + 0.5 * static_cast<double>(b.work) / all);
       write_ends(b.lower, b.upper);
     }
@@ -567,14 +567,14 @@ class TraceWriter {
   /// Writes the measurements of a step before its result, which is its last event.
   void write_measured(EventId i) {
     const StepResult& r = t_.steps[t_.step_of(i)].result;
-    if (r.distance) write_course("distance", i, 0, r.distance->course);
-    if (r.clash) write_course("depth", i, 0.5, r.clash->course);
+    if (r.distance) write_history("distance", i, 0, r.distance->history);
+    if (r.clash) write_history("depth", i, 0.5, r.clash->history);
   }
 
   /// Writes the search for the first contact, which precedes all steps, within the first event.
   void write_first_contact(const MeasuredApproach& m) {
-    for (const ContactBounds& b : m.course) {
-      const double share = static_cast<double>(b.work) / (static_cast<double>(m.course.back().work) + 1);
+    for (const ContactBounds& b : m.history) {
+      const double share = static_cast<double>(b.work) / (static_cast<double>(m.history.back().work) + 1);
       begin_counter_within("first contact", 0, share);
       out_.raw("\"t0\":");
       out_.number(b.t0);

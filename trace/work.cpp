@@ -169,7 +169,7 @@ bool belongs_to_walk(const PartRow& row) {
 
 WorkPart part_of_test(TestedBy by) {
   switch (by) {
-    case TestedBy::untold:
+    case TestedBy::unreported:
       return WorkPart::other_tests;
     case TestedBy::floats:
       return WorkPart::float_tests;

@@ -79,10 +79,10 @@ Case make_thin(RandomEngine& random, double dial) {
     // A few thicknesses separate or penetrating: over A's large face, or beside it.
     const int k = kind == 1 ? 2 : 0;
     const auto reach = [&] {
-      double most_a = 0, most_b = 0;
-      for (const Vector3d& v : c.a->vertices()) most_a = std::max(most_a, std::abs(v[k]));
-      for (const Vector3d& v : c.b->vertices()) most_b = std::max(most_b, std::abs((c.pose_b.r * v)[k]));
-      return most_a + most_b;
+      double max_a = 0, max_b = 0;
+      for (const Vector3d& v : c.a->vertices()) max_a = std::max(max_a, std::abs(v[k]));
+      for (const Vector3d& v : c.b->vertices()) max_b = std::max(max_b, std::abs((c.pose_b.r * v)[k]));
+      return max_a + max_b;
     };
     c.pose_b.t[k] = reach() + thin * uniform(random, -0.5, 2);
   }

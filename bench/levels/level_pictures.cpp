@@ -170,7 +170,7 @@ void add_pieces(const LrbRep& rep, const MeasuredLids& lids, const render::Scale
 
 /// Draws the edges of lids, unless they are so many that they would hide the colours.
 void add_edges(const LrbRep& rep, const std::vector<FaceId>& boundary, render::DrawList& list) {
-  constexpr std::size_t kMost = 2500;
+  constexpr std::size_t kMax = 2500;
   std::vector<std::pair<VertexId, VertexId>> edges;
   for (const FaceId f : boundary) {
     if (rep.is_real(f)) continue;
@@ -180,7 +180,7 @@ void add_edges(const LrbRep& rep, const std::vector<FaceId>& boundary, render::D
   }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  if (edges.size() > kMost) return;
+  if (edges.size() > kMax) return;
   for (const auto& [a, b] : edges) {
     render::DrawLine line;
     line.points = {rep.vertices()[a], rep.vertices()[b]};
@@ -219,13 +219,13 @@ render::DrawList distance_list(const LrbRep& rep, const std::vector<FaceId>& bou
 
 /// Returns the scale of a row of tolerances: from half of the smallest one to the largest.
 render::ScaleBar scale_for(std::span<const ShownLevel> levels) {
-  constexpr double kBelow = 2, kLeastRange = 10;
+  constexpr double kBelow = 2, kMinRange = 10;
   double low = 1, high = 0;
   for (const ShownLevel& l : levels) {
     low = std::min(low, l.figures.share / kBelow);
     high = std::max(high, l.figures.share);
   }
-  return {"deviation from the body / longest side of its box", std::min(low, high / kLeastRange), high, true};
+  return {"deviation from the body / longest side of its box", std::min(low, high / kMinRange), high, true};
 }
 
 }  // namespace

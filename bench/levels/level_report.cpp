@@ -132,10 +132,10 @@ void check_drawable(const LrbRep& rep, std::vector<double>& shares) {
         "out -o");
   std::sort(shares.begin(), shares.end());
   shares.erase(std::unique(shares.begin(), shares.end()), shares.end());
-  if (shares.empty() || shares.size() > kMostPanels || shares.front() < kLeastShare)
+  if (shares.empty() || shares.size() > kMaxPanels || shares.front() < kMinShare)
     throw InputError("--at: found " + std::to_string(shares.size()) + " tolerances" +
                      (shares.empty() ? "" : " from " + render::short_number(shares.front()) + " on") +
-                     ", expected for pictures 1 to " + std::to_string(kMostPanels) + " of at least 1e-6");
+                     ", expected for pictures 1 to " + std::to_string(kMaxPanels) + " of at least 1e-6");
 }
 
 std::vector<std::string> write_level_report(const LrbRep& rep, const LevelReportOptions& options,

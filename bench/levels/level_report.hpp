@@ -48,8 +48,8 @@ struct LevelReportOptions {
 };
 
 /// The most panels of a picture, and the least tolerance that its scale has room for.
-inline constexpr std::size_t kMostPanels = 24;
-inline constexpr double kLeastShare = 1e-6;
+inline constexpr std::size_t kMaxPanels = 24;
+inline constexpr double kMinShare = 1e-6;
 
 /// Throws InputError unless there is something to draw: a body with wrappers, at tolerances that fit a
 /// picture.

@@ -10,7 +10,7 @@
 
 namespace lrb::worker_programs {
 
-void add_options(CLI::App& app, AskedCases& asked) {
+void add_options(CLI::App& app, CaseQueue& asked) {
   app.add_flag("--list", asked.list);
   app.add_option("--family", asked.family);
   app.add_option("--method", asked.method);
@@ -21,17 +21,17 @@ void add_options(CLI::App& app, AskedCases& asked) {
   app.add_option("--expected", asked.expected);
 }
 
-const cases::Family& family_of(const AskedCases& asked) {
+const cases::Family& family_of(const CaseQueue& asked) {
   const cases::Family* family = cases::find_family(asked.family);
   if (family == nullptr) throw InputError("unknown family '" + asked.family + "'");
   return *family;
 }
 
-cases::Case make(const cases::Family& family, const AskedCases& asked, std::uint64_t number) {
+cases::Case make(const cases::Family& family, const CaseQueue& asked, std::uint64_t number) {
   return cases::make_case(family, asked.seed, static_cast<int>(number / asked.cases), number % asked.cases);
 }
 
-stability::Record record_of(const AskedCases& asked, std::uint64_t number) {
+stability::Record record_of(const CaseQueue& asked, std::uint64_t number) {
   stability::Record record;
   record.family = asked.family;
   record.method = asked.method;
@@ -41,7 +41,7 @@ stability::Record record_of(const AskedCases& asked, std::uint64_t number) {
   return record;
 }
 
-KnownAnswers::KnownAnswers(const AskedCases& asked) {
+KnownAnswers::KnownAnswers(const CaseQueue& asked) {
   if (asked.expected.empty()) return;
   in_.open(asked.expected);
   std::string line;
@@ -61,7 +61,7 @@ using methods::Method;
 using methods::MethodAnswer;
 using methods::MethodBody;
 
-enum class Vice { crash, hang, refuse, raise, miss };
+enum class Vice { crash, hang, reject, raise, miss };
 
 std::unique_ptr<Method> (*make_honest)() = nullptr;  // set before the first is made
 
@@ -76,7 +76,7 @@ class Fake : public Method {
     if (!answer.contact) return answer;
     if (vice_ == Vice::crash) std::abort();
     while (vice_ == Vice::hang) pause();
-    if (vice_ == Vice::refuse) throw InputError("the fake does not like contacts");
+    if (vice_ == Vice::reject) throw InputError("the fake does not like contacts");
     if (vice_ == Vice::raise) throw std::logic_error("the fake is at its wits' end");
     answer.pairs.erase(answer.pairs.begin());
     return answer;
@@ -102,7 +102,7 @@ std::vector<methods::MethodEntry> fake_methods(const std::vector<methods::Method
   if (ours == methods.end()) return {};
   make_honest = ours->make;
   return {fake<Vice::crash>("fake-crash", *ours),   fake<Vice::hang>("fake-hang", *ours),
-          fake<Vice::refuse>("fake-refuse", *ours), fake<Vice::raise>("fake-throw", *ours),
+          fake<Vice::reject>("fake-refuse", *ours), fake<Vice::raise>("fake-throw", *ours),
           fake<Vice::miss>("fake-miss", *ours),     methods::absent("fake-absent", "fake-absent", "nothing")};
 }
 

@@ -39,25 +39,25 @@ inline std::string dump(const nlohmann::ordered_json& value) {
 }
 
 /// Cases begin to end - 1 of a family: `cases` for each difficulty.
-struct AskedCases {
+struct CaseQueue {
   bool list = false;  ///< no cases: list the worker's methods
   std::string family, method, expected;
   std::uint64_t seed = 1, cases = 1, begin = 0, end = 0;
 };
 
-void add_options(CLI::App& app, AskedCases& asked);
+void add_options(CLI::App& app, CaseQueue& asked);
 
 /// Throws InputError if the family is unknown.
-const cases::Family& family_of(const AskedCases& asked);
-cases::Case make(const cases::Family& family, const AskedCases& asked, std::uint64_t number);
+const cases::Family& family_of(const CaseQueue& asked);
+cases::Case make(const cases::Family& family, const CaseQueue& asked, std::uint64_t number);
 /// Returns the record of a case, before it is answered.
-stability::Record record_of(const AskedCases& asked, std::uint64_t number);
+stability::Record record_of(const CaseQueue& asked, std::uint64_t number);
 
 /// Correct answers from a file, starting at the first requested case.
 class KnownAnswers {
  public:
   /// Throws InputError if a file is given and ends before that case.
-  explicit KnownAnswers(const AskedCases& asked);
+  explicit KnownAnswers(const CaseQueue& asked);
   /// Returns the next answer, or nullopt without a file or at its end.
   std::optional<stability::RightAnswer> next();
 

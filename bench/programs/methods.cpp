@@ -35,7 +35,7 @@ namespace {
 using nlohmann::ordered_json;
 
 struct WorkerOptions {
-  AskedCases asked;
+  CaseQueue asked;
   bool pairs = false;
   std::string questions;
   std::optional<double> setting;
@@ -45,7 +45,7 @@ void list_methods(const std::vector<methods::MethodEntry>& entries, Lines& out) 
   for (const methods::MethodEntry& e : entries) out.say(dump(workers::to_json(e.info)));
 }
 
-void say_expected(const AskedCases& asked, Lines& out) {
+void say_expected(const CaseQueue& asked, Lines& out) {
   const cases::Family& family = family_of(asked);
   for (std::uint64_t k = asked.begin; k < asked.end; ++k)
     out.say(stability::to_line(stability::expected_answer(make(family, asked, k))));

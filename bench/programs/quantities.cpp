@@ -80,7 +80,7 @@ nlohmann::ordered_json known_number(const NumberMethod& method, const DataSet& s
 using namespace lrb::stability;
 
 struct Options {
-  AskedCases asked;
+  CaseQueue asked;
   std::string quantity = "distance", questions;
   std::optional<double> setting;
 };

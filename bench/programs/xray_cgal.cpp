@@ -155,10 +155,10 @@ int run(std::istream& in) {
     std::printf("pose\n");
     std::size_t box_tests = 0, leaf_tests = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
-      Told told{tree, numbers, b, i};
-      tree.traversal(a[i].transform(relative), told);
-      box_tests += told.box_tests;
-      leaf_tests += told.leaf_tests;
+      Told reported{tree, numbers, b, i};
+      tree.traversal(a[i].transform(relative), reported);
+      box_tests += reported.box_tests;
+      leaf_tests += reported.leaf_tests;
     }
     std::printf("end %zu %zu\n", box_tests, leaf_tests);
   }

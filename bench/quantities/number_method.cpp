@@ -9,7 +9,7 @@
 namespace lrb::stability {
 namespace {
 
-constexpr double kMostOffOfSize = 1e-6, kMostOffOfMotion = 1e-3;
+constexpr double kMaxOffOfSize = 1e-6, kMaxOffOfMotion = 1e-3;
 constexpr int kDigits = 9;
 
 std::string words(Quantity quantity, double lower, double upper) {
@@ -49,7 +49,7 @@ void judge_number(Record& record, const NumberMethod& method, const NumberAnswer
     right = right && answer.lower <= most && answer.upper >= least;
   } else if (!special) {
     const double off = std::max(least - answer.upper, answer.lower - most);
-    right = right && off <= (is_time ? kMostOffOfMotion : kMostOffOfSize * size);
+    right = right && off <= (is_time ? kMaxOffOfMotion : kMaxOffOfSize * size);
   }
   record.outcome = right ? Outcome::right : Outcome::wrong;
 }
@@ -57,7 +57,7 @@ void judge_number(Record& record, const NumberMethod& method, const NumberAnswer
 void ask_number(const NumberMethod& method, const cases::Case& c, const RightAnswer& expected,
                 Record& record) {
   workers::note_failures(record, [&] {
-    if (!expected.refusal.empty()) throw InputError("skipped: " + expected.refusal);
+    if (!expected.rejection.empty()) throw InputError("skipped: " + expected.rejection);
     const Asked question = asked(c);
     const NumberAnswer answer = method.ask(question, std::nullopt);
     record.microseconds = answer.microseconds;

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// Rational brute force takes seconds for more.
-constexpr std::uint32_t kMostFaces = 100, kMostFacesForDepth = 20;
+constexpr std::uint32_t kMaxFaces = 100, kMaxFacesForDepth = 20;
 
 /// Returns the vector with 20 bits to a coordinate, so that a quarter and three quarters of it are exact.
 Vector3d rounded(const Vector3d& x) {
@@ -31,7 +31,7 @@ Vector3d rounded(const Vector3d& x) {
 
 std::string why_not_asked(Quantity quantity, const cases::Case& c) {
   if (c.a->dim() == 2) return "2D bodies";
-  const std::uint32_t most = quantity == Quantity::depth ? kMostFacesForDepth : kMostFaces;
+  const std::uint32_t most = quantity == Quantity::depth ? kMaxFacesForDepth : kMaxFaces;
   for (const auto& [rep, pose] : {std::pair{c.a, c.pose_a}, std::pair{c.b, c.pose_b}}) {
     if (rep->real_simplex_count() > most)
       return "a body of more than " + std::to_string(most) + " triangles, too many for rational arithmetic";
@@ -197,7 +197,7 @@ struct ConvexParts {
 };
 
 /// Returns the squared way out along n: how far A reaches beyond B's beginning.
-Rational way_out_sq(const Triangles& a, const Triangles& b, const RationalPoint& n) {
+Rational separation_vector_squared(const Triangles& a, const Triangles& b, const RationalPoint& n) {
   std::optional<Rational> far, near;
   for (const RationalPoint& x : a.points)
     if (const Rational d = oracle::dot(n, x); !far || d > *far) far = d;
@@ -215,7 +215,7 @@ std::optional<Rational> depth_sq(const Asked& q) {
   std::optional<Rational> least;
   const auto try_out = [&](const RationalPoint& n) {
     if (least && *least == 0) return;
-    const Rational d = way_out_sq(a, b, n);
+    const Rational d = separation_vector_squared(a, b, n);
     if (!least || d < *least) least = d;
   };
   const RationalPoint zero = rational(Vector3d(0, 0, 0));
@@ -235,8 +235,8 @@ std::optional<Rational> depth_sq(const Asked& q) {
 
 RightAnswer true_number(Quantity quantity, const cases::Case& c) {
   RightAnswer e;
-  e.refusal = why_not_asked(quantity, c);
-  if (!e.refusal.empty()) return e;
+  e.rejection = why_not_asked(quantity, c);
+  if (!e.rejection.empty()) return e;
   const Asked q = asked(c);
   if (quantity == Quantity::distance) {
     const bool meet = !brute_force(q.a, Pose{}, q.b, Pose{}).pairs.empty();
@@ -249,7 +249,7 @@ RightAnswer true_number(Quantity quantity, const cases::Case& c) {
   } else if (const auto depth = depth_sq(q)) {
     set_root(e, *depth);
   } else {
-    e.refusal = "a non-convex body, whose depth has no independent reference";
+    e.rejection = "a non-convex body, whose depth has no independent reference";
   }
   return e;
 }

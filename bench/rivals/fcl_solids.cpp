@@ -41,8 +41,8 @@ fcl::Transform3d transform(const Pose& pose) {
 /// Queries FCL for contacts of two geometries, with their positions.
 MethodAnswer ask(const fcl::CollisionGeometryd& a, const Pose& pose_a, const fcl::CollisionGeometryd& b,
                  const Pose& pose_b, Mode mode) {
-  static constexpr std::size_t kMost = std::size_t{1} << 40;
-  const fcl::CollisionRequestd request(mode == Mode::all_pairs ? kMost : 1, mode == Mode::all_pairs);
+  static constexpr std::size_t kMax = std::size_t{1} << 40;
+  const fcl::CollisionRequestd request(mode == Mode::all_pairs ? kMax : 1, mode == Mode::all_pairs);
   MethodAnswer answer;
   const Stopwatch watch;
   fcl::CollisionResultd result;

@@ -18,7 +18,7 @@ constexpr int kRank = 70;
 namespace lrb::methods {
 namespace {
 
-constexpr int kMostContacts = 0xffff;  // the maximum that its flags can request
+constexpr int kMaxContacts = 0xffff;  // the maximum that its flags can request
 
 struct OdeBody : MethodBody {
   explicit OdeBody(const Triangles& t) {
@@ -53,7 +53,7 @@ struct OdeBody : MethodBody {
 
 class Ode : public Method {
  public:
-  Ode() : contacts_(kMostContacts) { dInitODE2(0); }
+  Ode() : contacts_(kMaxContacts) { dInitODE2(0); }
   ~Ode() override { dCloseODE(); }
 
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
@@ -68,7 +68,7 @@ class Ode : public Method {
     check_rigid(pose_b);
     const auto &body_a = static_cast<const OdeBody&>(a), &body_b = static_cast<const OdeBody&>(b);
     body_a.move(pose_a);
-    const int flags = mode == Mode::all_pairs ? kMostContacts : static_cast<int>(CONTACTS_UNIMPORTANT | 1U);
+    const int flags = mode == Mode::all_pairs ? kMaxContacts : static_cast<int>(CONTACTS_UNIMPORTANT | 1U);
     MethodAnswer answer;
     const Stopwatch watch;
     body_b.move(pose_b);

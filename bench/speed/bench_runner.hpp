@@ -61,13 +61,13 @@ struct QueryTimes {
 /// Returns the first answer of query(), which has `microseconds`, and fills in the times.
 template <class Query>
 auto ask_again_and_again(const Query& query, QueryTimes& times) {
-  constexpr int kMost = 25, kLeast = 3;
+  constexpr int kMax = 25, kLeast = 3;
   constexpr double kEnough = 20e3, kLong = 300e3;  // microseconds
   sweep_caches();
   auto answer = query();
   times.cold_us = times.hot_us = answer.microseconds;
   double spent = 0;
-  for (int i = 0; i < kMost && times.cold_us < kLong && (i < kLeast || spent < kEnough); ++i) {
+  for (int i = 0; i < kMax && times.cold_us < kLong && (i < kLeast || spent < kEnough); ++i) {
     const double us = query().microseconds;
     times.hot_us = std::min(times.hot_us, us);
     spent += us;

@@ -112,10 +112,10 @@ std::string note_of(const Point& p) {
       out += std::string("\n") + metric_info(static_cast<Metric>(m)).name + " " +
              render::short_number(*p.errors[m]);
   if (p.error() <= 0) out += "\nno error";
-  if (p.proved_off) out += "\nproven max deviation " + render::short_number(*p.proved_off);
+  if (p.proven_deviation) out += "\nproven max deviation " + render::short_number(*p.proven_deviation);
   if (p.failed() > 0)
     out += "\n" + std::to_string(p.crashed) + " crashed, " + std::to_string(p.timed_out) + " timed out, " +
-           std::to_string(p.refused) + " refused, of " + std::to_string(p.questions);
+           std::to_string(p.rejected) + " refused, of " + std::to_string(p.questions);
   if (p.build_seconds > 0)
     out += "\nbuild " + render::short_number(p.build_seconds) + " s, " + render::short_number(p.bytes / 1e6) +
            " MB";
@@ -242,8 +242,8 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
   report::Series failed{"crash, refusal or time-out", {}, {}, {report::Line::none, "#d00000", "crossRot"}};
   for (const Point* p : here) {
     if (p->failed() > 0) add(failed, *p, p->error());
-    if (p->proved_off.value_or(0) <= 0) continue;
-    add(proved, *p, *p->proved_off);
+    if (p->proven_deviation.value_or(0) <= 0) continue;
+    add(proved, *p, *p->proven_deviation);
     proved.from.push_back(drawn_error(p->error(), set.quantity));
   }
   for (report::Series* s : {&proved, &failed})
@@ -276,7 +276,7 @@ report::Table table_of_points(const std::vector<Point>& points) {
                                     render::short_number(p.p95),
                                     render::short_number(p.p99)};
     for (const std::size_t m : errors) row.push_back(percent_or_dash(p.errors[m]));
-    row.push_back(percent_or_dash(p.proved_off));
+    row.push_back(percent_or_dash(p.proven_deviation));
     row.push_back(std::to_string(p.failed()));
     row.emplace_back(p.frontier ? "yes" : "");
     if (built) {

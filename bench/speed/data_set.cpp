@@ -170,7 +170,7 @@ void find_numbers(DataSet& set) {
                        "); leave these bodies out, or use another --seed");
     set.questions[k].number = {value.at("least").get<double>(), value.at("most").get<double>()};
   };
-  task.on_mishap = [&](std::uint64_t k, const workers::Mishap& mishap) {
+  task.on_mishap = [&](std::uint64_t k, const workers::WorkerFailure& mishap) {
     throw EnvironmentError(set.what + ", question " + std::to_string(k) + ": " + mishap.message);
   };
   workers::run_to_end(workers::Job(std::move(task)));

@@ -18,12 +18,12 @@ namespace {
 
 /// The number of points between which distances are measured: enough for three digits, few enough for all
 /// pairs.
-constexpr std::size_t kMostPoints = 1500;
+constexpr std::size_t kMaxPoints = 1500;
 
 std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points) {
-  if (points.size() <= kMostPoints) return points;
+  if (points.size() <= kMaxPoints) return points;
   std::vector<Eigen::Vector3d> out;
-  for (std::size_t i = 0; i < kMostPoints; ++i) out.push_back(points[i * points.size() / kMostPoints]);
+  for (std::size_t i = 0; i < kMaxPoints; ++i) out.push_back(points[i * points.size() / kMaxPoints]);
   return out;
 }
 
@@ -270,7 +270,7 @@ struct Gathered {
 void add(Gathered& g, const Record& r, const Errors& e, double unit) {
   Point& p = g.point;
   ++p.questions;
-  p.refused += r.outcome == Outcome::refused;
+  p.rejected += r.outcome == Outcome::rejected;
   p.crashed += r.outcome == Outcome::crashed;
   p.timed_out += r.outcome == Outcome::timed_out;
   for (std::size_t m = 0; m < kMetrics; ++m)
@@ -297,7 +297,7 @@ Point finished(Gathered g) {
   const auto n = static_cast<double>(p.questions);
   for (std::size_t m = 0; m < kMetrics; ++m)
     if (g.sums[m]) p.errors[m] = *g.sums[m] / n;
-  if (g.proved_sum) p.proved_off = *g.proved_sum / n;
+  if (g.proved_sum) p.proven_deviation = *g.proved_sum / n;
   p.median = median(g.us);
   p.p95 = quantile(g.us, 0.95);
   p.p99 = quantile(g.us, 0.99);
@@ -309,14 +309,14 @@ Point finished(Gathered g) {
 /// one of the two. A point without an answer has no time; one that only answers yes or no, or knows the poses
 /// in advance, answers another query.
 void mark_frontiers(std::vector<Point>& points, const std::vector<methods::MethodInfo>& methods) {
-  const auto told_more = [&](const Point& p) {
+  const auto reported_more = [&](const Point& p) {
     return std::any_of(methods.begin(), methods.end(), [&](const methods::MethodInfo& m) {
       return m.name == p.method && m.has(methods::Trait::knows_poses_in_advance);
     });
   };
   for (Point& p : points) {
     const auto takes_part = [&](const Point& x) {
-      return x.median > 0 && !x.says_only_yes_or_no() && !told_more(x);
+      return x.median > 0 && !x.says_only_yes_or_no() && !reported_more(x);
     };
     p.frontier = takes_part(p);
     for (const Point& other : points) {
@@ -370,7 +370,7 @@ JudgeFunction judge_of(const DataSet& set, const Question& q, const std::vector<
 
 /// Adds a data set's points.
 void add_points(const DataSet& set, const std::vector<methods::MethodInfo>& methods,
-                const RecordsByQuestion& by_question, const std::function<void()>& tell,
+                const RecordsByQuestion& by_question, const std::function<void()>& notify,
                 std::vector<Point>& points) {
   std::vector<LrbRep> bodies;
   if (set.quantity == Quantity::pairs)
@@ -391,7 +391,7 @@ void add_points(const DataSet& set, const std::vector<methods::MethodInfo>& meth
       g.point.setting = r->setting;
       g.point.pose_class = q.pose_class;
       add(g, *r, judge(*info, *r), unit_of(set));
-      tell();
+      notify();
     }
   }
   for (auto& [key, g] : gathered) points.push_back(finished(std::move(g)));
@@ -423,12 +423,12 @@ std::string to_lines(const std::vector<Point>& points) {
     nlohmann::ordered_json value = {{"set", p.set}, {"class", name_of(p.pose_class)}, {"method", p.method}};
     if (p.setting) value["setting"] = *p.setting;
     value["questions"] = p.questions;
-    value["refused"] = p.refused;
+    value["refused"] = p.rejected;
     value["crashed"] = p.crashed;
     value["timed_out"] = p.timed_out;
     for (const MetricInfo& info : kMetricInfos)
       if (const auto& e = p.errors[static_cast<std::size_t>(info.metric)]) value["errors"][info.name] = *e;
-    if (p.proved_off) value["proved_off"] = *p.proved_off;
+    if (p.proven_deviation) value["proved_off"] = *p.proven_deviation;
     value["us"] = {{"median", p.median}, {"p95", p.p95}, {"p99", p.p99}};
     value["build_s"] = p.build_seconds;
     value["bytes"] = p.bytes;

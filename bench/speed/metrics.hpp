@@ -84,18 +84,18 @@ struct Point {
   std::string set, method;
   std::optional<double> setting;
   PoseClass pose_class = PoseClass::apart;
-  std::size_t questions = 0, refused = 0, crashed = 0, timed_out = 0;
+  std::size_t questions = 0, rejected = 0, crashed = 0, timed_out = 0;
   Errors errors;  ///< means over the queries
   /// Mean proven bound: of Metric::deviation, or, for a number, the width of its interval in the unit of its
   /// error. nullopt: not proven.
-  std::optional<double> proved_off;
+  std::optional<double> proven_deviation;
   double median = 0, p95 = 0, p99 = 0;  ///< microseconds, hot, all pairs, over the answered queries
   double build_seconds = 0, bytes = 0;  ///< of both bodies
   double face_tests = 0;                ///< mean; 0: not counted
   std::uint64_t worst_question = 0;     ///< the one with the largest error
   bool frontier = false;                ///< no other point of its data set is both faster and more accurate
 
-  std::size_t failed() const { return refused + crashed + timed_out; }
+  std::size_t failed() const { return rejected + crashed + timed_out; }
   /// Returns the error that the chart shows: that of the number or the contact region if the method provides
   /// one, else that of its yes or no.
   double error() const;
@@ -136,7 +136,7 @@ inline double geometric_mean(const std::vector<double>& x) {
 
 /// A contact as a few numbers and many points; all in the world frame and the meshes' unit.
 struct Region {
-  std::vector<Eigen::Vector3d> points;  ///< corners of the intersections, at most kMostPoints of them
+  std::vector<Eigen::Vector3d> points;  ///< corners of the intersections, at most kMaxPoints of them
   double length = 0, area = 0;          ///< sums over connected regions
   Eigen::Vector3d centroid{0, 0, 0};    ///< of the points
   Eigen::Vector3d normal{0, 0, 0};      ///< of the largest connected region; zero if undefined

@@ -14,10 +14,10 @@
 
 namespace lrb::bench {
 
-enum class Outcome : std::uint8_t { answered, refused, crashed, timed_out };
+enum class Outcome : std::uint8_t { answered, rejected, crashed, timed_out };
 constexpr auto words_of(Outcome) {
   return std::to_array<EnumWord<Outcome>>({{Outcome::answered, "answered"},
-                                           {Outcome::refused, "refused"},
+                                           {Outcome::rejected, "refused"},
                                            {Outcome::crashed, "crashed"},
                                            {Outcome::timed_out, "timed_out"}});
 }

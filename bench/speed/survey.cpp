@@ -55,7 +55,7 @@ class Survey {
 
   void ask(const DataSet& set, const Contestant& c, std::uint64_t begin, std::uint64_t end) {
     const std::string name = name_of(c.method.column.name, c.setting);
-    for (; begin < end && known_.count({set.name, name, begin}) != 0; ++begin) tell(set.name + ", " + name);
+    for (; begin < end && known_.count({set.name, name, begin}) != 0; ++begin) notify(set.name + ", " + name);
     if (begin == end) return;
     workers::Job::Task task;
     task.command = {c.method.program, "--questions", o_.folder + "/" + set.name + ".set.json", "--method",
@@ -68,9 +68,9 @@ class Survey {
         std::chrono::duration_cast<workers::Job::Clock::duration>(std::chrono::duration<double>(o_.timeout));
     task.on_line = [&](std::uint64_t, const std::string& line) {
       keep(record_from(nlohmann::json::parse(line)), line);
-      tell(set.name + ", " + name);
+      notify(set.name + ", " + name);
     };
-    task.on_mishap = [&](std::uint64_t k, const workers::Mishap& mishap) {
+    task.on_mishap = [&](std::uint64_t k, const workers::WorkerFailure& mishap) {
       Record r;
       r.set = set.name;
       r.method = c.method.column.name;
@@ -81,7 +81,7 @@ class Survey {
       r.message = mishap.message;
       const std::string line = to_json(r).dump();
       keep(std::move(r), line);
-      tell(set.name + ", " + name);
+      notify(set.name + ", " + name);
     };
     workers::run_to_end(workers::Job(std::move(task)));
   }
@@ -107,7 +107,7 @@ class Survey {
     return text;
   }
 
-  void tell(const std::string& what) {
+  void notify(const std::string& what) {
     ++done_;
     if (progress_) progress_(done_, total_, what);
   }

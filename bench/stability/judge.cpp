@@ -14,7 +14,7 @@ inline constexpr auto kFields<stability::RightAnswer> = std::tuple{
     field("pairs", &stability::RightAnswer::pairs), field("relation", &stability::RightAnswer::relation),
     field("least", &stability::RightAnswer::least, Kept::if_set),
     field("most", &stability::RightAnswer::most, Kept::if_set),
-    field("refusal", &stability::RightAnswer::refusal, Kept::if_set)};
+    field("refusal", &stability::RightAnswer::rejection, Kept::if_set)};
 static_assert(covers_all_fields<stability::RightAnswer>);
 
 }  // namespace lrb
@@ -38,8 +38,8 @@ std::string why_not(const cases::Case& c) {
 
 RightAnswer expected_answer(const cases::Case& c) {
   RightAnswer e;
-  e.refusal = why_not(c);
-  if (!e.refusal.empty()) return e;
+  e.rejection = why_not(c);
+  if (!e.rejection.empty()) return e;
   BruteForceResult r = brute_force(*c.a, c.pose_a, *c.b, c.pose_b);
   e.pairs = std::move(r.pairs);
   e.relation = r.relation;
@@ -104,9 +104,9 @@ void conclude(Record& record, bool relation_matters, bool extra_matters = true) 
 }  // namespace
 
 void judge(Record& record, const MethodInfo& info, const MethodAnswer& answer, const RightAnswer& expected) {
-  if (!expected.refusal.empty()) {
+  if (!expected.rejection.empty()) {
     record.outcome = Outcome::wrong;
-    record.message = "answered, although " + expected.refusal;
+    record.message = "answered, although " + expected.rejection;
     return;
   }
   record.expected = expected.pairs.size();

@@ -19,7 +19,7 @@ struct RightAnswer {
   Relation relation = Relation::separate;
   /// Where a number is asked for: hold it. A first contact that there is none of is at 2.
   std::optional<double> least = {}, most = {};
-  std::string refusal;  ///< if not empty, the question has no answer, and this says why
+  std::string rejection;  ///< if not empty, the question has no answer, and this says why
 };
 
 RightAnswer expected_answer(const cases::Case& c);

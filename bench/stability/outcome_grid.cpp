@@ -21,12 +21,12 @@ auto badness(const Record& r) {
 void count(Cell& cell, const Record& r) {
   ++cell.cases[r.dial];
   if (r.outcome == Outcome::right) return;
-  auto& counted = r.outcome == Outcome::wrong     ? cell.wrong
-                  : r.outcome == Outcome::refused ? cell.refused
-                  : r.outcome == Outcome::crashed ? cell.crashed
-                                                  : cell.timed_out;
+  auto& counted = r.outcome == Outcome::wrong      ? cell.wrong
+                  : r.outcome == Outcome::rejected ? cell.rejected
+                  : r.outcome == Outcome::crashed  ? cell.crashed
+                                                   : cell.timed_out;
   ++counted[r.dial];
-  if (r.outcome == Outcome::refused) return;
+  if (r.outcome == Outcome::rejected) return;
   if (!cell.worst || badness(r) > badness(*cell.worst)) cell.worst = r;
 }
 
@@ -194,7 +194,7 @@ std::vector<std::vector<std::string>> rows_of(const Grid& grid) {
   const std::pair<const char*, Counts Cell::*> sums[] = {{"all: wrong", &Cell::wrong},
                                                          {"all: crashed", &Cell::crashed},
                                                          {"all: timed out", &Cell::timed_out},
-                                                         {"all: refused", &Cell::refused},
+                                                         {"all: refused", &Cell::rejected},
                                                          {"all: cases", &Cell::cases}};
   for (const auto& [name, counts] : sums) {
     rows.push_back({name});

@@ -29,14 +29,14 @@ using methods::Quantity;
 enum class Outcome : std::uint8_t {
   right,      ///< all that the method answers is right
   wrong,      ///< pairs missed or too many, or a wrong relation
-  refused,    ///< it said that it cannot answer
+  rejected,   ///< it said that it cannot answer
   crashed,    ///< its process died
   timed_out,  ///< it did not answer in time
 };
 constexpr auto words_of(Outcome) {
   return std::to_array<EnumWord<Outcome>>({{Outcome::right, "right"},
                                            {Outcome::wrong, "wrong"},
-                                           {Outcome::refused, "refused"},
+                                           {Outcome::rejected, "refused"},
                                            {Outcome::crashed, "crashed"},
                                            {Outcome::timed_out, "timed_out"}});
 }
@@ -61,14 +61,14 @@ struct Record {
 
 /// One family put to one method.
 struct Cell {
-  std::array<std::uint64_t, kDialSettings> cases{}, wrong{}, refused{}, crashed{}, timed_out{};
+  std::array<std::uint64_t, kDialSettings> cases{}, wrong{}, rejected{}, crashed{}, timed_out{};
   std::optional<Record> worst;  ///< one of those that failed, with the lowest dial setting
 
   static std::uint64_t sum(const std::array<std::uint64_t, kDialSettings>& counts);
   /// Returns the number of failures; refusals are none.
   std::uint64_t failures() const { return sum(wrong) + sum(crashed) + sum(timed_out); }
   /// Returns the number of cases that were not refused.
-  std::uint64_t answered() const { return sum(cases) - sum(refused); }
+  std::uint64_t answered() const { return sum(cases) - sum(rejected); }
 };
 
 struct Grid {
@@ -110,13 +110,13 @@ std::vector<Record> read_records(const std::string& path);
 
 /// A cell in few numbers, the same for page and print.
 struct CellSummary {
-  std::uint64_t cases = 0, wrong = 0, refused = 0, crashed = 0, timed_out = 0;
+  std::uint64_t cases = 0, wrong = 0, rejected = 0, crashed = 0, timed_out = 0;
   int first_failing = -1;  ///< the lowest dial setting with a failure; -1: none
 
   /// Returns the number of failures. A refusal is none, because it gives no wrong answer; it has a mark of
   /// its own.
   std::uint64_t failures() const { return wrong + crashed + timed_out; }
-  std::uint64_t answered() const { return cases - refused; }
+  std::uint64_t answered() const { return cases - rejected; }
   double failure_share() const {
     return answered() == 0 ? 0 : static_cast<double>(failures()) / static_cast<double>(answered());
   }
@@ -125,7 +125,7 @@ struct CellSummary {
     const double share = failure_share();
     return share <= 0 ? 0 : share < 0.01 ? 1 : share < 0.1 ? 2 : share < 0.5 ? 3 : 4;
   }
-  bool only_refused() const { return failures() == 0 && refused > 0; }
+  bool only_rejected() const { return failures() == 0 && rejected > 0; }
 };
 
 inline constexpr std::array<const char*, 5> kLevelNames = {"none fails", "under 1 %", "under 10 %",
@@ -137,7 +137,7 @@ inline CellSummary summarise(const Cell& cell) {
     const auto i = static_cast<std::size_t>(d);
     s.cases += cell.cases[i];
     s.wrong += cell.wrong[i];
-    s.refused += cell.refused[i];
+    s.rejected += cell.rejected[i];
     s.crashed += cell.crashed[i];
     s.timed_out += cell.timed_out[i];
     if (s.first_failing < 0 && cell.wrong[i] + cell.crashed[i] + cell.timed_out[i] > 0) s.first_failing = d;
@@ -153,7 +153,7 @@ inline Cell sum_of_column(const Grid& grid, std::size_t method) {
     for (std::size_t i = 0; i < kDialSettings; ++i) {
       sum.cases[i] += c.cases[i];
       sum.wrong[i] += c.wrong[i];
-      sum.refused[i] += c.refused[i];
+      sum.rejected[i] += c.rejected[i];
       sum.crashed[i] += c.crashed[i];
       sum.timed_out[i] += c.timed_out[i];
     }

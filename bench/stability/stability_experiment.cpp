@@ -64,7 +64,7 @@ Record blank_record(const std::string& family, const std::string& method, std::u
   return r;
 }
 
-Record record_of_mishap(Record r, const workers::Mishap& mishap) {
+Record record_of_mishap(Record r, const workers::WorkerFailure& mishap) {
   r.outcome = mishap.timed_out ? Outcome::timed_out : Outcome::crashed;
   r.message = mishap.message;
   return r;
@@ -146,9 +146,9 @@ class Experiment {
     task.on_line = [this, &family](std::uint64_t, const std::string& line) {
       family.expected.append(line + "\n");
       family.expected_pairs.push_back(expected_from(line).pairs.size());
-      tell(family.name + ", exact brute force");
+      notify(family.name + ", exact brute force");
     };
-    task.on_mishap = [this, &family](std::uint64_t k, const workers::Mishap& mishap) {
+    task.on_mishap = [this, &family](std::uint64_t k, const workers::WorkerFailure& mishap) {
       throw EnvironmentError("exact brute force, family " + family.name + ", difficulty " +
                              std::to_string(k / o_.cases) + ", case " + std::to_string(k % o_.cases) + ": " +
                              mishap.message + "; please report it");
@@ -169,7 +169,7 @@ class Experiment {
     task.on_line = [this, &family, m](std::uint64_t, const std::string& line) {
       keep(family, m, record_from(nlohmann::json::parse(line)));
     };
-    task.on_mishap = [this, &family, m](std::uint64_t k, const workers::Mishap& mishap) {
+    task.on_mishap = [this, &family, m](std::uint64_t k, const workers::WorkerFailure& mishap) {
       Record r = blank_record(family.name, o_.methods[m].column.name, k, o_.cases, o_.seed);
       r.expected = family.expected_pairs[k - begin_];
       keep(family, m, record_of_mishap(r, mishap));
@@ -182,7 +182,7 @@ class Experiment {
 
   void keep(FamilyWork& family, std::size_t m, Record record) {
     family.records[m].push_back(std::move(record));
-    tell(family.name + ", " + o_.methods[m].column.name);
+    notify(family.name + ", " + o_.methods[m].column.name);
   }
 
   /// Hands over families in their order.
@@ -213,7 +213,7 @@ class Experiment {
     }
   }
 
-  void tell(const std::string& what) {
+  void notify(const std::string& what) {
     ++done_;
     if (progress_) progress_(done_, total_, what);
   }
@@ -250,7 +250,7 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
     result.expected = expected_from(line).pairs;
     right.append(std::string(k, '\n') + line + "\n");
   };
-  expected.on_mishap = [&](std::uint64_t, const workers::Mishap& m) {
+  expected.on_mishap = [&](std::uint64_t, const workers::WorkerFailure& m) {
     throw EnvironmentError("exact brute force: " + m.message + "; please report it");
   };
   run(std::move(expected));
@@ -266,7 +266,7 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
     if (value.contains("answered_pairs"))
       result.answered = workers::PairsJson::read(value.at("answered_pairs"));
   };
-  asked.on_mishap = [&](std::uint64_t, const workers::Mishap& m) {
+  asked.on_mishap = [&](std::uint64_t, const workers::WorkerFailure& m) {
     Record r = blank_record(family, method.column.name, k, cases, seed);
     r.expected = result.expected.size();
     result.record = record_of_mishap(r, m);
@@ -277,8 +277,8 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
 
 StabilityRunner::Posed StabilityRunner::place(const LrbRep& rep, const Pose& pose, int side) {
   if (!info_.has(methods::Trait::moves_exactly)) return {method_->build(methods::at_pose(rep, pose)), Pose{}};
-  static constexpr std::size_t kMostKept = 200;
-  if (kept_.size() > kMostKept) kept_.clear();
+  static constexpr std::size_t kMaxKept = 200;
+  if (kept_.size() > kMaxKept) kept_.clear();
   BodyPointer& body = kept_[{rep.hash(), side}];
   if (!body) body = method_->build(rep);
   return {body, pose};
@@ -292,8 +292,8 @@ void StabilityRunner::ask(const cases::Family& family, const cases::Case& c, con
   workers::note_failures(record, [&] {
     if (c.a->dim() == 2 && !info_.has(methods::Trait::takes_2d))
       throw InputError("skipped: a 2D body, but the method supports only 3D");
-    if (!expected.refusal.empty() && !info_.has(methods::Trait::moves_exactly))
-      throw InputError("skipped: " + expected.refusal);
+    if (!expected.rejection.empty() && !info_.has(methods::Trait::moves_exactly))
+      throw InputError("skipped: " + expected.rejection);
     const Posed a = place(*c.a, c.pose_a, 0), b = place(*c.b, c.pose_b, 1);
     methods::MethodAnswer answer = method_->query(*a.body, a.pose, *b.body, b.pose, mode);
     record.microseconds = answer.microseconds;

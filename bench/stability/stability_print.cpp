@@ -101,16 +101,16 @@ void add_bars(Sheet& sheet, const Cell& cell, double x, double y) {
     part(cell.wrong[i], page::kWrong.light);
     part(cell.crashed[i], page::kCrashed.light);
     part(cell.timed_out[i], page::kTimedOut.light);
-    part(cell.refused[i], page::kRefused.light);
+    part(cell.rejected[i], page::kRejected.light);
   }
 }
 
 void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   constexpr double kGap = 0.02;
   const CellSummary s = summarise(cell);
-  sheet.rect(
-      x + kGap, y + kGap, x + 1 - kGap, y + 1 - kGap,
-      s.only_refused() ? page::kOnlyRefused.light : page::kLevels[static_cast<std::size_t>(s.level())].light);
+  sheet.rect(x + kGap, y + kGap, x + 1 - kGap, y + 1 - kGap,
+             s.only_rejected() ? page::kOnlyRejected.light
+                               : page::kLevels[static_cast<std::size_t>(s.level())].light);
   const std::string failures = std::to_string(s.failures()) + "/" + std::to_string(s.answered());
   sheet.text(x + 0.06, y + 0.8, Sheet::small, failures);
   std::string marks;
@@ -119,7 +119,7 @@ void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   };
   mark(s.crashed, "\u2715");
   mark(s.timed_out, "\u25f7");
-  mark(s.refused, "\u2298");
+  mark(s.rejected, "\u2298");
   // What does not fit beside the failures gets a line of its own.
   constexpr std::size_t kBeside = 14;  // bytes; a mark's sign has three
   sheet.text(x + 0.95, y + (failures.size() + marks.size() > kBeside ? 0.61 : 0.8), Sheet::small_right,
@@ -157,11 +157,11 @@ void add_legend(Sheet& sheet, double y, double columns, const std::string& absen
     x += needed;
   };
   for (std::size_t i = 0; i < page::kLevels.size(); ++i) item(page::kLevels[i].light, kLevelNames[i]);
-  item(page::kOnlyRefused.light, "only refusals");
+  item(page::kOnlyRejected.light, "only refusals");
   item(page::kWrong.light, "wrong answer");
   item(page::kCrashed.light, "\u2715 crashed");
   item(page::kTimedOut.light, "\u25f7 timed out");
-  item(page::kRefused.light, "\u2298 refused");
+  item(page::kRejected.light, "\u2298 refused");
   sheet.text(-kLeft + 0.1, y - 0.42, Sheet::small,
              "Failures/cases not refused; bars: fraction of cases by difficulty, benign to degenerate.",
              render::palette::kFaint);
@@ -201,10 +201,9 @@ report::Gnuplot grid_chart(const Grid& whole) {
   const Grid grid = present_part(whole);
   const double columns = static_cast<double>(grid.methods.size());
   const double rows = static_cast<double>(grid.families.size()) + 1.1;  // a little room above the sums
-  std::size_t most_lines = 1;
-  for (const workers::MethodColumn& m : grid.methods)
-    most_lines = std::max(most_lines, title_lines(m).size());
-  const double top = 0.2 + kLine * static_cast<double>(most_lines);
+  std::size_t max_lines = 1;
+  for (const workers::MethodColumn& m : grid.methods) max_lines = std::max(max_lines, title_lines(m).size());
+  const double top = 0.2 + kLine * static_cast<double>(max_lines);
   report::Gnuplot chart;
   chart.width = kCellWidth * (kLeft + columns + 0.1);
   chart.height = kCellHeight * (top + rows + kBottom);

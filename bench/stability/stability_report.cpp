@@ -30,7 +30,7 @@ std::string sentence(const CellSummary& s, const FamilyRow& family) {
   add(s.wrong, "with a wrong answer");
   add(s.crashed, "by a crash");
   add(s.timed_out, "by a time-out");
-  add(s.refused, "refused");
+  add(s.rejected, "refused");
   if (s.first_failing >= 0) out += "; first at difficulty " + setting_words(family, s.first_failing);
   return out;
 }
@@ -38,11 +38,11 @@ std::string sentence(const CellSummary& s, const FamilyRow& family) {
 report::GridCell page_cell(const Cell& cell, const FamilyRow& family, const std::string& where) {
   const CellSummary s = summarise(cell);
   report::GridCell out;
-  out.level = s.only_refused() ? report::GridCell::kOnlyRefused : s.level();
+  out.level = s.only_rejected() ? report::GridCell::kOnlyRejected : s.level();
   out.count = s.answered() > 0 ? render::group_digits(s.failures()) : "\u2013";
   out.of = s.answered() > 0 ? "of " + render::group_digits(s.answered()) : "all refused";
   const auto mark = [](std::uint64_t n) { return n > 0 ? render::group_digits(n) : std::string(); };
-  out.marks = {"", mark(s.crashed), mark(s.timed_out), mark(s.refused)};
+  out.marks = {"", mark(s.crashed), mark(s.timed_out), mark(s.rejected)};
   out.label = where + ": " + sentence(s, family);
   for (std::size_t i = 0; i < kDialSettings; ++i) {
     if (cell.cases[i] == 0) {
@@ -53,7 +53,7 @@ report::GridCell page_cell(const Cell& cell, const FamilyRow& family, const std:
       return static_cast<double>(n) / static_cast<double>(cell.cases[i]);
     };
     out.bars.push_back(
-        {share(cell.wrong[i]), share(cell.crashed[i]), share(cell.timed_out[i]), share(cell.refused[i])});
+        {share(cell.wrong[i]), share(cell.crashed[i]), share(cell.timed_out[i]), share(cell.rejected[i])});
   }
   return out;
 }

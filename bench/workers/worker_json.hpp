@@ -28,7 +28,7 @@ void note_failures(Record& record, Ask ask) {
   try {
     ask();
   } catch (const InputError& e) {
-    record.outcome = Outcome::refused;
+    record.outcome = Outcome::rejected;
     record.message = e.what();
   } catch (const std::exception& e) {
     record.outcome = Outcome::crashed;

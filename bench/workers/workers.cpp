@@ -75,7 +75,7 @@ void Job::expire() {
   go_on({true, text});
 }
 
-void Job::go_on(const Mishap& mishap) {
+void Job::go_on(const WorkerFailure& mishap) {
   task_.on_mishap(next_++, mishap);
   hung_ = mishap.timed_out ? hung_ + 1 : 0;
   if (hung_ == kPatience)

@@ -17,7 +17,7 @@ namespace lrb::workers {
 // ones are skipped and count as time-outs, so that the run ends in bounded time.
 
 /// What ended a worker before its work was done.
-struct Mishap {
+struct WorkerFailure {
   bool timed_out = false;
   std::string message;
 };
@@ -33,7 +33,7 @@ class Job {
     Clock::duration limit{};           ///< for one case
     /// Called in order for each case, with its line or the failure in its place.
     std::function<void(std::uint64_t k, const std::string& line)> on_line;
-    std::function<void(std::uint64_t k, const Mishap& mishap)> on_mishap;
+    std::function<void(std::uint64_t k, const WorkerFailure& mishap)> on_mishap;
   };
 
   explicit Job(Task task) : task_(std::move(task)), next_(task_.begin) { start(); }
@@ -48,7 +48,7 @@ class Job {
 
  private:
   void start();
-  void go_on(const Mishap& mishap);
+  void go_on(const WorkerFailure& mishap);
 
   Task task_;
   std::uint64_t next_;  ///< case of the next line

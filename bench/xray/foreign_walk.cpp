@@ -118,7 +118,7 @@ std::vector<SimplexPair> pairs_of(const ForeignStep& step) {
 /// Reports the engine's events to the recorder, and returns its answer.
 CollideResult replay(const ForeignStep& step, Descent& descent, trace::Recorder& recorder) {
   const std::vector<Visit> visits = descent.visits_of(step.events);
-  std::vector<std::uint32_t> told(visits.size(), kNull);
+  std::vector<std::uint32_t> reported(visits.size(), kNull);
   CollideResult result;
   recorder.begin(Phase::walk, 0, 0);
   for (std::size_t i = 0; i < visits.size(); ++i) {
@@ -132,12 +132,12 @@ CollideResult replay(const ForeignStep& step, Descent& descent, trace::Recorder&
     const Visit& v = visits[i];
     const bool leaves = v.step == NodeStep::leaves;
     const auto met = static_cast<std::uint8_t>(leaves ? e.meet : v.children);
-    told[i] = recorder.node_pair({.a = e.a,
-                                  .b = e.b,
-                                  .parent = v.parent == Visit::kNone ? kNull.kValue : told[v.parent],
-                                  .step = v.step.value_or(NodeStep::descend_both),
-                                  .box_tests = 1,
-                                  .met = met});
+    reported[i] = recorder.node_pair({.a = e.a,
+                                      .b = e.b,
+                                      .parent = v.parent == Visit::kNone ? kNull.kValue : reported[v.parent],
+                                      .step = v.step.value_or(NodeStep::descend_both),
+                                      .box_tests = 1,
+                                      .met = met});
   }
   recorder.end(Phase::walk, step.box_tests);
   result.pairs = pairs_of(step);
@@ -369,7 +369,7 @@ using render::group_digits;
 constexpr const char* kHeatFile = "heat.png";
 
 report::Table wrong_table(const Xray& x, std::uint64_t& wrong) {
-  constexpr std::size_t kMostRows = 30;
+  constexpr std::size_t kMaxRows = 30;
   report::Table t{"Wrong pairs of " + x.walk.title,
                   {"step", "triangle of A", "triangle of B", "error", "explanation"}};
   wrong = 0;
@@ -379,7 +379,7 @@ report::Table wrong_table(const Xray& x, std::uint64_t& wrong) {
     for (const auto& [list, words] :
          {std::pair{&w.too_many, "reported, but disjoint"}, {&w.missing, "intersecting, but not reported"}})
       for (const SimplexPair& p : *list)
-        if (t.rows.size() < kMostRows)
+        if (t.rows.size() < kMaxRows)
           t.rows.push_back({std::to_string(x.ours.trace.steps[i].index), std::to_string(p.a),
                             std::to_string(p.b), words,
                             x.why + " --pose " + std::to_string(i) + " --pair " + std::to_string(p.a) + "," +
@@ -401,7 +401,7 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
   const compare::Runs runs{{&x.theirs, &x.ours}, {x.walk.title, "lrbscope"}, {&x.scenario, &x.scenario}};
   const std::size_t step = compare::busiest_step(runs);
   std::vector<std::string> notes;
-  compare::refuse_folder_of_run(folder);
+  compare::reject_folder_of_run(folder);
   const report::Folder locked(folder);
   for (const auto& [recording, name] : {std::pair{&x.theirs, x.method}, {&x.ours, std::string("ours")}}) {
     spec::Scenario scenario = x.scenario;

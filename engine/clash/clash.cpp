@@ -21,16 +21,16 @@
 namespace lrb {
 namespace {
 
-using parting::UnitBodies;
+using penetration::UnitBodies;
 
 /// Adapters that forward bounds to a probe, which may be null if no bounds are reported.
-struct GapTeller final : BoundsProbe {
-  explicit GapTeller(ClashProbe* p) : probe(p) {}
+struct GapProbeAdapter final : BoundsProbe {
+  explicit GapProbeAdapter(ClashProbe* p) : probe(p) {}
   void bounds(const Bounds& known) override { probe->distance(known); }
   ClashProbe* probe;
 };
-struct DepthTeller final : BoundsProbe {
-  explicit DepthTeller(ClashProbe* p) : probe(p) {}
+struct DepthProbeAdapter final : BoundsProbe {
+  explicit DepthProbeAdapter(ClashProbe* p) : probe(p) {}
   void bounds(const Bounds& known) override { probe->depth(known); }
   ClashProbe* probe;
 };
@@ -62,8 +62,8 @@ ClashKind overlapping_kind(const std::array<SurfacePieces, 2>& pieces) {
   if (a_in_b) return b_in_a ? ClashKind::equal : ClashKind::a_inside_b;
   if (b_in_a) return ClashKind::b_inside_a;
   // Several pieces outside on one component: the other body passes through it.
-  if (b.most_outside > 1) return ClashKind::cuts_through;
-  return a.most_outside > 1 ? ClashKind::pierces : ClashKind::protrudes;
+  if (b.max_outside > 1) return ClashKind::cuts_through;
+  return a.max_outside > 1 ? ClashKind::pierces : ClashKind::protrudes;
 }
 
 /// Measures the distance of disjoint solids, and compares it with the clearance.
@@ -72,9 +72,9 @@ void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
                  ClashResult& result) {
   DistanceRequest ask;
   ask.relation = false;
-  GapTeller teller(probe);
+  GapProbeAdapter adapter(probe);
   const DistanceResult d =
-      distance(a, pose_a, b, pose_b, ask, context, nullptr, probe != nullptr ? &teller : nullptr);
+      distance(a, pose_a, b, pose_b, ask, context, nullptr, probe != nullptr ? &adapter : nullptr);
   result.distance = {d.lower, d.upper};
   bool within = d.upper <= request.clearance;
   // The interval contains the clearance: compare exactly. This request ends when that comparison is decided.
@@ -88,7 +88,7 @@ void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
 /// Decides the kind of contact of bodies that share a point.
 void decide_kind(QueryContext& query, const CollideResult& found, ClashResult& result) {
   // Exact. Fails, with a reason, for bodies that are not solids and for faces cut into too many cells.
-  const auto pieces = parting::surface_pieces(query, found, false, &result.reason);
+  const auto pieces = penetration::surface_pieces(query, found, false, &result.reason);
   if (!pieces) return;
   result.pieces = *pieces;
   const bool enters = (*pieces)[0].inside + (*pieces)[1].inside > 0;
@@ -111,11 +111,11 @@ double to_world_cube(double volume, int exponent) {
 
 /// Returns a volume in world units. Values outside the range of normal doubles are rounded outward.
 ProvedInterval world_volume(const ProvedInterval& unit, int exponent) {
-  constexpr double kLeast = std::numeric_limits<double>::min(), kMost = std::numeric_limits<double>::max();
+  constexpr double kLeast = std::numeric_limits<double>::min(), kMax = std::numeric_limits<double>::max();
   ProvedInterval v{to_world_cube(unit.lower, exponent), to_world_cube(unit.upper, exponent)};
   // Below the normal range the scaling was rounded: widen the interval to 0 and to the least normal double.
   if (v.lower < kLeast) v.lower = 0;
-  v.lower = std::min(v.lower, kMost);
+  v.lower = std::min(v.lower, kMax);
   if (unit.upper > 0) v.upper = std::max(v.upper, kLeast);
   return v;
 }
@@ -125,12 +125,12 @@ void measure_overlap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const
                      const ClashRequest& request, QueryContext& query, const CollideResult& found,
                      ClashProbe* probe, ClashResult& result) {
   // In one common frame, in which no coordinate exceeds 1/2.
-  const UnitBodies bodies = parting::unit_bodies(query);
+  const UnitBodies bodies = penetration::unit_bodies(query);
   if (request.depth || request.along) {
-    parting::Parting parting(a, pose_a, b, pose_b, bodies);
-    DepthTeller on_depth(probe);
-    BoundsTeller teller(on_depth);
-    parting::DepthFinder finder(query, found, bodies, parting, probe != nullptr ? &teller : nullptr);
+    penetration::SeparationSearch penetration(a, pose_a, b, pose_b, bodies);
+    DepthProbeAdapter on_depth(probe);
+    BoundsProbeAdapter adapter(on_depth);
+    penetration::DepthFinder finder(query, found, bodies, penetration, probe != nullptr ? &adapter : nullptr);
     if (request.depth) {
       const auto depth = finder.depth();
       result.depth = depth.length;
@@ -140,7 +140,7 @@ void measure_overlap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const
   }
   // The faces of a body that intersects itself do not bound a single solid.
   if (request.volume && !a.overlaps_itself() && !b.overlaps_itself())
-    result.volume = world_volume(parting::shared_volume(bodies), bodies.frame.exponent);
+    result.volume = world_volume(penetration::shared_volume(bodies), bodies.frame.exponent);
 }
 
 void write_no_overlap(const ClashRequest& request, ClashResult& result) {

@@ -17,7 +17,7 @@ ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
 
 }  // namespace lrb
 
-namespace lrb::parting {
+namespace lrb::penetration {
 
 // Convex sets that are proven to be inside a body.
 
@@ -50,4 +50,4 @@ std::optional<ConvexPoints> convex_about(const UnitBody& body, const Vector3d& i
 /// orientations as sign. No configuration is degenerate; only rounding has to be bounded.
 ProvedInterval shared_volume(const UnitBodies& bodies);
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

@@ -16,7 +16,7 @@ inline constexpr double kUnitReach = 2;
 /// each; twice the points' own kUnitRounding |n|_1 (the triangle's corner, and the point found inside); the
 /// sum with this margin, u; and u / 2 for each time that a triangle was divided: 15 u in all, of 32.
 inline constexpr double kConvexMargin = 0x1p-48;
-inline constexpr unsigned kMostSplits = 6;
+inline constexpr unsigned kMaxSplits = 6;
 /// Shares by which convex sets are shrunk until they are proven to be inside a body. Larger: looser lower
 /// bounds on depths.
 inline constexpr double kShrinks[] = {0x1p-42, 0x1p-36, 0x1p-28, 0x1p-18};
@@ -26,8 +26,8 @@ inline constexpr double kShrinks[] = {0x1p-42, 0x1p-36, 0x1p-28, 0x1p-18};
 inline constexpr double kSliver = 0x1p-20, kHollow = 0x1p-28;
 /// A body is tested for convexity only up to this number of triangles that need another triangle's plane, and
 /// this product of the numbers of corners and triangles. Larger: seconds.
-inline constexpr unsigned kMostHardTriangles = 1000;
-inline constexpr double kMostConvexWork = 1e9;
+inline constexpr unsigned kMaxHardTriangles = 1000;
+inline constexpr double kMaxConvexWork = 1e9;
 /// kLittleLost: share of its first offset that a half-space about a point keeps when it is moved to exclude
 /// other triangles. Larger: more half-spaces, larger sets. Below: the number of half-spaces, and the least
 /// distance of the surface from the point.
@@ -35,22 +35,22 @@ inline constexpr double kLittleLost = 0.97;
 /// Share of an offset by which a plane is moved to allow for rounding, and tolerance of clipping by a plane
 /// as a share of its offset.
 inline constexpr double kFlatShare = 0x1p-40, kClipShare = 0x1p-45;
-inline constexpr unsigned kMostHalfSpaces = 400;
-inline constexpr double kLeastClearance = 0x1p-36;
+inline constexpr unsigned kMaxHalfSpaces = 400;
+inline constexpr double kMinClearance = 0x1p-36;
 /// Smallest gain for which the EPA polytope of a Minkowski difference is expanded. Smaller: no improvement
 /// beyond rounding.
 inline constexpr double kDepthGain = 0x1p-48;
 /// Maximum number of expansion steps. Smaller: wide intervals for round bodies.
-inline constexpr unsigned kMostDepthSteps = 1500;
+inline constexpr unsigned kMaxDepthSteps = 1500;
 /// The same maximum if the polytope only has to contain the origin, or to yield a first direction.
 inline constexpr unsigned kRoughDepthSteps = 100;
 /// Error bound of a difference of two points of convex sets with coordinates of at most 1: 2 u in length for
 /// the difference, and 4 u if one point was displaced by a product before.
 inline constexpr double kDifferenceRounding = 0x1p-50;
-/// kPartingMargin is added to a translation before it is proven to separate two bodies, times 8 after each
-/// failure, up to kMostPartingMargin. It is also the resolution of the bisection for a separating
+/// kSeparationMargin is added to a translation before it is proven to separate two bodies, times 8 after each
+/// failure, up to kMaxSeparationMargin. It is also the resolution of the bisection for a separating
 /// translation. Smaller: proofs fail because of rounding.
-inline constexpr double kPartingMargin = 0x1p-42, kMostPartingMargin = 0x1p-6;
+inline constexpr double kSeparationMargin = 0x1p-42, kMaxSeparationMargin = 0x1p-6;
 /// Largest world coordinate for which translations are tried: beyond it they could overflow.
 inline constexpr double kLargestMoved = 0x1p1020;
 
@@ -67,9 +67,9 @@ inline constexpr int kDirectionSamples = 16, kWaySamples = 128;
 inline constexpr double kDirectionGain = 0x1p-20;
 /// The best direction is refined by rotations of decreasing angle: the first and the last angle, in radians,
 /// and the share of the angle by which a rotation must shorten the translation.
-inline constexpr double kFirstTurn = 0.2, kLeastTurn = 1e-5, kTurnGain = 0x1p-6;
+inline constexpr double kFirstTurn = 0.2, kMinTurn = 1e-5, kTurnGain = 0x1p-6;
 /// Maximum number of rotations, and of steps of the other searches.
-inline constexpr unsigned kMostSteps = 200;
+inline constexpr unsigned kMaxSteps = 200;
 
 /// Search for the common point with the largest clearance: a grid of kStartGrid points per axis, refined up
 /// to kFinestStartGrid while no grid point is in both bodies; then steps down to kStartStep of the point's
@@ -82,20 +82,20 @@ inline constexpr double kStartStep = 0x1p-6, kClearlyMore = 1e-9;
 /// proven.
 inline constexpr double kClearanceMargin = 0x1p-46, kRoomMargin = 0x1p-46;
 /// The proof that bodies overlap after short translations ends when the lower bound is kNarrowDepth of the
-/// upper one, or after kMostRoomPoints points, which are spent in kRoomLooks rounds. Larger: narrower depth
+/// upper one, or after kMaxRoomPoints points, which are spent in kRoomLooks rounds. Larger: narrower depth
 /// intervals.
 inline constexpr double kNarrowDepth = 0.99;
-inline constexpr unsigned kMostRoomPoints = 12000, kRoomLooks = 24;
+inline constexpr unsigned kMaxRoomPoints = 12000, kRoomLooks = 24;
 /// The search for a point with enough clearance for a cube of translations; it proves nothing by itself. It
 /// starts at the points of the kSeeds nearest proven cubes. If the clearance found is less than kNearlyEnough
 /// of that needed, the cube is divided instead of searched further, unless it is smaller than kSmallCube of
 /// the remaining distance to the upper bound; for such a cube 2 kOtherSeeds other points are tried as well.
-/// Steps below kLeastClimb of the clearance needed, and cubes below kLeastCube, are not tried.
+/// Steps below kMinClimb of the clearance needed, and cubes below kMinCube, are not tried.
 inline constexpr unsigned kSeeds = 3, kOtherSeeds = 8;
-inline constexpr double kNearlyEnough = 0.5, kSmallCube = 0x1p-3, kLeastClimb = 0x1p-4, kLeastCube = 0x1p-30;
+inline constexpr double kNearlyEnough = 0.5, kSmallCube = 0x1p-3, kMinClimb = 0x1p-4, kMinCube = 0x1p-30;
 /// Maximum number of common points from which the depth along a direction is proven in turn, and the share of
 /// each proven length after which the next point is sought.
-inline constexpr unsigned kMostWaySteps = 40;
+inline constexpr unsigned kMaxWaySteps = 40;
 inline constexpr double kWayShare = 0.9;
 
 /// Error bound of a point's parameter on an edge: 1e-13 for the point, and a few roundings. If coordinates

@@ -27,7 +27,7 @@
 #include "engine/core/geometry.hpp"
 #include <lrbscope/contact.hpp>
 
-namespace lrb::parting {
+namespace lrb::penetration {
 namespace {
 
 Vector3d normal_of(const UnitBody& body, std::uint32_t triangle) {
@@ -83,8 +83,8 @@ double farthest(const UnitBody& body, const Vector3d& n) {
 }  // namespace
 
 DepthFinder::DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies,
-                         Parting& parting, BoundsTeller* teller)
-    : query_(query), result_(result), bodies_(bodies), parting_(parting), teller_(teller) {
+                         SeparationSearch& penetration, BoundsProbeAdapter* adapter)
+    : query_(query), result_(result), bodies_(bodies), separation_search_(penetration), adapter_(adapter) {
   // The set of a convex body is the body itself, slightly shrunk: computed once for all queries below.
   for (const Side side : {Side::a, Side::b}) whole_[static_cast<int>(side)] = shrunken(side);
 }
@@ -187,7 +187,7 @@ std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
   if (!(most > 0)) return std::nullopt;
   unsigned tries = 0;
   // Compass search: step along each axis, and halve the step when no step gains.
-  for (double step = most; step > kStartStep * most && tries < kMostSteps;) {
+  for (double step = most; step > kStartStep * most && tries < kMaxSteps;) {
     bool moved = false;
     for (int k = 0; k < 3; ++k)
       for (const double sign : {-1.0, 1.0}) {
@@ -229,28 +229,28 @@ std::optional<DepthFinder::Common> DepthFinder::common_sets(const Vector3d& shif
 }
 
 /// Reports the bounds. `least`: length of the shortest translation found so far, in units.
-void DepthFinder::tell(double least) {
-  if (teller_ == nullptr) return;
+void DepthFinder::notify(double least) {
+  if (adapter_ == nullptr) return;
   const double upper = least < kInfinity ? bodies_.frame.length_to_world(least) : kInfinity;
-  teller_->tell(parting_.asked() + grown_, told_lower_, upper);
+  adapter_->notify(separation_search_.asked() + grown_, reported_lower_, upper);
 }
 
 /// Expands the Minkowski difference and reports its bounds: lower bounds from sets inside the bodies, upper
 /// bounds from the convex hulls.
-void DepthFinder::find_depth(MinkowskiDifference& difference, unsigned most_steps, bool is_inner) {
-  if (teller_ == nullptr) {
-    difference.find_depth(most_steps);
+void DepthFinder::find_depth(MinkowskiDifference& difference, unsigned max_steps, bool is_inner) {
+  if (adapter_ == nullptr) {
+    difference.find_depth(max_steps);
     return;
   }
   // In chunks of increasing size, with a report after each.
-  for (unsigned done = 0; done < most_steps;) {
-    const auto look = static_cast<unsigned>(BoundsTeller::next_look(done));
-    const unsigned steps = std::min(look, most_steps) - done;
+  for (unsigned done = 0; done < max_steps;) {
+    const auto look = static_cast<unsigned>(BoundsProbeAdapter::next_look(done));
+    const unsigned steps = std::min(look, max_steps) - done;
     const unsigned grown = difference.find_depth(steps);
     done += grown;
     grown_ += grown;
-    if (is_inner) told_lower_ = bodies_.frame.length_to_world(difference.depth_lower());
-    tell(is_inner ? kInfinity : difference.depth_upper());
+    if (is_inner) reported_lower_ = bodies_.frame.length_to_world(difference.depth_lower());
+    notify(is_inner ? kInfinity : difference.depth_upper());
     // Finished before the end of the chunk.
     if (grown < steps) return;
   }
@@ -285,18 +285,18 @@ void DepthFinder::improve(const Vector3d& n, double& best, Vector3d& best_n) {
   if (!(width > 0)) return;
   // Only translations that are clearly shorter than the best one count.
   const double most = std::min(width, best * (1 - kDirectionGain));
-  const double s = parting_.least_apart(n, most, kDirectionSamples);
+  const double s = separation_search_.least_separation(n, most, kDirectionSamples);
   // No sample separates, unless the width itself is the improvement.
   if (s >= most && (most < width || !(width < best))) return;
   best = s;
   best_n = n;
-  tell(best);
+  notify(best);
 }
 
 /// Rotates the direction by decreasing angles while that shortens the translation.
 void DepthFinder::refine(double& best, Vector3d& best_n) {
   unsigned tries = 0;
-  for (double step = kFirstTurn; step > kLeastTurn && tries < kMostSteps;) {
+  for (double step = kFirstTurn; step > kMinTurn && tries < kMaxSteps;) {
     // Two axes normal to the direction; small rotations towards each, both ways.
     const Vector3d across = best_n.unitOrthogonal(), other = best_n.cross(across);
     bool shorter = false;
@@ -305,11 +305,11 @@ void DepthFinder::refine(double& best, Vector3d& best_n) {
       // Require a gain proportional to the angle, so that a single query rejects a rotation without it.
       const double s = best * (1 - kTurnGain * step);
       ++tries;
-      if (!parting_.is_apart(n, s)) continue;
+      if (!separation_search_.is_separated(n, s)) continue;
       // Without sampling: bisect below the length that was just found to separate.
-      best = parting_.least_apart(n, s, 1);
+      best = separation_search_.least_separation(n, s, 1);
       best_n = n;
-      tell(best);
+      notify(best);
       shorter = true;
       break;
     }
@@ -326,17 +326,17 @@ double DepthFinder::raise_lower(double known, double& best, Vector3d& best_n) {
   });
   // Nothing to gain, or no common point to start from. No depth exceeds 1 unit, the size of both bodies.
   if (known >= kNarrowDepth * best || !proof.begin(common_, std::min(best, kUnitReach * 0.5))) return known;
-  constexpr unsigned kPart = kMostRoomPoints / kRoomLooks;
+  constexpr unsigned kPart = kMaxRoomPoints / kRoomLooks;
   for (unsigned part = 0; part < kRoomLooks && proof.lower() < kNarrowDepth * best; ++part) {
     // Alternate between proving and searching in the direction where the proof got stuck.
     const unsigned looked = proof.grow(kPart);
     grown_ += looked;
-    told_lower_ = std::max(told_lower_, bodies_.frame.length_to_world(proof.lower()));
+    reported_lower_ = std::max(reported_lower_, bodies_.frame.length_to_world(proof.lower()));
     // Where the proof fails, a shorter translation may exist.
     const double before = best;
     if (proof.doubtful().norm() > 0) improve(proof.doubtful().normalized(), best, best_n);
     if (best < before) refine(best, best_n);
-    tell(best);
+    notify(best);
     // The proof cannot continue.
     if (looked < kPart) break;
   }
@@ -351,13 +351,13 @@ DepthFinder::Depth DepthFinder::depth() {
   // Step 1: proven lower bound from convex sets around a common point.
   if (const std::optional<Common> sets = common_sets(Vector3d::Zero(), WholeTriangles::no)) {
     MinkowskiDifference difference(sets->a, sets->b);
-    find_depth(difference, kMostDepthSteps, true);
+    find_depth(difference, kMaxDepthSteps, true);
     lower = difference.depth_lower();
   }
   // Step 2: upper bound from the convex hulls, which contain the bodies.
   const ConvexPoints &a = bodies_.body[0].points, &b = bodies_.body[1].points;
   MinkowskiDifference hulls(a, b);
-  find_depth(hulls, convex ? kMostDepthSteps : kRoughDepthSteps, false);
+  find_depth(hulls, convex ? kMaxDepthSteps : kRoughDepthSteps, false);
   double best = hulls.depth_upper();
   Vector3d best_n = hulls.direction();
   // Steps 3 and 4, for bodies that are not convex, which may be separated before their hulls are.
@@ -368,15 +368,16 @@ DepthFinder::Depth DepthFinder::depth() {
   }
   out.length.lower = bodies_.frame.length_to_world(lower);
   // Step 5: prove the best translation, or else that of the convex hulls, which depends on no sampling.
-  std::optional<PartingMove> move;
-  if (best < kInfinity) move = parting_.prove(best_n, best);
-  if (best < kInfinity && !move) move = parting_.prove(hulls.direction(), hulls.depth_upper());
+  std::optional<SeparatingTranslation> move;
+  if (best < kInfinity) move = separation_search_.prove(best_n, best);
+  if (best < kInfinity && !move) move = separation_search_.prove(hulls.direction(), hulls.depth_upper());
   if (move) {
     out.translation = move->translation;
     out.length.upper = move->length;
   }
   // The answer's bounds, even if the unproven ones reported before were narrower.
-  if (teller_ != nullptr) teller_->settle(parting_.asked() + grown_, out.length.lower, out.length.upper);
+  if (adapter_ != nullptr)
+    adapter_->settle(separation_search_.asked() + grown_, out.length.lower, out.length.upper);
   return out;
 }
 
@@ -384,7 +385,7 @@ DepthFinder::Depth DepthFinder::depth() {
 /// next step, where another common point is searched.
 double DepthFinder::along_lower(const Vector3d& n) {
   double from = 0, lower = 0;
-  for (unsigned step = 0; step < kMostWaySteps; ++step) {
+  for (unsigned step = 0; step < kMaxWaySteps; ++step) {
     // Convex sets of the bodies with B at the current translation.
     const std::optional<Common> sets = common_sets(from * n, WholeTriangles::yes);
     if (!sets) break;
@@ -395,7 +396,7 @@ double DepthFinder::along_lower(const Vector3d& n) {
     const double gain = difference.along_lower(n);
     // Rounded down.
     const double next = (from + gain) * (1 - 0x1p-50);
-    if (!(next > lower + kPartingMargin)) break;
+    if (!(next > lower + kSeparationMargin)) break;
     lower = next;
     // Convex bodies: one step is enough.
     if (whole_[0] && whole_[1]) break;
@@ -409,11 +410,12 @@ ProvedInterval DepthFinder::along(const Vector3d& n) {
   const double lower = along_lower(n), width = hull_width(n);
   // Candidates, the shortest first: the lower bound itself, the first separating sample, the width of the
   // hulls.
-  std::optional<double> upper = parting_.prove_along(n, lower);
-  if (!upper) upper = parting_.prove_along(n, parting_.least_apart(n, width, kWaySamples));
-  if (!upper) upper = parting_.prove_along(n, width);
+  std::optional<double> upper = separation_search_.prove_along(n, lower);
+  if (!upper)
+    upper = separation_search_.prove_along(n, separation_search_.least_separation(n, width, kWaySamples));
+  if (!upper) upper = separation_search_.prove_along(n, width);
   const UnitFrame& frame = bodies_.frame;
   return {frame.length_to_world(lower), upper ? frame.length_to_world(*upper) : kInfinity};
 }
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

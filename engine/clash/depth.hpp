@@ -10,7 +10,7 @@
 #include "engine/clash/unit_bodies.hpp"
 #include <lrbscope/clash.hpp>
 
-namespace lrb::parting {
+namespace lrb::penetration {
 
 /// Bounds depths. Lower bounds come from overlapping sets inside the bodies, upper bounds from translations
 /// that are proven to separate. For convex bodies both agree up to rounding.
@@ -18,8 +18,8 @@ class DepthFinder {
  public:
   /// `query`: begun with the bodies, which must be closed. `result`: all pairs of intersecting simplices.
   /// teller: null, or notified of bounds on the depth.
-  DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies, Parting& parting,
-              BoundsTeller* teller = nullptr);
+  DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies,
+              SeparationSearch& penetration, BoundsProbeAdapter* adapter = nullptr);
 
   struct Depth {
     ProvedInterval length;  ///< world
@@ -46,21 +46,21 @@ class DepthFinder {
   std::vector<Vector3d> directions();
   void improve(const Vector3d& n, double& best, Vector3d& best_n);
   void refine(double& best, Vector3d& best_n);
-  void find_depth(MinkowskiDifference& difference, unsigned most_steps, bool is_inner);
-  void tell(double least);
+  void find_depth(MinkowskiDifference& difference, unsigned max_steps, bool is_inner);
+  void notify(double least);
   double hull_width(const Vector3d& n) const;
   double along_lower(const Vector3d& n);
 
   QueryContext& query_;
   const CollideResult& result_;
   const UnitBodies& bodies_;
-  Parting& parting_;
-  BoundsTeller* teller_;
-  double told_lower_ = 0;                      ///< lower bound on the depth, world units; only with a teller
+  SeparationSearch& separation_search_;
+  BoundsProbeAdapter* adapter_;
+  double reported_lower_ = 0;                  ///< lower bound on the depth, world units; only with a teller
   std::uint64_t grown_ = 0;                    ///< number of expansion steps; only with a teller
   std::optional<ConvexPoints> whole_[2];       ///< the set of a convex body
   std::optional<SurfaceDistance> surface_[2];  ///< built on first use
   std::vector<Vector3d> common_;               ///< points of both bodies at their poses, the deepest first
 };
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

@@ -17,7 +17,7 @@
 #include "engine/core/geometry.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 
-namespace lrb::parting {
+namespace lrb::penetration {
 namespace {
 
 Vector3d nearest_point(const Vector3d& x, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
@@ -48,7 +48,7 @@ class Planes {
     // Cheapest first: single planes, then combinations of two.
     if (part(x) || part_by_two(x)) return true;
     // No plane separates a corner that is behind all of them, however small the parts.
-    if (depth == kMostSplits || is_entered(x)) return false;
+    if (depth == kMaxSplits || is_entered(x)) return false;
     // Four parts at the midpoints of the edges: each may be separated by a different plane.
     const Corners middle = {0.5 * (x[0] + x[1]), 0.5 * (x[1] + x[2]), 0.5 * (x[2] + x[0])};
     return part_split({x[0], middle[0], middle[2]}, depth + 1) &&
@@ -149,7 +149,7 @@ bool is_inside(const UnitBody& body, const ConvexPoints& set) {
     if (planes.last_parts(corners)) continue;
     // Slivers have inaccurate normals: retried below with all planes, if there are few.
     left.push_back(corners);
-    if (left.size() > kMostHardTriangles) return false;
+    if (left.size() > kMaxHardTriangles) return false;
   }
   // Quadratic in the number of such triangles, hence the limit.
   return std::all_of(left.begin(), left.end(), [&](const Corners& x) { return planes.part(x); });
@@ -251,7 +251,7 @@ class Inflation {
     const Vector3d x = nearest();
     const double distance = x.norm();
     // The surface is too close to the seed for any proof.
-    if (!(distance > kLeastClearance)) return false;
+    if (!(distance > kMinClearance)) return false;
     // Select the plane that loses least, among those that keep the share kLittleLost of their first offset.
     HalfSpace* moved = nullptr;
     for (HalfSpace& h : half_spaces_) {
@@ -269,7 +269,7 @@ class Inflation {
       moved->offset = is_rounding ? nudged : kLittleLost * moved->first * (1 - kClipShare);
     } else {
       // A new plane, normal to the direction of the nearest point.
-      if (half_spaces_.size() >= kMostHalfSpaces) return false;
+      if (half_spaces_.size() >= kMaxHalfSpaces) return false;
       half_spaces_.push_back({x / distance, distance, distance, false});
       moved = &half_spaces_.back();
     }
@@ -314,7 +314,7 @@ class Inflation {
   /// Excludes a triangle: moves the half-space that loses least inward if the loss is small, otherwise adds a
   /// half-space.
   bool keep_out(const Near& n) {
-    if (!(n.distance > kLeastClearance)) return false;
+    if (!(n.distance > kMinClearance)) return false;
     HalfSpace* best = nullptr;
     double best_offset = 0, best_share = kLittleLost;
     for (HalfSpace& h : half_spaces_) {
@@ -332,7 +332,7 @@ class Inflation {
       best->offset = best_offset;
       return true;
     }
-    if (half_spaces_.size() >= kMostHalfSpaces) return false;
+    if (half_spaces_.size() >= kMaxHalfSpaces) return false;
     const Vector3d normal = n.way / n.distance;
     // In front of the entire triangle: by rounding a corner may be nearer than the nearest point.
     const double offset = std::min(least(normal, n.triangle), n.distance);
@@ -377,7 +377,7 @@ class Inflation {
 
 std::optional<ConvexPoints> shrunken_body(const UnitBody& body, const Vector3d& inside) {
   // The work is quadratic, so large bodies are not tried.
-  if (static_cast<double>(body.points.size()) * static_cast<double>(body.triangles.size()) > kMostConvexWork)
+  if (static_cast<double>(body.points.size()) * static_cast<double>(body.triangles.size()) > kMaxConvexWork)
     return std::nullopt;
   // Reject bodies that are clearly not convex, before the expensive proof.
   for (const auto& t : body.triangles)
@@ -394,4 +394,4 @@ std::optional<ConvexPoints> convex_about(const UnitBody& body, const Vector3d& i
   return Inflation(body, inside).run(whole);
 }
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

@@ -19,7 +19,7 @@
 #include "engine/distance/pair_bounds.hpp"
 #include "engine/exact/predicates.hpp"
 
-namespace lrb::parting {
+namespace lrb::penetration {
 namespace {
 
 const Vector3d& farthest(const ConvexPoints& points, const Vector3d& n) {
@@ -105,10 +105,10 @@ bool MinkowskiDifference::grow(std::size_t facet) {
   return width - f.offset > kDepthGain && hull_.add(x);
 }
 
-unsigned MinkowskiDifference::find_depth(unsigned most_steps) {
+unsigned MinkowskiDifference::find_depth(unsigned max_steps) {
   if (!solid_) return 0;
   unsigned step = 0;
-  for (; step < most_steps && upper_ > 0; ++step) {
+  for (; step < max_steps && upper_ > 0; ++step) {
     // The nearest facet that is not final.
     const std::vector<PointHull::Facet>& facets = hull_.facets();
     std::size_t nearest = facets.size();
@@ -130,7 +130,7 @@ double MinkowskiDifference::exit_of(const PointHull::Facet& f, const Vector3d& n
 
 void MinkowskiDifference::follow(const Vector3d& n) {
   if (!solid_) return;
-  for (unsigned step = 0; step < kMostDepthSteps; ++step) {
+  for (unsigned step = 0; step < kMaxDepthSteps; ++step) {
     const std::vector<PointHull::Facet>& facets = hull_.facets();
     // The facet through which the ray leaves the polytope.
     std::size_t first = 0;
@@ -238,4 +238,4 @@ bool PointHull::holds_inside(const Vector3d& point) const {
   return std::all_of(facets_.begin(), facets_.end(), [&](const Facet& f) { return side(f, point) < 0; });
 }
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

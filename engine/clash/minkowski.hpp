@@ -10,7 +10,7 @@
 
 #include "engine/clash/clash_parts.hpp"
 
-namespace lrb::parting {
+namespace lrb::penetration {
 
 class PointHull {
  public:
@@ -57,9 +57,9 @@ class MinkowskiDifference {
   MinkowskiDifference(const ConvexPoints& a, const ConvexPoints& b);
 
   /// Expands the polytope until the distance of the origin from its boundary equals the distance from the
-  /// boundary of the Minkowski difference, or for `most_steps` steps. Continues earlier calls. Returns the
+  /// boundary of the Minkowski difference, or for `max_steps` steps. Continues earlier calls. Returns the
   /// number of steps.
-  unsigned find_depth(unsigned most_steps);
+  unsigned find_depth(unsigned max_steps);
   /// Expands the polytope where the ray from the origin in direction `n` leaves it.
   void follow(const Vector3d& n);
 
@@ -93,4 +93,4 @@ class MinkowskiDifference {
   double upper_ = std::numeric_limits<double>::infinity();
 };
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

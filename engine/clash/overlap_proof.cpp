@@ -17,7 +17,7 @@
 
 #include "engine/clash/clash_tolerances.hpp"
 
-namespace lrb::parting {
+namespace lrb::penetration {
 namespace {
 
 /// At least sqrt(3).
@@ -92,7 +92,7 @@ bool OverlapProof::look(const Vector3d& x, const Vector3d& v, const Common& near
 /// points of the surfaces, because the choice among equally near ones depends on the triangulation.
 void OverlapProof::climb(double needed, bool thorough, Common& best) {
   // Halve the step until the clearance suffices, or until steps are too small to matter.
-  for (double step = needed / 2; step > needed * kLeastClimb && !(best.room() > needed); step /= 2) {
+  for (double step = needed / 2; step > needed * kMinClimb && !(best.room() > needed); step /= 2) {
     // A large cube with little clearance is divided rather than searched.
     if (!thorough && !(best.room() > needed * kNearlyEnough)) return;
     for (int k = 0; k < 3; ++k)
@@ -170,14 +170,14 @@ bool OverlapProof::prove(const Cube& cube, Common& best) {
   return false;
 }
 
-unsigned OverlapProof::grow(unsigned most_points) {
+unsigned OverlapProof::grow(unsigned max_points) {
   const unsigned before = points_;
-  while (!cubes_.empty() && points_ - before < most_points) {
+  while (!cubes_.empty() && points_ - before < max_points) {
     // The cube nearest to 0 bounds the proven translations.
     const Cube cube = cubes_.front();
     lower_ = std::max(lower_, cube.least);
     // Too small to be worth dividing: the proof ends.
-    if (cube.half < kLeastCube) return points_ - before;
+    if (cube.half < kMinCube) return points_ - before;
     std::pop_heap(cubes_.begin(), cubes_.end(), is_later<Cube>);
     cubes_.pop_back();
     // The parent's point, with clearance 0: any point found for this cube counts as better.
@@ -198,4 +198,4 @@ unsigned OverlapProof::grow(unsigned most_points) {
   return points_ - before;
 }
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

@@ -15,7 +15,7 @@
 #include "engine/clash/clash_tolerances.hpp"
 #include "engine/clash/unit_bodies.hpp"
 
-namespace lrb::parting {
+namespace lrb::penetration {
 
 class OverlapProof {
  public:
@@ -28,9 +28,9 @@ class OverlapProof {
   /// which must be less than 2 and should be slightly above the depth. Returns false if no point is in both
   /// bodies.
   bool begin(const std::vector<Vector3d>& common, double most);
-  /// Continues until about `most_points` more points have been tried, or nothing more can be proven. Returns
+  /// Continues until about `max_points` more points have been tried, or nothing more can be proven. Returns
   /// the number of points tried.
-  unsigned grow(unsigned most_points);
+  unsigned grow(unsigned max_points);
   /// Returns a proven lower bound: after all shorter translations of B the interiors overlap.
   double lower() const { return lower_; }
   /// Returns a translation near the shortest one that is not proven, which may separate the bodies, or 0 if
@@ -70,4 +70,4 @@ class OverlapProof {
   unsigned points_ = 0;
 };
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

@@ -11,10 +11,10 @@
 #include "engine/collide/collide_into.hpp"
 #include "engine/core/tolerances.hpp"
 
-namespace lrb::parting {
+namespace lrb::penetration {
 
-Parting::Parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                 const UnitBodies& bodies)
+SeparationSearch::SeparationSearch(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                                   const UnitBodies& bodies)
     : a_(a), b_(b), pose_a_(pose_a), pose_b_(pose_b), frame_(bodies.frame) {
   // Real faces only, so that the result does not depend on the regions.
   for (FaceId f = 0; f < b.real_face_count(); ++f)
@@ -22,7 +22,7 @@ Parting::Parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
       reach_ = std::max(reach_, pose_b.apply(b.vertices()[v]).cwiseAbs().maxCoeff());
 }
 
-Parting::Moved Parting::moved(const Vector3d& n, double s) const {
+SeparationSearch::Moved SeparationSearch::moved(const Vector3d& n, double s) const {
   Moved m{pose_b_, Vector3d::Zero()};
   for (int k = 0; k < 3; ++k) m.pose.t[k] += frame_.length_to_world(s * n[k]);
   // The actual displacement, rounded once. The pose is rounded as well, so this differs from s n.
@@ -30,7 +30,7 @@ Parting::Moved Parting::moved(const Vector3d& n, double s) const {
   return m;
 }
 
-bool Parting::is_apart(const Vector3d& n, double s) {
+bool SeparationSearch::is_separated(const Vector3d& n, double s) {
   const Moved m = moved(n, s);
   // Coordinates could overflow. NaN is rejected as well.
   if (!m.pose.t.allFinite() || !(reach_ + m.by.cwiseAbs().maxCoeff() < kLargestMoved)) return false;
@@ -48,7 +48,7 @@ bool Parting::is_apart(const Vector3d& n, double s) {
 /// reach_ + 2 |by|) in length, u = 2^-53, plus the loss near underflow. Bodies that are farther apart than
 /// this are separate after the exact translation as well, because the surfaces do not intersect between the
 /// two positions.
-bool Parting::is_proved(const Moved& m, double more) {
+bool SeparationSearch::is_proved(const Moved& m, double more) {
   if (!m.pose.t.allFinite() || !(reach_ + m.by.cwiseAbs().maxCoeff() < kLargestMoved)) return false;
   // 0x1p-51 is 4 u, from the derivation above; `more` is the caller's own error.
   const double rounding = 0x1p-51 * (reach_ + m.by.norm()) + more + kWorldUnderflow;
@@ -61,21 +61,21 @@ bool Parting::is_proved(const Moved& m, double more) {
   return result.relation == Relation::separate && result.within && !*result.within;
 }
 
-std::optional<PartingMove> Parting::prove(const Vector3d& n, double s) {
+std::optional<SeparatingTranslation> SeparationSearch::prove(const Vector3d& n, double s) {
   // Rounding of world coordinates, in units.
   const double rounding = std::ldexp(0x1p-50 * (reach_ + frame_.length_to_world(s)), -frame_.exponent);
   // Add a margin that grows by a factor of 8 until the proof succeeds.
-  for (double more = kPartingMargin + 2 * rounding; more < kMostPartingMargin; more *= 8) {
+  for (double more = kSeparationMargin + 2 * rounding; more < kMaxSeparationMargin; more *= 8) {
     const Moved m = moved(n, s + more);
-    if (is_proved(m, 0)) return PartingMove{m.by, m.by.stableNorm() * (1 + 0x1p-50)};
+    if (is_proved(m, 0)) return SeparatingTranslation{m.by, m.by.stableNorm() * (1 + 0x1p-50)};
   }
   return std::nullopt;
 }
 
-std::optional<double> Parting::prove_along(const Vector3d& n, double s) {
+std::optional<double> SeparationSearch::prove_along(const Vector3d& n, double s) {
   // As in prove(), but the direction must be n itself.
   const double rounding = std::ldexp(0x1p-50 * (reach_ + frame_.length_to_world(s)), -frame_.exponent);
-  for (double more = kPartingMargin + 2 * rounding; more < kMostPartingMargin; more *= 8) {
+  for (double more = kSeparationMargin + 2 * rounding; more < kMaxSeparationMargin; more *= 8) {
     const Moved m = moved(n, s + more);
     Vector3d wanted;
     for (int k = 0; k < 3; ++k) wanted[k] = frame_.length_to_world((s + more) * n[k]);
@@ -86,25 +86,25 @@ std::optional<double> Parting::prove_along(const Vector3d& n, double s) {
   return std::nullopt;
 }
 
-double Parting::least_apart(const Vector3d& n, double most, int samples) {
+double SeparationSearch::least_separation(const Vector3d& n, double most, int samples) {
   // A linear search for the first sample that separates: concave bodies may collide again farther out.
   double met = 0, apart = most;
   for (int i = 1; i < samples; ++i) {
     const double s = most * i / samples;
-    if (is_apart(n, s)) {
+    if (is_separated(n, s)) {
       apart = s;
       break;
     }
     met = s;
   }
   // Bisection between the last colliding and the first separating sample.
-  while (apart - met > kPartingMargin) {
+  while (apart - met > kSeparationMargin) {
     const double middle = 0.5 * (met + apart);
     // No double lies between the two.
     if (!(middle > met && middle < apart)) break;
-    (is_apart(n, middle) ? apart : met) = middle;
+    (is_separated(n, middle) ? apart : met) = middle;
   }
   return apart;
 }
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

@@ -6,31 +6,32 @@
 #include "engine/clash/unit_bodies.hpp"
 #include "engine/distance/distance_context.hpp"
 
-namespace lrb::parting {
+namespace lrb::penetration {
 
 /// A translation after which two bodies are separate.
-struct PartingMove {
+struct SeparatingTranslation {
   Vector3d translation{0, 0, 0};  ///< world
   double length = 0;              ///< at least the translation's length, rounded up
 };
 
-class Parting {
+class SeparationSearch {
  public:
-  Parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, const UnitBodies& bodies);
+  SeparationSearch(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                   const UnitBodies& bodies);
 
   /// Returns true if the exact query finds the bodies separate after B's pose is translated by `s` times `n`
   /// (units).
-  bool is_apart(const Vector3d& n, double s);
+  bool is_separated(const Vector3d& n, double s);
   /// Proves that a translation of B along n by `s` or slightly more separates it from A. Returns nullopt if
   /// the proof fails.
-  std::optional<PartingMove> prove(const Vector3d& n, double s);
+  std::optional<SeparatingTranslation> prove(const Vector3d& n, double s);
   /// Proves that a translation of B by exactly s n, for `s` or a slightly larger s, separates it from A.
   /// Returns that s (units), or nullopt if the proof fails.
   std::optional<double> prove_along(const Vector3d& n, double s);
   /// Returns the least of some sampled lengths along n, up to `most`, at which the bodies are separate,
   /// refined by bisection, or `most` if no sample separates. Usually, but not always, finds the first
   /// separation.
-  double least_apart(const Vector3d& n, double most, int samples);
+  double least_separation(const Vector3d& n, double most, int samples);
   /// Returns the number of queries.
   std::uint64_t asked() const { return asked_; }
 
@@ -51,4 +52,4 @@ class Parting {
   DistanceContext distance_;
 };
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

@@ -40,7 +40,7 @@
 
 #include "engine/clash/clash_parts.hpp"
 
-namespace lrb::parting {
+namespace lrb::penetration {
 namespace {
 
 using Eigen::Vector2d;
@@ -63,12 +63,12 @@ struct Seen {
   int sign = 0;         ///< 1: faces up (+x); -1: down; 0: ambiguous
   Eigen::AlignedBox2d box;
 
-  double range() const { return std::max({height[0], height[1], height[2]}) - least_height(); }
-  double least_height() const { return std::min({height[0], height[1], height[2]}); }
+  double range() const { return std::max({height[0], height[1], height[2]}) - min_height(); }
+  double min_height() const { return std::min({height[0], height[1], height[2]}); }
 
   double height_at(const Vector2d& x) const {
     // The lowest corner's height plus weighted differences: errors scale only with the range of heights.
-    const double least = least_height();
+    const double least = min_height();
     double sum = 0;
     for (int k = 0; k < 3; ++k) {
       const Vector2d a = p[(k + 1) % 3] - x, b = p[(k + 2) % 3] - x;
@@ -271,4 +271,4 @@ ProvedInterval shared_volume(const UnitBodies& bodies) {
   return sum.interval(rounding_of_corners(bodies.body[0]) + rounding_of_corners(bodies.body[1]));
 }
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

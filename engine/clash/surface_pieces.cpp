@@ -20,7 +20,7 @@
 #include "engine/exact/predicates.hpp"
 #include <lrbscope/contact.hpp>
 
-namespace lrb::parting {
+namespace lrb::penetration {
 namespace {
 
 /// Disjoint sets (union-find); a set is represented by its least member.
@@ -217,7 +217,7 @@ class CutSurface {
 
   /// Connects the nodes along one edge. Returns false if that cannot be decided.
   bool join_at(std::span<const EdgeUse> uses) {
-    // Components of the uncut surface, for `most_outside`.
+    // Components of the uncut surface, for `max_outside`.
     for (const EdgeUse& use : uses) surface_.join(uses[0].simplex, use.simplex);
     const double *from = body_.world(uses[0].from), *to = body_.world(uses[0].to);
     bool is_free = false, any_touched = false;
@@ -335,8 +335,7 @@ class CutSurface {
       const Where w = where();
       if (w == Where::inside) ++out.inside;
       // Two or more pieces outside on one component mean that the other body passes through it.
-      if (w == Where::outside)
-        out.most_outside = std::max(out.most_outside, ++outside[surface_.of(s.value())]);
+      if (w == Where::outside) out.max_outside = std::max(out.max_outside, ++outside[surface_.of(s.value())]);
       out.outside += w == Where::outside;
     };
     for (SimplexId s = 0; s < body_.rep().real_simplex_count(); ++s) {
@@ -427,4 +426,4 @@ std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context
   return out;
 }
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

@@ -14,7 +14,7 @@
 #include <lrbscope/clash.hpp>
 #include <lrbscope/ids.hpp>
 
-namespace lrb::parting {
+namespace lrb::penetration {
 
 // A face that the other surface cuts along disjoint chains from border to border, the usual case.
 
@@ -79,4 +79,4 @@ std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context
                                                            bool only_rational = false,
                                                            ClashReason* reason = nullptr);
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

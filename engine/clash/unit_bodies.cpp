@@ -15,7 +15,7 @@
 #include "engine/core/geometry.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 
-namespace lrb::parting {
+namespace lrb::penetration {
 
 // Distance from a point to a surface by an AABB tree with median splits, traversed depth-first with the
 // nearer child first. Distances of boxes prune; triangles yield proven lower bounds of their distance.
@@ -177,4 +177,4 @@ UnitBodies unit_bodies(QueryContext& context) {
   return out;
 }
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

@@ -11,7 +11,7 @@
 
 #include "engine/collide/query_context.hpp"
 
-namespace lrb::parting {
+namespace lrb::penetration {
 
 using Eigen::Vector3d;
 
@@ -64,4 +64,4 @@ class SurfaceDistance {
   std::vector<Node> nodes_;
 };
 
-}  // namespace lrb::parting
+}  // namespace lrb::penetration

@@ -76,7 +76,7 @@ BruteForceResult brute_force(const LrbRep& a, const Pose& pose_a, const LrbRep& 
       if (meet == exact::Meet::disjoint) continue;
       result.pairs.push_back({s, t});
       result.meets.push_back(meet);
-      if (result.pairs.size() > kMostPairs) refuse_pairs(kMostPairs);
+      if (result.pairs.size() > kMaxPairs) reject_pairs(kMaxPairs);
       crosses |= meet == exact::Meet::cross;
     }
   }

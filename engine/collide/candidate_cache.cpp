@@ -24,13 +24,13 @@ namespace lrb {
 
 namespace {
 
-constexpr double kFewestSteps = 2, kMostSteps = 64;
+constexpr double kFewestSteps = 2, kMaxSteps = 64;
 constexpr double kLonger = 1.5;
 /// After a cache that did not pay, the number of steps is multiplied by this.
 constexpr double kMuchShorter = 0.4;
 /// Number of successive failures before a pause. A single one may be due to too long a cache, or to the
 /// clock.
-constexpr std::uint32_t kMostFailures = 2;
+constexpr std::uint32_t kMaxFailures = 2;
 /// The remembered cost of the other kind is multiplied by this with every cache, so that it is tried again
 /// eventually.
 constexpr double kForget = 0.95;
@@ -98,9 +98,9 @@ std::optional<CachePolicy::Plan> CachePolicy::next(bool is_steady, double step, 
     if (cost() >= 1 && !is_fresh_) return {};  // queries from scratch may have become slower since
     // Rate the last cache before the next one is planned.
     take_stock();
-    if (failures_ == kMostFailures) {
+    if (failures_ == kMaxFailures) {
       // Pause. One more failure afterwards is enough for the next pause.
-      failures_ = kMostFailures - 1;
+      failures_ = kMaxFailures - 1;
       too_long_ = step;
       rest();
       return {};
@@ -161,7 +161,7 @@ void CachePolicy::take_stock() {
     ++failures_;
     used.steps *= kMuchShorter;
   }
-  used.steps = std::clamp(used.steps, kFewestSteps, kMostSteps);
+  used.steps = std::clamp(used.steps, kFewestSteps, kMaxSteps);
   // Average the cost, but replace one that is unknown or did not pay.
   used.cost = used.cost > 0 && used.cost < 1 ? (used.cost + now) / 2 : now;
   build_time_ = 0;

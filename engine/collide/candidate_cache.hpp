@@ -202,11 +202,11 @@ bool CandidateCache::update(const TreeKernel& k, Exact&& exact, See&& see) {
     for (unsigned left = looked_at; left != 0; left &= left - 1) {
       const int lane = std::countr_zero(left);
       const std::uint32_t pair = chosen_[i + static_cast<std::size_t>(lane)];
-      const bool crosses = (v.cross >> lane & 1) != 0, parted = kIsSeen && (v.disjoint >> lane & 1) != 0;
-      const exact::Meet meet = crosses  ? exact::Meet::cross
-                               : parted ? exact::Meet::disjoint
-                                        : exact(pairs_[pair]);
-      see(pairs_[pair], meet, crosses || parted);
+      const bool crosses = (v.cross >> lane & 1) != 0, rejected = kIsSeen && (v.disjoint >> lane & 1) != 0;
+      const exact::Meet meet = crosses    ? exact::Meet::cross
+                               : rejected ? exact::Meet::disjoint
+                                          : exact(pairs_[pair]);
+      see(pairs_[pair], meet, crosses || rejected);
       if (meet != exact::Meet::disjoint) meeting_.push_back({pair, meet});
     }
   }

@@ -115,7 +115,7 @@ struct LimitedRules {
     return done >= between_looks::kTests && time_is_up(pairs);
   }
   /// Returns the number of node pairs after which the kernel must return.
-  std::uint64_t most_node_pairs(std::uint64_t pairs) const {
+  std::uint64_t max_node_pairs(std::uint64_t pairs) const {
     return has_deadline ? pairs + between_looks::kNodePairs : kNoLimit;
   }
 };
@@ -149,20 +149,20 @@ class TrialRules : public LimitedRules<Clock> {
   /// limit were found.
   bool gives_up(bool too_many) {
     if (crossed_at_ == kNoLimit) return false;
-    const bool much = waiting_ > few_waiting + crossed_at_ / 4 || node_pairs_ >= crossed_at_ + kMostMore;
+    const bool much = waiting_ > few_waiting + crossed_at_ / 4 || node_pairs_ >= crossed_at_ + kMaxMore;
     gave_up_ = too_many || (waiting_ > 0 && much);
     return gave_up_;
   }
   bool gave_up() const { return gave_up_; }
 
-  std::uint64_t most_node_pairs(std::uint64_t pairs) const {
-    const std::uint64_t limit = LimitedRules<Clock>::most_node_pairs(pairs);
+  std::uint64_t max_node_pairs(std::uint64_t pairs) const {
+    const std::uint64_t limit = LimitedRules<Clock>::max_node_pairs(pairs);
     return crossed_at_ == kNoLimit ? limit : std::min(limit, pairs + kBetween);
   }
 
  private:
   /// Maximum number of node pairs after the first crossing pair, and interval at which the stack is checked.
-  static constexpr std::uint64_t kMostMore = 192, kBetween = 16;
+  static constexpr std::uint64_t kMaxMore = 192, kBetween = 16;
 
   std::uint64_t node_pairs_ = 0, crossed_at_ = kNoLimit;
   std::uint32_t waiting_ = 0;

@@ -62,11 +62,11 @@ class CoherentQuery::Work {
   template <class Probe>
   bool test_cached(const TreeKernel& k, Probe& probe);
   template <class Probe>
-  void tell_test(const SimplexPair& p, exact::Meet meet, TestedBy by, Probe& probe);
+  void report_test(const SimplexPair& p, exact::Meet meet, TestedBy by, Probe& probe);
   template <class Probe>
-  void tell_kept(Probe& probe);
+  void report_kept(Probe& probe);
   template <class Probe>
-  void tell_reset(Probe& probe);
+  void report_reset(Probe& probe);
   std::uint32_t depth(Side side, SimplexId s) const;
   void collect_answer();
   template <class Probe>
@@ -221,14 +221,14 @@ std::uint32_t CoherentQuery::Work::depth(Side side, SimplexId s) const {
 }
 
 template <class Probe>
-void CoherentQuery::Work::tell_test(const SimplexPair& p, exact::Meet meet, TestedBy by, Probe& probe) {
+void CoherentQuery::Work::report_test(const SimplexPair& p, exact::Meet meet, TestedBy by, Probe& probe) {
   probe.face_test(p.a, p.b, meet, depth(Side::a, p.a), depth(Side::b, p.b));
-  if (is_told_more(probe)) probe.tested_by(by);
+  if (reports_details(probe)) probe.tested_by(by);
 }
 
 /// Reports the regions that are still refined from earlier queries.
 template <class Probe>
-void CoherentQuery::Work::tell_kept(Probe& probe) {
+void CoherentQuery::Work::report_kept(Probe& probe) {
   if constexpr (Probe::kEnabled)
     in_phase(probe, Phase::kept, [&] {
       std::uint64_t count = 0;
@@ -244,7 +244,7 @@ void CoherentQuery::Work::tell_kept(Probe& probe) {
 
 /// Reports that all regions will be included again.
 template <class Probe>
-void CoherentQuery::Work::tell_reset(Probe& probe) {
+void CoherentQuery::Work::report_reset(Probe& probe) {
   if constexpr (Probe::kEnabled)
     for (const Side side : {Side::b, Side::a}) {
       const Wrapper& wrapper = *context_[side].wrapper;
@@ -265,11 +265,11 @@ bool CoherentQuery::Work::still_crosses(Probe& probe) {
   const exact::Meet meet = test_simplices(context_, p.a, p.b);
   const TestedBy by = exact::exact_fallbacks() == fallbacks ? TestedBy::filter : TestedBy::expansions;
   // The wrappers are unchanged, because they show this pair already.
-  tell_kept(probe);
-  if constexpr (Probe::kEnabled) tell_test(p, meet, by, probe);
+  report_kept(probe);
+  if constexpr (Probe::kEnabled) report_test(p, meet, by, probe);
   if (meet != exact::Meet::cross) {
     // The next attempt begins with all regions included: report the refined ones as coarsened.
-    tell_reset(probe);
+    report_reset(probe);
     return false;
   }
   if constexpr (Probe::kEnabled) probe.contact(p.a, p.b, meet);
@@ -346,7 +346,7 @@ bool CoherentQuery::Work::find_candidates(TreeKernel& k, Probe& probe) {
   while (!is_done(k)) {
     k.out_size = 0;
     // The kernel returns when its buffer is nearly full; limits are checked in between.
-    is_told_more(probe) ? NodeWatch<Probe>(context_, probe).run(k) : run_tree_kernel(k);
+    reports_details(probe) ? NodeWatch<Probe>(context_, probe).run(k) : run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i) cache_.add({k.out[i].a, k.out[i].b});
     if (cache_.pairs().size() > request_.pair_limit())
       return false;  // the query itself counts only pairs that intersect
@@ -367,11 +367,11 @@ bool CoherentQuery::Work::test_cached(const TreeKernel& k, Probe& probe) {
   bool found = false, crossing = false;
   return cache_.update(k, exactly, [&](const SimplexPair& p, exact::Meet meet, bool is_certain) {
     const bool exact_needed = std::exchange(fallbacks, exact::exact_fallbacks()) != exact::exact_fallbacks();
-    tell_test(p, meet,
-              is_certain     ? TestedBy::floats
-              : exact_needed ? TestedBy::expansions
-                             : TestedBy::filter,
-              probe);
+    report_test(p, meet,
+                is_certain     ? TestedBy::floats
+                : exact_needed ? TestedBy::expansions
+                               : TestedBy::filter,
+                probe);
     if (meet == exact::Meet::disjoint) return;
     const bool is_better = request_.mode == Mode::first_pair && meet == exact::Meet::cross && !crossing;
     if (request_.mode == Mode::all_pairs || !found || is_better) probe.contact(p.a, p.b, meet);
@@ -383,7 +383,7 @@ bool CoherentQuery::Work::test_cached(const TreeKernel& k, Probe& probe) {
 /// Answers from the cache. B must be within the range for which it is complete.
 template <class Probe>
 void CoherentQuery::Work::answer_from_cache(const SweepPoint& where, Probe& probe) {
-  if (has_answer_) tell_kept(probe);  // otherwise the cache is new, and its regions were just reported
+  if (has_answer_) report_kept(probe);  // otherwise the cache is new, and its regions were just reported
   // Float tests use the current pose, not the pose of the sweep.
   const TreeKernel k = set_up_kernel(a_, context_.body[0].world.pose(), b_, context_.body[1].world.pose());
   const bool has_answer = std::exchange(has_answer_, true);
@@ -438,8 +438,8 @@ const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose
 }
 
 const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose_b, CollideProbe& probe) {
-  Teller teller(probe);
-  return work_->collide(pose_a, pose_b, teller);
+  ProbeAdapter adapter(probe);
+  return work_->collide(pose_a, pose_b, adapter);
 }
 
 const CoherentQuery::Statistics& CoherentQuery::statistics() const {

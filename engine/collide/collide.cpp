@@ -55,8 +55,8 @@ void collide_watched(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const
                      const CollideRequest& request, QueryContext& context, CollideProbe* probe,
                      CollideResult& result) {
   if (probe != nullptr) {
-    Teller teller(*probe);
-    collide_into(a, pose_a, b, pose_b, request, context, teller, result);
+    ProbeAdapter adapter(*probe);
+    collide_into(a, pose_a, b, pose_b, request, context, adapter, result);
   } else {
     NullProbe unwatched;
     collide_into(a, pose_a, b, pose_b, request, context, unwatched, result);

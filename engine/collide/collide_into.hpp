@@ -79,11 +79,11 @@ void collide_watched(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const
                      CollideResult& result);
 
 /// Adapts a CollideProbe to the static probe interface of the query templates.
-class Teller {
+class ProbeAdapter {
  public:
   static constexpr bool kEnabled = true;
 
-  explicit Teller(CollideProbe& probe) : probe_(probe) {}
+  explicit ProbeAdapter(CollideProbe& probe) : probe_(probe) {}
   void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a, std::uint32_t depth_b) {
     probe_.face_test(a, b, meet, depth_a, depth_b);
   }

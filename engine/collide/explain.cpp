@@ -34,15 +34,15 @@ void begin(QueryContext& ctx, const LrbRep& a, const Pose& pose_a, const LrbRep&
 Stepper::Outcome Stepper::step(const NodePair& pair) {
   // Make this pair the only one on the stack, and stop the kernel after it.
   start_at(k_, pair);
-  k_.out_size = k_.parted_nodes_size = 0;
-  k_.parted_nodes = parted_nodes_.data();
-  k_.most_node_pairs = k_.node_pairs + 1;
+  k_.out_size = k_.rejected_nodes_size = 0;
+  k_.rejected_nodes = rejected_nodes_.data();
+  k_.max_node_pairs = k_.node_pairs + 1;
   const std::uint64_t before = k_.prefilter_tests;
   run_tree_kernel(k_);
   return {{k_.stack, k_.stack + k_.stack_size},
           {k_.out, k_.out + k_.out_size},
           k_.prefilter_tests - before,
-          k_.parted_nodes_size != 0};
+          k_.rejected_nodes_size != 0};
 }
 
 void NearPoints::see(const Vector3d& of_a, const Vector3d& of_b) {

@@ -39,7 +39,7 @@ class Stepper {
 
   QueryContext& ctx_;
   TreeKernel k_;
-  std::array<NodePair, 1> parted_nodes_;
+  std::array<NodePair, 1> rejected_nodes_;
 };
 
 using Corners = std::array<const double*, 3>;

@@ -32,12 +32,12 @@ class NearestPairs {
     Corners a{}, b{};
     ctx_[Side::a].world.corners(pair.a, a.data());
     ctx_[Side::b].world.corners(pair.b, b.data());
-    // At most kMostNear + 1 entries are sorted each time.
+    // At most kMaxNear + 1 entries are sorted each time.
     found_.push_back({nearest_points(ctx_[Side::a].rep().dim(), a, b).distance_sq, pair});
     std::sort(found_.begin(), found_.end(), [](const Found& x, const Found& y) {
       return x.distance_sq != y.distance_sq ? x.distance_sq < y.distance_sq : x.pair < y.pair;
     });
-    if (found_.size() > WalkExplanation::kMostNear) found_.pop_back();
+    if (found_.size() > WalkExplanation::kMaxNear) found_.pop_back();
   }
 
   std::vector<SimplexPair> take() const {
@@ -130,7 +130,7 @@ class PlaneFinder {
     const Vector3d n = direction / length;
     // Either body can be in front: try both orientations.
     for (const Vector3d& normal : {n, Vector3d(-n)}) {
-      PartingPlane plane;
+      SeparatingPlane plane;
       plane.normal = normal;
       std::array<double, 2> at{};
       for (std::size_t side = 0; side < 2; ++side) {
@@ -147,7 +147,7 @@ class PlaneFinder {
     }
   }
 
-  std::optional<PartingPlane> take() const { return best_; }
+  std::optional<SeparatingPlane> take() const { return best_; }
 
  private:
   std::vector<Vector3d> points_of(QueryContext& ctx, Side side) {
@@ -163,12 +163,12 @@ class PlaneFinder {
 
   double size_ = 0;  ///< largest sum of a vertex's coordinates
   std::array<std::vector<Vector3d>, 2> points_;
-  std::optional<PartingPlane> best_;
+  std::optional<SeparatingPlane> best_;
 };
 
 /// Tries as normals: the axes of the root boxes, their cross products, the line between the boxes' centres,
 /// the axes of the closest rejected boxes, and the lines between the closest faces.
-std::optional<PartingPlane> find_plane(QueryContext& ctx, const WalkExplanation& walk) {
+std::optional<SeparatingPlane> find_plane(QueryContext& ctx, const WalkExplanation& walk) {
   PlaneFinder finder(ctx);
   const WorldBox a = box_of(ctx[Side::a].tree(), 0, kWhole, ctx[Side::a].world.pose()),
                  b = box_of(ctx[Side::b].tree(), 0, kWhole, ctx[Side::b].world.pose());

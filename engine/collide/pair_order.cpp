@@ -21,7 +21,7 @@ namespace {
 /// L1 cache. Measured against Boost's spreadsort on keys of 29 and 35 bits, in random order and in runs:
 /// spreadsort takes 0.6 to 0.8 times as long for 33 pairs, and 1.1 to 2.5 times for 100 to 100,000.
 constexpr std::size_t kWorthDigits = 32;
-constexpr unsigned kLeastDigitBits = 6, kMostDigitBits = 11;
+constexpr unsigned kMinDigitBits = 6, kMaxDigitBits = 11;
 constexpr unsigned kMeetBits = 1;
 /// Up to this number of pairs only the digits of A's simplices are sorted by radix, half of all digits,
 /// because few pairs share a simplex of A. Larger answers have longer groups: the 266,180 pairs of identical
@@ -156,7 +156,7 @@ void PairOrder::sort_keys(unsigned bits_b, unsigned bits) {
 void PairOrder::sort_by_digits(unsigned first, unsigned end) {
   // A digit has about as many values as there are keys, within limits.
   const unsigned most =
-      std::clamp(static_cast<unsigned>(std::bit_width(keys_.size())), kLeastDigitBits, kMostDigitBits);
+      std::clamp(static_cast<unsigned>(std::bit_width(keys_.size())), kMinDigitBits, kMaxDigitBits);
   const unsigned bits = end - first, passes = std::max(1u, (bits + most - 1) / most);
   // Spread the bits evenly over the passes.
   const unsigned digit_bits = (bits + passes - 1) / passes;

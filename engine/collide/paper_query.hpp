@@ -114,7 +114,7 @@ class PaperQuery {
     for_each_simplex_pair(fa, fb, [&](SimplexId a, SimplexId b) {
       const exact::Meet meet = test_simplices(ctx_, a, b);
       if (meet != exact::Meet::disjoint) record_pair(result_, probe_, a, b, meet);
-      if (result_.pairs.size() > request_.pair_limit()) refuse_pairs(request_.pair_limit());
+      if (result_.pairs.size() > request_.pair_limit()) reject_pairs(request_.pair_limit());
       return request_.mode != Mode::all_pairs && !result_.pairs.empty();
     });
   }

@@ -147,8 +147,8 @@ class QueryContext {
   std::vector<Candidate> candidates;
   // Used only in observed queries; see NodeWatch.
   std::unordered_map<std::uint64_t, std::uint32_t> parents;
-  std::vector<PartedPair> parted;
-  std::vector<NodePair> parted_nodes;
+  std::vector<PartedPair> rejected;
+  std::vector<NodePair> rejected_nodes;
   AffineTerms affine;  ///< of the current kernel, if its map is not rigid
   PairOrder pair_order;
   std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region, face x region, region x face

@@ -233,7 +233,7 @@ bool decide_without_points(QueryContext& ctx, CollideResult& result) {
   // A surface that is not closed has no inside: only disjoint world boxes decide.
   if (result.pairs.empty()) {
     const QueryBody &a = ctx[Side::a], &b = ctx[Side::b];
-    const bool apart = world_boxes_are_apart(a.rep(), a.world.pose(), b.rep(), b.world.pose());
+    const bool apart = world_boxes_are_disjoint(a.rep(), a.world.pose(), b.rep(), b.world.pose());
     result.relation = apart ? Relation::separate : Relation::undefined;
     result.interiors_overlap = apart ? Answer::no : Answer::unknown;
     return true;

@@ -29,7 +29,7 @@ constexpr int kRemembered = 3;
 constexpr double kDeviation = 0.25;
 /// Lengths relative to a step: extension of a sweep at either end, and its minimum width. kSpareWidth: width
 /// relative to the current deviation of B, because the path is curved as much at the other end.
-constexpr double kBeyondEnd = 0.125, kLeastWidth = 1.0 / 16, kSpareWidth = 1.25;
+constexpr double kBeyondEnd = 0.125, kMinWidth = 1.0 / 16, kSpareWidth = 1.25;
 
 /// Returns the motion x -> m x + t, on A's axes, that takes B from one pose to the other.
 RelativePose motion_between(const RelativePose& from, const RelativePose& to) {
@@ -129,7 +129,7 @@ Sweep RelativeMotion::ahead(double steps) const {
   const int half = std::max(1, static_cast<int>(std::min(steps / 2, steady_steps())));
   Sweep ahead = sweep_of(half);
   // Extrapolation errors grow quadratically: n^2 / 2 deviations in n = 2 half steps.
-  ahead.width = kLeastWidth * motion(last_, now_) + 2 * half * half * deviation();
+  ahead.width = kMinWidth * motion(last_, now_) + 2 * half * half * deviation();
   // B deviates from the chord already, and will deviate about as much at the other end.
   ahead.width = std::max(ahead.width, kSpareWidth * along(ahead).off);
   return ahead;

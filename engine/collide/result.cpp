@@ -45,7 +45,7 @@ void clear(CollideResult& result) {
   result.opened = std::move(old.opened);
 }
 
-void refuse_pairs(std::uint64_t limit) {
+void reject_pairs(std::uint64_t limit) {
   throw InputError("more than " + std::to_string(limit) +
                    " pairs of triangles intersect, the limit set by max_pairs; raise it (--max-pairs) if "
                    "memory allows (about 25 bytes per pair, 650 with contacts), or use mode any or first");

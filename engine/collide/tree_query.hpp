@@ -48,36 +48,36 @@ class NodeWatch {
   NodeWatch(QueryContext& ctx, Probe& probe)
       : probe_(probe),
         parents_(ctx.parents),
-        parted_(ctx.parted),
-        parted_nodes_(ctx.parted_nodes),
+        rejected_(ctx.rejected),
+        rejected_nodes_(ctx.rejected_nodes),
         all_(probe.level() == EventLevel::all) {
-    parted_.resize(kMostPairs);
-    parted_nodes_.resize(ctx.stack.size());
+    rejected_.resize(kMaxPairs);
+    rejected_nodes_.resize(ctx.stack.size());
   }
 
   /// Replaces run_tree_kernel(). May be called again, also on another NodeWatch, to continue.
   void run(TreeKernel& k) {
-    const std::uint64_t most = k.most_node_pairs;
+    const std::uint64_t most = k.max_node_pairs;
     if (k.node_pairs == 0) parents_.clear();
-    k.parted = all_ ? parted_.data() : nullptr;
-    k.parted_nodes = parted_nodes_.data();
-    while (!is_done(k) && k.out_capacity - k.out_size >= kMostPairs && k.node_pairs < most) {
-      k.most_node_pairs = k.node_pairs + 1;
+    k.rejected = all_ ? rejected_.data() : nullptr;
+    k.rejected_nodes = rejected_nodes_.data();
+    while (!is_done(k) && k.out_capacity - k.out_size >= kMaxPairs && k.node_pairs < most) {
+      k.max_node_pairs = k.node_pairs + 1;
       step(k);
     }
-    k.most_node_pairs = most;
+    k.max_node_pairs = most;
   }
 
  private:
-  static constexpr std::uint32_t kMostPairs = kTreeWidth * kTreeWidth;
+  static constexpr std::uint32_t kMaxPairs = kTreeWidth * kTreeWidth;
 
   void step(TreeKernel& k) {
     const std::uint32_t out_before = k.out_size;
     const std::uint64_t boxes_before = k.box_tests, pairs_before = k.prefilter_tests;
-    k.parted_size = k.parted_nodes_size = 0;
+    k.rejected_size = k.rejected_nodes_size = 0;
     run_tree_kernel(k);
-    for (std::uint32_t i = 0; i < k.parted_nodes_size; ++i) tell_parted(k.parted_nodes[i]);
-    if (k.parted_nodes_size != 0) return;
+    for (std::uint32_t i = 0; i < k.rejected_nodes_size; ++i) report_rejected(k.rejected_nodes[i]);
+    if (k.rejected_nodes_size != 0) return;
     const NodePair& pair = k.opened;
     NodeVisit visit{.a = pair.a, .b = pair.b, .parent = take_parent(pair), .step = step_of(k, pair)};
     visit.box_tests = static_cast<std::uint8_t>(k.box_tests - boxes_before);
@@ -85,19 +85,19 @@ class NodeWatch {
     if (visit.step == NodeStep::leaves) {
       const std::uint32_t left = k.out_size - out_before;
       visit.met = static_cast<std::uint8_t>(k.prefilter_tests - pairs_before);
-      visit.parted = static_cast<std::uint8_t>(visit.met - left);
+      visit.rejected = static_cast<std::uint8_t>(visit.met - left);
       visit.certain = static_cast<std::uint8_t>(
           std::count_if(k.out + out_before, k.out + k.out_size, [](const Candidate& c) {
             return c.certainty == Certainty::cross || c.certainty == Certainty::disjoint;
           }));
     }
-    const std::uint32_t told = probe_.node_pair(visit);
-    for (std::uint32_t i = k.opened_at; i < k.stack_size; ++i) parents_.emplace(key_of(k.stack[i]), told);
-    for (std::uint32_t i = 0; i < k.parted_size; ++i)
-      probe_.plane_test(k.parted[i].a, k.parted[i].b, k.parted[i].whose);
+    const std::uint32_t reported = probe_.node_pair(visit);
+    for (std::uint32_t i = k.opened_at; i < k.stack_size; ++i) parents_.emplace(key_of(k.stack[i]), reported);
+    for (std::uint32_t i = 0; i < k.rejected_size; ++i)
+      probe_.plane_test(k.rejected[i].a, k.rejected[i].b, k.rejected[i].whose);
   }
 
-  void tell_parted(const NodePair& pair) {
+  void report_rejected(const NodePair& pair) {
     probe_.node_pair(
         {.a = pair.a, .b = pair.b, .parent = take_parent(pair), .step = NodeStep::whole, .box_tests = 1});
   }
@@ -113,8 +113,8 @@ class NodeWatch {
 
   Probe& probe_;
   std::unordered_map<std::uint64_t, std::uint32_t>& parents_;  ///< of waiting pairs: see take_parent()
-  std::vector<PartedPair>& parted_;
-  std::vector<NodePair>& parted_nodes_;
+  std::vector<PartedPair>& rejected_;
+  std::vector<NodePair>& rejected_nodes_;
   bool all_;
 };
 
@@ -177,7 +177,7 @@ class TreeQuery {
   void run() {
     const ObbTree &a = ctx_[Side::a].tree(), &b = ctx_[Side::b].tree();
     if (a.empty() || b.empty()) return;
-    if (!is_told_more(probe_)) {
+    if (!reports_details(probe_)) {
       walk();
       return;
     }
@@ -196,15 +196,15 @@ class TreeQuery {
     bool done = false;
     while (!is_done(k) && !done) {
       k.out_size = 0;
-      if constexpr (Rules::kLimited) k.most_node_pairs = rules_.most_node_pairs(k.node_pairs);
-      is_told_more(probe_) ? NodeWatch<Probe>(ctx_, probe_).run(k) : run_tree_kernel(k);
+      if constexpr (Rules::kLimited) k.max_node_pairs = rules_.max_node_pairs(k.node_pairs);
+      reports_details(probe_) ? NodeWatch<Probe>(ctx_, probe_).run(k) : run_tree_kernel(k);
       if constexpr (Rules::kLimited) done = rules_.time_is_up(result_.pairs.size());
       if constexpr (Rules::kTrial) rules_.came_to(k.node_pairs, k.stack_size + k.tested_size);
       for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
       const bool too_many = result_.pairs.size() > pair_limit_;
       if constexpr (Rules::kTrial)
         if (rules_.gives_up(too_many)) break;
-      if (too_many) refuse_pairs(pair_limit_);
+      if (too_many) reject_pairs(pair_limit_);
     }
     result_.counters.node_pairs += k.node_pairs;
     result_.counters.box_tests += k.box_tests;
@@ -223,7 +223,7 @@ class TreeQuery {
     const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
     const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
     const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
-    const std::uint64_t fallbacks = is_told_more(probe_) ? exact::exact_fallbacks() : 0;
+    const std::uint64_t fallbacks = reports_details(probe_) ? exact::exact_fallbacks() : 0;
     exact::Meet meet = meet_of(c);
     if constexpr (Rules::kWrappers)
       if (meet == exact::Meet::disjoint && c.certainty != Certainty::disjoint)
@@ -232,7 +232,7 @@ class TreeQuery {
     count_face_test(real, std::max(depth_a, depth_b), result_.counters);
     if constexpr (Probe::kEnabled) {
       probe_.face_test(c.a, c.b, meet, depth_a, depth_b);
-      if (is_told_more(probe_)) probe_.tested_by(tested_by(c, fallbacks));
+      if (reports_details(probe_)) probe_.tested_by(tested_by(c, fallbacks));
     }
     if (meet == exact::Meet::disjoint) return false;
     if (mode_ == Mode::first_pair && !result_.pairs.empty()) {

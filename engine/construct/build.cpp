@@ -9,7 +9,7 @@ namespace lrb {
 namespace {
 
 /// Returns all reasons why an LRB-rep cannot be built, on one line.
-std::string refusal(const Mesh& mesh, const MeshReport& report) {
+std::string rejection(const Mesh& mesh, const MeshReport& report) {
   // All obstacles at once, so that the user can fix them in one go.
   std::string text;
   for (const std::string& line : report.obstacles(mesh)) text += (text.empty() ? "" : " | ") + line;
@@ -36,7 +36,7 @@ LrbRep build(const Mesh& mesh, const std::vector<FaceUse>& use, const std::vecto
 
 LrbRep build_lrb(const CheckedMesh& checked, const BuildOptions& options) {
   // The mesh was checked before; its results are reused.
-  if (!checked.report().buildable()) throw InputError(refusal(checked.mesh(), checked.report()));
+  if (!checked.report().buildable()) throw InputError(rejection(checked.mesh(), checked.report()));
   Workers workers(options.threads);
   return build(checked.mesh(), checked.use(), checked.self_intersecting_faces(workers), options);
 }
@@ -44,7 +44,7 @@ LrbRep build_lrb(const CheckedMesh& checked, const BuildOptions& options) {
 LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options) {
   // Reject meshes that cannot be built before the more expensive search for self-intersections.
   const MeshFindings found = examine(mesh);
-  if (!found.report.buildable()) throw InputError(refusal(mesh, found.report));
+  if (!found.report.buildable()) throw InputError(rejection(mesh, found.report));
   Workers workers(options.threads);
   return build(mesh, found.use, self_intersecting_faces(mesh, found.use, workers), options);
 }

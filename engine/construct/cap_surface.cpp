@@ -70,7 +70,7 @@ void CapSurface::load_faces(const HullMesh& hull, const Patch& patch) {
     face.alive = true;
     face.extra = t.extra;
     face.since = version_;
-    face.refused = {};
+    face.rejected = {};
     patch_area_ += face.plane.area;
   }
 }
@@ -259,7 +259,7 @@ void CapSurface::replace(const Star& star, int w) {
     face.alive = true;
     face.extra = 0;
     face.since = version_;
-    face.refused = {};
+    face.rejected = {};
     // The neighbour across the rim, or the ring, refers back to it.
     set_across(r.across, r.a, r.b, r.face);
     if (!is_ring(r.a)) face_of_[r.a] = r.face;

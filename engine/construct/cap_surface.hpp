@@ -31,7 +31,7 @@ class CapSurface {
     double extra;         ///< see HullMesh::Triangle
     std::uint32_t since;  ///< version of the surface at which it was created
     /// The version at which the collapse of the edge v[i], v[i + 1] was rejected; 0: never.
-    std::array<std::uint32_t, 3> refused;
+    std::array<std::uint32_t, 3> rejected;
   };
   /// The triangles around an interior vertex u, or around an edge u, v, and the boundary loop of these.
   struct Star {
@@ -87,13 +87,15 @@ class CapSurface {
   /// Returns a number that increases with each change.
   std::uint32_t version() const { return version_; }
   /// Records that the star's edge cannot be collapsed.
-  void refuse(const Star& star) { faces_[star.faces[0]].refused[index_of(star.faces[0], star.u)] = version_; }
-  /// Returns true if that was recorded, and neither the star nor the triangles around it have changed since.
-  bool was_refused(const Star& star) const {
-    return faces_[star.faces[0]].refused[index_of(star.faces[0], star.u)] >= star.since;
+  void reject(const Star& star) {
+    faces_[star.faces[0]].rejected[index_of(star.faces[0], star.u)] = version_;
   }
-  void forget_refused() {
-    for (Face& f : faces_) f.refused = {};
+  /// Returns true if that was recorded, and neither the star nor the triangles around it have changed since.
+  bool was_rejected(const Star& star) const {
+    return faces_[star.faces[0]].rejected[index_of(star.faces[0], star.u)] >= star.since;
+  }
+  void forget_rejected() {
+    for (Face& f : faces_) f.rejected = {};
   }
   /// Returns true if v, a neighbour of u, is behind the plane of a triangle at u that does not have v as a
   /// corner.

@@ -34,7 +34,7 @@ class ChainBuilder {
  public:
   ChainBuilder(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options)
       : options_(options),
-        max_outer_(std::min(options.max_outer_faces, kMostOuter)),
+        max_outer_(std::min(options.max_outer_faces, kMaxOuter)),
         hull_(mesh),
         complex_(mesh),
         frozen_(mesh.face_count(), false),
@@ -146,7 +146,7 @@ class ChainBuilder {
       if (before <= max_outer_) return;
       pass(BuildStage::simplify, {worth});
       // Diminishing returns.
-      if (hull_.segment_count() > kLeastGain * before) return;
+      if (hull_.segment_count() > kMinGain * before) return;
     }
   }
 
@@ -164,7 +164,7 @@ class ChainBuilder {
     std::vector<Box> slot_boxes(hull_.slot_count());
     for (const Slot s : slots) slot_boxes[s] = box_of(hull_, s);
     AabbTree tree(slots, slot_boxes);
-    passes_.tell_begin(stage, hull_.segment_count(), goal.off);
+    passes_.report_begin(stage, hull_.segment_count(), goal.off);
     PassEnd end;
     // Step 2: exclude frozen segments, and below all segments that this pass has covered or made.
     std::vector<bool> taken(hull_.slot_count(), false);
@@ -178,7 +178,7 @@ class ChainBuilder {
       // Prove against the current front, not the front at the time of the proposal.
       const CapVerdict verdict =
           chain.empty() ? CapVerdict::overlaps : judge_chain_cap(hull_, tree, p.cap, boxes_);
-      tell_cap(p, verdict, goal.off);
+      report_cap(p, verdict, goal.off);
       if (verdict != CapVerdict::stands) continue;
       for (const Slot s : replace(p.cap, chain)) {
         // New segments are not covered again in this pass, so that a region and the one above it differ in
@@ -190,7 +190,7 @@ class ChainBuilder {
       for (const Slot s : chain) taken[s] = true;
     }
     end.hull_faces = hull_.segment_count();
-    passes_.tell_end(end);
+    passes_.report_end(end);
     end_pass();
   }
 
@@ -204,7 +204,7 @@ class ChainBuilder {
     // All chains that start at each segment. They must not overlap taken segments, nor cover the entire loop.
     for (const Slot s : slots) {
       std::uint32_t length = 1;
-      std::optional<Proposal> refused;
+      std::optional<Proposal> rejected;
       const std::size_t before = proposals.size();
       for (Slot t = s; length <= longest && !taken[t] && hull_[t].next != s; t = hull_[t].next, ++length) {
         // A single segment cannot be simplified.
@@ -212,9 +212,9 @@ class ChainBuilder {
         const Proposal p = propose(s, length, goal);
         if (p.verdict == CapVerdict::stands) proposals.push_back(p);
         // For the probe: of all lengths that failed, the reason that comes first in CapVerdict.
-        if (!refused || p.verdict < refused->verdict) refused = p;
+        if (!rejected || p.verdict < rejected->verdict) rejected = p;
       }
-      if (refused && proposals.size() == before) tell_cap(*refused, refused->verdict, 0);
+      if (rejected && proposals.size() == before) report_cap(*rejected, rejected->verdict, 0);
     }
     // Stable, so that equal costs keep the order of the slots: the result is deterministic.
     std::stable_sort(proposals.begin(), proposals.end(),
@@ -239,15 +239,15 @@ class ChainBuilder {
     return {cap->area / (length - cap->segments()), *cap, CapVerdict::stands, start};
   }
 
-  /// Reports a proposal. `most_off`: maximum deviation of the cap, or 0 if it was not measured.
-  void tell_cap(const Proposal& p, CapVerdict verdict, double most_off) const {
+  /// Reports a proposal. `max_deviation`: maximum deviation of the cap, or 0 if it was not measured.
+  void report_cap(const Proposal& p, CapVerdict verdict, double max_deviation) const {
     if (!options_.probe) return;
     const ChainCap& cap = p.cap;
     // Rejected caps have no deviation to report.
-    const bool measured = verdict == CapVerdict::stands && most_off > 0;
+    const bool measured = verdict == CapVerdict::stands && max_deviation > 0;
     options_.probe->patch({p.start, cap.length, cap.length - 1});
-    options_.probe->cap(
-        {cap.segments(), cap.length, verdict, false, measured ? std::min(most_off, off_of(hull_, cap)) : -1});
+    options_.probe->cap({cap.segments(), cap.length, verdict, false,
+                         measured ? std::min(max_deviation, off_of(hull_, cap)) : -1});
   }
 
   /// Returns the cap's chain if all of it still exists and is free, otherwise an empty chain.
@@ -301,16 +301,16 @@ class ChainBuilder {
   /// Makes regions of the pockets between a single outline and its convex hull.
   bool bridge() {
     // Find all pockets first: bridging is accepted or rejected as a whole.
-    passes_.tell_begin(BuildStage::bridge, hull_.segment_count());
+    passes_.report_begin(BuildStage::bridge, hull_.segment_count());
     std::vector<ChainCap> caps;
     const CapVerdict verdict = find_bridge(caps);
     std::uint32_t covered = 0;
     for (const ChainCap& cap : caps) covered += cap.length;
-    tell_whole_cap(static_cast<std::uint32_t>(caps.size()), covered, verdict);
+    report_whole_cap(static_cast<std::uint32_t>(caps.size()), covered, verdict);
     const bool stands = verdict == CapVerdict::stands;
     if (stands)
       for (const ChainCap& cap : caps) replace(cap, chain_of(hull_, cap.first, cap.length));
-    passes_.tell_end({.hull_faces = hull_.segment_count()});
+    passes_.report_end({.hull_faces = hull_.segment_count()});
     if (stands) end_pass();
     return stands;
   }
@@ -352,7 +352,7 @@ class ChainBuilder {
   }
 
   /// Reports a cap over all outer outlines, and the number of segments that it covers.
-  void tell_whole_cap(std::uint32_t segments, std::uint32_t covered, CapVerdict verdict) const {
+  void report_whole_cap(std::uint32_t segments, std::uint32_t covered, CapVerdict verdict) const {
     if (!options_.probe) return;
     const std::vector<Slot> slots = outer_slots();
     options_.probe->patch({hull_[slots.front()].a, static_cast<std::uint32_t>(slots.size()), 0});
@@ -364,22 +364,22 @@ class ChainBuilder {
     // The remainder of each hole is one region with a floor but no lid.
     fill_voids(hull_, home_, passes_.layer(), complex_);
     if (complex_.region_count() == before) return;
-    passes_.tell_begin(BuildStage::fill, faces);
-    passes_.tell_regions(complex_, before);
-    passes_.tell_end({.hull_faces = outer_size()});
+    passes_.report_begin(BuildStage::fill, faces);
+    passes_.report_regions(complex_, before);
+    passes_.report_end({.hull_faces = outer_size()});
   }
 
   /// Puts the outermost wrapper around the front. Returns false if no wrapper is found.
   bool close() {
     const std::uint32_t outer = outer_size(), before = complex_.region_count();
-    passes_.tell_begin(BuildStage::close, outer);
+    passes_.report_begin(BuildStage::close, outer);
     // The wrapper becomes the outer boundary of one last region around all outer outlines.
     const CapVerdict verdict = find_closing();
-    tell_whole_cap(polygon_size(), outer, verdict);
+    report_whole_cap(polygon_size(), outer, verdict);
     const bool stands = verdict == CapVerdict::stands;
     if (stands) enclose(hull_, home_, outline_mesh(polygon_), passes_.layer(), complex_);
-    passes_.tell_regions(complex_, before);
-    passes_.tell_end({.hull_faces = stands ? polygon_size() : outer});
+    passes_.report_regions(complex_, before);
+    passes_.report_end({.hull_faces = stands ? polygon_size() : outer});
     if (stands) end_pass();
     return stands;
   }
@@ -412,11 +412,11 @@ class ChainBuilder {
 
   void end_pass() { passes_.end_pass(complex_, hull_.segment_count()); }
 
-  static constexpr std::uint32_t kMostOuter = 8;  ///< maximum number of segments of the outermost wrapper
+  static constexpr std::uint32_t kMaxOuter = 8;  ///< maximum number of segments of the outermost wrapper
   /// Fitting ends when the front has no more segments than this.
   static constexpr std::uint32_t kFitDownTo = 16;
   /// A pass that leaves more than this share of the segments is the last.
-  static constexpr double kLeastGain = 0.95;
+  static constexpr double kMinGain = 0.95;
 
   const BuildOptions& options_;
   const std::uint32_t max_outer_;

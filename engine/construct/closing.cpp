@@ -220,7 +220,7 @@ class PolytopeStep {
         gain -= change;
       }
       // Diminishing returns: stop before the last round.
-      if (gain < kLeastGain * volume()) return;
+      if (gain < kMinGain * volume()) return;
     }
   }
 
@@ -313,7 +313,7 @@ class PolytopeStep {
   static constexpr double kSwell = 0.4;  ///< see BodyBounds; only keeps vertices from moving far away
   /// Depth of the target that is projected in tightening, in radii of the rim.
   static constexpr double kDepth = 8;
-  static constexpr double kLeastGain = 1e-3;  ///< least gain for another round, relative to the volume
+  static constexpr double kMinGain = 1e-3;  ///< least gain for another round, relative to the volume
 
   const std::vector<Vector3>& points_;
   HullMesh hull_;

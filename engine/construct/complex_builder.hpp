@@ -87,15 +87,15 @@ class PassCounter {
   std::uint16_t layer() const { return static_cast<std::uint16_t>(pass_); }
 
   /// Reports the start of a pass.
-  void tell_begin(BuildStage stage, std::uint32_t hull_faces, double most_off = 0) const {
-    if (options_.probe) options_.probe->pass({stage, pass_, hull_faces, most_off});
+  void report_begin(BuildStage stage, std::uint32_t hull_faces, double max_deviation = 0) const {
+    if (options_.probe) options_.probe->pass({stage, pass_, hull_faces, max_deviation});
   }
   /// Reports its end.
-  void tell_end(const PassEnd& end) const {
+  void report_end(const PassEnd& end) const {
     if (options_.probe) options_.probe->end_pass(end);
   }
   /// Reports the regions from number `first` on.
-  void tell_regions(const ComplexBuilder& complex, std::uint32_t first) const {
+  void report_regions(const ComplexBuilder& complex, std::uint32_t first) const {
     if (!options_.probe) return;
     for (RegionId r(first); r < complex.region_count(); ++r) options_.probe->region(r);
   }

@@ -87,11 +87,11 @@ class HullMesh {
   /// corners, or has a vertex with very many triangles. A patch would have to contain all of these, and its
   /// cost is quadratic in its triangles.
   bool is_crowded(Slot s) const {
-    constexpr std::uint32_t kMost = 512;
+    constexpr std::uint32_t kMax = 512;
     const SlotRange polygon = unit(s);
     const auto& v = triangles_[s].v;
-    return polygon.last - polygon.first > kMost || degree_[v[0]] > kMost || degree_[v[1]] > kMost ||
-           degree_[v[2]] > kMost;
+    return polygon.last - polygon.first > kMax || degree_[v[0]] > kMax || degree_[v[1]] > kMax ||
+           degree_[v[2]] > kMax;
   }
   bool has_polygons() const { return !unit_first_.empty(); }
 

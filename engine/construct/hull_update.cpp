@@ -61,7 +61,7 @@ void work_out(const HullMesh& hull, Sheet& sheet) {
   }
 }
 
-void tell(ConstructProbe& probe, std::uint32_t first_region, const RegionPieces& pieces) {
+void notify(ConstructProbe& probe, std::uint32_t first_region, const RegionPieces& pieces) {
   for (std::uint32_t p = 0; p < pieces.count; ++p) probe.region(RegionId(first_region + p));
   if (pieces.merged > 0) probe.merged(RegionId(first_region + pieces.into), pieces.merged);
 }
@@ -154,7 +154,7 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
   // Step 5: replace the covered triangles by the new ones.
   hull.remove(removed);
   for (std::size_t i = 0; i < slots.size(); ++i) hull.add(slots[i], triangles[i]);
-  if (probe) tell(*probe, first_region, sheet.pieces);
+  if (probe) notify(*probe, first_region, sheet.pieces);
   return slots;
 }
 

@@ -227,7 +227,7 @@ class PatchBuilder {
       const std::uint32_t before = hull_.triangle_count();
       if (before <= options_.max_outer_faces) return;
       pass(BuildStage::simplify, {worth});
-      if (hull_.triangle_count() > kLeastGain * before) return;
+      if (hull_.triangle_count() > kMinGain * before) return;
     }
   }
 
@@ -238,22 +238,21 @@ class PatchBuilder {
     // On a small front patches are small, so that there are still several.
     const std::uint32_t most =
         goal.off > 0 ? kFitPatch * options_.patch_interior / 4 : options_.patch_interior;
-    const std::uint32_t interior = std::max(kLeastInterior, std::min(most, triangles / kLeastPatches));
+    const std::uint32_t interior = std::max(kMinInterior, std::min(most, triangles / kMinPatches));
     // Rebuild the tree only when it has degraded; otherwise it was refitted.
     if (!tree_ || !tree_->fits(hull_)) tree_.emplace(hull_);
-    passes_.tell_begin(stage, triangles, goal.off);
+    passes_.report_begin(stage, triangles, goal.off);
     PatchPass pass(hull_, *tree_, complex_, bounds_, frozen_, component_boxes_, workers_, options_.probe);
-    PassEnd end =
-        pass.run({interior, std::max(4 * interior, kLeastTriangles)}, goal, passes_.layer(), random_);
+    PassEnd end = pass.run({interior, std::max(4 * interior, kMinTriangles)}, goal, passes_.layer(), random_);
     end.hull_faces = hull_.triangle_count();
-    passes_.tell_end(end);
+    passes_.report_end(end);
     end_pass();
   }
 
   bool bridge() {
-    passes_.tell_begin(BuildStage::bridge, hull_.triangle_count());
+    passes_.report_begin(BuildStage::bridge, hull_.triangle_count());
     const bool stands = bridge_pockets();
-    passes_.tell_end({.hull_faces = hull_.triangle_count()});
+    passes_.report_end({.hull_faces = hull_.triangle_count()});
     if (!stands) return false;
     // Bridging replaced large parts of the front.
     tree_.reset();
@@ -264,7 +263,7 @@ class PatchBuilder {
   bool bridge_pockets() {
     // The convex hull of n points in one plane takes O(n^2) steps.
     for (Slot s = 0; s < hull_.slot_count(); ++s)
-      if (hull_.alive(s) && hull_.is_crowded(s)) return tell_whole_cap(0, CapVerdict::too_crowded);
+      if (hull_.alive(s) && hull_.is_crowded(s)) return report_whole_cap(0, CapVerdict::too_crowded);
     std::vector<bool> joined(hull_.component_count());
     for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = home_[c] == kNull;
     plan_polytope();
@@ -273,7 +272,7 @@ class PatchBuilder {
 
   /// Reports a cap of `faces` faces over the entire outer front to the probe. Returns true if the cap was
   /// accepted.
-  bool tell_whole_cap(std::uint32_t faces, CapVerdict verdict) const {
+  bool report_whole_cap(std::uint32_t faces, CapVerdict verdict) const {
     if (options_.probe) {
       Slot first = 0;
       while (!hull_.alive(first) || !is_outer(first)) ++first;
@@ -288,9 +287,9 @@ class PatchBuilder {
     const std::uint32_t before = complex_.region_count(), faces = hull_.triangle_count();
     fill_voids(hull_, home_, passes_.layer(), complex_);
     if (complex_.region_count() == before) return;
-    passes_.tell_begin(BuildStage::fill, faces);
-    passes_.tell_regions(complex_, before);
-    passes_.tell_end({.hull_faces = outer_size()});
+    passes_.report_begin(BuildStage::fill, faces);
+    passes_.report_regions(complex_, before);
+    passes_.report_end({.hull_faces = outer_size()});
   }
 
   /// Plans the outermost wrapper; from now on all fronts stay inside it.
@@ -311,12 +310,12 @@ class PatchBuilder {
   /// Puts the outermost wrapper around the front. Returns false if no wrapper is found.
   bool close() {
     const std::uint32_t outer = outer_size(), before = complex_.region_count();
-    passes_.tell_begin(BuildStage::close, outer);
+    passes_.report_begin(BuildStage::close, outer);
     const CapVerdict verdict = find_closing();
-    const bool stands = tell_whole_cap(polytope_size(), verdict);
+    const bool stands = report_whole_cap(polytope_size(), verdict);
     if (stands) enclose(hull_, home_, polytope_, passes_.layer(), complex_);
-    passes_.tell_regions(complex_, before);
-    passes_.tell_end({.hull_faces = stands ? polytope_size() : outer});
+    passes_.report_regions(complex_, before);
+    passes_.report_end({.hull_faces = stands ? polytope_size() : outer});
     if (stands) end_pass();
     return stands;
   }
@@ -347,12 +346,12 @@ class PatchBuilder {
   /// and still close to the mesh.
   static constexpr std::uint32_t kPolytopeFrom = 30000;
   /// A pass that leaves more than this share of the triangles is the last.
-  static constexpr double kLeastGain = 0.85;
-  /// A patch has at most front triangles / kLeastPatches interior vertices, so that there are several
+  static constexpr double kMinGain = 0.85;
+  /// A patch has at most front triangles / kMinPatches interior vertices, so that there are several
   /// patches.
-  static constexpr std::uint32_t kLeastPatches = 24;
-  static constexpr std::uint32_t kLeastInterior = 3;
-  static constexpr std::uint32_t kLeastTriangles = 16;  ///< lower bound of the limit on a patch's triangles
+  static constexpr std::uint32_t kMinPatches = 24;
+  static constexpr std::uint32_t kMinInterior = 3;
+  static constexpr std::uint32_t kMinTriangles = 16;  ///< lower bound of the limit on a patch's triangles
 
   const BuildOptions& options_;
   Workers workers_;

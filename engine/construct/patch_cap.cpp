@@ -34,7 +34,7 @@ using Vector3 = Eigen::Vector3d;
 void PatchCap::simplify(const Patch& patch, const Limits& limits) {
   patch_ = &patch;
   limits_ = limits;
-  cap_.forget_refused();
+  cap_.forget_rejected();
   // A collapse that is rejected now may be accepted after others: repeat until nothing changes.
   for (std::uint32_t before = cap_.version() + 1; before != cap_.version();) {
     before = cap_.version();
@@ -56,7 +56,7 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
       if (confirm(*now) == CapVerdict::stands)
         collapse(*now);
       else if (!limits_.check)  // the check's verdict may change by events far away
-        cap_.refuse(star_);
+        cap_.reject(star_);
     }
   }
 }
@@ -114,13 +114,13 @@ void PatchCap::propose(int u, int v) {
 std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
   // Cheap rejection before the star is gathered.
   if (fits() && cap_.is_ring(v) && cap_.is_behind_a_face_at(u, v)) return std::nullopt;  // four in five
-  if (!cap_.find_star(u, v, star_) || cap_.was_refused(star_)) return std::nullopt;
+  if (!cap_.find_star(u, v, star_) || cap_.was_rejected(star_)) return std::nullopt;
   return evaluate_star(u, v);
 }
 
 /// Returns the candidate's current state, or nullopt if it is rejected; leaves the edge's star in star_.
 std::optional<PatchCap::Candidate> PatchCap::evaluate_again(const Candidate& c) {
-  if (!cap_.find_star(c.u, c.v, star_) || cap_.was_refused(star_)) return std::nullopt;
+  if (!cap_.find_star(c.u, c.v, star_) || cap_.was_rejected(star_)) return std::nullopt;
   return c.version < star_.since ? evaluate_star(c.u, c.v) : c;
 }
 
@@ -129,7 +129,7 @@ std::optional<PatchCap::Candidate> PatchCap::evaluate_again(const Candidate& c) 
 /// changes.
 std::optional<PatchCap::Candidate> PatchCap::evaluate_star(int u, int v) {
   auto c = measure_star(u, v);
-  if (!c) cap_.refuse(star_);
+  if (!c) cap_.reject(star_);
   return c;
 }
 
@@ -145,15 +145,15 @@ std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
   // Step 2: the position of the fan's centre: the ring vertex, or a new vertex.
   Candidate c{0, u, v, cap_.version(), {}};
   if (cap_.is_ring(v)) {
-    if (!ring_vertex_is_in_front(v, radius)) return refuse(CapVerdict::no_place);
+    if (!ring_vertex_is_in_front(v, radius)) return reject(CapVerdict::no_place);
     c.w = cap_.x(v);
   } else {
     const auto w = place(radius, centre);
-    if (!w) return refuse(CapVerdict::no_place);
+    if (!w) return reject(CapVerdict::no_place);
     c.w = *w;
   }
   // Step 3: the deviation, if it is limited.
-  if (fits() && !limits_.gauge->may_stand(cap_, star_, c.w)) return refuse(CapVerdict::too_thick);
+  if (fits() && !limits_.gauge->may_stand(cap_, star_, c.w)) return reject(CapVerdict::too_thick);
   // Step 4: the added volume, as pyramids from w over the star's triangles; then a penalty for needles.
   double volume = 0, area = 0;
   for (const int f : star_.faces) {
@@ -162,9 +162,9 @@ std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
     area += plane.area;
   }
   c.cost = volume / 3;
-  if (c.cost > limits_.volume) return refuse(CapVerdict::too_much_volume);
+  if (c.cost > limits_.volume) return reject(CapVerdict::too_much_volume);
   c.cost += kCapShapeWeight * area * std::sqrt(area) / shape_of_fan(c.w);
-  if (!(c.cost <= limits_.volume)) return refuse(CapVerdict::too_thin);
+  if (!(c.cost <= limits_.volume)) return reject(CapVerdict::too_thin);
   return c;
 }
 

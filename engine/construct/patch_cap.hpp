@@ -63,7 +63,7 @@ class PatchCap {
   void collect_half_spaces(const Eigen::Vector3d& centre, double margin);
   CapVerdict confirm(const Candidate& c) const;
   CapVerdict verdict_on_edge(int u, int v);
-  std::nullopt_t refuse(CapVerdict why) {
+  std::nullopt_t reject(CapVerdict why) {
     why_ = why;
     return std::nullopt;
   }

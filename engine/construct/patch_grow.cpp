@@ -20,7 +20,7 @@ PatchGrower::PatchGrower(const HullMesh& hull, const GrowLimits& limits)
       slot_stamp_(hull.slot_count(), 0),
       point_stamp_(hull.point_count(), 0),
       inside_(hull.point_count(), 0),
-      refused_(hull.point_count(), 0),
+      rejected_(hull.point_count(), 0),
       batch_stamp_(hull.point_count(), 0) {}
 
 void PatchGrower::begin_batch() {
@@ -63,7 +63,7 @@ bool PatchGrower::grow(Corner seed, Patch& patch) {
   while (patch.interior.size() < limits_.interior) {
     const Corner v = best_candidate(seed, reach_sq, patch);
     if (v == kNull) break;
-    if (!add_star(v, patch)) refused_[v] = stamp_;
+    if (!add_star(v, patch)) rejected_[v] = stamp_;
   }
   find_ring(patch);
   return true;
@@ -163,7 +163,7 @@ Corner PatchGrower::best_candidate(Corner seed, double reach_sq, const Patch& pa
   Corner best = kNull;
   double least = 0;
   for (const Corner v : rim_) {
-    if (refused_[v] == stamp_) continue;
+    if (rejected_[v] == stamp_) continue;
     // The fewest new triangles first; the distance penalty keeps the patch round. Ties go to the lower
     // vertex.
     const std::uint32_t missing = hull_.degree(v) - inside_[v];

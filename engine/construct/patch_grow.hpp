@@ -62,7 +62,7 @@ class PatchGrower {
   std::vector<std::uint32_t> slot_stamp_;   ///< == stamp_: in the patch that is growing
   std::vector<std::uint32_t> point_stamp_;  ///< == stamp_: a vertex of the patch that is growing
   std::vector<std::uint32_t> inside_;       ///< number of the patch's triangles at a vertex, if it is stamped
-  std::vector<std::uint32_t> refused_;      ///< == stamp_: the vertex's star cannot be added
+  std::vector<std::uint32_t> rejected_;     ///< == stamp_: the vertex's star cannot be added
   std::uint32_t stamp_ = 0;
   std::vector<std::uint32_t> batch_stamp_;  ///< == batch_: a vertex of a patch of the batch
   std::uint32_t batch_ = 0;

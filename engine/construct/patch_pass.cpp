@@ -27,9 +27,9 @@ constexpr double kFittingDepth = 10;
 /// Where no cap was found, the next attempt is made at a deviation limit larger by at least this factor.
 /// Smaller: more time, mostly without effect.
 constexpr double kPatience = 1.2;
-/// A pass of fitting caps ends when, after at least kTries patches, fewer than one in kLeastCaps got a cap:
+/// A pass of fitting caps ends when, after at least kTries patches, fewer than one in kMinCaps got a cap:
 /// the deviation limit is too small for most of the front.
-constexpr std::size_t kTries = 32, kLeastCaps = 24;
+constexpr std::size_t kTries = 32, kMinCaps = 24;
 
 }  // namespace
 
@@ -92,7 +92,7 @@ PassEnd PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint1
       const auto touches = [&](const Eigen::AlignedBox3d& box) { return box.intersects(job.seen); };
       if (std::any_of(changed_.begin(), changed_.end(), touches)) make_cap(job, goal, *benches_[0]);
       end.no_patch += job.no_patch;
-      if (probe_) tell(job);
+      if (probe_) notify(job);
       if (job.has_cap) put_on(job, layer, grower);
       if (goal.off == 0) continue;
       ++tried;
@@ -100,7 +100,7 @@ PassEnd PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint1
       if (!job.has_cap)
         for (const Corner v : job.patch.interior) hull_.set_patience(v, job.next_off);
       // Fitting only: too few caps are accepted at this deviation.
-      if (tried >= kTries && kLeastCaps * found < tried) {
+      if (tried >= kTries && kMinCaps * found < tried) {
         end.given_up = true;
         return end;
       }
@@ -198,7 +198,7 @@ double PatchPass::off_of(const CapSurface& cap) {
   return most;
 }
 
-void PatchPass::tell(const Job& job) const {
+void PatchPass::notify(const Job& job) const {
   const Patch& patch = job.patch;
   probe_->patch({hull_.point(patch.interior.front()).id, static_cast<std::uint32_t>(patch.slots.size()),
                  static_cast<std::uint32_t>(patch.interior.size())});

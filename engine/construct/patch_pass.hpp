@@ -75,7 +75,7 @@ class PatchPass {
   static double off_of(const CapSurface& cap);
   std::uint32_t bar_faces(PatchGrower& grower) const;
   std::vector<HullMesh::Corner> find_seeds(double off, Random& random, std::uint32_t& waiting) const;
-  void tell(const Job& job) const;
+  void notify(const Job& job) const;
   static double patience(const Patch& patch, const CapSurface& cap, double worth);
   void put_on(const Job& job, std::uint16_t layer, PatchGrower& grower);
 

@@ -109,7 +109,7 @@ inline constexpr double kFlatness = 0x1p-8;
 /// - A distance is the length of the difference between a point and a weighted sum of corners: a dozen
 ///   operations on numbers below 4, together under 2^-46.
 /// - A lid is subdivided, and each new corner is computed by three operations per coordinate: under 2^-50,
-///   repeated at most kMostCuts = 2^8 times (thickness.cpp): under 2^-42.
+///   repeated at most kMaxCuts = 2^8 times (thickness.cpp): under 2^-42.
 /// Smaller: rounding could exceed an error bound. Larger: the bound is looser by that amount.
 inline constexpr double kThicknessRounding = 0x1p-40;
 /// Distance from which faces of two wrappers count as disjoint, relative to the largest term of any world

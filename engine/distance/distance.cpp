@@ -34,7 +34,7 @@ class WorldWalk {
 
   /// Returns true if the traversal was completed or the request is answered, false after `max_steps` steps
   /// (0: no limit). teller: null, or notified of bounds.
-  bool run(std::uint64_t max_steps, BoundsTeller* teller);
+  bool run(std::uint64_t max_steps, BoundsProbeAdapter* adapter);
   /// Returns a lower bound on the distances of all unmeasured pairs.
   double rest() const;
   std::uint64_t steps() const { return steps_; }
@@ -188,30 +188,30 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
   const TreeKernel tree = set_up_any_kernel(a.tree(), pose_a, b.tree(), pose_b, a.dim(), query.affine);
   bool finished = false;
   double rest = 0;
-  std::optional<BoundsTeller> told;
-  if (probe != nullptr) told.emplace(*probe);
-  BoundsTeller* const teller = told ? &*told : nullptr;
+  std::optional<BoundsProbeAdapter> reported;
+  if (probe != nullptr) reported.emplace(*probe);
+  BoundsProbeAdapter* const adapter = reported ? &*reported : nullptr;
   if (suits_floats(tree)) {
     // A likely candidate has given an upper bound already: no descent to a first pair.
     FloatWalk walk(context, found, request, tree, query_unit(a.tree(), b.tree()), !is_likely,
                    before != nullptr ? &before->far : nullptr);
-    finished = walk.run(teller);
+    finished = walk.run(adapter);
     // Step 3. The other traversal measures pairs as it finds them.
     if (!found.known_to_meet()) rest = walk.measure();
     walk.count(result.counters);
   } else {
     WorldWalk walk(query, found);
-    finished = walk.run(request.max_steps, teller);
+    finished = walk.run(request.max_steps, adapter);
     rest = walk.rest();
     result.counters.steps = walk.steps();
     result.counters.box_tests = walk.box_tests();
   }
   // The probe gets the bounds before and after the exact measurements.
-  if (told && !found.known_to_meet())
-    told->tell(result.counters.steps + found.measured(), found.lower(rest), found.upper());
+  if (reported && !found.known_to_meet())
+    reported->notify(result.counters.steps + found.measured(), found.lower(rest), found.upper());
   // Step 4.
   found.finish(rest, finished, result);
-  if (told) told->tell(result.counters.steps + found.measured(), result.lower, result.upper);
+  if (reported) reported->notify(result.counters.steps + found.measured(), result.lower, result.upper);
   return result;
 }
 
@@ -407,7 +407,7 @@ void WorldWalk::open(const Waiting& pair) {
     }
 }
 
-bool WorldWalk::run(std::uint64_t max_steps, BoundsTeller* teller) {
+bool WorldWalk::run(std::uint64_t max_steps, BoundsProbeAdapter* adapter) {
   std::uint64_t look = 1;
   const auto later = [](const Waiting& x, const Waiting& y) { return x.bound > y.bound; };
   while (!waiting_.empty()) {
@@ -425,10 +425,10 @@ bool WorldWalk::run(std::uint64_t max_steps, BoundsTeller* teller) {
     // Coordinates of very distant bodies have hardly a digit left for their shapes: allow a wider interval.
     const double upper = found_.upper();
     if (upper < kInfinity) found_.allow_width(upper > kVeryFar * found_.size() ? kFarWidth * upper : 0);
-    if (teller != nullptr && steps_ >= look) {
+    if (adapter != nullptr && steps_ >= look) {
       // Each report visits all measured pairs, so reports become rarer as the work grows.
-      teller->tell(steps_, found_.lower(rest()), upper);
-      look = BoundsTeller::next_look(steps_);
+      adapter->notify(steps_, found_.lower(rest()), upper);
+      look = BoundsProbeAdapter::next_look(steps_);
     }
   }
   return true;

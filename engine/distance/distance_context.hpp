@@ -12,12 +12,12 @@
 
 namespace lrb {
 
-class BoundsTeller {
+class BoundsProbeAdapter {
  public:
-  explicit BoundsTeller(BoundsProbe& probe) : probe_(probe) {}
+  explicit BoundsProbeAdapter(BoundsProbe& probe) : probe_(probe) {}
 
   /// Reports the intersection of these bounds with all reported before, if it is narrower.
-  void tell(std::uint64_t work, double lower, double upper) {
+  void notify(std::uint64_t work, double lower, double upper) {
     const Bounds now{std::max(work, known_.work), std::max(lower, known_.lower),
                      std::min(upper, known_.upper)};
     if (now.lower == known_.lower && now.upper == known_.upper) return;
@@ -82,7 +82,7 @@ class FloatWalk {
 
   /// Returns true if the traversal was completed, or if the surfaces were found to intersect. teller: null,
   /// or notified of bounds.
-  bool run(BoundsTeller* teller);
+  bool run(BoundsProbeAdapter* adapter);
   /// Measures the pairs that may be the closest. Returns a lower bound on the distances of all others.
   double measure();
   void count(DistanceCounters& counters) const;
@@ -91,7 +91,7 @@ class FloatWalk {
   void begin_ends();
   void give_room();
   bool descend_alone();
-  void tell(BoundsTeller& teller) const;
+  void notify(BoundsProbeAdapter& adapter) const;
   double dropped() const;
   double waiting_lower() const;
 

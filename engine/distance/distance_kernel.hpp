@@ -40,13 +40,13 @@ struct FarNodes {
   float direction[3];  ///< normal of the plane, on A's axes; unit length
   /// Width of the slab between their contents, less the offset of the nodes' origins along it.
   float width;
-  float turned;  ///< DistanceKernel::least_turned at that step
+  float turned;  ///< DistanceKernel::min_turned at that step
 };
 
 enum class KernelStop : std::uint8_t {
   done,      ///< no waiting pair of nodes can be within the pruning distance
   room,      ///< the buffers must grow
-  limit,     ///< most_node_pairs was reached
+  limit,     ///< max_node_pairs was reached
   enough,    ///< `upper` is at most `enough`
   doubtful,  ///< two simplices were not proven disjoint: the exact query must decide
 };
@@ -74,7 +74,7 @@ struct DistanceKernel {
   FarNodes* far;
   std::uint32_t far_slots;  ///< a power of two
   /// Sum of the norms of the changes of TreeKernel::m since the cache was cleared: rounded up, and down.
-  float turned, least_turned;
+  float turned, min_turned;
 
   WaitingNodes* waiting;  ///< a heap, the least bound first
   std::uint32_t waiting_size, waiting_capacity;

@@ -312,7 +312,7 @@ inline void keep_far(DistanceKernel& k, const WaitingNodes& pair, const TreeNode
   // Stored without the offset of the origins, which the next steps recompute.
   far.width = width - dot3(direction, x);
   // Rounded down, so that the rotation since then is not underestimated.
-  far.turned = k.least_turned;
+  far.turned = k.min_turned;
 }
 
 /// Pushes a pair of nodes, unless their projections or a cached plane prove that it is too far.
@@ -575,7 +575,7 @@ inline void descend_to_first_pair(DistanceKernel& k) {
     const bool is_stuck = k.waiting_size == 0;
     k.waiting = heap;
     k.waiting_size = bottom;
-    if (is_stuck || k.tree.node_pairs >= k.tree.most_node_pairs) return;
+    if (is_stuck || k.tree.node_pairs >= k.tree.max_node_pairs) return;
   }
 }
 
@@ -602,7 +602,7 @@ void LRB_DISTANCE_KERNEL_NAME(DistanceKernel& k) {
       k.stop = KernelStop::room;
       return;
     }
-    if (k.tree.node_pairs >= k.tree.most_node_pairs) {
+    if (k.tree.node_pairs >= k.tree.max_node_pairs) {
       k.stop = KernelStop::limit;
       return;
     }

@@ -19,10 +19,10 @@ namespace {
 
 /// Maximum number of cache slots. Smaller: pairs evict each other and are expanded again; larger: the cache
 /// exceeds a processor's L2 cache.
-constexpr std::size_t kMostSlots = 4096;
+constexpr std::size_t kMaxSlots = 4096;
 /// Accumulated rotation of B at which all planes are cleared. Larger: the float sum has larger errors, and
 /// planes separate less.
-constexpr double kMostTurned = 0.5;
+constexpr double kMaxTurned = 0.5;
 constexpr FarNodes kNone = {~0U, ~0U, {0, 0, 0}, 0, 0};
 
 /// Returns the Frobenius norm of the change of a map, rounded up.
@@ -38,11 +38,11 @@ double change(const double (&from)[3][4], const double (&to)[3][4]) {
 
 void FarPairs::lend(DistanceKernel& k, std::size_t node_pairs) {
   // A power of two, because the slot is the masked hash.
-  nodes_.resize(std::bit_ceil(std::clamp<std::size_t>(node_pairs, 1, kMostSlots)), kNone);
+  nodes_.resize(std::bit_ceil(std::clamp<std::size_t>(node_pairs, 1, kMaxSlots)), kNone);
   // The length of the path of the relative rotation bounds its change since any earlier step.
   turned_ += change(m_, k.tree.m);
   // Too much rotation, or NaN. The first step, which starts from a zero map, is such a case.
-  if (!(turned_ <= kMostTurned)) {
+  if (!(turned_ <= kMaxTurned)) {
     std::fill(nodes_.begin(), nodes_.end(), kNone);
     turned_ = 0;
   }
@@ -51,7 +51,7 @@ void FarPairs::lend(DistanceKernel& k, std::size_t node_pairs) {
   k.far_slots = static_cast<std::uint32_t>(nodes_.size());
   // One rounded up, the other down: their difference is never less than the true one.
   k.turned = rounded_up(turned_);
-  k.least_turned = rounded_down(turned_);
+  k.min_turned = rounded_down(turned_);
 }
 
 // Bounds the approach of two bodies between two poses. Let Q = R_A' R_A^T, the rotation of A's axes from one

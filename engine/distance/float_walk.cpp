@@ -49,7 +49,7 @@ FloatWalk::FloatWalk(DistanceContext& context, NearestPairs& found, const Distan
                      const TreeKernel& tree, double unit, bool descend, FarPairs* far)
     : context_(context), found_(found), unit_(unit), k_{} {
   k_.tree = tree;
-  k_.tree.most_node_pairs = request.max_steps > 0 ? request.max_steps : kNoLimit;
+  k_.tree.max_node_pairs = request.max_steps > 0 ? request.max_steps : kNoLimit;
   // Rounded to the safe side: upper bounds up, tolerances and the distance at which to stop down.
   k_.upper = rounded_up(found.upper() / unit);
   k_.spare = rounded_down(request.tolerance / unit);
@@ -119,25 +119,25 @@ bool FloatWalk::descend_alone() {
   return k_.stop == KernelStop::enough;
 }
 
-void FloatWalk::tell(BoundsTeller& teller) const {
+void FloatWalk::notify(BoundsProbeAdapter& adapter) const {
   // The least bound of all pairs that were dropped, wait, or will be measured.
   double lower = dropped();
   for (std::uint32_t i = 0; i < k_.near_size; ++i)
     lower = std::min(lower, static_cast<double>(k_.near[i].lower) * unit_);
-  teller.tell(k_.tree.node_pairs, lower, std::min(found_.upper(), static_cast<double>(k_.upper) * unit_));
+  adapter.notify(k_.tree.node_pairs, lower, std::min(found_.upper(), static_cast<double>(k_.upper) * unit_));
 }
 
-bool FloatWalk::run(BoundsTeller* teller) {
+bool FloatWalk::run(BoundsProbeAdapter* adapter) {
   // Without contact the kernel need not stop at ambiguous pairs.
   k_.apart = found_.known_apart();
-  const std::uint64_t most = k_.tree.most_node_pairs;
+  const std::uint64_t most = k_.tree.max_node_pairs;
   // The early stops below, which only serve reports, must not cut the first descent short.
-  if (teller != nullptr && k_.descend && descend_alone()) return found_.known_to_meet();
+  if (adapter != nullptr && k_.descend && descend_alone()) return found_.known_to_meet();
   for (;;) {
     give_room();
     // With a probe, stop after a while to report.
-    if (teller != nullptr)
-      k_.tree.most_node_pairs = std::min(most, BoundsTeller::next_look(k_.tree.node_pairs));
+    if (adapter != nullptr)
+      k_.tree.max_node_pairs = std::min(most, BoundsProbeAdapter::next_look(k_.tree.node_pairs));
     run_distance_kernel(k_);
     context_.turn = k_.turn;
     if (k_.stop == KernelStop::doubtful) {
@@ -146,7 +146,7 @@ bool FloatWalk::run(BoundsTeller* teller) {
       k_.apart = true;
     } else if (k_.stop == KernelStop::limit && k_.tree.node_pairs < most) {
       // Stopped only to report: the real limit is not reached.
-      tell(*teller);
+      notify(*adapter);
     } else if (k_.stop != KernelStop::room) {
       return k_.stop == KernelStop::done;
     }

@@ -146,7 +146,7 @@ void NearestPairs::take_contact(SimplexId a, SimplexId b, exact::Meet meet) {
   best_.on[1] = corner.on_b;
 }
 
-double NearestPairs::least_lower() const {
+double NearestPairs::min_lower() const {
   double least = kInfinity;
   for (const MeasuredPair& pair : pairs_) least = std::min(least, pair.lower);
   return least;
@@ -155,7 +155,7 @@ double NearestPairs::least_lower() const {
 /// Measures pairs exactly if doubles left too wide an interval. `rest`: lower bound for all unmeasured pairs.
 void NearestPairs::narrow(double rest) {
   // Exact arithmetic is needed if the interval is too wide, or if contact is not excluded.
-  const double least = std::min(least_lower(), rest);
+  const double least = std::min(min_lower(), rest);
   const bool is_wide = !(upper() - least <= width()) || !(least > 0);
   if (!is_wide || surfaces_meet()) return;
   // Least lower bound first; ties by index, for a deterministic order.
@@ -178,7 +178,7 @@ void NearestPairs::narrow(double rest) {
 void NearestPairs::decide_within(double rest, bool finished, DistanceResult& result) {
   const double most = *request_.within;
   // The bounds already decide, or the surfaces intersect.
-  if (upper() <= most || (least_lower() <= most && surfaces_meet())) {
+  if (upper() <= most || (min_lower() <= most && surfaces_meet())) {
     result.within = true;
     return;
   }

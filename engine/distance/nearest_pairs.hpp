@@ -28,7 +28,7 @@ class NearestPairs {
 
   double upper() const { return best_.upper; }
   /// Returns a lower bound on the distance, given that the distances of unmeasured pairs are at least `rest`.
-  double lower(double rest) const { return std::max(0.0, std::min({least_lower(), rest, upper()})); }
+  double lower(double rest) const { return std::max(0.0, std::min({min_lower(), rest, upper()})); }
   /// Returns the number of measured pairs.
   std::uint64_t measured() const { return counters_.pairs_in_doubles + counters_.pairs_exact; }
   /// Returns the vector between the points that gave upper(), from A to B, or 0 if no pair was measured.
@@ -62,7 +62,7 @@ class NearestPairs {
 
  private:
   double width() const;
-  double least_lower() const;
+  double min_lower() const;
   void narrow(double rest);
   void decide_within(double rest, bool finished, DistanceResult& result);
   PairBounds measured_exactly(const double* const* of_a, const double* const* of_b);

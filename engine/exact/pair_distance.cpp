@@ -48,14 +48,14 @@ double as_share(const Fraction& f) {
 }
 
 /// A point of a simplex: offset from the feature's first corner along its edges.
-struct Spot {
+struct ClosestFeature {
   Feature on;
   Fraction along[2];
 };
 
 struct Nearest {
   Fraction square;
-  Spot spot[2];
+  ClosestFeature spot[2];
 };
 
 /// The smallest exponent of a last mantissa bit among the numbers seen.
@@ -120,7 +120,7 @@ class Pair {
   }
 
   /// `spot`: on the simplex of `side`; `other`: on the other one.
-  void see(Fraction square, int side, Spot spot, Spot other) {
+  void see(Fraction square, int side, ClosestFeature spot, ClosestFeature other) {
     // Of equal distances the first one is kept, so that the result is reproducible.
     if (found_ && !less(square, nearest_.square)) return;
     found_ = true;
@@ -138,7 +138,7 @@ class Pair {
     // The foot of the perpendicular is at at / length along the edge. An edge of length 0 takes the first
     // branch.
     const cpp_int at = dot(way, along), length = dot(along, along);
-    const Spot here{feature(0, k), {}};
+    const ClosestFeature here{feature(0, k), {}};
     // Voronoi regions of the edge (Ericson 2005, 5.1.2): first end, second end, interior.
     if (at <= 0) {
       see({dot(way, way), 1}, side, here, {feature(0, j), {}});
@@ -213,8 +213,8 @@ void enclose_root(const Fraction& square, int exponent, double& lower, double& u
   const auto scaled = [scale](const cpp_int& x) { return std::ldexp(x.convert_to<double>(), scale); };
   lower = scaled(low);
   upper = is_exact ? lower : scaled(low + 1);
-  constexpr int kLeastNormal = -1022;  // below it, scaling rounds
-  if (scale + kMantissaBits - 1 < kLeastNormal) {
+  constexpr int kMinNormal = -1022;  // below it, scaling rounds
+  if (scale + kMantissaBits - 1 < kMinNormal) {
     lower = std::max(0.0, std::nextafter(lower, -1.0));
     upper = std::nextafter(upper, 1.0);
   }
@@ -222,7 +222,7 @@ void enclose_root(const Fraction& square, int exponent, double& lower, double& u
 }
 
 /// Returns a point of a simplex in doubles.
-Eigen::Vector3d place(const Spot& spot, const double* const* corners, int n) {
+Eigen::Vector3d place(const ClosestFeature& spot, const double* const* corners, int n) {
   const auto at = [&](int k) {
     const double* x = corners[k % n];
     return Eigen::Vector3d(x[0], x[1], n == 3 ? x[2] : 0);

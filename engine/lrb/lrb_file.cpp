@@ -42,7 +42,7 @@ class Reader {
  public:
   Reader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
-  [[noreturn]] void refuse(const std::string& what) const {
+  [[noreturn]] void reject(const std::string& what) const {
     throw InputError(printable_name(name_) + ": byte " + std::to_string(at_) + ": " + what +
                      "; rebuild it from its mesh");
   }
@@ -63,7 +63,7 @@ class Reader {
     // Division avoids the overflow of count * sizeof(T). Checked before allocation, so that a damaged length
     // cannot exhaust the memory.
     if (count > (bytes_.size() - at_) / sizeof(T))
-      refuse("an array of " + std::to_string(count) + " elements exceeds the rest of the file");
+      reject("an array of " + std::to_string(count) + " elements exceeds the rest of the file");
     std::vector<T> x(count);
     if (count != 0) std::memcpy(static_cast<void*>(x.data()), bytes_.data() + at_, count * sizeof(T));
     at_ += count * sizeof(T);
@@ -74,7 +74,7 @@ class Reader {
 
  private:
   void need(std::size_t size) const {
-    if (bytes_.size() - at_ < size) refuse("the file ends in the middle of a number");
+    if (bytes_.size() - at_ < size) reject("the file ends in the middle of a number");
   }
 
   std::string_view bytes_;
@@ -104,7 +104,7 @@ struct StoredLevels {
 
 std::optional<StoredLevels> read_levels(Reader& r) {
   const auto there = r.value<std::uint32_t>();
-  if (there > 1) r.refuse("the flag for levels is neither 0 nor 1");
+  if (there > 1) r.reject("the flag for levels is neither 0 nor 1");
   if (there == 0) return std::nullopt;
   StoredLevels s;
   s.needed = r.array<double>();
@@ -168,11 +168,11 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
     throw InputError(printable_name(name) + ": byte 8: found file version " + std::to_string(version) +
                      ", expected at most " + std::to_string(kLrbFileVersion) + "; use a newer lrbscope");
   // The checksum is verified before any other field is interpreted.
-  if (bytes.size() < r.at() + sizeof(std::uint64_t)) r.refuse("the file is truncated");
+  if (bytes.size() < r.at() + sizeof(std::uint64_t)) r.reject("the file is truncated");
   std::uint64_t stored;
   std::memcpy(&stored, bytes.data() + bytes.size() - sizeof stored, sizeof stored);
   if (stored != lrb_checksum(bytes.substr(0, bytes.size() - sizeof stored), version))
-    r.refuse("the checksum does not match: the file is damaged or truncated");
+    r.reject("the checksum does not match: the file is damaged or truncated");
   // The complex, field by field in the order of save_lrb().
   LrbData d;
   d.dim = static_cast<int>(r.value<std::uint32_t>());
@@ -194,9 +194,9 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
   auto nodes = with_tree ? r.array<TreeNode>() : std::vector<TreeNode>();
   auto blocks = with_tree ? r.array<LeafBlock>() : std::vector<LeafBlock>();
   auto levels = version >= kFirstWithLevels ? read_levels(r) : std::nullopt;
-  if (r.at() + sizeof stored != bytes.size()) r.refuse("there are bytes after the end of the .lrb data");
+  if (r.at() + sizeof stored != bytes.size()) r.reject("there are bytes after the end of the .lrb data");
   // LrbData::face_count() subtracts 1 from the number of offsets.
-  if (d.face_offsets.empty()) r.refuse("the offsets of the faces are missing");
+  if (d.face_offsets.empty()) r.reject("the offsets of the faces are missing");
   try {
     // The constructors check the structure: indices, cells, the shape of the trees, the order of the levels.
     LrbRep rep =

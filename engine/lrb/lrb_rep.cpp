@@ -19,7 +19,7 @@
 namespace lrb {
 namespace {
 
-[[noreturn]] void refuse(const LrbData& d, const std::string& what) {
+[[noreturn]] void reject(const LrbData& d, const std::string& what) {
   throw InputError((d.name.empty() ? std::string("LRB-rep") : printable_name(d.name)) + ": " + what +
                    "; rebuild the LRB-rep from its mesh");
 }
@@ -29,37 +29,37 @@ void check_face(const LrbData& d, FaceId f) {
   const std::string face = "face " + std::to_string(f);
   // Corners: the right number for the dimension, and every index within the vertex array.
   if (d.dim == 2 ? corners.size() != 2 : corners.size() < 3)
-    refuse(d, face + " has " + std::to_string(corners.size()) + " corners");
+    reject(d, face + " has " + std::to_string(corners.size()) + " corners");
   for (const VertexId v : corners)
     if (v >= d.vertices.size())
-      refuse(d, face + " refers to vertex " + std::to_string(v) + ", which does not exist");
+      reject(d, face + " refers to vertex " + std::to_string(v) + ", which does not exist");
   // Cells: only a real face has the solid behind it, and a face separates two different cells.
   const CellId inner = d.inner_cell[f], outer = d.outer_cell[f];
   const auto is_known = [&](CellId c) { return !is_region(c) || c < d.region_layer.size(); };
-  if (!is_known(inner) || !is_known(outer)) refuse(d, face + " refers to a region that does not exist");
+  if (!is_known(inner) || !is_known(outer)) reject(d, face + " refers to a region that does not exist");
   if ((inner == kSolid) != (f < d.real_face_count))
-    refuse(d, face + " must have the solid behind it exactly if it is real");
+    reject(d, face + " must have the solid behind it exactly if it is real");
   if (inner == kOutside || outer == kSolid || inner == outer || outer == kNull || inner == kNull)
-    refuse(d, face + " has its inner and outer cell swapped");
+    reject(d, face + " has its inner and outer cell swapped");
 }
 
 void check(const LrbData& d) {
-  if (d.dim != 2 && d.dim != 3) refuse(d, "dimension " + std::to_string(d.dim) + " is neither 2 nor 3");
+  if (d.dim != 2 && d.dim != 3) reject(d, "dimension " + std::to_string(d.dim) + " is neither 2 nor 3");
   // Array lengths first: the loops over elements below rely on them.
   const std::size_t faces = d.face_count();
   if (d.vertices.size() > kMaxId || d.face_vertices.size() > kMaxId)
-    refuse(d, "more than 2^32 - 4 vertices or corners");
+    reject(d, "more than 2^32 - 4 vertices or corners");
   if (d.inner_cell.size() != faces || d.outer_cell.size() != faces || d.real_face_count > faces)
-    refuse(d, "the arrays of faces and of their cells differ in length");
+    reject(d, "the arrays of faces and of their cells differ in length");
   // Ascending offsets that end at the number of corners keep every face() span within its array.
   if (d.face_offsets.front() != 0 || d.face_offsets.back() != d.face_vertices.size() ||
       !std::is_sorted(d.face_offsets.begin(), d.face_offsets.end()))
-    refuse(d, "the offsets of the faces' corners are not ascending");
+    reject(d, "the offsets of the faces' corners are not ascending");
   for (std::size_t v = 0; v < d.vertices.size(); ++v) {
-    if (!d.vertices[v].allFinite()) refuse(d, "vertex " + std::to_string(v) + " is not finite");
+    if (!d.vertices[v].allFinite()) reject(d, "vertex " + std::to_string(v) + " is not finite");
     // The 2D predicates do not read z, but the tree's boxes do.
     if (d.dim == 2 && d.vertices[v].z() != 0)
-      refuse(d, "vertex " + std::to_string(v) + " of a 2D body is not in the plane z = 0");
+      reject(d, "vertex " + std::to_string(v) + " of a 2D body is not in the plane z = 0");
   }
   for (FaceId f = 0; f < faces; ++f) check_face(d, f);
 }
@@ -258,7 +258,7 @@ void LrbRep::find_parents() {
     for (; is_region(c) && depth_[c] == 0; c = parent_[c]) {
       path.push_back(c.as_region());
       // A path longer than the number of regions contains a cycle, in which no depth is ever known.
-      if (path.size() > regions) refuse(d_, "region " + std::to_string(r) + " hides itself");
+      if (path.size() > regions) reject(d_, "region " + std::to_string(r) + " hides itself");
     }
     std::uint32_t depth = is_region(c) ? depth_[c] : 0;
     for (; !path.empty(); path.pop_back()) depth_[path.back()] = ++depth;

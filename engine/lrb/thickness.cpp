@@ -16,7 +16,7 @@
 //
 // Rounding. A cut places a new corner on an edge with an error of at most 2^-50 (in units, in which
 // coordinates are at most about 1). A point of the piece then has that distance to the point of the two new
-// pieces with the same barycentric coordinates. A piece results from at most kMostCuts cuts, so it represents
+// pieces with the same barycentric coordinates. A piece results from at most kMaxCuts cuts, so it represents
 // points at most 2^-42 away; kThicknessRounding covers that and the rounding of distances.
 
 #include "engine/lrb/thickness.hpp"
@@ -162,8 +162,8 @@ constexpr double kTight = 1.01;
 constexpr double kSmall = 1e-6;
 /// Maximum number of cuts that lead to one piece, and of pieces of one region, after which the bound is no
 /// longer refined.
-constexpr std::uint32_t kMostCuts = 256;
-constexpr std::size_t kMostPieces = 20000;
+constexpr std::uint32_t kMaxCuts = 256;
+constexpr std::size_t kMaxPieces = 20000;
 /// Ratio of the lengths of a piece and its face above which the piece is bisected, wherever the face ends.
 constexpr double kMuchLonger = 4;
 /// A triangle, or in 2D a segment (two corners).
@@ -342,7 +342,7 @@ class RegionMeter {
     for (std::size_t cuts = 0; !heap_.empty(); ++cuts) {
       const Waiting worst = heap_.front();
       Piece& piece = pieces_[worst.piece];
-      if (worst.most <= limit() || piece.cuts == kMostCuts || cuts == kMostPieces) {
+      if (worst.most <= limit() || piece.cuts == kMaxCuts || cuts == kMaxPieces) {
         most_ = std::max(most_, worst.most);  // the others are no worse
         return;
       }

@@ -136,7 +136,7 @@ Eigen::AlignedBox3d box_of_corners(const LrbRep& rep, const Pose& pose) {
 }  // namespace
 
 /// If two boxes are disjoint along an axis, any two of their corners have the order of the boxes there.
-bool world_boxes_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+bool world_boxes_are_disjoint(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   if (a.tree().empty() || b.tree().empty()) return true;
   const bool in_range = stays_finite(a, pose_a) && stays_finite(b, pose_b);
   Eigen::AlignedBox3d box_a, box_b;

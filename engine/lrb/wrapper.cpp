@@ -108,11 +108,11 @@ constexpr double kFewFaces = 2048, kSmallShare = 1.0 / 16, kSmallStep = 1.1;
 /// Maximum fraction of the body's own faces for a level: for more, the exact query costs hardly more. Also
 /// limits the total size of all levels: between two and three times as many faces as a large body has, up to
 /// six times as many as a small one.
-constexpr double kMostFaces = 0.5;
+constexpr double kMaxFaces = 0.5;
 /// More levels than kLevelStep gives for the largest body: a file with more was not written by lrbscope.
-constexpr std::size_t kMostLevels = 256;
+constexpr std::size_t kMaxLevels = 256;
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void reject(const std::string& what) {
   throw InputError("the levels of the LRB-rep " + what + "; rebuild it from its mesh");
 }
 
@@ -143,17 +143,17 @@ std::vector<double> needed_tolerances(const LrbRep& rep, unsigned threads) {
 
 /// Throws InputError if a region could be included without a region that it hides.
 void check_needed(const LrbRep& rep, const std::vector<double>& needed) {
-  if (needed.size() != (can_have_levels(rep) ? rep.region_count() : 0)) refuse("do not match its regions");
+  if (needed.size() != (can_have_levels(rep) ? rep.region_count() : 0)) reject("do not match its regions");
   for (RegionId r = 0; r < needed.size(); ++r) {
     // Written so that NaN is rejected as well.
-    if (!(needed[r] >= 0)) refuse("have an invalid tolerance for region " + std::to_string(r));
+    if (!(needed[r] >= 0)) reject("have an invalid tolerance for region " + std::to_string(r));
     if (rep.lids(r).empty() && needed[r] != kInfinity)
-      refuse("include region " + std::to_string(r) + ", which has no lid");
+      reject("include region " + std::to_string(r) + ", which has no lid");
     for (const FaceId lid : rep.lids(r)) {
       // The order established by needed_tolerances(); without it a wrapper would have a cavity around r.
       const CellId over = rep.outer_cell(lid);
       if (is_region(over) && needed[over] < needed[r])
-        refuse("include region " + std::to_string(over) + " without region " + std::to_string(r) +
+        reject("include region " + std::to_string(over) + " without region " + std::to_string(r) +
                ", which it covers");
     }
   }
@@ -231,7 +231,7 @@ std::vector<double> choose_bounds(const LrbRep& rep, std::span<const double> nee
   std::size_t i = bounds.size();
   // The count may jump by more than a step between neighbouring candidates. Then both sides of the jump are
   // chosen.
-  for (; i-- > 0 && faces[i] <= kMostFaces * rep.real_face_count();) {
+  for (; i-- > 0 && faces[i] <= kMaxFaces * rep.real_face_count();) {
     if (!is_beyond(i)) continue;
     if (!chosen.empty()) choose(i + 1);
     if (is_beyond(i)) choose(i);
@@ -292,13 +292,13 @@ WrapperLevels::WrapperLevels(const LrbRep& rep, unsigned threads) {
 WrapperLevels::WrapperLevels(const LrbRep& rep, std::vector<double> needed, std::vector<StoredLevel> stored)
     : needed_(std::move(needed)) {
   check_needed(rep, needed_);
-  if (stored.size() > (needed_.empty() ? 0 : kMostLevels)) refuse("are too many");
+  if (stored.size() > (needed_.empty() ? 0 : kMaxLevels)) reject("are too many");
   if (needed_.empty()) return;  // a body without levels, whose file contains an empty list of them
   std::vector<double> bounds;
   // Bounds must be finite and strictly descending; within() depends on the order.
   for (const StoredLevel& from : stored) {
     if (!(from.bound >= 0 && from.bound < (bounds.empty() ? kInfinity : bounds.back())))
-      refuse("are not in order");
+      reject("are not in order");
     bounds.push_back(from.bound);
   }
   // The faces are derived again rather than read, so that a file cannot omit any. Each stored tree is checked

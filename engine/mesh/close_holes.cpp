@@ -22,7 +22,7 @@
 namespace lrb {
 namespace {
 
-using lids::Lid;
+using hole_fill::HoleFill;
 using Edge = std::array<VertexId, 2>;
 using Edges = std::set<Edge>;
 
@@ -33,9 +33,9 @@ Edge edge_of(VertexId v, VertexId w) {
 /// A fill in progress: the holes that it fills, its candidates, and the current one.
 struct Attempt {
   std::vector<std::size_t> holes;  ///< the first one encloses the others
-  std::vector<std::optional<Lid>> ways;
+  std::vector<std::optional<HoleFill>> ways;
   std::size_t way = 0;
-  const Lid& lid() const { return *ways[way]; }
+  const HoleFill& lid() const { return *ways[way]; }
 };
 
 class HoleCloser {
@@ -81,7 +81,7 @@ class HoleCloser {
     hole.state = HoleState::no_area;
     if (!spanning_corners(mesh_, rims_[i])) return;
     hole.state = HoleState::meets_itself;
-    views_[i] = lids::view_of(mesh_, rims_[i]);
+    views_[i] = hole_fill::view_of(mesh_, rims_[i]);
   }
 
   /// Returns an attempt for each planar hole that contains planar holes of opposite orientation.
@@ -97,12 +97,12 @@ class HoleCloser {
       for (const std::size_t k : inner[i]) holes.push_back(rims_[k]);
       // Connect the inner loops to the outer one by bridges. The result is one polygon that may visit
       // vertices twice.
-      const auto rim = lids::bridge_holes(mesh_, rims_[i], std::move(holes), *views_[i]);
+      const auto rim = hole_fill::bridge_holes(mesh_, rims_[i], std::move(holes), *views_[i]);
       if (!rim) continue;
       Attempt& ring = out.emplace_back();
       ring.holes = {i};
       ring.holes.insert(ring.holes.end(), inner[i].begin(), inner[i].end());
-      ring.ways = {lids::cut_corners(mesh_, *rim, *views_[i], allowed())};
+      ring.ways = {hole_fill::cut_corners(mesh_, *rim, *views_[i], allowed())};
     }
     return out;
   }
@@ -120,14 +120,14 @@ class HoleCloser {
       // Exact tests: coplanar, and inside the polygon. Boundary loops may touch, so the test of one vertex is
       // preliminary; the final proof decides.
       if (is_planar(mesh_, rims_[i], *spanning_corners(mesh_, rims_[k])) &&
-          lids::lies_inside(mesh_, rims_[k], rims_[i][0], *views_[k]))
+          hole_fill::lies_inside(mesh_, rims_[k], rims_[i][0], *views_[k]))
         home = k;
     }
     return home;
   }
 
   /// Returns a predicate that rejects second edges between two vertices: they would have four faces.
-  lids::EdgeAllowed allowed() const {
+  hole_fill::EdgeAllowed allowed() const {
     return [this](VertexId v, VertexId w) { return v != w && !edges_.contains(edge_of(v, w)); };
   }
 
@@ -135,10 +135,10 @@ class HoleCloser {
     Attempt a;
     a.holes = {i};
     // All triangulations of a planar polygon have the same area, so only non-planar loops are optimised.
-    if (!out_.holes[i].loop.planar) a.ways.push_back(lids::least_area(mesh_, rims_[i], allowed()));
-    a.ways.push_back(lids::cut_corners(mesh_, rims_[i], *views_[i], allowed()));
+    if (!out_.holes[i].loop.planar) a.ways.push_back(hole_fill::least_area(mesh_, rims_[i], allowed()));
+    a.ways.push_back(hole_fill::cut_corners(mesh_, rims_[i], *views_[i], allowed()));
     // A triangle needs no extra vertex.
-    if (rims_[i].size() > 3) a.ways.push_back(lids::fan_about_middle(mesh_, rims_[i]));
+    if (rims_[i].size() > 3) a.ways.push_back(hole_fill::fan_about_middle(mesh_, rims_[i]));
     return a;
   }
 
@@ -155,19 +155,19 @@ class HoleCloser {
   }
 
   /// Returns the edges of a fill that connect two vertices of its loop and are not part of the loop.
-  static Edges inner_edges(const Lid& lid) {
+  static Edges inner_edges(const HoleFill& lid) {
     // An edge of two triangles is an inner edge; an edge of the boundary loop occurs once. A bridge counts as
     // inner. Spokes of a fan end at a new vertex and cannot coincide with existing edges.
     Edges once, twice;
     for (const auto& t : lid.triangles)
       for (std::size_t i = 0; i < 3; ++i) {
         const Edge e = edge_of(t[i], t[(i + 1) % 3]);
-        if (e[1] != lids::kMiddle && !once.insert(e).second) twice.insert(e);
+        if (e[1] != hole_fill::kMiddle && !once.insert(e).second) twice.insert(e);
       }
     return twice;
   }
 
-  bool edges_are_free(const Lid& lid) const {
+  bool edges_are_free(const HoleFill& lid) const {
     const Edges inner = inner_edges(lid);
     return std::none_of(inner.begin(), inner.end(), [&](const Edge& e) { return edges_.contains(e); });
   }
@@ -252,12 +252,12 @@ class HoleCloser {
     return out;
   }
 
-  static void add(const Lid& lid, Mesh& mesh) {
+  static void add(const HoleFill& lid, Mesh& mesh) {
     const auto middle = static_cast<VertexId>(mesh.vertices.size());
     // The centre of a fan becomes a new vertex, which replaces kMiddle.
     if (lid.middle) mesh.vertices.push_back(*lid.middle);
     for (std::array<VertexId, 3> t : lid.triangles) {
-      std::replace(t.begin(), t.end(), lids::kMiddle, middle);
+      std::replace(t.begin(), t.end(), hole_fill::kMiddle, middle);
       mesh.add_face(t);
     }
   }
@@ -277,9 +277,9 @@ class HoleCloser {
   const CheckedMesh& checked_;
   const Mesh& mesh_;
   const std::vector<FaceUse>& use_;
-  Edges edges_;                                      ///< edges of existing faces
-  std::vector<std::vector<VertexId>> rims_;          ///< (holes) in the direction of the fill
-  std::vector<std::optional<lids::LidView>> views_;  ///< (holes) nullopt: cannot be filled
+  Edges edges_;                                                  ///< edges of existing faces
+  std::vector<std::vector<VertexId>> rims_;                      ///< (holes) in the direction of the fill
+  std::vector<std::optional<hole_fill::HoleProjection>> views_;  ///< (holes) nullopt: cannot be filled
   ClosedHoles out_;
 };
 

@@ -71,15 +71,15 @@ FacePairs::FacePairs(const Mesh& mesh, const std::vector<FaceUse>& use)
 /// across the mesh. This happens for long narrow faces close to each other, and for large faces close in
 /// front of each other.
 bool FacePairs::boxes_are_crowded() const {
-  constexpr std::uint32_t kSamples = 256, kMost = 64;
+  constexpr std::uint32_t kSamples = 256, kMax = 64;
   const auto faces = static_cast<std::uint32_t>(boxes_.size());
   if (faces <= kSamples) return false;
   // Evenly spaced sample. Each count is limited, which bounds the time of the sample.
   std::uint64_t meeting = 0;
   for (std::uint32_t i = 0; i < kSamples; ++i)
     meeting +=
-        tree_->count_meeting(static_cast<std::uint32_t>(std::uint64_t{i} * faces / kSamples), 4 * kMost);
-  return meeting > std::uint64_t{kSamples} * kMost;
+        tree_->count_meeting(static_cast<std::uint32_t>(std::uint64_t{i} * faces / kSamples), 4 * kMax);
+  return meeting > std::uint64_t{kSamples} * kMax;
 }
 
 std::vector<FacePairs::Unit> FacePairs::units() const {
@@ -220,7 +220,9 @@ void FacePairs::between(std::uint32_t m, std::uint32_t n, const Visit& visit) co
   descend(
       nodes_, m, n,
       // The cheap test first; the separating axes of the OBBs (Gottschalk et al. 1996) only if it fails.
-      [](const Node& a, const Node& b) { return !a.box.intersects(b.box) || surely_apart(a.slim, b.slim); },
+      [](const Node& a, const Node& b) {
+        return !a.box.intersects(b.box) || proven_disjoint(a.slim, b.slim);
+      },
       [&](const Node& a, const Node& b) {
         for (std::uint32_t i = a.first; i < a.last; ++i)
           for (std::uint32_t j = b.first; j < b.last; ++j) try_pair(order_[i], order_[j], visit);

@@ -85,7 +85,7 @@ namespace {
 /// Margin for rounding, in the unit cube. Scaled positions have errors of 2^-52, the axes of the eigenvalue
 /// solver are perpendicular to a few units in the last place, and a sum of three products of numbers below 2
 /// has an error below 2^-49. In total that is below 2^-46: a position is within kRoom of its box, and each
-/// value computed by surely_apart() is within kRoom of the exact one. For nearly parallel axes the cross
+/// value computed by proven_disjoint() is within kRoom of the exact one. For nearly parallel axes the cross
 /// product is close to 0, and then nothing exceeds the margin.
 constexpr double kRoom = 0x1p-40;
 
@@ -144,7 +144,7 @@ OrientedBox OrientedBox::about(std::span<const Eigen::Vector3d> points) {
   return box;
 }
 
-bool surely_apart(const OrientedBox& a, const OrientedBox& b) {
+bool proven_disjoint(const OrientedBox& a, const OrientedBox& b) {
   // Rotation from b to a, its absolute values, and the offset of the centres in both frames.
   const Eigen::Vector3d between = b.centre - a.centre;
   const Eigen::Matrix3d turn = a.axes * b.axes.transpose(), size = turn.cwiseAbs();

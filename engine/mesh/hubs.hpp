@@ -77,7 +77,7 @@ struct OrientedBox {
 
 /// Returns true if the point sets of two boxes are proven disjoint: some direction separates the boxes by
 /// more than rounding. False proves nothing.
-bool surely_apart(const OrientedBox& a, const OrientedBox& b);
+bool proven_disjoint(const OrientedBox& a, const OrientedBox& b);
 
 // The triangles of one face with very many corners, in a tree of oriented boxes.
 
@@ -111,7 +111,7 @@ class TriangleTree {
   static bool any(const TriangleTree& a, std::uint32_t m, const TriangleTree& b, std::uint32_t n,
                   Test& test) {
     const Node &x = a.nodes_[m], &y = b.nodes_[n];
-    if (surely_apart(x.box, y.box)) return false;
+    if (proven_disjoint(x.box, y.box)) return false;
     if (x.right == 0 && y.right == 0) {
       for (std::uint32_t i = x.first; i < x.last; ++i)
         for (std::uint32_t j = y.first; j < y.last; ++j)

@@ -15,21 +15,21 @@
 #include "engine/core/geometry.hpp"
 #include "engine/exact/predicates.hpp"
 
-namespace lrb::lids {
+namespace lrb::hole_fill {
 namespace {
 
 using Eigen::Vector3d;
 
 /// Returns the sign of the orientation of a, b, c in a projection: +1 if c is left of the line from a to b.
 /// Exact.
-int turn(const Mesh& mesh, const LidView& view, VertexId a, VertexId b, VertexId c) {
+int turn(const Mesh& mesh, const HoleProjection& view, VertexId a, VertexId b, VertexId c) {
   const auto& x = mesh.vertices;
   return exact::orient_axes(x[a].data(), x[b].data(), x[c].data(), view.x, view.y);
 }
 
 class CornerCutter {
  public:
-  CornerCutter(const Mesh& mesh, std::span<const VertexId> rim, const LidView& view,
+  CornerCutter(const Mesh& mesh, std::span<const VertexId> rim, const HoleProjection& view,
                const EdgeAllowed& allowed)
       : mesh_(mesh),
         view_(view),
@@ -37,8 +37,8 @@ class CornerCutter {
         rim_(rim.begin(), rim.end()),
         worth_(rim.size(), kUnknown) {}
 
-  std::optional<Lid> run() {
-    Lid lid;
+  std::optional<HoleFill> run() {
+    HoleFill lid;
     // Cut the best ear. Values are cached: cutting an ear changes only the triangles of its two neighbours.
     while (rim_.size() > 3) {
       std::size_t best = find_best();
@@ -98,7 +98,7 @@ class CornerCutter {
   }
 
   const Mesh& mesh_;
-  const LidView& view_;
+  const HoleProjection& view_;
   const EdgeAllowed& allowed_;
   std::vector<VertexId> rim_;  ///< the remaining polygon
   std::vector<double> worth_;
@@ -106,7 +106,8 @@ class CornerCutter {
 
 /// Returns true if the open segment from a to b crosses or touches the closed one from c to d, which may
 /// share ends with it.
-bool is_blocked(const Mesh& mesh, const LidView& view, VertexId a, VertexId b, VertexId c, VertexId d) {
+bool is_blocked(const Mesh& mesh, const HoleProjection& view, VertexId a, VertexId b, VertexId c,
+                VertexId d) {
   // An end of cd in the interior of ab counts as touching.
   const auto between = [&](VertexId v) {
     if (v == a || v == b || turn(mesh, view, a, b, v) != 0) return false;
@@ -122,7 +123,7 @@ bool is_blocked(const Mesh& mesh, const LidView& view, VertexId a, VertexId b, V
          turn(mesh, view, c, d, a) * turn(mesh, view, c, d, b) < 0;
 }
 
-bool is_blocked_by(const Mesh& mesh, const LidView& view, VertexId a, VertexId b,
+bool is_blocked_by(const Mesh& mesh, const HoleProjection& view, VertexId a, VertexId b,
                    std::span<const VertexId> rim) {
   for (std::size_t i = 0; i < rim.size(); ++i)
     if (is_blocked(mesh, view, a, b, rim[i], rim[(i + 1) % rim.size()])) return true;
@@ -130,7 +131,7 @@ bool is_blocked_by(const Mesh& mesh, const LidView& view, VertexId a, VertexId b
 }
 
 /// Returns true if the segment from the polygon's i-th corner to b starts into the polygon.
-bool leaves_inward(const Mesh& mesh, const LidView& view, std::span<const VertexId> rim, std::size_t i,
+bool leaves_inward(const Mesh& mesh, const HoleProjection& view, std::span<const VertexId> rim, std::size_t i,
                    VertexId b) {
   // Local cone test (O'Rourke, Computational Geometry in C): left of both edges at a convex corner, left of
   // one at a reflex corner.
@@ -146,16 +147,17 @@ struct Bridge {
 };
 
 /// Holes with more corner pairs than this are not closed, to bound the running time.
-constexpr std::size_t kMostBridges = 4'000'000;
+constexpr std::size_t kMaxBridges = 4'000'000;
 
 /// Returns the shortest bridge that intersects no edge, or nullopt if there is none.
 std::optional<Bridge> find_bridge(const Mesh& mesh, std::span<const VertexId> rim,
-                                  const std::vector<std::vector<VertexId>>& holes, const LidView& view) {
+                                  const std::vector<std::vector<VertexId>>& holes,
+                                  const HoleProjection& view) {
   // All pairs of a corner of the polygon and a corner of a hole, shortest first. The stable sort keeps ties
   // in a fixed order.
   std::size_t corners = 0;
   for (const auto& hole : holes) corners += hole.size();
-  if (corners * rim.size() > kMostBridges) return std::nullopt;
+  if (corners * rim.size() > kMaxBridges) return std::nullopt;
   std::vector<Bridge> bridges;
   for (std::size_t h = 0; h < holes.size(); ++h)
     for (std::size_t k = 0; k < holes[h].size(); ++k)
@@ -176,7 +178,7 @@ std::optional<Bridge> find_bridge(const Mesh& mesh, std::span<const VertexId> ri
 
 }  // namespace
 
-std::optional<LidView> view_of(const Mesh& mesh, std::span<const VertexId> rim) {
+std::optional<HoleProjection> view_of(const Mesh& mesh, std::span<const VertexId> rim) {
   // Vector area of the polygon's fan (Newell). Its largest component gives the axis of projection.
   Vector3d normal = Vector3d::Zero();
   const Vector3d o = mesh.vertices[rim[0]];
@@ -186,17 +188,18 @@ std::optional<LidView> view_of(const Mesh& mesh, std::span<const VertexId> rim) 
   if (!(normal.cwiseAbs().maxCoeff(&axis) > 0) || !normal.allFinite()) return std::nullopt;
   // Swap the axes if the polygon would be clockwise.
   const int x = (axis + 1) % 3, y = (axis + 2) % 3;
-  return normal[axis] > 0 ? LidView{x, y} : LidView{y, x};
+  return normal[axis] > 0 ? HoleProjection{x, y} : HoleProjection{y, x};
 }
 
-std::optional<Lid> cut_corners(const Mesh& mesh, std::span<const VertexId> rim, const LidView& view,
-                               const EdgeAllowed& allowed) {
+std::optional<HoleFill> cut_corners(const Mesh& mesh, std::span<const VertexId> rim,
+                                    const HoleProjection& view, const EdgeAllowed& allowed) {
   return CornerCutter(mesh, rim, view, allowed).run();
 }
 
-std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, const EdgeAllowed& allowed) {
+std::optional<HoleFill> least_area(const Mesh& mesh, std::span<const VertexId> rim,
+                                   const EdgeAllowed& allowed) {
   const std::size_t n = rim.size();
-  if (n > kMostForLeastArea) return std::nullopt;
+  if (n > kMaxForLeastArea) return std::nullopt;
   const auto x = [&](std::size_t i) -> const Vector3d& { return mesh.vertices[rim[i]]; };
   // Twice the area, which orders triangulations equally. Triangles without area are excluded exactly.
   const auto area = [&](std::size_t i, std::size_t k, std::size_t j) {
@@ -223,7 +226,7 @@ std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, c
     }
   if (!(cost[n - 1] < kInfinity)) return std::nullopt;
   // Backtracking: split each part at its best third vertex, with an explicit stack instead of recursion.
-  Lid lid;
+  HoleFill lid;
   std::vector<std::array<std::size_t, 2>> open = {{0, n - 1}};
   while (!open.empty()) {
     const auto [i, j] = open.back();
@@ -237,8 +240,8 @@ std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, c
   return lid;
 }
 
-Lid fan_about_middle(const Mesh& mesh, std::span<const VertexId> rim) {
-  Lid lid;
+HoleFill fan_about_middle(const Mesh& mesh, std::span<const VertexId> rim) {
+  HoleFill lid;
   Vector3d middle = Vector3d::Zero();
   // Divide before adding, to avoid overflow.
   for (const VertexId v : rim) middle += mesh.vertices[v] / static_cast<double>(rim.size());
@@ -250,7 +253,7 @@ Lid fan_about_middle(const Mesh& mesh, std::span<const VertexId> rim) {
 
 std::optional<std::vector<VertexId>> bridge_holes(const Mesh& mesh, std::vector<VertexId> rim,
                                                   std::vector<std::vector<VertexId>> holes,
-                                                  const LidView& view) {
+                                                  const HoleProjection& view) {
   while (!holes.empty()) {
     const std::optional<Bridge> bridge = find_bridge(mesh, rim, holes, view);
     if (!bridge) return std::nullopt;
@@ -267,7 +270,8 @@ std::optional<std::vector<VertexId>> bridge_holes(const Mesh& mesh, std::vector<
   return rim;
 }
 
-bool lies_inside(const Mesh& mesh, std::span<const VertexId> rim, VertexId point, const LidView& view) {
+bool lies_inside(const Mesh& mesh, std::span<const VertexId> rim, VertexId point,
+                 const HoleProjection& view) {
   // Crossing parity along the ray towards +x. Edges count as half-open in y, so that a vertex at the ray's
   // height counts once.
   bool inside = false;
@@ -288,4 +292,4 @@ bool lies_inside(const Mesh& mesh, std::span<const VertexId> rim, VertexId point
   return inside;
 }
 
-}  // namespace lrb::lids
+}  // namespace lrb::hole_fill

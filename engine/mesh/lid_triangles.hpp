@@ -9,13 +9,13 @@
 
 #include <lrbscope/mesh.hpp>
 
-namespace lrb::lids {
+namespace lrb::hole_fill {
 
 /// Placeholder for the new vertex at the centre of a fan.
 inline constexpr VertexId kMiddle(kNull.kValue - 1);
 
 /// A hole fill.
-struct Lid {
+struct HoleFill {
   std::vector<std::array<VertexId, 3>> triangles;
   std::optional<Eigen::Vector3d> middle;  ///< position of kMiddle
 };
@@ -24,33 +24,34 @@ struct Lid {
 using EdgeAllowed = std::function<bool(VertexId, VertexId)>;
 
 /// Two coordinates of a projection in which a polygon is counter-clockwise.
-struct LidView {
+struct HoleProjection {
   int x = 0, y = 1;
 };
 /// Returns the projection of a loop along the axis closest to its mean normal, or nullopt if it has no area.
-std::optional<LidView> view_of(const Mesh& mesh, std::span<const VertexId> rim);
+std::optional<HoleProjection> view_of(const Mesh& mesh, std::span<const VertexId> rim);
 
 /// Triangulates a polygon by ear clipping in a projection. Exact: all triangles of a planar simple polygon
 /// are inside it and have area. A vertex may occur twice (the ends of a bridge to a hole). Returns nullopt if
 /// no ear is left.
-std::optional<Lid> cut_corners(const Mesh& mesh, std::span<const VertexId> rim, const LidView& view,
-                               const EdgeAllowed& allowed);
+std::optional<HoleFill> cut_corners(const Mesh& mesh, std::span<const VertexId> rim,
+                                    const HoleProjection& view, const EdgeAllowed& allowed);
 
 /// Returns the minimum-area triangulation, or nullopt if there is none or the loop has more than
-/// kMostForLeastArea vertices.
-std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, const EdgeAllowed& allowed);
-inline constexpr std::size_t kMostForLeastArea = 256;  ///< the time is cubic
+/// kMaxForLeastArea vertices.
+std::optional<HoleFill> least_area(const Mesh& mesh, std::span<const VertexId> rim,
+                                   const EdgeAllowed& allowed);
+inline constexpr std::size_t kMaxForLeastArea = 256;  ///< the time is cubic
 
 /// Returns the fan around the centroid of the loop's vertices.
-Lid fan_about_middle(const Mesh& mesh, std::span<const VertexId> rim);
+HoleFill fan_about_middle(const Mesh& mesh, std::span<const VertexId> rim);
 
 /// Merges a polygon and coplanar holes in it (of opposite orientation) into one polygon with a bridge to each
 /// hole and back. Returns nullopt if a hole has no bridge that intersects no edge.
 std::optional<std::vector<VertexId>> bridge_holes(const Mesh& mesh, std::vector<VertexId> rim,
                                                   std::vector<std::vector<VertexId>> holes,
-                                                  const LidView& view);
+                                                  const HoleProjection& view);
 
 /// Returns true if a point is strictly inside a simple polygon. Exact.
-bool lies_inside(const Mesh& mesh, std::span<const VertexId> rim, VertexId point, const LidView& view);
+bool lies_inside(const Mesh& mesh, std::span<const VertexId> rim, VertexId point, const HoleProjection& view);
 
-}  // namespace lrb::lids
+}  // namespace lrb::hole_fill

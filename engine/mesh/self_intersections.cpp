@@ -35,7 +35,7 @@ bool cover_each_other(const double* const a[3], const double* const b[3]) {
     if (exact::orient_axes(b[0], b[1], b[2], x, y) != turn) return false;
     // Separating axis theorem in 2D: if the interiors of two convex polygons are disjoint, the line of a side
     // of one of them separates them.
-    const auto parted = [&](const double* const p[3], const double* const q[3]) {
+    const auto rejected = [&](const double* const p[3], const double* const q[3]) {
       for (int i = 0; i < 3; ++i) {
         bool beyond = true;
         for (int k = 0; k < 3; ++k)
@@ -44,7 +44,7 @@ bool cover_each_other(const double* const a[3], const double* const b[3]) {
       }
       return false;
     };
-    return !parted(a, b) && !parted(b, a);
+    return !rejected(a, b) && !rejected(b, a);
   }
   return false;
 }

@@ -10,9 +10,9 @@
 /// 5. Else lengthen the interval until the bodies are proven to stay separate again. The time before that is
 ///    reported as ambiguous (`doubtful`).
 ///
-/// Bodies are reported as separate only if find_swept_pairs(), PairMotion::parted_for() or a distance proves
-/// it, and as in contact only if the exact query or PairMotion::has_passed() proves it. All other decisions
-/// affect only the amount of work.
+/// Bodies are reported as separate only if find_swept_pairs(), PairMotion::separated_for() or a distance
+/// proves it, and as in contact only if the exact query or PairMotion::has_passed() proves it. All other
+/// decisions affect only the amount of work.
 
 #include "engine/motion/contact_search.hpp"
 
@@ -38,19 +38,19 @@ constexpr double kHardlyLonger = 64;
 /// In intervals shorter than this share of a piece, the maximum number of pairs is doubled after each
 /// failure: if long faces pass each other, shorter intervals contain no fewer pairs.
 constexpr double kShortShare = 0x1p-10;
-/// A pair stops when a step advances it by at most kLeastStep tolerances; for a stuck pair the limit is
-/// kLeastStuckStep.
-constexpr double kLeastStep = 0x1p-3, kLeastStuckStep = 0x1p-20;
-constexpr int kMostStepsOfPair = 256;
+/// A pair stops when a step advances it by at most kMinStep tolerances; for a stuck pair the limit is
+/// kMinStuckStep.
+constexpr double kMinStep = 0x1p-3, kMinStuckStep = 0x1p-20;
+constexpr int kMaxStepsOfPair = 256;
 /// Factor between the lengths of the intervals in which the end of an ambiguity is searched, and share of
 /// that length for which the bodies must then be proven separate.
 constexpr double kLonger = 4, kGoesOn = 0.25;
 /// Accuracy to which the end of an ambiguous interval is found, relative to its length.
 constexpr double kNarrow = 0x1p-10;
-constexpr std::uint64_t kMostStuckPairs = 1 << 20;
+constexpr std::uint64_t kMaxStuckPairs = 1 << 20;
 constexpr int kProbes = 8;
 /// Number of distances in a piece after which single pairs are followed instead, if there are not too many.
-constexpr std::uint64_t kMostDistances = 512;
+constexpr std::uint64_t kMaxDistances = 512;
 
 /// Returns t + step, rounded down.
 double later(double t, double step) {
@@ -104,21 +104,21 @@ void FirstContactSearch::search_swept(double end) {
       continue;
     }
     // No pair can intersect before the least time that the pairs reach.
-    free_until_ = advance_all(span, kLeastStep * step_tolerance());
+    free_until_ = advance_all(span, kMinStep * step_tolerance());
     // Success: try an interval twice as long next.
     width = 2 * (span.end - t);
-    tell(free_until_);
+    notify(free_until_);
     if (free_until_ >= span.end) continue;
     // A pair has stopped: a contact, or bodies too close for steps of this length.
     free_until_ = look_closer(free_until_, end);
     // The bodies are still close: continue with short intervals.
     width = kHardlyLonger * step_tolerance();
-    if (!is_done_) tell(free_until_);
+    if (!is_done_) notify(free_until_);
   }
 }
 
 /// Returns the length of time after t for which the distance proves the bodies separate, or 0.
-double FirstContactSearch::parted_by_distance(double t) {
+double FirstContactSearch::rejected_by_distance(double t) {
   // An approximate distance is enough: any lower bound yields a valid step.
   DistanceRequest rough;
   rough.relative_tolerance = 0.25;
@@ -139,7 +139,7 @@ double FirstContactSearch::parted_by_distance(double t) {
 /// Returns true if the bodies are small enough to follow all pairs of simplices.
 bool FirstContactSearch::suits_all_pairs() const {
   const std::uint64_t pairs = std::uint64_t{rep_[0]->real_simplex_count()} * rep_[1]->real_simplex_count();
-  return pairs <= kMostStuckPairs && pairs <= (most_ - std::min(most_, spent_)) / 4;
+  return pairs <= kMaxStuckPairs && pairs <= (most_ - std::min(most_, spent_)) / 4;
 }
 
 /// Advances by distances. A distance has no direction: bodies that slide along each other advance by at most
@@ -148,15 +148,15 @@ bool FirstContactSearch::suits_all_pairs() const {
 void FirstContactSearch::search_by_distance(double end) {
   for (std::uint64_t steps = 0; free_until_ < end && !is_over(); ++steps) {
     // Many small steps: follow single pairs instead.
-    if (steps == kMostDistances && suits_all_pairs()) {
+    if (steps == kMaxDistances && suits_all_pairs()) {
       is_swept_ = true;
       return search_swept(end);
     }
-    const double parted = parted_by_distance(free_until_);
-    free_until_ = std::min(end, later(free_until_, parted));
-    tell(free_until_);
+    const double rejected = rejected_by_distance(free_until_);
+    free_until_ = std::min(end, later(free_until_, rejected));
+    notify(free_until_);
     // The gap closes within a fraction of the tolerance: contact, or nearly.
-    if (parted < kLeastStep * step_tolerance() && free_until_ < end)
+    if (rejected < kMinStep * step_tolerance() && free_until_ < end)
       free_until_ = look_closer(free_until_, end);
   }
 }
@@ -174,21 +174,21 @@ double FirstContactSearch::advance(SimplexPair pair, const PieceState& at_a, con
   for (int i = 0;; ++i) {
     ++result_.counters.steps;
     ++spent_;
-    double parted = moving.parted_for(n);
-    if (later(t, parted) < span.end) {
+    double rejected = moving.separated_for(n);
+    if (later(t, rejected) < span.end) {
       // It does not for long enough: try the line between the closest points.
       const Vector3d across = moving.bounds().direction;
-      const double parted_across = moving.parted_for(across);
-      if (parted_across > parted) {
-        parted = parted_across;
+      const double rejected_across = moving.separated_for(across);
+      if (rejected_across > rejected) {
+        rejected = rejected_across;
         n = across;
       }
     }
     const double before = t;
-    t = std::min(span.end, later(t, parted));
+    t = std::min(span.end, later(t, rejected));
     if (t >= span.end) hint_ = n;
     // Steps towards a contact shrink quickly: stop once they are negligible, or too short to change t.
-    if (t >= span.end || parted < least || t == before || i >= kMostStepsOfPair) return t;
+    if (t >= span.end || rejected < least || t == before || i >= kMaxStepsOfPair) return t;
     if (is_spent()) return t;
     moving.place(a_->at(t), b_->at(t));
   }
@@ -241,15 +241,15 @@ bool FirstContactSearch::meets_right_after(TimeSpan span) {
 /// Returns the time up to which the bodies are proven separate, in steps as short as necessary. Stores the
 /// pairs that do not reach the interval's end.
 double FirstContactSearch::advance_stuck(TimeSpan span) {
-  const double least = kLeastStuckStep * step_tolerance();
+  const double least = kMinStuckStep * step_tolerance();
   context_.stuck.clear();
   double until = span.end;
   if (!is_swept_) {
-    // By distances: at most kMostStepsOfPair steps, each of at least `least`.
-    double t = span.begin, parted = span.end - t;
-    for (int i = 0; i < kMostStepsOfPair && t < until && parted >= least; ++i) {
-      parted = parted_by_distance(t);
-      t = std::min(until, later(t, parted));
+    // By distances: at most kMaxStepsOfPair steps, each of at least `least`.
+    double t = span.begin, rejected = span.end - t;
+    for (int i = 0; i < kMaxStepsOfPair && t < until && rejected >= least; ++i) {
+      rejected = rejected_by_distance(t);
+      t = std::min(until, later(t, rejected));
     }
     return t;
   }
@@ -295,7 +295,7 @@ double FirstContactSearch::look_further(double t, double end) {
       return t;
     }
     if (is_swept_) {
-      const bool found_all = find_pairs(span, kMostStuckPairs);
+      const bool found_all = find_pairs(span, kMaxStuckPairs);
       if (is_spent()) return t;
       // Any pair may have passed through: test all.
       context_.stuck = context_.pairs;
@@ -321,7 +321,7 @@ TimeSpan FirstContactSearch::shortened(TimeSpan span, double too_short) {
     const double middle = doubtful + (span.end - doubtful) / 2;
     if (!(middle > doubtful && middle < span.end)) break;
     // goes_on_from() uses the pairs found last.
-    if (is_swept_ && !find_pairs({span.begin, middle}, kMostStuckPairs)) break;
+    if (is_swept_ && !find_pairs({span.begin, middle}, kMaxStuckPairs)) break;
     (goes_on_from({span.begin, middle}) ? span.end : doubtful) = middle;
   }
   return span;
@@ -331,14 +331,14 @@ TimeSpan FirstContactSearch::shortened(TimeSpan span, double too_short) {
 bool FirstContactSearch::goes_on_from(TimeSpan span) {
   const double wanted = kGoesOn * (span.end - span.begin);
   // Without pairs the distance must prove it.
-  if (!is_swept_) return parted_by_distance(span.end) >= wanted;
+  if (!is_swept_) return rejected_by_distance(span.end) >= wanted;
   const PieceState at_a = a_->at(span.end), at_b = b_->at(span.end);
   return std::all_of(context_.pairs.begin(), context_.pairs.end(), [&](const SimplexPair& pair) {
     PairMotion moving(*a_, *b_, pair);
     moving.place(at_a, at_b);
     if (is_long()) moving.look_at_axes();
     // Try the last separating direction first; closest points take longer to compute.
-    return moving.parted_for(hint_) >= wanted || moving.parted_for(moving.bounds().direction) >= wanted;
+    return moving.separated_for(hint_) >= wanted || moving.separated_for(moving.bounds().direction) >= wanted;
   });
 }
 
@@ -362,7 +362,7 @@ bool FirstContactSearch::found_between(TimeSpan span) {
 /// Records a contact at the end of an interval; first searches for an earlier one by bisection.
 void FirstContactSearch::contact_at_last(TimeSpan span, SimplexPair pair) {
   double none = span.begin;
-  tell(span.begin, span.end);
+  notify(span.begin, span.end);
   // Contact need not be monotone in t, so the start of the interval remains t0.
   while (span.end - none > tolerance_ / 2 && !is_spent()) {
     const double middle = none + (span.end - none) / 2;
@@ -370,7 +370,7 @@ void FirstContactSearch::contact_at_last(TimeSpan span, SimplexPair pair) {
     if (const auto earlier = meets_at(middle)) {
       span.end = middle;
       pair = *earlier;
-      tell(span.begin, span.end);
+      notify(span.begin, span.end);
     } else {
       none = middle;
     }
@@ -387,7 +387,7 @@ void FirstContactSearch::contact_in(TimeSpan span, SimplexPair pair) {
   result_.grazing = span.end - span.begin > request_.tolerance;
   result_.pair = pair;
   write_features(span.begin, pair);
-  tell(span.begin, span.end);
+  notify(span.begin, span.end);
 }
 
 void FirstContactSearch::doubt(TimeSpan span) {

@@ -53,7 +53,7 @@ class FirstContactSearch {
   void search_piece(const MovingBody& a, const MovingBody& b, double end);
   void search_swept(double end);
   void search_by_distance(double end);
-  double parted_by_distance(double t);
+  double rejected_by_distance(double t);
   bool suits_all_pairs() const;
   double advance(SimplexPair pair, const PieceState& at_a, const PieceState& at_b, TimeSpan span,
                  double least);
@@ -72,7 +72,7 @@ class FirstContactSearch {
   void write_features(double t, SimplexPair pair);
   double step_tolerance() const;
   std::uint64_t work() const;
-  void tell(double t0, double t1 = std::numeric_limits<double>::infinity());
+  void notify(double t0, double t1 = std::numeric_limits<double>::infinity());
   FirstContactResult finish();
 
   const LrbRep* rep_[2];
@@ -80,7 +80,7 @@ class FirstContactSearch {
   const FirstContactRequest& request_;
   FirstContactContext& context_;
   FirstContactProbe* probe_;
-  ContactBounds told_;                      ///< last reported bounds
+  ContactBounds reported_;                  ///< last reported bounds
   std::optional<DistanceContext> to_tell_;  ///< buffers for the reported distances
   FirstContactResult result_;
   const MovingBody *a_ = nullptr, *b_ = nullptr;  ///< in the current piece

@@ -23,22 +23,22 @@ namespace {
 
 /// Returns the maximum number of steps of a search (first_contact.hpp). It is far more than needed, except
 /// along clearances that are small relative to the path.
-std::uint64_t most_steps(const LrbRep& a, const Motion& motion_a, const LrbRep& b, const Motion& motion_b) {
-  constexpr double kSteps = 8192, kStepsOfSimplex = 512, kMostParts = 0x1p20, kMost = 0x1p40;
+std::uint64_t max_steps(const LrbRep& a, const Motion& motion_a, const LrbRep& b, const Motion& motion_b) {
+  constexpr double kSteps = 8192, kStepsOfSimplex = 512, kMaxParts = 0x1p20, kMax = 0x1p40;
   double parts = 0;
   for (const Motion* motion : {&motion_a, &motion_b})
     for (const Motion::Piece& piece : motion->pieces())
       // Half a piece for each body, so that `parts` is the mean number of pieces plus the number of full
       // turns.
-      parts += 0.5 + std::min(piece.turn.stableNorm() / (2 * std::numbers::pi), kMostParts);
+      parts += 0.5 + std::min(piece.turn.stableNorm() / (2 * std::numbers::pi), kMaxParts);
   const double simplices = 1.0 * a.real_simplex_count() + b.real_simplex_count();
-  return static_cast<std::uint64_t>(std::min((kSteps + kStepsOfSimplex * simplices) * parts, kMost));
+  return static_cast<std::uint64_t>(std::min((kSteps + kStepsOfSimplex * simplices) * parts, kMax));
 }
 
 /// Returns an interval of t below which rounding hides all motion. With S as in motion_bounds.hpp and u =
 /// 2^-53, positions have an error bound of at least 8 u (1 + 2^-10 |turn|) S, and move by at most 2 (1 +
 /// |turn|) S in a piece: moving by the error bound takes at least 2^-61 of the piece.
-double least_tolerance(const Motion& motion_a, const Motion& motion_b) {
+double min_tolerance(const Motion& motion_a, const Motion& motion_b) {
   double shortest = 1;
   for (const Motion* motion : {&motion_a, &motion_b})
     for (const Motion::Piece& piece : motion->pieces())
@@ -63,8 +63,8 @@ FirstContactSearch::FirstContactSearch(const LrbRep& a, const Motion& motion_a, 
       request_(request),
       context_(context),
       probe_(probe),
-      tolerance_(std::max(request.tolerance, least_tolerance(motion_a, motion_b))),
-      most_(most_steps(a, motion_a, b, motion_b)) {}
+      tolerance_(std::max(request.tolerance, min_tolerance(motion_a, motion_b))),
+      most_(max_steps(a, motion_a, b, motion_b)) {}
 
 std::uint64_t FirstContactSearch::work() const {
   const FirstContactCounters& c = result_.counters;
@@ -76,11 +76,11 @@ bool FirstContactSearch::is_out_of_steps() const {
 }
 
 /// Reports to the probe that the bodies are separate before t0 and in contact by t1, unless reported before.
-void FirstContactSearch::tell(double t0, double t1) {
+void FirstContactSearch::notify(double t0, double t1) {
   if (probe_ == nullptr) return;
   ContactBounds now{work(), std::min(t0, 1.0), t1, 0, 0};
   // Report only changes.
-  if (told_.work > 0 && now.t0 == told_.t0 && now.t1 == told_.t1) return;
+  if (reported_.work > 0 && now.t0 == reported_.t0 && now.t1 == reported_.t1) return;
   // Separate buffers: the context of the search must not change.
   if (!to_tell_) to_tell_.emplace();
   DistanceRequest rough;
@@ -90,7 +90,7 @@ void FirstContactSearch::tell(double t0, double t1) {
       distance(*rep_[0], motion_[0]->at(now.t0), *rep_[1], motion_[1]->at(now.t0), rough, *to_tell_);
   now.lower = at.lower;
   now.upper = at.upper;
-  told_ = now;
+  reported_ = now;
   probe_->bounds(now);
 }
 
@@ -154,7 +154,7 @@ FirstContactResult FirstContactSearch::run() {
   // A body without faces never collides.
   if (rep_[0]->tree().empty() || rep_[1]->tree().empty()) return result_;
   const bool at_once = meets_at_start();
-  tell(0, at_once ? 0 : std::numeric_limits<double>::infinity());
+  notify(0, at_once ? 0 : std::numeric_limits<double>::infinity());
   if (at_once) return result_;
   // Merge both lists of pieces: search each interval of t in which both motions stay in one piece.
   const std::vector<Motion::Piece>*const of_a = &motion_[0]->pieces(), *const of_b = &motion_[1]->pieces();

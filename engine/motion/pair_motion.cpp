@@ -1,6 +1,7 @@
 /// Conservative advancement of one pair of simplices, and a proof that a pair has passed through.
 ///
-/// - parted_for(): bounds the motion of each pair of corners along a direction by a quadratic of t; the least
+/// - separated_for(): bounds the motion of each pair of corners along a direction by a quadratic of t; the
+/// least
 ///   first root is the time for which the slab separates the simplices.
 /// - has_passed(): a continuity argument on the Minkowski difference, explained there.
 
@@ -112,7 +113,7 @@ double PairMotion::places_rounding(const Vector3d& n) const {
          2 * n.norm() * kWorldUp * (body_[0]->rounding() + body_[1]->rounding());
 }
 
-double PairMotion::parted_for(const Vector3d& n) const {
+double PairMotion::separated_for(const Vector3d& n) const {
   const double length = n.norm() * kWorldUp;
   // A degenerate direction proves nothing.
   if (!(length > 0) || !(length < kInfinity)) return 0;
@@ -187,9 +188,9 @@ double PairMotion::approach_speed(const PairBounds& at, const Vector3d& n) const
 /// Returns the unit direction of projection in has_passed(): the direction of motion, because there is least
 /// motion perpendicular to it, or n if the motion is nearly parallel to the slab.
 Vector3d PairMotion::look_along(const Vector3d& n) const {
-  constexpr double kLeastCosine = 1e-3;
+  constexpr double kMinCosine = 1e-3;
   const Vector3d way = body_[1]->travel() - body_[0]->travel();
-  return std::abs(way.dot(n)) > kLeastCosine * way.norm() * n.norm() ? way.normalized() : n.normalized();
+  return std::abs(way.dot(n)) > kMinCosine * way.norm() * n.norm() ? way.normalized() : n.normalized();
 }
 
 /// Proves by continuity that the simplices have intersected. They intersect if the origin is in their
@@ -315,14 +316,14 @@ bool find_swept_pairs(QueryContext& ctx, const MovingBody& a, const MovingBody& 
                           4 * (a.rounding() + b.rounding()) + kWorldRounding * sweep.length;
   aim_at(sweep, rounding, query_unit(a.rep().tree(), b.rep().tree()), k);
   // A list beyond the limit is useless: bound the traversal as well.
-  if (most != kNoLimit) k.most_node_pairs = kPatience * most;
+  if (most != kNoLimit) k.max_node_pairs = kPatience * most;
   pairs.clear();
   while (!is_done(k)) {
     // Empty the kernel's buffer; give up once there are too many pairs or node pairs.
     k.out_size = 0;
     run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i) pairs.push_back({k.out[i].a, k.out[i].b});
-    if (!is_done(k) && (pairs.size() > most || k.node_pairs >= k.most_node_pairs)) return false;
+    if (!is_done(k) && (pairs.size() > most || k.node_pairs >= k.max_node_pairs)) return false;
   }
   return pairs.size() <= most;
 }

@@ -31,12 +31,12 @@ class PairMotion {
   /// Moves the corners to their positions at the time of these states.
   void place(const PieceState& a, const PieceState& b);
 
-  /// From now on, parted_for() takes the direction of accelerations into account. This is slower, but yields
-  /// longer times for directions near a body's axis.
+  /// From now on, separated_for() takes the direction of accelerations into account. This is slower, but
+  /// yields longer times for directions near a body's axis.
   void look_at_axes() { looks_at_axes_ = true; }
   /// Returns the time for which the slab normal to n (any length, either sign) is proven to separate the
   /// simplices, starting now, or 0 if it does not separate them.
-  double parted_for(const Eigen::Vector3d& n) const;
+  double separated_for(const Eigen::Vector3d& n) const;
   PairBounds bounds() const;
   /// Returns the approximate vector from the first simplex to the second.
   Eigen::Vector3d ahead() const { return middle(1) - middle(0); }

@@ -39,7 +39,7 @@ Expected<CollideResult&> collide(const LrbRep& a, const Pose& pose_a, const LrbR
   collide_watched(a, pose_a, b, pose_b, request, memory.of_collision(), probe, memory.collision);
   return memory.collision;
 } catch (const InputError& e) {
-  return Refusal{e.what()};
+  return Error{e.what()};
 }
 
 Expected<CollideResult&> describe_contact(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
@@ -52,7 +52,7 @@ Expected<CollideResult&> describe_contact(const LrbRep& a, const Pose& pose_a, c
   describe_contact(context, request, result);
   return result;
 } catch (const InputError& e) {
-  return Refusal{e.what()};
+  return Error{e.what()};
 }
 
 Expected<DistanceResult&> distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
@@ -62,7 +62,7 @@ Expected<DistanceResult&> distance(const LrbRep& a, const Pose& pose_a, const Lr
   memory.distance = distance(a, pose_a, b, pose_b, request, memory.of_distance(), nullptr, probe);
   return memory.distance;
 } catch (const InputError& e) {
-  return Refusal{e.what()};
+  return Error{e.what()};
 }
 
 Expected<ClashResult&> clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
@@ -71,7 +71,7 @@ Expected<ClashResult&> clash(const LrbRep& a, const Pose& pose_a, const LrbRep& 
   memory.clash = clash(a, pose_a, b, pose_b, request, memory.of_distance(), probe);
   return memory.clash;
 } catch (const InputError& e) {
-  return Refusal{e.what()};
+  return Error{e.what()};
 }
 
 Expected<FirstContactResult&> first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
@@ -81,7 +81,7 @@ Expected<FirstContactResult&> first_contact(const LrbRep& a, const Motion& motio
   memory.contact = first_contact(a, motion_a, b, motion_b, request, memory.context, probe);
   return memory.contact;
 } catch (const InputError& e) {
-  return Refusal{e.what()};
+  return Error{e.what()};
 }
 
 namespace {
@@ -96,7 +96,7 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
     answer = CollideResult{};
   collide_watched(a, pose_a, b, pose_b, request, context, nullptr, *answer);
 } catch (const InputError& e) {
-  answer = Refusal{e.what()};
+  answer = Error{e.what()};
 }
 
 void distance_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,

@@ -40,7 +40,7 @@ std::string joined(const Mesh& mesh, const std::vector<std::string>& lines) {
   return out;
 }
 
-void refuse_unless_queryable(const CheckedMesh& mesh) {
+void reject_unless_queryable(const CheckedMesh& mesh) {
   if (!mesh.report().queryable())
     throw InputError(mesh.mesh().name +
                      ": cannot be queried: " + joined(mesh.mesh(), mesh.report().lines(mesh.mesh())));
@@ -107,7 +107,7 @@ std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes) {
 
 MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
   using Clock = std::chrono::steady_clock;
-  refuse_unless_queryable(mesh);
+  reject_unless_queryable(mesh);
   std::vector<std::string> notes;
   // Steps 2 and 3. The time includes the proof.
   if (can_be_built(mesh, turn)) {
@@ -127,7 +127,7 @@ MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
 }
 
 MadeBody make_body_of_faces(CheckedMesh mesh, bool turn, unsigned threads) {
-  refuse_unless_queryable(mesh);
+  reject_unless_queryable(mesh);
   std::vector<std::string> notes;
   std::uint32_t turned = 0;
   if (!can_be_built(mesh, turn))
@@ -176,7 +176,7 @@ template <class Number>
 Expected<Mesh> mesh_of(const Rows<double>& vertices, const Rows<Number>& faces, const std::string& name) {
   const std::string who = printable_name(name);
   if (const std::string fault = shape_fault(vertices, faces); !fault.empty())
-    return Refusal{who + ": " + fault};
+    return Error{who + ": " + fault};
   Mesh mesh;
   mesh.name = who;
   mesh.dim = faces.each == 2 ? 2 : 3;
@@ -187,8 +187,8 @@ Expected<Mesh> mesh_of(const Rows<double>& vertices, const Rows<Number>& faces, 
     const double* const x = vertices.numbers.data() + v * vertices.each;
     mesh.vertices.emplace_back(x[0], x[1], vertices.each == 3 ? x[2] : 0);
     if (mesh.dim == 2 && mesh.vertices.back().z() != 0)
-      return Refusal{who + ": vertex " + std::to_string(v) + ": expected z = 0 in a 2D body, found " +
-                     io::number_text(mesh.vertices.back().z())};
+      return Error{who + ": vertex " + std::to_string(v) + ": expected z = 0 in a 2D body, found " +
+                   io::number_text(mesh.vertices.back().z())};
   }
   // Pass 2: faces. std::cmp_* compare integers of any signedness and width correctly.
   mesh.face_vertices.reserve(faces.numbers.size());
@@ -196,8 +196,8 @@ Expected<Mesh> mesh_of(const Rows<double>& vertices, const Rows<Number>& faces, 
   for (std::size_t i = 0; i < faces.numbers.size(); ++i) {
     const Number corner = faces.numbers[i];
     if (std::cmp_less(corner, 0) || std::cmp_greater_equal(corner, count))
-      return Refusal{who + ": face " + std::to_string(i / faces.each) + ": expected a vertex index below " +
-                     std::to_string(count) + ", found " + std::to_string(corner)};
+      return Error{who + ": face " + std::to_string(i / faces.each) + ": expected a vertex index below " +
+                   std::to_string(count) + ", found " + std::to_string(corner)};
     mesh.face_vertices.push_back(VertexId(corner));
     if ((i + 1) % faces.each == 0) mesh.face_offsets.push_back(static_cast<std::uint32_t>(i + 1));
   }
@@ -265,7 +265,7 @@ Expected<Body> Body::from(Mesh mesh, const BodyOptions& options) try {
   if (mesh.name.empty()) mesh.name = printable_name(options.name);
   return made(std::move(mesh), options);
 } catch (const InputError& e) {
-  return Refusal{e.what()};
+  return Error{e.what()};
 }
 
 Body Body::from(LrbRep rep) {
@@ -292,7 +292,7 @@ Expected<Body> Body::load(const std::string& path, const BodyOptions& options) t
     if (std::string note = join_corners_of_mesh(mesh); !note.empty()) notes.push_back(std::move(note));
   return made(std::move(mesh), options, std::move(notes));
 } catch (const InputError& e) {
-  return Refusal{e.what()};
+  return Error{e.what()};
 }
 
 }  // namespace lrb

@@ -20,9 +20,9 @@ double gap(const Box& a, const Box& b) {
   // Per axis, the distance of the intervals, or 0 if they overlap. Zero on all axes: the closed boxes
   // intersect.
   const Eigen::Vector3d gaps = (b.min() - a.max()).cwiseMax(a.min() - b.max()).cwiseMax(0);
-  constexpr double kMost = std::numeric_limits<double>::max();
+  constexpr double kMax = std::numeric_limits<double>::max();
   // Larger gaps count as half the largest double: still a lower bound, and the norm stays finite.
-  if (!(gaps.maxCoeff() <= kMost / 2)) return kMost / 2;
+  if (!(gaps.maxCoeff() <= kMax / 2)) return kMax / 2;
   // Rounded down, because callers prune pairs by it.
   return gaps.stableNorm() * kRoundedDown;
 }

@@ -23,7 +23,7 @@ namespace lrb {
 namespace scene {
 
 /// A posed body: one slot of a scene.
-struct Standing {
+struct PlacedBody {
   BodyKey key{};
   const LrbRep* rep = nullptr;
   Pose pose;
@@ -31,9 +31,9 @@ struct Standing {
 
 /// The bodies of one side of a query with their world AABBs: an entire scene or a single body. A free slot
 /// has an empty box.
-struct Party {
+struct Participant {
   std::span<const Box> boxes;
-  std::span<const Standing> standing;
+  std::span<const PlacedBody> standing;
 };
 
 /// A candidate pair, by slot indices. Ordered by gap, then by keys.
@@ -54,18 +54,18 @@ namespace {
 using namespace scene;
 
 /// Returns the pair of two bodies of the same scene, the one with the lower key first.
-Near near_of_one(const Party& party, std::uint32_t i, std::uint32_t j, double gap) {
+Near near_of_one(const Participant& party, std::uint32_t i, std::uint32_t j, double gap) {
   if (party.standing[j].key < party.standing[i].key) std::swap(i, j);
   return {gap, party.standing[i].key, party.standing[j].key, i, j};
 }
 
-Near near_of_two(const Party& a, const Party& b, std::uint32_t i, std::uint32_t j, double gap) {
+Near near_of_two(const Participant& a, const Participant& b, std::uint32_t i, std::uint32_t j, double gap) {
   return {gap, a.standing[i].key, b.standing[j].key, i, j};
 }
 
 /// The two sides of a query. `is_one`: both are the same scene, and each unordered pair counts once.
 struct Parties {
-  Party a, b;
+  Participant a, b;
   bool is_one = false;
 
   /// Calls see(near) for the pairs whose AABBs are at most `limit` apart. see() may lower the limit.
@@ -81,7 +81,7 @@ struct Parties {
   }
 
   PosedPair posed(const Near& near) const {
-    const Standing &x = a.standing[near.a], &y = b.standing[near.b];
+    const PlacedBody &x = a.standing[near.a], &y = b.standing[near.b];
     return {x.rep, x.pose, y.rep, y.pose};
   }
 };
@@ -104,13 +104,13 @@ double distance_of(const DistanceResult& found, Apart apart) {
 }
 
 /// Returns true if collide() reports an answer: an error, or any contact or containment.
-bool is_told(const Expected<CollideResult>& answer) {
+bool is_reported(const Expected<CollideResult>& answer) {
   return !answer || (answer->relation != Relation::separate && answer->relation != Relation::undefined);
 }
 
 }  // namespace
 
-using scene::Box, scene::Near, scene::Party, scene::Standing;
+using scene::Box, scene::Near, scene::Participant, scene::PlacedBody;
 
 class Scene::Held {
  public:
@@ -131,7 +131,7 @@ class Scene::Held {
   /// Return the two sides of a query, with up-to-date boxes: the scene with itself; a body from outside with
   /// the scene; the scene with another one.
   Parties own();
-  Parties with(const Party& outside) { return {outside, party(), false}; }
+  Parties with(const Participant& outside) { return {outside, party(), false}; }
   Parties with(Held& other);
 
   std::span<const ScenePair> near(const Parties& parties, double within);
@@ -153,9 +153,9 @@ class Scene::Held {
   std::uint32_t free_place();
   void add_places(std::size_t more);
   std::shared_ptr<const BodyExtent> extent_of(const LrbRep& rep);
-  Party party();
+  Participant party();
   std::vector<Near> find_near(const Parties& parties, double within);
-  std::vector<Near> sweep(const Party& all);
+  std::vector<Near> sweep(const Participant& all);
   void measure(const Parties& parties, std::span<const Near> near, DistanceRequest request);
 
   Workers workers_;
@@ -165,8 +165,8 @@ class Scene::Held {
   std::size_t came_and_gone_ = 0;  ///< bodies added or removed since the last sweep
 
   std::vector<Slot> slots_;
-  std::vector<Standing> standing_;  ///< (|slots|)
-  std::vector<Box> boxes_;          ///< (|slots|) empty for free slots
+  std::vector<PlacedBody> standing_;  ///< (|slots|)
+  std::vector<Box> boxes_;            ///< (|slots|) empty for free slots
   std::vector<std::uint32_t> free_;
   std::vector<std::uint32_t> moved_;  ///< slots whose boxes must be recomputed
   std::unordered_map<BodyKey, std::uint32_t> place_of_;
@@ -176,7 +176,7 @@ class Scene::Held {
   std::vector<PosedPair> questions_;
   CollideAnswers answers_;
   DistanceAnswers distances_;
-  std::vector<SceneAnswer> told_;
+  std::vector<SceneAnswer> reported_;
 };
 
 std::vector<BodyKey> Scene::Held::keys() const {
@@ -259,7 +259,7 @@ bool Scene::Held::move(BodyKey key, const Pose& pose) {
   return true;
 }
 
-Party Scene::Held::party() {
+Participant Scene::Held::party() {
   work.moved = moved_.size();
   // Recompute only the AABBs of moved bodies, in parallel: each task writes its own slot.
   workers_.for_each(moved_.size(), [&](std::size_t k, unsigned) {
@@ -273,17 +273,17 @@ Party Scene::Held::party() {
 }
 
 Parties Scene::Held::own() {
-  const Party all = party();
+  const Participant all = party();
   return {all, all, true};
 }
 
 Parties Scene::Held::with(Held& other) {
-  const Party others = other.party();
+  const Participant others = other.party();
   return {party(), others, false};
 }
 
 /// Returns the pairs of a scene whose AABBs intersect, by the broad phase.
-std::vector<Near> Scene::Held::sweep(const Party& all) {
+std::vector<Near> Scene::Held::sweep(const Participant& all) {
   // The insertion sort moves each new box through the order. If more than 1 in 8 bodies were added or
   // removed, restart with a full sort.
   constexpr std::size_t kShareThatStays = 8;
@@ -327,15 +327,15 @@ std::span<const SceneAnswer> Scene::Held::collide(const Parties& parties, const 
   batch_.collide(questions_, request, answers_);
   std::size_t count = 0;
   for (std::size_t i = 0; i < near.size(); ++i) {
-    if (!is_told(answers_[i])) continue;
-    if (told_.size() == count) told_.emplace_back();
-    told_[count].a = near[i].key_a;
-    told_[count].b = near[i].key_b;
+    if (!is_reported(answers_[i])) continue;
+    if (reported_.size() == count) reported_.emplace_back();
+    reported_[count].a = near[i].key_a;
+    reported_[count].b = near[i].key_b;
     // Swap instead of move: the buffers of earlier results are reused for the next ones.
-    std::swap(told_[count].result, answers_[i]);
+    std::swap(reported_[count].result, answers_[i]);
     ++count;
   }
-  return std::span<const SceneAnswer>(told_).first(count);
+  return std::span<const SceneAnswer>(reported_).first(count);
 }
 
 /// Computes the distances of pairs, into distances_. DistanceRequest::within is ignored, because every pair
@@ -379,13 +379,13 @@ std::optional<SceneDistance> Scene::Held::nearest(const Parties& parties, const 
 namespace {
 
 /// A single body as one side of a query.
-struct Alone {
-  Alone(const Body& body, const Pose& pose)
+struct ExclusiveAccess {
+  ExclusiveAccess(const Body& body, const Pose& pose)
       : box(world_box(body, pose)), standing{BodyKey{}, &body.rep(), pose} {}
-  operator Party() const { return {{&box, 1}, {&standing, 1}}; }
+  operator Participant() const { return {{&box, 1}, {&standing, 1}}; }
 
   Box box;
-  Standing standing;
+  PlacedBody standing;
 };
 
 }  // namespace
@@ -427,7 +427,7 @@ std::span<const ScenePair> Scene::near(double within) {
   return held_->near(held_->own(), within);
 }
 std::span<const ScenePair> Scene::near(const Body& body, const Pose& pose, double within) {
-  const Alone alone(body, pose);
+  const ExclusiveAccess alone(body, pose);
   return held_->near(held_->with(alone), within);
 }
 std::span<const ScenePair> Scene::near(Scene& other, double within) {
@@ -438,7 +438,7 @@ std::optional<ScenePair> Scene::nearest_boxes() {
   return held_->nearest_boxes(held_->own());
 }
 std::optional<ScenePair> Scene::nearest_boxes(const Body& body, const Pose& pose) {
-  const Alone alone(body, pose);
+  const ExclusiveAccess alone(body, pose);
   return held_->nearest_boxes(held_->with(alone));
 }
 std::optional<ScenePair> Scene::nearest_boxes(Scene& other) {
@@ -450,7 +450,7 @@ std::span<const SceneAnswer> Scene::collide(const CollideRequest& request) {
 }
 std::span<const SceneAnswer> Scene::collide(const Body& body, const Pose& pose,
                                             const CollideRequest& request) {
-  const Alone alone(body, pose);
+  const ExclusiveAccess alone(body, pose);
   return held_->collide(held_->with(alone), request);
 }
 std::span<const SceneAnswer> Scene::collide(Scene& other, const CollideRequest& request) {
@@ -462,7 +462,7 @@ std::optional<SceneDistance> Scene::nearest(const DistanceRequest& request, Apar
 }
 std::optional<SceneDistance> Scene::nearest(const Body& body, const Pose& pose,
                                             const DistanceRequest& request, Apart apart) {
-  const Alone alone(body, pose);
+  const ExclusiveAccess alone(body, pose);
   return held_->nearest(held_->with(alone), request, apart);
 }
 std::optional<SceneDistance> Scene::nearest(Scene& other, const DistanceRequest& request, Apart apart) {

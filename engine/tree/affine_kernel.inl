@@ -236,7 +236,7 @@ struct AffineWalk {
 void LRB_AFFINE_KERNEL_NAME(TreeKernel& k) {
   // No batched test of node boxes: it assumes that the relative map is a rotation.
   if (k.nearest_first) run_nearest<AffineWalk>(k);
-  run<AffineWalk, false>(k, k.most_node_pairs);
+  run<AffineWalk, false>(k, k.max_node_pairs);
 }
 
 }  // namespace lrb

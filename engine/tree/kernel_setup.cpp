@@ -34,7 +34,7 @@ using Eigen::Vector3d;
 constexpr int kNoExponent = -100000;
 
 /// Bound on coordinates in a tree's units: 1, except for bodies near the end of the range of doubles.
-constexpr double kMostUnits = 2;
+constexpr double kMaxUnits = 2;
 
 /// Returns an exponent with x < 2^exponent; that power is at most twice as large as needed.
 int exponent_of(double x) {
@@ -132,7 +132,7 @@ TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbT
   const AffineMap maps[2] = {AffineMap(pose_a, a, dim), AffineMap(pose_b, b, dim)};
   const int exponent = query_exponent(maps[0], pose_a, maps[1], pose_b);
   TreeKernel k{};
-  k.most_node_pairs = kNoLimit;
+  k.max_node_pairs = kNoLimit;
   terms = {};
   terms.exponent = exponent;
   k.affine = &terms;
@@ -149,7 +149,7 @@ TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbT
   // Step 4: the rounding of world coordinates, relative to the sum of the largest terms of both bodies.
   double size = std::ldexp(kWorldUnderflow, -exponent);  // bound on every term of a world coordinate
   for (int side = 0; side < 2; ++side)
-    size += row_size(maps[side].r) * kMostUnits * ratios[side] + t[side].cwiseAbs().maxCoeff();
+    size += row_size(maps[side].r) * kMaxUnits * ratios[side] + t[side].cwiseAbs().maxCoeff();
   const double rounding = kWorldRounding * size;
   // For each body: the maps of both bodies to its axes, and the slack there.
   for (int side = 0; side < 2; ++side) {
@@ -162,7 +162,7 @@ TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbT
     axes.flat = self.flat;
     put(self.own, self.flat ? norm_of(self.own) : 1, axes.own);
     // Deviation of the own map from the identity, plus the rounding of the world scaled by G.
-    const double off = self.defect * kMostUnits * ratios[side];
+    const double off = self.defect * kMaxUnits * ratios[side];
     axes.slack = rounded_up(kPoseSafety * (off + self.back_size * rounding));
     put(self.r, self.size, terms.world[side]);
     // Only used to choose the node to descend, so rounding does not matter.
@@ -279,7 +279,7 @@ TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pos
   // Rounded up, because the conversion to float may round down.
   k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * kFloatUp + kKernelTiny;
   k.m_size = static_cast<float>(turn_m) * kFloatUp;
-  k.most_node_pairs = kNoLimit;
+  k.max_node_pairs = kNoLimit;
   return k;
 }
 

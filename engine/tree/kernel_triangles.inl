@@ -55,7 +55,7 @@ inline void subtract(const Float8* x, const Float8* y, Float8* difference) {
 struct SideLanes {
   Lanes positive[3], negative[3];  ///< proven to be in front, or behind, by more than the margin
   Lanes certain;                   ///< each corner is proven to be in front or behind
-  Lanes parted;                    ///< all are in front, or all behind: the plane separates
+  Lanes rejected;                  ///< all are in front, or all behind: the plane separates
 
   /// Returns the lanes whose corners are not proven to be on both sides.
   Lanes one_side() const {
@@ -93,7 +93,7 @@ inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, c
     below &= sides.negative[corner];
     sides.certain = both(sides.certain, either(sides.positive[corner], sides.negative[corner]));
   }
-  sides.parted = either(above, below);
+  sides.rejected = either(above, below);
   return sides;
 }
 
@@ -159,7 +159,7 @@ struct EightCertainties {
   std::uint32_t unsure[2][3] = {};  ///< [A's, B's][corner]: the corner may be in the other's plane
 
   /// Writes the decision for one pair. Branch-free, because it is unpredictable.
-  void tell(int lane, Candidate& c) const {
+  void notify(int lane, Candidate& c) const {
     const auto is = [lane](std::uint32_t lanes) { return lanes >> lane & 1; };
     const auto value = [](Certainty certainty) { return static_cast<std::uint32_t>(certainty); };
     // A triangle whose decided corners are on one side of a plane intersects the plane in the convex hull of

@@ -226,13 +226,13 @@ inline void list_pairs(std::uint64_t pairs, PairList& list) {
 }
 
 /// Records the pairs of a batch that are separated by a plane of one of their simplices.
-[[gnu::noinline, gnu::cold]] inline void note_parted(TreeKernel& k, const LeafBlock& a, const LeafBlock& b,
-                                                     const PairList& list, std::uint32_t begin,
-                                                     std::uint32_t by_a, std::uint32_t by_b) {
+[[gnu::noinline, gnu::cold]] inline void note_rejected(TreeKernel& k, const LeafBlock& a, const LeafBlock& b,
+                                                       const PairList& list, std::uint32_t begin,
+                                                       std::uint32_t by_a, std::uint32_t by_b) {
   for (std::uint32_t c = by_a | by_b; c != 0; c &= c - 1) {
     const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(c));
-    k.parted[k.parted_size++] = {a.simplex[list.a[begin + lane]], b.simplex[list.b[begin + lane]],
-                                 by_a >> lane & 1 ? Side::a : Side::b};
+    k.rejected[k.rejected_size++] = {a.simplex[list.a[begin + lane]], b.simplex[list.b[begin + lane]],
+                                     by_a >> lane & 1 ? Side::a : Side::b};
   }
 }
 
@@ -258,9 +258,10 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
     const SideLanes a_sides = sides_of_planes<kMargin>(some_b, some_a, errors, errors.edge_error[1]);
     // `here` masks the lanes in use; only the last batch may have fewer than eight.
     const std::uint32_t here = list.size - begin < 8 ? (1u << (list.size - begin)) - 1 : 255u;
-    const std::uint32_t left = ~bits(either(a_sides.parted, b_sides.parted)) & here;
-    if (k.parted != nullptr && left != here) [[unlikely]]
-      note_parted(k, block_a, block_b, list, begin, bits(b_sides.parted) & here, bits(a_sides.parted) & here);
+    const std::uint32_t left = ~bits(either(a_sides.rejected, b_sides.rejected)) & here;
+    if (k.rejected != nullptr && left != here) [[unlikely]]
+      note_rejected(k, block_a, block_b, list, begin, bits(b_sides.rejected) & here,
+                    bits(a_sides.rejected) & here);
     // Pass 4: decide the remaining pairs as far as float arithmetic can. Exact tests get the undecided ones.
     if (left == 0) continue;
     EightCertainties certainties;
@@ -270,7 +271,7 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
       const std::uint32_t pair = begin + static_cast<std::uint32_t>(lane);
       Candidate& found = k.out[k.out_size++];
       found = {block_a.simplex[list.a[pair]], block_b.simplex[list.b[pair]], Certainty::none, Side::a, 0};
-      if constexpr (!kMargin) certainties.tell(lane, found);
+      if constexpr (!kMargin) certainties.notify(lane, found);
     }
   }
 }
@@ -313,18 +314,19 @@ void run(TreeKernel& k, std::uint64_t end) {
 }
 
 /// Records the pairs of nodes that are rejected by their node boxes.
-[[gnu::noinline]] inline void note_parted_nodes(TreeKernel& k, const NodePair* pairs, std::uint32_t apart) {
-  for (; apart != 0; apart &= apart - 1) k.parted_nodes[k.parted_nodes_size++] = pairs[__builtin_ctz(apart)];
+[[gnu::noinline]] inline void note_rejected_nodes(TreeKernel& k, const NodePair* pairs, std::uint32_t apart) {
+  for (; apart != 0; apart &= apart - 1)
+    k.rejected_nodes[k.rejected_nodes_size++] = pairs[__builtin_ctz(apart)];
 }
 
 /// Tests the node boxes of up to 8 pairs and moves those that may intersect to `tested`.
 inline void test_wholes(TreeKernel& k, const NodePair* pairs, std::uint32_t count) {
-  const std::uint32_t apart = pairs_apart(k, pairs, count);
-  const auto parted = static_cast<unsigned>(__builtin_popcount(apart));
-  k.node_pairs += parted;
-  k.box_tests += parted;
-  if (k.parted_nodes != nullptr && apart != 0) [[unlikely]]
-    note_parted_nodes(k, pairs, apart);
+  const std::uint32_t apart = pairs_disjoint(k, pairs, count);
+  const auto rejected = static_cast<unsigned>(__builtin_popcount(apart));
+  k.node_pairs += rejected;
+  k.box_tests += rejected;
+  if (k.rejected_nodes != nullptr && apart != 0) [[unlikely]]
+    note_rejected_nodes(k, pairs, apart);
   for (std::uint32_t c = ~apart & ((1u << count) - 1); c != 0; c &= c - 1)
     k.tested[k.tested_size++] = pairs[__builtin_ctz(c)];
 }
@@ -378,7 +380,7 @@ template <class Walk>
 void run_nearest(TreeKernel& k) {
   // A resumed traversal has done this already.
   if (k.node_pairs >= kNearestPairs) return;
-  const std::uint64_t most = k.most_node_pairs;
+  const std::uint64_t most = k.max_node_pairs;
   run<Walk, true>(k, kNearestPairs < most ? kNearestPairs : most);
   // The remaining pairs stay at the bottom of the stack, below `base`; run_tested() processes them last.
   k.base = k.stack_size;

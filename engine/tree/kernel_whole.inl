@@ -111,8 +111,8 @@ inline std::uint32_t is_greater(float x, float y) {
 /// from its entries by at most 2 D, which contributes 6 D times B's extent; the slack in four times `error`
 /// contains 16 of that.
 template <class V>
-inline std::uint32_t wholes_apart(const TreeKernel& k, const TreeNode* const* nodes_a,
-                                  const TreeNode* const* nodes_b) {
+inline std::uint32_t node_boxes_disjoint(const TreeKernel& k, const TreeNode* const* nodes_a,
+                                         const TreeNode* const* nodes_b) {
   // Step 1: B's axes and centre relative to A, and the error bound.
   const WholeNodes<V> a = read_wholes(nodes_a, k.ratio_a, V{}), b = read_wholes(nodes_b, k.ratio_b, V{});
   const Offsets<V> offset = offsets_between(k, nodes_a, nodes_b, V{});
@@ -164,7 +164,7 @@ inline std::uint32_t wholes_apart(const TreeKernel& k, const TreeNode* const* no
 }
 
 /// Returns a bit for each pair of nodes, of at most eight, whose boxes are disjoint.
-inline std::uint32_t pairs_apart(const TreeKernel& k, const NodePair* pairs, std::uint32_t count) {
+inline std::uint32_t pairs_disjoint(const TreeKernel& k, const NodePair* pairs, std::uint32_t count) {
   // Unused lanes repeat the first pair, so that they read valid memory.
   const TreeNode *a[8], *b[8];
   for (std::uint32_t i = 0; i < 8; ++i) {
@@ -172,9 +172,9 @@ inline std::uint32_t pairs_apart(const TreeKernel& k, const NodePair* pairs, std
     a[i] = k.nodes_a + pair.a;
     b[i] = k.nodes_b + pair.b;
   }
-  if (count > kFewPairs) return wholes_apart<Float8>(k, a, b) & ((1u << count) - 1);
+  if (count > kFewPairs) return node_boxes_disjoint<Float8>(k, a, b) & ((1u << count) - 1);
   std::uint32_t apart = 0;
-  for (std::uint32_t i = 0; i < count; ++i) apart |= wholes_apart<float>(k, a + i, b + i) << i;
+  for (std::uint32_t i = 0; i < count; ++i) apart |= node_boxes_disjoint<float>(k, a + i, b + i) << i;
   return apart;
 }
 

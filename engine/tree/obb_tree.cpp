@@ -219,7 +219,7 @@ ObbTree::ObbTree(const SimplexView& body, std::span<const SimplexId> simplices, 
 
 namespace {
 
-[[noreturn]] void refuse(std::size_t node, const char* what) {
+[[noreturn]] void reject(std::size_t node, const char* what) {
   throw InputError("node " + std::to_string(node) + " of the tree " + what +
                    "; rebuild the LRB-rep from its mesh");
 }
@@ -229,17 +229,17 @@ void check_leaf(std::size_t i, const TreeNode& node, const std::vector<LeafBlock
                 std::vector<bool>& block_seen, std::vector<bool>& missing) {
   // A block belongs to exactly one leaf.
   if (node.first >= blocks.size() || block_seen[node.first])
-    refuse(i, "shares its block with another leaf, or has none");
+    reject(i, "shares its block with another leaf, or has none");
   block_seen[node.first] = true;
   for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
     const std::uint32_t s = blocks[node.first].simplex[k];
     // Absent simplices must be marked as such.
     if (k >= node.count) {
-      if (s != kNull) refuse(i, "has a block with more faces than its count");
+      if (s != kNull) reject(i, "has a block with more faces than its count");
       continue;
     }
     if (s >= missing.size() || !missing[s])
-      refuse(i, "contains a face that does not belong to the tree or is also in another leaf");
+      reject(i, "contains a face that does not belong to the tree or is also in another leaf");
     missing[s] = false;
   }
 }
@@ -255,25 +255,25 @@ void check_structure(const std::vector<TreeNode>& nodes, const std::vector<LeafB
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const TreeNode& node = nodes[i];
     // Parents come before children, so one pass in ascending order reaches every node after its parent.
-    if (i > 0 && !node_seen[i]) refuse(i, "has no parent before it");
-    if (node.count == 0 || node.count > kTreeWidth) refuse(i, "has no children or too many");
-    if (node.is_leaf > 1) refuse(i, "is neither a leaf nor an inner node");
+    if (i > 0 && !node_seen[i]) reject(i, "has no parent before it");
+    if (node.count == 0 || node.count > kTreeWidth) reject(i, "has no children or too many");
+    if (node.is_leaf > 1) reject(i, "is neither a leaf nor an inner node");
     if (node.is_leaf != 0) {
       check_leaf(i, node, blocks, block_seen, missing);
       continue;
     }
     // Written without a sum that could overflow.
     if (node.first <= i || node.first > nodes.size() || node.count > nodes.size() - node.first)
-      refuse(i, "has children that do not exist");
+      reject(i, "has children that do not exist");
     for (std::uint32_t k = 0; k < node.count; ++k) {
-      if (node_seen[node.first + k]) refuse(i, "has a child that belongs to another node");
+      if (node_seen[node.first + k]) reject(i, "has a child that belongs to another node");
       node_seen[node.first + k] = true;
     }
   }
   // Every simplex and every block must have been reached.
   if (std::find(missing.begin(), missing.end(), true) != missing.end() ||
       std::find(block_seen.begin(), block_seen.end(), false) != block_seen.end())
-    refuse(0, "does not contain all faces");
+    reject(0, "does not contain all faces");
 }
 
 Eigen::Vector3d in_frame(const TreeNode& node, const Eigen::Vector3d& x) {

@@ -187,12 +187,12 @@ inline Span span_of_sweep(const PairKernel& k, const EightPairs& p) {
 inline PairVerdicts verdicts_of(const EightPairs& p) {
   const SideLanes b_sides = sides_of_planes(p.a, p.b, p.w, p.w.edge_error[0]);
   const SideLanes a_sides = sides_of_planes(p.b, p.a, p.w, p.w.edge_error[1]);
-  const std::uint32_t parted = bits(either(a_sides.parted, b_sides.parted));
+  const std::uint32_t rejected = bits(either(a_sides.rejected, b_sides.rejected));
   // All eight pairs are separated by planes: the common line is not needed.
-  if (parted == 255u) return {0, 255u};
+  if (rejected == 255u) return {0, 255u};
   const Verdict v = overlap(p.a, a_sides, p.b, b_sides, p.w);  // for the others
-  return {static_cast<std::uint8_t>(bits(v.cross) & ~parted),
-          static_cast<std::uint8_t>(bits(v.disjoint) | parted)};
+  return {static_cast<std::uint8_t>(bits(v.cross) & ~rejected),
+          static_cast<std::uint8_t>(bits(v.disjoint) | rejected)};
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ struct AffineTerms {
   float span[2];  ///< approximate size in the world, in query units, of a length of 1 in the tree's units
 };
 
-/// TreeKernel::most_node_pairs of a kernel without a limit.
+/// TreeKernel::max_node_pairs of a kernel without a limit.
 inline constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 
 /// The state of one traversal. All lengths are in the query's unit: the larger of the two trees' units.
@@ -104,20 +104,20 @@ struct TreeKernel {
   std::uint32_t out_size;
 
   /// Null, or space for 64 pairs: those that planes separate; only for one pair of nodes at a time.
-  PartedPair* parted;
-  std::uint32_t parted_size;
+  PartedPair* rejected;
+  std::uint32_t rejected_size;
 
   // For observation step by step; a step ends with the first pair of nodes that it adds to node_pairs:
-  NodePair* parted_nodes;  ///< null, or as much space as `stack`: the pairs rejected by their node boxes
-  std::uint32_t parted_nodes_size;
+  NodePair* rejected_nodes;  ///< null, or as much space as `stack`: the pairs rejected by their node boxes
+  std::uint32_t rejected_nodes_size;
   NodePair opened;          ///< the last pair that was expanded
   std::uint32_t opened_at;  ///< stack_size before its children were pushed
 
   std::uint64_t node_pairs, box_tests, prefilter_tests;
-  std::uint64_t most_node_pairs;  ///< where to stop, at most 71 pairs late; may be raised to continue
+  std::uint64_t max_node_pairs;  ///< where to stop, at most 71 pairs late; may be raised to continue
 };
 
-/// Traverses until no pair is waiting, fewer than 64 places are left in `out`, or most_node_pairs are
+/// Traverses until no pair is waiting, fewer than 64 places are left in `out`, or max_node_pairs are
 /// reached. Uses the newest instruction set of the processor; the environment variable LRB_SIMD, read at the
 /// first call, limits it to AVX2 ("avx2") or to the minimum of the platform ("baseline"). The result is the
 /// same, including counters (tests/reproducibility/reproducibility.sh).

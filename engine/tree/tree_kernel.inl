@@ -26,10 +26,10 @@ struct RigidWalk {
 
 void LRB_TREE_KERNEL_NAME(TreeKernel& k) {
   // The batched test of node boxes does not support a margin: traverse without it.
-  if (k.margin > 0) return run<RigidWalk<true>, false>(k, k.most_node_pairs);
+  if (k.margin > 0) return run<RigidWalk<true>, false>(k, k.max_node_pairs);
   // The first few pairs of nodes in order of distance, the rest in batches of eight.
   if (k.nearest_first) run_nearest<RigidWalk<false>>(k);
-  run_tested<RigidWalk<false>>(k, k.most_node_pairs);
+  run_tested<RigidWalk<false>>(k, k.max_node_pairs);
 }
 
 }  // namespace lrb

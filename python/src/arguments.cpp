@@ -30,7 +30,7 @@ Numbers numbers(py::handle given, const char* what, const char* expected) {
   return Numbers::ensure(found);
 }
 
-[[noreturn]] void refuse_shape(const char* what, const char* expected, const py::array& found) {
+[[noreturn]] void reject_shape(const char* what, const char* expected, const py::array& found) {
   throw InputError(std::string(what) + ": expected " + expected + ", got shape " + shape_text(found));
 }
 
@@ -54,7 +54,7 @@ void add_vertices(py::handle given, Mesh& mesh) {
   const Numbers v = numbers(given, "vertices", "numbers of shape (n, 3)");
   const bool empty = v.ndim() == 1 && v.size() == 0;  // an empty list
   if (!empty && (v.ndim() != 2 || (v.shape(1) != 3 && v.shape(1) != 2)))
-    refuse_shape("vertices", "shape (n, 3), or (n, 2) in 2D", v);
+    reject_shape("vertices", "shape (n, 3), or (n, 2) in 2D", v);
   const py::ssize_t n = empty ? 0 : v.shape(0), width = empty ? 3 : v.shape(1);
   mesh.dim = static_cast<int>(width);
   mesh.vertices.resize(static_cast<std::size_t>(n));
@@ -91,7 +91,7 @@ Integers integers(const py::array& found, const char* what) {
 void add_equal_faces(const py::array& found, Mesh& mesh) {
   const Integers f = integers(found, "faces");
   if (f.size() == 0) return;
-  if (f.ndim() != 2) refuse_shape("faces", mesh.dim == 2 ? "shape (m, 2)" : "shape (m, 3)", f);
+  if (f.ndim() != 2) reject_shape("faces", mesh.dim == 2 ? "shape (m, 2)" : "shape (m, 3)", f);
   const auto width = static_cast<std::size_t>(f.shape(1));
   std::vector<VertexId> memory;
   mesh.face_vertices.reserve(static_cast<std::size_t>(f.size()));
@@ -206,7 +206,7 @@ py::str path_of(std::string_view path) {
 
 Eigen::Vector3d vector(py::handle given, const char* what) {
   const Numbers v = numbers(given, what, "three numbers");
-  if (v.size() != 3 || v.ndim() != 1) refuse_shape(what, "three numbers", v);
+  if (v.size() != 3 || v.ndim() != 1) reject_shape(what, "three numbers", v);
   return {v.data()[0], v.data()[1], v.data()[2]};
 }
 
@@ -218,7 +218,7 @@ Poses poses(py::handle given, const char* what) {
   if (m.ndim() == 1 && m.size() == 0) return out;  // an empty list: no poses
   const py::ssize_t rows = m.ndim() >= 2 ? m.shape(m.ndim() - 2) : 0;
   if ((m.ndim() != 2 && m.ndim() != 3) || m.shape(m.ndim() - 1) != 4 || (rows != 3 && rows != 4))
-    refuse_shape(what, kPoses, m);
+    reject_shape(what, kPoses, m);
   if (out.one) {
     out.first = read_pose(m.data(), rows, what);
     return out;
@@ -233,7 +233,7 @@ Pose pose(py::handle given, const char* what) {
   if (given.is_none()) return {};
   const Numbers m = numbers(given, what, "numbers of shape (4, 4)");
   if (m.ndim() != 2 || m.shape(1) != 4 || (m.shape(0) != 3 && m.shape(0) != 4))
-    refuse_shape(what, "shape (4, 4)", m);
+    reject_shape(what, "shape (4, 4)", m);
   return read_pose(m.data(), m.shape(0), what);
 }
 

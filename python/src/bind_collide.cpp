@@ -10,27 +10,27 @@ namespace lrb::python {
 namespace {
 
 /// The Python class CoherentQuery, with its bodies.
-struct HeldQuery {
-  HeldQuery(BodyPtr of_a, BodyPtr of_b, const CollideRequest& request, CoherentQuery::CacheUse use)
+struct QueryHandle {
+  QueryHandle(BodyPtr of_a, BodyPtr of_b, const CollideRequest& request, CoherentQuery::CacheUse use)
       : a(std::move(of_a)), b(std::move(of_b)), query(a->rep(), b->rep(), request, use) {}
 
   BodyPtr a, b;
   CoherentQuery query;
   std::mutex mutex;  ///< used by one thread at a time
 };
-using HeldQueryPtr = std::shared_ptr<HeldQuery>;
+using QueryHandlePtr = std::shared_ptr<QueryHandle>;
 
-HeldQueryPtr make(py::handle a, py::handle b, py::handle mode, py::handle contacts,
-                  py::handle interiors_overlap, py::handle max_pairs, py::handle always) {
+QueryHandlePtr make(py::handle a, py::handle b, py::handle mode, py::handle contacts,
+                    py::handle interiors_overlap, py::handle max_pairs, py::handle always) {
   const py::none no;
   const CollideRequest request =
       request_of({mode, contacts, interiors_overlap, no, no, no, no, max_pairs, no});
   const auto use =
       flag(always, "always") ? CoherentQuery::CacheUse::always : CoherentQuery::CacheUse::as_it_pays;
-  return std::make_shared<HeldQuery>(shared_body(a, "a"), shared_body(b, "b"), request, use);
+  return std::make_shared<QueryHandle>(shared_body(a, "a"), shared_body(b, "b"), request, use);
 }
 
-Answer collide_next(HeldQuery& self, py::handle pose_b, py::handle pose_a) {
+Answer collide_next(QueryHandle& self, py::handle pose_b, py::handle pose_a) {
   const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
   auto result = std::make_shared<CollideResult>();
   {
@@ -41,7 +41,7 @@ Answer collide_next(HeldQuery& self, py::handle pose_b, py::handle pose_a) {
   return {std::move(result), self.a->shared(), self.b->shared()};
 }
 
-py::dict statistics(HeldQuery& self) {
+py::dict statistics(QueryHandle& self) {
   CoherentQuery::Statistics s;
   {
     const py::gil_scoped_release unlocked;
@@ -74,7 +74,7 @@ tests).
 
 void bind_coherent(py::module_& m) {
   const py::none no;
-  py::class_<HeldQuery, HeldQueryPtr> c(m, "CoherentQuery", kCoherentText);
+  py::class_<QueryHandle, QueryHandlePtr> c(m, "CoherentQuery", kCoherentText);
   c.def(py::init(&make), py::arg("a"), py::arg("b"), py::kw_only(), py::arg("mode") = no,
         py::arg("contacts") = no, py::arg("interiors_overlap") = no, py::arg("max_pairs") = no,
         py::arg("always") = no, kCoherentText);
@@ -87,9 +87,9 @@ void bind_coherent(py::module_& m) {
       "for a motion),\n"
       "queries from_scratch, tests_saved.");
   c.def_property_readonly(
-      "a", [](const HeldQuery& q) { return q.a; }, "Body");
+      "a", [](const QueryHandle& q) { return q.a; }, "Body");
   c.def_property_readonly(
-      "b", [](const HeldQuery& q) { return q.b; }, "Body");
+      "b", [](const QueryHandle& q) { return q.b; }, "Body");
 }
 
 }  // namespace lrb::python

@@ -8,18 +8,18 @@ namespace {
 
 /// Explanations, with their bodies.
 struct OfPair {
-  PairExplanation told;
+  PairExplanation reported;
   std::shared_ptr<const LrbRep> a, b;
 
-  std::string text() const { return run::explanation_text(told, *a, *b); }
-  std::string json() const { return run::explanation_json(told, *a, *b).dump(); }
+  std::string text() const { return run::explanation_text(reported, *a, *b); }
+  std::string json() const { return run::explanation_json(reported, *a, *b).dump(); }
 };
 struct OfWalk {
-  WalkExplanation told;
+  WalkExplanation reported;
   std::shared_ptr<const LrbRep> a, b;
 
-  std::string text() const { return run::explanation_text(told); }
-  std::string json() const { return run::explanation_json(told).dump(); }
+  std::string text() const { return run::explanation_text(reported); }
+  std::string json() const { return run::explanation_json(reported).dump(); }
 };
 
 py::object parsed(const std::string& json) {
@@ -27,17 +27,17 @@ py::object parsed(const std::string& json) {
 }
 
 SimplexPair pair_of(py::handle given) {
-  const auto refuse = [&] {
+  const auto reject = [&] {
     throw InputError("pair: expected a triangle of A and one of B, as in Result.pairs, got " +
                      std::string(py::str(given)));
   };
-  if (!py::isinstance<py::sequence>(given) || py::isinstance<py::str>(given)) refuse();
+  if (!py::isinstance<py::sequence>(given) || py::isinstance<py::str>(given)) reject();
   const auto pair = py::reinterpret_borrow<py::sequence>(given);
-  if (pair.size() != 2) refuse();
+  if (pair.size() != 2) reject();
   SimplexId ids[2];
   for (std::size_t i = 0; i < 2; ++i) {
     const std::uint64_t n = count(py::object(pair[i]), "pair");
-    if (n > kMaxId) refuse();
+    if (n > kMaxId) reject();
     ids[i] = SimplexId(n);
   }
   return {ids[0], ids[1]};
@@ -60,9 +60,9 @@ OfWalk explain_walk(py::handle a, py::handle b, py::handle pose_b, py::handle po
 
 /// Returns the points of a contact, or the closest points of disjoint faces.
 py::array_t<double> points_of(const OfPair& e) {
-  if (e.told.meet == exact::Meet::disjoint) return array_of(e.told.nearest);
+  if (e.reported.meet == exact::Meet::disjoint) return array_of(e.reported.nearest);
   std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i < e.told.contact.corner_count; ++i) points.push_back(e.told.contact.corners[i].x);
+  for (int i = 0; i < e.reported.contact.corner_count; ++i) points.push_back(e.reported.contact.corners[i].x);
   return array_of(points);
 }
 
@@ -70,7 +70,7 @@ py::tuple hidden_by(const OfPair& e) {
   const auto ids = [](const std::vector<RegionId>& regions) {
     return array_of_ids(std::span<const RegionId>(regions));
   };
-  return py::make_tuple(ids(e.told.hidden_by[0]), ids(e.told.hidden_by[1]));
+  return py::make_tuple(ids(e.reported.hidden_by[0]), ids(e.reported.hidden_by[1]));
 }
 
 void bind_pair(py::module_& m) {
@@ -78,10 +78,10 @@ void bind_pair(py::module_& m) {
                        "Why two triangles are in an answer or not. Made by explain_pair(). str() gives the "
                        "explanation as text.");
   c.def_property_readonly(
-      "meet", [](const OfPair& e) { return py::str(std::string(name_of(e.told.meet))); },
+      "meet", [](const OfPair& e) { return py::str(std::string(name_of(e.reported.meet))); },
       "str: 'disjoint', 'touch' or 'cross'.");
   c.def_property_readonly(
-      "decided_by", [](const OfPair& e) { return py::str(std::string(name_of(e.told.decided_by))); },
+      "decided_by", [](const OfPair& e) { return py::str(std::string(name_of(e.reported.decided_by))); },
       "str: 'node_boxes', 'node_edges', 'face_boxes', 'planes', 'floats' or 'exact'.");
   c.def_property_readonly(
       "hidden_by", &hidden_by,
@@ -93,7 +93,7 @@ void bind_pair(py::module_& m) {
       "world frame.");
   c.def_property_readonly(
       "distance",
-      [](const OfPair& e) { return e.told.meet == exact::Meet::disjoint ? e.told.distance : 0.0; },
+      [](const OfPair& e) { return e.reported.meet == exact::Meet::disjoint ? e.reported.distance : 0.0; },
       "float: of the triangles, in double arithmetic; the world's unit.");
   c.def(
       "dict", [](const OfPair& e) { return parsed(e.json()); },
@@ -108,23 +108,24 @@ void bind_walk(py::module_& m) {
   c.def_property_readonly(
       "result",
       [](const OfWalk& e) {
-        return Answer{std::make_shared<const CollideResult>(e.told.result), e.a, e.b};
+        return Answer{std::make_shared<const CollideResult>(e.reported.result), e.a, e.b};
       },
       "Result: the answer.");
   c.def_property_readonly(
       "plane",
       [](const OfWalk& e) -> py::object {
-        if (!e.told.plane) return py::none();
-        return py::make_tuple(array_of(e.told.plane->normal), e.told.plane->of_a, e.told.plane->of_b);
+        if (!e.reported.plane) return py::none();
+        return py::make_tuple(array_of(e.reported.plane->normal), e.reported.plane->of_a,
+                              e.reported.plane->of_b);
       },
       "((3,) float64, float, float) or None: normal n and numbers f < g with n x <= f for all "
       "of A, n x >= g for all of B.");
   c.def_property_readonly(
       "near_pairs",
       [](const OfWalk& e) {
-        py::array_t<std::uint32_t> out({static_cast<py::ssize_t>(e.told.near.size()), py::ssize_t{2}});
+        py::array_t<std::uint32_t> out({static_cast<py::ssize_t>(e.reported.near.size()), py::ssize_t{2}});
         std::uint32_t* to = out.mutable_data();
-        for (const SimplexPair& p : e.told.near) {
+        for (const SimplexPair& p : e.reported.near) {
           *to++ = p.a;
           *to++ = p.b;
         }

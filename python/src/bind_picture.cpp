@@ -65,7 +65,7 @@ run::PaintedFrame paint(const Recorded& recorded, std::size_t step, Wanted wante
   wanted.frames.events = {run::last_event(recorded.trace, step)};
   View& view = wanted.frames.views[0];
   if (!wanted.from_given && recorded.bodies.size() == 2 && !recorded.results->empty())
-    view.from = run::least_hidden(shown, view.up, view.from);
+    view.from = run::min_hidden(shown, view.up, view.from);
   run::check_frames(shown, wanted.frames);
   return run::paint_frames(shown, wanted.frames, run::kSilent).at(0);
 }

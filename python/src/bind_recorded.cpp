@@ -308,15 +308,15 @@ struct Outcome {
 
 /// Returns a function that reports progress to `progress`, a callable or None. Ctrl-C is checked in any case.
 run::ProgressReport report_to(const py::object& progress) {
-  const bool told = !progress.is_none();
-  if (told && !PyCallable_Check(progress.ptr()))
+  const bool reported = !progress.is_none();
+  if (reported && !PyCallable_Check(progress.ptr()))
     throw py::type_error("progress: expected a callable, got " + described(progress));
   // A plain pointer, because copies are made and destroyed without the GIL; the caller's argument keeps it
   // alive.
   PyObject* const callee = progress.ptr();
-  return [told, callee](const std::string& what, std::uint64_t done, std::uint64_t total) {
+  return [reported, callee](const std::string& what, std::uint64_t done, std::uint64_t total) {
     check_signals();
-    if (!told) return;
+    if (!reported) return;
     const py::gil_scoped_acquire lock;
     const py::handle call(callee);
     call(what, done, total);

@@ -53,15 +53,15 @@ namespace {
 
 /// The Python class Scene. Its broad phase runs on the calling thread, so that it survives a fork; queries
 /// run on the threads of run_batch().
-struct HeldScene {
-  explicit HeldScene(std::size_t asked_threads) : threads(asked_threads), scene(1) {}
+struct SceneHandle {
+  explicit SceneHandle(std::size_t asked_threads) : threads(asked_threads), scene(1) {}
 
   std::size_t threads;
   lrb::Scene scene;
   std::unordered_map<BodyKey, BodyPtr> bodies;
   std::mutex mutex;  ///< used by one thread at a time
 };
-using ScenePtr = std::shared_ptr<HeldScene>;
+using ScenePtr = std::shared_ptr<SceneHandle>;
 
 /// The other side of a query: none, another scene, or a body outside the scene.
 struct Others {
@@ -70,10 +70,10 @@ struct Others {
   Pose pose;
 };
 
-Others others_of(const HeldScene& self, py::handle given, py::handle pose_of_body) {
+Others others_of(const SceneHandle& self, py::handle given, py::handle pose_of_body) {
   Others out;
-  if (py::isinstance<HeldScene>(given)) {
-    const auto& scene = given.cast<const HeldScene&>();
+  if (py::isinstance<SceneHandle>(given)) {
+    const auto& scene = given.cast<const SceneHandle&>();
     out.scene = given.cast<ScenePtr>();
     if (&scene == &self)
       throw InputError("other: expected another scene, got the scene itself; leave it out");
@@ -90,7 +90,7 @@ Others others_of(const HeldScene& self, py::handle given, py::handle pose_of_bod
 /// Locks the scenes of a query. Waits without the GIL, because the thread that owns a scene may need it.
 class Locked {
  public:
-  explicit Locked(HeldScene& self, const Others& others = {}) : own_(self.mutex, std::defer_lock) {
+  explicit Locked(SceneHandle& self, const Others& others = {}) : own_(self.mutex, std::defer_lock) {
     const py::gil_scoped_release unlocked;
     if (!others.scene) {
       own_.lock();
@@ -113,7 +113,7 @@ auto with_others(const Others& others, const Ask& ask) {
   return ask();
 }
 
-BodyKey key_of(const HeldScene& self, py::handle given) {
+BodyKey key_of(const SceneHandle& self, py::handle given) {
   const auto key = BodyKey{count(given, "key")};
   if (given.is_none() || !self.scene.has(key))
     throw InputError("key: no body " + std::string(py::str(given)) + " in the scene");
@@ -124,7 +124,7 @@ std::int64_t number_of(BodyKey key) {
   return static_cast<std::int64_t>(key);
 }
 
-std::int64_t add(HeldScene& self, py::handle given, py::handle at) {
+std::int64_t add(SceneHandle& self, py::handle given, py::handle at) {
   const BodyPtr body = shared_body(given, "body");
   const Pose where = pose(at, "pose");
   const Locked lock(self);
@@ -133,14 +133,14 @@ std::int64_t add(HeldScene& self, py::handle given, py::handle at) {
   return number_of(key);
 }
 
-void remove(HeldScene& self, py::handle given) {
+void remove(SceneHandle& self, py::handle given) {
   const Locked lock(self);
   const BodyKey key = key_of(self, given);
   self.scene.remove(key);
   self.bodies.erase(key);
 }
 
-void move(HeldScene& self, const py::object& keys, py::handle given) {
+void move(SceneHandle& self, const py::object& keys, py::handle given) {
   const Poses at = poses(given, "pose");
   const Locked lock(self);
   if (at.one) {
@@ -159,7 +159,7 @@ void move(HeldScene& self, const py::object& keys, py::handle given) {
   for (std::size_t i = 0; i < n; ++i) self.scene.move(found[i], at.many[i]);
 }
 
-py::array_t<std::int64_t> keys(HeldScene& self) {
+py::array_t<std::int64_t> keys(SceneHandle& self) {
   const Locked lock(self);
   const std::vector<BodyKey> all = self.scene.keys();
   py::array_t<std::int64_t> out(static_cast<py::ssize_t>(all.size()));
@@ -167,7 +167,7 @@ py::array_t<std::int64_t> keys(HeldScene& self) {
   return out;
 }
 
-bool contains(HeldScene& self, py::handle given) {
+bool contains(SceneHandle& self, py::handle given) {
   if (!PyLong_Check(given.ptr())) return false;
   const Locked lock(self);
   const std::uint64_t key = PyLong_AsUnsignedLongLong(given.ptr());
@@ -178,12 +178,12 @@ bool contains(HeldScene& self, py::handle given) {
   return self.scene.has(BodyKey{key});
 }
 
-BodyPtr body_at(HeldScene& self, py::handle given) {
+BodyPtr body_at(SceneHandle& self, py::handle given) {
   const Locked lock(self);
   return self.bodies.at(key_of(self, given));
 }
 
-py::array_t<double> pose_at(HeldScene& self, py::handle given) {
+py::array_t<double> pose_at(SceneHandle& self, py::handle given) {
   const Locked lock(self);
   const Pose& p = self.scene.pose(key_of(self, given));
   py::array_t<double> out({4, 4});
@@ -205,7 +205,7 @@ struct NearPairs {
   }
 };
 
-NearPairs near_of(HeldScene& self, const Others& others, double within) {
+NearPairs near_of(SceneHandle& self, const Others& others, double within) {
   return with_others(others, [&](auto&&... whose) {
     NearPairs out;
     for (const ScenePair& p : self.scene.near(whose..., within)) out.add(p, others);
@@ -217,7 +217,7 @@ py::array_t<std::int64_t> array_of_keys(const std::vector<std::int64_t>& keys) {
   return py::array_t<std::int64_t>({static_cast<py::ssize_t>(keys.size() / 2), py::ssize_t{2}}, keys.data());
 }
 
-py::tuple near(HeldScene& self, py::handle within, py::handle other, py::handle at) {
+py::tuple near(SceneHandle& self, py::handle within, py::handle other, py::handle at) {
   const Others others = others_of(self, other, at);
   const double limit = within.is_none() ? 0 : number(within, "within");
   if (!(limit >= 0))
@@ -228,7 +228,7 @@ py::tuple near(HeldScene& self, py::handle within, py::handle other, py::handle 
   return py::make_tuple(array_of_keys(found.keys), py::array_t<double>(n, found.gaps.data()));
 }
 
-py::object nearest_boxes(HeldScene& self, py::handle other, py::handle at) {
+py::object nearest_boxes(SceneHandle& self, py::handle other, py::handle at) {
   const Others others = others_of(self, other, at);
   const Locked lock(self, others);
   const auto found = with_others(others, [&](auto&&... whose) { return self.scene.nearest_boxes(whose...); });
@@ -247,15 +247,15 @@ struct Questions {
   std::vector<std::array<std::shared_ptr<const LrbRep>, 2>> reps;
 };
 
-Questions questions_of(const HeldScene& self, const Others& others, std::span<const std::int64_t> keys) {
+Questions questions_of(const SceneHandle& self, const Others& others, std::span<const std::int64_t> keys) {
   Questions out;
-  const auto add = [&](const HeldScene* scene, std::int64_t number, const LrbRep*& rep, Pose& at) {
+  const auto add = [&](const SceneHandle* scene, std::int64_t number, const LrbRep*& rep, Pose& at) {
     const BodyPtr body = number < 0 ? others.body : scene->bodies.at(BodyKey(number));
     rep = &body->rep();
     at = number < 0 ? others.pose : scene->scene.pose(BodyKey(number));
     return body->shared();
   };
-  const HeldScene* const second = others.scene ? others.scene.get() : &self;
+  const SceneHandle* const second = others.scene ? others.scene.get() : &self;
   for (std::size_t i = 0; i < keys.size(); i += 2) {
     PosedPair p;
     const auto a = add(&self, keys[i], p.a, p.pose_a), b = add(second, keys[i + 1], p.b, p.pose_b);
@@ -271,7 +271,7 @@ CollideRequest request_of_scene(py::handle mode, py::handle contacts, py::handle
   return request_of({mode, contacts, interiors_overlap, no, no, no, no, max_pairs, no});
 }
 
-Meetings collide(HeldScene& self, py::handle other, py::handle at, py::handle mode, py::handle contacts,
+Meetings collide(SceneHandle& self, py::handle other, py::handle at, py::handle mode, py::handle contacts,
                  py::handle interiors_overlap, py::handle max_pairs) {
   const Others others = others_of(self, other, at);
   const CollideRequest request = request_of_scene(mode, contacts, interiors_overlap, max_pairs);
@@ -280,18 +280,18 @@ Meetings collide(HeldScene& self, py::handle other, py::handle at, py::handle mo
   const Questions questions = questions_of(self, others, near.keys);
   std::vector<CollideResult> answers = answers_of(questions.pairs, request, threads_of(self.threads));
   Meetings out;
-  auto told = std::make_shared<std::vector<CollideResult>>();
+  auto reported = std::make_shared<std::vector<CollideResult>>();
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!in_contact(answers[i])) continue;
-    told->push_back(std::move(answers[i]));
+    reported->push_back(std::move(answers[i]));
     out.each.push_back(questions.reps[i]);
     out.keys.insert(out.keys.end(), {near.keys[2 * i], near.keys[2 * i + 1]});
   }
-  out.all = std::move(told);
+  out.all = std::move(reported);
   return out;
 }
 
-bool any_meet(HeldScene& self, py::handle other, py::handle at) {
+bool any_meet(SceneHandle& self, py::handle other, py::handle at) {
   constexpr std::size_t kAtATime = 1024;  // pairs per block; a hit ends the search
   const Others others = others_of(self, other, at);
   CollideRequest request;
@@ -308,7 +308,7 @@ bool any_meet(HeldScene& self, py::handle other, py::handle at) {
   return false;
 }
 
-py::object nearest(HeldScene& self, py::handle other, py::handle at, py::handle solids,
+py::object nearest(SceneHandle& self, py::handle other, py::handle at, py::handle solids,
                    py::handle relative_tolerance, py::handle tolerance) {
   const Others others = others_of(self, other, at);
   const Apart apart = flag(solids, "solids") ? Apart::solids : Apart::surfaces;
@@ -323,7 +323,7 @@ py::object nearest(HeldScene& self, py::handle other, py::handle at, py::handle 
                         distance_object(std::move(found->result).value()));
 }
 
-std::size_t size_of(HeldScene& self) {
+std::size_t size_of(SceneHandle& self) {
   const Locked lock(self);
   return self.scene.size();
 }
@@ -346,11 +346,11 @@ outside the scene. The outside body is A of the pair, with key -1.
 >>> s.collide().keys.tolist(), s.collide()[0].relation
 ([[0, 1]], 'crossing'))";
 
-using SceneClass = py::class_<HeldScene, ScenePtr>;
+using SceneClass = py::class_<SceneHandle, ScenePtr>;
 
 void bind_bodies(SceneClass& c) {
   const py::none no;
-  c.def(py::init([](py::handle threads) { return std::make_shared<HeldScene>(count(threads, "threads")); }),
+  c.def(py::init([](py::handle threads) { return std::make_shared<SceneHandle>(count(threads, "threads")); }),
         py::kw_only(), py::arg("threads") = no, kSceneText);
   c.def("add", &add, py::arg("body"), py::arg("pose") = no,
         "add(body, pose=None)\n\n"
@@ -365,7 +365,7 @@ void bind_bodies(SceneClass& c) {
   c.def("__len__", &size_of);
   c.def("__contains__", &contains, py::arg("key"));
   c.def("__repr__",
-        [](HeldScene& self) { return "<lrbscope.Scene of " + std::to_string(size_of(self)) + " bodies>"; });
+        [](SceneHandle& self) { return "<lrbscope.Scene of " + std::to_string(size_of(self)) + " bodies>"; });
 }
 
 void bind_questions(SceneClass& c) {

@@ -7,17 +7,17 @@ namespace {
 
 /// Throws TypeError instead of allocating. pybind11 allocates when an object without a value is first used,
 /// such as one made by __new__ alone; objects made by __init__ or __setstate__ have their own memory.
-void* refuse_memory(std::size_t) {
+void* reject_memory(std::size_t) {
   throw py::type_error(
       "expected an object that its class has initialized, found one that only __new__ made; call the class");
 }
 
 /// Makes every use of an object without a value a TypeError, for all classes of the module.
-void refuse_objects_without_value(const py::module_& m) {
+void reject_objects_without_value(const py::module_& m) {
   for (const auto& [name, member] : m.attr("__dict__").cast<py::dict>())
     if (PyType_Check(member.ptr()) != 0)
       if (auto* const info = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(member.ptr())))
-        info->operator_new = refuse_memory;
+        info->operator_new = reject_memory;
 }
 
 PyObject* input_error = nullptr;  // live as long as the module
@@ -72,5 +72,5 @@ PYBIND11_MODULE(_core, m) {
   bind_boxes(m);
   bind_recorded(m);
   bind_scenario(m);
-  refuse_objects_without_value(m);
+  reject_objects_without_value(m);
 }

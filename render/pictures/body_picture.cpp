@@ -48,9 +48,9 @@ Image body_sheet(const LrbRep& rep, const Look& look) {
 
 namespace {
 
-constexpr double kAround = 1.25;      // extent of a close-up, in sizes of the region
-constexpr double kLeastShown = 0.02;  // of the body's size, however small the region
-constexpr double kTilt = 0.45;        // share of the usual direction, added to the outlook of the lids
+constexpr double kAround = 1.25;    // extent of a close-up, in sizes of the region
+constexpr double kMinShown = 0.02;  // of the body's size, however small the region
+constexpr double kTilt = 0.45;      // share of the usual direction, added to the outlook of the lids
 
 constexpr Rgba kLids = palette::kOrange;
 constexpr double kPseudoPale = 0.55;  // of the body's colour
@@ -124,7 +124,7 @@ class RegionSheet {
     if (rep_.dim() == 2) {
       const Eigen::AlignedBox3d around = bounds(points);
       const Vector3d more =
-          0.5 * (kAround - 1) * around.sizes() + Vector3d(1, 1, 0) * kLeastShown * box_.sizes().norm();
+          0.5 * (kAround - 1) * around.sizes() + Vector3d(1, 1, 0) * kMinShown * box_.sizes().norm();
       return fit_points({around.min() - more, around.max() + more}, 2);
     }
     const Look::View view = look_.first_view();
@@ -134,7 +134,7 @@ class RegionSheet {
     const Vector3d out = outlook(rep_, r), from = out + kTilt * view.from.normalized();
     if (out.norm() > 0 && from.normalized().cross(view.up.normalized()).norm() > 0.1) fit.view.from = from;
     return [points, box = box_, fit](double width, double height) {
-      return fit_contact(points, box, width, height, fit, kAround, kLeastShown);
+      return fit_contact(points, box, width, height, fit, kAround, kMinShown);
     };
   }
 
@@ -191,11 +191,11 @@ std::string number_and(std::size_t n, const char* what) {
 
 /// Returns the first few regions of a set, by their numbers.
 std::string list_of(const std::set<std::uint32_t>& regions) {
-  constexpr std::size_t kMost = 6;
+  constexpr std::size_t kMax = 6;
   std::string out;
   std::size_t count = 0;
   for (const std::uint32_t r : regions) {
-    if (count++ == kMost) return out + ", ...";
+    if (count++ == kMax) return out + ", ...";
     out += (out.empty() ? "" : ", ") + std::to_string(r);
   }
   return out;

@@ -17,7 +17,7 @@ constexpr double kLonely = 0.5;           // of the body's size, around a point 
 constexpr float kUsualText = 16;          // pixels: text height at which lines and points have scale 1
 constexpr double kCloseUpContext = 1.15;  // of the close-ups' sizes
 constexpr double kLoopContext = 1.6;      // the same for a boundary loop, which needs its surroundings
-constexpr double kLeastCloseUp = 1e-6;    // of the body's size, in a close-up of a point
+constexpr double kMinCloseUp = 1e-6;      // of the body's size, in a close-up of a point
 
 /// Returns the camera of a close-up. `close`: of the kind.
 CameraFit close_camera(const FaultyMesh& faulty, MeshFault kind, const findings::CloseUp& close) {
@@ -32,7 +32,7 @@ CameraFit close_camera(const FaultyMesh& faulty, MeshFault kind, const findings:
     const bool loop = kind == MeshFault::open_edge && !faulty.loops.empty();
     return [=](double width, double height) {
       return fit_contact(points, box, width, height, fit, loop ? kLoopContext : kCloseUpContext,
-                         lone ? kLonely : kLeastCloseUp);
+                         lone ? kLonely : kMinCloseUp);
     };
   }
   if (lone)

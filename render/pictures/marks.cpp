@@ -202,7 +202,7 @@ Square square(const Vector3d& n, double at, Vector3d middle, double half, int di
 
 }  // namespace
 
-Square separating_square(const PartingPlane& plane, const PosedBodies& bodies) {
+Square separating_square(const SeparatingPlane& plane, const PosedBodies& bodies) {
   constexpr double kShare = 0.35;  // of the smaller body's diagonal, from the centre to a corner
   const Eigen::AlignedBox3d of_a = render::bounds(render::body_points(bodies.a, bodies.pose_a)),
                             of_b = render::bounds(render::body_points(bodies.b, bodies.pose_b));
@@ -211,16 +211,16 @@ Square separating_square(const PartingPlane& plane, const PosedBodies& bodies) {
                 kShare * smaller.diagonal().norm(), bodies.dim());
 }
 
-Square separating_square(const PartedBoxes& parted, int dim) {
-  const auto axis = static_cast<std::size_t>(parted.pair.axis);
-  const auto& [a, b] = parted.boxes;
+Square separating_square(const PartedBoxes& rejected, int dim) {
+  const auto axis = static_cast<std::size_t>(rejected.pair.axis);
+  const auto& [a, b] = rejected.boxes;
   Vector3d normal = axis < 3 ? a.across[axis] : b.across[axis - 3];
   if (normal.dot(b.centre - a.centre) < 0) normal = -normal;
   double end_of_a = normal.dot(a.centre);
   for (const Vector3d& h : a.half) end_of_a += std::abs(normal.dot(h));
   const auto size = [](const WorldBox& box) { return (box.half[0] + box.half[1] + box.half[2]).norm(); };
-  return square(normal, end_of_a + parted.pair.gap / 2, (a.centre + b.centre) / 2, std::min(size(a), size(b)),
-                dim);
+  return square(normal, end_of_a + rejected.pair.gap / 2, (a.centre + b.centre) / 2,
+                std::min(size(a), size(b)), dim);
 }
 
 std::optional<Square> separating_square(const WalkExplanation& walk, const PosedBodies& bodies) {

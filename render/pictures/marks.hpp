@@ -73,7 +73,7 @@ std::string separating_plane_text(const WalkExplanation& walk, const PosedBodies
 using Square = std::array<Eigen::Vector3d, 4>;
 /// Returns a square in the middle of the gap at a separating plane, beside the centre of the smaller body and
 /// in proportion to it.
-Square separating_square(const PartingPlane& plane, const PosedBodies& bodies);
+Square separating_square(const SeparatingPlane& plane, const PosedBodies& bodies);
 /// Returns a square in the gap between two boxes, in proportion to the smaller one.
 Square separating_square(const PartedBoxes& boxes, int dim);
 /// Returns the square of the plane that was found, else of the boxes; nullopt if there is neither.

@@ -87,10 +87,10 @@ using Corner = HullMesh::Corner;
 constexpr double kEvenness = 1e-3;
 /// Cosine of the maximum rotation of a triangle's normal. Smaller values allow folds; larger ones stop
 /// collapses early.
-constexpr double kLeastCosine = 0.3;
+constexpr double kMinCosine = 0.3;
 /// Minimum shape quality of a new triangle (1: equilateral, 0: degenerate), unless it is better than the
 /// worst it replaces.
-constexpr double kLeastShape = 0.1;
+constexpr double kMinShape = 0.1;
 
 double shape(const Vector3& a, const Vector3& b, const Vector3& c) {
   const double twice_area = (b - a).cross(c - a).norm();
@@ -229,10 +229,10 @@ class Decimator {
       const auto& t = hull_[r.inside].v;
       const Vector3 now = (b - a).cross(w - a);
       const Vector3 before = (hull_.x(t[1]) - hull_.x(t[0])).cross(hull_.x(t[2]) - hull_.x(t[0]));
-      if (!(now.dot(before) > kLeastCosine * now.norm() * before.norm())) return false;
+      if (!(now.dot(before) > kMinCosine * now.norm() * before.norm())) return false;
       worst_new = std::min(worst_new, shape(a, b, w));
     }
-    return worst_new >= std::min(kLeastShape, worst_old);
+    return worst_new >= std::min(kMinShape, worst_old);
   }
 
   /// Proves exactly that the new fan intersects the surface only in shared vertices and edges.

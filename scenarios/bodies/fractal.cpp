@@ -26,7 +26,7 @@ constexpr int kMaxLevel = (kUnitBits - kBaseBits) / kLevelBits;
 // Share of the available angle at an edge that one dent takes; the rest is for the dents in its walls.
 constexpr double kShare = 0.35;
 // Maximum angle by which a dent undercuts its neighbours, however large the available angle is (radians).
-constexpr double kMostRoom = 75 * std::numbers::pi / 180;
+constexpr double kMaxRoom = 75 * std::numbers::pi / 180;
 constexpr double kWallRoom = 30 * std::numbers::pi / 180;
 constexpr double kSteepest = 60 * std::numbers::pi / 180;
 
@@ -272,7 +272,7 @@ void Carver::dent(FaceId index, const Kind& kind) {
       const std::size_t j = (i + 1) % m;
       const double under = 0.9 * (std::numbers::pi - slope.angle[i]) / 2;
       add({f.corners[i], f.corners[j], top[j], top[i]},
-          {f.room[i], kMostRoom, std::min(under, kMostRoom), kMostRoom}, region, level);
+          {f.room[i], kMaxRoom, std::min(under, kMaxRoom), kMaxRoom}, region, level);
       top_room[i] = std::min(under, kWallRoom);
     }
     if (kind.flush) {
@@ -284,15 +284,15 @@ void Carver::dent(FaceId index, const Kind& kind) {
     const std::vector<VertexId> feet = new_vertices(shrunk(f, foot), on_grid(-slope.depth * n, level));
     for (std::size_t i = 0; i < m; ++i) {
       const std::size_t j = (i + 1) % m;
-      add({top[i], top[j], feet[j], feet[i]}, {top_room[i], kMostRoom, kWallRoom, kMostRoom}, region, level);
+      add({top[i], top[j], feet[j], feet[i]}, {top_room[i], kMaxRoom, kWallRoom, kMaxRoom}, region, level);
     }
     std::vector<double> room;
-    for (const double r : f.room) room.push_back(std::min(r, kMostRoom));
+    for (const double r : f.room) room.push_back(std::min(r, kMaxRoom));
     add(feet, room, region, level);
   } else {
     const VertexId apex = new_vertex(on_grid(centre(f) - slope.depth * n, level));
     for (std::size_t i = 0; i < m; ++i)
-      add({top[i], top[(i + 1) % m], apex}, {top_room[i], kMostRoom, kMostRoom}, region, level);
+      add({top[i], top[(i + 1) % m], apex}, {top_room[i], kMaxRoom, kMaxRoom}, region, level);
   }
 }
 

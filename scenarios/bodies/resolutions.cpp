@@ -86,7 +86,7 @@ std::vector<Mesh> resolutions(const Mesh& mesh, const ResolutionOptions& options
   orient_outward(finest);
   std::vector<std::uint32_t> targets;
   for (auto n = static_cast<std::uint32_t>(finest.face_count() / 2);
-       n >= options.least_faces && targets.size() + 1 < options.most; n /= 2)
+       n >= options.min_faces && targets.size() + 1 < options.most; n /= 2)
     targets.push_back(n);
   std::vector<Mesh> out = decimate(finest, targets);
   out.insert(out.begin(), std::move(finest));

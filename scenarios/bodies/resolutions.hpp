@@ -26,7 +26,7 @@ std::vector<Mesh> decimate(const Mesh& mesh, std::span<const std::uint32_t> targ
 struct ResolutionOptions {
   std::uint32_t subdivisions = 0;  ///< applied first; each replaces a face by four
   std::uint32_t most = 8;          ///< maximum number of resolutions
-  std::uint32_t least_faces = 500;
+  std::uint32_t min_faces = 500;
 };
 
 /// Returns the finest one first; each has half of the faces of the previous one (decimate.cpp). A polygon

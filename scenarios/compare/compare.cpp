@@ -101,7 +101,7 @@ render::Image draw_bodies(const Runs& runs, const run::ProgressReport& progress)
 }
 
 constexpr const char* kPicture = "compare.png";
-constexpr std::size_t kMostSteps = 200;
+constexpr std::size_t kMaxSteps = 200;
 
 /// Returns the first event of a step that differs.
 std::optional<std::string> different_event(const Runs& runs) {
@@ -125,7 +125,7 @@ report::Table steps_table(const Runs& runs) {
   report::Table t{"Steps", {"step", "answer"}};
   for (const char* what : {"pairs", "face tests", "box tests"})
     for (const std::string& name : runs.names) t.columns.push_back(std::string(what) + ", " + name);
-  for (std::size_t i = 0; i < std::min(step_count(runs), kMostSteps); ++i) {
+  for (std::size_t i = 0; i < std::min(step_count(runs), kMaxSteps); ++i) {
     const trace::Step &x = runs.of[0]->trace.steps[i], &y = runs.of[1]->trace.steps[i];
     const bool same = x.result.relation == y.result.relation && x.result.fingerprint == y.result.fingerprint;
     t.rows.push_back({std::to_string(x.index), same ? std::string(to_string(x.result.relation))
@@ -138,7 +138,7 @@ report::Table steps_table(const Runs& runs) {
                              +[](const trace::Step& s) { return s.result.counters.box_tests; }})
       for (const trace::Step* s : {&x, &y}) row.push_back(group_digits(value(*s)));
   }
-  if (step_count(runs) > kMostSteps) t.note = "The first " + std::to_string(kMostSteps) + " steps.";
+  if (step_count(runs) > kMaxSteps) t.note = "The first " + std::to_string(kMaxSteps) + " steps.";
   return t;
 }
 
@@ -179,7 +179,7 @@ std::vector<report::View> views_of(const Runs& runs, const std::string& folder) 
 std::optional<std::string> write_comparison(const Runs& runs, const std::string& command,
                                             const std::string& folder, const run::ProgressReport& progress) {
   check_runs(runs);
-  refuse_folder_of_run(folder);
+  reject_folder_of_run(folder);
   const bool alone = of_one_body(runs);
   const std::size_t step = alone ? 0 : busiest_step(runs);
   const render::Image picture = alone ? draw_bodies(runs, progress) : draw(runs, step, progress);

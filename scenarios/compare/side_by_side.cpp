@@ -78,7 +78,7 @@ std::string cut_words(const Runs& runs) {
   return out;
 }
 
-void refuse_folder_of_run(const std::string& folder) {
+void reject_folder_of_run(const std::string& folder) {
   std::error_code error;
   for (const char* file : {"/trace.json", "/trace.json.gz"})
     if (std::filesystem::exists(folder + file, error))

@@ -29,7 +29,7 @@ std::size_t busiest_step(const Runs& runs);
 /// Returns a sentence that names the truncated runs; empty if there are none.
 std::string cut_words(const Runs& runs);
 /// Throws InputError if a folder contains a run, whose page would be overwritten.
-void refuse_folder_of_run(const std::string& folder);
+void reject_folder_of_run(const std::string& folder);
 
 /// Meaning of the colours: box tests if both runs have recorded pairs of nodes, else face tests.
 render::FrameSpec::ColourBy common_colours(const Runs& runs);

@@ -101,7 +101,7 @@ void add_charts(report::Document& doc, const CrowdRun& run) {
 }
 
 report::Table last_queries(const spec::Crowd& crowd, const CrowdRun& run) {
-  constexpr std::size_t kMostRows = 200;
+  constexpr std::size_t kMaxRows = 200;
   report::Table t{"Intersecting bodies at step " + std::to_string(run.steps.size() - 1),
                   {"A", "B", "relation", "pairs of faces", "contact regions", "face tests", "refinements",
                    "fingerprint"}};
@@ -110,7 +110,7 @@ report::Table last_queries(const spec::Crowd& crowd, const CrowdRun& run) {
   std::size_t left_out = 0;
   for (const CrowdQuery& q : run.steps.back().queries) {
     if (!q.meets()) continue;
-    if (t.rows.size() == kMostRows) {
+    if (t.rows.size() == kMaxRows) {
       ++left_out;
       continue;
     }

@@ -130,8 +130,8 @@ class Reader {
       // The name becomes that of a file beside the trace.
       if (kind.name.empty() || kind.name.find_first_of("/.\\") != std::string::npos)
         node.at("name").fail("the name of a kind of bodies");
-      kind.count = node.at("count").integer<std::uint32_t>(spec::kMostCrowdBodies);
-      if (kind.count == 0 || names_.size() + kind.count > spec::kMostCrowdBodies)
+      kind.count = node.at("count").integer<std::uint32_t>(spec::kMaxCrowdBodies);
+      if (kind.count == 0 || names_.size() + kind.count > spec::kMaxCrowdBodies)
         node.at("count").fail("at least 1 body per kind and at most 10000 in total");
       for (std::uint32_t i = 1; i <= kind.count; ++i)
         if (!names_.emplace(kind.name + " " + std::to_string(i), names_.size()).second)

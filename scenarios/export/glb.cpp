@@ -27,9 +27,9 @@ enum Material : std::uint8_t { kOpaque, kTranslucent, kUnlit };
 
 /// glTF vertex colours are linear.
 std::uint16_t linear(std::uint8_t srgb) {
-  constexpr double kMost = 65535;
+  constexpr double kMax = 65535;
   const double x = srgb / 255.0;
-  return static_cast<std::uint16_t>(kMost * (x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4)) +
+  return static_cast<std::uint16_t>(kMax * (x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4)) +
                                     0.5);
 }
 

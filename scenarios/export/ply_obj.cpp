@@ -96,7 +96,7 @@ std::size_t count(const Model& model, Shape shape) {
   return out;
 }
 
-std::size_t most_corners(const Model& model) {
+std::size_t max_corners(const Model& model) {
   std::size_t out = 0;
   for (const Part& part : model.parts)
     for (std::size_t c = 0; c < part.cell_count() && part.shape == Shape::polygons; ++c)
@@ -148,8 +148,8 @@ void write_attributes(PlyOut& out, const Model& model, const Part& part, std::si
 }  // namespace
 
 std::string ply_bytes(const Model& model, const FileOptions& options) {
-  constexpr std::size_t kMostShort = 255;
-  const bool short_lists = most_corners(model) <= kMostShort;
+  constexpr std::size_t kMaxShort = 255;
+  const bool short_lists = max_corners(model) <= kMaxShort;
   const std::size_t quality = model.column(model.quality);
   PlyOut out(options.ascii);
   out.text = header(model, options.ascii, short_lists);

@@ -51,7 +51,7 @@ constexpr double kGap = 0.5;     ///< above legend, bar and caption, in font siz
 constexpr double kShape = 1.5;   ///< width to height that automatic columns aim at
 constexpr double kGapCost = 2;   ///< of empty places, in logarithms of that shape, where all places are empty
 constexpr double kTallest = 1.4;  ///< a block is at most so many of its widths high
-constexpr double kLeastPanel = 5 * kPointsPerMm, kLeastAutomatic = 12 * kPointsPerMm;
+constexpr double kMinPanel = 5 * kPointsPerMm, kMinAutomatic = 12 * kPointsPerMm;
 constexpr double kBarWidth = 0.45;  ///< of the colour bar, as a share of the figure's
 
 /// Wraps text of a font size in points.
@@ -148,9 +148,9 @@ class BlockLayouter {
 Arranged arrange(const Block& block, const LayoutOptions& options) {
   if (options.columns > 0) {
     BlockLayouter layouter(block, options, options.columns);
-    if (layouter.panel_width() < kLeastPanel)
+    if (layouter.panel_width() < kMinPanel)
       throw InputError("--columns " + std::to_string(options.columns) + ": leaves panels of less than " +
-                       length_words(kLeastPanel) + " in a figure of " + length_words(options.width) +
+                       length_words(kMinPanel) + " in a figure of " + length_words(options.width) +
                        ": ask for fewer, or a larger --width");
     return layouter.arrange();
   }
@@ -159,7 +159,7 @@ Arranged arrange(const Block& block, const LayoutOptions& options) {
   const std::size_t n = block.seen.size();
   for (std::size_t columns = 1; columns <= n; ++columns) {
     BlockLayouter layouter(block, options, columns);
-    if (best && layouter.panel_width() < kLeastAutomatic) break;
+    if (best && layouter.panel_width() < kMinAutomatic) break;
     Arranged arranged = layouter.arrange();
     const std::size_t rows = (n + columns - 1) / columns;
     const double gaps = static_cast<double>(rows * columns - n) / static_cast<double>(n);

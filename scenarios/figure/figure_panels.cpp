@@ -107,13 +107,13 @@ std::vector<EventId> by_layer(const run::RecordedRun& recorded) {
   return last;
 }
 
-/// Takes kMostPanels states evenly, if there are more.
+/// Takes kMaxPanels states evenly, if there are more.
 void thin_layers(Chosen& chosen) {
   const std::vector<EventId> all = chosen.events;
-  if (all.size() <= kMostPanels) return;
+  if (all.size() <= kMaxPanels) return;
   chosen.events.clear();
-  for (const std::size_t i : run::evenly(all.size(), kMostPanels)) chosen.events.push_back(all[i]);
-  chosen.left_out = std::to_string(kMostPanels) + " of " + std::to_string(all.size()) +
+  for (const std::size_t i : run::evenly(all.size(), kMaxPanels)) chosen.events.push_back(all[i]);
+  chosen.left_out = std::to_string(kMaxPanels) + " of " + std::to_string(all.size()) +
                     " panels are shown, evenly chosen; --events shows others";
 }
 

@@ -23,14 +23,14 @@ struct Choice {
 };
 
 /// The largest number of panels of a figure that chooses them itself.
-inline constexpr std::size_t kMostPanels = 26;
+inline constexpr std::size_t kMaxPanels = 26;
 
 struct Chosen {
   std::vector<trace::EventId> events;  ///< after which the states stand, ascending, each once
   std::string left_out;                ///< what was asked for and is not among them; empty: nothing
 };
 
-/// Chooses the states. Of more than kMostPanels layers it takes so many evenly, the first and the last among
+/// Chooses the states. Of more than kMaxPanels layers it takes so many evenly, the first and the last among
 /// them. Throws InputError for numbers that the run does not have, and for choices that it cannot offer.
 Chosen choose(const run::RecordedRun& recorded, const Choice& choice);
 

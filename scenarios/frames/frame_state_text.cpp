@@ -31,15 +31,15 @@ std::string pass_words(const trace::PassSummary& pass) {
                     render::counted(pass.regions, "region", "regions") + ", " +
                     render::group_digits(pass.faces_before) + " to " +
                     render::counted(pass.faces_after, "face", "faces");
-  if (pass.refused() > 0)
-    out += ", " + render::counted(pass.refused(), "cap", "caps") +
-           " rejected: " + trace::refusal_words(pass.caps);
+  if (pass.rejected() > 0)
+    out += ", " + render::counted(pass.rejected(), "cap", "caps") +
+           " rejected: " + trace::rejection_text(pass.caps);
   return out;
 }
 
 std::string stage_words(const trace::PassSummary& pass) {
   std::string out(name_of(pass.stage));
-  if (pass.most_off > 0) out += ", max. deviation " + render::short_number(pass.most_off);
+  if (pass.max_deviation > 0) out += ", max. deviation " + render::short_number(pass.max_deviation);
   return out;
 }
 
@@ -172,7 +172,7 @@ std::string FrameState::node_pair_text(const trace::Event& e) {
   if (end.step != NodeStep::leaves)
     return out + render::counted(work.met, "overlapping pair of boxes", "overlapping pairs of boxes");
   return out + render::counted(work.met, "pair of faces", "pairs of faces") + ", " +
-         render::counted(work.met - work.parted, "left to test", "left to test");
+         render::counted(work.met - work.rejected, "left to test", "left to test");
 }
 
 std::string FrameState::measured_text() const {
@@ -288,8 +288,8 @@ std::string FrameState::construction_caption() const {
   if (!now_.is_pass_end)
     return text + ". Front: " + render::counted(cursor_.boundary_size(Side::a), "face", "faces") + ".";
   text += ". " + std::string(name_of(pass->stage));
-  if (pass->most_off > 0)
-    text += " with caps of deviation at most " + render::short_number(pass->most_off) +
+  if (pass->max_deviation > 0)
+    text += " with caps of deviation at most " + render::short_number(pass->max_deviation) +
             " (largest: " + render::short_number(pass->off) + ")";
   if (pass->covered > 0)
     text += "; " + render::counted(pass->accepted(), "cap", "caps") + " of " +

@@ -199,10 +199,10 @@ void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec) {
 }
 
 void check_frame_size(const render::Look& spec) {
-  constexpr int kMost = 8192;
+  constexpr int kMax = 8192;
   render::Look in_file = spec;
   to_pixels(in_file);
-  if (in_file.width > kMost || in_file.height > kMost)
+  if (in_file.width > kMax || in_file.height > kMax)
     throw InputError("frames of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
                      " would have " + std::to_string(in_file.width) + "x" + std::to_string(in_file.height) +
                      " pixels at this dpi, more than 8192 per side; lower --dpi or --size");

@@ -153,7 +153,7 @@ Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
   return f;
 }
 
-Vector3d least_hidden(const RecordedRun& recorded, const Vector3d& up, const Vector3d& like) {
+Vector3d min_hidden(const RecordedRun& recorded, const Vector3d& up, const Vector3d& like) {
   const std::size_t step = last_contact(recorded);
   if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return like;
   const trace::Step& s = recorded.trace->steps[step];

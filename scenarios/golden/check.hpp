@@ -29,7 +29,7 @@ struct ImageVerdict {
 };
 
 struct GoldenVerdict {
-  std::string refusal;          ///< why it could not be tested at all; everything else is empty then
+  std::string rejection;        ///< why it could not be tested at all; everything else is empty then
   std::vector<Effect> effects;  ///< what came out otherwise: answers and counters
   bool answers_differ = false;  ///< and answers are compared
   std::optional<trace::Divergence> divergence;  ///< nothing if events are not compared
@@ -37,7 +37,7 @@ struct GoldenVerdict {
   std::vector<ImageVerdict> images;
   std::vector<std::string> causes;  ///< what may be behind a failure; none if it passed
   bool images_passed() const;
-  bool passed() const { return refusal.empty() && !answers_differ && !divergence && images_passed(); }
+  bool passed() const { return rejection.empty() && !answers_differ && !divergence && images_passed(); }
 };
 
 GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run);

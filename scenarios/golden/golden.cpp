@@ -101,7 +101,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kFrame = "frame_", kPng = ".png";
-constexpr std::uint64_t kMostFrames = 1000;
+constexpr std::uint64_t kMaxFrames = 1000;
 constexpr double kLongest = 1e308;  // length of a contact
 
 std::string folder_of(const std::string& goldens, const std::string& name) {
@@ -169,7 +169,7 @@ GoldenSpec read_spec(const io::JsonNode& root) {
   if (size.size() != 2) root.at("size").fail("expected [width, height]");
   spec.width = static_cast<int>(size[0].integer(64, 8192));
   spec.height = static_cast<int>(size[1].integer(64, 8192));
-  spec.frames = static_cast<std::uint32_t>(root.at("frames").integer(1, kMostFrames));
+  spec.frames = static_cast<std::uint32_t>(root.at("frames").integer(1, kMaxFrames));
   if (const auto n = root.get("compare")) {
     spec.levels = {};
     for (const io::JsonNode& word : n->items(1))
@@ -298,7 +298,7 @@ Golden load_golden(const std::string& goldens, const std::string& name) {
   golden.meshes = read_meshes(folder, golden.trace);
   for (const std::string& file : image_files_from(folder, 0)) {
     const std::size_t frame = *frame_of_file(file);
-    if (frame >= kMostFrames) continue;
+    if (frame >= kMaxFrames) continue;
     if (golden.frames.size() <= frame) golden.frames.resize(frame + 1);
     golden.frames[frame].push_back(read_image(folder, file, golden.spec));
   }

@@ -191,7 +191,7 @@ void add_image(GoldenResult& result, const Golden& golden, const GoldenRun& run,
 /// Returns "3 of 3 equal", "2 of 3 differ".
 std::string images_words(const GoldenResult& result) {
   const GoldenVerdict& verdict = result.verdict;
-  if (!verdict.refusal.empty()) return "not tested";
+  if (!verdict.rejection.empty()) return "not tested";
   if (!result.spec.compares(Level::pictures)) return "not compared";
   std::size_t failed = 0, near = 0;
   for (const ImageVerdict& v : verdict.images) {
@@ -204,7 +204,7 @@ std::string images_words(const GoldenResult& result) {
 }
 
 std::string answers_words(const GoldenResult& r) {
-  if (!r.verdict.refusal.empty()) return "not tested";
+  if (!r.verdict.rejection.empty()) return "not tested";
   if (!r.spec.compares(Level::answers)) return "not compared";
   if (!r.verdict.answers_differ) return render::counted(r.steps, "step", "steps") + ": equal";
   std::set<std::uint32_t> steps;
@@ -214,7 +214,7 @@ std::string answers_words(const GoldenResult& r) {
 }
 
 std::string events_words(const GoldenResult& r) {
-  if (!r.verdict.refusal.empty()) return r.verdict.refusal;
+  if (!r.verdict.rejection.empty()) return r.verdict.rejection;
   if (!r.spec.compares(Level::events)) return "not compared";
   return r.verdict.divergence ? r.verdict.divergence->message()
                               : render::counted(r.events, "event", "events") + ": equal";
@@ -222,14 +222,14 @@ std::string events_words(const GoldenResult& r) {
 
 /// The differences by step, and their possible causes.
 report::Table effects_table(const GoldenResult& r) {
-  constexpr std::size_t kMostRows = 200;
+  constexpr std::size_t kMaxRows = 200;
   report::Table t{r.name + ": differences", {"step", "quantity", "approved", "found"}};
-  for (std::size_t i = 0; i < std::min(r.verdict.effects.size(), kMostRows); ++i) {
+  for (std::size_t i = 0; i < std::min(r.verdict.effects.size(), kMaxRows); ++i) {
     const Effect& e = r.verdict.effects[i];
     t.rows.push_back({std::to_string(e.step), e.what, e.expected, e.found});
   }
-  if (r.verdict.effects.size() > kMostRows)
-    t.note = "And " + render::group_digits(r.verdict.effects.size() - kMostRows) + " more. ";
+  if (r.verdict.effects.size() > kMaxRows)
+    t.note = "And " + render::group_digits(r.verdict.effects.size() - kMaxRows) + " more. ";
   if (r.verdict.effects.empty()) t.rows.push_back({"all", "answers and counters", "", "as approved"});
   for (const std::string& cause : r.verdict.causes) t.note += "Cause: " + cause + ". ";
   if (r.verdict.causes.empty())
@@ -250,11 +250,11 @@ bool is_result(const std::string& file) {
 
 }  // namespace
 
-GoldenResult untested_golden(const std::string& name, const std::string& refusal,
+GoldenResult untested_golden(const std::string& name, const std::string& rejection,
                              const std::string& approve) {
   GoldenResult result;
   result.name = name;
-  result.verdict.refusal = refusal;
+  result.verdict.rejection = rejection;
   result.approve = approve;
   return result;
 }
@@ -333,10 +333,10 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
 }
 
 std::string result_text(const GoldenResult& r) {
-  constexpr std::size_t kMostLines = 12;
+  constexpr std::size_t kMaxLines = 12;
   const GoldenVerdict& v = r.verdict;
-  if (!v.refusal.empty())
-    return "FAIL  " + r.name + ": " + v.refusal + "\n      approve it once that is mended: " + r.approve +
+  if (!v.rejection.empty())
+    return "FAIL  " + r.name + ": " + v.rejection + "\n      approve it once that is mended: " + r.approve +
            "\n";
   std::string head = v.answers_differ ? "answers " + answers_words(r)
                      : v.divergence   ? "events or counters differ"
@@ -348,11 +348,11 @@ std::string result_text(const GoldenResult& r) {
   if (v.passed()) return out;
   std::size_t lines = 0;
   for (const Effect& e : v.effects)
-    if (lines++ < kMostLines)
+    if (lines++ < kMaxLines)
       out += "      step " + std::to_string(e.step) + ": " + e.what + ": expected " + e.expected +
              ", found " + e.found + "\n";
-  if (lines > kMostLines)
-    out += "      and " + std::to_string(lines - kMostLines) + " more differences like these\n";
+  if (lines > kMaxLines)
+    out += "      and " + std::to_string(lines - kMaxLines) + " more differences like these\n";
   for (const std::string& cause : v.causes) out += "      cause: " + cause + "\n";
   if (v.divergence) out += "      first difference: " + v.divergence->message() + "\n";
   if (!v.diagnosis.empty()) out += "      " + v.diagnosis + "\n";
@@ -373,7 +373,7 @@ std::string case_xml(const GoldenResult& r) {
   std::string out = "  <testcase classname=\"golden\" name=\"" + render::escape_markup(r.name) +
                     "\" time=\"" + io::fixed_text(r.seconds, kDecimals) + "\"";
   if (r.verdict.passed()) return out + "/>\n";
-  const char* kind = r.verdict.refusal.empty() ? "failure" : "error";
+  const char* kind = r.verdict.rejection.empty() ? "failure" : "error";
   // The case has the name, and the element the verdict: the message is the rest of the first line, and what
   // follows is the element's text.
   const std::string text = result_text(r), head = "FAIL  " + r.name + ": ";
@@ -390,8 +390,8 @@ std::string junit_xml(const std::vector<GoldenResult>& results) {
   double seconds = 0;
   std::string cases;
   for (const GoldenResult& r : results) {
-    errors += r.verdict.refusal.empty() ? 0 : 1;
-    failures += r.verdict.refusal.empty() && !r.verdict.passed() ? 1 : 0;
+    errors += r.verdict.rejection.empty() ? 0 : 1;
+    failures += r.verdict.rejection.empty() && !r.verdict.passed() ? 1 : 0;
     seconds += r.seconds;
     cases += case_xml(r);
   }

@@ -29,7 +29,8 @@ GoldenResult test_golden(const Golden& golden, const GoldenRun& run, const std::
 
 /// Returns the result for a golden that could not be tested, because it is damaged or its scenario is
 /// refused.
-GoldenResult untested_golden(const std::string& name, const std::string& refusal, const std::string& approve);
+GoldenResult untested_golden(const std::string& name, const std::string& rejection,
+                             const std::string& approve);
 
 /// Removes what an earlier test of these goldens left in a folder, and nothing else.
 void clear_golden_report(const std::string& folder, const std::vector<std::string>& names);

@@ -112,7 +112,7 @@ std::vector<Effect> find_effects(const Golden& golden, const GoldenRun& run) {
 
 namespace {
 
-constexpr int kDefaultWidth = 480, kLeastHeight = 320;
+constexpr int kDefaultWidth = 480, kMinHeight = 320;
 
 std::string words(const Eigen::Vector3d& v) {
   std::ostringstream out;
@@ -138,7 +138,7 @@ void set_default_size(GoldenSpec& spec, const render::FrameSpec& frames) {
   spec.width = kDefaultWidth;
   spec.height =
       std::clamp(static_cast<int>(std::lround(double{kDefaultWidth} * frames.height / frames.width)),
-                 kLeastHeight, 4 * kDefaultWidth);
+                 kMinHeight, 4 * kDefaultWidth);
 }
 
 GoldenRun record_golden(spec::Scenario scenario, const GoldenSpec& spec,

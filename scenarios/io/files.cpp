@@ -33,7 +33,7 @@ bool is_written(const fs::path& name) {
   return false;
 }
 
-void refuse_links_in(const fs::path& folder) {
+void reject_links_in(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (fs::is_symlink(entry->symlink_status()) && is_written(entry->path().filename()))
@@ -49,8 +49,8 @@ std::string read_text(const std::string& path, std::uint64_t most) {
 }
 
 std::string read_small_text(const std::string& path) {
-  constexpr std::uint64_t kMost = std::uint64_t{8} << 20;
-  return read_file(path, kMost);
+  constexpr std::uint64_t kMax = std::uint64_t{8} << 20;
+  return read_file(path, kMax);
 }
 
 void write_text(const std::string& path, const std::string& text) {
@@ -58,12 +58,12 @@ void write_text(const std::string& path, const std::string& text) {
   write_file(path, text);
 }
 
-void refuse_links(const std::string& folder) {
-  refuse_links_in(folder);  // throws if `frames` itself is a link
-  refuse_links_in(fs::path(folder) / "frames");
+void reject_links(const std::string& folder) {
+  reject_links_in(folder);  // throws if `frames` itself is a link
+  reject_links_in(fs::path(folder) / "frames");
 }
 
-void refuse_run_of_another(const std::string& folder, const std::string& scenario_file) {
+void reject_run_of_another(const std::string& folder, const std::string& scenario_file) {
   std::error_code error;
   const std::string marker = folder + "/" + kMadeFrom;
   if (!fs::is_regular_file(marker, error)) return;

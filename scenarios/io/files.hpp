@@ -37,13 +37,13 @@ void write_text(const std::string& path, const std::string& text);
 /// Ensures that output written to a folder stays in it. Throws EnvironmentError that names a symbolic link in
 /// the folder, or in its frames folder, under a name that a run writes (a page, numbers, a trace, an LRB-rep,
 /// a picture, or frames itself). The folder's own path may contain links, because the user chose it.
-void refuse_links(const std::string& folder);
+void reject_links(const std::string& folder);
 
 /// Prevent two scenarios of one name from replacing each other's runs in the folder of that name. `refuse`
 /// throws InputError if the folder contains the run of another file that still exists; `mark` records, in a
 /// separate file, the scenario file of the folder's run. Shipped scenarios, which are not files, mark
 /// nothing.
-void refuse_run_of_another(const std::string& folder, const std::string& scenario_file);
+void reject_run_of_another(const std::string& folder, const std::string& scenario_file);
 void mark_run(const std::string& folder, const std::string& scenario_file);
 
 /// Locks a folder against other processes that request its lock, while this object lives. The lock ends with

@@ -243,7 +243,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
   PoseParser(const std::string& text, const std::string& name) : text_(text), name_(name) {}
 
   PoseList parse() {
-    refuse_nul(text_, name_);
+    reject_nul(text_, name_);
     parse_with(text_, seen_, *this);
     return std::move(out_);
   }
@@ -272,7 +272,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
     else if (level_ == Level::object || skipped_ > 0)
       ++skipped_;
     else
-      refuse("object");
+      reject("object");
     return done();
   }
 
@@ -280,7 +280,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
     if (skipped_ > 0)
       --skipped_;
     else if (pointer_.empty())
-      refuse_root();
+      reject_root();
     return done();
   }
 
@@ -309,7 +309,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
         level_ = Level::row;
         break;
       case Level::row:
-        refuse("array");
+        reject("array");
     }
     return done();
   }
@@ -355,7 +355,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
   std::size_t value_start() const { return text_.find_first_not_of(" \t\r\n,:", last_end_); }
 
   bool scalar(const char* type) {
-    if (level_ != Level::object) refuse(type);
+    if (level_ != Level::object) reject(type);
     return done();
   }
 
@@ -390,14 +390,14 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
     throw InputError(place(offset) + ": " + (pointer.empty() ? "" : pointer + ": ") + message);
   }
 
-  [[noreturn]] void refuse_root() const {
+  [[noreturn]] void reject_root() const {
     fail(0, "", "expected an array of poses, or an object with such an array as \"poses\"");
   }
 
   /// Rejects a value of this type at its location.
-  [[noreturn]] void refuse(const char* type) const {
+  [[noreturn]] void reject(const char* type) const {
     const std::string found = std::string(", found ") + type;
-    if (level_ == Level::root) refuse_root();
+    if (level_ == Level::root) reject_root();
     if (level_ == Level::member) fail(value_start(), pointer_, "expected an array" + found);
     if (level_ == Level::list) fail(value_start(), pose_pointer(), "expected an array" + found);
     fail(value_start(), item_pointer() + (level_ == Level::row ? "/" + std::to_string(in_row_) : ""),
@@ -448,8 +448,8 @@ std::string pose_json(std::span<const Pose> poses) {
 
 PoseList open_poses(const std::string& path) {
   const std::string name = printable_name(path);
-  constexpr std::uint64_t kMostJson = std::uint64_t{64} << 20;
-  if (ends_like(path, ".json")) return parse_pose_json(read_text(path, kMostJson), name);
+  constexpr std::uint64_t kMaxJson = std::uint64_t{64} << 20;
+  if (ends_like(path, ".json")) return parse_pose_json(read_text(path, kMaxJson), name);
   PoseList out;
   std::vector<std::size_t> lines;
   out.poses = ends_like(path, ".csv") ? parse_pose_table(read_text(path), name, &lines)

@@ -20,10 +20,10 @@ PaperProtocol read_protocol(const io::JsonNode& node) {
   node.object({"collisions", "steps_after", "step", "seed"});
   PaperProtocol p;
   if (const auto n = node.get("collisions"))
-    p.collisions = static_cast<std::uint32_t>(n->integer(1, kMostCollisions));
+    p.collisions = static_cast<std::uint32_t>(n->integer(1, kMaxCollisions));
   if (const auto n = node.get("steps_after"))
-    p.steps_after = static_cast<std::uint32_t>(n->integer(0, kMostStepsAfter));
-  if (const auto n = node.get("step")) p.step = n->number(kLeastStep, kMostStep);
+    p.steps_after = static_cast<std::uint32_t>(n->integer(0, kMaxStepsAfter));
+  if (const auto n = node.get("step")) p.step = n->number(kMinStep, kMaxStep);
   if (const auto n = node.get("seed")) p.seed = n->integer(0, spec::kAnySeed);
   return p;
 }
@@ -48,7 +48,7 @@ std::string read_object_name(const io::JsonNode& node) {
 
 std::vector<PaperExperiment::Object> read_objects(const io::JsonNode& node,
                                                   const std::filesystem::path& folder) {
-  constexpr std::size_t kMostObjects = 100;
+  constexpr std::size_t kMaxObjects = 100;
   std::vector<PaperExperiment::Object> objects;
   for (const io::JsonNode& item : node.items(1)) {
     item.object({"name", "body"});
@@ -62,7 +62,7 @@ std::vector<PaperExperiment::Object> read_objects(const io::JsonNode& node,
     if (body.has("pose")) body.fail_key("pose", "the protocol places the bodies; remove it");
     objects.push_back(std::move(o));
   }
-  if (objects.size() > kMostObjects) node.fail("expected at most 100 objects");
+  if (objects.size() > kMaxObjects) node.fail("expected at most 100 objects");
   return objects;
 }
 

@@ -74,7 +74,7 @@ inline constexpr auto kFields<paper::RecursionCount> =
                field("pairs", &paper::RecursionCount::pairs), field("missed", &paper::RecursionCount::missed),
                field("bound_tests", &paper::RecursionCount::bound_tests)};
 
-/// Without `least_faces`, which experiments leave as it is.
+/// Without `min_faces`, which experiments leave as it is.
 template <>
 inline constexpr auto kFields<resolutions::ResolutionOptions> =
     std::tuple{field("resolutions", &resolutions::ResolutionOptions::most),

@@ -25,8 +25,8 @@ struct PaperProtocol {
   double step = 0.005;  ///< as a share of the diagonal
   std::uint64_t seed = 1;
 };
-inline constexpr std::uint32_t kMostCollisions = 100'000, kMostStepsAfter = 1000;
-inline constexpr double kLeastStep = 1e-5, kMostStep = 0.5;
+inline constexpr std::uint32_t kMaxCollisions = 100'000, kMaxStepsAfter = 1000;
+inline constexpr double kMinStep = 1e-5, kMaxStep = 0.5;
 
 inline constexpr std::array<Recursion, 3> kRecursions = {Recursion::paper, Recursion::paper_strict,
                                                          Recursion::complete};

@@ -173,7 +173,7 @@ std::string times_to_json_lines(std::span<const ContactStep> steps) {
 }
 
 void read_times(const std::string& text, const std::string& file, std::vector<ContactStep>& steps) {
-  const auto refuse = [&](std::size_t line, const std::string& why) {
+  const auto reject = [&](std::size_t line, const std::string& why) {
     throw InputError(printable_name(file) + ":" + std::to_string(line) + ": " + why +
                      "; give the output folders of the shards of one `lrbscope paper`");
   };
@@ -188,10 +188,10 @@ void read_times(const std::string& text, const std::string& file, std::vector<Co
           by_key.find({j.at("object").get<std::string>(), j.at("collision").get<std::uint32_t>(),
                        j.at("step").get<std::uint32_t>()});
       const auto ns = j.at("nanoseconds").get<std::array<std::uint64_t, 3>>();
-      if (found == by_key.end()) refuse(number, "a time for a step without a record");
+      if (found == by_key.end()) reject(number, "a time for a step without a record");
       for (std::size_t i = 0; i < ns.size(); ++i) found->second->counts[i].nanoseconds = ns[i];
     } catch (const nlohmann::json::exception& e) {
-      refuse(number, "not the time of a step: " + printable_name(e.what()));
+      reject(number, "not the time of a step: " + printable_name(e.what()));
     }
     begin = end + 1;
   }

@@ -84,7 +84,7 @@ nlohmann::ordered_json experiment(const ShardFile& s) {
 }
 
 ShardFile read(const std::string& path) {
-  const auto refuse = [&](const char* why) {
+  const auto reject = [&](const char* why) {
     throw InputError(printable_name(path) + ": not written by `lrbscope paper --shard`: " +
                      printable_name(why) + "; give the records.jsonl files of its shards' output folders");
   };
@@ -96,9 +96,9 @@ ShardFile read(const std::string& path) {
     s.resolutions = io::record_from_json<resolutions::ResolutionOptions>(j);
     s.lean = j.value("lean", false);
   } catch (const nlohmann::json::exception& e) {
-    refuse(e.what());
+    reject(e.what());
   } catch (const InputError& e) {
-    refuse(e.what());
+    reject(e.what());
   }
   return s;
 }

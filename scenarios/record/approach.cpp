@@ -103,12 +103,12 @@ Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, con
   const Steps steps{motion, start, length, whole_way};
   FirstContactRequest request;
   request.max_steps = 200'000;
-  FirstContactCourse told;
+  FirstContactHistory reported;
   const FirstContactResult found =
-      watched ? first_contact(a, Motion::still(pose_a), b, steps.whole(), request, told)
+      watched ? first_contact(a, Motion::still(pose_a), b, steps.whole(), request, reported)
               : first_contact(a, Motion::still(pose_a), b, steps.whole(), request);
   Approach out;
-  out.search = trace::measured(found, std::move(told.course));
+  out.search = trace::measured(found, std::move(reported.history));
   const bool inside = found.at_begin == Relation::a_inside_b || found.at_begin == Relation::b_inside_a;
   if (!(motion.exact && found.is_contact() && !found.passed) || inside) {
     const auto from = static_cast<std::uint32_t>(found.t0 * whole_way);

@@ -203,14 +203,14 @@ class StepQueries {
  private:
   void ask_more(const Pose& pose_a, const Pose& pose_b, trace::Recorder& recorder) const {
     if (s_.more.distance) {
-      BoundsCourse told;
-      const DistanceResult found = distance(a_, pose_a, b_, pose_b, {}, told);
-      recorder.add(trace::measured(found, std::move(told.course)));
+      BoundsHistory reported;
+      const DistanceResult found = distance(a_, pose_a, b_, pose_b, {}, reported);
+      recorder.add(trace::measured(found, std::move(reported.history)));
     }
     if (s_.more.clash) {
-      ClashCourse told;
-      const ClashResult found = clash(a_, pose_a, b_, pose_b, {}, told);
-      recorder.add(trace::measured(found, std::move(told.of_depth)));
+      ClashHistory reported;
+      const ClashResult found = clash(a_, pose_a, b_, pose_b, {}, reported);
+      recorder.add(trace::measured(found, std::move(reported.of_depth)));
     }
   }
 

@@ -140,10 +140,10 @@ InlinedImages inline_pngs(const std::vector<PngBytes>& pngs, std::size_t budget)
     for (const PngBytes& png : pngs) out.uris.push_back(data_uri("image/png", png.data(), png.size()));
     return out;
   }
-  constexpr int kMostHalvings = 4;
+  constexpr int kMaxHalvings = 4;
   for (int halvings = 0;; ++halvings) {
     InlinedImages out = as_jpegs(pngs, halvings, size);
-    if (size <= budget || halvings == kMostHalvings) return out;
+    if (size <= budget || halvings == kMaxHalvings) return out;
   }
 }
 

@@ -116,7 +116,7 @@ std::string comparison_html(const Comparison& c, const std::string* uris) {
 }  // namespace
 
 Folder::Folder(std::string path) : path_(made(std::move(path))), lock_(path_) {
-  io::refuse_links(path_);
+  io::reject_links(path_);
 }
 
 Document::Document(std::string title, std::string purpose)

@@ -58,7 +58,7 @@ struct Comparison {
 
 /// The parts that the bars of a grid's profiles are stacked of, from the bottom. Each has a colour and a
 /// mark.
-enum class Part : std::uint8_t { wrong, crashed, timed_out, refused };
+enum class Part : std::uint8_t { wrong, crashed, timed_out, rejected };
 inline constexpr std::size_t kParts = 4;
 
 struct GridHead {
@@ -69,8 +69,8 @@ struct GridHead {
 };
 
 struct GridCell {
-  /// The background: from 0, nothing to report, to 4; kOnlyRefused has one of its own.
-  static constexpr int kOnlyRefused = -1;
+  /// The background: from 0, nothing to report, to 4; kOnlyRejected has one of its own.
+  static constexpr int kOnlyRejected = -1;
   int level = 0;
   std::string count, of;                         ///< "12", "of 55"
   std::array<std::string, kParts> marks;         ///< numbers shown beside the parts' marks; empty: none
@@ -116,7 +116,7 @@ struct Link {
 };
 
 /// An output folder that is written to: made if it is missing, locked for other processes, and without links
-/// under names that reports write (see refuse_links()).
+/// under names that reports write (see reject_links()).
 class Folder {
  public:
   Folder(std::string path);  // NOLINT(google-explicit-constructor): a path names the folder

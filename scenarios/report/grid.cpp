@@ -40,7 +40,7 @@ std::string profile_svg(const GridCell& cell) {
 
 std::string cell_html(const Grid& grid, const GridCell& cell) {
   const std::string level =
-      cell.level == GridCell::kOnlyRefused ? "only-refused" : "level-" + std::to_string(cell.level);
+      cell.level == GridCell::kOnlyRejected ? "only-refused" : "level-" + std::to_string(cell.level);
   std::string marks;
   for (std::size_t k = 0; k < kParts; ++k)
     if (!cell.marks[k].empty())

@@ -66,7 +66,7 @@ Json contact_points_json(const exact::PairContact& contact) {
 
 constexpr int kShownDigits = 6;
 /// Distances of more units in the last place are printed without them: doubles decide these easily.
-constexpr double kMostUlps = 1e6;
+constexpr double kMaxUlps = 1e6;
 
 std::string point_text(const Eigen::Vector3d& x) {
   const auto text = [](double value) { return io::number_text(value, kShownDigits); };
@@ -191,7 +191,7 @@ std::string explanation_text(const PairExplanation& e, const LrbRep& a, const Lr
   if (e.meet == exact::Meet::disjoint) {
     out << "closest points: " << point_text(e.nearest[0]) << " and " << point_text(e.nearest[1])
         << "\ndistance " << e.distance;
-    if (const double ulps = e.distance / e.ulp; ulps < kMostUlps)
+    if (const double ulps = e.distance / e.ulp; ulps < kMaxUlps)
       out << ", " << ulps << " units in the last place of the largest coordinate";
     out << "\n";
   } else {

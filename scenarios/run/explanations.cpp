@@ -175,7 +175,7 @@ json boxes_json(const PartedBoxes& boxes, int dim, const SceneFrame& frame) {
   return out;
 }
 
-json plane_json(const PartingPlane& plane, const RecordedRun& p, const trace::Step& step,
+json plane_json(const SeparatingPlane& plane, const RecordedRun& p, const trace::Step& step,
                 const SceneFrame& frame) {
   const Square square = separating_square(plane, {*p.reps[0], step.pose_a, *p.reps[1], step.pose_b});
   const Eigen::Vector3d& n = plane.normal;

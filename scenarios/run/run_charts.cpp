@@ -50,7 +50,7 @@ std::vector<std::string> pass_row(const trace::PassSummary& p) {
   const double saved = static_cast<double>(p.covered) - p.lids;
   return {made ? std::to_string(p.number()) : "",
           std::string(name_of(p.stage)),
-          p.most_off > 0 ? short_number(p.most_off) : "",
+          p.max_deviation > 0 ? short_number(p.max_deviation) : "",
           p.off > 0 ? short_number(p.off) : "",
           group_digits(p.faces_before),
           group_digits(p.faces_after),
@@ -58,8 +58,8 @@ std::vector<std::string> pass_row(const trace::PassSummary& p) {
           group_digits(p.patches),
           group_digits(p.accepted()),
           saved > 0 ? short_number(p.lids / saved) : "",
-          group_digits(p.refused()),
-          trace::refusal_words(p.caps)};
+          group_digits(p.rejected()),
+          trace::rejection_text(p.caps)};
 }
 
 report::Table pass_table(const Passes& passes) {
@@ -92,7 +92,7 @@ report::Table pass_table(const Passes& passes) {
   return t;
 }
 
-report::Table refusal_table(const Passes& passes) {
+report::Table rejection_table(const Passes& passes) {
   const auto caps = trace::caps_of(passes);
   std::uint64_t all = 0;
   for (const std::uint32_t n : caps) all += n;
@@ -126,10 +126,10 @@ void add_construction(report::Document& doc, const RecordedRun& p) {
   doc.number({"Passes", std::to_string(made),
               std::to_string(passes.size() - static_cast<std::size_t>(made)) + " more without effect"});
   const auto caps = trace::caps_of(passes);
-  std::uint64_t refused = 0;
-  for (std::size_t v = 1; v < caps.size(); ++v) refused += caps[v];
-  const bool tried = caps[0] + refused > 0;
-  if (tried) doc.number({"Caps", group_digits(caps[0]), group_digits(refused) + " rejected"});
+  std::uint64_t rejected = 0;
+  for (std::size_t v = 1; v < caps.size(); ++v) rejected += caps[v];
+  const bool tried = caps[0] + rejected > 0;
+  if (tried) doc.number({"Caps", group_digits(caps[0]), group_digits(rejected) + " rejected"});
   report::Chart front =
       chart_of(trace::chart_over_construction(*p.trace), "The front, from the body to the outermost wrapper",
                "faces", report::Line::steps);
@@ -137,7 +137,7 @@ void add_construction(report::Document& doc, const RecordedRun& p) {
   doc.chart(front);
   if (tried) {
     doc.chart(chart_of(trace::chart_over_passes(*p.trace), "Caps by pass", "caps", report::Line::straight));
-    doc.table(refusal_table(passes));
+    doc.table(rejection_table(passes));
   }
   doc.table(pass_table(passes));
 }
@@ -157,9 +157,9 @@ report::Chart steps_chart(const trace::Trace& trace) {
   return chart;
 }
 
-report::Chart course_chart(const std::vector<Bounds>& course, const std::string& what, std::uint32_t step) {
+report::Chart history_chart(const std::vector<Bounds>& history, const std::string& what, std::uint32_t step) {
   report::Ends ends(what, report::Line::steps);
-  for (const Bounds& b : course) ends.add(static_cast<double>(b.work), b.lower, b.upper);
+  for (const Bounds& b : history) ends.add(static_cast<double>(b.work), b.lower, b.upper);
   report::Chart chart{
       "Convergence of the " + what + " bounds, step " + std::to_string(step), {"work"}, {kLength}};
   ends.move_to(chart);
@@ -168,7 +168,7 @@ report::Chart course_chart(const std::vector<Bounds>& course, const std::string&
 
 report::Chart search_chart(const trace::MeasuredApproach& search) {
   report::Ends distance("distance");
-  for (const ContactBounds& b : search.course) {
+  for (const ContactBounds& b : search.history) {
     const double percent = 100 * b.t0;
     if (distance.lower.x.empty() || percent > distance.lower.x.back())
       distance.add(percent, b.lower, b.upper);
@@ -187,26 +187,26 @@ report::Chart search_chart(const trace::MeasuredApproach& search) {
 std::vector<report::Chart> measure_charts(const trace::Trace& trace) {
   std::vector<report::Chart> out;
   const trace::Step *of_distance = nullptr, *of_depth = nullptr;
-  std::size_t most_distance = 1, most_depth = 1;  // a curve has two points at least
+  std::size_t max_distance = 1, max_depth = 1;  // a curve has two points at least
   for (const trace::Step& step : trace.steps) {
     const trace::StepResult& r = step.result;
-    if (r.distance && r.distance->course.size() > most_distance) {
+    if (r.distance && r.distance->history.size() > max_distance) {
       of_distance = &step;
-      most_distance = r.distance->course.size();
+      max_distance = r.distance->history.size();
     }
-    if (r.clash && r.clash->course.size() > most_depth) {
+    if (r.clash && r.clash->history.size() > max_depth) {
       of_depth = &step;
-      most_depth = r.clash->course.size();
+      max_depth = r.clash->history.size();
     }
   }
   const bool measured =
       was_measured(trace, &trace::StepResult::distance) || was_measured(trace, &trace::StepResult::clash);
   if (measured && trace.steps.size() > 1) out.push_back(steps_chart(trace));
   if (of_distance != nullptr)
-    out.push_back(course_chart(of_distance->result.distance->course, "distance", of_distance->index));
+    out.push_back(history_chart(of_distance->result.distance->history, "distance", of_distance->index));
   if (of_depth != nullptr)
-    out.push_back(course_chart(of_depth->result.clash->course, "depth", of_depth->index));
-  if (trace.header.first_contact && trace.header.first_contact->course.size() > 1)
+    out.push_back(history_chart(of_depth->result.clash->history, "depth", of_depth->index));
+  if (trace.header.first_contact && trace.header.first_contact->history.size() > 1)
     out.push_back(search_chart(*trace.header.first_contact));
   std::erase_if(out, [](const report::Chart& c) { return c.series.empty(); });
   return out;

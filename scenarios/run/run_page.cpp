@@ -158,8 +158,8 @@ report::Table contact_table(const CollideResult& result, std::uint32_t step) {
   report::Table t{
       "Contact regions at step " + std::to_string(step),
       {"region", "pairs", "curves", "length", "area", "depth, estimated", "centroid", "normal, A to B"}};
-  constexpr std::size_t kMostRows = 30;
-  for (std::size_t i = 0; i < std::min(result.regions.size(), kMostRows); ++i) {
+  constexpr std::size_t kMaxRows = 30;
+  for (std::size_t i = 0; i < std::min(result.regions.size(), kMaxRows); ++i) {
     const ContactRegion& r = result.regions[i];
     const auto closed =
         std::count_if(r.loops.begin(), r.loops.end(), [](const ContactLoop& l) { return l.closed; });
@@ -173,8 +173,8 @@ report::Table contact_table(const CollideResult& result, std::uint32_t step) {
   t.note =
       "World frame; lengths in the meshes' unit. Depth: estimated translation of B along the normal that separates the "
       "region.";
-  if (result.regions.size() > kMostRows)
-    t.note += " " + std::to_string(result.regions.size() - kMostRows) + " more are left out here.";
+  if (result.regions.size() > kMaxRows)
+    t.note += " " + std::to_string(result.regions.size() - kMaxRows) + " more are left out here.";
   return t;
 }
 

@@ -97,7 +97,7 @@ report::Table level_table(const RecordedRun& p, Side side) {
 }
 
 report::Table region_table(const RecordedRun& p, Side side) {
-  constexpr std::size_t kMostRows = 20;
+  constexpr std::size_t kMaxRows = 20;
   const LrbRep& rep = *p.reps[static_cast<std::size_t>(side)];
   Groups groups(p, side, rep.region_count(), region_of);
   for (const trace::Event& e : p.trace->events)
@@ -119,15 +119,15 @@ report::Table region_table(const RecordedRun& p, Side side) {
     first.push_back(group_digits(s.refined));
     t.rows.push_back(std::move(first));
   };
-  for (std::size_t i = 0; i < std::min(order.size(), kMostRows); ++i) {
+  for (std::size_t i = 0; i < std::min(order.size(), kMaxRows); ++i) {
     const RegionId r(order[i]);
     add({std::to_string(order[i]), std::to_string(rep.layer(r)), std::to_string(rep.depth(r))},
         groups.sums[order[i]]);
   }
-  if (order.size() > kMostRows) {
+  if (order.size() > kMaxRows) {
     GroupSums rest;
-    for (std::size_t i = kMostRows; i < order.size(); ++i) rest += groups.sums[order[i]];
-    add({group_digits(order.size() - kMostRows) + " others", "", ""}, rest);
+    for (std::size_t i = kMaxRows; i < order.size(); ++i) rest += groups.sums[order[i]];
+    add({group_digits(order.size() - kMaxRows) + " others", "", ""}, rest);
   }
   add({"no region", "", ""}, groups.sums.back());
   add({"all", "", ""}, groups.total());

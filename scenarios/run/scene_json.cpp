@@ -26,7 +26,7 @@
 namespace lrb::run {
 namespace {
 
-std::optional<MarkedSegment> way_out_in(const RecordedRun& p, std::size_t step) {
+std::optional<MarkedSegment> separation_vector_in(const RecordedRun& p, std::size_t step) {
   const trace::Step& s = p.trace->steps[step];
   if (!s.result.clash) return std::nullopt;
   std::span<const ContactRegion> contacts;
@@ -37,26 +37,26 @@ std::optional<MarkedSegment> way_out_in(const RecordedRun& p, std::size_t step) 
 }  // namespace
 
 nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame) {
-  std::vector<std::uint32_t> steps, ways_out;
+  std::vector<std::uint32_t> steps, separation_vectors;
   std::vector<float> ends;
   nlohmann::json words = nlohmann::json::array();
-  const auto add = [&](const trace::Step& s, const MarkedSegment& way, bool is_way_out) {
+  const auto add = [&](const trace::Step& s, const MarkedSegment& way, bool is_separation_vector) {
     steps.push_back(s.index);
-    ways_out.push_back(is_way_out ? 1 : 0);
+    separation_vectors.push_back(is_separation_vector ? 1 : 0);
     frame.add_point(ends, way.from);
     frame.add_point(ends, way.to);
-    words.push_back((is_way_out ? "depth " : "distance ") + way.text);
+    words.push_back((is_separation_vector ? "depth " : "distance ") + way.text);
   };
   for (std::size_t i = 0; i < p.trace->steps.size(); ++i) {
     const trace::Step& s = p.trace->steps[i];
     if (!s.finished) continue;
     const auto gap = s.result.distance ? gap_of(*s.result.distance) : std::nullopt;
     if (gap) add(s, *gap, false);
-    if (const auto way = way_out_in(p, i)) add(s, *way, true);
+    if (const auto way = separation_vector_in(p, i)) add(s, *way, true);
   }
   if (steps.empty()) return nullptr;
   return {{"step", report::packed(steps)},
-          {"wayOut", report::packed(ways_out)},
+          {"wayOut", report::packed(separation_vectors)},
           {"ends", report::packed(ends)},
           {"words", std::move(words)}};
 }

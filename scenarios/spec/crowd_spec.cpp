@@ -25,9 +25,9 @@ std::vector<CrowdKind> read_kinds(const io::JsonNode& node, const std::filesyste
         item.at("name").fail("other bodies have the name " + kind.name + "; rename one");
     kind.body = read_body(item.at("body"), folder, seed);
     if (const auto n = item.get("count"))
-      kind.count = static_cast<std::uint32_t>(n->integer(1, kMostCrowdBodies));
+      kind.count = static_cast<std::uint32_t>(n->integer(1, kMaxCrowdBodies));
     bodies += kind.count;
-    if (bodies > kMostCrowdBodies) node.fail("expected at most 10000 bodies in total");
+    if (bodies > kMaxCrowdBodies) node.fail("expected at most 10000 bodies in total");
     kinds.push_back(std::move(kind));
   }
   return kinds;
@@ -46,7 +46,7 @@ std::array<double, 2> read_range(const io::JsonNode& node) {
 
 void read_motion(const io::JsonNode& node, Crowd& c) {
   node.object({"steps", "speed", "spin"});
-  c.steps = static_cast<std::uint32_t>(node.at("steps").integer(1, kMostSteps));
+  c.steps = static_cast<std::uint32_t>(node.at("steps").integer(1, kMaxSteps));
   if (const auto n = node.get("speed")) c.speed = read_range(*n);
   if (const auto n = node.get("spin")) c.spin = read_range(*n);
 }

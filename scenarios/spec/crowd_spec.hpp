@@ -12,7 +12,7 @@
 
 namespace lrb::spec {
 
-inline constexpr std::uint32_t kMostCrowdBodies = 10'000;
+inline constexpr std::uint32_t kMaxCrowdBodies = 10'000;
 inline constexpr double kFar = 1e150;  ///< maximum coordinate: its square is still finite
 
 /// Bodies of one shape, which share one LRB-rep.

@@ -85,7 +85,7 @@ std::string read_name(const io::JsonNode& node) {
 namespace {
 
 constexpr double kLongestTolerance = 1e150;  // its square is still finite
-constexpr std::uint64_t kMostCount = std::uint64_t{1} << 62;
+constexpr std::uint64_t kMaxCount = std::uint64_t{1} << 62;
 
 /// Reads a value of a query by its type: a length, a count of at least 1, a word, or true or false.
 template <class Enum>
@@ -96,7 +96,7 @@ void read_value(const io::JsonNode& node, double& value) {
   value = node.number(0, kLongestTolerance);
 }
 void read_value(const io::JsonNode& node, std::uint64_t& value) {
-  value = node.integer(1, kMostCount);
+  value = node.integer(1, kMaxCount);
 }
 void read_value(const io::JsonNode& node, bool& value) {
   value = node.boolean();

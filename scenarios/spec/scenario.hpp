@@ -22,7 +22,7 @@
 namespace lrb::spec {
 
 /// Maximum number of steps of a scenario or a crowd.
-inline constexpr std::uint32_t kMostSteps = 100'000;
+inline constexpr std::uint32_t kMaxSteps = 100'000;
 
 /// Content kind of a scenario.
 enum class Show : std::uint8_t {
@@ -131,9 +131,9 @@ CollideRequest read_query(const io::JsonNode& node, StepQuestions* more = nullpt
 /// Reads a name that is valid for a folder.
 std::string read_name(const io::JsonNode& node);
 
-inline constexpr double kLeastDpi = 24, kMostDpi = 2400;
+inline constexpr double kMinDpi = 24, kMaxDpi = 2400;
 /// Maximum depth of tree nodes whose boxes can be requested.
-inline constexpr std::uint32_t kMostDepth = 64;
+inline constexpr std::uint32_t kMaxDepth = 64;
 
 /// Returns the default frames of a run.
 FrameSpec default_frames(Show show);

@@ -5,7 +5,7 @@
 namespace lrb::spec {
 namespace {
 
-constexpr std::uint64_t kMostFrames = 10'000;
+constexpr std::uint64_t kMaxFrames = 10'000;
 
 FrameSpec::View read_view(const io::JsonNode& node) {
   using Camera = FrameSpec::Camera;
@@ -41,7 +41,7 @@ void read_moments(const io::JsonNode& node, FrameSpec& f) {
     for (const io::JsonNode& item : n->items(1))
       f.events.push_back(static_cast<std::uint32_t>(item.integer(0, kMaxId)));
   }
-  if (const auto n = node.get("most")) f.most = static_cast<std::uint32_t>(n->integer(1, kMostFrames));
+  if (const auto n = node.get("most")) f.most = static_cast<std::uint32_t>(n->integer(1, kMaxFrames));
 }
 
 nlohmann::json to_json(const Eigen::Vector3d& v) {
@@ -108,7 +108,7 @@ FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
     f.width = static_cast<int>(size[0].integer(64, 8192));
     f.height = static_cast<int>(size[1].integer(64, 8192));
   }
-  if (const auto n = node.get("dpi")) f.dpi = n->number(kLeastDpi, kMostDpi);
+  if (const auto n = node.get("dpi")) f.dpi = n->number(kMinDpi, kMaxDpi);
   if (const auto n = node.get("format")) f.svg = n->choice<bool>({{"png", false}, {"svg", true}});
   if (const auto n = node.get("supersampling")) f.supersampling = static_cast<int>(n->integer(1, 4));
   if (const auto n = node.get("colour_by")) f.colour_by = n->choice<FrameSpec::ColourBy>();
@@ -121,7 +121,7 @@ FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
   if (const auto n = node.get("titles")) f.titles = n->boolean();
   if (const auto n = node.get("legend")) f.legend = n->boolean();
   if (const auto n = node.get("node_boxes"))
-    f.node_boxes = static_cast<std::uint32_t>(n->integer(0, kMostDepth));
+    f.node_boxes = static_cast<std::uint32_t>(n->integer(0, kMaxDepth));
   if (const auto n = node.get("explode")) f.explode = n->number(0, 10);
   if (const auto n = node.get("montage")) {
     n->object({"panels", "columns"});

@@ -23,7 +23,7 @@ double read_degrees(const io::JsonNode& node) {
 std::uint32_t read_steps(const io::JsonNode& node, const char* key, std::uint32_t fallback,
                          std::uint32_t least) {
   const auto n = node.get(key);
-  return n ? static_cast<std::uint32_t>(n->integer(least, kMostSteps)) : fallback;
+  return n ? static_cast<std::uint32_t>(n->integer(least, kMaxSteps)) : fallback;
 }
 
 std::vector<Motion::Keyframe> read_keyframes(const io::JsonNode& node) {
@@ -31,7 +31,7 @@ std::vector<Motion::Keyframe> read_keyframes(const io::JsonNode& node) {
   for (const io::JsonNode& item : node.items(1)) {
     item.object({"step", "position", "axis", "degrees"});
     Motion::Keyframe k;
-    k.step = static_cast<std::uint32_t>(item.at("step").integer(0, kMostSteps));
+    k.step = static_cast<std::uint32_t>(item.at("step").integer(0, kMaxSteps));
     if (out.empty() ? k.step != 0 : k.step <= out.back().step)
       item.at("step").fail(out.empty() ? "expected the first keyframe at step 0"
                                        : "expected keyframes in ascending order of their steps");

@@ -14,8 +14,8 @@ namespace {
 
 using test::closed;
 
-ClashResult watched(const LrbRep& a, const LrbRep& b, const Pose& pose_b, ClashCourse& told) {
-  const ClashResult result = clash(a, {}, b, pose_b, {}, told);
+ClashResult watched(const LrbRep& a, const LrbRep& b, const Pose& pose_b, ClashHistory& reported) {
+  const ClashResult result = clash(a, {}, b, pose_b, {}, reported);
   const ClashResult plain = clash(a, {}, b, pose_b);
   CHECK(result.kind == plain.kind);
   CHECK(result.distance.lower == plain.distance.lower);
@@ -30,11 +30,11 @@ ClashResult watched(const LrbRep& a, const LrbRep& b, const Pose& pose_b, ClashC
 
 /// The ends of a depth tighten but for the proof of the last upper end, which is a little more than what was
 /// found.
-void check_depth(const ClashCourse& told, const ClashResult& result) {
-  REQUIRE(told.of_depth.size() >= 2);
-  CHECK(told.of_distance.empty());
+void check_depth(const ClashHistory& reported, const ClashResult& result) {
+  REQUIRE(reported.of_depth.size() >= 2);
+  CHECK(reported.of_distance.empty());
   Bounds before{0, 0, std::numeric_limits<double>::infinity()};
-  for (const Bounds& now : told.of_depth) {
+  for (const Bounds& now : reported.of_depth) {
     CAPTURE(now.work);
     CHECK(now.work >= before.work);
     CHECK(now.lower >= before.lower);
@@ -43,28 +43,28 @@ void check_depth(const ClashCourse& told, const ClashResult& result) {
     CHECK(now.upper >= result.depth->lower * (1 - 1e-9));
     before = now;
   }
-  CHECK(told.of_depth.back().lower == result.depth->lower);
-  CHECK(told.of_depth.back().upper == result.depth->upper);
+  CHECK(reported.of_depth.back().lower == result.depth->lower);
+  CHECK(reported.of_depth.back().upper == result.depth->upper);
 }
 
 }  // namespace
 
 TEST_CASE("clash probe: the depth of convex bodies tightens from both ends") {
   const LrbRep ball = closed(shapes::icosphere(3));
-  ClashCourse told;
-  const ClashResult result = watched(ball, ball, Pose::translation({1.1, 0.3, 0.2}), told);
-  check_depth(told, result);
-  CHECK(told.of_depth.front().lower < 0.9 * result.depth->lower);
-  CHECK(std::isinf(told.of_depth.front().upper));
-  CHECK(told.of_depth.size() > 5);
+  ClashHistory reported;
+  const ClashResult result = watched(ball, ball, Pose::translation({1.1, 0.3, 0.2}), reported);
+  check_depth(reported, result);
+  CHECK(reported.of_depth.front().lower < 0.9 * result.depth->lower);
+  CHECK(std::isinf(reported.of_depth.front().upper));
+  CHECK(reported.of_depth.size() > 5);
 }
 
 TEST_CASE("clash probe: the depth of a body that is not convex") {
   const LrbRep torus = closed(shapes::torus(24, 12, 1, 0.35)), ball = closed(shapes::icosphere(2));
-  ClashCourse told;
-  const ClashResult result = watched(torus, ball, Pose::translation({1.2, 0.1, 0.3}), told);
+  ClashHistory reported;
+  const ClashResult result = watched(torus, ball, Pose::translation({1.2, 0.1, 0.3}), reported);
   REQUIRE(result.interiors_overlap == Answer::yes);
-  check_depth(told, result);
+  check_depth(reported, result);
 }
 
 TEST_CASE("clash probe: an upper bound that no translation proves is reported as infinite at the end") {
@@ -72,21 +72,21 @@ TEST_CASE("clash probe: an upper bound that no translation proves is reported as
   // translation.
   const LrbRep box = closed(shapes::box({0, 0, 0}, {1, 1, 1}));
   const Pose far = Pose::translation({1e15, 0, 0}), beside = Pose::translation({1e15 + 0.5, 0.25, 0.25});
-  ClashCourse told;
-  const ClashResult result = clash(box, far, box, beside, {}, told);
+  ClashHistory reported;
+  const ClashResult result = clash(box, far, box, beside, {}, reported);
   REQUIRE(result.interiors_overlap == Answer::yes);
   REQUIRE(result.depth.has_value());
   CHECK(std::isinf(result.depth->upper));
-  REQUIRE(told.of_depth.size() >= 2);
-  CHECK(std::any_of(told.of_depth.begin(), told.of_depth.end(),
+  REQUIRE(reported.of_depth.size() >= 2);
+  CHECK(std::any_of(reported.of_depth.begin(), reported.of_depth.end(),
                     [](const Bounds& b) { return std::isfinite(b.upper); }));
-  CHECK(told.of_depth.back().lower == result.depth->lower);
-  CHECK(told.of_depth.back().upper == result.depth->upper);
+  CHECK(reported.of_depth.back().lower == result.depth->lower);
+  CHECK(reported.of_depth.back().upper == result.depth->upper);
 }
 
 TEST_CASE("clash probe: of bodies that are apart the distance is told, and of those that touch, nothing") {
   const LrbRep box = closed(shapes::box({0, 0, 0}, {1, 1, 1}));
-  ClashCourse apart, touching;
+  ClashHistory apart, touching;
   const ClashResult gap = watched(box, box, Pose::translation({1.5, 0.25, 0.25}), apart);
   CHECK(apart.of_depth.empty());
   REQUIRE(!apart.of_distance.empty());

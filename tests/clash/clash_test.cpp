@@ -457,13 +457,13 @@ void check_pieces(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   QueryContext context;
   NullProbe probe;
   const CollideResult found = collide(a, pose_a, b, pose_b, {}, context, probe);
-  const auto quick = parting::surface_pieces(context, found);
-  const auto slow = parting::surface_pieces(context, found, true);
+  const auto quick = penetration::surface_pieces(context, found);
+  const auto slow = penetration::surface_pieces(context, found, true);
   REQUIRE((quick && slow));
   for (std::size_t side = 0; side < 2; ++side) {
     CHECK((*quick)[side].inside == (*slow)[side].inside);
     CHECK((*quick)[side].outside == (*slow)[side].outside);
-    CHECK((*quick)[side].most_outside == (*slow)[side].most_outside);
+    CHECK((*quick)[side].max_outside == (*slow)[side].max_outside);
   }
 }
 
@@ -581,10 +581,10 @@ TEST_CASE("clash: the same solid in more faces gives the same intervals") {
 
 TEST_CASE("clash: round solids have narrow depths, the same in more faces") {
   const Pose turned = Pose::rotation({1, 2, 3}, 0.7, {0.9, 0.5, 0.3});
-  const auto compare = [&](const Mesh& a, const Mesh& b, double least_share) {
+  const auto compare = [&](const Mesh& a, const Mesh& b, double min_share) {
     const ClashResult first = ask(a, b, turned);
     REQUIRE((first.depth && first.depth->upper > 0));
-    CHECK(first.depth->lower >= least_share * first.depth->upper);
+    CHECK(first.depth->lower >= min_share * first.depth->upper);
     Mesh fine_a = a, fine_b = b;
     for (int level = 0; level < 2; ++level) {
       fine_a = finer(fine_a);

@@ -13,7 +13,7 @@
 #include "tests/support/closed_body.hpp"
 
 using namespace lrb;
-using namespace lrb::parting;
+using namespace lrb::penetration;
 using shapes::RandomEngine;
 
 namespace {

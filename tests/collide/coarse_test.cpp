@@ -47,7 +47,7 @@ std::vector<std::vector<Eigen::Vector3d>> real_simplices(const LrbRep& rep, cons
   return out;
 }
 
-double surfaces_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+double surfaces_disjoint(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   return test::surface_distance(real_simplices(a, pose_a), real_simplices(b, pose_b));
 }
 
@@ -69,7 +69,7 @@ void check_claims(const CoarseBodies& pair, const Pose& p, const CollideResult& 
     REQUIRE(!coarse.finished);
     REQUIRE(coarse.error_bound > 0);
     if (truth.relation == Relation::separate && std::isfinite(coarse.error_bound))
-      REQUIRE(surfaces_apart(pair.a, Pose{}, pair.b, p) <= coarse.error_bound);
+      REQUIRE(surfaces_disjoint(pair.a, Pose{}, pair.b, p) <= coarse.error_bound);
     return;
   }
   REQUIRE(std::string(to_string(coarse.relation)) == to_string(truth.relation));
@@ -321,7 +321,7 @@ TEST_CASE(
           const bool meet = meets(far + sign * off);
           meeting += meet;
           for (const double tolerance : {0.01, 0.1, 0.5}) {
-            const bool alone = test::wrappers_are_apart(pair.a, Pose{}, pair.b, p, tolerance, context);
+            const bool alone = test::wrappers_are_disjoint(pair.a, Pose{}, pair.b, p, tolerance, context);
             REQUIRE(!(meet && alone));
             apart += alone;
           }
@@ -354,7 +354,7 @@ TEST_CASE("a query with a tolerance keeps its claims under affine maps of both b
         request.tolerance = tolerance;
         const CollideResult coarse = collide(pair.a, pose_a, pair.b, pose_b, request, context, probe);
         REQUIRE(coarse.relation == truth.relation);
-        const bool apart = test::wrappers_are_apart(pair.a, pose_a, pair.b, pose_b, tolerance, context);
+        const bool apart = test::wrappers_are_disjoint(pair.a, pose_a, pair.b, pose_b, tolerance, context);
         if (apart) REQUIRE(truth.relation == Relation::separate);
         alone += apart;
         if (coarse.error_bound > 0) {
@@ -390,7 +390,7 @@ TEST_CASE("bodies that touch under flat lids are never called separate") {
     NullProbe probe;
     const CollideResult coarse = collide(pair.a, frame, pair.b, pose_b, request, context, probe);
     REQUIRE(coarse.relation == truth.relation);
-    if (test::wrappers_are_apart(pair.a, frame, pair.b, pose_b, request.tolerance, context))
+    if (test::wrappers_are_disjoint(pair.a, frame, pair.b, pose_b, request.tolerance, context))
       REQUIRE(truth.relation == Relation::separate);
   }
   CHECK(meeting > 50);

@@ -110,8 +110,7 @@ TEST_CASE("the walk that is told is the one that the query does") {
     CHECK(e.left == result.counters.face_tests);
     CHECK(e.certain <= e.left);
     if (!result.pairs.empty()) CHECK(e.near.empty());
-    if (result.pairs.empty() && e.left > 0)
-      CHECK(e.near.size() == std::min<std::size_t>(e.left, e.kMostNear));
+    if (result.pairs.empty() && e.left > 0) CHECK(e.near.size() == std::min<std::size_t>(e.left, e.kMaxNear));
   }
 }
 

@@ -68,27 +68,27 @@ TEST_CASE("a coherent query is refused likewise, and answers again when fewer pa
   for (const auto use : {CoherentQuery::CacheUse::always, CoherentQuery::CacheUse::as_it_pays}) {
     CoherentQuery query(a, b, {.max_pairs = kPairs / 2}, use);
     const auto at = [](double x) { return Pose::translation({x, 0, 0.125}); };
-    int refused = 0, answered = 0;
+    int rejected = 0, answered = 0;
     for (int step = 0; step < 60; ++step) {
       const double x = 3.0 - 0.05 * step;
       const std::size_t expected = collide(a, {}, b, at(x)).pairs.size();
       CAPTURE(x);
       if (expected > kPairs / 2) {
         CHECK_THROWS_AS(query.collide({}, at(x)), InputError);
-        ++refused;
+        ++rejected;
       } else {
         CHECK(query.collide({}, at(x)).pairs.size() == expected);
         ++answered;
       }
     }
-    CHECK(refused > 5);
+    CHECK(rejected > 5);
     CHECK(answered > 5);
     CHECK(query.collide({}, at(4)).pairs.empty());
   }
 }
 
 TEST_CASE("what is kept unless something else is asked for") {
-  CHECK(CollideRequest{}.pair_limit() == kMostPairs);
-  CHECK(CollideRequest{.contacts = true}.pair_limit() == kMostPairsWithContacts);
+  CHECK(CollideRequest{}.pair_limit() == kMaxPairs);
+  CHECK(CollideRequest{.contacts = true}.pair_limit() == kMaxPairsWithContacts);
   CHECK(CollideRequest{.max_pairs = 7}.pair_limit() == 7);
 }

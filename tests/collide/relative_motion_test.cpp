@@ -61,21 +61,21 @@ TEST_CASE("no point of B moves further than its course says") {
       walk.step_a = {};
       walk.step_b.t = walk.b.t - walk.step_b.r * walk.b.t;
     }
-    RelativeMotion course(body, body);
-    REQUIRE(course.see(walk.a, walk.b));
-    CHECK(std::isinf(course.step()));
+    RelativeMotion history(body, body);
+    REQUIRE(history.see(walk.a, walk.b));
+    CHECK(std::isinf(history.step()));
     for (int step = 0; step < 3; ++step) {
       const Walk before = walk;
       walk.go();
-      if (!course.see(walk.a, walk.b)) {
+      if (!history.see(walk.a, walk.b)) {
         CHECK(drift != 0);
         break;
       }
       for (const Eigen::Vector3d& x : body.vertices()) {
         const double moved = (on_a(walk.a, walk.b, x) - on_a(before.a, before.b, x)).norm();
-        REQUIRE(moved <= course.step());
+        REQUIRE(moved <= history.step());
         double& share = i % 5 == 0 ? largest_turn : largest;
-        if (size > 1e-6) share = std::max(share, moved / course.step());
+        if (size > 1e-6) share = std::max(share, moved / history.step());
       }
     }
   }
@@ -92,25 +92,25 @@ TEST_CASE("B is where its course puts it, while it keeps it") {
     const double size = std::pow(10, shapes::uniform(random, -9, -1));
     Walk walk(random, size);
     walk.step_a = {};  // seen from a body that turns, the course bends
-    RelativeMotion course(body, body);
+    RelativeMotion history(body, body);
     for (int seen = 0; seen < 3; ++seen) {
-      CHECK(!course.is_seen());
+      CHECK(!history.is_seen());
       walk.go();
-      REQUIRE(course.see(walk.a, walk.b));
+      REQUIRE(history.see(walk.a, walk.b));
     }
-    CHECK(course.is_seen());
-    if (!course.is_kept()) {
+    CHECK(history.is_seen());
+    if (!history.is_kept()) {
       CHECK(size < 1e-6);  // lost in rounding
       continue;
     }
     ++kept;
     const int steps = 2 + i % 20;
-    const Sweep stretch = course.ahead(steps);
-    CHECK(course.along(stretch).at < -0.7);
+    const Sweep stretch = history.ahead(steps);
+    CHECK(history.along(stretch).at < -0.7);
     for (int step = 0; step <= steps / 2 * 2; ++step) {
       if (step > 0) walk.go();
-      REQUIRE(course.see(walk.a, walk.b));
-      const SweepPoint where = course.along(stretch);
+      REQUIRE(history.see(walk.a, walk.b));
+      const SweepPoint where = history.along(stretch);
       REQUIRE(where.at >= -1);
       REQUIRE(where.at <= 1);
       for (const Eigen::Vector3d& x : body.vertices())
@@ -126,22 +126,22 @@ TEST_CASE("B is where its course puts it, while it keeps it") {
 TEST_CASE("a course that bends, or is none, is not taken for one") {
   RandomEngine random(3);
   const LrbRep body = LrbRep::without_regions(shapes::bumpy_sphere(2, 5, 0.3), true, false);
-  RelativeMotion course(body, body);
+  RelativeMotion history(body, body);
   Pose b;
   for (int i = 0; i < 200; ++i) {
     b.t += 1e-3 * shapes::random_direction(random);
-    REQUIRE(course.see({}, b));
-    const SweepPoint here = course.along(course.about(1e-3));
+    REQUIRE(history.see({}, b));
+    const SweepPoint here = history.along(history.about(1e-3));
     CHECK(here.at == 0);
     CHECK(here.off < 1e-9);
-    if (!course.is_kept()) continue;
-    const Sweep stretch = course.ahead(30);  // by chance: then no further than that goes
+    if (!history.is_kept()) continue;
+    const Sweep stretch = history.ahead(30);  // by chance: then no further than that goes
     CHECK(stretch.width < 0.02);
   }
   b.r *= 1.01;
-  CHECK(!course.see({}, b));
-  CHECK(!course.is_seen());
+  CHECK(!history.see({}, b));
+  CHECK(!history.is_seen());
   // The products of two columns are infinite, of both signs.
   b.r << 1, 0, 0, 0, 1e200, -1e200, 0, 1e200, 1e200;
-  CHECK(!course.see({}, b));
+  CHECK(!history.see({}, b));
 }

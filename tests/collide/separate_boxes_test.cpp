@@ -39,7 +39,7 @@ Relation relation_of(const LrbRep& a, const LrbRep& b, const Pose& pose_b = {}) 
 }
 
 /// What the corners of the faces alone say.
-bool boxes_are_apart(const LrbRep& a, const LrbRep& b, const Pose& pose_b) {
+bool boxes_are_disjoint(const LrbRep& a, const LrbRep& b, const Pose& pose_b) {
   Eigen::AlignedBox3d of_a, of_b;
   for (const VertexId v : a.data().face_vertices) of_a.extend(Pose{}.apply(a.vertices()[v]));
   for (const VertexId v : b.data().face_vertices) of_b.extend(pose_b.apply(b.vertices()[v]));
@@ -52,7 +52,7 @@ bool boxes_are_apart(const LrbRep& a, const LrbRep& b, const Pose& pose_b) {
 Relation check_all(const LrbRep& a, const LrbRep& b, const Pose& pose) {
   const BruteForceResult expected = brute_force(a, Pose{}, b, pose);
   if (expected.pairs.empty())
-    CHECK(expected.relation == (boxes_are_apart(a, b, pose) ? Relation::separate : Relation::undefined));
+    CHECK(expected.relation == (boxes_are_disjoint(a, b, pose) ? Relation::separate : Relation::undefined));
   for (const Mode mode : {Mode::all_pairs, Mode::first_pair, Mode::any_pair})
     for (const Recursion recursion : {Recursion::complete, Recursion::paper}) {
       CollideRequest request;
@@ -143,7 +143,7 @@ TEST_CASE("B5: bodies of many faces, whose boxes come from their trees") {
     const CollideResult found = collide(open, Pose{}, other, pose);
     if (found.pairs.empty())
       CHECK(found.relation ==
-            (boxes_are_apart(open, other, pose) ? Relation::separate : Relation::undefined));
+            (boxes_are_disjoint(open, other, pose) ? Relation::separate : Relation::undefined));
   }
 }
 

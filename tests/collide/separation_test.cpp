@@ -40,7 +40,7 @@ struct Wrapped {
   }
 };
 
-bool boxes_apart(const double* const a[3], const double* const b[3], int n) {
+bool boxes_disjoint(const double* const a[3], const double* const b[3], int n) {
   for (int axis = 0; axis < n; ++axis) {
     double low_a = INFINITY, high_a = -INFINITY, low_b = INFINITY, high_b = -INFINITY;
     for (int k = 0; k < n; ++k) {
@@ -67,7 +67,7 @@ bool are_apart(const Wrapped& a, const Wrapped& b, RandomEngine& random) {
         p[k] = a.x[v[k]].data();
         q[k] = b.x[w[k]].data();
       }
-      if (!boxes_apart(p, q, n) && oracle::meet_of_simplices(p, q, static_cast<std::size_t>(n)) != 0)
+      if (!boxes_disjoint(p, q, n) && oracle::meet_of_simplices(p, q, static_cast<std::size_t>(n)) != 0)
         return false;
     }
   const auto has_corner_in = [&](const Wrapped& inner, const Wrapped& outer) {

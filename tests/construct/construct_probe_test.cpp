@@ -32,7 +32,7 @@ struct Told {
                                         static_cast<double>(start.stage),
                                         double(start.layer),
                                         double(start.hull_faces),
-                                        start.most_off,
+                                        start.max_deviation,
                                         double(end.hull_faces),
                                         double(end.barred),
                                         double(end.no_patch),
@@ -53,19 +53,21 @@ struct Told {
 };
 
 struct Listener final : ConstructProbe {
-  std::vector<Told> told;
-  void pass(const PassStart& p) override { told.push_back({.kind = Told::Kind::pass, .start = p}); }
-  void patch(const GrownPatch& p) override { told.push_back({.kind = Told::Kind::patch, .patch = p}); }
-  void cap(const TriedCap& c) override { told.push_back({.kind = Told::Kind::cap, .cap = c}); }
-  void region(RegionId r) override { told.push_back({.kind = Told::Kind::region, .number = r}); }
+  std::vector<Told> reported;
+  void pass(const PassStart& p) override { reported.push_back({.kind = Told::Kind::pass, .start = p}); }
+  void patch(const GrownPatch& p) override { reported.push_back({.kind = Told::Kind::patch, .patch = p}); }
+  void cap(const TriedCap& c) override { reported.push_back({.kind = Told::Kind::cap, .cap = c}); }
+  void region(RegionId r) override { reported.push_back({.kind = Told::Kind::region, .number = r}); }
   void merged(RegionId into, std::uint32_t pieces) override {
-    told.push_back({.kind = Told::Kind::merged, .number = into, .pieces = pieces});
+    reported.push_back({.kind = Told::Kind::merged, .number = into, .pieces = pieces});
   }
-  void end_pass(const PassEnd& e) override { told.push_back({.kind = Told::Kind::end_pass, .end = e}); }
-  void closed(std::uint32_t faces) override { told.push_back({.kind = Told::Kind::closed, .number = faces}); }
+  void end_pass(const PassEnd& e) override { reported.push_back({.kind = Told::Kind::end_pass, .end = e}); }
+  void closed(std::uint32_t faces) override {
+    reported.push_back({.kind = Told::Kind::closed, .number = faces});
+  }
 };
 
-LrbRep build_told(const Mesh& mesh, Listener& listener, unsigned threads = 1, bool lean = false) {
+LrbRep build_reported(const Mesh& mesh, Listener& listener, unsigned threads = 1, bool lean = false) {
   BuildOptions options;
   options.threads = threads;
   options.lean = lean;
@@ -106,13 +108,13 @@ std::size_t segments_or_triangles(const Mesh& mesh) {
 
 /// Follows what is told of one body, and checks that each part follows from what came before.
 /// Returns the number of pieces that were merged.
-std::size_t check_story(const std::vector<Told>& told, const LrbRep& rep, std::size_t mesh_faces) {
+std::size_t check_story(const std::vector<Told>& reported, const LrbRep& rep, std::size_t mesh_faces) {
   std::uint32_t regions = 0, hull = static_cast<std::uint32_t>(mesh_faces), lids = 0;
   bool open = false;
   PassStart pass;
   TriedCap last;
   std::size_t merged = 0;
-  for (const Told& t : told) {
+  for (const Told& t : reported) {
     switch (t.kind) {
       case Told::Kind::pass:
         CHECK_FALSE(open);
@@ -128,7 +130,7 @@ std::size_t check_story(const std::vector<Told>& told, const LrbRep& rep, std::s
         break;
       case Told::Kind::cap:
         last = t.cap;
-        if (last.off >= 0) CHECK(last.off <= pass.most_off);
+        if (last.off >= 0) CHECK(last.off <= pass.max_deviation);
         if (last.verdict != CapVerdict::stands) break;
         lids += last.faces;
         if (pass.stage == BuildStage::close)
@@ -153,28 +155,28 @@ std::size_t check_story(const std::vector<Told>& told, const LrbRep& rep, std::s
         CHECK(t.end.hull_faces == hull);
         break;
       case Told::Kind::closed:
-        CHECK(&t == &told.back());
+        CHECK(&t == &reported.back());
         CHECK(t.number == hull);
         CHECK(t.number == rep.outermost_faces().size());
         break;
     }
   }
-  REQUIRE_FALSE(told.empty());
-  CHECK(told.back().kind == Told::Kind::closed);
+  REQUIRE_FALSE(reported.empty());
+  CHECK(reported.back().kind == Told::Kind::closed);
   CHECK(regions == rep.region_count());
   CHECK(lids == rep.face_count() - rep.real_face_count());
   return merged;
 }
 
-std::vector<std::string> words(const std::vector<Told>& told) {
+std::vector<std::string> words(const std::vector<Told>& reported) {
   std::vector<std::string> out;
-  for (const Told& t : told) out.push_back(t.words());
+  for (const Told& t : reported) out.push_back(t.words());
   return out;
 }
 
-std::size_t count(const std::vector<Told>& told, CapVerdict verdict) {
+std::size_t count(const std::vector<Told>& reported, CapVerdict verdict) {
   std::size_t n = 0;
-  for (const Told& t : told) n += t.kind == Told::Kind::cap && t.cap.verdict == verdict;
+  for (const Told& t : reported) n += t.kind == Told::Kind::cap && t.cap.verdict == verdict;
   return n;
 }
 
@@ -186,15 +188,15 @@ TEST_CASE("what is told adds up to the body, which is the same without; 1, 2 and
     CAPTURE(mesh.name);
     CAPTURE(mesh.face_count());
     Listener one;
-    const LrbRep rep = build_told(mesh, one);
+    const LrbRep rep = build_reported(mesh, one);
     CHECK(rep.hash() == build_lrb(mesh).hash());
-    merged += check_story(one.told, rep, segments_or_triangles(mesh));
+    merged += check_story(one.reported, rep, segments_or_triangles(mesh));
     for (std::size_t v = 0; v < verdicts.size(); ++v)
-      verdicts[v] += count(one.told, static_cast<CapVerdict>(v));
+      verdicts[v] += count(one.reported, static_cast<CapVerdict>(v));
     for (const unsigned threads : {2u, 4u}) {
       Listener many;
-      CHECK(build_told(mesh, many, threads).hash() == rep.hash());
-      CHECK((words(many.told) == words(one.told)));
+      CHECK(build_reported(mesh, many, threads).hash() == rep.hash());
+      CHECK((words(many.reported) == words(one.reported)));
     }
   }
   CHECK(merged > 0);
@@ -207,9 +209,9 @@ TEST_CASE("what is told adds up to the body, which is the same without; 1, 2 and
 TEST_CASE("lean bodies, and those of patches of any size, tell a story that adds up") {
   for (const Mesh& mesh : {bumpy_sphere(4, 7), comb(12), gear(60)}) {
     Listener listener;
-    const LrbRep rep = build_told(mesh, listener, 1, true);
-    check_story(listener.told, rep, segments_or_triangles(mesh));
-    for (const Told& t : listener.told)
+    const LrbRep rep = build_reported(mesh, listener, 1, true);
+    check_story(listener.reported, rep, segments_or_triangles(mesh));
+    for (const Told& t : listener.reported)
       if (t.kind == Told::Kind::pass) CHECK(t.start.stage != BuildStage::fit);
   }
 }
@@ -217,13 +219,13 @@ TEST_CASE("lean bodies, and those of patches of any size, tell a story that adds
 TEST_CASE("a thin gap refuses caps because they meet the hull, and faces that cross others are barred") {
   Listener gap;
   const Mesh nested = several({icosphere(4), turned_inside_out(icosphere(4, 1.003)), icosphere(3, 1.5)});
-  build_told(nested, gap);
-  CHECK(count(gap.told, CapVerdict::meets_hull) > 0);
+  build_reported(nested, gap);
+  CHECK(count(gap.reported, CapVerdict::meets_hull) > 0);
 
   Listener crossing;
-  build_told(several({bumpy_sphere(3, 5), translated(bumpy_sphere(3, 6), {0.9, 0.1, 0.2})}), crossing);
+  build_reported(several({bumpy_sphere(3, 5), translated(bumpy_sphere(3, 6), {0.9, 0.1, 0.2})}), crossing);
   std::uint32_t barred = 0;
-  for (const Told& t : crossing.told) barred = std::max(barred, t.end.barred);
+  for (const Told& t : crossing.reported) barred = std::max(barred, t.end.barred);
   CHECK(barred > 0);
 }
 

@@ -46,12 +46,12 @@ struct Floor {
 TEST_CASE("A floor tells how far a point is off as each of its triangles, asked without short cuts, does") {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
-  constexpr double kMost = 0.8;
+  constexpr double kMax = 0.8;
   int within = 0, beyond = 0;
   for (int round = 0; round < 200; ++round) {
     const Floor floor(random);
     PatchFloor tested;
-    tested.load(floor.hull, floor.patch, kMost);
+    tested.load(floor.hull, floor.patch, kMax);
     for (int i = 0; i < 20; ++i) {
       const Vector3 q(normal(random), normal(random), normal(random));
       double least = std::numeric_limits<double>::infinity();
@@ -59,9 +59,9 @@ TEST_CASE("A floor tells how far a point is off as each of its triangles, asked 
       CAPTURE(round);
       CHECK(tested.off(q) == doctest::Approx(least));
       int first = i % 12;
-      CHECK(tested.is_within(q, first) == (least <= kMost));
-      if (least <= kMost) CHECK(floor.off_by(static_cast<HullMesh::Slot>(first), q) <= kMost + 1e-12);
-      (least <= kMost ? within : beyond) += 1;
+      CHECK(tested.is_within(q, first) == (least <= kMax));
+      if (least <= kMax) CHECK(floor.off_by(static_cast<HullMesh::Slot>(first), q) <= kMax + 1e-12);
+      (least <= kMax ? within : beyond) += 1;
     }
   }
   CHECK(within > 500);

@@ -29,10 +29,10 @@ void check_same(const DistanceResult& x, const DistanceResult& y) {
 }
 
 /// Checks that bounds tighten, that work grows, and that all hold a distance that is known from an interval.
-void check_course(const std::vector<Bounds>& course, const DistanceResult& exact) {
-  REQUIRE(!course.empty());
+void check_history(const std::vector<Bounds>& history, const DistanceResult& exact) {
+  REQUIRE(!history.empty());
   Bounds before{0, 0, kInfinity};
-  for (const Bounds& now : course) {
+  for (const Bounds& now : history) {
     CAPTURE(now.work);
     CHECK(now.work >= before.work);
     CHECK(now.lower >= before.lower);
@@ -46,20 +46,20 @@ void check_course(const std::vector<Bounds>& course, const DistanceResult& exact
 
 void check_watched(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                    const DistanceRequest& request = {}) {
-  BoundsCourse told;
-  const DistanceResult watched = distance(a, pose_a, b, pose_b, request, told);
+  BoundsHistory reported;
+  const DistanceResult watched = distance(a, pose_a, b, pose_b, request, reported);
   const DistanceResult plain = distance(a, pose_a, b, pose_b, request);
   check_same(watched, plain);
-  check_course(told.course, distance(a, pose_a, b, pose_b));
-  CHECK(told.course.back().lower >= watched.lower);
-  CHECK(told.course.back().upper <= watched.upper);
+  check_history(reported.history, distance(a, pose_a, b, pose_b));
+  CHECK(reported.history.back().lower >= watched.lower);
+  CHECK(reported.history.back().upper <= watched.upper);
   if (request.within) return;
   if (request.relative_tolerance > 0) {  // what was known on the way may be narrower than what was asked for
     CHECK(watched.upper - watched.lower <= request.relative_tolerance * watched.upper);
     return;
   }
-  CHECK(told.course.back().lower == watched.lower);
-  CHECK(told.course.back().upper == watched.upper);
+  CHECK(reported.history.back().lower == watched.lower);
+  CHECK(reported.history.back().upper == watched.upper);
 }
 
 }  // namespace
@@ -92,22 +92,22 @@ TEST_CASE("distance probe: the walk of bodies that floats do not suit is told to
   Pose squeezed;
   squeezed.r = Eigen::Vector3d(1, 0.5, 0.25).asDiagonal();
   squeezed.t = {3, 1, 0.5};
-  BoundsCourse told;
-  const DistanceResult result = distance(ball, {}, ball, squeezed, {}, told);
+  BoundsHistory reported;
+  const DistanceResult result = distance(ball, {}, ball, squeezed, {}, reported);
   check_same(result, distance(ball, {}, ball, squeezed));
-  check_course(told.course, result);
-  CHECK(told.course.size() > 5);
-  CHECK(told.course.front().lower < 0.99 * result.lower);
+  check_history(reported.history, result);
+  CHECK(reported.history.size() > 5);
+  CHECK(reported.history.front().lower < 0.99 * result.lower);
 }
 
 TEST_CASE("distance probe: a course shows how the interval narrows, step by step at first") {
   const LrbRep ball = LrbRep::without_regions(shapes::icosphere(4), true, false);
-  BoundsCourse told;
-  const DistanceResult result = distance(ball, {}, ball, Pose::translation({2.3, 0.4, 0.2}), {}, told);
-  check_course(told.course, result);
-  REQUIRE(told.course.size() > 5);
-  CHECK(told.course.front().lower < 0.9 * result.lower);
-  CHECK(told.course.front().work < 64);
-  CHECK(told.course.back().work ==
+  BoundsHistory reported;
+  const DistanceResult result = distance(ball, {}, ball, Pose::translation({2.3, 0.4, 0.2}), {}, reported);
+  check_history(reported.history, result);
+  REQUIRE(reported.history.size() > 5);
+  CHECK(reported.history.front().lower < 0.9 * result.lower);
+  CHECK(reported.history.front().work < 64);
+  CHECK(reported.history.back().work ==
         result.counters.steps + result.counters.pairs_in_doubles + result.counters.pairs_exact);
 }

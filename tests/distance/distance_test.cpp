@@ -329,16 +329,16 @@ TEST_CASE(
 
 TEST_CASE("requests that cannot be answered are refused") {
   const LrbRep box = closed(shapes::box()), flat = closed(shapes::gear(7));
-  const auto refused = [&](double within, double tolerance, double relative) {
+  const auto rejected = [&](double within, double tolerance, double relative) {
     DistanceRequest request;
     request.within = within;
     request.tolerance = tolerance;
     request.relative_tolerance = relative;
     CHECK_THROWS_AS(distance(box, Pose{}, box, Pose{}, request), InputError);
   };
-  refused(-1, 0, 0);
-  refused(INFINITY, 0, 0);
-  refused(1, NAN, 0);
-  refused(1, 0, -1e-9);
+  rejected(-1, 0, 0);
+  rejected(INFINITY, 0, 0);
+  rejected(1, NAN, 0);
+  rejected(1, 0, -1e-9);
   CHECK_THROWS_AS(distance(box, Pose{}, flat, Pose{}), InputError);
 }

@@ -16,7 +16,7 @@
 namespace lrb::fuzz {
 namespace {
 
-constexpr std::size_t kMostCorners = 400;
+constexpr std::size_t kMaxCorners = 400;
 
 void promise(bool kept, const char* what) {
   if (!kept) throw std::logic_error(what);
@@ -91,7 +91,7 @@ bool feed_body(std::string_view bytes) {
   return accepted(is_file ? "m.obj" : "m", [&] {
     Numbers numbers(bytes.substr(1));
     Mesh mesh = is_file ? read_mesh(std::string(bytes.substr(1)), "m.obj") : folded(numbers);
-    if (mesh.face_vertices.size() > kMostCorners) return;
+    if (mesh.face_vertices.size() > kMaxCorners) return;
     BodyOptions options;
     options.build.threads = 1;
     options.build.lean = bytes[0] % 2 != 0;

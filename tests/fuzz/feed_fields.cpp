@@ -197,12 +197,12 @@ void read_all(const LrbRep& rep, const LrbRep& good) {
 }  // namespace
 
 bool feed_fields(std::string_view bytes) {
-  constexpr std::size_t kEdit = 5, kMostEdits = 4;
+  constexpr std::size_t kEdit = 5, kMaxEdits = 4;
   if (bytes.empty()) return false;
   const std::vector<std::string>& files = good_files();
   const std::string& good = files[static_cast<std::uint8_t>(bytes[0]) % files.size()];
   std::string file = good;
-  for (std::size_t i = 0; i < kMostEdits && 1 + (i + 1) * kEdit <= bytes.size(); ++i)
+  for (std::size_t i = 0; i < kMaxEdits && 1 + (i + 1) * kEdit <= bytes.size(); ++i)
     damage(file, bytes.substr(1 + i * kEdit, kEdit));
   put_checksum_right(file);
   return accepted("m.lrb", [&] { read_all(load_lrb(file, "m.lrb"), load_lrb(good, "good.lrb")); });

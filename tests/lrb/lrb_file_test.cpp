@@ -186,7 +186,7 @@ TEST_CASE("a 2D body lies in the plane") {
 // Damage that a checksum would hide from us: either refused, or an LRB-rep that can be walked and queried.
 TEST_CASE("damaged files with a right checksum are refused or harmless") {
   RandomEngine random(9);
-  int taken = 0, refused = 0;
+  int taken = 0, rejected = 0;
   const LrbRep with_levels = build_lrb(shapes::icosphere(1));
   with_levels.levels();
   for (const LrbRep& rep : {shapes::dented_box(), shapes::stairs_2d(), with_levels}) {
@@ -209,12 +209,12 @@ TEST_CASE("damaged files with a right checksum are refused or harmless") {
         ++taken;
       } catch (const InputError& e) {
         CHECK(is_one_line(e.what()));
-        ++refused;
+        ++rejected;
       }
     }
   }
   CHECK(taken > 100);
-  CHECK(refused > 100);
+  CHECK(rejected > 100);
 }
 
 namespace {

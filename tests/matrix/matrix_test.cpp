@@ -142,10 +142,10 @@ class Questions {
     scene.add(a_);
     scene.add(b_, step_->pose);
     const auto found = scene.collide();
-    const bool told =
+    const bool reported =
         step_->truth.relation != Relation::separate && step_->truth.relation != Relation::undefined;
-    expect(found.size() == (told ? 1U : 0U), "other bodies meet");
-    if (told && !found.empty()) is_truth(found[0].result.value());
+    expect(found.size() == (reported ? 1U : 0U), "other bodies meet");
+    if (reported && !found.empty()) is_truth(found[0].result.value());
     is_near(scene.nearest().value().result.value());
   }
 
@@ -207,16 +207,16 @@ class Questions {
   bool is_possible(ClashKind found) const {
     using enum ClashKind;
     const bool overlap = found == protrudes || found == pierces || found == cuts_through;
-    const bool parted = found == apart || found == within_clearance;
+    const bool rejected = found == apart || found == within_clearance;
     switch (step_->truth.relation) {
       case Relation::separate:
       case Relation::undefined:
-        return parted;
+        return rejected;
       case Relation::crossing:
       case Relation::touching:
         if (!solid_ || !simple_)
-          return !parted;  // perhaps undecided; equal bodies that cross themselves cross
-        return step_->truth.relation == Relation::crossing ? overlap : !parted && found != undecided;
+          return !rejected;  // perhaps undecided; equal bodies that cross themselves cross
+        return step_->truth.relation == Relation::crossing ? overlap : !rejected && found != undecided;
       default:
         if (!simple_ && found == undecided) return true;
         return overlap || found == a_inside_b || found == b_inside_a;

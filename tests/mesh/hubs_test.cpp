@@ -200,9 +200,9 @@ TEST_CASE("turned boxes never part what has a point in common") {
     };
     const double size = std::ldexp(1.0, -static_cast<int>(random() % 40));
     std::vector<Eigen::Vector3d> a = about(size), b = about(1);
-    CHECK_FALSE(surely_apart(OrientedBox::about(a), OrientedBox::about(b)));
+    CHECK_FALSE(proven_disjoint(OrientedBox::about(a), OrientedBox::about(b)));
     for (Eigen::Vector3d& p : a) p += Eigen::Vector3d(3 * size, 0, 0);
-    apart += surely_apart(OrientedBox::about(a), OrientedBox::about(b));
+    apart += proven_disjoint(OrientedBox::about(a), OrientedBox::about(b));
   }
   CHECK(apart > 1000);
 }

@@ -12,10 +12,10 @@ using Eigen::Vector3d;
 namespace {
 
 /// Asks with a probe, and checks what holds for whatever it is told.
-std::vector<ContactBounds> course_of(const LrbRep& a, const LrbRep& b, const Motion& motion,
-                                     FirstContactResult& watched, const FirstContactRequest& request = {}) {
-  FirstContactCourse told;
-  watched = first_contact(a, Motion::still({}), b, motion, request, told);
+std::vector<ContactBounds> history_of(const LrbRep& a, const LrbRep& b, const Motion& motion,
+                                      FirstContactResult& watched, const FirstContactRequest& request = {}) {
+  FirstContactHistory reported;
+  watched = first_contact(a, Motion::still({}), b, motion, request, reported);
   const FirstContactResult plain = first_contact(a, Motion::still({}), b, motion, request);
   CHECK(watched.outcome == plain.outcome);
   CHECK(watched.t0 == plain.t0);
@@ -23,7 +23,7 @@ std::vector<ContactBounds> course_of(const LrbRep& a, const LrbRep& b, const Mot
   CHECK(watched.pair == plain.pair);
   CHECK(watched.counters == plain.counters);
   ContactBounds before;
-  for (const ContactBounds& now : told.course) {
+  for (const ContactBounds& now : reported.history) {
     CAPTURE(now.t0);
     CHECK(now.work >= before.work);
     CHECK(now.t0 >= before.t0);
@@ -36,7 +36,7 @@ std::vector<ContactBounds> course_of(const LrbRep& a, const LrbRep& b, const Mot
     if (now.t0 < watched.t0) CHECK(now.lower > 0);
     before = now;
   }
-  return told.course;
+  return reported.history;
 }
 
 }  // namespace
@@ -48,14 +48,14 @@ TEST_CASE("first contact probe: t0 rises and t1 falls to the answer, with the di
     FirstContactResult result;
     const Motion motion =
         Motion::turning(Pose::translation({5, aside, 0.1}), {0, 0, 0.9}, {5, aside, 0.1}, {-10, 0, 0});
-    const std::vector<ContactBounds> course = course_of(ball, ball, motion, result);
+    const std::vector<ContactBounds> history = history_of(ball, ball, motion, result);
     REQUIRE(result.is_contact());
-    REQUIRE(course.size() >= 3);
-    CHECK(course.front().t0 == 0);
-    CHECK(course.front().lower == doctest::Approx(std::hypot(5, aside) - 2).epsilon(0.05));
-    CHECK(std::isinf(course.front().t1));
-    CHECK(course.back().t0 == result.t0);
-    CHECK(course.back().t1 == result.t1);
+    REQUIRE(history.size() >= 3);
+    CHECK(history.front().t0 == 0);
+    CHECK(history.front().lower == doctest::Approx(std::hypot(5, aside) - 2).epsilon(0.05));
+    CHECK(std::isinf(history.front().t1));
+    CHECK(history.back().t0 == result.t0);
+    CHECK(history.back().t1 == result.t1);
   }
 }
 
@@ -63,12 +63,12 @@ TEST_CASE("first contact probe: bodies that never meet, and bodies that begin in
   const LrbRep ball = LrbRep::without_regions(shapes::icosphere(2), true, false);
   FirstContactResult result;
   const std::vector<ContactBounds> passing =
-      course_of(ball, ball, Motion::linear(Pose::translation({5, 2.5, 0}), {-5, 2.5, 0}), result);
+      history_of(ball, ball, Motion::linear(Pose::translation({5, 2.5, 0}), {-5, 2.5, 0}), result);
   REQUIRE(result.outcome == MotionOutcome::never);
   CHECK(passing.back().t0 == 1);
   CHECK(std::isinf(passing.back().t1));
   const std::vector<ContactBounds> met =
-      course_of(ball, ball, Motion::linear(Pose::translation({1, 0, 0}), {-5, 0, 0}), result);
+      history_of(ball, ball, Motion::linear(Pose::translation({1, 0, 0}), {-5, 0, 0}), result);
   REQUIRE(met.size() == 1);
   CHECK(met[0].t1 == 0);
   CHECK(met[0].upper == 0);
@@ -80,9 +80,9 @@ TEST_CASE("first contact probe: poses that are no rotations are searched by dist
   start.r = Vector3d(1, 0.5, 2).asDiagonal();
   start.t = {6, 0.1, 0.2};
   FirstContactResult result;
-  const std::vector<ContactBounds> course =
-      course_of(ball, ball, Motion::linear(start, {-6, 0.1, 0.2}), result);
+  const std::vector<ContactBounds> history =
+      history_of(ball, ball, Motion::linear(start, {-6, 0.1, 0.2}), result);
   REQUIRE(result.is_contact());
-  CHECK(course.size() >= 3);
-  CHECK(course.back().t1 == result.t1);
+  CHECK(history.size() >= 3);
+  CHECK(history.back().t1 == result.t1);
 }

@@ -52,23 +52,23 @@ Mesh two_drums(std::uint32_t n) {
 /// Balls in balls need the tree of turned boxes from about a hundred on, and five times the memory with it: a
 /// step, which looks like a power.
 bool add_nested() {
-  constexpr double kMostTime = 1.35, kMostMemory = 1.5;
+  constexpr double kMaxTime = 1.35, kMaxMemory = 1.5;
   const Sizes share = {16, 32, 64}, more = {128, 256};
   const auto task = [](Task (*make)(const Mesh&)) {
     return [make](std::uint32_t depth) { return make(nested(depth)); };
   };
-  add({"nested balls", "check", "corners", share, more, task(check_task), kMostTime, kMostMemory});
-  add({"nested balls", "build", "corners", share, more, task(build_task), kMostTime, kMostMemory});
-  return add({"nested balls", "proof", "corners", share, more, task(proof_task), kMostTime, kMostMemory});
+  add({"nested balls", "check", "corners", share, more, task(check_task), kMaxTime, kMaxMemory});
+  add({"nested balls", "build", "corners", share, more, task(build_task), kMaxTime, kMaxMemory});
+  return add({"nested balls", "proof", "corners", share, more, task(proof_task), kMaxTime, kMaxMemory});
 }
 
 /// A concave face is the fan from its first corner, which goes beyond its rim: of n quads at its sides each
 /// meets a share of n triangles of the fan, so that what meets grows as n^2. That a pair of faces needs one
 /// of them alone leaves n^1.7.
 bool add_concave() {
-  constexpr double kMostTime = 1.8;
+  constexpr double kMaxTime = 1.8;
   return add({"drum with concave ends", "check", "corners", kShare, kMore,
-              [](std::uint32_t n) { return check_task(cog(n)); }, kMostTime});
+              [](std::uint32_t n) { return check_task(cog(n)); }, kMaxTime});
 }
 
 const bool meshes_added =

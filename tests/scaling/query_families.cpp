@@ -55,7 +55,7 @@ Pose aslant() {
 
 /// Balls in balls need the tree of turned boxes from about a hundred on, and five times the memory with it: a
 /// step, which looks like a power.
-constexpr double kMostOfNested = 1.5;
+constexpr double kMaxOfNested = 1.5;
 
 bool add_query(const std::string& name, const Sizes& share, const Sizes& more, const MakeMesh& make) {
   return add({name, "query", "corners", share, more,
@@ -73,7 +73,7 @@ bool add_nested_query() {
                 return whole_query(nested(depth), Pose::translation({1.9, 0, 0}));
               },
               1.35,
-              kMostOfNested});
+              kMaxOfNested});
 }
 
 bool add_answer(const std::string& name, const Sizes& share, const Sizes& more, const MakeMesh& make,

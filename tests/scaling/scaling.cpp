@@ -38,10 +38,10 @@ struct Cost {
 /// The least of some repeats: what other processes do only ever adds to it.
 Cost measure(const Task& task) {
   constexpr double kEnough = 0.1;  // seconds
-  constexpr int kLeast = 2, kMost = 20;
+  constexpr int kLeast = 2, kMax = 20;
   Cost cost{task.size, 0, 0};
   double total = 0;
-  for (int i = 0; i < kLeast || (i < kMost && total < kEnough); ++i) {
+  for (int i = 0; i < kLeast || (i < kMax && total < kEnough); ++i) {
     const PeakMemory memory;
     const double begin = cpu_seconds();
     task.work();
@@ -60,12 +60,12 @@ struct Growth {
 };
 
 Growth fit(const std::vector<Cost>& costs) {
-  constexpr double kLeastSeconds = 20e-6, kLeastBytes = 4096;
+  constexpr double kMinSeconds = 20e-6, kMinBytes = 4096;
   std::vector<double> size, seconds, bytes;
   for (const Cost& c : costs) {
     size.push_back(c.size);
-    seconds.push_back(std::max(c.seconds, kLeastSeconds));
-    bytes.push_back(std::max(c.bytes, kLeastBytes));
+    seconds.push_back(std::max(c.seconds, kMinSeconds));
+    bytes.push_back(std::max(c.bytes, kMinBytes));
   }
   return {resolutions::fit_power(size, seconds).exponent, resolutions::fit_power(size, bytes).exponent};
 }
@@ -76,7 +76,7 @@ bool run(const Family& family, bool share) {
   // Small sizes on a busy machine: what is quadratic shows, what is a little over n log n only in the whole
   // run.
   constexpr double kShareSlack = 0.35;
-  const double most_time = family.most_time + (share ? kShareSlack : 0);
+  const double max_time = family.max_time + (share ? kShareSlack : 0);
   if (!share) sizes.insert(sizes.end(), family.more.begin(), family.more.end());
   Growth growth{};
   std::vector<Cost> costs;
@@ -87,14 +87,14 @@ bool run(const Family& family, bool share) {
       now[i].seconds = std::min(now[i].seconds, costs[i].seconds);
     costs = std::move(now);
     growth = fit(costs);
-    if (growth.time <= most_time && growth.memory <= family.most_memory) break;
+    if (growth.time <= max_time && growth.memory <= family.max_memory) break;
   }
-  const bool ok = growth.time <= most_time && growth.memory <= family.most_memory;
+  const bool ok = growth.time <= max_time && growth.memory <= family.max_memory;
   std::printf(
       "| %-24s | %-14s | %-8s | %10.0f | %10.0f | %10.3f | %9.2f | %5.2f | %5.2f | %5.2f | %5.2f | %s |\n",
       family.input.c_str(), family.work.c_str(), family.unit.c_str(), costs.front().size, costs.back().size,
-      1e3 * costs.back().seconds, costs.back().bytes / 1e6, growth.time, most_time, growth.memory,
-      family.most_memory, ok ? "ok" : "CLIFF");
+      1e3 * costs.back().seconds, costs.back().bytes / 1e6, growth.time, max_time, growth.memory,
+      family.max_memory, ok ? "ok" : "CLIFF");
   if (!ok)
     for (const Cost& c : costs)
       std::printf("|   size %.0f: %.3f ms, %.2f MB\n", c.size, 1e3 * c.seconds, c.bytes / 1e6);

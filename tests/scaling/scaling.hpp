@@ -32,8 +32,8 @@ struct Family {
   std::vector<std::uint32_t> share;  ///< sizes for the test suite: a second or two together
   std::vector<std::uint32_t> more;   ///< further sizes, larger, for the whole run
   std::function<Task(std::uint32_t size)> make;
-  double most_time = 1.35;  ///< allowed powers; n log n is 1.1 to 1.15 at these sizes
-  double most_memory = 1.2;
+  double max_time = 1.35;  ///< allowed powers; n log n is 1.1 to 1.15 at these sizes
+  double max_memory = 1.2;
 };
 
 /// Adds a family to those that the command measures. Returns true, so that a variable can be set to it.

@@ -24,7 +24,7 @@ struct Plain {
   std::map<BodyKey, Entry> entries;
 };
 
-bool is_told(Relation r) {
+bool is_reported(Relation r) {
   return r != Relation::separate && r != Relation::undefined;
 }
 
@@ -52,17 +52,17 @@ void check_collide(Scene& scene, const Plain& plain) {
   for (auto i = plain.entries.begin(); i != plain.entries.end(); ++i)
     for (auto j = std::next(i); j != plain.entries.end(); ++j) {
       BruteForceResult r = brute_force(i->second.body, i->second.pose, j->second.body, j->second.pose);
-      if (!is_told(r.relation)) continue;
+      if (!is_reported(r.relation)) continue;
       expected.emplace_back(i->first, j->first);
       answers.push_back(std::move(r));
     }
-  const auto told = scene.collide();
-  REQUIRE(told.size() == expected.size());
-  for (std::size_t k = 0; k < told.size(); ++k) {
-    CHECK(std::pair(told[k].a, told[k].b) == expected[k]);
-    REQUIRE(told[k].result.has_value());
-    CHECK(told[k].result->relation == answers[k].relation);
-    CHECK(told[k].result->pairs == answers[k].pairs);
+  const auto reported = scene.collide();
+  REQUIRE(reported.size() == expected.size());
+  for (std::size_t k = 0; k < reported.size(); ++k) {
+    CHECK(std::pair(reported[k].a, reported[k].b) == expected[k]);
+    REQUIRE(reported[k].result.has_value());
+    CHECK(reported[k].result->relation == answers[k].relation);
+    CHECK(reported[k].result->pairs == answers[k].pairs);
   }
 }
 
@@ -78,14 +78,14 @@ void check_alone(Scene& scene, const Plain& plain, const Body& body, const Pose&
   std::vector<BodyKey> expected;
   for (const auto& [key, entry] : plain.entries) {
     least = std::min(least, distance(body, pose, entry.body, entry.pose).upper);
-    if (is_told(brute_force(body, pose, entry.body, entry.pose).relation)) expected.push_back(key);
+    if (is_reported(brute_force(body, pose, entry.body, entry.pose).relation)) expected.push_back(key);
   }
-  const auto told = scene.collide(body, pose);
-  REQUIRE(told.size() == expected.size());
-  for (std::size_t k = 0; k < told.size(); ++k) {
-    CHECK(told[k].b == expected[k]);
-    CHECK(told[k].result->pairs ==
-          brute_force(body, pose, scene.body(told[k].b), scene.pose(told[k].b)).pairs);
+  const auto reported = scene.collide(body, pose);
+  REQUIRE(reported.size() == expected.size());
+  for (std::size_t k = 0; k < reported.size(); ++k) {
+    CHECK(reported[k].b == expected[k]);
+    CHECK(reported[k].result->pairs ==
+          brute_force(body, pose, scene.body(reported[k].b), scene.pose(reported[k].b)).pairs);
   }
   if (plain.entries.empty())
     CHECK(!scene.nearest(body, pose));
@@ -93,7 +93,7 @@ void check_alone(Scene& scene, const Plain& plain, const Body& body, const Pose&
     check_nearest(scene.nearest(body, pose), least);
 }
 
-double least_distance(const Plain& plain) {
+double min_distance(const Plain& plain) {
   double least = std::numeric_limits<double>::infinity();
   for (auto i = plain.entries.begin(); i != plain.entries.end(); ++i)
     for (auto j = std::next(i); j != plain.entries.end(); ++j)
@@ -136,17 +136,17 @@ TEST_CASE("a scene tells what all pairs tell, whatever comes, goes and moves") {
     const double room = round % 2 == 0 ? 3 : 5;
     Scene scene(round % 3 == 0 ? 1 : 2);
     Plain plain;
-    std::size_t told = 0;
+    std::size_t reported = 0;
     for (int step = 0; step < 25; ++step) {
       for (auto changes = random() % 12; changes > 0; --changes) change(scene, plain, bodies, random, room);
       CAPTURE(step);
       CHECK(scene.size() == plain.entries.size());
       check_collide(scene, plain);
-      told += scene.collide().size();
+      reported += scene.collide().size();
       check_alone(scene, plain, bodies[random() % bodies.size()], random_place(random, room));
-      if (step % 5 == 4 && plain.entries.size() > 1) check_nearest(scene.nearest(), least_distance(plain));
+      if (step % 5 == 4 && plain.entries.size() > 1) check_nearest(scene.nearest(), min_distance(plain));
     }
-    CHECK(told > 100);
+    CHECK(reported > 100);
     std::vector<BodyKey> keys;
     for (const auto& [key, entry] : plain.entries) keys.push_back(key);
     CHECK(scene.keys() == keys);
@@ -182,7 +182,7 @@ TEST_CASE("two scenes meet where their bodies do") {
     double least = std::numeric_limits<double>::infinity();
     for (const BodyKey i : x.keys())
       for (const BodyKey j : y.keys()) {
-        if (is_told(brute_force(x.body(i), x.pose(i), y.body(j), y.pose(j)).relation))
+        if (is_reported(brute_force(x.body(i), x.pose(i), y.body(j), y.pose(j)).relation))
           expected.emplace_back(i, j);
         least = std::min(least, distance(x.body(i), x.pose(i), y.body(j), y.pose(j)).upper);
       }

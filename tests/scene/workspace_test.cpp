@@ -31,7 +31,7 @@ auto content(const Witness& x) {
   return std::tuple(content(x.point), x.simplex, x.face, x.corners, x.corner_count);
 }
 auto content(const SurfacePieces& x) {
-  return std::tuple(x.inside, x.outside, x.most_outside, x.on_same, x.on_opposite);
+  return std::tuple(x.inside, x.outside, x.max_outside, x.on_same, x.on_opposite);
 }
 auto content(const CollideResult& x) {
   return std::tuple(x.relation, x.interiors_overlap, x.mode, x.pairs, x.meets, x.opened, x.error_bound,
@@ -105,16 +105,16 @@ struct Comparison {
     collide_events += here.events.size();
   }
   void distance(const LrbRep& a, const LrbRep& b, const Pose& pose_b, const DistanceRequest& request) {
-    BoundsCourse alone, here;
+    BoundsHistory alone, here;
     const auto expected = content(lrb::distance(a, Pose{}, b, pose_b, request));
     CHECK(content(*lrb::distance(a, Pose{}, b, pose_b, request, workspace)) == expected);
     CHECK(content(*lrb::distance(a, Pose{}, b, pose_b, request, workspace, &here)) == expected);
     CHECK(content(lrb::distance(a, Pose{}, b, pose_b, request, alone)) == expected);
-    CHECK(here.course == alone.course);
-    distance_events += here.course.size();
+    CHECK(here.history == alone.history);
+    distance_events += here.history.size();
   }
   void clash(const LrbRep& a, const LrbRep& b, const Pose& pose_b, const ClashRequest& request) {
-    ClashCourse alone, here;
+    ClashHistory alone, here;
     const auto expected = content(lrb::clash(a, Pose{}, b, pose_b, request));
     CHECK(content(*lrb::clash(a, Pose{}, b, pose_b, request, workspace)) == expected);
     CHECK(content(*lrb::clash(a, Pose{}, b, pose_b, request, workspace, &here)) == expected);
@@ -126,13 +126,13 @@ struct Comparison {
   void first_contact(const LrbRep& a, const LrbRep& b, const Motion& motion_b,
                      const FirstContactRequest& request) {
     const Motion still = Motion::still({});
-    FirstContactCourse alone, here;
+    FirstContactHistory alone, here;
     const auto expected = content(lrb::first_contact(a, still, b, motion_b, request));
     CHECK(content(*lrb::first_contact(a, still, b, motion_b, request, workspace)) == expected);
     CHECK(content(*lrb::first_contact(a, still, b, motion_b, request, workspace, &here)) == expected);
     CHECK(content(lrb::first_contact(a, still, b, motion_b, request, alone)) == expected);
-    CHECK(here.course == alone.course);
-    contact_events += here.course.size();
+    CHECK(here.history == alone.history);
+    contact_events += here.history.size();
   }
 };
 

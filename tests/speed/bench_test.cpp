@@ -226,10 +226,10 @@ TEST_CASE(
   for (const bench::Point& p : bench::measure_points({set}, infos, records)) {
     CAPTURE(p.method);
     const double off = *p.errors[static_cast<std::size_t>(bench::Metric::deviation)];
-    REQUIRE(p.proved_off);
-    CHECK(off <= *p.proved_off + 1e-12);
+    REQUIRE(p.proven_deviation);
+    CHECK(off <= *p.proven_deviation + 1e-12);
     CHECK(*p.errors[static_cast<std::size_t>(bench::Metric::contact)] == 0);
-    if (p.method == "ours-one-pair") CHECK(*p.proved_off == 0);
+    if (p.method == "ours-one-pair") CHECK(*p.proven_deviation == 0);
     any_off |= off > 1e-6;
   }
   CHECK(any_off);
@@ -260,11 +260,11 @@ TEST_CASE("points: what fails scores the worst, and the frontier is what nothing
   const bench::PoseClass first_class = set.questions[0].pose_class;
   for (const bench::Point& p : bench::measure_points({set}, infos, records)) {
     const bool meets = p.pose_class != bench::PoseClass::apart;
-    CHECK(p.proved_off.has_value() ==
+    CHECK(p.proven_deviation.has_value() ==
           (p.method == "right" || (p.method == "slow" && p.pose_class != first_class)));
     if (p.method == "told") CHECK_FALSE(p.frontier);  // it knew more
     if (p.method == "right") {
-      CHECK(*p.proved_off == doctest::Approx(0.25));
+      CHECK(*p.proven_deviation == doctest::Approx(0.25));
       CHECK(p.error() == 0);
       CHECK(p.frontier == meets);  // apart, to see nothing is as right, and faster
     }
@@ -347,8 +347,8 @@ TEST_CASE("numbers are judged by how far they are off what is known, in diagonal
   };
   CHECK(error(Quantity::distance, 1, said(1, 1)).error() == 0);
   CHECK(error(Quantity::distance, 1, said(0.5, 1.5)).error() == 0.25);
-  CHECK(*error(Quantity::distance, 1, said(0.5, 1.5)).proved_off == 0.5);
-  CHECK_FALSE(error(Quantity::distance, 1, said(0.5, 0.5)).proved_off);
+  CHECK(*error(Quantity::distance, 1, said(0.5, 1.5)).proven_deviation == 0.5);
+  CHECK_FALSE(error(Quantity::distance, 1, said(0.5, 0.5)).proven_deviation);
   CHECK(error(Quantity::distance, 1, said(0, 1e300)).error() == 1);
   CHECK(error(Quantity::first_contact, 0.5, said(0.25, 0.25)).error() == 0.25);
   CHECK(error(Quantity::first_contact, 0.5, said(2, 2)).error() == 1);

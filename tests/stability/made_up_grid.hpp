@@ -30,16 +30,16 @@ inline Grid made_up_grid() {
           c.cases[d] = 30;
           const bool begun = d + m > 6 + f % 5;
           if (m == 0) {
-            if (f == 10 && d > 7) c.refused[d] = 5 * (d - 7);
+            if (f == 10 && d > 7) c.rejected[d] = 5 * (d - 7);
             continue;
           }
           if (begun) c.wrong[d] = std::min<std::uint64_t>(24, (d + m + f) % 5 * (f % 4 + (d > 8 ? 3 : 0)));
           if (m == 6 && f % 6 == 2 && d > 5) c.crashed[d] = 2;
           if (m == 4 && f % 7 == 3 && d > 8) c.timed_out[d] = 3;
-          if (m == 5 && f % 5 == 1 && d > 6) c.refused[d] = 3;
+          if (m == 5 && f % 5 == 1 && d > 6) c.rejected[d] = 3;
         }
       for (std::size_t d = 0; d < cases::kDialSettings && !c.worst; ++d) {
-        if (c.wrong[d] + c.crashed[d] + c.timed_out[d] + c.refused[d] == 0) continue;
+        if (c.wrong[d] + c.crashed[d] + c.timed_out[d] + c.rejected[d] == 0) continue;
         Record r;
         r.family = g.families[f].name;
         r.method = g.methods[m].name;
@@ -50,7 +50,7 @@ inline Grid made_up_grid() {
         r.outcome = c.crashed[d] > 0     ? Outcome::crashed
                     : c.timed_out[d] > 0 ? Outcome::timed_out
                     : c.wrong[d] > 0     ? Outcome::wrong
-                                         : Outcome::refused;
+                                         : Outcome::rejected;
         if (r.outcome == Outcome::wrong) r.missed = 3, r.extra = 1;
         if (r.outcome == Outcome::crashed) r.message = "signal 11 (<Segmentation fault>)";
         r.relation = "separate";

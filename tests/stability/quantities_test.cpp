@@ -23,7 +23,7 @@ cases::Case boxes(const Eigen::Vector3d& shift) {
 
 void check_number(Quantity quantity, const cases::Case& c, double right) {
   const RightAnswer e = true_number(quantity, c);
-  REQUIRE(e.refusal == "");
+  REQUIRE(e.rejection == "");
   CHECK(*e.least <= right);
   CHECK(*e.most >= right);
   CHECK(*e.most - *e.least <= 1e-15 * right);
@@ -58,7 +58,7 @@ TEST_CASE("true numbers of two boxes") {
   check_number(Quantity::depth, boxes({1, 0.25, 0.5}), 0);
   cases::Case large = boxes({0.5, 0.5, 0.5});
   large.b = cases::body(shapes::l_shape());
-  CHECK(true_number(Quantity::depth, large).refusal.find("more than 20 triangles") != std::string::npos);
+  CHECK(true_number(Quantity::depth, large).rejection.find("more than 20 triangles") != std::string::npos);
   CHECK(!true_number(Quantity::depth, large).least);
 }
 
@@ -107,7 +107,7 @@ TEST_CASE("our numbers are right from benign to degenerate") {
         ask_number(ours(quantity), c, true_number(quantity, c), r);
         CAPTURE(r.relation);
         CAPTURE(r.expected_relation);
-        CHECK((r.outcome == Outcome::right || r.outcome == Outcome::refused));
+        CHECK((r.outcome == Outcome::right || r.outcome == Outcome::rejected));
         right += r.outcome == Outcome::right;
       }
   CHECK(right > 20);

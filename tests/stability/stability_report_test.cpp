@@ -166,20 +166,20 @@ TEST_CASE("the page has every cell, every mark and every worst case") {
   const std::size_t families = grid.families.size(), methods = grid.methods.size();
   CHECK(count(html, "<td ") == (families + 1) * (methods - 1));  // one is absent, and named
   CHECK(html.find("1 method is not installed here: Bullet 3.24, GImpact.") != std::string::npos);
-  std::size_t worst = 0, crashed = 0, timed_out = 0, refused = 0;
+  std::size_t worst = 0, crashed = 0, timed_out = 0, rejected = 0;
   for (const Cell& c : grid.cells) {
     const CellSummary s = summarise(c);
     worst += c.worst ? 1 : 0;
     crashed += s.crashed > 0;
     timed_out += s.timed_out > 0;
-    refused += s.refused > 0;
+    rejected += s.rejected > 0;
   }
   CHECK(count(html, "<dialog ") == worst);
   CHECK(count(html, "href=\"#case-") == worst);
   // One more for the sums of each method that has any: CGAL, FCL, and ours with FCL in float.
   CHECK(count(html, "class=\"mark crashed\"") == crashed + 1);
   CHECK(count(html, "class=\"mark timed-out\"") == timed_out + 1);
-  CHECK(count(html, "class=\"mark refused\"") == refused + 2);
+  CHECK(count(html, "class=\"mark refused\"") == rejected + 2);
   for (const char* what : {"wrong answer", "crashed", "timed out", "refused", "only refusals"})
     CHECK(html.find(what) != std::string::npos);
   for (std::size_t m = 0; m < methods; ++m)  // the sums too
@@ -207,9 +207,9 @@ TEST_CASE("names are escaped, and their addresses are plain") {
 TEST_CASE("refusals are no failures, and first failures are found along the dial") {
   Cell c;
   c.cases.fill(10);
-  c.refused[3] = 10;
+  c.rejected[3] = 10;
   CHECK(summarise(c).failures() == 0);
-  CHECK(summarise(c).only_refused());
+  CHECK(summarise(c).only_rejected());
   c.timed_out[7] = 1;
   c.crashed[9] = 2;
   c.wrong[10] = 3;
@@ -217,7 +217,7 @@ TEST_CASE("refusals are no failures, and first failures are found along the dial
   CHECK(s.failures() == 6);
   CHECK(s.first_failing == 7);
   CHECK(s.level() == 2);
-  CHECK_FALSE(s.only_refused());
+  CHECK_FALSE(s.only_rejected());
 }
 
 TEST_CASE("a grid that does not fit together is refused") {

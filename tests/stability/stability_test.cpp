@@ -94,7 +94,7 @@ TEST_CASE("what becomes of a method that misbehaves") {
   };
   CHECK(outcome_of_contact("ours", 20) == Outcome::right);
   CHECK(outcome_of_contact("fake-crash", 20) == Outcome::crashed);
-  CHECK(outcome_of_contact("fake-refuse", 20) == Outcome::refused);
+  CHECK(outcome_of_contact("fake-refuse", 20) == Outcome::rejected);
   CHECK(outcome_of_contact("fake-throw", 20) == Outcome::crashed);
   CHECK(outcome_of_contact("fake-miss", 20) == Outcome::wrong);
 }
@@ -175,14 +175,14 @@ TEST_CASE("records survive their file") {
   Record plain;
   plain.family = "plane";
   plain.method = "cgal";
-  plain.outcome = Outcome::refused;
+  plain.outcome = Outcome::rejected;
   const std::string text = to_lines({some_record(), plain});
   const std::vector<Record> back = read_records(folder.write("records.jsonl", text));
   REQUIRE(back.size() == 2);
   CHECK(to_lines(back) == text);
   CHECK(back[0].seed == 18446744073709551615u);
   CHECK(back[0].message == some_record().message);
-  CHECK(back[1].outcome == Outcome::refused);
+  CHECK(back[1].outcome == Outcome::rejected);
 }
 
 TEST_CASE("a file of records that is wrong is refused by line") {
@@ -230,7 +230,7 @@ TEST_CASE("counting") {
   add(5, Outcome::wrong, 3);
   add(4, Outcome::wrong, 3);
   add(3, Outcome::wrong, 1);
-  add(1, Outcome::refused, 0);
+  add(1, Outcome::rejected, 0);
   records.push_back(some_record());
   records.back().method = "unknown";
   Grid g = count_grid(methods, families, records);
@@ -240,7 +240,7 @@ TEST_CASE("counting") {
   CHECK(cell.failures() == 3);
   CHECK(cell.answered() == 4);
   CHECK(cell.wrong[4] == 1);
-  CHECK(cell.refused[1] == 1);
+  CHECK(cell.rejected[1] == 1);
   REQUIRE(cell.worst);
   CHECK(cell.worst->case_index == 2);  // as bad as that at 5, but sooner
   CHECK(table(g).find("3/4 @3") != std::string::npos);
@@ -293,7 +293,7 @@ TEST_CASE("judging") {
   judge(r, info, answer, expected);
   CHECK(r.outcome == Outcome::right);
 
-  expected.refusal = "body A, vertex 3 is not representable as double";
+  expected.rejection = "body A, vertex 3 is not representable as double";
   judge(r, info, answer, expected);
   CHECK(r.outcome == Outcome::wrong);
 }

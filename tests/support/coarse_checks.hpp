@@ -14,8 +14,8 @@ namespace lrb::test {
 
 /// Whether the wrappers of a tolerance are told apart, with nothing asked about the bodies themselves. True
 /// must mean that the bodies are separate.
-inline bool wrappers_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                               double tolerance, QueryContext& context) {
+inline bool wrappers_are_disjoint(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                                  double tolerance, QueryContext& context) {
   NullProbe probe;
   const LrbRep* const reps[2] = {&a, &b};
   const Pose* const poses[2] = {&pose_a, &pose_b};

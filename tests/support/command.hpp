@@ -11,7 +11,7 @@
 namespace lrb::test {
 
 /// Arguments that follow those of the command, and a part of the line that rejects them.
-struct Refused {
+struct Rejected {
   std::vector<std::string> arguments;
   std::string says;
 };
@@ -35,10 +35,10 @@ struct Command {
     return lines_of(folder, with(more));
   }
   /// Checks that each is rejected in one line, before anything is written.
-  void check_refusals(const std::vector<Refused>& table) const {
-    for (const Refused& refused : table) {
-      const Outcome o = check_refused(folder, with(refused.arguments));
-      CHECK_MESSAGE(o.err.find(refused.says) != std::string::npos, o.err);
+  void check_refusals(const std::vector<Rejected>& table) const {
+    for (const Rejected& rejected : table) {
+      const Outcome o = check_rejected(folder, with(rejected.arguments));
+      CHECK_MESSAGE(o.err.find(rejected.says) != std::string::npos, o.err);
     }
   }
 };

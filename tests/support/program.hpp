@@ -47,7 +47,7 @@ inline Outcome run(const Folder& folder, const std::vector<std::string>& argumen
 }
 
 /// Runs the program with arguments that it refuses, in one line, before it writes anything.
-inline Outcome check_refused(const Folder& folder, const std::vector<std::string>& arguments) {
+inline Outcome check_rejected(const Folder& folder, const std::vector<std::string>& arguments) {
   const std::vector<std::string> before = folder.tree();
   Outcome o = run(folder, arguments);
   CAPTURE(o.err);

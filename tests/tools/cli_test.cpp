@@ -79,10 +79,10 @@ TEST_CASE("query: bodies that touch say whether they overlap, unless not all pai
     else
       CHECK_FALSE(answer.contains("interiors_overlap"));
   }
-  for (const std::vector<std::string>& not_told :
+  for (const std::vector<std::string>& not_reported :
        {std::vector<std::string>{"--mode", "first"}, {"--recursion", "paper"}, {"--tolerance", "1e-9"}}) {
     std::vector<std::string> query = {"query", "a.obj", "a.obj", "--poses", "p.txt"};
-    query.insert(query.end(), not_told.begin(), not_told.end());
+    query.insert(query.end(), not_reported.begin(), not_reported.end());
     CHECK(run(folder, query).out.find("interiors_overlap") == std::string::npos);
   }
 }
@@ -92,11 +92,11 @@ TEST_CASE(
   const Folder folder;
   folder.write("a.obj", kCube);
   folder.write("p.txt", "# first\n" + std::string(kApart) + "\n1e308 1e308 0 0 0 1 0 0 0 0 1 0\n");
-  const Outcome o = check_refused(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt"});
+  const Outcome o = check_rejected(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt"});
   CHECK(o.err.starts_with("lrbscope: p.txt:4: body B, vertex "));
   // What no pose can mend is not the pose's fault.
   folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3 1\n");
-  CHECK(check_refused(folder, {"query", "a.obj", "flat.obj", "--poses", "p.txt"}).err.find("p.txt") ==
+  CHECK(check_rejected(folder, {"query", "a.obj", "flat.obj", "--poses", "p.txt"}).err.find("p.txt") ==
         std::string::npos);
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("run: two scenario files of one name do not replace each other's run")
   folder.write("two.json", text);
   REQUIRE(run(folder, {"run", "one.json"}).code == 0);
   REQUIRE(run(folder, {"run", "./one.json"}).code == 0);  // again, and changed, as often as one likes
-  const Outcome o = check_refused(folder, {"run", "two.json"});
+  const Outcome o = check_rejected(folder, {"run", "two.json"});
   CHECK(o.err.find("out/twin: contains the run of another scenario of this name, ") != std::string::npos);
   CHECK(o.err.find("one.json; rename one of them, or choose another folder with -o") != std::string::npos);
   CHECK(run(folder, {"run", "two.json", "-o", "elsewhere"}).code == 0);

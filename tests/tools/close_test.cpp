@@ -60,7 +60,7 @@ TEST_CASE("a sheet is told from a body with a hole, by inspect and by close") {
   folder.write("sheet.obj", vertices + faces);
   const std::string what = "this is a sheet, which does not bound a solid";
   CHECK(run(folder, {"inspect", "sheet.obj"}).out.find("; " + what + "\n") != std::string::npos);
-  CHECK(check_refused(folder, {"close", "sheet.obj", "-o", "closed.obj"}).err.find(what) !=
+  CHECK(check_rejected(folder, {"close", "sheet.obj", "-o", "closed.obj"}).err.find(what) !=
         std::string::npos);
   // Beside a body with a hole, it is named and left.
   folder.write("both.obj", vertices + faces +
@@ -98,10 +98,10 @@ TEST_CASE("close says what it leaves, with exit code 1, and refuses what it cann
   CHECK(slurp(folder / "closed.obj") == slurp(folder / "pot.obj"));
 
   write_mesh(circle(5), folder / "round.obj");
-  check_refused(folder, {"close", "round.obj", "-o", "x.obj"});
-  check_refused(folder, {"close", "pot.obj", "-o", "pot.obj"});
-  check_refused(folder, {"close", "pot.obj", "-o", "x.stl"});
-  check_refused(folder, {"close", "pot.obj"});
+  check_rejected(folder, {"close", "round.obj", "-o", "x.obj"});
+  check_rejected(folder, {"close", "pot.obj", "-o", "pot.obj"});
+  check_rejected(folder, {"close", "pot.obj", "-o", "x.stl"});
+  check_rejected(folder, {"close", "pot.obj"});
 }
 
 }  // namespace lrb::test

@@ -53,7 +53,7 @@ Mesh moebius() {
   return m;
 }
 
-enum class Build { refused, done };
+enum class Build { rejected, done };
 
 struct Row {
   const char* kind;
@@ -73,13 +73,13 @@ std::vector<Row> rows_3d() {
       {.kind = "open",
        .mesh = without_faces(ball, {7}),
        .findings = {"an edge has only one face (3 times): edge (by its vertices) "},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined"},
       {.kind = "open strip, one-sided",
        .mesh = moebius(),
        .findings = {"an edge has only one face (18 times)",
                     "two adjacent faces are inconsistently oriented (1 time): face 0 and 17"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined"},
       {.kind = "crosses itself",
        .mesh = turned_inside_out(figure_eight()),
@@ -104,13 +104,13 @@ std::vector<Row> rows_3d() {
        .findings = {"an edge has more than two faces (1 time): edge (by its vertices) ",
                     "two vertices coincide (2 times): vertex 5 and 8, 6 and 11",
                     "a vertex is not used by any face (2 times)"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "b_inside_a",
        .at = {0.5, 0.5, 0.5}},
       {.kind = "non-manifold edge at a fin",
        .mesh = with_face(ball, {{2, 0, 0}}, {ball.face(0)[0], ball.face(0)[1], n}),
        .findings = {"an edge has only one face (2 times)", "an edge has more than two faces (1 time)", meet},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined"},
       {.kind = "non-manifold vertex between solids",
        .mesh = welded(several({box(), box({1, 1, 1}, {2, 2, 2})})),
@@ -131,13 +131,13 @@ std::vector<Row> rows_3d() {
        .mesh = with_doubled(ball, {3}),
        .findings = {"two faces have the same corners (1 time): face 3 and 80",
                     "an edge has more than two faces (3 times)", meet + "1 time): face 3 and 80"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined"},
       {.kind = "duplicate face, turned",
        .mesh = with_doubled(ball, {3}, true),
        .findings = {"two faces have the same corners (1 time): face 3 and 80",
                     "an edge has more than two faces (3 times)", meet + "1 time): face 3 and 80"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined"},
       {.kind = "all faces twice",
        .mesh = welded(twice),
@@ -145,7 +145,7 @@ std::vector<Row> rows_3d() {
                     "an edge has more than two faces (120 times)", meet,
                     "two vertices coincide (42 times): vertex 0",
                     "a vertex is not used by any face (42 times): vertex 42"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "separate"},
       {.kind = "two shells in one place",
        .mesh = twice,
@@ -156,19 +156,19 @@ std::vector<Row> rows_3d() {
        .mesh = with_face(ball, {}, {0, 0, 1}),
        .findings = {"a face uses a vertex twice (1 time): face 80 (vertex 0)",
                     "a face has no area (1 time): face 80"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "b_inside_a"},
       {.kind = "edge collapsed",
        .mesh = with_merged(ball, ball.face(0)[0], ball.face(0)[1]),
        .findings = {"a face uses a vertex twice (2 times): face 0", "a face has no area (2 times): face 0",
                     "a vertex is not used by any face (1 time)"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "b_inside_a"},
       {.kind = "corners on a line",
        .mesh =
            with_face(with_face(without_faces(tetrahedron(), {0}), {{0.5, 0, 0}}, {1, 0, 4}), {}, {0, 2, 4}),
        .findings = {"a face has no area (1 time): face 3", "an edge has only one face (3 times)", meet},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined",
        .at = {0.2, 0.2, 0.2}},
       {.kind = "duplicate vertices",
@@ -179,7 +179,7 @@ std::vector<Row> rows_3d() {
       {.kind = "duplicate vertices and a hole",
        .mesh = as_soup(without_faces(ball, {7})),
        .findings = {"an edge has only one face (3 times): edge (by its vertices) "},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined"},
       {.kind = "unused vertices",
        .mesh = with_vertices(ball, {{9, 9, 9}, {8, 8, 8}}),
@@ -189,7 +189,7 @@ std::vector<Row> rows_3d() {
       {.kind = "inconsistent orientation",
        .mesh = with_flipped(ball, {7, 50}),
        .findings = {"two adjacent faces are inconsistently oriented (6 times): face "},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined"},
       {.kind = "inside out",
        .mesh = turned_inside_out(ball),
@@ -204,7 +204,7 @@ std::vector<Row> rows_3d() {
       {.kind = "isolated piece, open",
        .mesh = with_face(ball, {{3, 0, 0}, {3, 1, 0}, {3, 0, 1}}, {n, VertexId(n + 1), VertexId(n + 2)}),
        .findings = {"an edge has only one face (3 times): edge (by its vertices) 42-43, 42-44, 43-44"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined"},
       {.kind = "nested, facing out",
        .mesh = several({ball, icosphere(1, 0.4)}),
@@ -230,12 +230,12 @@ std::vector<Row> rows_3d() {
       {.kind = "far away",
        .mesh = translated(ball, {1e16, 0, 0}),
        .findings = {"a face has no area (", meet, "two vertices coincide ("},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "separate"},
       {.kind = "concave polygon",
        .mesh = with_face(tetrahedron(), {{0.1, 0.1, 2}, {3, 0, 2}, {0, 0, 2}, {0, 3, 2}}, {4, 5, 6, 7}),
        .findings = {"a polygon is not convex (1 time): face 4", "an edge has only one face (4 times)"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined",
        .at = {0.2, 0.2, 0.2}},
   };
@@ -251,7 +251,7 @@ std::vector<Row> rows_2d() {
       {.kind = "2D, open",
        .mesh = without_faces(round, {0}),
        .findings = {"a vertex has only one segment (2 times): vertex 0, 1"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined"},
       {.kind = "2D, crosses itself",
        .mesh = star,
@@ -268,24 +268,24 @@ std::vector<Row> rows_2d() {
        .mesh = with_face(round, {{2, 0, 0}}, {0, 12}),
        .findings = {"a vertex has only one segment (1 time): vertex 12",
                     "a vertex has more than two segments (1 time): vertex 0"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined"},
       {.kind = "2D, duplicate segment",
        .mesh = with_doubled(round, {3}),
        .findings = {"two segments have the same ends (1 time): segment 3 and 12",
                     "a vertex has more than two segments (2 times)", "two segments intersect"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined"},
       {.kind = "2D, no length",
        .mesh = with_face(round, {}, {2, 2}),
        .findings = {"a segment uses a vertex twice (1 time): segment 12",
                     "a segment has no length (1 time): segment 12"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "b_inside_a"},
       {.kind = "2D, inconsistent orientation",
        .mesh = with_flipped(round, {4}),
        .findings = {"two adjacent segments are inconsistently oriented (2 times): segment 3 and 4, 4 and 5"},
-       .build = Build::refused,
+       .build = Build::rejected,
        .relation = "undefined"},
       {.kind = "2D, inside out",
        .mesh = turned_inside_out(round),
@@ -348,7 +348,7 @@ void check_inspect(const Folder& folder, const Row& row) {
 void check_build(const Folder& folder, const Row& row) {
   const Outcome o = run(folder, {"build", "m.obj", "-o", "m.lrb", "--json"});
   CAPTURE(o.err);
-  if (row.build == Build::refused) {
+  if (row.build == Build::rejected) {
     CHECK(o.code == 2);
     CHECK(o.out.empty());
     CHECK(o.error_lines() == 1);
@@ -385,7 +385,7 @@ void check_query(const Folder& folder, const Row& row, const Mesh& speck) {
   check_pairs(got[1], row.mesh, speck, across);
   const std::vector<json> swapped = answers(folder, "speck.obj", "m.obj", {Pose{}}, notes);
   check_pairs(swapped[0], speck, row.mesh, Pose{});
-  CHECK((notes.find("queries will not use regions") != std::string::npos) == (row.build == Build::refused));
+  CHECK((notes.find("queries will not use regions") != std::string::npos) == (row.build == Build::rejected));
 }
 
 void check_row(const Row& row) {
@@ -423,7 +423,7 @@ TEST_CASE("corners in one place are kept apart if that is asked for") {
   CHECK(std::is_sorted(findings[0]["elements"].begin(), findings[0]["elements"].end()));
   CHECK(findings[2]["kind"] == "duplicate_vertex");
   CHECK(findings[2]["elements"].size() == 198);
-  check_refused(folder, {"build", "m.obj", "--no-join"});
+  check_rejected(folder, {"build", "m.obj", "--no-join"});
   std::string notes;
   folder.write("pose.txt", pose_line(Pose::translation({0, 0, 0.4})));
   for (const bool apart : {false, true}) {

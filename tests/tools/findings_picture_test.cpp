@@ -124,7 +124,7 @@ TEST_CASE("an LRB-rep has no findings to draw") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   REQUIRE(run(folder, {"build", "cube.obj", "-o", "cube.lrb"}).code == 0);
-  check_refused(folder, {"inspect", "cube.lrb", "--draw", "x.png"});
+  check_rejected(folder, {"inspect", "cube.lrb", "--draw", "x.png"});
 }
 
 TEST_CASE("kinds that say the same are drawn once") {

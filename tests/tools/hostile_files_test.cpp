@@ -69,8 +69,8 @@ long idle_mb(const Folder& folder) {
 }
 
 /// Refused in a line that says `what`, with so much memory beyond that of doing nothing.
-void check_refused_within(const Folder& folder, const std::vector<std::string>& arguments, const char* what,
-                          long mb) {
+void check_rejected_within(const Folder& folder, const std::vector<std::string>& arguments, const char* what,
+                           long mb) {
   const Measured m = measure(folder, arguments);
   CAPTURE(arguments.back());
   CAPTURE(m.err);
@@ -128,10 +128,10 @@ std::string png_of(std::uint32_t width, std::uint32_t height, std::size_t zeros)
   return png;
 }
 
-std::string refusal_of_png(const std::string& bytes, std::uint64_t most_pixels = lrb::render::kMostPixels) {
+std::string rejection_of_png(const std::string& bytes, std::uint64_t max_pixels = lrb::render::kMaxPixels) {
   try {
     lrb::render::decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, "p.png",
-                            most_pixels);
+                            max_pixels);
   } catch (const lrb::InputError& e) {
     return e.what();
   }
@@ -146,38 +146,38 @@ TEST_CASE("compressed traces that unpack to more than any trace are refused, and
   const Folder folder;
   write_gzip(folder / "zeros.json.gz", "{\"traceEvents\":[", "0,", 60 * kMega);
   REQUIRE(fs::file_size(folder / "zeros.json.gz") < 100'000);
-  check_refused_within(folder, {"render", "zeros.json.gz"}, "unpack to more than", 100);
+  check_rejected_within(folder, {"render", "zeros.json.gz"}, "unpack to more than", 100);
   write_gzip(folder / "metadata.json.gz", "{\"metadata\":[", "[],", 60 * kMega);
-  check_refused_within(folder, {"render", "metadata.json.gz"}, "unpack to more than", 100);
+  check_rejected_within(folder, {"render", "metadata.json.gz"}, "unpack to more than", 100);
   write_gzip(folder / "few.json.gz", "{\"traceEvents\":[", "0,", 4 * kMega);
-  check_refused_within(folder, {"render", "few.json.gz"},
-                       "/traceEvents/0: expected an event, {...}, found number 0", 60);
+  check_rejected_within(folder, {"render", "few.json.gz"},
+                        "/traceEvents/0: expected an event, {...}, found number 0", 60);
   CHECK_FALSE(fs::exists(folder / "out"));
 }
 
 TEST_CASE("what the parser holds of a trace is bounded by its text") {
   const Folder folder;
-  const auto refused = [&](const std::string& begin, const std::string& again, const char* what, long mb) {
+  const auto rejected = [&](const std::string& begin, const std::string& again, const char* what, long mb) {
     folder.write("t.json", repeated(begin, again, 20 * kMega));
-    check_refused_within(folder, {"render", "t.json"}, what, mb);
+    check_rejected_within(folder, {"render", "t.json"}, what, mb);
   };
-  refused("{\"traceEvents\":[", "0,", "/traceEvents/0: expected an event", 100);
-  refused("{\"traceEvents\":[", "[],", "/traceEvents/0: expected an event, {...}, found array", 100);
-  refused("{\"traceEvents\":{", "\"a\":1,", "/traceEvents: expected an array of events", 100);
-  refused("{\"traceEvents\":[{\"ph\":[", "0,", "/traceEvents/0: longer than any event", 100);
-  refused("{\"traceEvents\":[{\"ph\":\"M\"},{\"x\":{", "\"a\":{},", "/traceEvents/1: longer than any", 100);
-  refused("{\"metadata\":[", "[],", "its values take more than 8 times", 350);
-  refused("{\"metadata\":[", "{},", "its values take more than 8 times", 350);
-  refused("{\"else\":[", "{},", "its values take more than 8 times", 350);
+  rejected("{\"traceEvents\":[", "0,", "/traceEvents/0: expected an event", 100);
+  rejected("{\"traceEvents\":[", "[],", "/traceEvents/0: expected an event, {...}, found array", 100);
+  rejected("{\"traceEvents\":{", "\"a\":1,", "/traceEvents: expected an array of events", 100);
+  rejected("{\"traceEvents\":[{\"ph\":[", "0,", "/traceEvents/0: longer than any event", 100);
+  rejected("{\"traceEvents\":[{\"ph\":\"M\"},{\"x\":{", "\"a\":{},", "/traceEvents/1: longer than any", 100);
+  rejected("{\"metadata\":[", "[],", "its values take more than 8 times", 350);
+  rejected("{\"metadata\":[", "{},", "its values take more than 8 times", 350);
+  rejected("{\"else\":[", "{},", "its values take more than 8 times", 350);
 }
 
 TEST_CASE("a scenario that is too large to be one is refused before it is read") {
   const Folder folder;
   folder.write("large.json", repeated("{\"name\": [", "0,", 60 * kMega));
-  check_refused_within(folder, {"run", "large.json"}, "expected at most 8388608 bytes", 60);
-  check_refused_within(folder, {"crowd", "./large.json"}, "expected at most 8388608 bytes", 60);
-  check_refused_within(folder, {"paper", "--experiment", "./large.json"}, "expected at most 8388608 bytes",
-                       60);
+  check_rejected_within(folder, {"run", "large.json"}, "expected at most 8388608 bytes", 60);
+  check_rejected_within(folder, {"crowd", "./large.json"}, "expected at most 8388608 bytes", 60);
+  check_rejected_within(folder, {"paper", "--experiment", "./large.json"}, "expected at most 8388608 bytes",
+                        60);
 }
 
 TEST_CASE("named pipes are refused and not waited for; pipes that a shell makes are read") {
@@ -193,7 +193,7 @@ TEST_CASE("named pipes are refused and not waited for; pipes that a shell makes 
       {"run", "pipe.json"},
       {"render", "pipe.json"},
   };
-  for (const auto& arguments : waiting) check_refused_within(folder, arguments, "a named pipe", 60);
+  for (const auto& arguments : waiting) check_rejected_within(folder, arguments, "a named pipe", 60);
   const std::string shell = "cd '" + folder.path.string() +
                             "' && cat cube.obj | '" LRBSCOPE_BINARY "' inspect /dev/stdin >out.txt 2>&1";
   CHECK(std::system(shell.c_str()) == 0);
@@ -201,29 +201,30 @@ TEST_CASE("named pipes are refused and not waited for; pipes that a shell makes 
 }
 
 TEST_CASE("pictures that claim or unpack to more than they can be are refused") {
-  CHECK(refusal_of_png(png_of(64, 64, 64UL * 193)).empty());
-  CHECK(refusal_of_png(png_of(64, 64, 64UL * 193), 4095).find("has 64x64 pixels, expected at most 4095") !=
+  CHECK(rejection_of_png(png_of(64, 64, 64UL * 193)).empty());
+  CHECK(rejection_of_png(png_of(64, 64, 64UL * 193), 4095).find("has 64x64 pixels, expected at most 4095") !=
         std::string::npos);
-  CHECK(refusal_of_png(png_of(20'000, 20'000, 1000)).find("has 20000x20000 pixels, expected at most") !=
+  CHECK(rejection_of_png(png_of(20'000, 20'000, 1000)).find("has 20000x20000 pixels, expected at most") !=
         std::string::npos);
-  CHECK(refusal_of_png(png_of(8000, 8000, 1000)).find("8000x8000 pixels cannot be in ") != std::string::npos);
-  CHECK(refusal_of_png(png_of(40'000, 2, 2UL * 120'001)).find("has 40000x2 pixels, a side of more than") !=
+  CHECK(rejection_of_png(png_of(8000, 8000, 1000)).find("8000x8000 pixels cannot be in ") !=
+        std::string::npos);
+  CHECK(rejection_of_png(png_of(40'000, 2, 2UL * 120'001)).find("has 40000x2 pixels, a side of more than") !=
         std::string::npos);
 }
 
 TEST_CASE("pictures that are damaged are refused in words that say how") {
   const std::string good = png_of(64, 64, 64UL * 193);
-  CHECK(refusal_of_png("GIF89a, or so") == "p.png: not a readable PNG (Not a PNG file)");
-  CHECK(refusal_of_png(png_of(64, 64, 20 * kMega)) ==
+  CHECK(rejection_of_png("GIF89a, or so") == "p.png: not a readable PNG (Not a PNG file)");
+  CHECK(rejection_of_png(png_of(64, 64, 20 * kMega)) ==
         "p.png: not a readable PNG (IDAT: Too much image data)");
-  CHECK(refusal_of_png(png_of(64, 64, 64UL * 193 - 1)) ==
+  CHECK(rejection_of_png(png_of(64, 64, 64UL * 193 - 1)) ==
         "p.png: not a readable PNG (Not enough image data)");
   for (const std::size_t missing : {std::size_t{1}, std::size_t{13}, good.size() - 8, good.size() - 40})
-    CHECK(refusal_of_png(good.substr(0, good.size() - missing)) ==
+    CHECK(rejection_of_png(good.substr(0, good.size() - missing)) ==
           "p.png: not a readable PNG (the file is truncated)");
   std::string flipped = good;
   flipped[good.size() / 2] ^= 1;
-  CHECK(refusal_of_png(flipped).find("p.png: not a readable PNG (IDAT: ") == 0);
+  CHECK(rejection_of_png(flipped).find("p.png: not a readable PNG (IDAT: ") == 0);
 }
 
 TEST_CASE("texts in pictures are held within limits") {
@@ -234,11 +235,12 @@ TEST_CASE("texts in pictures are held within limits") {
     for (int i = 0; i < times; ++i) put_chunk(png, "tEXt", "key" + std::string(1, '\0') + value);
     return png + end;
   };
-  CHECK(refusal_of_png(with_text("value", 50)).empty());
-  CHECK(refusal_of_png(with_text("value", 1000)) ==
+  CHECK(rejection_of_png(with_text("value", 50)).empty());
+  CHECK(rejection_of_png(with_text("value", 1000)) ==
         "p.png: not a readable PNG (tEXt: no space in chunk cache)");
-  CHECK(refusal_of_png(with_text(std::string(2 * kMega, 'v'), 1)).find("p.png: not a readable PNG (tEXt: ") ==
-        0);
+  CHECK(
+      rejection_of_png(with_text(std::string(2 * kMega, 'v'), 1)).find("p.png: not a readable PNG (tEXt: ") ==
+      0);
 }
 
 TEST_CASE("a golden of bombs fails within little memory, and the others are tested") {
@@ -296,19 +298,19 @@ TEST_CASE("more pairs than are to be kept: one line, nothing on stdout, and the 
   folder.write("p.txt", "# comment\n1 0 0 0 0 1 0 0 0 0 1 0.125\n");
   std::vector<std::string> query = {"--quiet", "query", "a.obj",       "b.obj",
                                     "--poses", "p.txt", "--max-pairs", "9999"};
-  const Outcome refused = check_refused(folder, query);
-  CHECK(refused.err.find("p.txt:2: ") != std::string::npos);
-  CHECK(refused.err.find("more than 9999 pairs") != std::string::npos);
-  CHECK(refused.err.find("--max-pairs") != std::string::npos);
+  const Outcome rejected = check_rejected(folder, query);
+  CHECK(rejected.err.find("p.txt:2: ") != std::string::npos);
+  CHECK(rejected.err.find("more than 9999 pairs") != std::string::npos);
+  CHECK(rejected.err.find("--max-pairs") != std::string::npos);
   query.back() = "10000";
   CHECK(run(folder, query).out.find("\"pairs\":10000,") != std::string::npos);
   query.back() = "0";
-  CHECK(check_refused(folder, query).err.find("--max-pairs") != std::string::npos);
-  check_refused(folder, {"collide", "a.obj", "b.obj", "--poses", "p.txt", "--max-pairs", "9999"});
+  CHECK(check_rejected(folder, query).err.find("--max-pairs") != std::string::npos);
+  check_rejected(folder, {"collide", "a.obj", "b.obj", "--poses", "p.txt", "--max-pairs", "9999"});
   folder.write("s.json", R"({"name": "s", "purpose": "p",
     "bodies": {"a": {"file": "a.obj"}, "b": {"file": "b.obj"}},
     "motion": {"kind": "poses", "poses": [{"position": [0, 0, 0.125]}]},
     "query": {"max_pairs": 9999}, "frames": {"at": "none"}})");
-  const Outcome scenario = check_refused(folder, {"run", "s.json"});
+  const Outcome scenario = check_rejected(folder, {"run", "s.json"});
   CHECK(scenario.err.find("scenario s, step 0: ") != std::string::npos);
 }

@@ -121,12 +121,12 @@ TEST_CASE("levels: what cannot be drawn is refused in one line, and nothing is w
   const Folder folder;
   folder.write("cube.obj", kCube);
   folder.write("open.obj", "v 0.5 0.5 -1\nv 0.5 0.6 2\nv 0.6 0.5 2\nf 1 2 3\n");
-  CHECK(check_refused(folder, {"levels", "open.obj", "-o", "out"}).err.find("not closed") !=
+  CHECK(check_rejected(folder, {"levels", "open.obj", "-o", "out"}).err.find("not closed") !=
         std::string::npos);
-  CHECK(check_refused(folder, {"levels", "cube.obj", "--at", "0", "0.1", "-o", "out"})
+  CHECK(check_rejected(folder, {"levels", "cube.obj", "--at", "0", "0.1", "-o", "out"})
             .err.find("--at: found 2") != std::string::npos);
   std::vector<std::string> many = {"levels", "cube.obj", "-o", "out", "--at"};
   for (int i = 1; i <= 30; ++i) many.push_back(std::to_string(i * 0.01));
-  check_refused(folder, many);
-  check_refused(folder, {"levels", "cube.obj", "--up", "w", "-o", "out"});
+  check_rejected(folder, many);
+  check_rejected(folder, {"levels", "cube.obj", "--up", "w", "-o", "out"});
 }

@@ -304,7 +304,7 @@ TEST_CASE("a trace without its bodies, or with other bodies, is refused before a
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"render", "t.json", "-o", "out"},
         {"render", "t.json", "--bodies", "cube.obj", "-o", "out"}})
-    check_refused(folder, arguments);
+    check_rejected(folder, arguments);
 }
 
 TEST_CASE("files that are no files are named, and devices without an end are not read") {
@@ -348,9 +348,9 @@ TEST_CASE("what a scenario or trace says cannot lead out of the output folder") 
   folder.write("precious", "keep me");
   std::filesystem::create_symlink(folder / "precious", folder / "out/inside/frames/frame_0000.png");
   std::filesystem::create_symlink(folder / "precious", folder / "out/inside/montage.png");
-  const Outcome refused = run(folder, {"run", "s.json", "--frames", "step", "--most", "1"});
-  CHECK(refused.code == 3);
-  CHECK(refused.error_lines() == 1);
+  const Outcome rejected = run(folder, {"run", "s.json", "--frames", "step", "--most", "1"});
+  CHECK(rejected.code == 3);
+  CHECK(rejected.error_lines() == 1);
   CHECK(slurp(folder / "precious") == "keep me");
 }
 

@@ -111,11 +111,11 @@ TEST_CASE("inspect --regions lists all in JSON, the worst in text, and draws ten
   const render::Image image = render::read_png(folder / "r.png").image;  // eleven panels in rows of four
   CHECK(image.width() > 4 * 200);
   CHECK(image.height() > 3 * 160);
-  check_refused(folder, {"inspect", "bowl.lrb", "--sort", "lids"});
-  check_refused(folder, {"inspect", "bowl.lrb", "--try"});
-  check_refused(folder, {"inspect", "bowl.lrb", "--regions", "--sort", "beauty"});
+  check_rejected(folder, {"inspect", "bowl.lrb", "--sort", "lids"});
+  check_rejected(folder, {"inspect", "bowl.lrb", "--try"});
+  check_rejected(folder, {"inspect", "bowl.lrb", "--regions", "--sort", "beauty"});
   write_mesh(without_faces(bowl(40, 20), {0}), folder / "open.obj");
-  check_refused(folder, {"inspect", "open.obj", "--regions"});
+  check_rejected(folder, {"inspect", "open.obj", "--regions"});
 }
 
 TEST_CASE("regions of a body in the plane are listed and drawn, too") {
@@ -222,8 +222,8 @@ TEST_CASE("an isolated region is drawn once, close up, and said to be what it is
   const Outcome layer = run(folder, {"render", "run/trace.json", "-o", "layer", "--layer", "0"});
   CHECK(layer.code == 0);
   CHECK(slurp(folder / "layer/index.html").find("): layer 0, ") != std::string::npos);
-  check_refused(folder, {"render", "run/trace.json", "-o", "x", "--layer", "999"});
-  check_refused(folder, {"render", "run/trace.json", "-o", "x", "--layer", "b0"});
+  check_rejected(folder, {"render", "run/trace.json", "-o", "x", "--layer", "999"});
+  check_rejected(folder, {"render", "run/trace.json", "-o", "x", "--layer", "b0"});
 
   const LrbRep rep = build_lrb(bowl(24, 8));
   const auto last = RegionId(rep.region_count() - 1);
@@ -256,7 +256,7 @@ TEST_CASE("a direction to look from is refused for bodies in the plane") {
   for (const std::vector<std::string>& camera :
        {std::vector<std::string>{"--from", "1,1,1"}, {"--up", "y"}, {"--projection", "orthographic"}}) {
     const auto with = [&](const std::vector<std::string>& words) {
-      CHECK(check_refused(folder, joined(words, camera)).err.find("are always drawn from above") !=
+      CHECK(check_rejected(folder, joined(words, camera)).err.find("are always drawn from above") !=
             std::string::npos);
     };
     with({"inspect", "star.obj", "--render", "-o", "x.png"});

@@ -111,10 +111,10 @@ TEST_CASE("--no-title, --no-legend: what is left out needs no room, so that smal
   folder.write("s.json", scenario("island"));
   const std::vector<std::string> small = {"run",    "s.json", "--frames", "refinement", "--size",
                                           "120x90", "--most", "1",        "-o"};
-  const Outcome refused = run(folder, joined(small, {"a"}));
-  CHECK(refused.code == 2);
-  CHECK(refused.err.find("too small for its title") != std::string::npos);
-  CHECK(refused.err.find("--no-title, --no-legend") != std::string::npos);
+  const Outcome rejected = run(folder, joined(small, {"a"}));
+  CHECK(rejected.code == 2);
+  CHECK(rejected.err.find("too small for its title") != std::string::npos);
+  CHECK(rejected.err.find("--no-title, --no-legend") != std::string::npos);
   const render::Image image =
       drawn(folder, "b/frames/frame_0000.png", small, {"b", "--no-title", "--no-legend"}).image;
   REQUIRE(image.width() == 120);
@@ -185,7 +185,7 @@ TEST_CASE("render: of a crowd's trace, with the flags that fit") {
                                                 {"--size", "8000x8000", "--dpi", "2400"},
                                                 {"--bodies", "run/bead.lrb"},
                                                 {"--bodies", "run/bowl.lrb", "run/bead.lrb"}})
-    check_refused(folder, joined({"--quiet", "render", "run/trace.json", "-o", "out"}, flags));
+    check_rejected(folder, joined({"--quiet", "render", "run/trace.json", "-o", "out"}, flags));
 }
 
 TEST_CASE(
@@ -194,13 +194,14 @@ TEST_CASE(
   folder.write("one.json", scenario("knot"));
   for (const char* by : {"box_tests", "plane_tests", "expansions"}) {
     const std::string what = std::string("colours by ") + by + " need ";
-    const Outcome one = check_refused(folder, {"--quiet", "run", "one.json", "-o", "out", "--colour-by", by});
+    const Outcome one =
+        check_rejected(folder, {"--quiet", "run", "one.json", "-o", "out", "--colour-by", by});
     CHECK(one.err.find(what + "the trees of two bodies") != std::string::npos);
   }
   const Outcome boxes =
-      check_refused(folder, {"--quiet", "run", "one.json", "-o", "out", "--node-boxes", "1"});
+      check_rejected(folder, {"--quiet", "run", "one.json", "-o", "out", "--node-boxes", "1"});
   CHECK(boxes.err.find("boxes of tree nodes need the trees of two bodies") != std::string::npos);
-  const Outcome paper = check_refused(
+  const Outcome paper = check_rejected(
       folder, {"--quiet", "run", "islands", "-o", "out", "--recursion", "paper", "--colour-by", "box_tests"});
   CHECK(paper.err.find("--recursion paper does not use trees") != std::string::npos);
 }
@@ -218,7 +219,7 @@ TEST_CASE("render: flags that do not fit are refused before anything is written"
                                                 {"--region", "-1"},
                                                 {"--region", "4294967296"},
                                                 {"--region", "0x"}})
-    check_refused(r.folder, joined({"render", "run/trace.json", "-o", "out"}, flags));
+    check_rejected(r.folder, joined({"render", "run/trace.json", "-o", "out"}, flags));
 }
 
 }  // namespace lrb::test

@@ -13,16 +13,16 @@ bool says(const Outcome& o, const std::string& what) {
 
 TEST_CASE("usage: a misspelt command is named, with the nearest one") {
   const Folder folder;
-  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& message) {
-    CHECK(check_refused(folder, arguments).err == "lrbscope: " + message + "\n");
+  const auto rejected = [&](const std::vector<std::string>& arguments, const std::string& message) {
+    CHECK(check_rejected(folder, arguments).err == "lrbscope: " + message + "\n");
   };
-  refused({"figre"}, "'figre' is not a command of lrbscope; did you mean \"figure\"? (see lrbscope --help)");
-  refused({"figre", "run", "--width", "85mm"},
-          "'figre' is not a command of lrbscope; did you mean \"figure\"? (see lrbscope --help)");
-  refused({"xyzzyplugh"}, "'xyzzyplugh' is not a command of lrbscope (see lrbscope --help)");
-  refused({"golden", "tst"},
-          "'tst' is not a command of lrbscope golden; did you mean \"test\"? (see lrbscope golden --help)");
-  refused({}, "A subcommand is required (see lrbscope --help)");
+  rejected({"figre"}, "'figre' is not a command of lrbscope; did you mean \"figure\"? (see lrbscope --help)");
+  rejected({"figre", "run", "--width", "85mm"},
+           "'figre' is not a command of lrbscope; did you mean \"figure\"? (see lrbscope --help)");
+  rejected({"xyzzyplugh"}, "'xyzzyplugh' is not a command of lrbscope (see lrbscope --help)");
+  rejected({"golden", "tst"},
+           "'tst' is not a command of lrbscope golden; did you mean \"test\"? (see lrbscope golden --help)");
+  rejected({}, "A subcommand is required (see lrbscope --help)");
 }
 
 TEST_CASE("usage: errors name the help of their own command") {
@@ -33,7 +33,7 @@ TEST_CASE("usage: errors name the help of their own command") {
            {{"golden", "test", "--jobs", "0"}, "(see lrbscope golden test --help)"},
            {{"levels"}, "(see lrbscope levels --help)"},
            {{"--nonsense"}, "(see lrbscope --help)"}}) {
-    const Outcome o = check_refused(folder, arguments);
+    const Outcome o = check_rejected(folder, arguments);
     CHECK(says(o, help));
   }
 }
@@ -58,7 +58,7 @@ TEST_CASE("usage: an empty text is no value of any option") {
            {"levels", "cube.obj", "-o", ""},
            {"inspect", ""}}) {
     CAPTURE(arguments[0]);
-    const Outcome o = check_refused(folder, arguments);
+    const Outcome o = check_rejected(folder, arguments);
     CHECK(says(o, ": expected a value, found an empty string; is a shell variable unset?"));
   }
 }
@@ -77,11 +77,11 @@ TEST_CASE("folders are made for exports and pictures, not for bodies") {
     CHECK(std::filesystem::exists(folder / file));
   };
   writes({"export", "cube.obj", "-o"}, "a/b/x.ply");
-  check_refused(folder, {"build", "cube.obj", "-o", "c/d/x.lrb"});
-  check_refused(folder, {"close", "open.obj", "-o", "e/f/x.obj"});
+  check_rejected(folder, {"build", "cube.obj", "-o", "c/d/x.lrb"});
+  check_rejected(folder, {"close", "open.obj", "-o", "e/f/x.obj"});
   writes({"distance", "cube.obj", "cube.obj", "--poses", "apart.txt", "--draw"}, "g/h/x.png");
   writes({"figure", "cube.obj", "--panels", "1", "-o"}, "i/j/x.pdf");
-  check_refused(folder, {"close", "open.obj", "-o", "k/x.stl"});
+  check_rejected(folder, {"close", "open.obj", "-o", "k/x.stl"});
 }
 
 TEST_CASE("commands that take a recorded run take its folder, and its trace") {
@@ -107,13 +107,13 @@ TEST_CASE("commands that take a recorded run take its folder, and its trace") {
   both({"figure"}, {"--panels", "1", "-o", "run.pdf"});
   both({"why", "--run"}, {});
   both({"compare", "run"}, {"-o", "compared"});
-  CHECK(says(check_refused(folder, {"render", ".", "-o", "none"}), "no trace.json"));
+  CHECK(says(check_rejected(folder, {"render", ".", "-o", "none"}), "no trace.json"));
 }
 
 TEST_CASE("inspect names the option of pictures that has no picture") {
   const Folder folder;
   folder.write("cube.obj", kCube);
-  CHECK(check_refused(folder, {"inspect", "cube.obj", "--regions", "--up", "y"}).err ==
+  CHECK(check_rejected(folder, {"inspect", "cube.obj", "--regions", "--up", "y"}).err ==
         "lrbscope: --up: needs --render or --draw; add one, or leave --up out\n");
 }
 

@@ -22,7 +22,7 @@ using namespace lrb::cases;
 
 namespace {
 
-constexpr std::uint32_t kMostSimplices = 300;  // the builder is asked often
+constexpr std::uint32_t kMaxSimplices = 300;  // the builder is asked often
 
 /// A case of any family whose coordinates are finite. Discards bodies too large for so many rounds.
 cases::Case any_case() {
@@ -32,7 +32,7 @@ cases::Case any_case() {
   const auto index = *rc::gen::inRange<std::uint64_t>(0, 1000000).as("index");
   cases::Case c = cases::make_case(family, 1, dial, index);
   RC_TAG(std::string(family.name));
-  RC_PRE(c.a->real_simplex_count() <= 4 * kMostSimplices && c.b->real_simplex_count() <= 4 * kMostSimplices);
+  RC_PRE(c.a->real_simplex_count() <= 4 * kMaxSimplices && c.b->real_simplex_count() <= 4 * kMaxSimplices);
   for (const auto& [rep, pose] : {std::pair{c.a, c.pose_a}, std::pair{c.b, c.pose_b}})
     for (const auto& v : rep->vertices()) RC_PRE(pose.apply(v).allFinite());
   return c;
@@ -42,7 +42,7 @@ cases::Case any_case() {
 cases::Case any_case_with_regions() {
   cases::Case c = any_case();
   RandomEngine random(*rc::gen::arbitrary<std::uint64_t>().as("regions"));
-  torture::give_regions(c, random, kMostSimplices);
+  torture::give_regions(c, random, kMaxSimplices);
   return c;
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("regions change no answer") {
     cases::Case c = any_case();
     const CollideResult bare = ask(c);
     RandomEngine random(*rc::gen::arbitrary<std::uint64_t>().as("regions"));
-    RC_CLASSIFY(torture::give_regions(c, random, kMostSimplices) > 0, "with regions");
+    RC_CLASSIFY(torture::give_regions(c, random, kMaxSimplices) > 0, "with regions");
     assert_same(ask(c), bare);
   }));
 }

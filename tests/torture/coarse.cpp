@@ -154,7 +154,7 @@ class CoarseChecker {
     if (meets && coarse.relation == Relation::separate)
       complain(t_.wrong_separate, "separate, though they meet");
     const bool alone =
-        test::wrappers_are_apart(bodies_.a, pose_a, bodies_.b, pose_b, request.tolerance, context_);
+        test::wrappers_are_disjoint(bodies_.a, pose_a, bodies_.b, pose_b, request.tolerance, context_);
     t_.alone_apart += alone;
     if (meets && alone) complain(t_.wrong_separate, "wrappers apart, though the bodies meet");
     const bool has_lids = coarse.error_bound > 0 && !coarse.pairs.empty();

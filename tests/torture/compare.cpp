@@ -41,7 +41,7 @@ class Comparison {
                                      random_() % effort_.interiors_every == 0;
       all_ = ask(everything, false);
     } catch (const InputError& e) {
-      ++t_.refusals;
+      ++t_.rejections;
       check_refusal(e.what());
       return t_;
     }
@@ -213,7 +213,7 @@ class Comparison {
       const double *ca[3], *cb[3];
       corners(*c_.a, xa, p.a, ca);
       corners(*c_.b, xb, p.b, cb);
-      if (boxes_apart(ca, cb)) continue;
+      if (boxes_disjoint(ca, cb)) continue;
       ++asked;
       ask_oracle(p, ca, cb);
     }
@@ -226,7 +226,7 @@ class Comparison {
     for (int k = 0; k < rep.dim(); ++k) out[k] = x[v[k]].data();
   }
 
-  bool boxes_apart(const double* const a[3], const double* const b[3]) const {
+  bool boxes_disjoint(const double* const a[3], const double* const b[3]) const {
     const int n = c_.a->dim();
     for (int axis = 0; axis < n; ++axis) {
       double a_low = a[0][axis], a_high = a_low, b_low = b[0][axis], b_high = b_low;
@@ -288,7 +288,7 @@ Tally& Tally::operator+=(const Tally& t) {
   wrong_lists += t.wrong_lists;
   wrong_relations += t.wrong_relations;
   undecided += t.undecided;
-  refusals += t.refusals;
+  rejections += t.rejections;
   crashes += t.crashes;
   oracle_pairs += t.oracle_pairs;
   cgal_pairs += t.cgal_pairs;

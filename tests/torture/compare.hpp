@@ -20,7 +20,7 @@ struct Tally {
       0;  ///< repeated or misordered pairs, touch for cross, modes or contacts at odds
   std::uint64_t wrong_relations = 0;  ///< interiors_overlap included
   std::uint64_t undecided = 0;        ///< interiors_overlap unknown for bodies where it should be decided
-  std::uint64_t refusals = 0, crashes = 0;
+  std::uint64_t rejections = 0, crashes = 0;
   std::uint64_t oracle_pairs = 0, cgal_pairs = 0, parity_checks = 0;
 
   Tally& operator+=(const Tally& t);

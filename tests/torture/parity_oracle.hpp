@@ -131,7 +131,7 @@ class ParityOracle {
   double reach_ = 0;
 };
 
-inline bool boxes_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+inline bool boxes_are_disjoint(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   const auto ends = [&](const LrbRep& rep, const Pose& pose, int axis) {
     std::array<double, 2> out{kFar, -kFar};
@@ -157,7 +157,7 @@ inline bool boxes_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b
 inline Relation relation_by_parity(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                                    shapes::RandomEngine& random) {
   if (!a.closed() || !b.closed())
-    return boxes_are_apart(a, pose_a, b, pose_b) ? Relation::separate : Relation::undefined;
+    return boxes_are_disjoint(a, pose_a, b, pose_b) ? Relation::separate : Relation::undefined;
   const ParityOracle oa(a, pose_a), ob(b, pose_b);
   const std::size_t a_in_b = ob.held_pieces(oa, random), b_in_a = oa.held_pieces(ob, random);
   const std::size_t pieces_a = a.component_vertices().size(), pieces_b = b.component_vertices().size();

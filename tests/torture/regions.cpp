@@ -32,8 +32,8 @@ cases::Body built(const LrbRep& rep, RandomEngine& random) {
   }
 }
 
-bool give(cases::Body& body, RandomEngine& random, std::uint32_t most_simplices) {
-  if (body->region_count() > 0 || body->real_simplex_count() > most_simplices) return false;
+bool give(cases::Body& body, RandomEngine& random, std::uint32_t max_simplices) {
+  if (body->region_count() > 0 || body->real_simplex_count() > max_simplices) return false;
   // Drawn always, so that what follows does not depend on what is kept.
   RandomEngine own(random());
   static std::unordered_map<std::uint64_t, cases::Body> kept;  // many families draw from a dozen bodies
@@ -51,9 +51,9 @@ bool give(cases::Body& body, RandomEngine& random, std::uint32_t most_simplices)
 
 }  // namespace
 
-int give_regions(cases::Case& c, cases::RandomEngine& random, std::uint32_t most_simplices) {
-  int count = give(c.a, random, most_simplices);
-  count += give(c.b, random, most_simplices);
+int give_regions(cases::Case& c, cases::RandomEngine& random, std::uint32_t max_simplices) {
+  int count = give(c.a, random, max_simplices);
+  count += give(c.b, random, max_simplices);
   return count;
 }
 

@@ -59,8 +59,8 @@ class SweptBody {
   }
 
   static Box whole(const SweptBody& body, const std::vector<SimplexId>& list) {
-    constexpr double kMost = std::numeric_limits<double>::max();
-    Box all{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
+    constexpr double kMax = std::numeric_limits<double>::max();
+    Box all{{kMax, kMax, kMax}, {-kMax, -kMax, -kMax}};
     for (const SimplexId s : list) all.extend(body.box(s));
     return all;
   }

@@ -142,7 +142,7 @@ void print_row(const char* name, const Tally& t, double seconds) {
   std::printf(
       "%-12s %9llu %9llu %8llu %8llu %7llu %7llu %7llu %8llu %9llu %9llu %8llu %10llu %8llu %8llu %7.1f\n",
       name, n(t.poses), n(t.in_contact), n(t.inside), n(t.with_regions), n(t.false_negatives),
-      n(t.false_positives), n(t.wrong_lists), n(t.wrong_relations), n(t.undecided), n(t.refusals),
+      n(t.false_positives), n(t.wrong_lists), n(t.wrong_relations), n(t.undecided), n(t.rejections),
       n(t.crashes), n(t.oracle_pairs), n(t.cgal_pairs), n(t.parity_checks), seconds);
   std::fflush(stdout);
 }

@@ -74,7 +74,7 @@ void check_passes(const Built& built) {
     std::uint32_t caps = 0;
     for (const std::uint32_t n : p.caps) caps += n;
     CHECK(caps == p.patches);
-    CHECK(p.off <= p.most_off);
+    CHECK(p.off <= p.max_deviation);
     regions += p.regions;
     lids += p.lids;
   }
@@ -165,13 +165,13 @@ TEST_CASE("summaries say why caps were refused, and nothing of refinements") {
   const Json c = Json::parse(text).at("construction");
   const std::vector<PassSummary> passes = passes_of(rock().trace);
   REQUIRE(c.at("passes").size() == passes.size());
-  std::uint64_t refused = 0;
+  std::uint64_t rejected = 0;
   for (const auto& [why, n] : c.at("refused").items()) {
     CHECK(from_name<CapVerdict>(why));
-    refused += n.get<std::uint64_t>();
+    rejected += n.get<std::uint64_t>();
   }
-  CHECK(refused > 0);
-  CHECK(c.at("patches") == c.at("accepted").get<std::uint64_t>() + refused);
+  CHECK(rejected > 0);
+  CHECK(c.at("patches") == c.at("accepted").get<std::uint64_t>() + rejected);
   CHECK(c.at("regions") == rock().rep.region_count());
   CHECK(c.at("passes").at(0).at("faces_before") == rock().rep.real_face_count());
   CHECK(c.at("passes").at(0).at("stage") == "fitting");
@@ -179,11 +179,11 @@ TEST_CASE("summaries say why caps were refused, and nothing of refinements") {
 
 TEST_CASE("refusals in words, most frequent first") {
   std::array<std::uint32_t, kWords<CapVerdict>.size()> caps{};
-  CHECK(refusal_words(caps) == "");
+  CHECK(rejection_text(caps) == "");
   caps[static_cast<std::size_t>(CapVerdict::stands)] = 7;
   caps[static_cast<std::size_t>(CapVerdict::too_thick)] = 3;
   caps[static_cast<std::size_t>(CapVerdict::meets_hull)] = 9;
-  CHECK(refusal_words(caps) == "9 met the hull, 3 too thick");
+  CHECK(rejection_text(caps) == "9 met the hull, 3 too thick");
 }
 
 TEST_CASE("two constructions that differ: in which event, and in what") {
@@ -211,22 +211,22 @@ TEST_CASE("two constructions that differ: in which event, and in what") {
 }
 
 TEST_CASE("damaged constructions are refused") {
-  const auto refused = [](EventKind kind, auto change) {
+  const auto rejected = [](EventKind kind, auto change) {
     Trace t = rock().trace;
     change(t, t.events[find(t, kind)]);
     CHECK_THROWS_AS(check_trace(t, "t.json"), InputError);
   };
   check_trace(rock().trace, "t.json");
-  refused(EventKind::pass, [](Trace& t, Event&) { t.header.construction = false; });
-  refused(EventKind::pass, [](Trace&, Event& e) { e.detail = 200; });
-  refused(EventKind::pass, [](Trace&, Event& e) { e.boundary = std::bit_cast<std::uint32_t>(-1.f); });
-  refused(EventKind::cap, [](Trace&, Event& e) { e.detail = 200; });
-  refused(EventKind::cap, [](Trace&, Event& e) { e.cause = kNull; });
-  refused(EventKind::patch, [](Trace&, Event& e) { e.cause = 0; });
-  refused(EventKind::region, [](Trace&, Event& e) { e.a = 1'000'000; });
-  refused(EventKind::region, [](Trace&, Event& e) { e.cause = 0; });
-  refused(EventKind::region, [](Trace&, Event& e) { e.side = Side::b; });
-  refused(EventKind::pass_end, [](Trace&, Event& e) { e.cause = kNull; });
+  rejected(EventKind::pass, [](Trace& t, Event&) { t.header.construction = false; });
+  rejected(EventKind::pass, [](Trace&, Event& e) { e.detail = 200; });
+  rejected(EventKind::pass, [](Trace&, Event& e) { e.boundary = std::bit_cast<std::uint32_t>(-1.f); });
+  rejected(EventKind::cap, [](Trace&, Event& e) { e.detail = 200; });
+  rejected(EventKind::cap, [](Trace&, Event& e) { e.cause = kNull; });
+  rejected(EventKind::patch, [](Trace&, Event& e) { e.cause = 0; });
+  rejected(EventKind::region, [](Trace&, Event& e) { e.a = 1'000'000; });
+  rejected(EventKind::region, [](Trace&, Event& e) { e.cause = 0; });
+  rejected(EventKind::region, [](Trace&, Event& e) { e.side = Side::b; });
+  rejected(EventKind::pass_end, [](Trace&, Event& e) { e.cause = kNull; });
   Trace two = rock().trace;
   two.header.bodies.push_back(two.header.bodies[0]);
   CHECK_THROWS_AS(check_trace(two, "t.json"), InputError);

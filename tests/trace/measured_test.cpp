@@ -33,19 +33,19 @@ Trace measured_run(Clock clock) {
     const Pose pose = Pose::translation({3.2 - 0.8 * step, 0.1, 0.2});
     recorder.begin_step(step, {}, pose);
     const CollideResult result = collide(ball(), {}, ball(), pose, {}, context, recorder);
-    BoundsCourse gap;
+    BoundsHistory gap;
     const DistanceResult apart = distance(ball(), {}, ball(), pose, {}, gap);
-    recorder.add(measured(apart, gap.course));
-    ClashCourse clashed;
+    recorder.add(measured(apart, gap.history));
+    ClashHistory clashed;
     const ClashResult kind = clash(ball(), {}, ball(), pose, {}, clashed);
     recorder.add(measured(kind, clashed.of_depth));
     recorder.end_step(result);
   }
   Trace trace = recorder.take();
-  FirstContactCourse search;
+  FirstContactHistory search;
   const Motion motion = Motion::linear(Pose::translation({3.2, 0.1, 0.2}), {0, 0.1, 0.2});
   const FirstContactResult found = first_contact(ball(), Motion::still({}), ball(), motion, {}, search);
-  trace.header.first_contact = measured(found, search.course);
+  trace.header.first_contact = measured(found, search.history);
   return trace;
 }
 
@@ -64,18 +64,18 @@ TEST_CASE("what was measured comes back from a file, and a change of it is a div
   REQUIRE(trace.steps[2].result.clash.has_value());
   CHECK(trace.steps[0].result.distance->lower > 1);
   CHECK(trace.steps[2].result.clash->depth->at(0) > 0.1);
-  CHECK(trace.steps[2].result.clash->course.size() > 2);
+  CHECK(trace.steps[2].result.clash->history.size() > 2);
   REQUIRE(trace.header.first_contact.has_value());
   CHECK(trace.header.first_contact->outcome == MotionOutcome::contact);
   const Trace back = trace_from_json(trace_to_json(trace), "t.json");
   CHECK(back == trace);
   CHECK(back.header.first_contact == trace.header.first_contact);
   Trace other = trace;
-  other.steps[1].result.distance->course.pop_back();
+  other.steps[1].result.distance->history.pop_back();
   REQUIRE(first_divergence(trace, other).has_value());
   CHECK(first_divergence(trace, other)->message().starts_with("step 1: distance: expected ["));
   other = trace;
-  other.header.first_contact->course.pop_back();
+  other.header.first_contact->history.pop_back();
   REQUIRE(first_divergence(trace, other).has_value());
   CHECK(first_divergence(trace, other)->message().starts_with("run: first contact: expected contact ["));
   CHECK_FALSE(other == trace);
@@ -94,15 +94,15 @@ TEST_CASE("bounds are counters within the step's last event, and times do not fa
     }
     std::size_t looks = 0, depths = 0;
     for (const Step& step : trace.steps) {
-      looks += step.result.distance->course.size();
-      depths += step.result.clash->course.size();
+      looks += step.result.distance->history.size();
+      depths += step.result.clash->history.size();
     }
     const std::vector<Json> gaps = counters(document, "distance");
     REQUIRE(gaps.size() == looks);
     CHECK(counters(document, "depth").size() == depths);
-    CHECK(gaps[0]["args"]["lower"] == trace.steps[0].result.distance->course[0].lower);
+    CHECK(gaps[0]["args"]["lower"] == trace.steps[0].result.distance->history[0].lower);
     if (clock == Clock::wall) continue;
-    CHECK(counters(document, "first contact").size() == trace.header.first_contact->course.size());
+    CHECK(counters(document, "first contact").size() == trace.header.first_contact->history.size());
     const double last = trace.steps[1].first_event - 1;
     CHECK(gaps[0]["ts"].get<double>() >= last);
     CHECK(gaps[0]["ts"].get<double>() < last + 1);

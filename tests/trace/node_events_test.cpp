@@ -110,7 +110,7 @@ TEST_CASE("a query that is watched more closely does the same") {
           CHECK(same[i].boundary == faces.trace.events[i].boundary);
           CHECK(same[i].depth_a == faces.trace.events[i].depth_a);
           CHECK(same[i].depth_b == faces.trace.events[i].depth_b);
-          if (same[i].kind == EventKind::face_test) CHECK(same[i].tested_by() != TestedBy::untold);
+          if (same[i].kind == EventKind::face_test) CHECK(same[i].tested_by() != TestedBy::unreported);
         }
       }
     }
@@ -152,7 +152,7 @@ TEST_CASE(
       CHECK(test::trace_faults(Json::parse(trace_to_json(t))) == "");
       Cursor cursor(t, *bodies.a, *bodies.b);  // throws where a wrapper does not come out as recorded
       for (std::size_t step = 0; step < results.size(); ++step) {
-        std::uint64_t pairs = 0, boxes = 0, tests = 0, untold = 0;
+        std::uint64_t pairs = 0, boxes = 0, tests = 0, unreported = 0;
         std::vector<SimplexPair> contacts;
         std::size_t opened = 0;
         bool again = false;
@@ -160,7 +160,7 @@ TEST_CASE(
           pairs += e.kind == EventKind::node_pair;
           boxes += e.kind == EventKind::node_pair ? e.work().box_tests : 0;
           tests += e.kind == EventKind::face_test;
-          untold += e.kind == EventKind::face_test && e.tested_by() == TestedBy::untold;
+          unreported += e.kind == EventKind::face_test && e.tested_by() == TestedBy::unreported;
           if (e.kind == EventKind::contact) contacts.push_back({e.simplex(Side::a), e.simplex(Side::b)});
           if (e.kind == EventKind::begin) {
             ++phases[e.phase()];
@@ -175,7 +175,7 @@ TEST_CASE(
         CHECK(pairs == results[step].counters.node_pairs);
         CHECK(boxes == results[step].counters.box_tests);
         CHECK(tests == results[step].counters.face_tests);
-        CHECK(untold == 0);
+        CHECK(unreported == 0);
         CHECK(opened == results[step].opened[0].size() + results[step].opened[1].size());
         std::sort(contacts.begin(), contacts.end());
         if (mode == Mode::all_pairs) CHECK((contacts == results[step].pairs));
@@ -196,11 +196,11 @@ TEST_CASE("the events of a step add up to its counters") {
     for (const CollideRequest& request : requests()) {
       const WatchedRun run = record(bodies, request, EventLevel::all);
       for (std::size_t step = 0; step < run.results.size(); ++step) {
-        std::uint64_t pairs = 0, boxes = 0, met = 0, parted = 0, plane_tests = 0, told = 0;
+        std::uint64_t pairs = 0, boxes = 0, met = 0, rejected = 0, plane_tests = 0, reported = 0;
         for (const Event& e : run.trace.events_of(step)) {
           plane_tests += e.kind == EventKind::plane_test;
           expansions += e.kind == EventKind::face_test && e.tested_by() == TestedBy::expansions;
-          if (e.kind == EventKind::end && e.phase() == Phase::walk) told += e.b;
+          if (e.kind == EventKind::end && e.phase() == Phase::walk) reported += e.b;
           if (e.kind != EventKind::node_pair) continue;
           const NodeWork work = e.work();
           ++pairs;
@@ -208,18 +208,18 @@ TEST_CASE("the events of a step add up to its counters") {
           seen.insert(e.node_end().step);
           if (e.node_end().step == NodeStep::leaves) {
             met += work.met;
-            parted += work.parted;
-            CHECK(work.parted + work.certain <= work.met);
+            rejected += work.rejected;
+            CHECK(work.rejected + work.certain <= work.met);
           }
           if (work.met == 0) ++(e.node_end().apart ? apart : inside_apart);
         }
         const Counters& c = run.results[step].counters;
         CHECK(pairs == c.node_pairs);
-        CHECK(told == c.node_pairs);
+        CHECK(reported == c.node_pairs);
         CHECK(boxes == c.box_tests);
         CHECK(met == c.prefilter_tests);
-        CHECK(plane_tests == parted);
-        if (request.mode == Mode::all_pairs && !request.is_coarse()) CHECK(met - parted == c.face_tests);
+        CHECK(plane_tests == rejected);
+        if (request.mode == Mode::all_pairs && !request.is_coarse()) CHECK(met - rejected == c.face_tests);
         planes += plane_tests;
       }
     }
@@ -480,14 +480,14 @@ TEST_CASE("a probe from outside the engine sees the walk, too") {
     EventLevel level() const override { return EventLevel::all; }
     std::uint32_t node_pair(const NodeVisit& v) override {
       boxes += v.box_tests;
-      parted += v.parted;
+      rejected += v.rejected;
       CHECK((v.parent == kNull ? pairs == 0 : v.parent < pairs));
       return pairs++;
     }
     void plane_test(SimplexId, SimplexId, Side) override { ++planes; }
     void end(Phase phase, std::uint64_t count) override { counts[phase] += count; }
     std::uint32_t pairs = 0;
-    std::uint64_t boxes = 0, parted = 0, planes = 0;
+    std::uint64_t boxes = 0, rejected = 0, planes = 0;
     std::map<Phase, std::uint64_t> counts;
   } probe;
   const WatchedBodies& bodies = watched_bodies()[1];
@@ -495,7 +495,7 @@ TEST_CASE("a probe from outside the engine sees the walk, too") {
       collide(*bodies.a, {}, *bodies.b, Pose::translation({0.4, 0.3, 0.1}), CollideRequest{}, probe);
   CHECK(probe.pairs == result.counters.node_pairs);
   CHECK(probe.boxes == result.counters.box_tests);
-  CHECK(probe.planes == probe.parted);
+  CHECK(probe.planes == probe.rejected);
   CHECK(probe.planes > 0);
   CHECK(probe.counts[Phase::walk] == result.counters.node_pairs);
   CHECK(probe.counts[Phase::sort] == result.pairs.size());

@@ -330,7 +330,7 @@ TEST_CASE("bad files are refused with one line that says where and what") {
 TEST_CASE("no damage to a trace does more than a refusal") {
   const std::string good = trace_to_json(runs::record(plate(), plate(), {runs::kPlatePoses[1]}).trace);
   std::mt19937 random(3);
-  std::size_t refused = 0;
+  std::size_t rejected = 0;
   for (int i = 0; i < 1500; ++i) {
     std::string bad = good;
     for (std::size_t k = 0, edits = 1 + random() % 3; k < edits; ++k) {
@@ -353,10 +353,10 @@ TEST_CASE("no damage to a trace does more than a refusal") {
     try {
       check_trace(trace_from_json(bad, "bad"), "bad");
     } catch (const InputError&) {
-      ++refused;
+      ++rejected;
     }
   }
-  CHECK(refused > 500);
+  CHECK(rejected > 500);
 }
 
 TEST_CASE("files that cannot be read are named") {

@@ -61,7 +61,7 @@ double cost(const Soup& soup, std::span<const std::uint32_t> order, std::size_t 
 }
 
 /// Returns the least cost of all cuts of some simplices across the coordinate axes.
-double least_cost(const Soup& soup, std::vector<std::uint32_t> some) {
+double min_cost(const Soup& soup, std::vector<std::uint32_t> some) {
   double least = kInfinity;
   for (int axis = 0; axis < 3; ++axis) {
     std::sort(some.begin(), some.end(),
@@ -163,7 +163,7 @@ TEST_CASE("of all cuts across the coordinate axes that one is found whose halves
       REQUIRE(middle > begin);
       REQUIRE(middle < end);
       REQUIRE(same_set(before, after));
-      CHECK(cost(soup, after, middle - begin) == doctest::Approx(least_cost(soup, before)).epsilon(1e-5));
+      CHECK(cost(soup, after, middle - begin) == doctest::Approx(min_cost(soup, before)).epsilon(1e-5));
       const auto of_left = std::span(after).first(middle - begin),
                  of_right = std::span(after).subspan(middle - begin);
       CHECK(halves.left_cost == doctest::Approx(fitted_cost(soup, of_left)).epsilon(1e-5));
@@ -185,7 +185,7 @@ TEST_CASE("the cut that is ranked first costs little more than the best one") {
     double more = 0;
     for (int round = 0; round < kRounds; ++round) {
       const FirstCut first(bent_strip(random, 200, strips.crowding, 0.02), {.principal = 0, .tried = 1});
-      more += std::log(first.cost() / least_cost(first.soup, first.soup.order)) / kRounds;
+      more += std::log(first.cost() / min_cost(first.soup, first.soup.order)) / kRounds;
     }
     CAPTURE(strips.crowding);
     CHECK(std::exp(more) < strips.most);  // in geometric mean
@@ -254,7 +254,7 @@ TEST_CASE("what is cut does not depend on the order in which simplices are given
       const std::uint32_t middle = cuts.cut(begin, end).middle;
       const std::vector<std::uint32_t> order = cuts.order();
       const auto range = std::span(order).subspan(begin, end - begin);
-      ratio += std::log(cost(soup, range, middle - begin) / least_cost(soup, {range.begin(), range.end()}));
+      ratio += std::log(cost(soup, range, middle - begin) / min_cost(soup, {range.begin(), range.end()}));
       ++ranges;
       again(again, begin, middle);
       again(again, middle, end);

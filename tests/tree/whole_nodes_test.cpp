@@ -84,7 +84,7 @@ Pose near_pose(shapes::RandomEngine& random, const Met& m) {
 
 TEST_CASE("nodes that are parted as wholes are apart, and those that are clearly apart are parted so") {
   shapes::RandomEngine random(21);
-  std::size_t parted = 0, across = 0, opened = 0, flat = 0;
+  std::size_t rejected = 0, across = 0, opened = 0, flat = 0;
   for (const Met& m : bodies()) {
     flat += m.a.dim() == 2;
     const double size = std::max(m.a.tree().extent(), m.b.tree().extent());
@@ -102,7 +102,7 @@ TEST_CASE("nodes that are parted as wholes are apart, and those that are clearly
           BoxPair sides;
           compare_boxes(a, b, sides);
           across += sides.gap <= 0;
-          ++parted;
+          ++rejected;
         } else {
           CHECK(gap < 1e-3 * size);
           ++opened;
@@ -111,7 +111,7 @@ TEST_CASE("nodes that are parted as wholes are apart, and those that are clearly
     }
   }
   CHECK(flat == 1);
-  CHECK(parted > 1000);
+  CHECK(rejected > 1000);
   CHECK(across > 100);
   CHECK(opened > 1000);
 }
@@ -131,7 +131,7 @@ TEST_CASE("pairs of nodes that wait take no more room than there is") {
     std::uint32_t most = 0;
     while (!is_done(k)) {
       k.out_size = 0;
-      k.most_node_pairs = k.node_pairs + 1;
+      k.max_node_pairs = k.node_pairs + 1;
       run_tree_kernel(k);
       most = std::max({most, k.stack_size, k.tested_size});
     }

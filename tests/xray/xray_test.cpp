@@ -94,15 +94,15 @@ TEST_CASE("a walk of another engine becomes a trace: which pair led to which, an
   CHECK(theirs.trace.header.engine == "Toy 1.0");
   CHECK(trace::trace_from_json(trace::trace_to_json(theirs.trace), "t.json") == theirs.trace);
   // What it got wrong is told step by step.
-  const xray::WrongPairs told = xray::wrong_pairs(walk.steps[0], ours.results[0].pairs);
+  const xray::WrongPairs reported = xray::wrong_pairs(walk.steps[0], ours.results[0].pairs);
   REQUIRE(theirs.wrong.size() == 1);
-  REQUIRE(theirs.wrong[0].size() == told.too_many.size() + told.missing.size());
-  REQUIRE(!told.missing.empty());  // it looked at one pair of faces alone
+  REQUIRE(theirs.wrong[0].size() == reported.too_many.size() + reported.missing.size());
+  REQUIRE(!reported.missing.empty());  // it looked at one pair of faces alone
   for (std::size_t i = 0; i < theirs.wrong[0].size(); ++i) {
     const run::WrongPair& w = theirs.wrong[0][i];
-    const std::size_t many = told.too_many.size();
+    const std::size_t many = reported.too_many.size();
     CHECK(w.missed == (i >= many));
-    CHECK(w.pair == (w.missed ? told.missing[i - many] : told.too_many[i]));
+    CHECK(w.pair == (w.missed ? reported.missing[i - many] : reported.too_many[i]));
   }
   const trace::NodeCounts counts = trace::count_nodes(theirs.trees[0], Side::a, theirs.trace.events);
   CHECK(counts.visits == std::vector<std::uint32_t>{1, 3, 1, 3, 1, 0, 0});
@@ -169,10 +169,10 @@ TEST_CASE("xray: a page with both runs, or one clear error") {
       return run(folder, all);
     };
     if (workers::program_beside("lrbscope-xray-" + engine).empty()) {
-      const Outcome refused = with("poses.txt");
-      CHECK(refused.code != 0);
-      CHECK(refused.error_lines() == 1);
-      CHECK(refused.err.find("lib" + engine + "-dev") != std::string::npos);
+      const Outcome rejected = with("poses.txt");
+      CHECK(rejected.code != 0);
+      CHECK(rejected.error_lines() == 1);
+      CHECK(rejected.err.find("lib" + engine + "-dev") != std::string::npos);
       continue;
     }
     const Outcome outcome = with("poses.txt");
@@ -184,10 +184,10 @@ TEST_CASE("xray: a page with both runs, or one clear error") {
     const auto ours = nlohmann::json::parse(slurp(folder / "out/ours/summary.json"));
     CHECK(theirs["steps"][0]["pairs"] == ours["steps"][0]["pairs"]);
     CHECK(theirs["steps"][0]["counters"]["box_tests"] > 0);
-    const Outcome refused = with("wide.txt");
-    CHECK(refused.code != 0);
-    CHECK(refused.error_lines() == 1);
-    CHECK(refused.err.find("wide.txt:1: pose 0: ") != std::string::npos);
+    const Outcome rejected = with("wide.txt");
+    CHECK(rejected.code != 0);
+    CHECK(rejected.error_lines() == 1);
+    CHECK(rejected.err.find("wide.txt:1: pose 0: ") != std::string::npos);
   }
   const Outcome flat =
       run(folder, {"--quiet", "xray", "circle.obj", "circle.obj", "--poses", "poses.txt", "-o", "flat"});

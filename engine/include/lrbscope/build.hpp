@@ -93,7 +93,7 @@ struct PassStart {
   BuildStage stage = BuildStage::fit;
   std::uint32_t layer = 0;       ///< layer of the regions that it makes
   std::uint32_t hull_faces = 0;  ///< number of triangles (2D: segments) of the front
-  double most_off = 0;           ///< maximum deviation of caps from the body, mesh units; 0: unlimited
+  double max_deviation = 0;      ///< maximum deviation of caps from the body, mesh units; 0: unlimited
 };
 
 /// State at the end of a pass.

@@ -96,7 +96,7 @@ struct ProvedInterval {
 /// Numbers of pieces of a solid's surface by their location relative to the other solid.
 struct SurfacePieces {
   std::uint32_t inside = 0, outside = 0;
-  std::uint32_t most_outside = 0;  ///< the maximum for one component of the surface
+  std::uint32_t max_outside = 0;  ///< the maximum for one component of the surface
   bool on_same = false;  ///< an area coincides with the other's surface, with both solids on the same side
   bool on_opposite = false;  ///< an area coincides with the other's surface, with the solids on opposite
                              ///< sides
@@ -152,7 +152,7 @@ class ClashProbe {
 };
 
 /// Records all bounds.
-class ClashCourse final : public ClashProbe {
+class ClashHistory final : public ClashProbe {
  public:
   void distance(const Bounds& known) override { of_distance.push_back(known); }
   void depth(const Bounds& known) override { of_depth.push_back(known); }

@@ -62,8 +62,8 @@ constexpr auto words_of(Predicates) {
 
 /// Default for the maximum number of pairs of a query. A pair takes 25 bytes while pairs are found and
 /// sorted, and 650 with its contact (docs/measurements.md): 0.8 GB and 1.4 GB in total.
-inline constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 25;
-inline constexpr std::uint64_t kMostPairsWithContacts = std::uint64_t{1} << 21;
+inline constexpr std::uint64_t kMaxPairs = std::uint64_t{1} << 25;
+inline constexpr std::uint64_t kMaxPairsWithContacts = std::uint64_t{1} << 21;
 
 struct CollideRequest {
   Mode mode = Mode::all_pairs;
@@ -93,13 +93,13 @@ struct CollideRequest {
   /// to limits.
   bool separation = false;
   /// Maximum number of pairs; a query that finds more throws InputError. (Two bodies of n faces have up to
-  /// n^2 pairs.) 0: kMostPairs, or kMostPairsWithContacts with contacts. The paper's recursions count a pair
+  /// n^2 pairs.) 0: kMaxPairs, or kMaxPairsWithContacts with contacts. The paper's recursions count a pair
   /// each time they find it.
   std::uint64_t max_pairs = 0;
 
   bool is_coarse() const { return tolerance > 0 || max_tests > 0 || max_time > 0; }
   std::uint64_t pair_limit() const {
-    return max_pairs > 0 ? max_pairs : contacts ? kMostPairsWithContacts : kMostPairs;
+    return max_pairs > 0 ? max_pairs : contacts ? kMaxPairsWithContacts : kMaxPairs;
   }
   friend bool operator==(const CollideRequest&, const CollideRequest&) = default;
 };
@@ -205,7 +205,7 @@ void clear(CollideResult& result);
 void clear(Counters& counters);
 
 /// Throws an InputError: the query found more than `limit` pairs.
-[[noreturn]] void refuse_pairs(std::uint64_t limit);
+[[noreturn]] void reject_pairs(std::uint64_t limit);
 
 /// Returns the FNV-1a hash (64 bits) of the pairs, each as little-endian u32 a, u32 b; cbf29ce484222325 if
 /// there are none.
@@ -232,7 +232,7 @@ struct BruteForceResult {
 };
 
 /// Tests every pair of real simplices exactly, as the reference for collide(). It shares only the predicates
-/// and the definition of world coordinates with it, no tree or boxes. Throws InputError beyond kMostPairs.
+/// and the definition of world coordinates with it, no tree or boxes. Throws InputError beyond kMaxPairs.
 BruteForceResult brute_force(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
 }  // namespace lrb

@@ -143,10 +143,10 @@ class BoundsProbe {
 };
 
 /// Records all bounds.
-class BoundsCourse final : public BoundsProbe {
+class BoundsHistory final : public BoundsProbe {
  public:
-  void bounds(const Bounds& known) override { course.push_back(known); }
-  std::vector<Bounds> course;
+  void bounds(const Bounds& known) override { history.push_back(known); }
+  std::vector<Bounds> history;
 };
 
 /// Returns the same as distance() without a probe, and reports the bounds while they converge. The last

@@ -27,9 +27,9 @@ class EnvironmentError : public std::runtime_error {
 // finite. (Modelled on std::expected of C++23.)
 
 /// An error: one line with the file, the line or element, the expected and the found content, and a remedy.
-struct Refusal {
+struct Error {
   std::string reason;
-  friend bool operator==(const Refusal&, const Refusal&) = default;
+  friend bool operator==(const Error&, const Error&) = default;
 };
 
 /// Either a value of type T, which may be a reference, or an error (Refusal).
@@ -45,7 +45,7 @@ class [[nodiscard]] Expected {
   Expected() requires std::is_default_constructible_v<T> : kept_(std::in_place_index<0>) {}
   Expected(Kept value) : kept_(std::in_place_index<0>, std::move(value)) {}
   Expected(Value& value) requires std::is_reference_v<T> : kept_(std::in_place_index<0>, value) {}
-  Expected(Refusal refusal) : kept_(std::in_place_index<1>, std::move(refusal)) {}
+  Expected(Error error) : kept_(std::in_place_index<1>, std::move(error)) {}
 
   bool has_value() const { return kept_.index() == 0; }
   explicit operator bool() const { return has_value(); }
@@ -67,7 +67,7 @@ class [[nodiscard]] Expected {
   Value& value() const& requires std::is_reference_v<T> { return check(), **this; }
 
   /// Returns the error. Precondition: !has_value().
-  const Refusal& error() const { return *std::get_if<1>(&kept_); }
+  const Error& error() const { return *std::get_if<1>(&kept_); }
 
   friend bool operator==(const Expected&, const Expected&) requires(!std::is_reference_v<T>) = default;
 
@@ -76,7 +76,7 @@ class [[nodiscard]] Expected {
     if (!has_value()) throw InputError(error().reason);
   }
 
-  std::variant<Kept, Refusal> kept_;
+  std::variant<Kept, Error> kept_;
 };
 
 }  // namespace lrb

@@ -137,7 +137,7 @@ struct WalkDepth {
 };
 
 /// A separating plane: n.x <= of_a for all points of A, n.x >= of_b > of_a for all points of B.
-struct PartingPlane {
+struct SeparatingPlane {
   Eigen::Vector3d normal{0, 0, 0};       ///< unit length, world frame, from A to B
   double of_a = 0, of_b = 0;             ///< mesh units
   std::array<Eigen::Vector3d, 2> reach;  ///< a vertex of A and one of B that attain these bounds; world frame
@@ -164,12 +164,12 @@ struct WalkExplanation {
   /// If the bodies do not intersect: the closest two boxes among those found disjoint along a face normal.
   /// Nodes rejected only along a cross product of edges are not considered.
   std::optional<PartedBoxes> nearest_boxes;
-  std::optional<PartingPlane> plane;  ///< for separate bodies: the best separating plane found; often none
-                                      ///< exists
+  std::optional<SeparatingPlane> plane;  ///< for separate bodies: the best separating plane found; often none
+                                         ///< exists
   /// If the bodies do not intersect: the closest pairs among those tested one by one, closest first, at most
-  /// kMostNear.
+  /// kMaxNear.
   std::vector<SimplexPair> near;
-  static constexpr std::size_t kMostNear = 5;
+  static constexpr std::size_t kMaxNear = 5;
 };
 
 /// Traverses both trees as the complete query for all pairs does, and records its steps. Throws as collide()

@@ -142,7 +142,7 @@ class KnownBodies {
   }
 
  private:
-  static constexpr std::size_t kMost = 256;
+  static constexpr std::size_t kMax = 256;
 
   struct Entry {
     std::shared_ptr<const Body> body;
@@ -173,7 +173,7 @@ class KnownBodies {
   void keep(const void* address, std::shared_ptr<const Body> body) {
     const std::lock_guard lock(mutex_);
     entries_[address] = {std::move(body), ++clock_};
-    if (entries_.size() <= kMost) return;
+    if (entries_.size() <= kMax) return;
     entries_.erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& x, const auto& y) {
       return x.second.asked < y.second.asked;
     }));

@@ -167,10 +167,10 @@ class FirstContactProbe {
 };
 
 /// Records all bounds.
-class FirstContactCourse final : public FirstContactProbe {
+class FirstContactHistory final : public FirstContactProbe {
  public:
-  void bounds(const ContactBounds& known) override { course.push_back(known); }
-  std::vector<ContactBounds> course;
+  void bounds(const ContactBounds& known) override { history.push_back(known); }
+  std::vector<ContactBounds> history;
 };
 
 /// Returns the same as first_contact() without a probe, and reports the bounds while they converge.

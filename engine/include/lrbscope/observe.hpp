@@ -72,21 +72,21 @@ struct NodeVisit {
                                  ///< roots
   NodeStep step = NodeStep::descend_both;
   std::uint8_t box_tests = 0;  ///< tests of two boxes
-  std::uint8_t met = 0;      ///< pairs of boxes that intersect: pairs of nodes to be visited, or of simplices
-  std::uint8_t parted = 0;   ///< leaves: pairs of simplices with intersecting boxes that a plane separates
-  std::uint8_t certain = 0;  ///< leaves: remaining pairs that are decided in floats
+  std::uint8_t met = 0;  ///< pairs of boxes that intersect: pairs of nodes to be visited, or of simplices
+  std::uint8_t rejected = 0;  ///< leaves: pairs of simplices with intersecting boxes that a plane separates
+  std::uint8_t certain = 0;   ///< leaves: remaining pairs that are decided in floats
 };
 
 /// The method that decided a face test.
 enum class TestedBy : std::uint8_t {
-  untold,          ///< not reported at this event level
+  unreported,      ///< not reported at this event level
   floats,          ///< the tree's kernel, in floats with bounded errors
   shared_corners,  ///< the same, using that corners are equal
   filter,          ///< exact predicates, all decided by their floating-point filters
   expansions,      ///< exact predicates, at least one of them in exact arithmetic
 };
 constexpr auto words_of(TestedBy) {
-  return std::to_array<EnumWord<TestedBy>>({{TestedBy::untold, "untold"},
+  return std::to_array<EnumWord<TestedBy>>({{TestedBy::unreported, "untold"},
                                             {TestedBy::floats, "floats"},
                                             {TestedBy::shared_corners, "shared corners"},
                                             {TestedBy::filter, "filter"},
@@ -212,7 +212,7 @@ struct NullProbe {
 
 /// Returns true if the probe's event level is above EventLevel::faces.
 template <class Probe>
-bool is_told_more(const Probe& probe) {
+bool reports_details(const Probe& probe) {
   if constexpr (Probe::kEnabled) return probe.level() != EventLevel::faces;
   return false;
 }
@@ -220,7 +220,7 @@ bool is_told_more(const Probe& probe) {
 /// Runs a phase of a query and reports its begin and end to the probe. work() returns the phase's count.
 template <class Probe, class Work>
 void in_phase(Probe& probe, Phase phase, const Work& work) {
-  if (!is_told_more(probe)) {
+  if (!reports_details(probe)) {
     work();
     return;
   }
@@ -235,7 +235,7 @@ void locate_in_phase(Probe& probe, const Work& work) {
     std::uint64_t points = 0;
     work([&](Side side, VertexId v, Where where) {
       ++points;
-      if (is_told_more(probe)) probe.point(side, v, where);
+      if (reports_details(probe)) probe.point(side, v, where);
     });
     return points;
   });

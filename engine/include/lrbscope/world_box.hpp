@@ -29,7 +29,7 @@ Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, ExtremeVertic
 
 /// Returns true if the world AABBs of two bodies are disjoint. Exact for any finite coordinates. Stops as
 /// soon as that is decided. A body without faces is disjoint from every body.
-bool world_boxes_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
+bool world_boxes_are_disjoint(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
 /// Computes world_box() by the faster method for the body: for a small one, transforms every corner. Create
 /// one per body and share it between threads. The LRB-rep must outlive it.

@@ -64,7 +64,7 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-[[noreturn]] void refuse(std::string_view name, std::string_view found, std::string_view advice = kAdvice) {
+[[noreturn]] void reject(std::string_view name, std::string_view found, std::string_view advice = kAdvice) {
   throw InputError(printable_name(name) + ":1: found " + std::string(found) +
                    ", expected an OBJ, STL, PLY or OFF mesh; " + std::string(advice));
 }
@@ -113,7 +113,7 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   // The header of a binary STL may begin with "solid", so its size is tested before that keyword.
   if (has_size_of_binary_stl(bytes)) return MeshFormat::stl_binary;
   if (bytes.find_first_not_of(" \t\r\n\v\f") == std::string_view::npos)
-    refuse(name, bytes.empty() ? "an empty file" : "only white space", "export or copy the file again");
+    reject(name, bytes.empty() ? "an empty file" : "only white space", "export or copy the file again");
 
   // First token with and without "#" comments: PLY and STL have none.
   const std::string_view first = TextCursor(bytes, name, {.hash_comments = true}).any_token();
@@ -123,19 +123,19 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   if (lower(first_of_all) == "solid") return is_text(bytes) ? MeshFormat::stl_ascii : MeshFormat::stl_binary;
   if (parse_off_header(first)) return MeshFormat::off;
   // Unsupported formats are named in the message.
-  if (const auto what = looks_like(bytes)) refuse(name, *what);
-  if (is_utf16_without_mark(bytes)) refuse(name, "UTF-16 text (save it as UTF-8)");
+  if (const auto what = looks_like(bytes)) reject(name, *what);
+  if (is_utf16_without_mark(bytes)) reject(name, "UTF-16 text (save it as UTF-8)");
   // Binary data: only the extension is left as evidence.
   if (!is_text(bytes)) {
     if (extension == "stl") return MeshFormat::stl_binary;
-    if (extension != "obj") refuse(name, "binary data of an unknown format");
+    if (extension != "obj") reject(name, "binary data of an unknown format");
   }
-  if (first.empty()) refuse(name, "only comments", "export or copy the file again");
+  if (first.empty()) reject(name, "only comments", "export or copy the file again");
   // OBJ has no signature, so its first statement identifies it.
   if (std::find(kObjWords.begin(), kObjWords.end(), first) != kObjWords.end()) return MeshFormat::obj;
   if (extension == "obj") return MeshFormat::obj;  // the OBJ reader reports the invalid line
   if (extension == "off" && is_number(first)) return MeshFormat::off;  // the keyword OFF is optional
-  refuse(name, "text that begins with " + in_quotes(first));
+  reject(name, "text that begins with " + in_quotes(first));
 }
 
 }  // namespace lrb

@@ -58,6 +58,6 @@ bool has_size_of_binary_stl(std::string_view bytes);
 void check_index_limits(std::uint64_t vertices, std::uint64_t corners, std::string_view name);
 
 /// Throws InputError if the mesh has no faces and therefore cannot be queried.
-void refuse_without_faces(const Mesh& mesh, std::string_view name);
+void reject_without_faces(const Mesh& mesh, std::string_view name);
 
 }  // namespace lrb

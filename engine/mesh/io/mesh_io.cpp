@@ -41,7 +41,7 @@ void check_index_limits(std::uint64_t vertices, std::uint64_t corners, std::stri
                      std::to_string(kMaxId) + "; simplify or split the mesh");
 }
 
-void refuse_without_faces(const Mesh& mesh, std::string_view name) {
+void reject_without_faces(const Mesh& mesh, std::string_view name) {
   if (mesh.face_count() == 0)
     throw InputError(printable_name(name) + ": found " + std::to_string(mesh.vertices.size()) +
                      " vertices and no faces, expected a surface mesh; export the mesh with its faces");

@@ -57,7 +57,7 @@ class ObjReader {
     // Checks that need the entire file: indices, the meaning of line elements, limits.
     check_forward_references();
     take_segments();
-    refuse_without_faces(mesh_, name_);
+    reject_without_faces(mesh_, name_);
     check_index_limits(mesh_.vertices.size(), mesh_.face_vertices.size(), name_);
     return std::move(mesh_);
   }
@@ -185,7 +185,7 @@ class ObjReader {
 }  // namespace
 
 Mesh read_obj(std::string_view bytes, std::string_view name) {
-  refuse_nul(bytes, name);
+  reject_nul(bytes, name);
   return ObjReader(bytes, name).read();
 }
 

@@ -31,7 +31,7 @@ class OffReader {
     if (!extra.empty())
       text_.fail(in_quotes(extra), "the end of the file (all vertices and faces are read)",
                  "correct the counts");
-    refuse_without_faces(mesh_, name_);
+    reject_without_faces(mesh_, name_);
     return std::move(mesh_);
   }
 
@@ -140,7 +140,7 @@ class OffReader {
 }  // namespace
 
 Mesh read_off(std::string_view bytes, std::string_view name) {
-  refuse_nul(bytes, name);
+  reject_nul(bytes, name);
   return OffReader(bytes, name).read();
 }
 

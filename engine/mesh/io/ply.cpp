@@ -404,7 +404,7 @@ class PlyReader {
     // vary.
     for (const PlyElement& e : header_.elements) elements(e);
     source_.end_of_data();
-    refuse_without_faces(mesh_, name_);
+    reject_without_faces(mesh_, name_);
     check_index_limits(mesh_.vertices.size(), mesh_.face_vertices.size(), name_);
     return std::move(mesh_);
   }
@@ -489,7 +489,7 @@ class PlyReader {
 Mesh read_ply(std::string_view bytes, std::string_view name) {
   const PlyHeader header = PlyHeaderReader(bytes, name).read();
   if (header.format == PlyFormat::ascii) {
-    refuse_nul(bytes, name);
+    reject_nul(bytes, name);
     const PlyText text(bytes.substr(header.data_offset), name, header.data_line);
     return PlyReader(header, text, name).read();
   }

@@ -139,7 +139,7 @@ std::string TextCursor::shown(std::string_view token) const {
   return at_ == end_ ? "the end of the file" : "the end of the line";
 }
 
-void refuse_nul(std::string_view text, std::string_view name) {
+void reject_nul(std::string_view text, std::string_view name) {
   const std::size_t nul = text.find('\0');
   if (nul == std::string_view::npos) return;
   // The line of the NUL byte, counting only LF.

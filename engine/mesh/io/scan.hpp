@@ -74,6 +74,6 @@ class TextCursor {
 };
 
 /// Throws InputError if the text contains a NUL byte: it is binary, or damaged.
-void refuse_nul(std::string_view text, std::string_view name);
+void reject_nul(std::string_view text, std::string_view name);
 
 }  // namespace lrb

@@ -42,7 +42,7 @@ class StlText {
       solid();
       word = text_.any_token();
     } while (!word.empty());
-    refuse_without_faces(mesh_, name_);
+    reject_without_faces(mesh_, name_);
     return std::move(mesh_);
   }
 
@@ -99,7 +99,7 @@ class StlText {
   VertexMerger merger_{mesh_.vertices};
 };
 
-[[noreturn]] void refuse_size(std::string_view bytes, std::string_view name) {
+[[noreturn]] void reject_size(std::string_view bytes, std::string_view name) {
   const std::string size = std::to_string(bytes.size()) + " bytes";
   const std::string expected =
       bytes.size() < kStart ? "at least " + std::to_string(kStart) + " (the header of a binary STL file)"
@@ -109,7 +109,7 @@ class StlText {
                    "; the file is cut short or damaged: export or copy it again");
 }
 
-[[noreturn]] void refuse_coordinate(std::string_view name, std::size_t triangle, std::size_t byte,
+[[noreturn]] void reject_coordinate(std::string_view name, std::size_t triangle, std::size_t byte,
                                     float value) {
   throw InputError(printable_name(name) + ": triangle " + std::to_string(triangle) + " (byte " +
                    std::to_string(byte) + "): found the coordinate " + (std::isnan(value) ? "nan" : "inf") +
@@ -123,12 +123,12 @@ bool has_size_of_binary_stl(std::string_view bytes) {
 }
 
 Mesh read_stl_ascii(std::string_view bytes, std::string_view name) {
-  refuse_nul(bytes, name);
+  reject_nul(bytes, name);
   return StlText(bytes, name).read();
 }
 
 Mesh read_stl_binary(std::string_view bytes, std::string_view name) {
-  if (!has_size_of_binary_stl(bytes)) refuse_size(bytes, name);
+  if (!has_size_of_binary_stl(bytes)) reject_size(bytes, name);
   // The size is consistent with the count, so all reads below are within the file.
   const std::size_t count = claimed_triangles(bytes);
   check_index_limits(0, 3 * std::uint64_t{count}, name);
@@ -145,14 +145,14 @@ Mesh read_stl_binary(std::string_view bytes, std::string_view name) {
       Eigen::Vector3d v;
       for (int i = 0; i < 3; ++i, byte += 4) {
         const float x = load<float>(bytes.data() + byte, std::endian::little);
-        if (!std::isfinite(x)) refuse_coordinate(name, t, byte, x);
+        if (!std::isfinite(x)) reject_coordinate(name, t, byte, x);
         v[i] = x;
       }
       c = merger.id(v);
     }
     mesh.add_face(corners);
   }
-  refuse_without_faces(mesh, name);
+  reject_without_faces(mesh, name);
   return mesh;
 }
 

@@ -209,17 +209,17 @@ TEST_CASE("runs: the counters of all faces add up to the step's events, curves t
     CHECK(sum("hits") >= sum("contacts"));
   }
   const Part& curves = r.model.parts[4];
-  double length = 0, told = 0;
+  double length = 0, reported = 0;
   std::set<double> regions;
   for (std::size_t c = 0; c < curves.cell_count(); ++c) {
     const auto cell = curves.cell(c);
     for (std::size_t i = 0; i + 1 < cell.size(); ++i)
       length += (curves.vertices[cell[i]] - curves.vertices[cell[i + 1]]).norm();
     if (regions.insert(column(r.model, curves, "contact")[c]).second)
-      told += column(r.model, curves, "length")[c];
+      reported += column(r.model, curves, "length")[c];
   }
   CHECK(length > 0);
-  CHECK(length == doctest::Approx(told).epsilon(1e-9));
+  CHECK(length == doctest::Approx(reported).epsilon(1e-9));
 }
 
 TEST_CASE("PLY and OBJ: our own readers find the same mesh, to the last bit") {

@@ -75,9 +75,9 @@ TEST_CASE("--up turns what a scenario gives; --from is in the axes of the files"
   CHECK(above != picture({"--from", "0.01,0,1", "--zoom", "0.5", "--projection", "orthographic"}, "c.png"));
   CHECK(above.width() < 500);  // panels have the size that was asked for
   for (const char* bad : {"0,0,1", "0,0,0", "1,2"})
-    test::check_refused(folder, {"inspect", "cube.obj", "--render", "--from", bad, "-o", "no.png"});
-  test::check_refused(folder, {"inspect", "cube.obj", "--up", "y"});
-  test::check_refused(folder, {"inspect", "cube.obj", "--render", "--size", "5x5", "-o", "no.png"});
+    test::check_rejected(folder, {"inspect", "cube.obj", "--render", "--from", bad, "-o", "no.png"});
+  test::check_rejected(folder, {"inspect", "cube.obj", "--up", "y"});
+  test::check_rejected(folder, {"inspect", "cube.obj", "--render", "--size", "5x5", "-o", "no.png"});
 }
 
 TEST_CASE("--animate: by ffmpeg; without it, refused before anything is drawn") {
@@ -113,7 +113,7 @@ TEST_CASE("--animate: by ffmpeg; without it, refused before anything is drawn") 
   CHECK(test::run(folder, {"run", "s.json", "-o", "run", "--animate", "z.webp"}).code == 3);
   ::unsetenv("LRB_FFMPEG");
   for (const char* none : {"y.mp4", "z.webp"}) CHECK(!std::filesystem::exists(folder / none));
-  test::check_refused(folder, {"run", "s.json", "-o", "other", "--animate", "x.avi"});
+  test::check_rejected(folder, {"run", "s.json", "-o", "other", "--animate", "x.avi"});
 }
 
 TEST_CASE("collide keeps the view that it chose in the trace") {

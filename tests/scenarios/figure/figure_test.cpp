@@ -89,9 +89,9 @@ TEST_CASE("panels of layers: 26 at most, evenly chosen, and what is left out is 
   const Shipped few("figure2"), many("figure2_mesh");
   CHECK(choose(few.run, {Choice::By::layers, {}}).left_out.empty());
   const std::uint32_t layers = many.recording.trace.header.bodies[0].layers;
-  REQUIRE(layers >= kMostPanels);
+  REQUIRE(layers >= kMaxPanels);
   const Chosen chosen = choose(many.run, {Choice::By::layers, {}});
-  CHECK(chosen.events.size() == kMostPanels);
+  CHECK(chosen.events.size() == kMaxPanels);
   CHECK(chosen.events.front() == 0);
   CHECK(chosen.events.back() + 1 == many.recording.trace.events.size());
   CHECK(chosen.left_out ==
@@ -255,5 +255,5 @@ TEST_CASE("lrbscope figure: files, and what it refuses before it writes anything
       {"figure", ".", "-o", "fig.pdf"},
       {"figure", "missing.obj", "-o", "fig.pdf"},
   };
-  for (const auto& arguments : bad) test::check_refused(folder, arguments);
+  for (const auto& arguments : bad) test::check_rejected(folder, arguments);
 }

@@ -375,9 +375,9 @@ TEST_CASE("goldens: two scenarios of one name are refused; one that has been mov
   const auto approve = [&](const std::string& file) {
     return test::run(folder, {"golden", "approve", "--frames", "2", file});
   };
-  const Outcome refused = approve("more/balls.scenario.json");
-  CHECK(refused.code == 2);
-  CHECK(has(refused.err, "more/balls.scenario.json: has the same name as another scenario"));
+  const Outcome rejected = approve("more/balls.scenario.json");
+  CHECK(rejected.code == 2);
+  CHECK(has(rejected.err, "more/balls.scenario.json: has the same name as another scenario"));
   CHECK(slurp(folder / "goldens/balls/trace.json.gz") == approved);
   CHECK(approve("./balls.scenario.json").code == 0);
   std::filesystem::rename(folder / "balls.scenario.json", folder / "more/moved.scenario.json");

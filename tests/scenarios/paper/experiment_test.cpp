@@ -247,10 +247,10 @@ TEST_CASE("paper --experiment: only what is asked for, on bodies of one's own; p
                                               {"--step", "0"}}) {
     std::vector<std::string> all = {"paper", "-o", "bad"};
     all.insert(all.end(), bad.begin(), bad.end());
-    const test::Outcome refused = run(all);
-    CAPTURE(refused.err);
-    CHECK(refused.code == 2);
-    CHECK(refused.error_lines() == 1);
+    const test::Outcome rejected = run(all);
+    CAPTURE(rejected.err);
+    CHECK(rejected.code == 2);
+    CHECK(rejected.error_lines() == 1);
     CHECK_FALSE(std::filesystem::exists(folder / "bad"));
   }
 }

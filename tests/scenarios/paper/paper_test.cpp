@@ -131,22 +131,22 @@ TEST_CASE("paper: the program's shards make the report of the whole, and bad inp
   for (const char* file : {"/records.jsonl", "/tables.json"})
     CHECK(test::slurp(folder / (std::string("all") + file)) ==
           test::slurp(folder / (std::string("whole") + file)));
-  const auto refused = [&](std::vector<std::string> args, const char* why) {
+  const auto rejected = [&](std::vector<std::string> args, const char* why) {
     args.insert(args.end(), {"-o", "none"});
     const auto o = run(args);
     CHECK(o.code == 2);
     CHECK(o.err.find(why) != std::string::npos);
   };
-  refused({"--merge", "part1/records.jsonl", "part1/records.jsonl"}, "shard 0/2 is missing");
-  refused({"--merge", "part0/records.jsonl", "part1/records.jsonl", "part1/records.jsonl"},
-          "1/2 occurs twice");
-  refused({"--merge", "part1/records.jsonl"}, "shard 0/2 is missing");
-  refused({"--merge", "part0/records.jsonl", "other/records.jsonl"}, "another experiment");
-  refused({"--merge", "whole/records.jsonl"}, "whole/shard.json");
-  refused({"--collisions", "2", "--merge", "part0/records.jsonl"}, "--collisions");
-  refused({"--lean", "--merge", "part0/records.jsonl"}, "--lean");
+  rejected({"--merge", "part1/records.jsonl", "part1/records.jsonl"}, "shard 0/2 is missing");
+  rejected({"--merge", "part0/records.jsonl", "part1/records.jsonl", "part1/records.jsonl"},
+           "1/2 occurs twice");
+  rejected({"--merge", "part1/records.jsonl"}, "shard 0/2 is missing");
+  rejected({"--merge", "part0/records.jsonl", "other/records.jsonl"}, "another experiment");
+  rejected({"--merge", "whole/records.jsonl"}, "whole/shard.json");
+  rejected({"--collisions", "2", "--merge", "part0/records.jsonl"}, "--collisions");
+  rejected({"--lean", "--merge", "part0/records.jsonl"}, "--lean");
   folder.write("part0/shard.json", "{\"shard\": -1}");
-  refused({"--merge", "part0/records.jsonl", "part1/records.jsonl"}, "part0/shard.json");
+  rejected({"--merge", "part0/records.jsonl", "part1/records.jsonl"}, "part0/shard.json");
   for (const char* bad : {"2/2", "x", "1", "0/0", "-1/2", "0/2x"})
     CHECK(run({"--shard", bad, "-o", "none"}).code == 2);
 }
@@ -245,18 +245,18 @@ TEST_CASE("paper: meshes at several resolutions, in shards and as a whole" * doc
   CHECK(j["rows"][0]["real_faces"] == 1280);
   CHECK(j["powers_of_total_faces"].size() == 12);
   CHECK(test::slurp(folder / "whole/report.md").find("Growth with the resolution") != std::string::npos);
-  const auto refused = [&](const std::string& meshes, std::vector<std::string> more, const char* why) {
+  const auto rejected = [&](const std::string& meshes, std::vector<std::string> more, const char* why) {
     const auto o = paper(meshes, std::move(more));
     CHECK(o.code == 2);
     CHECK(o.err.find(why) != std::string::npos);
   };
-  refused("meshes/ball.ply",
-          {"--merge", "part0/records.jsonl", "part1/records.jsonl", "part2/records.jsonl", "-o", "x"},
-          "not in the series");
-  refused("meshes/open.obj", {"-o", "x"}, "no mesh from which an LRB-rep can be built");
-  refused("none.obj", {"-o", "x"}, "none.obj");
+  rejected("meshes/ball.ply",
+           {"--merge", "part0/records.jsonl", "part1/records.jsonl", "part2/records.jsonl", "-o", "x"},
+           "not in the series");
+  rejected("meshes/open.obj", {"-o", "x"}, "no mesh from which an LRB-rep can be built");
+  rejected("none.obj", {"-o", "x"}, "none.obj");
   std::filesystem::create_directory(folder.path / "other");
   write_mesh(ball, folder / "other/ball.ply");
   write_mesh(ball, folder / "other/ball.obj");
-  refused("other", {"-o", "x"}, "another mesh is named ball");
+  rejected("other", {"-o", "x"}, "another mesh is named ball");
 }

@@ -71,13 +71,13 @@ TEST_CASE("measured runs: each step has its distance and its clash, and the sear
   CHECK(r.trace.steps.back().result.clash->kind == ClashKind::protrudes);
   CHECK(r.trace.steps.back().result.clash->depth->at(0) > 0.1);
   REQUIRE(r.trace.header.first_contact.has_value());
-  CHECK(r.trace.header.first_contact->course.size() > 2);
+  CHECK(r.trace.header.first_contact->history.size() > 2);
   const run::Recording plain = recorded("{}");
   CHECK_FALSE(plain.trace.steps[0].result.distance.has_value());
   CHECK_FALSE(plain.trace.steps[0].result.clash.has_value());
   REQUIRE(plain.trace.header.first_contact.has_value());
   CHECK(plain.trace.header.first_contact->step == r.trace.header.first_contact->step);
-  CHECK(plain.trace.header.first_contact->course.empty());
+  CHECK(plain.trace.header.first_contact->history.empty());
 }
 
 TEST_CASE("measured runs: frames show the nearest points, and the way out, and say how long they are") {

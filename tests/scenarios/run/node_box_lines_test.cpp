@@ -31,21 +31,21 @@ TEST_CASE("boxes of the nodes of a depth that were visited are drawn, solid wher
   const trace::NodeCounts counts = trace::count_nodes(tree, Side::b, t.events);
   bool some_left_out = false;
   for (std::uint32_t depth = 0; depth < ball.tree().height(); ++depth) {
-    std::size_t met = 0, parted = 0;
+    std::size_t met = 0, rejected = 0;
     for (std::uint32_t n = 0; n < tree.size(); ++n) {
       if (tree.depth(n) != depth) continue;
       some_left_out |= counts.visits[n] == 0;
-      if (counts.visits[n] > 0) ++(counts.ended[n] < counts.visits[n] ? met : parted);
+      if (counts.visits[n] > 0) ++(counts.ended[n] < counts.visits[n] ? met : rejected);
     }
     render::Scene scene;
     add_node_boxes(scene, tree, Side::b, pose, depth, t.events, kStyle);
     constexpr std::size_t kLines = 6;  // two ends, and four edges between them
     const auto dashed = static_cast<std::size_t>(std::count_if(
         scene.list.lines.begin(), scene.list.lines.end(), [](const auto& l) { return l.dash > 0; }));
-    CHECK(scene.list.lines.size() == kLines * (met + parted));
-    CHECK(dashed == kLines * parted);
-    CHECK(scene.key.size() == (met > 0) + (parted > 0));
-    CHECK(met + parted > 0);
+    CHECK(scene.list.lines.size() == kLines * (met + rejected));
+    CHECK(dashed == kLines * rejected);
+    CHECK(scene.key.size() == (met > 0) + (rejected > 0));
+    CHECK(met + rejected > 0);
   }
   CHECK(some_left_out);
   render::Scene deeper;

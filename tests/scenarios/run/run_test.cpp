@@ -111,7 +111,7 @@ TEST_CASE("a construction's frames say what each pass made and refused, and noth
   const run::RecordedRun p = run::recorded_run_of(s, r);
   run::FrameState state(p, s.frames, false);
   std::string all;
-  std::size_t refusals = 0;
+  std::size_t rejections = 0;
   for (const trace::EventId e : run::moments(s.frames, r.trace)) {
     state.seek(e);
     const render::Overlay overlay = state.overlay(s.name);
@@ -119,14 +119,14 @@ TEST_CASE("a construction's frames say what each pass made and refused, and noth
     all += overlay.title + overlay.event + state.caption() + state.short_caption();
     for (const render::OverlayCounter& c : overlay.counters) all += c.name + c.value;
     for (const render::LegendItem& item : scene.key) all += item.text;
-    refusals += overlay.event.find("rejected: ") != std::string::npos;
+    rejections += overlay.event.find("rejected: ") != std::string::npos;
     CHECK((e == 0 || overlay.event.starts_with("pass ")));
     const bool new_lids = std::any_of(scene.key.begin(), scene.key.end(), [](const render::LegendItem& i) {
       return i.text == "new lids, one colour per region";
     });
     CHECK(new_lids == (e != 0));
   }
-  CHECK(refusals > 3);
+  CHECK(rejections > 3);
   CHECK(all.find("refine") == std::string::npos);
   state.seek(static_cast<trace::EventId>(r.trace.events.size() - 1));
   CHECK(state.caption().starts_with("Built: "));

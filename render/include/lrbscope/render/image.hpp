@@ -149,18 +149,18 @@ struct DecodedPng {
   double dpi = 0;  ///< 0: not given
 };
 /// Default limit on the pixels of a picture that is read: 0.5 GB.
-inline constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 27;
+inline constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 27;
 
 /// Decodes a PNG. Throws InputError with `name` in it if the bytes are not a PNG, are damaged, have more than
-/// `most_pixels` pixels, or contain more or less data than their pixels take. Allocates memory for the pixels
+/// `max_pixels` pixels, or contain more or less data than their pixels take. Allocates memory for the pixels
 /// only, and only if the compressed bytes can expand to that many.
 DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name = "PNG",
-                      std::uint64_t most_pixels = kMostPixels);
+                      std::uint64_t max_pixels = kMaxPixels);
 
 /// Writes a picture completely or not at all (AtomicFile), so that no partial file appears under its name.
 /// Throws InputError for a bad path, EnvironmentError for a failure of the machine.
 void write_png(const Image& image, const std::string& path, const PngOptions& options = {});
 /// Reads a picture. Throws InputError if the file cannot be read.
-DecodedPng read_png(const std::string& path, std::uint64_t most_pixels = kMostPixels);
+DecodedPng read_png(const std::string& path, std::uint64_t max_pixels = kMaxPixels);
 
 }  // namespace lrb::render

@@ -103,7 +103,7 @@ struct PassSummary {
   EventId first = kNull, last = kNull;  ///< its first event and its last stored event
   BuildStage stage = BuildStage::fit;
   std::uint32_t layer = 0;  ///< of the regions it made
-  float most_off = 0;       ///< maximum deviation allowed for caps, mesh units; 0: unlimited
+  float max_deviation = 0;  ///< maximum deviation allowed for caps, mesh units; 0: unlimited
   float off = 0;            ///< largest measured deviation of its caps; 0: not measured
   std::uint32_t faces_before = 0, faces_after = 0;
   std::uint32_t regions = 0;  ///< regions made
@@ -117,7 +117,7 @@ struct PassSummary {
   bool given_up = false;                                ///< see PassEnd
 
   std::uint32_t accepted() const { return caps[0]; }
-  std::uint32_t refused() const { return patches - accepted(); }
+  std::uint32_t rejected() const { return patches - accepted(); }
   /// Returns the number shown to users, from 1; passes without regions have none.
   std::uint32_t number() const { return layer + 1; }
 };
@@ -133,7 +133,7 @@ Chart chart_over_construction(const Trace& trace);
 Chart chart_over_passes(const Trace& trace);
 
 /// Returns the reasons for rejection, most frequent first: "9 met the hull, 3 too thick".
-std::string refusal_words(const std::array<std::uint32_t, kWords<CapVerdict>.size()>& caps);
+std::string rejection_text(const std::array<std::uint32_t, kWords<CapVerdict>.size()>& caps);
 
 /// Returns the number of caps by verdict, over all given passes.
 std::array<std::uint32_t, kWords<CapVerdict>.size()> caps_of(const std::vector<PassSummary>& passes);

@@ -112,7 +112,7 @@ class Recorder final : public CollideProbe {
     last_pair_ =
         push(Event::of(payload::NodePair{.a = visit.a,
                                          .b = visit.b,
-                                         .work = {visit.box_tests, visit.met, visit.parted, visit.certain},
+                                         .work = {visit.box_tests, visit.met, visit.rejected, visit.certain},
                                          .end = {.step = visit.step},
                                          .pairs_above = saturated(depth)},
                        visit.parent));

@@ -35,7 +35,7 @@ struct MeasuredDistance {
   double lower = 0, upper = 0;  ///< bounds of the distance of the surfaces; 0 if they intersect
   bool solids_meet = false;     ///< the surfaces intersect, or one body contains the other
   std::array<std::array<double, 3>, 2> points{};  ///< on the surfaces of A and B, at distance `upper`
-  std::vector<Bounds> course;
+  std::vector<Bounds> history;
 
   friend bool operator==(const MeasuredDistance&, const MeasuredDistance&) = default;
 };
@@ -48,7 +48,7 @@ struct MeasuredClash {
   std::array<double, 2> distance{};                    ///< of the solids
   std::optional<std::array<double, 2>> depth, volume;  ///< intervals; nullopt: not known
   std::array<double, 3> translation{};                 ///< of B, that separates the solids
-  std::vector<Bounds> course;                          ///< of the depth
+  std::vector<Bounds> history;                         ///< of the depth
 
   friend bool operator==(const MeasuredClash&, const MeasuredClash&) = default;
 };
@@ -61,15 +61,15 @@ struct MeasuredApproach {
   /// before step 0. nullopt: no contact.
   std::optional<std::array<double, 2>> step;
   std::optional<std::array<double, 2>> length;  ///< path length of B's origin from step 0 until then
-  std::vector<ContactBounds> course;            ///< empty unless the search was probed
+  std::vector<ContactBounds> history;           ///< empty unless the search was probed
 
   friend bool operator==(const MeasuredApproach&, const MeasuredApproach&) = default;
 };
 
-MeasuredDistance measured(const DistanceResult& result, std::vector<Bounds> course);
-MeasuredClash measured(const ClashResult& result, std::vector<Bounds> course);
+MeasuredDistance measured(const DistanceResult& result, std::vector<Bounds> history);
+MeasuredClash measured(const ClashResult& result, std::vector<Bounds> history);
 /// Leaves step and length empty; they depend on the steps of the trace.
-MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> course);
+MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> history);
 
 /// Return a one-line summary: "[0.25, 0.25] in 31 looks".
 std::string words(const MeasuredDistance& m);
@@ -92,7 +92,7 @@ using EventId = std::uint32_t;
 
 /// Work at a node pair: see NodeVisit.
 struct NodeWork {
-  std::uint8_t box_tests = 0, met = 0, parted = 0, certain = 0;
+  std::uint8_t box_tests = 0, met = 0, rejected = 0, certain = 0;
 
   friend bool operator==(const NodeWork&, const NodeWork&) = default;
 };
@@ -122,7 +122,7 @@ struct FaceTest {
   exact::Meet meet = exact::Meet::disjoint;
   /// Number of regions between a face and the outside; saturates at 65535.
   std::uint16_t depth_a = 0, depth_b = 0;
-  TestedBy tested_by = TestedBy::untold;
+  TestedBy tested_by = TestedBy::unreported;
 };
 /// Refine, coarsen, region.
 struct WrapperChange {
@@ -166,7 +166,7 @@ struct Pass {
   BuildStage stage{};
   std::uint32_t layer = 0;
   std::uint32_t barred = 0;  ///< as PassEnd::barred
-  float most_off = 0;        ///< as PassStart::most_off
+  float max_deviation = 0;   ///< as PassStart::max_deviation
 };
 struct Patch {
   VertexId vertex{};
@@ -269,7 +269,7 @@ struct Event {
   static Event of(const payload::Pass& p) {
     return {.a = p.layer,
             .b = p.barred,
-            .boundary = std::bit_cast<std::uint32_t>(p.most_off),
+            .boundary = std::bit_cast<std::uint32_t>(p.max_deviation),
             .kind = EventKind::pass,
             .detail = static_cast<std::uint8_t>(p.stage)};
   }
