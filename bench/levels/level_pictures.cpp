@@ -264,7 +264,6 @@ render::Image draw_wrappers(const ShownBody& shown, std::span<const ShownLevel> 
   overlay.event =
       "Each wrapper encloses the body. Below it: its proven maximum deviation, as a fraction of the longest "
       "side of the box.";
-  "side of the box.";
   return draw_sheet(panels, overlay);
 }
 
