@@ -331,7 +331,8 @@ void check_fcl(Report& report, const Cell& cell) {
     if (lrb::fcl::collide<double>(&models[0], home, &models[1], place, all, found) != step.truth.pairs.size())
       report.wrong("other pairs");
     ::fcl::DistanceResultd apart;
-    const double d = lrb::fcl::distance<double>(&models[0], home, &models[1], place, {}, apart);
+    const double d =
+        lrb::fcl::distance<double>(&models[0], home, &models[1], place, ::fcl::DistanceRequestd(), apart);
     if (std::abs(d - step.distance) > kSlack * cell.size) report.wrong("another distance");
   }
 }

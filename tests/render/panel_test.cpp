@@ -9,13 +9,13 @@ using namespace lrb;
 
 namespace {
 
-constexpr render::Rgba kRed{200, 0, 0};
+constexpr render::Rgba kPanelRed{200, 0, 0};
 
 /// A panel that a red square fills, but for the margin.
 run::Panel red(const std::string& title) {
   run::Panel panel;
   render::DrawTriangle flat;
-  flat.colour = kRed;
+  flat.colour = kPanelRed;
   flat.lit = false;
   test::add(panel.list, test::box_triangles({0, 0, 0}, {1, 1, 0.1}), flat);
   panel.camera = run::fit_points(render::extent_points(panel.list), 2);
@@ -44,7 +44,7 @@ TEST_CASE("panels stand side by side along the longer side, each in its place, w
     for (const render::PixelRect& place : places) {
       CHECK(picture.contains(place));
       const render::PixelRect middle{place.x + 30, place.y + 30, place.width - 60, place.height - 60};
-      CHECK(others(image, middle, kRed) == 0);
+      CHECK(others(image, middle, kPanelRed) == 0);
       CHECK(image.at(place.x, place.y) == render::kWhite);
     }
     CHECK(!places[0].overlaps(places[1]));
@@ -65,14 +65,14 @@ TEST_CASE("titles are in their panels, and a look leaves them out; transparent p
   look.transparent = true;
   const render::Image clear = run::draw_row(rasterizer, panels, look, picture);
   CHECK(clear.at(0, 0) == render::kTransparent);
-  CHECK(clear.at(150, 100) == kRed);
+  CHECK(clear.at(150, 100) == kPanelRed);
 }
 
 TEST_CASE("a picture between the texts of an overlay is as it is without them, at any resolution") {
   if (!test::have_font()) return;
   render::Overlay overlay;
   overlay.title = "Title";
-  overlay.key = {{run::Mark::solid, kRed, "a square"}};
+  overlay.key = {{run::Mark::solid, kPanelRed, "a square"}};
   render::Look look;
   look.width = 400;
   look.height = 300;
@@ -84,7 +84,7 @@ TEST_CASE("a picture between the texts of an overlay is as it is without them, a
     const std::vector<run::Panel> panels = {red("")};
     const render::Image image = run::draw_panels(panels, overlay, in_file);
     CHECK(image.rect() == render::PixelRect{0, 0, in_file.width, in_file.height});
-    CHECK(image.at(in_file.width / 2, in_file.height / 2) == kRed);
+    CHECK(image.at(in_file.width / 2, in_file.height / 2) == kPanelRed);
     const render::Image sheet = run::draw_sheet(panels, in_file);
     const render::Image framed = run::with_overlay(sheet, overlay, in_file.scale());
     const int top =
@@ -98,7 +98,7 @@ TEST_CASE("a picture between the texts of an overlay is as it is without them, a
 
 TEST_CASE("a look without legend or titles clears these texts alone") {
   render::Overlay overlay;
-  overlay.title = "t", overlay.event = "e", overlay.key = {{run::Mark::line, kRed, "k"}};
+  overlay.title = "t", overlay.event = "e", overlay.key = {{run::Mark::line, kPanelRed, "k"}};
   render::Look look;
   look.legend = false;
   run::leave_out_texts(overlay, look);
