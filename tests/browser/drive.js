@@ -238,7 +238,7 @@
     check(apart !== undefined, "pairs that do not meet are explained too");
     selection.goTo(apart);
     await frame();
-    check(/apart.*distance/s.test(text()), "with their distance", text());
+    check(/disjoint.*distance/s.test(text()), "with their distance", text());
     selection.goTo(events.endOfStep(events.step(contact)) - 1);
     selection.pickFace(0, 0);
     selection.pickFace(1, 0);
@@ -494,14 +494,14 @@
     const { events, selection, wrappers, timeline, view } = run;
     byId("play-what").value = "pass";
     let passes = 0,
-      refusals = 0;
+      rejections = 0;
     for (let next = timeline.next(); next; next = timeline.next()) {
       next();
       if (events.kind[selection.event] !== events.PASS_END) continue;
       passes++;
       if (!recordedSize(selection.event)) check(false, "the hull after a pass", wrappers.sizes);
       await frame();
-      refusals += /refused: \d+ /.test(byId("view-caption").textContent);
+      rejections += /rejected: \d+ /.test(byId("view-caption").textContent);
       const made = events.builtIn(selection.event).length;
       const marked = view.marks.shown.get("refined").parts.length > 0;
       if (marked !== made > 0) check(false, "new lids are pointed out after a pass", `${made} regions`);
@@ -517,7 +517,7 @@
     check(`${pale.of(0, lidOf(0))}` !== `${full.of(0, lidOf(0))}`, "visibly");
     equal(`${pale.of(0, lidOf(newest))}`, `${full.of(0, lidOf(newest))}`, "and new ones are not");
     equal(wrappers.sizes[0], wrappers.outermost[0], "to the outermost wrapper");
-    check(refusals > 3, "and say why caps were refused", refusals);
+    check(rejections > 3, "and say why caps were rejected", rejections);
   }
 
   /** The fill of A alone has as many pixels as its loops have inside. */
@@ -606,7 +606,7 @@
     says("legend", "B rock, pseudo faces");
     check(!byId("legend").textContent.includes("A open, pseudo faces"), "the legend has no pseudo faces of A");
     const numbers = document.querySelector(".numbers").textContent;
-    check(numbers.includes("A is open; no region is built on it"), "the page says why", numbers);
+    check(numbers.includes("A is open; no regions"), "the page says why", numbers);
   }
 
   /** The view begins as the scenario's first one looks, with its axis up, and turns about that. */

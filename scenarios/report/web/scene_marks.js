@@ -131,7 +131,7 @@ class WhyMarks {
     if (square.length) this.addSquare([0, 3, 6, 9].map((i) => [...square.subarray(i, i + 3)]));
     this.view.legend.also(
       [
-        ...(boxes ? [[mixed(colours.bodies[0], colours.ink, 0.3), "nearest of the boxes found apart"]] : []),
+        ...(boxes ? [[mixed(colours.bodies[0], colours.ink, 0.3), "closest pair of disjoint boxes"]] : []),
         ...(square.length
           ? [[colours.refining, plane ? "plane that parts the bodies" : "plane that parts these boxes"]]
           : []),

@@ -395,7 +395,7 @@ class Panel {
       ]);
     if (this.wrappers)
       rows.push([
-        events.passes ? "hull" : "wrapper",
+        events.passes ? "front" : "wrapper",
         events.passes ? `${digits(this.wrappers.sizes[0])} faces` : sizeWords(this.bodies, this.wrappers.sizes),
       ]);
     const wrong = events.wrong[events.step(i)];
@@ -484,7 +484,7 @@ class Panel {
     return [
       ["tests", sum("tests"), `exact comparisons ${of}`],
       ["hits", sum("hits"), `tests that found faces to meet, ${of}`],
-      ["misses", sum("misses"), `tests that found faces apart, ${of}`],
+      ["misses", sum("misses"), `tests of disjoint faces, ${of}`],
       ["contacts", sum("contacts"), of],
     ];
   }
@@ -575,7 +575,7 @@ class WhyPanel {
       : `${this.explanations.cut || "Not among the pairs that were compared one by one here."} ` +
         "The command below explains it.";
     byId("why-verdict").textContent = e
-      ? `${["The faces are apart", "The faces touch", "The faces cross"][e.meet]}. Decided by ${e.by}.`
+      ? `${["The faces are disjoint", "The faces touch", "The faces cross"][e.meet]}. Decided by ${e.by}.`
       : "";
     this.showWay(e ? e.rows : []);
     this.showFacts(e ? this.pairFacts(e) : []);
@@ -650,7 +650,7 @@ class WhyPanel {
     this.showWay([]);
     const pairs = e.depths.reduce((n, [all]) => n + all, 0);
     this.showFacts([
-      ["boxes round them", e.roots.gap > 0 ? `${short(e.roots.gap)} apart` : `overlap by ${short(-e.roots.gap)}`],
+      ["bounding boxes", e.roots.gap > 0 ? `gap ${short(e.roots.gap)}` : `overlap by ${short(-e.roots.gap)}`],
       ["pairs of nodes", `${digits(pairs)}, to depth ${e.depths.length - 1}`],
       [
         "pairs of faces",
@@ -680,12 +680,12 @@ class WhyPanel {
         : e.facePairs > 0
           ? ", or in faces that planes part"
           : "";
-    return `${what}: the walk ended in pairs of boxes that are apart${last}.`;
+    return `${what}: the traversal ended in pairs of disjoint boxes${last}.`;
   }
 
   boxWords(boxes) {
     const of = boxes.ofFaces ? "faces in nodes" : "nodes";
-    return `${of} ${digits(boxes.a)} of A and ${digits(boxes.b)} of B, ${short(boxes.gap)} apart along ${boxes.axis}`;
+    return `${of} ${digits(boxes.a)} of A and ${digits(boxes.b)} of B, gap ${short(boxes.gap)} along ${boxes.axis}`;
   }
 
   nearButton(near) {

@@ -449,10 +449,10 @@ function eventWords(events, i) {
   const side = two ? ` of ${SIDES[events.side[i]]}` : "";
   if (events.passes) return builtWords(events, i);
   if (kind === events.STEP) return firstWrapperWords(events.bodies);
-  if (kind === events.REFINE) return `region ${digits(a)}${side}: ${plural(b, "face")} under it`;
+  if (kind === events.REFINE) return `region ${digits(a)}${side}: ${plural(b, "face")} exposed`;
   if (kind === events.COARSEN) return `region ${digits(a)}${side} added`;
   if (kind === events.RESULT)
-    return `${relationWords(events.relations[a])}: ${plural(b, "pair of faces meets", "pairs of faces meet")}`;
+    return `${relationWords(events.relations[a])}: ${plural(b, "intersecting pair of faces", "intersecting pairs of faces")}`;
   const faces = events.faces(i);
   if (faces.length)
     return faces.map((f) => `${events.bodies[f.side].faceWords(f.face)} of ${SIDES[f.side]}`).join(", ");
@@ -473,10 +473,10 @@ function eventWords(events, i) {
 /** Returns what a step begins with. A body without regions, such as an open one, has no wrapper. */
 function firstWrapperWords(bodies) {
   const bare = bodies.filter((b) => !b.regionCount);
-  if (bodies.length === 1) return bare.length ? "the body itself, which has no wrapper" : "the outermost wrapper";
-  if (bare.length === 2) return "the bodies themselves, which have no wrappers";
-  if (!bare.length) return "both wrappers are the outermost ones";
-  return `${SIDES[bare[0].side]} itself, which has no wrapper; ${SIDES[1 - bare[0].side]}'s is the outermost one`;
+  if (bodies.length === 1) return bare.length ? "the body (it has no wrapper)" : "the outermost wrapper";
+  if (bare.length === 2) return "the bodies (they have no wrappers)";
+  if (!bare.length) return "both outermost wrappers";
+  return `${SIDES[bare[0].side]} (it has no wrapper) and ${SIDES[1 - bare[0].side]}'s outermost wrapper`;
 }
 
 /** Returns how many faces are shown of each body: of its wrapper, or of itself where it has none. */
@@ -492,15 +492,15 @@ function builtWords(events, i) {
     b = events.b[i];
   switch (events.kind[i]) {
     case events.STEP:
-      return "the body itself";
+      return "the body";
     case events.PASS:
       return `pass ${digits(a + 1)} begins`;
     case events.PATCH:
       return `${plural(b, "face")}, grown from vertex ${digits(a)}`;
     case events.CAP:
-      return b ? `${plural(a, "face")} over ${digits(b)}` : "none: nothing could be left out";
+      return b ? `${plural(a, "face")} over ${digits(b)}` : "none: no vertex could be removed";
     case events.REGION:
-      return `region ${digits(a)}: ${plural(b, "face")} under it`;
+      return `region ${digits(a)}: ${plural(b, "face")} covered`;
     case events.PASS_END:
       return events.pass(i).words;
   }
