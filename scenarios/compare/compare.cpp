@@ -161,7 +161,7 @@ std::optional<std::string> first_difference(const Runs& runs) {
   return first->message() + (event ? "; " + *event : std::string("; all events are the same"));
 }
 
-/// Returns the views of both runs' pages for a page in `folder`; none if one of them has no page.
+/// Returns the views of both runs' pages for a page in `folder`; empty if one of them has no page.
 std::vector<report::View> views_of(const Runs& runs, const std::string& folder) {
   std::vector<report::View> out;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -228,7 +228,7 @@ class FigureJob {
     canvas.end_clip();
   }
 
-  /// Draws the faces as pixels, a whole number of which fit the panel's box, and paints lines and texts over
+  /// Draws the faces as pixels, with whole pixels in the panel's box, and paints lines and texts over
   /// them.
   void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
                   const PanelPlace& place, double scale) {

@@ -48,7 +48,7 @@ using Eigen::Vector2d;
 constexpr double kLine = 1.3;    ///< line spacing, in font sizes
 constexpr double kGutter = 0.8;  ///< between panels, in font sizes
 constexpr double kGap = 0.5;     ///< above legend, bar and caption, in font sizes
-constexpr double kShape = 1.5;   ///< target of width to height for automatic columns
+constexpr double kShape = 1.5;   ///< target aspect ratio of automatic columns
 constexpr double kGapCost = 2;   ///< cost of empty cells, in logarithms of that ratio, if all cells are empty
 constexpr double kTallest = 1.4;  ///< maximum height of a block, in widths
 constexpr double kMinPanel = 5 * kPointsPerMm, kMinAutomatic = 12 * kPointsPerMm;

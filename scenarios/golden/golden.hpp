@@ -25,7 +25,7 @@ namespace lrb::golden {
 
 /// Parts of a run that are compared with the approved one.
 enum class Level : std::uint8_t {
-  answers,   ///< of each step: relation, pairs, whether interiors overlap, and what a coarse query has proven
+  answers,   ///< of each step: relation, pairs, overlap of interiors, result proven by a coarse query
   events,    ///< bodies, request, poses, every event and every counter
   pictures,  ///< frames, within a tolerance
 };

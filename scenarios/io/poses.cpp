@@ -343,7 +343,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
 
  private:
   /// The parser's current context: before the list, in an object whose other members are skipped, after the
-  /// key "poses", in the list, in a pose, or in a row of it.
+  /// key "poses", in the list, in a pose, or in one of its rows.
   enum class Level : std::uint8_t { root, object, member, list, pose, row };
 
   bool done() {

@@ -164,7 +164,7 @@ function legendHeight(spec, canvas, width) {
   return Math.ceil(rows * (font.size + gap) + gap);
 }
 
-/** Increases the height of a narrow chart by that of its legend. */
+/** Increases the height of a narrow chart to make room for its legend. */
 function makeRoom(spec, canvas, width) {
   const height = legendHeight(spec, canvas, width), few = 80;
   canvas.parentElement.style.minHeight = height > few ? `calc(14rem + ${height}px)` : "";

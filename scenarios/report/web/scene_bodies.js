@@ -369,7 +369,7 @@ class FlatFill {
     this.show([]);
   }
 
-  /** Fills the area that these faces bound. Fills nothing if a loop is open. */
+  /** Fills the area that these faces bound. An open loop is not filled. */
   show(faces) {
     const { vertices } = this.body,
       closed = this.areLoops(faces),

@@ -344,7 +344,7 @@ class Explanations {
     return this.none ? null : this.steps.get(step) || null;
   }
 
-  /** Returns the command that explains a pair, or the step if there is none; empty: no command. */
+  /** Returns the command that explains a pair, or the step if no pair is given; empty: no command. */
   commandFor(stepNumber, simplices) {
     if (this.none || !this.command) return "";
     return `${this.command} --step ${stepNumber}${simplices ? ` --pair ${simplices.join(",")}` : ""}`;

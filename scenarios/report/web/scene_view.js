@@ -240,7 +240,7 @@ class Picker {
     const lids = through ? [] : views.filter((v) => v.lids.mesh.visible).map((v) => v.lids);
     const real = views.map((v) => v.real);
     if (now.isolate) return this.nearest(x, y, pieces) || this.nearest(x, y, real);
-    // Transparent faces are not picked unless there is no other.
+    // A ghost's real faces are picked only if no lids are visible.
     return now.ghost && lids.length
       ? this.nearest(x, y, lids)
       : this.nearest(x, y, [...pieces, ...lids, ...real]);
