@@ -27,7 +27,7 @@ inline constexpr std::uint32_t kCrowdVersion = 2;  ///< of the format; version 1
 /// Writes "kinds": the bodies of each, and their number.
 void write_kinds(trace::JsonWriter& w, const spec::Crowd& crowd, const CrowdRun& run);
 
-/// Returns the run's key figures without times, which do not depend on the number of threads.
+/// Returns the run's key figures, without times. They do not depend on the number of threads.
 std::string crowd_summary(const spec::Crowd& crowd, const CrowdRun& run);
 
 /// Returns the run's duration: nanoseconds in total, and for each step.

@@ -41,7 +41,7 @@ std::string shown(std::string_view word) {
   return "\"" + out + (word.size() > kLongest ? "...\"" : "\"");
 }
 
-/// wanted: the expected content of each line, for the message.
+/// `wanted`: the expected content of each line, for the message.
 double number(std::string_view word, const std::string& where, const std::string& wanted) {
   // from_chars does not accept a plus sign.
   const std::string_view digits = word.substr(word[0] == '+' ? 1 : 0);

@@ -23,7 +23,7 @@ struct Number {
   std::string note = {};
 };
 
-/// Meaning of the first column of a table's numbers: a click on a row leads to that item in the view of the
+/// Meaning of the numbers in a table's first column: a click on a row leads to that item in the view of the
 /// run.
 enum class Rows : std::uint8_t { plain, regions_of_a, regions_of_b, steps };
 

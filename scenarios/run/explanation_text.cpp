@@ -74,7 +74,7 @@ std::string point_text(const Eigen::Vector3d& x) {
   return "(" + text(x.x()) + ", " + text(x.y()) + ", " + text(x.z()) + ")";
 }
 
-/// Returns the corners of a contact as text, without duplicates in that text.
+/// Returns the corners of a contact as text; equal texts occur once.
 std::vector<std::string> contact_points(const exact::PairContact& contact) {
   std::vector<std::string> out;
   for (int i = 0; i < contact.corner_count; ++i) {

@@ -203,7 +203,7 @@ json walk_json(const RecordedRun& p, const trace::Step& step, const SceneFrame& 
   return out;
 }
 
-/// Explains the steps without pairs; a number of evenly spaced ones if they are many.
+/// Explains the steps without pairs; evenly spaced ones if there are too many.
 json steps_json(const RecordedRun& p, const Explained& what, const SceneFrame& frame, std::size_t most) {
   Numbers empty;
   for (std::uint32_t i = 0; i < what.steps.size(); ++i) {

@@ -23,7 +23,7 @@ using render::group_digits;
 struct GroupSums {
   std::uint64_t faces = 0, tests = 0, hits = 0, misses = 0, expansions = 0;
   double box_tests = 0;
-  std::uint64_t refined = 0;  ///< number of times that the region was
+  std::uint64_t refined = 0;  ///< number of refinements of the region
 
   GroupSums& operator+=(const GroupSums& o) {
     faces += o.faces, tests += o.tests, hits += o.hits, misses += o.misses, expansions += o.expansions;
