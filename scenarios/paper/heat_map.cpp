@@ -11,7 +11,7 @@ namespace lrb::paper {
 namespace {
 
 constexpr int kPanelWidth = 560, kPanelHeight = 500;
-constexpr double kAside = 0.45;  ///< the viewer's angular offset from the direction of the other body
+constexpr double kAside = 0.45;  ///< lateral offset of the viewer from the direction of the other body
 
 /// The subject of a panel.
 struct PanelView {

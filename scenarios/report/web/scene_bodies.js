@@ -369,7 +369,7 @@ class FlatFill {
     this.show([]);
   }
 
-  /** Fills the area that these faces bound. An open loop is not filled. */
+  /** Fills the area that these faces bound, provided that they form closed loops. */
   show(faces) {
     const { vertices } = this.body,
       closed = this.areLoops(faces),
