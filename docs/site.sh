@@ -78,7 +78,7 @@ for file in glob.glob(pages + "/*.md"):
     open(file, "w").writelines(lines)
 P
 
-# Leaves missing pages out of the menu.
+# Omits missing pages from the menu.
 while IFS= read -r line; do
   page=$(sed -n 's/.*: \([a-z]*\.md\)$/\1/p' <<<"$line")
   [ -z "$page" ] || [ -f "$out/pages/$page" ] || { echo "site.sh: missing page: $page" >&2 && continue; }

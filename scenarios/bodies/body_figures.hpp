@@ -13,7 +13,7 @@
 namespace lrb::bodies {
 
 /// Returns the statistics of an LRB-rep: name, faces, regions, layers, volumes (in 2D: areas) and memory. The
-/// keys are those of `lrbscope build --json`.
+/// keys match `lrbscope build --json`.
 nlohmann::ordered_json body_figures(const LrbRep& rep);
 
 /// Returns the volume of the convex hull of points, or 0 if they are coplanar. The hull is exact

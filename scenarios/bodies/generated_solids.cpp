@@ -73,7 +73,7 @@ Mesh cog2d(const GeneratorValues& v, std::uint64_t) {
 
 namespace {
 
-/// Gives each edge a bay in its middle third, as in an inverted Koch curve. The bay's apex is displaced
+/// Adds a bay to each edge, in its middle third, as in an inverted Koch curve. The bay's apex is displaced
 /// slightly, so that no two bays are equal. Depths below a third of an edge keep bays within the triangle of
 /// their edge.
 std::vector<Eigen::Vector2d> with_bays(const std::vector<Eigen::Vector2d>& outline, double depth,

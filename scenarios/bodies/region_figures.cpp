@@ -232,7 +232,7 @@ std::vector<std::string> advice(const LrbRep& rep, std::span<const Trial> trials
 
 std::string poor_line(const LrbRep& rep, const BuildOptions& build) {
   constexpr double kLoose = 2, kMany = 2.5, kOpen = 2;            // 1.1 to 1.4, 1.5 to 2, and 1 are typical
-  if (rep.real_face_count() <= build.max_outer_faces) return {};  // bodies with so few faces need no wrapper
+  if (rep.real_face_count() <= build.max_outer_faces) return {};  // such small bodies need no wrapper
   if (rep.region_count() == 0) return rep.name() + ": has no regions, so every query starts from its faces";
   const RepFigures f = figures_of(rep);
   std::vector<std::string> faults;

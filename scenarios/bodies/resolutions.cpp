@@ -13,7 +13,7 @@ namespace {
 struct HalfEdge {
   VertexId low, high;   ///< its ends
   VertexId tip;         ///< the face's third corner
-  std::uint32_t place;  ///< 3 * face + side
+  std::uint32_t place;  ///< half-edge index: 3 * face + side
 };
 
 std::vector<HalfEdge> half_edges(const Mesh& mesh) {
@@ -42,7 +42,7 @@ Mesh subdivide(const Mesh& mesh) {
   const auto old_count = static_cast<std::uint32_t>(mesh.vertices.size());
   std::vector<Eigen::Vector3d> sum(old_count, Eigen::Vector3d::Zero());  // of the neighbours
   std::vector<std::uint32_t> degree(old_count, 0);
-  std::vector<VertexId> middle(edges.size());  // by place
+  std::vector<VertexId> middle(edges.size());  // by half-edge index
   std::vector<Eigen::Vector3d> added;
   for (std::size_t i = 0; i < edges.size(); i += 2) {
     const HalfEdge &e = edges[i], &other = edges[i + 1];

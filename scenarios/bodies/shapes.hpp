@@ -75,7 +75,7 @@ inline Pose random_pose(RandomEngine& random, const LrbRep& a, const LrbRep& b, 
 using Point2 = Eigen::Vector2d;
 using Point3 = Eigen::Vector3d;
 
-// Boxes and the like.
+// Boxes and other small polyhedra.
 Mesh tetrahedron(double size = 1);  ///< corners at 0 and on the axes; 4 triangles
 Mesh box(const Point3& low = {0, 0, 0}, const Point3& high = {1, 1, 1});       ///< 12 triangles
 Mesh quad_box(const Point3& low = {0, 0, 0}, const Point3& high = {1, 1, 1});  ///< 6 quads

@@ -25,7 +25,7 @@ const LrbRep& rep_of(const Runs& runs, std::size_t i) {
   return runs.of[i]->bodies[0].rep;
 }
 
-/// Returns the chart's curve of faces.
+/// Returns the chart with the curve of the number of faces.
 trace::Chart chart_of_faces(const trace::Trace& trace) {
   return trace.header.construction ? trace::chart_over_construction(trace) : trace::chart_over_events(trace);
 }
@@ -34,7 +34,7 @@ bool of_one_body(const Runs& runs) {
   return runs.of[0]->bodies.size() == 1 && runs.of[1]->bodies.size() == 1;
 }
 
-/// Returns numbers of both LRB-reps: faces, regions, layers, outermost wrapper.
+/// Returns a table of both LRB-reps: faces, regions, layers, outermost wrapper.
 report::Table body_table(const Runs& runs) {
   report::Table t{
       "The LRB-reps",
@@ -69,7 +69,7 @@ report::Table pass_table(const Runs& runs) {
   return t;
 }
 
-/// Returns the faces of front or wrapper from event to event in both.
+/// Returns the number of faces of front or wrapper by event, for both runs.
 report::Chart faces_chart(const Runs& runs) {
   const bool built = runs.of[0]->trace.header.construction;
   report::Chart c{built ? "The front by event" : "The wrapper by event", {"event"}, {"faces"}};
@@ -82,7 +82,7 @@ report::Chart faces_chart(const Runs& runs) {
   return c;
 }
 
-/// Draws both wrappers as they are after the last event, coloured by region, seen by one camera.
+/// Draws both wrappers after the last event, coloured by region, through the same camera.
 render::Image draw_bodies(const Runs& runs, const run::ProgressReport& progress) {
   run::Framing framing{{}, {}, rep_of(runs, 0).dim()};
   for (std::size_t i = 0; i < 2; ++i)
@@ -161,7 +161,7 @@ std::optional<std::string> first_difference(const Runs& runs) {
   return first->message() + (event ? "; " + *event : std::string("; all events are the same"));
 }
 
-/// Returns the views of both runs' pages for a page in `folder`; none if one of them has no page.
+/// Returns the views of both runs' pages for a page in `folder`; empty if one of them has no page.
 std::vector<report::View> views_of(const Runs& runs, const std::string& folder) {
   std::vector<report::View> out;
   for (std::size_t i = 0; i < 2; ++i) {

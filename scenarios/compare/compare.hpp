@@ -8,10 +8,10 @@
 
 namespace lrb::compare {
 
-/// Writes folder/index.html and folder/compare.png: what differs first, answers and work step by step, and
-/// where the work went in each. Of runs of one body: how the front or the wrapper changed, and the regions of
-/// both. Returns where the runs begin to differ: their bodies and requests, and the first event or answer
-/// that is not the same; nullopt if they are the same. Throws InputError if one run is of one body and the
+/// Writes folder/index.html and folder/compare.png: the first difference, answers and work step by step, and
+/// the distribution of the work in each run. For runs of one body: the changes of the front or the wrapper,
+/// and the regions of both. Returns where the runs begin to differ: their bodies and requests, and the first
+/// differing event or answer; nullopt if they are equal. Throws InputError if one run is of one body and the
 /// other of two.
 std::optional<std::string> write_comparison(const Runs& runs, const std::string& command,
                                             const std::string& folder, const run::ProgressReport& progress);

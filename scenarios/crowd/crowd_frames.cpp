@@ -19,11 +19,12 @@ namespace {
 
 using Mark = render::LegendItem::Mark;
 
-/// If there are more kinds than this, they share colours.
+/// With more kinds than this, some share a colour.
 constexpr std::uint32_t kColours = 24;
 
 render::Rgba colour_of(std::uint32_t kind) {
-  // The first ones differ from the contacts' red and from each other for every eye.
+  // The first ones are distinguishable from the contacts' red and from each other, also with colour vision
+  // deficiency.
   constexpr render::Rgba kFirst[] = {{86, 150, 205}, {222, 172, 76},  {92, 172, 140},
                                      {190, 178, 92}, {150, 140, 190}, {150, 150, 150}};
   kind %= kColours;
@@ -35,7 +36,7 @@ class FrameState {
   FrameState(const spec::Crowd& crowd, const CrowdRun& run, const render::FrameSpec& spec)
       : crowd_(crowd), run_(run), spec_(spec) {}
 
-  /// Returns the picture of a moment. `wrappers`: with the lids that are left of them.
+  /// Returns the picture of a step. `wrappers`: includes the lids of the refined wrappers.
   render::DrawList list(const CrowdMoment& m, bool wrappers) const {
     std::vector<render::SceneBody> bodies;
     std::vector<std::unique_ptr<Wrapper>> states;
@@ -57,7 +58,7 @@ class FrameState {
     render::SceneOptions options;
     options.scale = static_cast<float>(spec_.scale());
     options.style = spec_.style;
-    options.real_edges = false;  // thousands of small faces: one would see nothing but their edges
+    options.real_edges = false;  // with thousands of small faces, only their edges would be visible
     render::Scene scene = render::build_scene(bodies, highlight, options);
     for (render::DrawLine& line : scene.list.lines)
       if (line.colour == style().contact) thin(line);
@@ -89,7 +90,7 @@ class FrameState {
     return o;
   }
 
-  /// Returns what cameras are fitted to: the corners of all boxes at the moments drawn.
+  /// Returns the points that cameras are fitted to: the corners of all boxes at the steps drawn.
   run::Framing framing() const {
     run::Framing f;
     f.dim = run_.rep(0).dim();
@@ -113,15 +114,15 @@ class FrameState {
                                               [](const render::FrameSpec::View& v) { return v.wrapper; });
   }
 
-  /// Makes a contact's curve thin, and hidden by what lies in front of it: in a crowd, curves that show
-  /// through would hide the bodies.
+  /// Makes a contact's curve thin, and hidden by objects in front of it: in a crowd, curves visible through
+  /// bodies would hide the bodies.
   void thin(render::DrawLine& line) const {
     line.layer = render::Layer::opaque;
     line.width = static_cast<float>(1.6 * spec_.scale());
     line.halo_width = 0;
   }
 
-  /// Returns the edges of the room.
+  /// Returns the edges of the arena.
   std::vector<std::array<Eigen::Vector3d, 2>> room() const {
     std::vector<std::array<Eigen::Vector3d, 2>> edges;
     const Eigen::Vector3d half = crowd_.room / 2;

@@ -9,9 +9,9 @@
 
 namespace lrb::crowd {
 
-/// Draws the chosen steps into folder/frames/: all bodies, each kind in its colour; where the view wants
-/// them, the lids that the queries of the step left of their wrappers; faces in contact, and the curves in
-/// which bodies meet. Writes `text` into every PNG.
+/// Draws the chosen steps into folder/frames/: all bodies, each kind in its colour; if the view shows
+/// wrappers, the lids of the wrappers after the queries of the step; faces in contact, and the curves in
+/// which bodies intersect. Writes `text` into every PNG.
 run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
                             const std::vector<std::pair<std::string, std::string>>& text,
                             const run::ProgressReport& progress);

@@ -6,9 +6,8 @@
 
 namespace lrb::crowd {
 
-/// Writes folder/{index.html, trace.json, summary.json, timing.json, KIND.lrb, frames/}. Everything but
-/// timing.json, and a trace on the wall clock, is the same for any number of threads. Returns summary.json's
-/// text.
+/// Writes folder/{index.html, trace.json, summary.json, timing.json, KIND.lrb, frames/}. The number of
+/// threads affects only timing.json, and a trace on the wall clock. Returns summary.json's text.
 std::string write_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
                         const std::string& command, const run::ProgressReport& progress);
 
@@ -17,7 +16,7 @@ void redraw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::stri
                   const std::string& command, const std::string& trace_file,
                   const run::ProgressReport& progress);
 
-/// Returns one line for people that says how long a step took.
+/// Returns one line of text with the duration of a step.
 std::string crowd_speed(const CrowdRun& run);
 
 }  // namespace lrb::crowd

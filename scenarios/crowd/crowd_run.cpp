@@ -57,7 +57,7 @@ class Player {
       keys_.push_back(scene_.add(kinds[run.motion.kind(body)]));
   }
 
-  /// Runs a step; `moment` gets what a picture of it needs, or is null.
+  /// Runs a step; `moment` receives the data for a picture of it, unless it is null.
   CrowdStep play(std::uint32_t number, CrowdMoment* moment) {
     CrowdStep step;
     const std::uint64_t begin = now();
@@ -90,7 +90,7 @@ class Player {
         std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - began_).count());
   }
 
-  /// Returns the pairs of bodies whose boxes meet, ascending. Keys are in the order of the bodies.
+  /// Returns the pairs of bodies with overlapping boxes, ascending. Keys are in the order of the bodies.
   std::vector<BodyPair> near() {
     std::vector<BodyPair> pairs;
     const auto number = [&](BodyKey key) {
@@ -209,7 +209,7 @@ Eigen::Vector3d random_direction(Random& random, int dim) {
   }
 }
 
-/// Returns places in rows over the room, shuffled: as many as there are bodies or a few more.
+/// Returns positions in rows over the arena, shuffled: as many as there are bodies or a few more.
 std::vector<Eigen::Vector3d> grid_places(const Eigen::Vector3d& reach, std::uint32_t count, int dim,
                                          Random& random) {
   const double side = dim == 2 ? std::sqrt(count) : std::cbrt(count);
@@ -227,7 +227,7 @@ std::vector<Eigen::Vector3d> grid_places(const Eigen::Vector3d& reach, std::uint
   return places;
 }
 
-/// Returns the coordinate of a point that moves straight on, seen between two mirrors at -reach and reach.
+/// Returns the coordinate of a point in uniform motion that is reflected at -reach and reach.
 double thrown_back(double x, double reach) {
   if (!(reach > 0)) return 0;
   double y = std::fmod(x + reach, 4 * reach);

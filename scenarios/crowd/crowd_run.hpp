@@ -1,6 +1,6 @@
 #pragma once
-/// Runs a crowd: at every step the broad phase, then a query for each pair of bodies whose boxes meet, on all
-/// threads. Draws and writes nothing.
+/// Runs a crowd: at every step the broad phase, then a query for each pair of bodies with overlapping boxes,
+/// on all threads. Draws and writes nothing.
 
 #include <cstdint>
 #include <span>
@@ -15,14 +15,14 @@
 
 namespace lrb::crowd {
 
-/// Knows where every body of a crowd is at every step. Bodies move straight and are thrown back by the walls
-/// of the room; this has a closed form, so that steps can be asked for in any order. Or it gives the poses
-/// that a trace holds.
+/// Computes the pose of every body of a crowd at every step. Bodies have constant velocities and are
+/// reflected by the walls of the arena; this has a closed form, so that the steps can be evaluated in any
+/// order. Alternatively it returns the poses of a trace.
 class CrowdMotion {
  public:
   /// `reps`: one for each kind, all of one dimension.
   CrowdMotion(const spec::Crowd& crowd, std::span<const LrbRep* const> reps);
-  /// Gives recorded poses: `poses` by step and body; no other step can be asked for.
+  /// Uses recorded poses: `poses` by step and body; only these steps are available.
   CrowdMotion(const spec::Crowd& crowd, std::vector<std::vector<Pose>> poses);
 
   /// Bodies are numbered kind by kind.
@@ -33,8 +33,8 @@ class CrowdMotion {
  private:
   struct Mover {
     Eigen::Vector3d start, speed, axis;
-    Eigen::Vector3d reach;  ///< largest distance of its origin from the room's middle on each axis, so that
-                            ///< it stays inside
+    Eigen::Vector3d reach;  ///< maximum distance of its origin from the arena's centre on each axis, so that
+                            ///< the body stays inside
     Eigen::Matrix3d turned;
     double spin;  ///< radians for each step
     Pose own;     ///< of its kind, applied first
@@ -48,8 +48,8 @@ class CrowdMotion {
 struct CrowdQuery {
   BodyPair bodies{0, 0};
   trace::StepResult result;
-  std::uint64_t contact_regions = 0;       ///< 0 if contacts were not asked for
-  std::uint32_t thread = 0;                ///< the thread that asked it; nothing else depends on it
+  std::uint64_t contact_regions = 0;       ///< 0 if contacts were not requested
+  std::uint32_t thread = 0;                ///< the thread that ran it; has no effect on any other field
   std::uint64_t begin_ns = 0, end_ns = 0;  ///< steady clock, since the run began
 
   bool meets() const {
@@ -69,12 +69,12 @@ struct CrowdStep {
   std::uint64_t broad_phase_ns = 0, queries_ns = 0;
 };
 
-/// What a picture of one step needs.
+/// The data of one step for its picture.
 struct CrowdMoment {
   std::uint32_t step = 0;
-  std::vector<std::vector<RegionId>> opened;  ///< by body: regions that any of its queries opened, ascending
-  std::vector<std::vector<std::uint8_t>> in_contact;  ///< by body (|real F|): the face met one of another
-                                                      ///< body; or empty
+  std::vector<std::vector<RegionId>> opened;  ///< by body: regions that any of its queries refined, ascending
+  std::vector<std::vector<std::uint8_t>> in_contact;  ///< by body (|real F|): the face intersects one of
+                                                      ///< another body; or empty
   std::vector<ContactRegion> contacts;
 };
 
@@ -84,19 +84,19 @@ struct CrowdRun {
   CrowdMotion motion;
   std::vector<CrowdStep> steps;
   std::vector<CrowdMoment> moments;  ///< of the steps to be drawn
-  std::vector<std::string> notes;    ///< for people
+  std::vector<std::string> notes;    ///< to be printed
   std::uint32_t threads = 1;
 
   const LrbRep& rep(std::uint32_t body) const { return kinds[motion.kind(body)].rep; }
 };
 
-/// Returns the steps that `spec` wants drawn.
+/// Returns the steps that `spec` selects for drawing.
 std::vector<std::uint32_t> drawn_steps(const render::FrameSpec& spec, std::uint32_t steps);
 
-/// Builds the bodies and runs the crowd. Everything but threads and times is the same for any number of
-/// threads (at least 1). Throws InputError for bodies of different dimensions and for what collide() refuses.
+/// Builds the bodies and runs the crowd. The number of threads (at least 1) affects only thread numbers and
+/// times. Throws InputError for bodies of different dimensions and for input that collide() rejects.
 CrowdRun run_crowd(const spec::Crowd& crowd, std::uint32_t threads, const run::ProgressReport& progress);
-/// Does the same with bodies, one for each kind, that have been built.
+/// Does the same with given bodies, one for each kind.
 CrowdRun play_crowd(const spec::Crowd& crowd, std::vector<bodies::LoadedBody> kinds, CrowdMotion motion,
                     std::uint32_t threads, const run::ProgressReport& progress);
 

@@ -13,7 +13,7 @@ namespace {
 
 using trace::JsonWriter;
 
-/// Writes times: microseconds, or event numbers, which viewers take for microseconds.
+/// A time interval: in microseconds, or in event numbers, which viewers read as microseconds.
 struct Span {
   double begin = 0, length = 1;
 };

@@ -81,7 +81,7 @@ class Reader {
   }
 
  private:
-  /// Reads a query as the trace has it, on one track or two.
+  /// Reads a query's slice in the trace, on one track or two.
   struct Slice {
     std::uint32_t step;
     std::string a, b;
@@ -98,7 +98,7 @@ class Reader {
       queries_.push_back(args.at("queries").integer<std::uint32_t>());
     }
     if (!args.has("relation")) return;
-    // Version 1, which is refused once it is known, did not name the step.
+    // Version 1, which is rejected once it is known, did not name the step.
     const auto step = args.has("time step") ? args.at("time step").integer<std::uint32_t>() : 0U;
     slices_.push_back({step, args.at("A").string(), args.at("B").string(),
                        args.at("relation").named<Relation>(), args.at("pairs").integer<std::uint64_t>(),
@@ -127,7 +127,7 @@ class Reader {
       const TraceNode node = kinds.at(k);
       spec::CrowdKind kind;
       kind.name = node.at("name").string();
-      // The name becomes that of a file beside the trace.
+      // The name becomes a file name beside the trace.
       if (kind.name.empty() || kind.name.find_first_of("/.\\") != std::string::npos)
         node.at("name").fail("the name of a kind of bodies");
       kind.count = node.at("count").integer<std::uint32_t>(spec::kMaxCrowdBodies);
@@ -198,13 +198,13 @@ class Reader {
   CrowdTrace t_;
   std::vector<std::uint32_t> queries_;  ///< of each step
   std::vector<Slice> slices_;
-  std::map<std::string, std::size_t> names_;  ///< of bodies: their numbers
+  std::map<std::string, std::size_t> names_;  ///< of bodies: their indices
 };
 
 }  // namespace
 
 bool is_crowd_trace(std::string_view text) {
-  // The metadata come last. Within a string the quotes would be escaped.
+  // The metadata come last. Inside a string the quotes would be escaped.
   const std::size_t at = text.rfind("\"metadata\"");
   constexpr std::size_t kNear = 256;
   if (at == std::string_view::npos) return false;

@@ -19,7 +19,7 @@ namespace lrb::exchange {
 /// One body in its state at a moment.
 struct BodyMoment {
   const LrbRep* rep = nullptr;
-  const Wrapper* wrapper = nullptr;  ///< null: no wrapper is requested, and the body has none
+  const Wrapper* wrapper = nullptr;  ///< null: not requested
   Pose pose;
   const trace::TreeShape* tree = nullptr;  ///< the traversed tree; null if not recorded
 };

@@ -52,7 +52,7 @@ struct Part {
 
 struct Model {
   std::string title;            ///< description, one line
-  std::vector<Column> columns;  ///< the same for all parts
+  std::vector<Column> columns;  ///< common to all parts
   std::string_view quality;     ///< the column that programs should colour by; empty: none
   std::vector<Part> parts;      ///< none is empty
 

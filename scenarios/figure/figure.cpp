@@ -22,16 +22,16 @@ using Eigen::AlignedBox2d;
 using Eigen::Vector2d;
 using View = render::FrameSpec::View;
 
-/// Returns a caption without what goes without saying.
+/// Returns a caption without its redundant parts.
 std::string shortened(std::string words) {
   const std::string none = ": 0 pairs of faces meet";
   if (words.ends_with(none)) words.resize(words.size() - none.size());
   return words;
 }
 
-/// Returns the frames' spec with widths in points: a thin line, of width 1, is as wide as the figure's.
+/// Returns the frames' spec with widths in points: a thin line, of width 1, gets the figure's line width.
 render::FrameSpec in_points(render::FrameSpec frames, const FigureSpec& figure) {
-  // The figure says how wide lines are, whatever the style.
+  // The figure sets the line width, whatever the style.
   frames.dpi = figure.line_width * render::FrameSpec::kScreenDpi / style_of(frames.style).weight;
   if (frames.views.empty()) frames.views.emplace_back();
   return frames;
@@ -92,7 +92,7 @@ class FigureJob {
 
   LayoutOptions options() const {
     constexpr double kWidest =
-        3;  // of half the lines that are drawn, contacts with their halo: in thin lines
+        3;  // half the width of the widest lines, contacts with their halo, in thin lines
     LayoutOptions o;
     o.width = figure_.width;
     o.font_size = figure_.font_size;
@@ -102,7 +102,7 @@ class FigureJob {
     return o;
   }
 
-  /// Returns the run with one scale of colours for all panels, so that a single bar is valid for each.
+  /// Returns the run with one colour scale for all panels, so that a single bar is valid for each.
   run::RecordedRun in_common_range() {
     run::RecordedRun out = recorded_;
     if (out.value_range || !shows_values()) return out;
@@ -124,7 +124,7 @@ class FigureJob {
     return by != ColourBy::kind && by != ColourBy::layer && by != ColourBy::region;
   }
 
-  /// Returns true if what is seen of a panel of the block is cut off by the view, as in a close-up.
+  /// Returns true if a panel's content extends beyond the view, as in a close-up.
   static bool runs_over(const Block& block) {
     constexpr double kRim = 1e-3 * kViewSide;
     return std::any_of(block.seen.begin(), block.seen.end(), [](const AlignedBox2d& seen) {
@@ -147,7 +147,7 @@ class FigureJob {
     return scene;
   }
 
-  /// Finds out what each panel shows, how large it is, and what all of them need in the legend.
+  /// Determines the content and size of each panel, and the entries of the common legend.
   void survey() {
     for (const View& view : frames_.views) {
       Block block;
@@ -170,7 +170,7 @@ class FigureJob {
     letter();
   }
 
-  /// Returns false for a close-up of a contact where there is none, beside other views.
+  /// Returns false for a close-up of a contact without contacts, beside other views.
   bool shows_anything(const View& view) const {
     return view.camera != render::FrameSpec::Camera::contact || frames_.views.size() == 1 ||
            state_.in_contact();
@@ -228,8 +228,8 @@ class FigureJob {
     canvas.end_clip();
   }
 
-  /// Draws the faces as pixels, of which the panel's box holds a whole number, and paints lines and texts
-  /// over them.
+  /// Draws the faces as pixels, with whole pixels in the panel's box, and paints lines and texts over
+  /// them.
   void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
                   const PanelPlace& place, double scale) {
     const double pixel = render::kPointsPerInch / dpi_, margin = options().margin,
@@ -237,7 +237,7 @@ class FigureJob {
     const Vector2d low =
         place.seen_from * scale - Vector2d(margin, margin);  // of the box, in the view, points
     const Eigen::Vector2i size = (place.box.sizes() / pixel).array().round().cast<int>();
-    // The part of the view about its middle that holds the box, with a pixel to spare on each side.
+    // The central part of the view that contains the box, with a margin of one pixel on each side.
     const Vector2d reach =
         (low.array() - middle).abs().max((low + place.box.sizes()).array() - middle) + 2 * pixel;
     const Eigen::Vector2i drawn = (2 * reach / pixel).array().ceil().cast<int>();
@@ -277,9 +277,9 @@ class FigureJob {
     const View* view;
     std::vector<std::size_t> moments;
   };
-  std::vector<ViewPanels> views_;   ///< those that show something, with the moments at which they do
-  std::vector<Block> blocks_;       ///< one for each of them
-  std::vector<std::string> words_;  ///< (panels) what each shows
+  std::vector<ViewPanels> views_;   ///< the views with content, and their events
+  std::vector<Block> blocks_;       ///< one for each of views_
+  std::vector<std::string> words_;  ///< (panels) description of each
   std::vector<render::LegendItem> key_;
   std::optional<render::ScaleBar> bar_;
   FigureLayout layout_;

@@ -1,5 +1,5 @@
 #pragma once
-/// A figure for print: panels of one run, cropped to what is drawn and of one scale, for a width on paper.
+/// A figure for print: panels of one run, cropped to their content and at one scale, for a width on paper.
 
 #include <optional>
 #include <string>
@@ -14,31 +14,31 @@ struct FigureSpec {
   enum class Format : std::uint8_t { pdf, svg, png } format = Format::pdf;
   double width = 85 * kPointsPerMm;
   Choice choice;
-  std::size_t columns = 0;   ///< 0: those that suit the panels
+  std::size_t columns = 0;   ///< 0: chosen for the panels
   double font_size = 8;      ///< points
   double line_width = 0.35;  ///< of a thin line, points; outlines and contacts are wider in proportion
-  double dpi = 0;            ///< of what is drawn as pixels; 0: default_dpi()
-  bool titles = false;       ///< below each panel what it shows; else its letter alone
+  double dpi = 0;            ///< of rasterised parts; 0: default_dpi()
+  bool titles = false;       ///< below each panel its description; else only its letter
   bool legend = true;        ///< one for all panels, or a colour bar
   bool caption = false;      ///< below the figure
 };
 
-/// The thinnest line that is drawn, in points: presses lose thinner ones.
+/// The minimum line width, in points: printing presses lose thinner lines.
 inline constexpr double kHairline = 0.25;
 
-/// Returns the format that a file's name asks for. Throws InputError for another.
+/// Returns the format for a file name's extension. Throws InputError for an unknown one.
 FigureSpec::Format format_of(const std::string& path);
 double default_dpi(FigureSpec::Format format);
 
 struct Figure {
   std::string bytes;    ///< of the file
-  std::string caption;  ///< the text to print below it
+  std::string caption;  ///< text for print below the figure
   std::size_t panels = 0;
-  std::string left_out;  ///< what was asked for and is not shown, for people; empty: nothing
+  std::string left_out;  ///< requested states that are not shown, as text; empty: none
 };
 
-/// Draws the figure. `frames` says what colours mean, which regions are shown, and from where. Throws
-/// InputError for what a figure cannot show.
+/// Draws the figure. `frames` defines the meaning of colours, the visible regions and the viewpoint. Throws
+/// InputError for requests that a figure cannot show.
 Figure draw_figure(const run::RecordedRun& recorded, const render::FrameSpec& frames,
                    const FigureSpec& figure, const run::ProgressReport& progress);
 

@@ -45,24 +45,24 @@ namespace {
 using Eigen::AlignedBox2d;
 using Eigen::Vector2d;
 
-constexpr double kLine = 1.3;    ///< from one line of text to the next, in font sizes
+constexpr double kLine = 1.3;    ///< line spacing, in font sizes
 constexpr double kGutter = 0.8;  ///< between panels, in font sizes
 constexpr double kGap = 0.5;     ///< above legend, bar and caption, in font sizes
-constexpr double kShape = 1.5;   ///< width to height that automatic columns aim at
-constexpr double kGapCost = 2;   ///< of empty places, in logarithms of that shape, where all places are empty
-constexpr double kTallest = 1.4;  ///< a block is at most so many of its widths high
+constexpr double kShape = 1.5;   ///< target aspect ratio of automatic columns
+constexpr double kGapCost = 2;   ///< cost of empty cells, in logarithms of that ratio, if all cells are empty
+constexpr double kTallest = 1.4;  ///< maximum height of a block, in widths
 constexpr double kMinPanel = 5 * kPointsPerMm, kMinAutomatic = 12 * kPointsPerMm;
-constexpr double kBarWidth = 0.45;  ///< of the colour bar, as a share of the figure's
+constexpr double kBarWidth = 0.45;  ///< width of the colour bar, as a share of the figure's
 
 /// Wraps text of a font size in points.
 std::vector<std::string> wrap(const std::string& text, double width, double font_size) {
-  constexpr double kFine = 32;  // widths are measured in whole pixels
+  constexpr double kFine = 32;  // widths are measured in whole pixels, so in a larger font
   render::TextStyle style;
   style.height = static_cast<float>(font_size * render::kHeightOfFont * kFine);
   return render::default_font().wrap(text, static_cast<int>(width * kFine), style);
 }
 
-/// One block in a given number of columns, its top at zero.
+/// A block in a given number of columns, with its top at zero.
 struct Arranged {
   BlockLayout layout;
   double height = 0;
@@ -144,7 +144,7 @@ class BlockLayouter {
   std::vector<Interval> column_, row_;
 };
 
-/// Returns a block in the columns asked for, or in those that bring it closest to its shape.
+/// Returns a block in the requested columns, or in those that bring it closest to its target ratio.
 Arranged arrange(const Block& block, const LayoutOptions& options) {
   if (options.columns > 0) {
     BlockLayouter layouter(block, options, options.columns);
@@ -169,7 +169,7 @@ Arranged arrange(const Block& block, const LayoutOptions& options) {
   return std::move(*best);
 }
 
-/// Moves everything of a block to its place, on the grid.
+/// Moves all parts of a block to their positions, on the grid.
 void place(BlockLayout& block, double top, double grid) {
   const auto snapped = [&](double x) { return grid > 0 ? grid * std::round(x / grid) : x; };
   for (PanelPlace& p : block.panels) {
@@ -179,12 +179,11 @@ void place(BlockLayout& block, double top, double grid) {
   }
 }
 
-/// Places entries one after the other in as many rows as they need, each row in the middle. Returns the
-/// bottom.
+/// Places entries one after the other in as many centred rows as necessary. Returns the bottom.
 double place_legend(const std::vector<render::LegendItem>& legend, const LayoutOptions& o, double top,
                     FigureLayout& out) {
   const double em = o.font_size, row = kLine * em,
-               room = o.width - 0.2 * em;  // outlines of marks stay on the paper
+               room = o.width - 0.2 * em;  // outlines of marks stay inside the paper's width
   std::vector<double> widths, marks;
   for (const render::LegendItem& item : legend) {
     const bool line =
@@ -284,8 +283,8 @@ void paint_bar(render::Canvas& canvas, const FigureLayout& layout, const render:
                render::Rgba ink) {
   constexpr int kSteps = 128;
   const AlignedBox2d& bar = *layout.bar;
-  // Each step reaches to the right end, under those that follow: between two that only touch, paper would
-  // show.
+  // Each step extends to the right end, under the next ones, because paper would show between steps that only
+  // touch.
   for (int i = 0; i < kSteps; ++i) {
     const Vector2d from(bar.min().x() + bar.sizes().x() * i / kSteps, bar.min().y());
     canvas.fill({render::corners({from, bar.max()})}, palette::viridis(i / (kSteps - 1.0)));

@@ -1,5 +1,5 @@
 #pragma once
-/// Where the parts of a figure go on paper. Lengths are in points, x to the right, y down.
+/// Layout of a figure on paper. Lengths are in points, x to the right, y down.
 
 #include <optional>
 #include <string>
@@ -13,30 +13,32 @@
 
 namespace lrb::figure {
 
-/// Panels of one view: they have one scale, and stand in rows and columns so that what did not move stays in
-/// its place.
+/// Panels of one view, at one scale, in rows and columns that are aligned so that unmoved parts keep their
+/// position.
 struct Block {
-  std::vector<Eigen::AlignedBox2d> seen;  ///< (panels) the box around what is drawn, in the view's own units
-  std::vector<std::string> texts;         ///< below each: letter and title; empty: no room is left for them
+  std::vector<Eigen::AlignedBox2d> seen;  ///< (panels) the bounding box of the content, in the view's own
+                                          ///< units
+  std::vector<std::string> texts;         ///< below each: letter and title; empty: no space is reserved
 };
 
 struct LayoutOptions {
   double width = 0;
   double font_size = 8;
-  double margin = 1;        ///< around what is seen of each panel: room for the width of lines
-  double grid = 0;          ///< panels begin and end on multiples of it: pixels of what is drawn as pixels
-  std::size_t columns = 0;  ///< 0: those that bring each block closest to 3:2
+  double margin = 1;        ///< around the content of each panel: space for the width of lines
+  double grid = 0;          ///< panels begin and end on multiples of it: the size of a pixel of rasterised
+                            ///< parts
+  std::size_t columns = 0;  ///< 0: chosen to bring each block closest to 3:2
 };
 
 struct PanelPlace {
   Eigen::AlignedBox2d box;  ///< of the panel on the paper
   Eigen::Vector2d
-      seen_from;  ///< the place in the view, in its own units, at the box's corner plus the margin
+      seen_from;  ///< the point of the view, in its own units, at the box's corner plus the margin
   std::vector<std::string> lines;
 };
 
 struct BlockLayout {
-  double scale = 1;  ///< points in a unit of the view
+  double scale = 1;  ///< points per unit of the view
   std::vector<PanelPlace> panels;
 };
 
@@ -46,16 +48,16 @@ struct FigureLayout {
   std::vector<BlockLayout> blocks;
   struct Mark {
     Eigen::AlignedBox2d mark;
-    Eigen::Vector2d text;  ///< left end of its middle line
+    Eigen::Vector2d text;  ///< left end of its centre line
   };
-  std::vector<Mark> legend;                             ///< as many as there are entries
+  std::vector<Mark> legend;                             ///< one for each entry
   std::optional<Eigen::AlignedBox2d> bar;               ///< the colour bar
-  Eigen::Vector2d bar_text{0, 0};                       ///< middle of its quantity's text, above it
-  std::vector<std::pair<double, std::string>> caption;  ///< middle of each line, from the top, and the line
+  Eigen::Vector2d bar_text{0, 0};                       ///< centre of the bar's title, above it
+  std::vector<std::pair<double, std::string>> caption;  ///< centre of each line, from the top, and the line
 };
 
-/// Lays a figure out. What is left empty takes no room. Throws InputError where the width is too small for
-/// the columns or for an entry of the legend.
+/// Lays a figure out. Empty parts take no space. Throws InputError if the width is too small for the columns
+/// or for an entry of the legend.
 FigureLayout lay_out(const std::vector<Block>& blocks, const std::vector<render::LegendItem>& legend,
                      const std::optional<render::ScaleBar>& scale, const std::string& caption,
                      const LayoutOptions& options);
@@ -63,14 +65,13 @@ FigureLayout lay_out(const std::vector<Block>& blocks, const std::vector<render:
 inline constexpr double kPointsPerMm = 72 / 25.4;
 
 /// Reads a length on paper, such as "85mm", "17.4cm", "3.3in" or "240pt", and returns it in points (1/72
-/// inch). Throws InputError that names `option`, also for what is shorter than `least` or longer than `most`
-/// points.
+/// inch). Throws InputError that names `option`, also for a length outside `least` to `most` points.
 double parse_length(const std::string& text, const std::string& option, double least, double most);
 
-/// Returns points in words: "85 mm".
+/// Returns a length in points as text: "85 mm".
 std::string length_words(double points);
 
-/// Paints legend and colour bar where the layout has them; both must be those that it was made for.
+/// Paints legend and colour bar at their positions in the layout; both must be those that it was made for.
 void paint_key(render::Canvas& canvas, const FigureLayout& layout,
                const std::vector<render::LegendItem>& legend, const std::optional<render::ScaleBar>& scale,
                const render::Style& style);

@@ -13,14 +13,14 @@ namespace {
 
 using trace::EventId;
 
-/// A state that could be shown, and the number of faces of its wrappers.
+/// A candidate state, and the number of faces of its wrappers.
 struct State {
   EventId event = 0;
   double faces = 0;
 };
 
-/// Returns the events after which a figure may show a state: of one body those that change its wrapper (or
-/// end a pass of its construction), of two the ends of time steps.
+/// Returns the events after which a figure may show a state. One body: those that change its wrapper or end a
+/// pass of its construction. Two bodies: the ends of time steps.
 std::vector<EventId> candidates(const run::RecordedRun& recorded) {
   const trace::Trace& trace = *recorded.trace;
   if (trace.header.construction) {
@@ -57,7 +57,7 @@ std::vector<State> states(const run::RecordedRun& recorded) {
   return out;
 }
 
-/// Returns the state whose number of faces is nearest, as a ratio.
+/// Returns the state with the nearest number of faces, as a ratio.
 EventId nearest(const std::vector<State>& all, double faces) {
   const auto off = [&](const State& s) { return std::abs(std::log(std::max(s.faces, 1.0) / faces)); };
   return std::min_element(all.begin(), all.end(),
@@ -76,7 +76,7 @@ std::vector<EventId> by_faces(const std::vector<State>& all, std::size_t panels)
   return out;
 }
 
-/// Returns time steps evenly, with the first one that has a contact in place of that nearest to it.
+/// Returns evenly spaced time steps; the one nearest to the first contact is replaced by it.
 std::vector<EventId> by_time(const run::RecordedRun& recorded, const std::vector<State>& all,
                              std::size_t panels) {
   const std::vector<trace::Step>& steps = recorded.trace->steps;
@@ -107,7 +107,7 @@ std::vector<EventId> by_layer(const run::RecordedRun& recorded) {
   return last;
 }
 
-/// Takes kMaxPanels states evenly, if there are more.
+/// Reduces the states to kMaxPanels evenly spaced ones, if there are more.
 void thin_layers(Chosen& chosen) {
   const std::vector<EventId> all = chosen.events;
   if (all.size() <= kMaxPanels) return;

@@ -1,5 +1,5 @@
 #pragma once
-/// Which states of a run a figure shows.
+/// Selects the states of a run that a figure shows.
 
 #include <cstdint>
 #include <string>
@@ -15,36 +15,36 @@ namespace lrb::figure {
 
 struct Choice {
   /// changes: where the picture changes. One body: in equal steps of the logarithm of the wrapper's faces;
-  /// two: by time step, the first contact among them. layers: one body, once all regions of a layer are
-  /// refined, and before. faces, events, steps: those nearest to, or of, the numbers given.
+  /// two bodies: by time step, including the first contact. layers: one body, before and after all regions of
+  /// a layer are refined. faces, events, steps: those nearest to, or of, the numbers given.
   enum class By : std::uint8_t { changes, layers, faces, events, steps } by = By::changes;
   std::vector<std::uint32_t> numbers;
-  std::size_t panels = 0;  ///< the most for `changes`; 0: six of one body, four of two
+  std::size_t panels = 0;  ///< the maximum for `changes`; 0: six of one body, four of two
 };
 
-/// The largest number of panels of a figure that chooses them itself.
+/// The maximum number of panels of a figure that chooses them itself.
 inline constexpr std::size_t kMaxPanels = 26;
 
 struct Chosen {
-  std::vector<trace::EventId> events;  ///< after which the states stand, ascending, each once
-  std::string left_out;                ///< what was asked for and is not among them; empty: nothing
+  std::vector<trace::EventId> events;  ///< each panel shows the state after its event; ascending, unique
+  std::string left_out;                ///< requested states that are not among them, as text; empty: none
 };
 
-/// Chooses the states. Of more than kMaxPanels layers it takes so many evenly, the first and the last among
-/// them. Throws InputError for numbers that the run does not have, and for choices that it cannot offer.
+/// Chooses the states. Of more than kMaxPanels layers it takes kMaxPanels, evenly spaced, with the first and
+/// the last. Throws InputError for numbers that the run does not have, and for choices that it cannot offer.
 Chosen choose(const run::RecordedRun& recorded, const Choice& choice);
 
-// The camera of a figure's panels: fitted to everything once, in a square of its own units, of which panels
-// show parts.
+// The camera of a figure's panels: fitted to everything once, in a square with its own units; panels show
+// parts of this square.
 
-/// The side of the square that cameras are fitted to, in units of the view.
+/// The side of that square, in units of the view.
 inline constexpr double kViewSide = 1000;
 
-/// Returns the box of what is drawn of a list, inside the square; the whole square if something reaches
-/// behind the camera, or nothing is seen.
+/// Returns the bounding box of a list's content, inside the square. Returns the whole square if something
+/// reaches behind the camera, or nothing is visible.
 Eigen::AlignedBox2d seen_box(const render::DrawList& list, const render::Camera& camera);
 
-/// Returns the camera that shows the middle of the square, `height` units of it, at the same scale in a
+/// Returns the camera that shows the centre of the square, `height` units of it, at the same scale in a
 /// picture of that height.
 render::Camera middle_part(const render::Camera& camera, double height);
 

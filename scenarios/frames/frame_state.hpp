@@ -22,11 +22,11 @@ namespace lrb::run {
 /// Returns CollideResult::error_bound as a short text.
 std::string error_bound_text(double bound);
 
-/// Returns the results of a pass: "pass 3: 47 regions, 1 064 to 340 faces, 12 caps refused: 9 met the hull, 3
-/// too thick".
+/// Returns the results of a pass: "pass 3: 47 regions, 1 064 to 340 faces, 12 caps rejected: 9 too many
+/// faces, 3 too thick".
 std::string pass_words(const trace::PassSummary& pass);
 
-/// Returns the purpose of a pass: "fitting, caps at most 0.002 off the body".
+/// Returns the stage of a pass: "fitting, max. deviation 0.002".
 std::string stage_words(const trace::PassSummary& pass);
 
 /// Returns the text of a construction event.
@@ -65,7 +65,7 @@ class FrameState {
     const CollideResult* result = nullptr;
     /// The step's answer in the trace; null before the step's end, or if the step is not finished.
     const trace::StepResult* answer = nullptr;
-    /// The answer's certificate of separation, whose wrappers are then shown; null if it has none.
+    /// The answer's certificate of separation, whose wrappers are then shown; null without one.
     const Separation* proof = nullptr;
     /// The separating plane of a step that ends here without contact; nullopt for other events, and if face
     /// colours by value take precedence.

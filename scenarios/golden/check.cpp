@@ -27,7 +27,7 @@ std::string rep_words(const trace::BodyInfo& body) {
          render::group_digits(body.outer_faces) + " outermost faces";
 }
 
-/// Tells whether a body's mesh or only its LRB-rep is another one.
+/// Reports whether a body's mesh has changed or only its LRB-rep.
 std::string body_cause(const Golden& golden, const GoldenRun& run, std::size_t i) {
   const trace::BodyInfo &expected = golden.trace.header.bodies[i],
                         &found = run.recording.trace.header.bodies[i];
@@ -45,7 +45,7 @@ std::string body_cause(const Golden& golden, const GoldenRun& run, std::size_t i
          render::group_digits(found.real_faces) + " faces";
 }
 
-/// Names the fields of the request that are not as approved.
+/// Names the fields of the request that differ from the approved one.
 std::string request_cause(const CollideRequest& x, const CollideRequest& y) {
   std::string names;
   for_each_field<CollideRequest>([&](const auto& field) {
@@ -54,7 +54,7 @@ std::string request_cause(const CollideRequest& x, const CollideRequest& y) {
   return names.empty() ? names : "the query request changed: " + names;
 }
 
-/// Names the first pose that is not as approved.
+/// Names the first pose that differs from the approved one.
 std::string pose_cause(const trace::Trace& x, const trace::Trace& y) {
   for (std::size_t i = 0; i < std::min(x.steps.size(), y.steps.size()); ++i)
     for (const auto& [name, pose] : {std::pair{"A", &trace::Step::pose_a}, {"B", &trace::Step::pose_b}}) {
@@ -87,19 +87,21 @@ namespace {
 
 using Events = std::span<const trace::Event>;
 
-/// Returns true if two events do the same, whatever caused them: causes are numbers of events, which shift.
+/// Returns true if two events are the same action. Causes are not compared: they are event numbers, which
+/// shift.
 bool same_action(const trace::Event& x, const trace::Event& y) {
   return x.kind == y.kind && x.side == y.side && x.a == y.a && x.b == y.b && x.meet == y.meet;
 }
 
-/// Returns the index of the next event after `from` that does the same; events.size(): there is none.
+/// Returns the index of the next event after `from` with the same action, or events.size() if there is no
+/// such event.
 std::size_t find_after(Events events, std::size_t from, const trace::Event& action) {
   for (std::size_t i = from + 1; i < events.size(); ++i)
     if (same_action(events[i], action)) return i;
   return events.size();
 }
 
-/// Returns "; the step has 53 contacts instead of 54", or nothing.
+/// Returns "; the step has 53 contacts instead of 54", or "".
 std::string contacts_words(Events expected, Events actual) {
   const std::uint64_t x = trace::count_events(expected).contacts, y = trace::count_events(actual).contacts;
   return x == y ? ""
@@ -156,7 +158,7 @@ std::uint32_t packed(render::Rgba c) {
   return static_cast<std::uint32_t>(c.r) << 16 | static_cast<std::uint32_t>(c.g) << 8 | c.b;
 }
 
-/// The change of colour that most of the strongly different pixels have in common.
+/// The colour change shared by most of the strongly different pixels.
 std::string commonest_change(const render::Image& expected, const render::Image& actual) {
   const int large = render::ImageTolerance{}.large;
   std::unordered_map<std::uint64_t, std::uint64_t> counts;
@@ -191,7 +193,8 @@ std::vector<std::string> parts_of(const std::string& words) {
   }
 }
 
-/// Returns the first part in which the words for two cameras differ, and how many more parts do.
+/// Returns the first part in which the descriptions of two cameras differ, and the number of further
+/// differing parts.
 std::string moved_words(const std::string& expected, const std::string& actual) {
   const std::vector<std::string> x = parts_of(expected), y = parts_of(actual);
   if (x.size() != y.size()) return "the camera changed: the number of views differs";
@@ -205,7 +208,7 @@ std::string moved_words(const std::string& expected, const std::string& actual) 
          (more > 0 ? ", and " + std::to_string(more) + " more changes" : "");
 }
 
-/// Tells what is behind a difference: another moment, another camera, or else other colours or shapes.
+/// Describes a picture's difference: another event, another camera, or other colours or shapes.
 std::string explain(const render::DecodedPng& expected, const run::PaintedFrame& actual) {
   std::string out;
   const std::string event = text_of(expected, "lrbscope:event"), found = std::to_string(actual.event);
@@ -313,7 +316,7 @@ void check_variant(const std::string& variant) {
   if (!plain) throw InputError("--variant: expected 1 to 64 letters, digits, - and _");
 }
 
-/// Writes into one golden's folder, and keeps account.
+/// Writes into one golden's folder, and records what it wrote.
 class Approval {
  public:
   Approval(const std::string& folder, const GoldenRun& run) : folder_(folder), run_(run) {}
@@ -329,7 +332,7 @@ class Approval {
     render::write_png(run_.frames[i].image, folder_ + "/" + file, png);
     say("approved", file);
   }
-  /// Keeps the meshes of bodies that came from files: those that are generated are known by their scenario.
+  /// Keeps the meshes of bodies from files. Generated bodies are defined by their scenario.
   void meshes() {
     for (std::size_t i = 0; i < run_.recording.bodies.size(); ++i) {
       if (run_.scenario.bodies[i].file.empty()) continue;
@@ -408,7 +411,7 @@ std::vector<std::string> approve_golden(const std::string& goldens, const Golden
     return approve_all({folder, run}, run, folder);
   }
   Golden golden = *old;
-  if (variant.empty()) golden.spec.levels = GoldenSpec{}.levels;  // all that differs is approved
+  if (variant.empty()) golden.spec.levels = GoldenSpec{}.levels;  // approves all differences
   const GoldenVerdict verdict = check_golden(golden, run);
   if (!variant.empty()) return approve_variant({folder, run}, verdict, name, variant);
   Approval approval(folder, run);

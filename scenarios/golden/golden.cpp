@@ -102,13 +102,13 @@ namespace {
 
 constexpr std::string_view kFrame = "frame_", kPng = ".png";
 constexpr std::uint64_t kMaxFrames = 1000;
-constexpr double kLongest = 1e308;  // length of a contact
+constexpr double kLongest = 1e308;  // maximum length of a contact
 
 std::string folder_of(const std::string& goldens, const std::string& name) {
   return (fs::path(goldens) / name).string();
 }
 
-/// Returns 11 for "frame_12.png" and "frame_12.variant.png"; nothing for other names.
+/// Returns 11 for "frame_12.png" and "frame_12.variant.png", or nullopt for other names.
 std::optional<std::size_t> frame_of_file(std::string_view file) {
   if (!file.starts_with(kFrame) || !file.ends_with(kPng)) return std::nullopt;
   const char *first = file.data() + kFrame.size(), *last = file.data() + file.size();
@@ -126,18 +126,18 @@ std::vector<std::string> image_files(const std::string& folder, const Wanted& wa
     const std::string file = entry.path().filename().string();
     if (const auto frame = frame_of_file(file); frame && wanted(*frame)) out.push_back(file);
   }
-  // The file without a variant is the one with the shortest name of its frame.
+  // The file without a variant has the shortest name of its frame.
   std::sort(out.begin(), out.end(), [](const std::string& x, const std::string& y) {
     return x.size() != y.size() ? x.size() < y.size() : x < y;
   });
   return out;
 }
 
-/// Reads a picture of a golden. Keeps a damaged one with the reason: it is a failure of its own, and the
-/// others can still be tested.
+/// Reads a picture of a golden. Keeps a damaged one with the reason: it is reported as a failure, and the
+/// others are still tested.
 GoldenImage read_image(const std::string& folder, const std::string& file, const GoldenSpec& spec) {
-  constexpr std::uint64_t kLarger = 4;  // times the pixels that golden.json says: a picture of another size
-                                        // is a difference like any other
+  constexpr std::uint64_t kLarger = 4;  // times the pixels in golden.json: a picture of another size is an
+                                        // ordinary difference
   const auto expected = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
   GoldenImage image{file, {}, {}};
   try {
@@ -192,8 +192,8 @@ GoldenFacts read_facts(const io::JsonNode& root) {
   return facts;
 }
 
-/// Reads the meshes that were kept of the bodies. One that is missing or damaged only means that less can be
-/// said of a difference.
+/// Reads the kept meshes of the bodies. A missing or damaged one only makes the description of a difference
+/// less specific.
 std::vector<std::optional<Mesh>> read_meshes(const std::string& folder, const trace::Trace& trace) {
   std::vector<std::optional<Mesh>> out;
   for (std::size_t i = 0; i < trace.header.bodies.size(); ++i) {
@@ -270,7 +270,7 @@ void write_golden_spec(const std::string& goldens, const std::string& name, cons
 
 std::string scenario_reference(const std::string& goldens, const spec::Scenario& scenario,
                                const std::string& name_or_path) {
-  if (name_or_path == scenario.name) return name_or_path;  // files end in .json, which no name does
+  if (name_or_path == scenario.name) return name_or_path;  // files end in .json, names never do
   std::error_code error;
   const fs::path from = fs::absolute(fs::path(goldens) / scenario.name, error).lexically_normal();
   return fs::absolute(name_or_path, error).lexically_normal().lexically_relative(from).generic_string();

@@ -23,9 +23,9 @@
 
 namespace lrb::golden {
 
-/// What of a run must be as approved.
+/// Parts of a run that are compared with the approved one.
 enum class Level : std::uint8_t {
-  answers,   ///< of each step: relation, pairs, whether interiors overlap, and what a coarse query proves
+  answers,   ///< of each step: relation, pairs, overlap of interiors, result proven by a coarse query
   events,    ///< bodies, request, poses, every event and every counter
   pictures,  ///< frames, within a tolerance
 };
@@ -35,12 +35,12 @@ constexpr auto words_of(Level) {
 }
 inline constexpr int kLevels = 3;
 
-/// What golden.json says.
+/// The contents of golden.json.
 struct GoldenSpec {
-  std::string scenario;  ///< name of a shipped one, or a file, looked up from the golden's own folder
+  std::string scenario;  ///< name of a shipped one, or a file relative to the golden's folder
   int width = 0, height = 0;
-  std::uint32_t frames = 3;  ///< largest number of pictures, evenly chosen from the scenario's frames
-  /// (kLevels) what is compared.
+  std::uint32_t frames = 3;  ///< maximum number of pictures, evenly chosen from the scenario's frames
+  /// (kLevels) the levels that are compared
   std::array<bool, kLevels> levels = {true, true, true};
   render::ImageTolerance tolerance;  ///< of pictures
 
@@ -48,72 +48,73 @@ struct GoldenSpec {
   friend bool operator==(const GoldenSpec&, const GoldenSpec&) = default;
 };
 
-/// What golden.json notes of the run that the trace does not hold, for later differences to be explained.
+/// Facts of the run recorded in golden.json but not in the trace, to explain later differences.
 struct GoldenFacts {
-  std::vector<std::uint64_t> meshes;  ///< (bodies) mesh_hash(); empty: not noted
-  /// (steps) the length of contact, in the scenario's unit; empty: not asked for, or not noted.
+  std::vector<std::uint64_t> meshes;  ///< (bodies) mesh_hash(); empty: not recorded
+  /// (steps) the length of contact, in the scenario's unit; empty: not requested, or not recorded
   std::vector<double> contact_lengths;
 
   friend bool operator==(const GoldenFacts&, const GoldenFacts&) = default;
 };
 
-/// A picture that was approved.
+/// An approved picture.
 struct GoldenImage {
   std::string file;  ///< without its folder
   render::DecodedPng png;
-  std::string damage;  ///< why it cannot be read; then `png` is empty
+  std::string damage;  ///< why it cannot be read, in which case `png` is empty
 };
 
 struct Golden {
-  std::string name;  ///< of the scenario, and of its folder
+  std::string name;  ///< name of the scenario and of its folder
   GoldenSpec spec;
   GoldenFacts facts;
   trace::Trace trace;
-  std::vector<std::optional<Mesh>> meshes;       ///< of the bodies; nothing where none was kept
-  std::vector<std::vector<GoldenImage>> frames;  ///< the variants of each frame; the one without a name first
+  std::vector<std::optional<Mesh>> meshes;       ///< of the bodies; nullopt if not kept
+  std::vector<std::vector<GoldenImage>> frames;  ///< the variants of each frame; the unnamed one first
 };
 
-/// Returns the names of the goldens in a folder, sorted. Throws InputError if there is none.
+/// Returns the names of the goldens in a folder, sorted. Throws InputError if the folder has no golden.
 std::vector<std::string> golden_names(const std::string& goldens);
 
 bool has_golden(const std::string& goldens, const std::string& name);
 /// Throws InputError if golden.json is missing or damaged.
 GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name);
-/// Reads a golden; throws InputError if a part of it is missing or damaged. Damaged pictures are kept and say
-/// what is wrong.
+/// Reads a golden. Throws InputError if a part of it is missing or damaged. Damaged pictures are kept with
+/// the reason.
 Golden load_golden(const std::string& goldens, const std::string& name);
-/// Returns the scenario that a golden is of.
+/// Returns the scenario of a golden.
 spec::Scenario golden_scenario(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
 
-/// Returns what golden.json says about a scenario opened as `name_or_path`.
+/// Returns the reference in golden.json to a scenario opened as `name_or_path`.
 std::string scenario_reference(const std::string& goldens, const spec::Scenario& scenario,
                                const std::string& name_or_path);
 void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec,
                        const GoldenFacts& facts);
 
-/// Returns "frame_2.png", or "frame_2.avx512.png". Frames count from 0 here, from 1 in names.
+/// Returns "frame_2.png", or "frame_2.avx512.png". `frame` counts from 0, names from 1.
 std::string golden_image_file(std::size_t frame, const std::string& variant = {});
-/// Returns the files of pictures of one frame.
+/// Returns the picture files of one frame.
 std::vector<std::string> image_files_of(const std::string& folder, std::size_t frame);
-/// Returns the files of pictures of this frame and all later ones, which a shorter run no longer has.
+/// Returns the picture files of this frame and all later ones, which a shorter run no longer has.
 std::vector<std::string> image_files_from(const std::string& folder, std::size_t first_frame);
 
 inline const char* const kGoldenSpec = "golden.json";
 inline const char* const kGoldenTrace = "trace.json.gz";
 
-// Keeps the mesh of an approved body beside its golden, so that a later difference can be told: which
-// vertices moved, and by how much.
+// Keeps the mesh of an approved body beside its golden, so that a later report can name the vertices that
+// moved, and their displacement.
 
-/// Returns the real faces of a body, with the numbers that its vertices have.
+/// Returns the real faces of a body, with its vertex numbers.
 Mesh kept_mesh(const LrbRep& rep);
-/// Returns a hash of everything but the name.
+/// Returns a hash of all fields but the name.
 std::uint64_t mesh_hash(const Mesh& mesh);
 
-/// Returns the file, in the golden's folder, that keeps body A (0) or B (1): a.ply, or a.obj of a 2D body.
+/// Returns the file name, in the golden's folder, of the kept mesh of body A (0) or B (1): a.ply, or a.obj
+/// for a 2D body.
 std::string kept_file(std::size_t body, int dim);
 
-/// Tells in one line how two meshes differ: vertices that moved, the farthest one first; or other numbers of
-/// vertices and faces. Returns nothing if they are the same.
+/// Describes in one line how two meshes differ: moved vertices, starting with the largest displacement; or
+/// other numbers of vertices and faces. Returns an empty text if they are equal.
 std::string mesh_difference(const Mesh& expected, const Mesh& found);
 
 }  // namespace lrb::golden

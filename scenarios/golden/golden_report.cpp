@@ -29,8 +29,8 @@ const CollideResult* find_result(const GoldenRun& run, std::size_t step) {
   return step < run.recording.results.size() ? &run.recording.results[step] : nullptr;
 }
 
-/// Returns the step in which the runs begin to differ: the one that is named or, if they differ as a whole
-/// (the request, the number of steps), that of the first event that differs.
+/// Returns the step in which the runs begin to differ: the named one or, if they differ as a whole (the
+/// request, the number of steps), that of the first differing event.
 std::optional<std::size_t> step_of(const trace::Trace& x, const trace::Trace& y, const trace::Divergence& d,
                                    std::optional<trace::EventId>& event) {
   if (d.step) return d.step;
@@ -40,20 +40,20 @@ std::optional<std::size_t> step_of(const trace::Trace& x, const trace::Trace& y,
   return std::min(x.step_of(*event), y.step_of(*event));
 }
 
-/// Returns the event of a run to show: if its step ended before, that is the step's end.
+/// Returns the event of a run to show: the step's end if its step ended before.
 trace::EventId event_to_show(const trace::Trace& trace, std::size_t step,
                              std::optional<trace::EventId> event) {
   const trace::EventId last = run::last_event(trace, step);
   return event ? std::min(*event, last) : last;
 }
 
-/// One of the two runs; they differ in their traces.
+/// One of the two runs, which differ in their traces.
 struct SideShown {
   const trace::Trace& trace;
   trace::EventId event;
 };
 
-/// Returns the corners of the subject of an event: the pair that it compares, or the region that it refines.
+/// Returns the corners of the element of an event: the pair that it compares, or the region that it refines.
 std::vector<Eigen::Vector3d> subject_of(const SideShown& side, const std::vector<const LrbRep*>& reps) {
   trace::Cursor cursor =
       reps.size() == 1 ? trace::Cursor(side.trace, *reps[0]) : trace::Cursor(side.trace, *reps[0], *reps[1]);
@@ -125,7 +125,7 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
                               {actual, event_to_show(actual, *step, event)}};
   const std::vector<const LrbRep*> reps = recorded_run_of(run).reps;
   try {
-    // The cameras are fitted to this step alone: both runs' bodies, and what both events are about.
+    // The cameras are fitted to this step alone: both runs' bodies, and the elements of both events.
     run::Framing framing = run::frame_sequence(recorded_run_of(run), run.scenario.frames);
     framing.contacts.clear();
     for (const SideShown& side : sides)
@@ -374,8 +374,8 @@ std::string case_xml(const GoldenResult& r) {
                     "\" time=\"" + io::fixed_text(r.seconds, kDecimals) + "\"";
   if (r.verdict.passed()) return out + "/>\n";
   const char* kind = r.verdict.rejection.empty() ? "failure" : "error";
-  // The case has the name, and the element the verdict: the message is the rest of the first line, and what
-  // follows is the element's text.
+  // The name is in the case, and the verdict in the element: the message is the rest of the first line, and
+  // the element's text is the remainder.
   const std::string text = result_text(r), head = "FAIL  " + r.name + ": ";
   const std::size_t end = text.find('\n');
   return out + ">\n    <" + kind + " message=\"" +

@@ -1,5 +1,5 @@
 #pragma once
-/// Writes what a test of goldens leaves behind: files of what differs, and a page.
+/// Writes the results of a test of goldens: files of the differences, and a page.
 
 #include <string>
 #include <vector>
@@ -18,21 +18,21 @@ struct GoldenResult {
   GoldenSpec spec;
   GoldenVerdict verdict;
   std::size_t steps = 0, events = 0;
-  double seconds = 0;   ///< that the test took: the run, its pictures and the comparison
-  std::string approve;  ///< the command
-  std::string page;     ///< that will show it, for people; empty: none
+  double seconds = 0;   ///< duration of the test: the run, its pictures and the comparison
+  std::string approve;  ///< the command that approves the run
+  std::string page;     ///< path of the page that shows the result; may be empty
   std::vector<report::Comparison> comparisons;
 };
 
-/// Tests a run. With `all`, keeps the pictures of what passed, too.
+/// Tests a run. With `all`, also keeps the pictures that passed.
 GoldenResult test_golden(const Golden& golden, const GoldenRun& run, const std::string& approve, bool all);
 
 /// Returns the result for a golden that could not be tested, because it is damaged or its scenario is
-/// refused.
+/// rejected.
 GoldenResult untested_golden(const std::string& name, const std::string& rejection,
                              const std::string& approve);
 
-/// Removes what an earlier test of these goldens left in a folder, and nothing else.
+/// Removes the files of an earlier test of these goldens from a folder. Other files are kept.
 void clear_golden_report(const std::string& folder, const std::vector<std::string>& names);
 
 /// Writes the failures of a test: folder/NAME/{frame_1,divergence}.{expected,actual,difference}.png and,
@@ -43,17 +43,17 @@ void write_failures(const GoldenResult& result, const GoldenRun& run, const std:
 void write_golden_page(const std::vector<GoldenResult>& results, const report::Folder& folder,
                        const std::string& command);
 
-/// Returns the lines that tell people about a scenario's test.
+/// Describes the result of a scenario's test, in lines.
 std::string result_text(const GoldenResult& result);
 
-// Writes a test's results as JUnit XML, which CI servers show.
+// Writes a test's results as JUnit XML for CI servers.
 
 /// Returns a test suite with a case for each golden. A golden that could not be tested is an error; one that
-/// differs is a failure, with the lines that tell people about it.
+/// differs is a failure, with result_text().
 std::string junit_xml(const std::vector<GoldenResult>& results);
 
-/// The two runs where they begin to differ: at the first event that differs, or at the end of the step that
-/// does; the whole and a close-up, through the same cameras.
+/// The two runs where they begin to differ: at the first differing event, or at the end of its step; as a
+/// whole and in a close-up, through the same cameras.
 struct DivergencePictures {
   render::Image expected, actual;  ///< empty if there is nothing to draw
   std::string expected_caption, actual_caption;

@@ -44,7 +44,7 @@ requires std::is_enum_v<Enum> std::string words(Enum value) {
   return std::string(name_of(value));
 }
 
-/// Compares the fields of two records, and those of their counters.
+/// Compares the fields of two records and the fields of their counters.
 template <class Record>
 void compare(const Record& x, const Record& y, Effect like, std::vector<Effect>& out) {
   std::vector<Effect> counters;
@@ -152,7 +152,7 @@ GoldenRun record_golden(spec::Scenario scenario, const GoldenSpec& spec,
   frames.dpi = 0;
   frames.most = spec.frames;
   run.recording = run::record(run.scenario, progress);
-  for (trace::BodyInfo& body : run.recording.trace.header.bodies)  // names no folder of this machine
+  for (trace::BodyInfo& body : run.recording.trace.header.bodies)  // removes the names of local folders
     if (body.source.find('/') != std::string::npos)
       body.source = std::filesystem::path(body.source).filename().string();
   return run;
@@ -179,7 +179,7 @@ GoldenFacts facts_of(const GoldenRun& run) {
 
 run::RecordedRun recorded_run_of(const GoldenRun& run) {
   run::RecordedRun p = run::recorded_run_of(run.scenario, run.recording);
-  p.purpose.clear();  // approved pictures say what they show without it
+  p.purpose.clear();  // approved pictures omit the purpose
   return p;
 }
 

@@ -39,10 +39,10 @@ void write_text(const std::string& path, const std::string& text);
 /// a picture, or frames itself). The folder's own path may contain links, because the user chose it.
 void reject_links(const std::string& folder);
 
-/// Prevent two scenarios of one name from replacing each other's runs in the folder of that name. `refuse`
-/// throws InputError if the folder contains the run of another file that still exists; `mark` records, in a
-/// separate file, the scenario file of the folder's run. Shipped scenarios, which are not files, mark
-/// nothing.
+/// Prevent two scenarios of one name from replacing each other's runs in the folder of that name.
+/// reject_run_of_another() throws InputError if the folder contains the run of another file that still
+/// exists; mark_run() records, in a separate file, the scenario file of the folder's run. Shipped scenarios,
+/// which are not files, mark nothing.
 void reject_run_of_another(const std::string& folder, const std::string& scenario_file);
 void mark_run(const std::string& folder, const std::string& scenario_file);
 

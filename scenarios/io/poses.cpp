@@ -41,7 +41,7 @@ std::string shown(std::string_view word) {
   return "\"" + out + (word.size() > kLongest ? "...\"" : "\"");
 }
 
-/// wanted: the expected content of each line, for the message.
+/// `wanted`: the expected content of each line, for the message.
 double number(std::string_view word, const std::string& where, const std::string& wanted) {
   // from_chars does not accept a plus sign.
   const std::string_view digits = word.substr(word[0] == '+' ? 1 : 0);
@@ -343,7 +343,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
 
  private:
   /// The parser's current context: before the list, in an object whose other members are skipped, after the
-  /// key "poses", in the list, in a pose, or in a row of it.
+  /// key "poses", in the list, in a pose, or in one of its rows.
   enum class Level : std::uint8_t { root, object, member, list, pose, row };
 
   bool done() {

@@ -39,7 +39,7 @@ std::vector<PaperPart> read_report(const io::JsonNode& node) {
   return parts;
 }
 
-/// Reads a name that can stand in records, in charts' data blocks and in file names.
+/// Reads a name that is safe in records, in charts' data blocks and in file names.
 std::string read_object_name(const io::JsonNode& node) {
   const std::string name = spec::read_name(node);
   if (name.find('-') != std::string::npos) node.fail("expected letters, digits and _ only");
@@ -66,7 +66,7 @@ std::vector<PaperExperiment::Object> read_objects(const io::JsonNode& node,
   return objects;
 }
 
-/// Returns the object that the close-up shows: the one that is named, or the last.
+/// Returns the object of the close-up: the named one, or the last.
 std::string read_close_up(const io::JsonNode& root, const std::vector<PaperExperiment::Object>& objects) {
   const auto n = root.get("close_up");
   if (!n) return objects.back().name;

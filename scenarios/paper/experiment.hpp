@@ -1,6 +1,7 @@
 #pragma once
-/// The paper's experiment as a file: which bodies, by which protocol, and what is reported of them.
-/// schema/experiment.schema.json describes the format; shipped/*.experiment.json hold the published numbers.
+/// The paper's experiment as a file: bodies, protocol and contents of the report.
+/// schema/experiment.schema.json describes the format; shipped/*.experiment.json contain the published
+/// numbers.
 
 #include <string>
 #include <vector>
@@ -31,7 +32,7 @@ struct PaperExperiment {
   };
   std::string name, purpose;
   PaperProtocol protocol;
-  std::vector<Object> objects;    ///< the first one meets all others
+  std::vector<Object> objects;    ///< the first one collides with all others
   std::vector<PaperPart> report;  ///< in the order of the enum
   std::string close_up;           ///< the object of heat maps and refinement tree
 
@@ -44,12 +45,13 @@ struct PaperExperiment {
 PaperExperiment parse_experiment(const std::string& text, const std::string& file);
 /// Reads a shipped experiment by its name, or one from a file.
 PaperExperiment open_experiment(const std::string& name_or_path);
-/// Returns the text of a shipped experiment, to start one's own from. Throws InputError for another name.
+/// Returns the text of a shipped experiment, as a starting point for new ones. Throws InputError for an
+/// unknown name.
 std::string shipped_experiment(const std::string& name);
 std::vector<std::string> shipped_experiments();
 
-/// Makes its bodies, all scaled to the first one's diagonal. Adds what was done to them to `notes`. Throws
-/// InputError for bodies that are not 3D.
+/// Makes its bodies, all scaled to the first one's diagonal. Appends the changes made to them to `notes`.
+/// Throws InputError for bodies that are not 3D.
 std::vector<PaperObject> make_objects(const PaperExperiment& experiment, std::vector<std::string>& notes);
 
 }  // namespace lrb::paper
@@ -66,7 +68,7 @@ inline constexpr auto kFields<paper::PaperProtocol> =
                field("seed", &paper::PaperProtocol::seed)};
 static_assert(covers_all_fields<paper::PaperProtocol>);
 
-/// Without the time that a recursion took, which is never the same again and has a file of its own.
+/// Without the duration of a recursion, which is not reproducible and has a separate file.
 template <>
 inline constexpr auto kFields<paper::RecursionCount> =
     std::tuple{field("comparisons", &paper::RecursionCount::comparisons),
@@ -74,7 +76,7 @@ inline constexpr auto kFields<paper::RecursionCount> =
                field("pairs", &paper::RecursionCount::pairs), field("missed", &paper::RecursionCount::missed),
                field("bound_tests", &paper::RecursionCount::bound_tests)};
 
-/// Without `min_faces`, which experiments leave as it is.
+/// Without `min_faces`, which experiments do not set.
 template <>
 inline constexpr auto kFields<resolutions::ResolutionOptions> =
     std::tuple{field("resolutions", &resolutions::ResolutionOptions::most),

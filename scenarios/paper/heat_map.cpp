@@ -11,7 +11,7 @@ namespace lrb::paper {
 namespace {
 
 constexpr int kPanelWidth = 560, kPanelHeight = 500;
-constexpr double kAside = 0.45;  ///< the viewer's offset from the direction of the other body
+constexpr double kAside = 0.45;  ///< lateral offset of the viewer from the direction of the other body
 
 /// The subject of a panel.
 struct PanelView {
@@ -19,7 +19,7 @@ struct PanelView {
   const CloseUp* collision;
   const CollideResult* contact;  ///< of its last time step
   const char* which;             ///< easiest or hardest
-  bool near;                     ///< where the bodies meet, else the whole body
+  bool near;                     ///< close-up of the contact, else the whole body
 };
 
 std::vector<double> tests_of(const PaperPair& pair, const PanelView& view) {
@@ -33,12 +33,12 @@ Pose pose_of(const PanelView& view) {
   return view.side == Side::a ? last.pose_a : last.pose_x;
 }
 
-/// Returns the box of all that a body can show.
+/// Returns the bounding box of everything that a body can show.
 Eigen::AlignedBox3d whole_box(const LrbRep& rep, const Pose& pose) {
   return render::bounds(render::body_points(rep, pose));
 }
 
-/// Returns the direction from the other body, at an angle, onto the faces that it intersects.
+/// Returns the direction from the other body, at an angle, towards the faces that it intersects.
 render::ViewDirection view_of(const PaperPair& pair, const PanelView& view) {
   const ContactStep& last = view.collision->steps.back();
   const Eigen::Vector3d way =
@@ -57,7 +57,7 @@ CollideResult contact_of(const PaperPair& pair, const CloseUp& c) {
   return collide(pair.a.rep, c.steps.back().pose_a, pair.x.rep, c.steps.back().pose_x, request);
 }
 
-/// Returns the points of the contact region with most pairs of faces.
+/// Returns the points of the contact region with the most pairs of faces.
 std::vector<Eigen::Vector3d> largest_contact(const CollideResult& contact) {
   const auto less = [](const ContactRegion& p, const ContactRegion& q) {
     return p.pairs.size() < q.pairs.size();
@@ -78,14 +78,14 @@ run::CameraFit camera_of(const PaperPair& pair, const PanelView& view) {
   };
 }
 
-/// Returns the position of a count on the scale, from 0 for none to 1 for the largest of all. The scale is
+/// Returns the position of a count on the scale, from 0 for no test to 1 for the maximum. The scale is
 /// logarithmic because a few faces get most of the tests.
 double share(double tests, double most) {
   return most > 0 ? std::log1p(tests) / std::log1p(most) : 0;
 }
 
-/// Draws the wrapper at the end of the last time step, opaque, so that colours are those of the scale; and
-/// the contact curves.
+/// Draws the wrapper at the end of the last time step, opaque, so that its colours match the scale; and the
+/// contact curves.
 render::DrawList wrapper_list(const PaperPair& pair, const PanelView& view, double most) {
   const LrbRep& rep = pair.rep(view.side);
   const std::vector<double> tests = tests_of(pair, view);

@@ -17,10 +17,10 @@ using namespace render::svg_text;
 
 constexpr double kWidth = 1200, kMargin = 16, kRow = 24, kText = 15, kName = 13.5, kTitle = 18,
                  kGap = 34;                      // pixels
-constexpr double kRule = 0.7, kRuleShare = 0.2;  ///< white between boxes: pixels, and as a share of the box
-                                                 ///< at most
-constexpr double kRoomForText = 2.5;  ///< a box gets its number if it is at least this many times as wide as
-                                      ///< the text is high
+constexpr double kRule = 0.7, kRuleShare = 0.2;  ///< white space between boxes: pixels, and maximum share of
+                                                 ///< the box
+constexpr double kRoomForText = 2.5;  ///< minimum width of a box with a number, as a multiple of the text
+                                      ///< height
 
 enum class State : std::uint8_t { refined, tested, real_tested, untouched };  // in the order of the boxes
 
@@ -38,7 +38,7 @@ render::Rgba colour_of(State s) {
   return render::palette::kRule;
 }
 
-/// A region, or those of its real faces that share a state.
+/// A region, or its real faces of one state.
 struct Node {
   State state = State::untouched;
   double width = 0;  ///< number of faces
@@ -65,7 +65,7 @@ class Tree {
  private:
   std::size_t slot(CellId cell) const { return is_region(cell) ? cell.value() : rep_.region_count(); }
 
-  /// Adds what lies below an opened region, or below the outside.
+  /// Adds the contents of a refined region, or of the outside.
   Node open(CellId cell) const {
     Node n;
     for (const RegionId r : inside_[slot(cell)]) n.inside.push_back(node(r));
@@ -104,7 +104,7 @@ class Tree {
     return n;
   }
 
-  /// Adds everything below a lid that was not opened, as one box.
+  /// Adds everything below an unrefined lid, as one box.
   Node hidden(RegionId r, double width) const {
     std::uint64_t regions = 0, faces = 0;
     std::vector<RegionId> left = {r};
@@ -144,7 +144,7 @@ std::string text(double x, double y, double height, const std::string& words, co
 
 class Writer {
  public:
-  /// Returns the height it took.
+  /// Returns the height of the drawing.
   double tree(const Node& root, double y) {
     unit_ = (kWidth - 2 * kMargin) / root.width;
     box(root, kMargin, y);

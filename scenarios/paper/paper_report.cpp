@@ -24,7 +24,8 @@ constexpr double kBinWidth = 250;  // comparisons
 /// Figure 3.1: the other object's size (real and pseudo faces, log axis) against comparisons: minimum,
 /// average and maximum, measured with the paper's recursion and as published.
 report::Chart figure_3_1(std::span<const ObjectRow> rows) {
-  constexpr double kBeside = 1.06;  // published bars stand to the right of ours by this factor
+  constexpr double kBeside = 1.06;  // factor by which published bars are shifted to the right of the measured
+                                    // ones
   report::Series measured{"measured: average, minimum, maximum", {}, {}},
       paper{"published", {}, {}, {report::Line::dashed}};
   const auto add = [](report::Series& s, double size, double average, double min, double max) {
@@ -46,8 +47,8 @@ report::Chart figure_3_1(std::span<const ObjectRow> rows) {
       "Figure 3.1", sizes, {"face comparisons in a time step"}, {measured, paper}, "The paper's recursion."};
 }
 
-/// Figure 3.2: for each number of comparisons, how many time steps needed it, a line for each object, with
-/// the paper's recursion.
+/// Figure 3.2: the number of time steps for each number of comparisons, a line for each object, with the
+/// paper's recursion.
 report::Chart figure_3_2(std::span<const ObjectRow> rows, std::span<const ContactStep> steps) {
   report::Chart chart{
       "Figure 3.2",
@@ -110,7 +111,7 @@ struct CloseUps {
   CloseUp easiest, hardest;
 };
 
-/// Returns nothing if the experiment does not report them.
+/// Returns nullopt if the experiment does not report them.
 std::optional<CloseUps> close_ups_of(const PaperReport& r) {
   if (!r.experiment.reports(PaperPart::heat_maps) && !r.experiment.reports(PaperPart::refinement_tree))
     return std::nullopt;
@@ -138,7 +139,7 @@ constexpr std::array<const char*, 3> kTitles = {"the paper's recursion, each pai
                                                 "the paper's recursion, each region once (strict)",
                                                 "complete"};
 
-/// Returns true if an object of the paper has these very numbers of faces.
+/// Returns true if an object of the paper has exactly these numbers of faces.
 bool as_published(const PaperObject& o) {
   const auto published = generators::paper_objects();
   return std::any_of(published.begin(), published.end(), [&](const generators::FractalSpec& p) {
@@ -192,7 +193,7 @@ report::Table table2(std::span<const ObjectRow> rows, std::size_t recursion) {
   return t;
 }
 
-/// Returns what a reader must know before comparing.
+/// Returns the differences to the paper's setup that matter for a comparison.
 std::vector<std::string> differences(const PaperReport& r, std::span<const ObjectRow> rows) {
   std::vector<std::string> out;
   if (!all_as_published(r))

@@ -1,5 +1,5 @@
 #pragma once
-/// Reports the paper's experiment: tables beside the published ones, figures, and what differs.
+/// Reports the paper's experiment: tables beside the published ones, figures, and the differences.
 
 #include <string>
 
@@ -16,16 +16,16 @@ struct PaperReport {
   const PaperExperiment& experiment;
   std::string command;                                       ///< the command that made it
   const SeriesReport* series = nullptr;                      ///< bodies at several resolutions; may be null
-  std::vector<std::pair<std::string, double>> seconds = {};  ///< times that its parts took; may be empty
+  std::vector<std::pair<std::string, double>> seconds = {};  ///< duration of each part; may be empty
 };
 
 /// Writes records.jsonl, tables.json, report.md, index.html, with gnuplot figure3-1 and figure3-2 as SVG and
-/// PNG, heat_maps.png and refinement_tree.svg, each if the experiment reports it; for a series, what
-/// add_series() adds. Returns notes (what could not be drawn). Throws EnvironmentError.
+/// PNG, heat_maps.png and refinement_tree.svg, each if the experiment reports it; for a series, the output of
+/// add_series(). Returns notes on pictures that could not be drawn. Throws EnvironmentError.
 std::vector<std::string> write_paper_report(const PaperReport& report, const report::Folder& folder);
 
-/// Throws InputError if the steps are not those of the experiment, as far as the numbers of collisions and
-/// its close-ups tell.
+/// Throws InputError if the numbers of collisions or the close-ups show that the steps are from another
+/// experiment.
 void check_records(const PaperReport& report);
 
 }  // namespace lrb::paper

@@ -23,7 +23,7 @@ RecursionCount count_of(const CollideResult& result, const std::vector<SimplexPa
   return n;
 }
 
-/// Returns the answer to a query, with memory of its own.
+/// Returns the answer to a query with a fresh workspace.
 CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& x, const Pose& pose_x,
                   const CollideRequest& request, Workspace& workspace) {
   return std::move(collide(a, pose_a, x, pose_x, request, workspace).value());

@@ -2,11 +2,11 @@
 /// The experiment of the paper's section 4: object A against another one, 100 collisions, the number of face
 /// comparisons at every time step with a face contact.
 ///
-/// What the paper leaves open is decided here. Both bodies get a random rotation. The other one comes from a
-/// random direction, on a line through the centres of both bounding boxes, in steps of a fixed share of the
-/// diagonal of A's bounding box, from where their bounding spheres touch. It is scaled to the same diagonal.
-/// Counting begins at the first step at which real faces meet, and goes on for `steps_after` steps; steps
-/// among them in which no real faces meet are not counted.
+/// Details that the paper leaves open are defined here. Both bodies get a random rotation. The other one
+/// approaches from a random direction, on a line through the centres of both bounding boxes, in steps of a
+/// fixed share of the diagonal of A's bounding box, starting where their bounding spheres touch. It is scaled
+/// to the same diagonal. Counting begins at the first step at which real faces intersect, and continues for
+/// `steps_after` steps; steps among them in which no real faces intersect are not counted.
 
 #include <array>
 #include <cstdint>
@@ -30,24 +30,24 @@ inline constexpr double kMinStep = 1e-5, kMaxStep = 0.5;
 
 inline constexpr std::array<Recursion, 3> kRecursions = {Recursion::paper, Recursion::paper_strict,
                                                          Recursion::complete};
-inline constexpr std::size_t kPaper = 0;  ///< the paper's own, of kRecursions
+inline constexpr std::size_t kPaper = 0;  ///< the paper's own; index into kRecursions
 
-/// What one recursion did at one time step.
+/// The counters of one recursion at one time step.
 struct RecursionCount {
   std::uint64_t comparisons = 0;  ///< number of faces compared (paper: polygons; complete: the triangles that
                                   ///< they are fans of)
   std::uint64_t refinements = 0;
-  std::uint64_t pairs = 0;        ///< number of pairs of real triangles that it found to meet
-  std::uint64_t missed = 0;       ///< number of pairs that meet but that it did not find
-  std::uint64_t bound_tests = 0;  ///< number of boxes and planes, eight at once counted as eight (complete
+  std::uint64_t pairs = 0;        ///< number of pairs of real triangles found to intersect
+  std::uint64_t missed = 0;       ///< number of intersecting pairs that were not found
+  std::uint64_t bound_tests = 0;  ///< number of boxes and planes; a batch of eight counts as eight (complete
                                   ///< only)
-  std::uint64_t nanoseconds = 0;  ///< time it took, once; not in the record, because it is never the same
-                                  ///< again
+  std::uint64_t nanoseconds = 0;  ///< duration, measured once; not in the record, because it is not
+                                  ///< reproducible
 };
 
 /// One time step with a face contact.
 struct ContactStep {
-  std::string object;           ///< the one that A met
+  std::string object;           ///< the one that A collides with
   std::uint32_t collision = 0;  ///< 0 .. collisions - 1
   std::uint32_t step = 0;       ///< number of steps since the first contact
   Relation relation = Relation::separate;
@@ -61,7 +61,7 @@ std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const s
                                        std::uint32_t collision, const PaperProtocol& protocol,
                                        Workspace& workspace);
 
-/// Returns the body with its coordinates multiplied.
+/// Returns the body with its coordinates multiplied by `by`.
 LrbRep scaled(const LrbRep& rep, double by);
 /// Returns the diagonal of the bounding box of the real faces.
 double diagonal(const LrbRep& rep);

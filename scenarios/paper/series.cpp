@@ -45,7 +45,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the meshes in a folder, by name; other paths as they are.
+/// Returns the meshes in a folder, by name; other paths unchanged.
 std::vector<std::string> files_of(const std::vector<std::string>& paths) {
   std::vector<std::string> files;
   for (const std::string& path : paths) {
@@ -67,7 +67,7 @@ std::vector<std::string> files_of(const std::vector<std::string>& paths) {
   return files;
 }
 
-/// Says why no series can be made of a mesh; empty if one can.
+/// Returns the reason why no series can be made of a mesh; empty if one can.
 std::string obstacle(const Mesh& mesh) {
   if (mesh.dim != 3) return "a 2D body";
   const MeshReport report = check_mesh(mesh, false).when_turned();
@@ -148,7 +148,7 @@ std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObjec
       const PaperObject pair[] = {{"", first}, {series_name(object, partner), object.rep, object.body}};
       std::uint64_t last = 0;
       for (ContactStep& s : run_sweep(pair, options, [&](std::uint64_t done, std::uint64_t of) {
-             last = of;  // each sweep has about as many as this
+             last = of;  // about equal for all sweeps
              if (progress) progress(done_before + done, done_before + of * (2 * objects.size() - sweeps));
            }))
         steps.push_back(std::move(s));

@@ -1,9 +1,9 @@
 #pragma once
-/// Runs the paper's experiment on bodies at several resolutions, to see how comparisons and time grow with
-/// size.
+/// Runs the paper's experiment on bodies at several resolutions, to measure the growth of comparisons and
+/// time with size.
 ///
 /// Every resolution collides twice: with the paper's object A, as the paper's other objects do, so that one
-/// side grows; and with itself, so that both do. All resolutions of a body get the same directions and
+/// side grows; and with itself, so that both grow. All resolutions of a body get the same directions and
 /// rotations.
 
 #include <cstdint>
@@ -26,8 +26,8 @@ struct PowerFit {
   double factor = 0;
 };
 
-/// Fits a straight line to the logarithms, with the least sum of squares. x and y must be positive and of one
-/// length, with at least two different x.
+/// Fits a straight line to the logarithms by least squares. x and y must be positive and of equal length,
+/// with at least two different x.
 PowerFit fit_power(std::span<const double> x, std::span<const double> y);
 
 }  // namespace lrb::resolutions
@@ -43,14 +43,14 @@ struct SeriesObject {
 enum class SeriesPartner { a, itself };
 inline constexpr std::array<SeriesPartner, 2> kSeriesPartners = {SeriesPartner::a, SeriesPartner::itself};
 
-/// Returns the name under which a resolution's collisions are recorded.
+/// Returns the name of a resolution's collisions in the records.
 std::string series_name(const SeriesObject& object, SeriesPartner partner);
 
-/// Makes two bodies of our own at high resolution, for users without meshes.
+/// Generates two bodies at high resolution, for users without meshes.
 std::vector<Mesh> own_series_bodies();
-/// Reads meshes from the files and folders in `paths`; each is named after its file, without the ending.
-/// Leaves out a mesh that no LRB-rep can be built of, and a note says why. Throws InputError if nothing is
-/// left, or if two have the same name.
+/// Reads meshes from the files and folders in `paths`; each is named after its file, without the extension.
+/// Skips, with a note that gives the reason, each mesh that no LRB-rep can be built of. Throws InputError if
+/// no mesh is left, or if two have the same name.
 std::vector<Mesh> read_series_bodies(const std::vector<std::string>& paths, std::vector<std::string>& notes);
 
 /// Returns the bodies in order, the finest resolution of each first, scaled to this diagonal.
@@ -64,10 +64,10 @@ std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObjec
                                     const SweepOptions& options,
                                     const std::function<void(std::uint64_t, std::uint64_t)>& progress);
 
-/// Returns the times of the steps, which their records do not have: one JSON object on a line for each step.
+/// Returns the times of the steps, which are not in their records: one JSON object on a line for each step.
 std::string times_to_json_lines(std::span<const ContactStep> steps);
-/// Gives the steps their times, whatever their order. Throws InputError naming `file` if it is not about
-/// these steps.
+/// Assigns the steps their times, in any order. Throws InputError naming `file` if it does not match these
+/// steps.
 void read_times(const std::string& text, const std::string& file, std::vector<ContactStep>& steps);
 
 /// One resolution against one partner.
@@ -76,7 +76,7 @@ struct SeriesRow {
   SeriesPartner partner;
   std::size_t outer_faces;
   ObjectRow counts;
-  std::array<double, 3> microseconds;  ///< median of a query, in the order of kRecursions
+  std::array<double, 3> microseconds;  ///< median of a query's duration, in the order of kRecursions
 };
 /// Returns the rows, by partner, then by object. Throws InputError for steps of other objects.
 std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject> objects,

@@ -62,7 +62,7 @@ report::Chart chart(std::span<const SeriesRow> rows, std::span<const SeriesFit> 
   return c;
 }
 
-/// Makes room for each panel's key above its points.
+/// Reserves space for each panel's key above its points.
 report::Gnuplot panels(std::vector<report::Chart> charts) {
   constexpr double kHeight = 40, kKeyLine = 3.4;  // millimetres
   const report::PrintLayout layout{static_cast<int>(kRecursions.size()), 55, kHeight, 7, "top left"};

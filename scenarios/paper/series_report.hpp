@@ -12,10 +12,10 @@ struct SeriesReport {
   const LrbRep& a;
   std::span<const SeriesObject> objects;
   std::span<const ContactStep> steps;
-  std::uint32_t jobs = 1;  ///< number of threads that worked while times were taken
+  std::uint32_t jobs = 1;  ///< number of threads during the measurement of times
 };
 
-/// How the work of one recursion grows with a body's faces, real and pseudo, against one partner. Empty where
+/// The growth of one recursion's work with a body's faces, real and pseudo, against one partner. Empty if
 /// fewer than two resolutions have contacts.
 struct SeriesFit {
   std::string body;
@@ -29,7 +29,7 @@ std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows);
 /// series_times.jsonl and series.json (rows and fits, without times). Returns the tables.
 std::vector<report::Table> add_series(const SeriesReport& report, report::Document& doc);
 
-/// Returns a fitted power in words, such as "n^0.52 ± 0.01".
+/// Returns a fitted power as text, such as "n^0.52 ± 0.01".
 std::string power_text(const resolutions::PowerFit& fit);
 
 }  // namespace lrb::paper

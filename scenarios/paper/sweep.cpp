@@ -22,7 +22,7 @@
 namespace lrb::paper {
 namespace {
 
-/// Returns true if the records of one collision, in the order of its steps, agree with what it took now.
+/// Returns true if the records of one collision, in the order of its steps, match the new counts.
 bool same_counts(std::span<const ContactStep> records, const CloseUp& found, const std::string& object) {
   std::size_t next = 0;
   for (const ContactStep& r : records) {
@@ -74,7 +74,7 @@ CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProt
 
 namespace {
 
-/// Returns what shards of one experiment have in common.
+/// Returns the settings that all shards of one experiment share.
 nlohmann::ordered_json experiment(const ShardFile& s) {
   nlohmann::ordered_json out = {{"shards", s.shard.count}};
   out.update(io::record_to_json(s.protocol));

@@ -1,6 +1,6 @@
 #pragma once
 /// Runs all collisions of the experiment, distributed over threads and, as shards, over processes and
-/// machines. The result of a collision does not depend on who computes it.
+/// machines. The result of a collision does not depend on the distribution.
 
 #include <array>
 #include <cstdint>
@@ -18,10 +18,10 @@ namespace lrb::paper {
 struct PaperObject {
   std::string name;
   LrbRep rep;
-  std::string draws = {};  ///< the object whose directions and rotations it gets; empty: its own
+  std::string draws = {};  ///< the object whose directions and rotations it uses; empty: its own
 };
 
-/// Part `index` of `count`: the collisions whose number, counted over all objects, is index modulo count.
+/// Part `index` of `count`: the collisions with number mod count = index, numbered over all objects.
 struct Shard {
   std::uint32_t index = 0, count = 1;
 };
@@ -39,9 +39,9 @@ std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const S
 
 /// Returns one JSON object on a line for each step.
 std::string to_json_lines(std::span<const ContactStep> steps);
-/// Reads them back; throws InputError that names `file` and the line.
+/// Parses them; throws InputError that names `file` and the line.
 std::vector<ContactStep> read_json_lines(const std::string& text, const std::string& file);
-/// Puts the steps of several shards in order. Throws InputError if a step is there twice.
+/// Sorts the steps of several shards. Throws InputError if a step occurs twice.
 std::vector<ContactStep> merged(std::vector<ContactStep> steps);
 
 // Repeats single collisions of the sweep by the paper's recursion and records every event.
@@ -61,31 +61,33 @@ struct CloseUp {
 };
 
 /// Returns the collisions with this object that took the fewest and the most comparisons of the paper's
-/// recursion over their counted time steps; of several, the first. Throws InputError if there is none.
+/// recursion over their counted time steps; the first on a tie. Throws InputError if the object has no
+/// collision.
 std::array<std::uint32_t, 2> easiest_and_hardest(std::span<const ContactStep> steps,
                                                  const std::string& object);
 
-/// Repeats a collision. Throws InputError if its counts are not those of `records`, which must then come from
+/// Repeats a collision. Throws InputError if its counts differ from `records`, which must then be from
 /// another experiment.
 CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProtocol& protocol,
                  std::span<const ContactStep> records);
 
-// Tells what a shard is a part of, so that merging notices shards that are missing or of another experiment.
+// Describes the experiment of a shard, so that merging detects missing shards and shards of another
+// experiment.
 
 struct ShardFile {
   Shard shard;
   PaperProtocol protocol;
-  resolutions::ResolutionOptions resolutions;  ///< of the series; most = 0: there is none
+  resolutions::ResolutionOptions resolutions;  ///< of the series; most = 0: no series
   bool lean = false;                           ///< the series' bodies are built lean (BuildOptions)
 };
 
-/// Returns its path: beside the records.jsonl of the shard.
+/// Returns the path of the shard's description: beside its records.jsonl.
 std::string shard_file_of(const std::string& records);
 
 void write_shard_file(const ShardFile& shard, const std::string& folder);
 
-/// Reads the files beside these records.jsonl and returns the experiment that all are parts of, as shard 0/1.
-/// Throws InputError if one is missing or of another experiment, or if they are not all n shards, once each.
+/// Reads the files beside these records.jsonl and returns their common experiment, as shard 0/1. Throws
+/// InputError if one is missing or of another experiment, or if they are not all n shards, once each.
 ShardFile read_shard_files(const std::vector<std::string>& records);
 
 }  // namespace lrb::paper

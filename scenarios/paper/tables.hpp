@@ -15,13 +15,13 @@
 
 namespace lrb::paper {
 
-// Writes numbers as the reports show them.
+// Formats numbers for the reports.
 
 inline std::string whole(double x) {
   return (x < 0 ? "-" : "") + render::group_digits(static_cast<std::uint64_t>(std::llround(std::abs(x))));
 }
 
-/// Writes so many digits after the point; those before it in groups of three.
+/// Writes `digits` digits after the point; those before it in groups of three.
 inline std::string fixed(double x, int digits) {
   std::ostringstream out;
   out << std::fixed << std::setprecision(digits) << std::abs(x);
@@ -34,7 +34,7 @@ struct Spread {
   double min = 0, average = 0, max = 0;
 };
 
-/// What one recursion cost against one object, over all counted time steps.
+/// The cost of one recursion against one object, over all counted time steps.
 struct RecursionRow {
   Spread comparisons, refinements;
   double bound_tests = 0;  ///< average number
@@ -49,7 +49,7 @@ struct ObjectRow {
   double n_log_n = 0, n_squared = 0;  ///< the paper's estimates: total(X) log2(total(A)), total(A) total(X)
 };
 
-/// Returns a row for each object but the first, which the others met.
+/// Returns a row for each object but the first, which collides with the others.
 std::vector<ObjectRow> make_table(std::span<const PaperObject> objects, std::span<const ContactStep> steps);
 
 /// A row of the paper's table 2. (Its table 1 is paper_objects().)
@@ -58,7 +58,7 @@ struct PublishedRow {
   double min, average, max;
 };
 std::span<const PublishedRow> published_table2();
-/// Returns the row of an object; null for one that the paper does not have.
+/// Returns the row of an object; null if the paper does not have it.
 const PublishedRow* published(const std::string& object);
 
 /// Returns both tables as JSON: "table1_object_sizes", and "table2_face_comparisons_of_object_A_with" by the

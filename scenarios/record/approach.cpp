@@ -97,7 +97,7 @@ void stand_at_contact(const Steps& steps, double t, Approach& out) {
 Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& start,
                        const spec::Motion& motion, bool watched) {
   const double length = motion.step_length * (diagonal_of(a) + diagonal_of(b));
-  // Beyond twice the distance, B is as far behind the target as it started before it.
+  // After twice the distance, B is as far beyond the target as it started before it.
   const auto whole_way =
       static_cast<std::uint32_t>(std::min<double>(motion.steps, std::ceil(2 * motion.from.norm() / length)));
   const Steps steps{motion, start, length, whole_way};

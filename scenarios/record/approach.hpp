@@ -17,10 +17,10 @@ struct Approach {
   bool met = false;                ///< false: B passed without contact, and `poses` sample the whole motion
 };
 
-/// Moves B until the first contact (of the surfaces, or one body inside the other), and on for motion.into
-/// steps. B does not pass through A between two steps: the first contact is searched for in the whole motion
-/// (first_contact()). With motion.exact, or if contact occurs only between two steps, a step is at the
-/// contact itself. watched: records the convergence of the search.
+/// Moves B until the first contact (of the surfaces, or one body inside the other), and then for another
+/// motion.into steps. B does not pass through A between two steps: the first contact is searched for in the
+/// whole motion (first_contact()). With motion.exact, or if contact occurs only between two steps, a step is
+/// at the contact itself. `watched`: records the convergence of the search.
 Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& start,
                        const spec::Motion& motion, bool watched = false);
 

@@ -28,7 +28,7 @@ struct Recording {
   /// The trees of A and B, if pairs of their nodes were recorded.
   std::vector<trace::TreeShape> trees;
   /// The wrong pairs of another engine, for each step: first those reported wrongly, then those missed. Empty
-  /// if no other engine was recorded.
+  /// if only lrbscope was recorded.
   std::vector<std::vector<WrongPair>> wrong;
   std::vector<std::string> notes;  ///< notes as text
 };

@@ -69,7 +69,7 @@ std::string packed(std::span<const float> numbers) {
 namespace lrb::report {
 namespace {
 
-constexpr int kJpegQuality = 88;  // thin lines keep their edges; with more, files grow fast
+constexpr int kJpegQuality = 88;  // thin lines keep their edges; file sizes grow quickly above this
 
 void append(void* context, void* data, int size) {
   auto& out = *static_cast<std::vector<std::uint8_t>*>(context);
@@ -77,7 +77,7 @@ void append(void* context, void* data, int size) {
   out.insert(out.end(), bytes, bytes + size);
 }
 
-/// Encodes an image on white, because JPEG has no transparency.
+/// Encodes an image on a white background, because JPEG has no transparency.
 std::vector<std::uint8_t> as_jpeg(const render::Image& image) {
   std::vector<std::uint8_t> rgb;
   rgb.reserve(image.pixels().size() * 3);

@@ -1,6 +1,6 @@
 #pragma once
-/// Numbers as text that a page's script turns into arrays (scene_run.js): "u1:", "u2:", "u4:" or "f4:", for
-/// what each of them is and its bytes, then base64 of them all, little-endian.
+/// Number arrays as text for a page's script (scene_run.js): a prefix for the type and size of an element
+/// ("u1:", "u2:", "u4:" or "f4:"), then the elements in base64, little-endian.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,16 +17,16 @@ namespace lrb::report {
 
 using PngBytes = std::vector<std::uint8_t>;
 
-/// The size of a page's pictures, in bytes, that is still fine. Browsers hold several copies of a data URI
-/// while they parse a page; pages beyond some 15 MB open with a delay that one notices.
+/// Maximum total size of a page's pictures, in bytes. Browsers hold several copies of a data URI while they
+/// parse a page; pages above some 15 MB open with a noticeable delay.
 inline constexpr std::size_t kInlineBudget = 15'000'000;
 
-/// Pictures as data URIs that can stand in a page. If all of them fit into the budget they are left as they
-/// are; otherwise they become JPEGs, if need be at half the size, and half of that again. The PNG files
-/// beside the page keep every pixel.
+/// Pictures as data URIs for embedding in a page. If all fit into the budget they are unchanged; otherwise
+/// they become JPEGs, at half or a quarter of the size if necessary. The PNG files beside the page keep every
+/// pixel.
 struct InlinedImages {
   std::vector<std::string> uris;
-  std::string note;  ///< what was done to them, for the page; empty if nothing
+  std::string note;  ///< the conversion applied, for the page; empty if none
 };
 InlinedImages inline_pngs(const std::vector<PngBytes>& pngs, std::size_t budget = kInlineBudget);
 
@@ -35,17 +35,17 @@ std::string data_uri(const std::string& type, const std::uint8_t* bytes, std::si
 
 using render::base64;
 
-/// Returns HTML: each "{}" of a pattern becomes the next of the texts, escaped, each "{!}" the next one as it
-/// is.
+/// Returns HTML. Each "{}" of a pattern is replaced by the next text, escaped; each "{!}" by the next text,
+/// unescaped.
 std::string fill(std::string_view pattern, std::initializer_list<std::string_view> texts);
 
-/// Returns a template with each "{{key}}" replaced by its text, in one pass: keys inside the texts are left
-/// alone.
+/// Returns a template with each "{{key}}" replaced by its text, in one pass: keys inside the texts are not
+/// replaced.
 std::string filled(std::string_view shape,
                    std::initializer_list<std::pair<std::string_view, std::string_view>> texts);
 
-/// Packs the numbers into as few bytes each as the largest needs. The largest number of so many bytes stands
-/// for kNull.
+/// Packs the numbers at the smallest element size that fits the largest. The maximum value of that size
+/// encodes kNull.
 std::string packed(std::span<const std::uint32_t> numbers);
 std::string packed(std::span<const float> numbers);
 

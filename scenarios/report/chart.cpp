@@ -19,7 +19,7 @@ struct Shape {
   int point;         ///< gnuplot's number
 };
 
-/// Series without a shape take those of the first seven in turn.
+/// Shapes of series without one of their own, cycled through the first seven.
 constexpr Shape kShapes[] = {{"circle", 7},   {"rect", 5},  {"triangle", 9},
                              {"rectRot", 13}, {"star", 3},  {"rectRounded", 4},
                              {"crossRot", 2}, {"cross", 1}, {"none", 0}};
@@ -48,7 +48,7 @@ json series_json(const Series& s) {
           {"line", kLines[static_cast<std::size_t>(s.style.line)]}};
 }
 
-/// Returns how gnuplot draws the i-th series: colour, point and dashes.
+/// Returns the style of the i-th series in gnuplot: colour, point and dashes.
 std::string look(const SeriesStyle& style, std::size_t i) {
   const std::size_t colours = render::page::kSeries.size();
   const Shape* shape = std::find_if(std::begin(kShapes), std::end(kShapes),
@@ -95,7 +95,7 @@ std::string axis_commands(const std::string& name, const Axis& axis, bool labell
   return out + ")\n";
 }
 
-/// The sizes of the whole, in millimetres from the upper left corner.
+/// Dimensions of the whole figure, in millimetres from the upper left corner.
 struct Sheet {
   double width, height;
   std::string margins(double left, double right, double top, double bottom) const {
@@ -121,7 +121,7 @@ std::vector<std::pair<const Series*, std::size_t>> key_of(std::span<const Chart>
   return out;
 }
 
-/// Returns the commands that draw a key in a panel of its own, in units of its columns and lines.
+/// Returns the commands that draw a key in a separate panel, in units of its columns and lines.
 std::string key_commands(Gnuplot& chart, const std::vector<std::pair<const Series*, std::size_t>>& key,
                          int columns, int lines) {
   std::string out =

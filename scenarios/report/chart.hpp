@@ -1,5 +1,5 @@
 #pragma once
-/// Charts: one record each, drawn by a page's script and by gnuplot for print.
+/// Charts: one record each, drawn by a page's script and, for print, by gnuplot.
 
 #include <cstdint>
 #include <span>
@@ -18,11 +18,11 @@ struct Tick {
 struct Axis {
   std::string label;
   bool log = false;
-  double min = 0, max = 0;       ///< ends; equal: those of the data
-  std::vector<Tick> ticks = {};  ///< in print; empty: gnuplot's
+  double min = 0, max = 0;       ///< range; equal: that of the data
+  std::vector<Tick> ticks = {};  ///< in print; empty: gnuplot's default
 };
 
-/// How the points of a series are joined. `steps`: a value holds until the next point.
+/// How the points of a series are joined. `steps`: a value is constant until the next point.
 enum class Line : std::uint8_t { straight, steps, dashed, none };
 
 struct SeriesStyle {
@@ -38,11 +38,11 @@ struct Series {
   SeriesStyle style = {};
   std::vector<double> low = {}, high = {};  ///< (|x|) ends of an error bar; or empty
   std::vector<double> from = {};            ///< (|x|) start of a thin level line to each point; or empty
-  std::vector<std::string> notes = {};      ///< (|x|) tooltip of each point, in lines; or empty
+  std::vector<std::string> notes = {};      ///< (|x|) tooltip of each point, by line; or empty
   std::vector<std::string> targets = {};    ///< (|x|) link of each point, relative to the page; or empty
 };
 
-/// What the x axis counts: the frame that is shown is marked on it, and a click leads to a frame.
+/// Quantity on the x axis: the current frame is marked on it, and a click leads to a frame.
 enum class Cursor : std::uint8_t { none, event, step };
 
 struct Chart {
@@ -53,10 +53,10 @@ struct Chart {
   Cursor cursor = Cursor::none;
 };
 
-/// Returns the colour of the i-th series of a chart without a colour of its own.
+/// Returns the palette's colour for the i-th series of a chart.
 std::string series_colour(std::size_t i);
 
-/// Two curves that bound a number.
+/// Two curves that bound a number from below and above.
 struct Ends {
   Series lower, upper;
 
@@ -76,12 +76,13 @@ struct PrintLayout {
   int columns = 1;
   double panel_width = 135, panel_height = 85;  ///< between the axes' ends
   double font = 8;                              ///< points
-  std::string key = "top right";  ///< where each panel's key is, in gnuplot's words; empty: one key below all
-  int key_columns = 2;            ///< of the key below all
+  std::string key = "top right";  ///< position of each panel's key, in gnuplot's syntax; empty: one key below
+                                  ///< all
+  int key_columns = 2;            ///< of the common key
 };
 
-/// Lays out panels in rows. The axes are labelled at the left and the lower ends of rows and columns, and
-/// where a label differs from that of the neighbour.
+/// Lays out panels in rows. Axis labels are at the left and lower ends of rows and columns, and where a label
+/// differs from the neighbour's.
 Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& layout = {});
 
 }  // namespace lrb::report

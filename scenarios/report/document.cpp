@@ -13,8 +13,8 @@
 namespace lrb::report {
 namespace {
 
-constexpr std::size_t kProse = 60;  // characters: cells longer than this are broken into lines
-constexpr std::size_t kLong = 30;   // rows: tables of more scroll by themselves
+constexpr std::size_t kProse = 60;  // characters: longer cells are broken into lines
+constexpr std::size_t kLong = 30;   // rows: longer tables scroll separately
 
 std::string embedded(const std::string& name) {
   return std::string(io::embedded_file(name));
@@ -34,7 +34,7 @@ std::string cell_html(const std::string& cell) {
   return fill("<td{!}>{}</td>", {kind, cell});
 }
 
-/// Returns the attribute by which the page's script knows where the rows of a table lead.
+/// Returns the attribute that links a table's rows to the view in the page's script.
 const char* rows_attribute(Rows rows) {
   switch (rows) {
     case Rows::regions_of_a:
@@ -49,7 +49,7 @@ const char* rows_attribute(Rows rows) {
   return "";
 }
 
-/// Returns JSON that can stand in a script element: nothing in it can end the element.
+/// Returns JSON that is safe inside a script element: it cannot close the element.
 std::string script_safe(std::string_view text) {
   std::string out;
   out.reserve(text.size());
@@ -92,7 +92,7 @@ constexpr const char* kModes =
 <input type="range" min="0" max="100" value="50" aria-label="Swipe: approved on the left, found on the right"></div>
 )";
 
-/// `uris`: of the pictures that it has, in their order.
+/// `uris`: of its pictures, in their order.
 std::string comparison_html(const Comparison& c, const std::string* uris) {
   constexpr const char* kKinds[] = {"expected", "actual", "difference"};
   constexpr const char* kNames[] = {"Approved", "Found", "Difference, 16 times"};
@@ -235,7 +235,7 @@ Document& Document::views(const std::vector<View>& views) {
 Document& Document::scene(const std::string& json) {
   scene_ = json;
   for (const char* name : {"three.min.js", "OrbitControls.js"}) libraries_ += "\n" + embedded(name);
-  // Each after those that it builds on.
+  // Each follows those that it depends on.
   for (const char* name :
        {"scene_run", "scene_panels", "scene_bodies", "scene_marks", "scene_view", "scene_controls", "scene"})
     scripts_ += embedded(name + std::string(".js"));

@@ -1,6 +1,6 @@
 #pragma once
-/// Reports: HTML files that open from disk, with style, script, charting library and pictures inside, and
-/// nothing fetched from anywhere; and the files beside them.
+/// Reports: self-contained HTML files with style, script, charting library and pictures, which open from disk
+/// and fetch nothing; and the files beside them.
 
 #include <array>
 #include <cstdint>
@@ -23,13 +23,14 @@ struct Number {
   std::string note = {};
 };
 
-/// What the first cells of a table's rows number: a click on a row leads to it in the view of the run.
+/// Meaning of the numbers in a table's first column: a click on a row leads to that item in the view of the
+/// run.
 enum class Rows : std::uint8_t { plain, regions_of_a, regions_of_b, steps };
 
 struct Table {
   std::string title;
   std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows = {};  ///< numbers in them are aligned right
+  std::vector<std::vector<std::string>> rows = {};  ///< numeric cells are aligned right
   std::string note = {};
   Rows rows_are = Rows::plain;
 };
@@ -46,9 +47,9 @@ struct Frame {
   double step = -1;   ///< its x on charts over time steps; negative: none
 };
 
-/// Two pictures that should be the same: side by side, under a swipe, and as their difference.
+/// Two pictures that should be equal: side by side, under a swipe, and as their difference.
 struct Comparison {
-  std::string id;  ///< letters, digits, _ and -: the page's address ends with it
+  std::string id;  ///< letters, digits, _ and -: fragment of the page's address
   std::string title, text;
   bool passed = false;
   std::array<PngBytes, 3> pngs = {};         ///< expected, actual, difference; an empty one is left out
@@ -56,67 +57,66 @@ struct Comparison {
   std::string command = {};                  ///< the command that approves it; may be empty
 };
 
-/// The parts that the bars of a grid's profiles are stacked of, from the bottom. Each has a colour and a
-/// mark.
+/// The parts stacked in the bars of a grid's profiles, from the bottom. Each has a colour and a mark.
 enum class Part : std::uint8_t { wrong, crashed, timed_out, rejected };
 inline constexpr std::size_t kParts = 4;
 
 struct GridHead {
   std::string title;
   std::string text = {};               ///< small print under it
-  std::string low = {}, high = {};     ///< rows: what the ends of the profiles mean; may be empty
-  std::vector<std::string> axis = {};  ///< rows: what each bar of the profiles means, "1e-6"; or empty
+  std::string low = {}, high = {};     ///< rows: meaning of the ends of the profiles; may be empty
+  std::vector<std::string> axis = {};  ///< rows: meaning of each bar of the profiles, "1e-6"; or empty
 };
 
 struct GridCell {
-  /// The background: from 0, nothing to report, to 4; kOnlyRejected has one of its own.
+  /// The background, from 0 (no finding) to 4. kOnlyRejected has its own background.
   static constexpr int kOnlyRejected = -1;
   int level = 0;
   std::string count, of;                         ///< "12", "of 55"
   std::array<std::string, kParts> marks;         ///< numbers shown beside the parts' marks; empty: none
   std::vector<std::array<double, kParts>> bars;  ///< shares in [0, 1]; a negative first one: not tried
-  std::string label;                             ///< the whole cell in words
+  std::string label;                             ///< the text of the whole cell
   int detail = -1;                               ///< index into Grid::details
 };
 
 struct GridDetail {
-  std::string id;  ///< letters, digits and dashes: the page's address ends with it
+  std::string id;  ///< letters, digits and dashes: fragment of the page's address
   std::string title, text;
   std::string file;  ///< its picture, in the report's folder; may be empty
   std::vector<std::pair<std::string, std::string>> facts;
   std::string note, command;
 };
 
-/// A table of small pictures: rows x columns, a count and a profile in each cell, and a sheet with the
-/// details of those cells that have any.
+/// A table of small pictures: rows x columns, with a count and a profile in each cell, and a sheet of details
+/// for each cell that has some.
 struct Grid {
   std::string title, corner;             ///< corner: over the rows' heads
-  std::vector<std::string> level_names;  ///< of levels 0 to 4
+  std::vector<std::string> level_names;  ///< names of levels 0 to 4
   std::array<std::string, kParts> part_names;
   std::string note;
   std::string missing;  ///< columns that are not available, in a sentence; may be empty
   std::vector<GridHead> columns, rows;
   std::vector<GridCell> cells;  ///< (|rows| x |columns|), row by row
-  std::size_t total_rows = 0;   ///< this many of the last rows are sums over those above
+  std::size_t total_rows = 0;   ///< number of last rows that are sums of those above
   std::vector<GridDetail> details;
 };
 
-/// The view in three dimensions of another page, beside this one.
+/// The 3D view of another page, beside this one.
 struct View {
   std::string title;
-  std::string target;  ///< of the page that has it, relative to this one
+  std::string target;  ///< that page, relative to this one
 };
 
-/// Returns a grid as HTML; `images`: of the details that have a file, in their order.
+/// Returns a grid as HTML; `images`: pictures of the details that have a file, in their order.
 std::string grid_html(const Grid& grid, const InlinedImages& images);
 
-/// A file of a report, listed on its page. `text`: what the link shows, if it is not the target.
+/// A file of a report, listed on its page. `text`: the link's text, unless it is the target.
 struct Link {
   std::string target, note = {}, text = {};
 };
 
-/// An output folder that is written to: made if it is missing, locked for other processes, and without links
-/// under names that reports write (see reject_links()).
+/// An output folder for writing: created if missing, locked against other processes, and without links under
+/// the names that reports write (see reject_links()).
 class Folder {
  public:
   Folder(std::string path);  // NOLINT(google-explicit-constructor): a path names the folder
@@ -128,8 +128,8 @@ class Folder {
   io::FolderLock lock_;
 };
 
-/// What a report contains, in order: each part follows those that were added before it. Texts and key figures
-/// come first, the command and the files last.
+/// The contents of a report, in order of addition. Texts and key figures come first, the command and the
+/// files last.
 class Document {
  public:
   explicit Document(std::string title, std::string purpose = {});
@@ -147,23 +147,23 @@ class Document {
   Document& grid(const Grid& grid, const std::string& folder);
   Document& comparisons(const std::vector<Comparison>& comparisons);
   Document& views(const std::vector<View>& views);  ///< with one camera and one time step
-  Document& scene(const std::string& json);         ///< a run, for the view in three dimensions
+  Document& scene(const std::string& json);         ///< a run, for the 3D view
   /// Pictures of a sequence, whose files are in `folder`. `budget`: see inline_pngs().
   Document& frames(const std::vector<Frame>& frames, const std::string& folder,
                    std::size_t budget = kInlineBudget);
-  /// A picture, .png or .svg, which write() writes. The parts of a `live` .svg report what they are under the
+  /// A picture, .png or .svg, written by write(). The parts of a `live` .svg show their description under the
   /// pointer.
   Document& picture(const std::string& file, std::string bytes, const std::string& title,
                     const std::string& caption, bool live = false);
   Document& picture(const std::string& file, const render::Image& image, const std::string& title,
                     const std::string& caption);
-  /// A file beside the page, which write() writes.
+  /// A file beside the page, written by write().
   Document& file(const std::string& name, std::string bytes, const std::string& note);
   /// Charts for print: NAME.svg and NAME.png. Without gnuplot they are left out, and notes() says so. Returns
   /// the .svg.
   std::string print(const std::string& name, const std::string& note, const Gnuplot& chart);
 
-  /// Adds all of some parts, such as tables.
+  /// Adds all elements of a range, such as tables.
   template <class Parts, class P>
   Document& each(const Parts& parts, Document& (Document::*adder)(const P&)) {
     for (const P& part : parts) (this->*adder)(part);

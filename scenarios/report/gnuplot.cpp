@@ -28,7 +28,7 @@ const char* program() {
 
 constexpr const char* kInstall = ": install Debian's gnuplot-nox, or set LRB_GNUPLOT to the program";
 
-/// A file without a name: it disappears when it is closed, however this process ends.
+/// An unnamed temporary file: removed when it is closed, however the process ends.
 class Scratch {
  public:
   Scratch() : file_(std::tmpfile()) {
@@ -62,8 +62,7 @@ struct Finished {
   std::string output, errors;
 };
 
-/// Runs gnuplot on a script that it reads from its standard input; the picture comes from its standard
-/// output.
+/// Runs gnuplot on a script passed on standard input; the picture is read from its standard output.
 Finished run(const std::string& script) {
   Scratch in, out, errors;
   in.fill(script);
@@ -88,7 +87,7 @@ Finished run(const std::string& script) {
   return finished;
 }
 
-/// Returns the command that sets the terminal. The font is DejaVu Sans everywhere, as in the pictures.
+/// Returns the command that sets the terminal. The font is DejaVu Sans, as in the pictures.
 std::string terminal(const Gnuplot& chart, const std::string& ending) {
   constexpr double kInch = 25.4, kPointsPerInch = 72, kDpi = 300, kPngDpi = 96;
   const std::string font = " font 'DejaVu Sans," + io::number_text(chart.font) + "'";
@@ -107,8 +106,7 @@ std::string terminal(const Gnuplot& chart, const std::string& ending) {
   throw InputError(ending + ": charts are written as .svg, .png or .pdf");
 }
 
-/// Returns what gnuplot complained about, in one line: the end of its message, which names the line and the
-/// fault.
+/// Returns the last message of gnuplot in one line: it names the line and the error.
 std::string last_words(const std::string& errors) {
   std::istringstream in(errors);
   std::string line, last;
@@ -143,7 +141,7 @@ std::string gnuplot_data_text(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"')
-      out += "''";  // a field of data has no way to hold one
+      out += "''";  // a data field cannot contain one
     else if (c == '\\')
       out += "/";  // nor a backslash, which would start an escape
     else

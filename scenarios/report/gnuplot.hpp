@@ -1,6 +1,6 @@
 #pragma once
-/// Draws charts for print with gnuplot, which runs as a program of its own: nothing of it is linked, and
-/// everything else works without it.
+/// Draws charts for print with gnuplot, which runs as a separate program: it is not linked, and everything
+/// else works without it.
 
 #include <string>
 #include <string_view>
@@ -8,10 +8,10 @@
 
 namespace lrb::report {
 
-/// Returns true if there is a gnuplot to run: $LRB_GNUPLOT if set, else `gnuplot` on the PATH.
+/// Returns true if gnuplot is available: $LRB_GNUPLOT if set, else `gnuplot` on the PATH.
 bool has_gnuplot();
 
-/// A chart: gnuplot's commands with their data, but without terminal and output, which follow from the file's
+/// A chart: gnuplot's commands with their data, without terminal and output, which follow from the file's
 /// name.
 struct Gnuplot {
   std::string script;  ///< gnuplot commands; data by add_data()
@@ -20,12 +20,12 @@ struct Gnuplot {
   double font = 8;  ///< points
 
   /// Appends a data block `$name`, which plot commands can read like a file. `rows` are lines of fields;
-  /// texts in them must be quoted by gnuplot_data_text().
+  /// their texts must be quoted by gnuplot_data_text().
   void add_data(std::string_view name, const std::vector<std::string>& rows);
 };
 
-/// Quotes text as a string of a gnuplot command, to be taken literally: in single quotes, within which
-/// nothing is run or substituted. Line breaks become spaces.
+/// Quotes text as a literal string of a gnuplot command: in single quotes, within which nothing is run or
+/// substituted. Line breaks become spaces.
 std::string gnuplot_text(std::string_view text);
 /// Quotes text as one field of a data block.
 std::string gnuplot_data_text(std::string_view text);
@@ -34,7 +34,7 @@ std::string gnuplot_data_text(std::string_view text);
 /// dpi, or .pdf. Throws EnvironmentError in one line if gnuplot is missing or fails, InputError for other
 /// extensions.
 std::string drawn(const Gnuplot& chart, const std::string& path);
-/// Writes it to the path, whole or not at all.
+/// Writes the chart to the path, atomically.
 void draw(const Gnuplot& chart, const std::string& path);
 
 }  // namespace lrb::report

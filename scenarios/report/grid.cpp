@@ -9,12 +9,12 @@ namespace {
 using io::number_text;
 
 constexpr std::array<const char*, kParts> kPartClasses = {"wrong", "crashed", "timed-out", "refused"};
-/// Marks, by which parts are told apart without colour.
+/// Marks that distinguish the parts without colour.
 constexpr std::array<const char*, kParts> kPartMarks = {"", "\u2715", "\u25f7", "\u2298"};
 
 std::string profile_svg(const GridCell& cell) {
   constexpr double kBar = 4, kStep = 5, kHeight = 20, kBase = 1;
-  constexpr double kMin = 2.5;  // height of a part that is there, so that it is always visible
+  constexpr double kMin = 2.5;  // minimum height of a nonempty part, so that it is always visible
   const double width = kStep * static_cast<double>(cell.bars.size()) - (kStep - kBar);
   std::string out =
       fill(R"(<svg class="profile" viewBox="-1 -1 {} {}" preserveAspectRatio="none" aria-hidden="true">)",
@@ -57,7 +57,7 @@ std::string cell_html(const Grid& grid, const GridCell& cell) {
       {level, cell.label, begin, cell.count, cell.of, profile_svg(cell), marks, end});
 }
 
-/// Lets long names of functions break at their underscores.
+/// Allows line breaks at the underscores of long function names.
 std::string breakable(const std::string& text) {
   std::string out;
   for (const char c : render::escape_markup(text)) {
@@ -71,7 +71,7 @@ std::string small(const std::string& text) {
   return text.empty() ? "" : fill("<small>{}</small>", {text});
 }
 
-/// Returns marks under a line as wide as a profile: every third bar has its value.
+/// Returns marks under a line as wide as a profile, with a value at every third bar.
 std::string axis_html(const std::vector<std::string>& axis) {
   constexpr std::size_t kEvery = 3;
   if (axis.empty()) return {};
@@ -92,8 +92,7 @@ std::string row_html(const GridHead& head) {
               {head.title, small(head.text), ends, axis_html(head.axis)});
 }
 
-/// Where all columns fit, the page scrolls as a whole, under heads that stay; else the table scrolls in a
-/// frame.
+/// If all columns fit, the page scrolls as a whole under fixed heads; otherwise the table scrolls in a frame.
 std::string wide_style(const Grid& grid) {
   constexpr double kHead = 15, kColumn = 5.6, kMargins = 3.5;  // as in grid.css, rem
   return fill(
@@ -113,7 +112,7 @@ std::string legend_html(const Grid& grid) {
   return out + "</ul>\n";
 }
 
-/// `uri`: of its picture; empty: it has none.
+/// `uri`: its picture; may be empty.
 std::string detail_html(const GridDetail& d, const std::string& uri) {
   std::string facts;
   for (const auto& [name, value] : d.facts) facts += fill("<div><dt>{}</dt><dd>{}</dd></div>", {name, value});
@@ -151,7 +150,7 @@ std::string table_html(const Grid& grid) {
 }  // namespace
 
 std::string grid_html(const Grid& grid, const InlinedImages& images) {
-  std::string columns;  // in full, because the heads have no room for it
+  std::string columns;  // in full, because the heads are too narrow for it
   for (const GridHead& c : grid.columns)
     if (!c.text.empty()) columns += fill("<div><dt>{!}</dt><dd>{}</dd></div>", {breakable(c.title), c.text});
   std::string out = fill("<section class=\"grid\" id=\"grid\"><h2>{}</h2>\n", {grid.title}) +

@@ -65,7 +65,8 @@ Json contact_points_json(const exact::PairContact& contact) {
 }
 
 constexpr int kShownDigits = 6;
-/// Distances of more units in the last place are printed without them: doubles decide these easily.
+/// Distances of more units in the last place are printed without them: double arithmetic decides them
+/// reliably.
 constexpr double kMaxUlps = 1e6;
 
 std::string point_text(const Eigen::Vector3d& x) {
@@ -73,7 +74,7 @@ std::string point_text(const Eigen::Vector3d& x) {
   return "(" + text(x.x()) + ", " + text(x.y()) + ", " + text(x.z()) + ")";
 }
 
-/// Returns the corners of a contact as they are printed: those that look alike, once.
+/// Returns the corners of a contact as text; equal texts occur once.
 std::vector<std::string> contact_points(const exact::PairContact& contact) {
   std::vector<std::string> out;
   for (int i = 0; i < contact.corner_count; ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Explanations for people, and as JSON: what `lrbscope why` prints.
+/// Explanations as text and as JSON: the output of `lrbscope why`.
 
 #include <string>
 #include <string_view>
@@ -10,17 +10,17 @@
 
 namespace lrb::run {
 
-/// Return why two faces are in an answer, or are not, in lines of words, and as one object.
+/// Explain why two faces are or are not in an answer, as lines of text and as a JSON object.
 std::string explanation_text(const PairExplanation& e, const LrbRep& a, const LrbRep& b);
 nlohmann::ordered_json explanation_json(const PairExplanation& e, const LrbRep& a, const LrbRep& b);
 
-/// Return how a query went, and what proves two bodies apart.
+/// Explain the result of a query, including the proof that two bodies are separate.
 std::string explanation_text(const WalkExplanation& e);
 nlohmann::ordered_json explanation_json(const WalkExplanation& e);
 
-// Explanations in words: the same in the program and on pages.
+// Phrases of explanations, common to the program and the pages.
 
-/// Returns what decided about two faces, so that "decided by" can stand before it.
+/// Names the test that decided about two faces, as a phrase that follows "decided by".
 std::string_view words(DecidedBy by);
 
 }  // namespace lrb::run

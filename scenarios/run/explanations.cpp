@@ -36,8 +36,8 @@ bool is_answered(const RecordedRun& p) {
   return p.reps.size() == 2 && request.recursion == Recursion::complete && !request.is_coarse();
 }
 
-/// Returns the different pairs of real faces that events compare, and those that another engine got wrong, by
-/// step.
+/// Returns the distinct pairs of real faces that events compare, and those with a wrong result of another
+/// engine, by step.
 std::vector<Asked> pairs_of(const RecordedRun& p, const Explained& what) {
   std::vector<Asked> out;
   std::size_t step = 0;
@@ -77,7 +77,7 @@ void choose(std::vector<Asked>& pairs, std::size_t most) {
   pairs = std::move(out);
 }
 
-/// Gathers explanations of pairs in columns.
+/// Collects explanations of pairs in columns.
 class PairColumns {
  public:
   explicit PairColumns(const SceneFrame& frame) : frame_(frame) {}
@@ -103,7 +103,7 @@ class PairColumns {
     for (const PlaneSides& sides : e.sides)
       for (std::size_t i = 0; i < 3; ++i) {
         corner_.push_back(static_cast<float>(sides.distance[i]));
-        // Signs from 0 to 2: exact, then in double.
+        // Signs coded as 0 to 2: exact, then in double.
         signs_.push_back(static_cast<std::uint32_t>(3 * (sides.exact[i] + 1) + sides.in_double[i] + 1));
       }
   }
@@ -143,7 +143,7 @@ class PairColumns {
   std::vector<float> gap_, points_, distance_, ulps_, corner_;
 };
 
-/// Returns a number with as many digits as people look at.
+/// Rounds a number to the displayed number of digits.
 double rounded(double x) {
   const std::string text = io::number_text(x);
   double out = 0;
@@ -203,14 +203,14 @@ json walk_json(const RecordedRun& p, const trace::Step& step, const SceneFrame& 
   return out;
 }
 
-/// Explains the steps without pairs, evenly chosen if they are many.
+/// Explains the steps without pairs; evenly spaced ones if there are too many.
 json steps_json(const RecordedRun& p, const Explained& what, const SceneFrame& frame, std::size_t most) {
   Numbers empty;
   for (std::uint32_t i = 0; i < what.steps.size(); ++i) {
     const trace::Step& step = p.trace->steps[what.steps[i]];
     const CollideResult* exact =
         p.results != nullptr && what.steps[i] < p.results->size() ? &(*p.results)[what.steps[i]] : nullptr;
-    // Another engine's answer may be wrong; the results are ours.
+    // Another engine's answer may be wrong; the results are lrbscope's.
     if (step.finished && (exact != nullptr ? exact->pairs.empty() : step.result.pair_count == 0))
       empty.push_back(i);
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// Explains a run's pairs of faces, and its steps without any, for its page (report/web/scene_panels.js).
+/// Explains a run's pairs of faces, and its steps without pairs, for its page (report/web/scene_panels.js).
 
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +19,7 @@ struct SceneFrame {
   double unit = 1;
 
   void add_point(std::vector<float>& out, const Eigen::Vector3d& x) const { add(out, (x - origin) / unit); }
-  /// A direction with a length.
+  /// Appends a vector.
   void add_vector(std::vector<float>& out, const Eigen::Vector3d& v) const { add(out, v / unit); }
 
  private:
@@ -28,23 +28,23 @@ struct SceneFrame {
   }
 };
 
-/// How much a page explains at most.
+/// Maximum number of explanations on a page.
 struct ExplainLimits {
   std::size_t pairs = 8'000;
   std::size_t steps = 200;
 };
 
-/// What is explained: events and steps that the page has. Ascending.
+/// The events and steps on the page, which are explained. Ascending.
 struct Explained {
   const std::vector<trace::EventId>& events;
   const std::vector<std::uint32_t>& steps;
 };
 
-/// Returns what explain_pair() tells of the pairs of real faces that these events compare, or that another
-/// engine got wrong, each pair of a step once, and what explain_walk() tells of the steps that found none. Of
-/// too many pairs, contacts come first; others are evenly chosen. `command` explains other pairs, see
-/// ReportText::why. Returns null for a run of one body, and for requests that the complete query does not
-/// answer.
+/// Returns the results of explain_pair() for the pairs of real faces that these events compare, or that
+/// another engine got wrong, once for each step and pair, and those of explain_walk() for the steps without
+/// pairs. If there are too many pairs, contacts come first; others are evenly chosen. `command` explains
+/// other pairs, see ReportText::why. Returns null for a run of one body, and for requests that the complete
+/// query does not answer.
 nlohmann::json explanations_json(const RecordedRun& recorded, const Explained& what, const SceneFrame& frame,
                                  const std::string& command, const ExplainLimits& limits = {});
 

@@ -19,7 +19,7 @@ using Passes = std::vector<trace::PassSummary>;
 
 constexpr const char* kLength = "length, mesh units";
 
-/// What verdicts mean, in their order.
+/// Descriptions of the verdicts, in the order of the enum.
 constexpr std::array<std::string_view, kWords<CapVerdict>.size()> kMeanings = {
     "it became part of the hull",
     "with fewer faces it would stand off the body by more than the pass allows",

@@ -9,11 +9,11 @@
 
 namespace lrb::run {
 
-/// Adds a construction: its numbers, charts of the front and of caps, and tables of passes and of verdicts on
-/// caps.
+/// Adds a construction: its key figures, charts of the front and of caps, and tables of passes and of
+/// verdicts on caps.
 void add_construction(report::Document& doc, const RecordedRun& recorded);
 
-/// Returns true if a step of a trace has it.
+/// Returns true if any step of a trace has this measurement.
 template <class Measured>
 bool was_measured(const trace::Trace& trace, Measured trace::StepResult::*what) {
   for (const trace::Step& step : trace.steps)
@@ -22,15 +22,15 @@ bool was_measured(const trace::Trace& trace, Measured trace::StepResult::*what) 
 }
 
 /// Returns charts of distances and depths step by step, and of the convergence of their bounds in the step
-/// that narrowed them most often; none if nothing was measured.
+/// that narrowed them most often. Returns an empty list if nothing was measured.
 std::vector<report::Chart> measure_charts(const trace::Trace& trace);
 
-/// Returns the counters by region depth, and those of the regions with the most tests, for each body; none
-/// for a run of one body.
+/// Returns the counters by region depth, and those of the regions with the most tests, for each body. Returns
+/// an empty list for a run of one body.
 std::vector<report::Table> group_tables(const RecordedRun& run);
 
-/// Returns the parts of the queries with what each cost, and the walk by depth of each body's tree beside
-/// what the surface area heuristic expects; none for a trace without these events.
+/// Returns the parts of the queries with their costs, and the traversal of each body's tree by depth beside
+/// the expectation of the surface area heuristic. Returns an empty list for a trace without these events.
 std::vector<report::Table> work_tables(const RecordedRun& run);
 
 /// Returns the quality sheet of the bodies.

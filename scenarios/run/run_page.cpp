@@ -22,7 +22,7 @@ std::string vector_text(const Eigen::Vector3d& v) {
          render::short_number(v.z()) + ")";
 }
 
-/// Returns the step with the most to say: the last one.
+/// Returns the last step; null if it is not finished.
 const trace::Step* last_step(const trace::Trace& trace) {
   return trace.steps.empty() || !trace.steps.back().finished ? nullptr : &trace.steps.back();
 }
@@ -37,7 +37,7 @@ std::size_t pseudo_pairs(const trace::Trace& trace) {
   }));
 }
 
-/// Returns the names of the bodies of which this holds: "A", "B" or "A and B".
+/// Returns the names of the bodies for which the test is true: "A", "B" or "A and B".
 template <class Test>
 std::string sides_of(const RecordedRun& p, Test test) {
   std::string out;
@@ -46,7 +46,7 @@ std::string sides_of(const RecordedRun& p, Test test) {
   return out;
 }
 
-/// Adds what was measured of a step besides the pairs.
+/// Adds the measurements of a step other than pairs.
 void add_measured(const trace::StepResult& r, const std::string& at, std::vector<report::Number>& out) {
   if (r.distance)
     out.push_back({"Distance", interval_words(r.distance->lower, r.distance->upper),
@@ -116,8 +116,8 @@ std::vector<report::Number> wrapper_numbers(const LrbRep& rep) {
            "in " + std::to_string(rep.layer_count()) + " layers"}};
 }
 
-/// Returns true if hits and contacts are the same curve, which is then shown once. In the complete query only
-/// real faces are compared, so that every hit is a contact: event by event, the one that follows the hit.
+/// Returns true if hits and contacts are the same curve, which is then shown once. The complete query
+/// compares only real faces, so every hit is a contact: event by event, the one after the hit.
 bool same_as_contacts(const trace::Series& hits, const trace::Chart& chart) {
   const auto same = [&](const trace::Series& s) {
     return s.name == "contacts" &&
@@ -127,7 +127,7 @@ bool same_as_contacts(const trace::Series& hits, const trace::Chart& chart) {
   return std::any_of(chart.series.begin(), chart.series.end(), same);
 }
 
-/// Returns true for the curve of a wrapper that its body does not have.
+/// Returns true for the curve of a wrapper if its body has no wrapper.
 bool is_of_no_wrapper(const trace::Series& s, const RecordedRun& p) {
   return s.unit == "faces" &&
          ((s.name.ends_with(" A") && p.reps[0]->region_count() == 0) ||
@@ -146,7 +146,7 @@ void add_charts_of(report::Document& doc, const RecordedRun& p, const trace::Cha
   for (const trace::Series& s : chart.series) {
     if (s.unit == "ms" || is_of_no_wrapper(s, p)) continue;
     if (s.name == "hits" && same_as_contacts(s, chart)) continue;
-    // There is no curve for a body that is missing, or for a kind of event that did not occur.
+    // A curve is missing if its body is missing, or if its kind of event did not occur.
     if (std::none_of(s.values.begin(), s.values.end(), [](double v) { return v > 0; })) continue;
     (s.unit == "faces" ? faces : counts).series.push_back({std::string(s.name), chart.x, s.values, style});
   }
@@ -182,7 +182,7 @@ std::string faces_text(const Separation& s) {
   return render::group_digits(s.face_count[0]) + " + " + render::group_digits(s.face_count[1]) + " faces";
 }
 
-/// Returns what was requested instead of the exact answer.
+/// Describes the request of an approximate answer.
 std::string coarse_words(const CollideRequest& request) {
   std::string limits;
   const auto add = [&](const std::string& limit) { limits += (limits.empty() ? "" : " and ") + limit; };
@@ -227,7 +227,7 @@ report::Table steps_table(const trace::Trace& trace) {
   return t;
 }
 
-/// Adds what was requested, and the result.
+/// Adds the request and the result.
 void add_answer(report::Document& doc, const RecordedRun& p, const ReportText& text) {
   const bool two = p.reps.size() == 2;
   doc.command(text.command);
@@ -255,7 +255,7 @@ void add_charts(report::Document& doc, const RecordedRun& p) {
   doc.each(measure_charts(*p.trace), &report::Document::chart);
 }
 
-/// Tables of a run of two bodies: contacts of the last step, and all steps unless they are many.
+/// Tables of a run of two bodies: contacts of the last step, and all steps unless there are too many.
 void add_tables(report::Document& doc, const RecordedRun& p) {
   if (p.reps.size() != 2) return;
   if (p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
@@ -289,7 +289,7 @@ report::Document run_page(const RecordedRun& p, const DrawnFrames& drawn, const 
   for (const std::string& file : drawn.montage)
     doc.link({file, file.ends_with(".txt") ? "caption of the montage"
                                            : "panels (a), (b), (c), ... as one picture"});
-  // Beside the view in three dimensions, which not every browser shows, frames can be smaller.
+  // Frames may be smaller beside the 3D view, which not every browser shows.
   constexpr std::size_t kBesideView = 2'500'000;
   add_frames(doc, drawn, folder, p.reps[0]->dim() == 3 ? kBesideView : report::kInlineBudget);
   if (!text.mismatches.empty()) {

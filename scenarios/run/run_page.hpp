@@ -8,13 +8,13 @@
 
 namespace lrb::run {
 
-/// What stands around the pictures of a run's page.
+/// Texts and links around the pictures of a run's page.
 struct ReportText {
   std::string title, purpose, command;
   std::string trace_file;  ///< relative to the folder
   std::vector<report::Link> links = {};
   std::vector<std::string> mismatches = {};
-  /// The command that explains a pair of this run, but for --step and --pair; empty: there is none.
+  /// The command that explains a pair of this run, without --step and --pair; may be empty.
   std::string why = {};
 };
 
@@ -25,7 +25,7 @@ report::Link trace_link(const std::string& file);
 void add_frames(report::Document& doc, const DrawnFrames& drawn, const std::string& folder,
                 std::size_t budget = report::kInlineBudget);
 
-/// Makes the page of a run whose files are in `folder`.
+/// Builds the page of a run whose files are in `folder`.
 report::Document run_page(const RecordedRun& recorded, const DrawnFrames& drawn, const std::string& folder,
                           const ReportText& text);
 

@@ -17,7 +17,7 @@ namespace lrb::run {
 
 namespace {
 
-/// Throws, before anything is written, if the scenario wants a frame that cannot be drawn.
+/// Throws, before any file is written, if the scenario requests a frame that cannot be drawn.
 void check(const spec::Scenario& scenario, const RecordedRun& recorded) {
   try {
     check_frames(recorded, scenario.frames);

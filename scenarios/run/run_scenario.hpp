@@ -9,22 +9,22 @@
 namespace lrb::run {
 
 struct RunOutcome {
-  std::vector<std::string> mismatches;  ///< expectations that were not met
-  std::vector<std::string> notes;       ///< for people
-  std::string summary;                  ///< summary.json
+  std::vector<std::string> mismatches;  ///< failed expectations
+  std::vector<std::string> notes;       ///< to be printed
+  std::string summary;                  ///< text of summary.json
   std::size_t frames = 0;
 };
 
-/// Returns what frames of a recording are drawn from; both must outlive it.
+/// Returns a recording with the settings for drawing its frames; both arguments must outlive it.
 RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& recording);
-/// Returns the same of a run without a scenario.
+/// Does the same for a run without a scenario.
 RecordedRun recorded_run_of(const std::string& title, const std::string& purpose, const Recording& recording);
 
 /// Runs a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,
 /// montage.png}.
 RunOutcome run_scenario(const spec::Scenario& scenario, const std::string& folder, const std::string& command,
                         const ProgressReport& progress);
-/// Writes the same for a run that has been recorded.
+/// Writes the same files for a run that has been recorded.
 RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording, const std::string& folder,
                      const std::string& command, const ProgressReport& progress);
 

@@ -23,7 +23,7 @@ using render::group_digits;
 struct GroupSums {
   std::uint64_t faces = 0, tests = 0, hits = 0, misses = 0, expansions = 0;
   double box_tests = 0;
-  std::uint64_t refined = 0;  ///< how often the region was
+  std::uint64_t refined = 0;  ///< number of refinements of the region
 
   GroupSums& operator+=(const GroupSums& o) {
     faces += o.faces, tests += o.tests, hits += o.hits, misses += o.misses, expansions += o.expansions;
@@ -32,7 +32,7 @@ struct GroupSums {
   }
 };
 
-/// Counts for each group of a body's faces; the last one is of faces without a group.
+/// Counts for each group of a body's faces; the last one is for faces without a group.
 class Groups {
  public:
   Groups(const RecordedRun& p, Side side, std::size_t count,
@@ -195,7 +195,7 @@ report::Table depth_table(const RecordedRun& p, Side side) {
   return t;
 }
 
-/// A line of the quality sheet: what it is, and its value for a body.
+/// A line of the quality sheet: its name, and its value for each body.
 struct Quality {
   const char* name;
   std::function<std::string(const LrbRep&, const TreeQuality&)> value;

@@ -67,7 +67,7 @@ using nlohmann::json;
 using report::packed;
 using Numbers = std::vector<std::uint32_t>;
 
-/// Packs one number of each of many.
+/// Packs one number of each element.
 template <class Range, class Get>
 std::string packed_each(const Range& range, Get get) {
   Numbers out;
@@ -129,7 +129,7 @@ SceneFrame scene_frame(const RecordedRun& p) {
 }
 
 /// Returns the poses of a body in the page's frame, or one if it never moves: rows of [R | t], for vertices
-/// relative to the body's middle.
+/// relative to the body's centre.
 std::vector<float> poses_of(const RecordedRun& p, std::size_t body, const Numbers& steps,
                             const SceneFrame& frame) {
   const Eigen::Vector3d middle = middle_of(*p.reps[body]);
@@ -184,7 +184,7 @@ std::vector<SimplexId> compared_simplices(const RecordedRun& p, Side side) {
   return out;
 }
 
-/// Boxes of nodes: all down to some depth, and below it those on the ways to faces that were compared.
+/// Boxes of nodes: all down to some depth, and below it those on the paths to compared faces.
 json boxes_json(const LrbRep& rep, const SceneFrame& frame, std::size_t most,
                 const std::vector<SimplexId>& compared) {
   std::vector<TreeBox> boxes = tree_boxes(rep.tree(), most);
@@ -217,7 +217,7 @@ json body_json(const RecordedRun& p, std::size_t i, const SceneFrame& frame, con
   if (!with_geometry) return out;
   const trace::FaceCounts counts = trace::count_faces(rep, static_cast<Side>(i), p.trace->events);
   out["geometry"] = geometry(rep, frame);
-  // Another engine walks trees of its own.
+  // Another engine traverses trees of its own.
   const bool ours = p.trace->header.engine.empty();
   out["boxes"] = boxes_json(rep, frame, ours ? limits.boxes : 0, compared_simplices(p, static_cast<Side>(i)));
   const Eigen::Vector3d middle = middle_of(rep);
@@ -251,7 +251,7 @@ json words_json() {
   return out;
 }
 
-/// Returns how an event came out, in a word or two; empty: nothing can be said.
+/// Returns the outcome of an event in a word or two; empty: unknown.
 std::string_view outcome_of(const trace::Event& e) {
   switch (e.kind) {
     case EventKind::face_test:
@@ -270,7 +270,7 @@ std::string_view outcome_of(const trace::Event& e) {
   }
 }
 
-/// The outcomes of events: words, and for each event the number of its own.
+/// The outcomes of events: a list of texts, and for each event the index of its text.
 json outcomes_json(const trace::Trace& trace, const std::vector<trace::EventId>& kept) {
   std::vector<std::string_view> words;
   const auto number = [&](trace::EventId id) -> std::uint32_t {
@@ -284,7 +284,7 @@ json outcomes_json(const trace::Trace& trace, const std::vector<trace::EventId>&
   return {{"words", words}, {"numbers", numbers}};
 }
 
-/// Returns what the parts count in each step, steps one after the other.
+/// Returns the counters of the parts in each step, step by step.
 json work_by_step(const trace::Trace& trace, const trace::WorkChart& chart) {
   constexpr double kMicros = 1e6;
   Numbers index, events, operations;
@@ -303,7 +303,7 @@ json work_by_step(const trace::Trace& trace, const trace::WorkChart& chart) {
           {"micros", packed(micros)}};
 }
 
-/// Returns the parts of the work; null where pairs of nodes were not recorded.
+/// Returns the parts of the work; null if pairs of nodes were not recorded.
 json work_json(const trace::Trace& trace, const trace::WorkChart& chart) {
   if (trace.header.level == EventLevel::faces || chart.outcomes.empty()) return nullptr;
   constexpr double kMicros = 1e6;
@@ -367,7 +367,7 @@ Numbers steps_of(const trace::Trace& trace, const std::vector<trace::EventId>& k
   return out;
 }
 
-/// The pairs that another engine got wrong, by the page's steps; null: none are known.
+/// The pairs that another engine got wrong, by the page's steps; null: unknown.
 json wrong_json(const RecordedRun& p, const Numbers& steps) {
   if (p.wrong == nullptr || p.wrong->empty()) return nullptr;
   Numbers step, a, b, missed;
@@ -396,7 +396,8 @@ std::string thinned_words(const trace::Trace& trace, const ThinnedEvents& events
   return out + ", and others, evenly spaced, up to a size limit. " + trace_file + " contains all of them.";
 }
 
-/// Returns the passes of a construction: where they end, and what they made, in words; null for other runs.
+/// Returns the passes of a construction, with their ends and a description of their results; null for other
+/// runs.
 json passes_json(const trace::Trace& trace) {
   if (!trace.header.construction) return nullptr;
   json out = json::array();
@@ -411,8 +412,8 @@ std::string too_large_words(std::size_t faces, const SceneLimits& limits) {
          ". Draw them with lrbscope render.";
 }
 
-/// Returns from where frames are seen, as their first view has it: the page's view begins so. Null where
-/// nobody has said it.
+/// Returns the viewpoint of the first view of the frames, at which the page's view starts. Returns null if
+/// none is given.
 json view_json(const trace::TraceHeader& header) {
   const std::vector<render::FrameSpec::View> views =
       spec::read_pictures(header.pictures, header.scenario).views;

@@ -1,6 +1,6 @@
 #pragma once
-/// Makes a run into data for its page: for the view in three dimensions, the table of events and the panel of
-/// faces and regions (report/web/scene_*.js).
+/// Converts a run to data for its page: for the 3D view, the table of events and the panel of faces and
+/// regions (report/web/scene_*.js).
 
 #include <cstddef>
 #include <string>
@@ -12,27 +12,28 @@
 
 namespace lrb::run {
 
-/// Returns what distances and clashes of a run found, for the page's view: for each step that has one, the
-/// way between the nearest points, or the way of B out of A; null if there is none.
+/// Returns the results of distances and clashes of a run, for the page's view: for each step that has one,
+/// the segment between the closest points, or the separation vector of B from A. Returns null if there is
+/// none.
 nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame);
 
-/// How much a page holds at most; it opens in a second or two with all of that.
+/// Size limits of a page, which opens in a second or two at these limits.
 struct SceneLimits {
   std::size_t events = 200'000;
-  std::size_t faces = 300'000;  ///< of both bodies; with more, there is no view in three dimensions
+  std::size_t faces = 300'000;  ///< of both bodies; with more, there is no 3D view
   std::size_t boxes = 4'096;    ///< of tree nodes, for each body
   ExplainLimits explained = {};
 };
 
-/// Where the page's reader finds more.
+/// Sources of further data for the page's reader.
 struct SceneSource {
   std::string trace_file;
   std::string why;  ///< see ReportText::why
 };
 
-/// Returns the run as JSON. Coordinates are rounded to float, relative to the middle of their body and in
-/// units of the scene's size. What the limits leave out is said in it, with the trace as the place where
-/// it is.
+/// Returns the run as JSON. Coordinates are rounded to float, relative to the centre of their body and in
+/// units of the scene's size. The JSON names the parts omitted because of the limits, and the trace that
+/// contains them.
 std::string scene_json(const RecordedRun& recorded, const SceneSource& source,
                        const SceneLimits& limits = {});
 

@@ -82,7 +82,7 @@ constexpr auto words_of(Motion::Kind) {
 
 using render::FrameSpec;
 
-/// Further queries at each step, and how steps follow each other.
+/// Further queries at each step, and whether steps are coherent.
 struct StepQuestions {
   bool coherent = false;  ///< each step continues from the previous one: engine/collide
   bool distance = false;  ///< query the distance of the bodies

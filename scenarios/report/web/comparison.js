@@ -1,4 +1,4 @@
-// Comparisons: each has its own way of being looked at; dragging over a swiped picture moves the edge.
+// Comparisons: each has its own display mode; dragging over a swiped picture moves the edge.
 for (const section of document.querySelectorAll(".comparison")) {
   const pictures = section.querySelector(".pictures"), slider = section.querySelector(".modes input");
   if (!slider) continue; // there is one picture only
@@ -22,7 +22,7 @@ for (const section of document.querySelectorAll(".comparison")) {
   };
   pictures.addEventListener("pointerdown", drag);
   pictures.addEventListener("pointermove", drag);
-  // A click, or Enter, shows the pictures in full, two pixels of the screen to each of theirs; and again, as before.
+  // A click or Enter shows the pictures at full size, two screen pixels per picture pixel, and toggles back.
   for (const image of pictures.querySelectorAll("img")) {
     image.tabIndex = 0;
     const measure = () => image.style.setProperty("--pixels", `${image.naturalWidth}px`);
@@ -35,6 +35,6 @@ for (const section of document.querySelectorAll(".comparison")) {
     const mode = { s: "side", w: "swipe", d: "difference" }[e.key];
     if (mode && !e.ctrlKey && !e.metaKey && !e.altKey) look(mode);
   });
-  const asked = new URLSearchParams(location.search).get("compare"); // ?compare=swipe opens all that way
+  const asked = new URLSearchParams(location.search).get("compare"); // ?compare=swipe opens all in that mode
   if (asked && buttons.some((b) => b.dataset.mode === asked)) look(asked);
 }

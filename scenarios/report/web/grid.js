@@ -1,4 +1,4 @@
-// Sheets of the grid: opened by the address, so that one can be linked to; stepped through by the arrow keys.
+// Sheets of the grid: opened by the address, so that they can be linked to; the arrow keys step through them.
 (function () {
   const sheets = [...document.querySelectorAll("dialog.detail")];
   const opened = () => sheets.find((s) => s.open);
@@ -30,7 +30,7 @@ for (const block of document.querySelectorAll("pre.command")) {
   button.onclick = async () => {
     try {
       await navigator.clipboard.writeText(text);
-    } catch { // pages from disk may have no clipboard: select it instead
+    } catch { // the clipboard may be unavailable to pages from disk: select the text instead
       getSelection().selectAllChildren(block.querySelector("code"));
       if (!document.execCommand("copy")) return;
     }

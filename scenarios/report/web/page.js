@@ -3,10 +3,10 @@ const data = JSON.parse(document.getElementById("data").textContent);
 const byId = (id) => document.getElementById(id);
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-// ---- the moment on show: a frame, or an event of the run with the frame that shows it best; and everybody who wants to know when
-// it changes
+// ---- the current frame or event: a frame, or an event of the run with the frame that shows it best; and its
+// listeners
 let current = 0; // index of the frame
-const moment = { event: -1, step: -1 }; // negative: not known
+const moment = { event: -1, step: -1 }; // negative: unknown
 const listeners = [];
 function tell() { for (const listener of listeners) listener(data.frames[current], current); }
 function show(index) {
@@ -15,19 +15,20 @@ function show(index) {
   moment.step = data.frames[current].step;
   tell();
 }
-/** Shows an event, by its number in the trace, of a time step. */
+/** Shows an event of a time step, by its number in the trace. */
 function showEvent(event, step) {
   moment.event = event;
   moment.step = step;
   current = Math.max(0, frameOf(event, step));
   tell();
 }
-/** Returns the frame nearest to an event, one of its time step if there is any; -1: there are no frames. */
+/** Returns the frame nearest to an event, preferably one of its time step. Returns -1 if there are no
+    frames. */
 function frameOf(event, step) {
   const far = (f) => (f.step === step ? 0 : 1e12) + Math.abs(f.event - event);
   return data.frames.reduce((best, f, i) => (best < 0 || far(f) < far(data.frames[best]) ? i : best), -1);
 }
-/** Leads to where a value of a chart's x axis is. */
+/** Moves to a value on a chart's x axis. */
 let seek = (key, value) => {
   const frame = nearestFrame(key, value);
   if (frame >= 0) show(frame);
@@ -68,7 +69,7 @@ function startPlayer() {
     ArrowLeft: (e) => go(current - (e.shiftKey ? 10 : 1)), ArrowRight: (e) => go(current + (e.shiftKey ? 10 : 1)),
     Home: () => go(0), End: () => go(data.frames.length - 1), " ": toggle,
   };
-  if (!byId("scene")) document.addEventListener("keydown", (e) => { // there, keys move from event to event
+  if (!byId("scene")) document.addEventListener("keydown", (e) => { // there, keys move between events
     if (!keys[e.key] || e.ctrlKey || e.metaKey || e.altKey || e.target.tagName === "SELECT") return;
     if (e.key === " " && e.target.tagName === "BUTTON") return; // space presses the button that has the focus
     e.preventDefault();
@@ -79,7 +80,7 @@ function startPlayer() {
 }
 
 // ---- the charts
-/** Draws error bars, thin lines to points, and a mark at the frame or event on show. */
+/** Draws error bars, thin lines to points, and a mark at the current frame or event. */
 const marksPlugin = {
   id: "marks",
   afterDatasetsDraw(chart) {
@@ -100,8 +101,8 @@ const marksPlugin = {
   },
 };
 
-/** Drops the ticks of a logarithmic axis that lie beyond its ends, for which room would be left, and where it is long all but
-    powers of ten. */
+/** Drops the ticks of a logarithmic axis beyond its ends, which would take space, and on a long axis all
+    but powers of ten. */
 function ticksWithin(axis) {
   const many = 80, isPower = (t) => Math.abs(Math.log10(t.value) - Math.round(Math.log10(t.value))) < 1e-6;
   const within = axis.ticks.filter((t) => t.value >= axis.min * (1 - 1e-9) && t.value <= axis.max * (1 + 1e-9));
@@ -130,7 +131,7 @@ function nearestFrame(key, value) {
   return best;
 }
 
-/** Returns a colour, #rrggbb, as far towards that of text as it takes to be seen on a card, three to one. */
+/** Returns a colour, #rrggbb, moved towards that of text until its contrast on a card is three to one. */
 function seen(colour) {
   const parts = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
   const light = (rgb) => {
@@ -146,7 +147,7 @@ function seen(colour) {
 
 const hasLegend = (spec) => spec.series.filter((s) => s.label).length > 1;
 
-/** Returns how high a chart's legend is, in pixels, if it is so wide: as Chart.js lays it out. */
+/** Returns the height of a chart's legend at this width, in pixels, as Chart.js lays it out. */
 function legendHeight(spec, canvas, width) {
   const { font } = Chart.defaults, gap = 10, context = canvas.getContext("2d");
   if (!hasLegend(spec)) return 0;
@@ -163,7 +164,7 @@ function legendHeight(spec, canvas, width) {
   return Math.ceil(rows * (font.size + gap) + gap);
 }
 
-/** Gives a chart the room that its legend needs where it is narrow, besides that of the chart itself. */
+/** Increases the height of a narrow chart to make room for its legend. */
 function makeRoom(spec, canvas, width) {
   const height = legendHeight(spec, canvas, width), few = 80;
   canvas.parentElement.style.minHeight = height > few ? `calc(14rem + ${height}px)` : "";
@@ -179,7 +180,7 @@ function makeChart(spec, canvas) {
     stepped: s.line === "steps" ? "before" : false, showLine: s.line !== "none", borderDash: s.line === "dashed" ? [5, 4] : [],
     pointRadius: radius(s), pointHitRadius: radius(s) || !scatter ? 8 : 0, pointStyle: s.shape === "none" ? "line" : s.shape || "circle", clip: 12,
   }));
-  const bars = spec.series.flatMap((s) => s.data.filter((p) => p.high !== undefined).map((p) => p.high)); // of errors
+  const bars = spec.series.flatMap((s) => s.data.filter((p) => p.high !== undefined).map((p) => p.high)); // error bars
   const room = makeRoom(spec, canvas, canvas.parentElement.clientWidth);
   const chart = new Chart(canvas, {
     type: scatter ? "scatter" : "line", data: { datasets }, plugins: [marksPlugin],
@@ -231,12 +232,12 @@ function startCharts() {
     charts = data.charts.map((spec, i) => makeChart(spec, byId(`chart-${i}`)));
     mark();
   };
-  listeners.push(() => { // events can follow each other faster than charts are drawn
+  listeners.push(() => { // events can change faster than charts are drawn
     if (!waiting) requestAnimationFrame(mark);
     waiting = true;
   });
   draw();
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw); // colours are read when drawn
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw); // colours are read on drawing
 }
 
 if (data.frames.length) startPlayer();

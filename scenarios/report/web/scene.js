@@ -1,5 +1,5 @@
-// ---- all events of a run whose page holds some: from its trace, which a person chooses or drops here. Pages from disk
-// cannot fetch it.
+// ---- all events of a run whose page has only some: loaded from its trace, which the user chooses or drops
+// here. Pages from disk cannot fetch it.
 class TraceLoader {
   /** `loaded`: called when the events have been replaced. */
   constructor(scene, events, loaded) {
@@ -33,7 +33,7 @@ class TraceLoader {
     }
   }
 
-  /** Replaces the page's events by those of a trace. Throws if it is of another run. */
+  /** Replaces the page's events by those in a trace. Throws if the trace is of another run. */
   take(trace) {
     const { scene, events } = this,
       metadata = trace.metadata;
@@ -54,7 +54,7 @@ class TraceLoader {
     byId("thinned").textContent = `All ${digits(events.count)} events of the trace are here.`;
   }
 
-  /** Numbers without a name are not in a trace. */
+  /** Unnamed numbers are not in a trace. */
   known(i, name) {
     return name === "kind" || this.events.kindOf(i)[name].words !== "";
   }
@@ -111,7 +111,7 @@ class TraceReader {
     };
   }
 
-  /** Steps, passes and phases are named by what they found; all others by their kind. */
+  /** Steps, passes and phases are named by their result; all others by their kind. */
   kindOf({ name, cat }) {
     const named = { step: "step", phase: "begin", pass: "pass" }[cat];
     return this.kindByName.has(name) ? this.kindByName.get(name) : this.kindByName.get(named);
@@ -120,7 +120,7 @@ class TraceReader {
   number(args, words) {
     if (words === "") return 0;
     let value = args[words];
-    if (value === undefined) value = args[words.replace("real", "pseudo")]; // of an answer to a tolerance
+    if (value === undefined) value = args[words.replace("real", "pseudo")]; // of an approximate answer
     if (words === "relation") return this.scene.relations.indexOf(value);
     if (words === "phase") return this.scene.phases.indexOf(value);
     return value === undefined ? NONE : value;
@@ -176,13 +176,13 @@ class TraceReader {
   }
 }
 
-// ---- the run's page: puts table, panel, sliders and the view in three dimensions together
+// ---- the run's page: connects table, panel, sliders and the 3D view
 function startScene() {
   const scene = JSON.parse(byId("scene-data").textContent),
     bodies = scene.bodies.map((b, side) => new Body(b, side, scene.dim));
   const events = new Events(scene, bodies),
     complete = bodies.every((b) => b.complete);
-  let shownId = 0; // of the event
+  let shownId = 0; // of the current event
   if (!events.count) {
     byId("scene").hidden = true;
     return null;
@@ -194,7 +194,7 @@ function startScene() {
   if (wrappers)
     selection.listeners.push((what) => {
       if (what === "event") wrappers.seek(selection.event);
-    }); // before those who show them
+    }); // before the listeners that display them
   const timeline = new Timeline(events, selection),
     panel = new Panel(events, selection, wrappers);
   const filter = new EventFilter(),
@@ -236,13 +236,13 @@ function startScene() {
   return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, work, view, controls, loader };
 }
 
-/** Takes out what is about queries where a construction is shown, or the other way round. */
+/** Removes the elements about queries if a construction is shown, and vice versa. */
 function leaveOut(which) {
   for (const part of document.querySelectorAll(which)) part.remove();
 }
 
-/** Returns the view; null, with the reason on the page, where there can be none. Frames are then what
-    there is to see. */
+/** Returns the 3D view. Returns null, with the reason on the page, if it is not available; the page then
+    shows the frames. */
 function openView(scene, selection, wrappers, why) {
   const no = (reason) => {
     byId("stage").classList.add("without-view");
@@ -251,7 +251,7 @@ function openView(scene, selection, wrappers, why) {
     const pictures = byId("frames");
     if (pictures) {
       pictures.open = true;
-      byId("no-view").after(pictures); // in the place of the view
+      byId("no-view").after(pictures); // to the position of the view
     }
     return null;
   };
@@ -268,12 +268,12 @@ function webglWorks() {
   return Boolean(canvas.getContext("webgl") || canvas.getContext("experimental-webgl"));
 }
 
-/** Frames and charts lead to events, and the other way round; the address names the event. */
+/** Links frames and charts to events, and vice versa; the address names the event. */
 function followPage(events, selection) {
   let timer = 0;
   listeners.push(() => {
     if (moment.event >= 0 && events.at(moment.event) !== selection.event)
-      selection.standAt(events.at(moment.event)); // by a frame
+      selection.standAt(events.at(moment.event)); // set by a frame
     clearTimeout(timer);
     timer = setTimeout(() => history.replaceState(null, "", `#e${events.id(selection.event)}`), 300);
   });

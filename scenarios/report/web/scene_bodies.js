@@ -1,7 +1,8 @@
-// ---- counters as colours: one number for each face, on a scale that both bodies share
+// ---- counters as colours: one number for each face, on a scale common to both bodies
 const COUNTERS = ["tests", "hits", "misses"];
 
-/** Returns tests, hits and misses of each body's faces in a step, up to an event: those that the page has. */
+/** Returns tests, hits and misses of each body's faces in a step, up to an event, from the events on the
+    page. */
 function countsSoFar(events, event) {
   const out = events.bodies.map((b) =>
     Object.fromEntries(COUNTERS.map((name) => [name, new Uint32Array(b.faceCount)])),
@@ -16,8 +17,9 @@ function countsSoFar(events, event) {
   return out;
 }
 
-/** Gives each face the sum over the faces of its group, "region" or "level". A real face belongs to the region that covers
-    it, a pseudo face to the one that it hides; a face without one keeps its own number. */
+/** Assigns each face the sum over the faces of its group, "region" or "level". A real face belongs to the
+    region that covers it, a pseudo face to the one that it hides; a face without a region keeps its own
+    number. */
 function sumsOfGroups(body, per, counts) {
   const groupOf = per === "region" ? (f) => body.regionOf(f) : (f) => body.depth(body.outer[f]),
     sums = new Map();
@@ -26,7 +28,8 @@ function sumsOfGroups(body, per, counts) {
   return counts.map((n, f) => (groups[f] === NONE ? n : sums.get(groups[f])));
 }
 
-// ---- colours of faces, those of the frames (render/include/lrbscope/render/style.hpp, which the page's data repeat)
+// ---- colours of faces, as in the frames (render/include/lrbscope/render/style.hpp, repeated in the page's
+// data)
 const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255);
 const mixed = (from, to, t) => from.map((c, i) => c + (to[i] - c) * t);
 const WHITE = [1, 1, 1];
@@ -39,7 +42,7 @@ class Colours {
     for (const name of ["contact", "refining", "underTest", "selected", "ink", "wrong", "wayOut"]) this[name] = rgb(json[name]);
     this.stops = json.scale;
     this.edgeInk = rgb(json.edgeInk);
-    this.shares = json.shares; // how far colours move: of edges towards edgeInk, of pale faces towards white
+    this.shares = json.shares; // interpolation weights: of edges towards edgeInk, of pale faces towards white
   }
 
   onScale(t) {
@@ -55,8 +58,8 @@ class Colours {
     return mixed(this.bodies[side], WHITE, this.shares.lid);
   }
 
-  /** Returns what colours faces in a mode: {of(side, face), key: {most, title} or null}. `newest`: regions of earlier layers
-      are pale; 0: none is. */
+  /** Returns the face colours of a mode: {of(side, face), key: {most, title} or null}. `newest`: regions
+      of earlier layers are pale; 0: none is. */
   mode(bodies, by, counts, newest = 0) {
     const layers = 1 + bodies.reduce((most, b) => b.layer.reduce((m, l) => Math.max(m, l), most), 0);
     const pale = (side) => mixed(this.bodies[side], WHITE, this.shares.ground);
@@ -98,8 +101,8 @@ class Colours {
 }
 
 // ---- triangles and lines of faces, for three.js
-/** Some faces of a body as a mesh that can be coloured, and shown in part, face by face. `shifts`, if any,
-    moves each of them. */
+/** Faces of a body as a mesh with a colour per face, any subset of which can be shown. `shifts`, if given,
+    translates each face. */
 class FaceMesh {
   constructor(body, faces, material, shifts) {
     this.body = body;
@@ -148,7 +151,7 @@ class FaceMesh {
       }
   }
 
-  /** Makes the segments of a flat body strips of a width. */
+  /** Widens the segments of a 2D body to strips of a width. */
   widen(width) {
     if (!this.flat || Math.abs(this.flat.width - width) < 0.1 * width) return;
     this.flat.width = width;
@@ -161,7 +164,7 @@ class FaceMesh {
         [a, b] = [at(p), at(q)],
         length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1,
         along = [((b[0] - a[0]) / length) * (width / 2), ((b[1] - a[1]) / length) * (width / 2)],
-        // A little longer than the segment, so that strips join at corners.
+        // Slightly longer than the segment, so that strips join at corners.
         corner = (end, s, t) => [end[0] + 0.7 * s * along[0] - t * along[1], end[1] + 0.7 * s * along[1] + t * along[0], 0];
       const [w, x, y, z] = [corner(a, -1, -1), corner(b, 1, -1), corner(b, 1, 1), corner(a, -1, 1)];
       position.array.set([w, x, y, w, y, z].flat(), 18 * k);
@@ -180,7 +183,7 @@ class FaceMesh {
     colour.needsUpdate = true;
   }
 
-  /** Shows the faces that pass, alone. */
+  /** Shows only the faces that pass. */
   show(passes) {
     const geometry = this.mesh.geometry;
     if (!geometry.index) geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(3 * this.triangles), 1));
@@ -191,7 +194,7 @@ class FaceMesh {
     geometry.setDrawRange(0, n);
   }
 
-  /** Returns the face and the simplex that a hit of a ray is on. */
+  /** Returns the face and the simplex that a ray hits. */
   at(hit) {
     const triangle = (hit.face.a / 3) | 0,
       face = this.faceOf[triangle];
@@ -205,7 +208,7 @@ class FaceMesh {
   }
 }
 
-/** Returns the edges of faces, each once, as pairs of corners; `rim`: those of one face alone. */
+/** Returns the edges of faces, each once, as pairs of corners; `rim`: only those with a single face. */
 function edgesOf(body, faces, rim = false) {
   const vertices = body.vertices.length / 3,
     keys = [];
@@ -226,7 +229,7 @@ function edgesOf(body, faces, rim = false) {
   return out;
 }
 
-/** Takes an object out of its group, and frees what the graphics card holds of it. */
+/** Removes an object from its group, and frees its resources on the graphics card. */
 function discard(group, object) {
   group.remove(object);
   object.geometry.dispose();
@@ -241,7 +244,7 @@ function thinLines(body, edges, material) {
   return new THREE.LineSegments(geometry, material);
 }
 
-/** Returns lines of any width, in pixels: browsers draw those of WebGL one pixel wide. `ends`: six numbers
+/** Returns lines of any width, in pixels: browsers draw WebGL lines one pixel wide. `ends`: six numbers
     for each line. */
 function thickLines(ends, material) {
   const count = ends.length / 6,
@@ -326,9 +329,9 @@ function boxEdges(places, boxes) {
   return out;
 }
 
-// ---- the inside of a flat body, filled: what lies within an odd number of its loops
+// ---- the filled inside of a 2D body: points with an odd crossing number
 class FlatFill {
-  /** `place`: fills of a higher one lie over those of lower ones; `depth`: how far below the segments. */
+  /** `place`: drawing order, higher on top; `depth`: how far below the segments. */
   constructor(body, colour, opacity, place, depth) {
     this.body = body;
     const material = (stencil, more) =>
@@ -342,8 +345,8 @@ class FlatFill {
         stencilZPass: stencil,
         ...more,
       });
-    // Each triangle from one point to a segment turns over what it covers; what stays turned is inside. Then a sheet over
-    // all of it takes the colour there, and leaves nothing turned for the next fill.
+    // Each triangle from one point to a segment toggles the stencil of the pixels that it covers; those left
+    // set are inside. A quad over all of it then colours them, and clears the stencil for the next fill.
     this.fan = new THREE.Mesh(
       new THREE.BufferGeometry(),
       material(THREE.InvertStencilOp, { colorWrite: false, stencilFunc: THREE.AlwaysStencilFunc }),
@@ -366,7 +369,7 @@ class FlatFill {
     this.show([]);
   }
 
-  /** Fills what these faces bound; nothing if they bound nothing, because a loop is open. */
+  /** Fills the area that these faces bound, provided that they form closed loops. */
   show(faces) {
     const { vertices } = this.body,
       closed = this.areLoops(faces),
@@ -392,7 +395,7 @@ class FlatFill {
     this.look(this.visible);
   }
 
-  /** Returns whether the faces are closed loops: an even number of them ends at each corner. */
+  /** Returns true if the faces form closed loops: an even number of them ends at each corner. */
   areLoops(faces) {
     const odd = new Set();
     for (const face of faces)
@@ -406,9 +409,10 @@ class FlatFill {
   }
 }
 
-// ---- one body in the view: its real faces, the lids of its wrapper, regions on their own, and the boxes
-// of its tree
-// Exploded: extra way for each layer, as a share of the body's radius; as in the frames.
+// ---- one body in the view: its real faces, the lids of its wrapper, separate regions, and the boxes of its
+// tree
+
+// Exploded view: additional offset for each layer, as a share of the body's radius; as in the frames.
 const LAYER_STEP = 0.12;
 
 class BodyView {
@@ -436,7 +440,7 @@ class BodyView {
     this.fills = body.dim === 2 ? this.makeFills(colours.bodies[body.side]) : null;
   }
 
-  /** Returns fills of a flat body: of the solid, and under it, paler, of the wrapper. */
+  /** Returns the fills of a 2D body: of the solid, and under it, paler, of the wrapper. */
   makeFills(colour) {
     const { realCount, side } = this.body,
       fill = (shade, opacity, place) =>
@@ -447,14 +451,14 @@ class BodyView {
     return fills;
   }
 
-  /** Shows or hides the insides of a flat body and of its wrapper. */
+  /** Shows or hides the insides of a 2D body and of its wrapper. */
   lookInside(solid, wrapper) {
     if (!this.fills) return;
     this.fills.solid.look(solid);
     this.fills.wrapper.look(wrapper);
   }
 
-  /** Draws the segments of a flat body as strips; `pixel`: how wide a pixel is. */
+  /** Draws the segments of a 2D body as strips; `pixel`: the width of a pixel. */
   widen(pixel) {
     this.real.widen(3 * pixel);
     this.lids.widen(3 * pixel);
@@ -462,7 +466,7 @@ class BodyView {
     if (this.counted) this.counted.widen(4 * pixel);
   }
 
-  /** Returns what faces and lines are made of; `edge`: the colour of lines. */
+  /** Returns the materials of faces and lines; `edge`: the colour of lines. */
   static materialsOf(edge) {
     const faces = (Material, before, more = {}) =>
         new Material({
@@ -488,7 +492,7 @@ class BodyView {
     };
   }
 
-  /** Finds the middle of the outermost wrapper and how far it reaches. */
+  /** Computes the centre and the radius of the outermost wrapper. */
   measure() {
     const outermost = [];
     this.body.outer.forEach((cell, face) => {
@@ -505,8 +509,7 @@ class BodyView {
     });
   }
 
-  /** Returns the points that reach farthest in some directions; `each` calls its argument with every
-      point. */
+  /** Returns the extreme points in some directions; `each` calls its argument with every point. */
   farthest(each) {
     const ways = [];
     for (const x of [-1, 0, 1])
@@ -568,7 +571,7 @@ class BodyView {
     this.group.matrixWorldNeedsUpdate = true;
   }
 
-  /** `veil`: how much lids cover. */
+  /** `veil`: opacity of the lids. */
   paint(mode, veil) {
     const of = (face) => mode.of(this.body.side, face);
     for (const faces of [this.real, this.lids, ...this.pieces]) faces.paint(of);
@@ -617,7 +620,7 @@ class BodyView {
     this.reached = this.extremes;
   }
 
-  /** Shows regions on their own, moved outward by a share of their way; `open`: lids are translucent. */
+  /** Shows regions separately, moved outward by a share of their offset; `open`: lids are translucent. */
   showRegions(regions, share, open) {
     this.clearPieces();
     const solid = { faces: [], shifts: [] },
@@ -660,8 +663,8 @@ class BodyView {
     return out.map((x) => (x * share * way) / length);
   }
 
-  /** Shows faces that have a counter in exactly the colour that the scale has, without light; of a ghost,
-      these are solid. */
+  /** Shows faces that have a counter in the exact colour of the scale, without lighting; on a ghost, these
+      faces are opaque. */
   showCounted(faces, colourOf) {
     if (this.counted) {
       this.group.remove(this.counted.mesh);

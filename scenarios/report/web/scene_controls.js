@@ -1,4 +1,4 @@
-// ---- the moment: sliders over steps and over the events of a step, buttons, and playing
+// ---- the time line: sliders over steps and over the events of a step, buttons, and playback
 class Timeline {
   constructor(events, selection) {
     Object.assign(this, { events, selection });
@@ -23,7 +23,7 @@ class Timeline {
     });
   }
 
-  /** Makes the slider as long as there are steps. */
+  /** Sets the slider's length to the number of steps. */
   measure() {
     this.stepSlider.max = this.events.firstOfStep.length - 1;
     byId("step-row").hidden = this.events.firstOfStep.length < 2;
@@ -39,7 +39,7 @@ class Timeline {
     return this.events.endOfStep(this.step) - 1;
   }
 
-  /** Does something that a person asked for: playing ends. */
+  /** Runs an action of the user: playback stops. */
   go(action) {
     this.pause();
     action();
@@ -47,7 +47,7 @@ class Timeline {
   by(n) {
     this.selection.goTo(this.selection.event + n);
   }
-  /** Moves to the end of a step, where its answer is. */
+  /** Moves to the end of a step, which has its answer. */
   toStep(step) {
     this.selection.goTo(
       this.events.endOfStep(Math.max(0, Math.min(this.events.firstOfStep.length - 1, step))) - 1,
@@ -56,7 +56,7 @@ class Timeline {
   byStep(n) {
     this.toStep(this.step + n);
   }
-  /** Moves to the next event, or the one before, that passes; stays if there is none. */
+  /** Moves to the next event, or the previous one, that passes. Does not move if there is no such event. */
   find(passes, way = 1) {
     for (let i = this.selection.event + way; i >= 0 && i < this.events.count; i += way)
       if (passes(i)) return this.selection.goTo(i);
@@ -81,7 +81,7 @@ class Timeline {
     byId("event-place").textContent = `event ${here} of ${all}${where}`;
   }
 
-  // -- playing: the wrappers of this step are refined, one region after the other; or all events; or the
+  // -- playback: the wrappers of this step are refined, one region after the other; or all events; or the
   // steps
   toggle() {
     if (this.playing) this.pause();
@@ -95,7 +95,7 @@ class Timeline {
   }
   play() {
     if (!this.next()) {
-      // at the end: from the beginning
+      // at the end: restart
       if (byId("play-what").value === "step") this.toStep(0);
       else this.selection.goTo(this.firstHere);
     }
@@ -114,7 +114,7 @@ class Timeline {
       1000 / byId("play-speed").value,
     );
   }
-  /** Returns what moves on by one; null at the end. */
+  /** Returns the function that moves on by one; null at the end. */
   next() {
     const what = byId("play-what").value,
       end = this.lastHere;
@@ -127,8 +127,8 @@ class Timeline {
   }
 }
 
-// ---- keys. They work anywhere on the page but where one types.
-/** `actions`: by key as KeyboardEvent.key has it; those of letters take small ones, shift is passed on. */
+// ---- keys. They work anywhere on the page except in text fields.
+/** `actions`: by KeyboardEvent.key; letters are in lower case, shift is passed on. */
 function listenToKeys(actions) {
   document.addEventListener("keydown", (e) => {
     const key = e.key.length === 1 ? e.key.toLowerCase() : e.key,
@@ -145,14 +145,14 @@ function listenToKeys(actions) {
       (key === " " || key === "Enter") &&
       (target.tagName === "BUTTON" || target.tagName === "SUMMARY" || target.tagName === "A")
     )
-      return; // presses what has the focus
+      return; // presses the focused element
     e.preventDefault();
     actions[key](e.shiftKey, target);
   });
 }
 
-// ---- buttons and keys of the view in three dimensions
-const EXPLODED = 0.6; // what the key sets; the slider goes from 0 to 2
+// ---- buttons and keys of the 3D view
+const EXPLODED = 0.6; // the value set by the key; the slider goes from 0 to 2
 
 class ViewControls {
   constructor(view, selection) {
@@ -176,7 +176,8 @@ class ViewControls {
     this.show();
   }
 
-  /** Offers the depths of boxes. Below those that the page has whole, it has the boxes above faces that were compared. */
+  /** Lists the depths of boxes. Below those that the page has in full, it has only the boxes above faces
+      that were compared. */
   listDepths() {
     const { bodies } = this.view,
       deepest = bodies.reduce((most, b) => b.boxes.depth.reduce((m, d) => Math.max(m, d), most), 0);
@@ -190,7 +191,7 @@ class ViewControls {
     byId("boxes").title = "The boxes of the tree's nodes; of deep ones those above faces that were compared";
   }
 
-  /** Shows on the buttons how things are. */
+  /** Updates the buttons to the current state. */
   show() {
     const { now, camera } = this.view,
       picked = this.selection.picked;
@@ -216,8 +217,8 @@ class ViewControls {
   toggle(name) {
     this.change({ [name]: !this.view.now[name] });
   }
-  /** Most of what is tested lies inside: with counters the bodies become ghosts, until somebody wants them
-      solid. */
+  /** Most tested faces lie inside: with counters the bodies become ghosts, until the user makes them
+      opaque. */
   colourBy(by) {
     const was = COUNTERS.includes(this.view.now.by),
       is = COUNTERS.includes(by);
@@ -225,7 +226,7 @@ class ViewControls {
   }
   explode(share) {
     this.change({ explode: share, isolate: null });
-    this.view.draw(); // what is framed has to be there
+    this.view.draw(); // the framed objects must exist
     this.view.frameAll();
   }
   isolate(region) {
@@ -242,7 +243,7 @@ class ViewControls {
     this.view.camera.setOrthographic(!this.view.camera.orthographic);
     this.change({});
   }
-  /** Moves a choice on by so many places, round the end. */
+  /** Advances a choice by `by` entries, cyclically. */
   cycle(id, by) {
     const select = byId(id);
     select.selectedIndex = (select.selectedIndex + by + select.length) % select.length;

@@ -1,5 +1,5 @@
-// ---- what the event is about, and what is selected: painted over the bodies, with rims that are seen
-// through everything
+// ---- the elements of the event and of the selection: painted over the bodies, with outlines visible through
+// everything
 class Marks {
   constructor(views, colours, size) {
     this.views = views;
@@ -8,8 +8,8 @@ class Marks {
     this.shown = new Map(); // by name: {key, parts: [{group, object}]}
   }
 
-  /** Shows faces in a colour. Nothing is made again while `key` stays the same. `through`: rims are seen through
-      everything. */
+  /** Shows faces in a colour. Nothing is rebuilt while `key` stays the same. `through`: outlines are
+      visible through everything. */
   set(name, key, faces, { colour, opacity = 1, width = 1.5, over = false, through = true }) {
     const before = this.shown.get(name);
     if (before && before.key === key) return;
@@ -45,7 +45,7 @@ class Marks {
     this.shown.set(name, { key, parts });
   }
 
-  /** As BodyView's, a little wider. */
+  /** As in BodyView, a little wider. */
   widen(pixel) {
     for (const { parts } of this.shown.values())
       for (const { object } of parts) if (object.userData.faces) object.userData.faces.widen(6 * pixel);
@@ -81,9 +81,9 @@ class Marks {
   }
 }
 
-// ---- in the view: where two faces meet, or what keeps them apart; and what parts the bodies
+// ---- in the view: where two faces intersect, or what separates them; and what separates the bodies
 class WhyMarks {
-  /** `why`: the panel that says the same in words. */
+  /** `why`: the panel with the same explanation in words. */
   constructor(view, why) {
     Object.assign(this, { view, why, group: new THREE.Group(), key: null });
     view.stage.add(this.group);
@@ -140,7 +140,7 @@ class WhyMarks {
     );
   }
 
-  /** Joins points in their order. */
+  /** Joins points in order. */
   addPath(points, closed, colour, width) {
     const ends = [];
     for (let i = 0; i + 1 < points.length + (closed ? 1 : 0); i++)
@@ -181,7 +181,8 @@ class WhyMarks {
   }
 }
 
-/** Returns a square across the line between two points, at its middle. `half`: from there to its corners. */
+/** Returns a square perpendicular to the line between two points, at its midpoint. `half`: from there to
+    its corners. */
 function squareBetween(p, q, half) {
   const a = new THREE.Vector3(...p),
     b = new THREE.Vector3(...q),
@@ -196,9 +197,10 @@ function squareBetween(p, q, half) {
   return [u, v, u.clone().negate(), v.clone().negate()].map((way) => middle.clone().add(way).toArray());
 }
 
-// ---- in the view: how far apart the bodies are in the step on show, and how B leaves A where they overlap
+// ---- in the view: the distance of the bodies in the current step, or the separation vector where they
+// overlap
 class MeasuredMarks {
-  /** `measured`: as the page has it; null: the run did not ask. */
+  /** `measured`: as the page has it; null: not requested. */
   constructor(view, measured) {
     Object.assign(this, { view, group: new THREE.Group(), shown: null });
     this.ofStep = new Map(); // by number: {wayOut, from, to, words}
@@ -213,7 +215,7 @@ class MeasuredMarks {
     view.stage.add(this.group);
   }
 
-  /** Makes the lines anew where the step has changed. */
+  /** Rebuilds the lines if the step has changed. */
   draw() {
     const { events, selection, legend, colours } = this.view,
       now = this.ofStep.get(events.stepNumber(selection.event)) || null;
@@ -229,7 +231,7 @@ class MeasuredMarks {
     legend.also(now ? [now.wayOut ? wayOut : gap] : [], "measured");
   }
 
-  /** A pale line under each, so that they are seen on bodies of any colour. */
+  /** A pale line under each, so that they are visible on bodies of any colour. */
   addLines(points, colour) {
     const ends = points.flatMap((p) => p.toArray());
     for (const [c, width, order] of [
@@ -242,7 +244,7 @@ class MeasuredMarks {
     }
   }
 
-  /** Writes the length over the middle of the way, or under it where there is no room. */
+  /** Writes the length over the middle of the segment, or under it if there is no space. */
   write() {
     const label = byId("measured"),
       { shown, view } = this;
@@ -274,7 +276,7 @@ function arrowOf(from, to, dim) {
   return [from, to, ...sides.flatMap((side) => [back.clone().add(side), to])];
 }
 
-// ---- what the colours of the view mean
+// ---- the meaning of the view's colours
 class Legend {
   constructor(view) {
     this.view = view;
@@ -282,8 +284,8 @@ class Legend {
     this.more = {};
   }
 
-  /** Adds what is pointed out at the moment, in place of what the same `who` had: [[colour, words, colour of the rim]]; a rim
-      where the colour alone is not seen on a dark card. */
+  /** Adds highlighted items, and replaces the previous ones of the same `who`: [[colour, words, colour of
+      the rim]]; an outline where the colour alone is not visible on a dark card. */
   also(items, who) {
     this.more[who] = items.map(([colour, text, rim]) => [Legend.css(colour), text, rim ? Legend.css(rim) : ""]);
     this.write();

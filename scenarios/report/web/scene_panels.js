@@ -1,4 +1,4 @@
-// ---- pieces of the page that several of its parts make
+// ---- widgets that several parts of the page use
 function textButton(text, action, title = "") {
   const button = document.createElement("button");
   button.type = "button";
@@ -23,7 +23,7 @@ function fillList(list, rows) {
   );
 }
 
-/** Copies text; returns whether that worked. `element` holds the text, and is selected where there is no
+/** Copies text; returns true on success. `element` contains the text, and is selected if there is no
     clipboard, as on pages from disk. */
 async function copyText(text, element) {
   try {
@@ -35,15 +35,15 @@ async function copyText(text, element) {
   }
 }
 
-// ---- what all views show: one event, and perhaps a face or a region. Views change it here and are told
-// by their listeners.
+// ---- the selection that all views show: one event, and possibly a face or a region. Views change it here
+// and their listeners are notified.
 class Selection {
   constructor(events) {
     this.events = events;
     this.event = 0;
     // {side, face, region}: face NONE: a region as a whole; region NONE: a face that no region hides.
     this.picked = null;
-    this.chosen = [NONE, NONE]; // simplices of A and B that were picked one after the other
+    this.chosen = [NONE, NONE]; // simplices of A and B that were picked in succession
     this.listeners = [];
   }
 
@@ -51,7 +51,7 @@ class Selection {
     for (const listener of this.listeners) listener(what);
   }
 
-  /** Moves to an event, by its index, where frames and charts stand already. */
+  /** Moves to an event, by its index; frames and charts are already there. */
   standAt(event) {
     this.event = Math.max(0, Math.min(this.events.count - 1, event));
     this.chosen = [NONE, NONE];
@@ -63,7 +63,7 @@ class Selection {
     showEvent(this.events.id(this.event), this.events.stepNumber(this.event));
   }
 
-  /** `simplex`: the one of the face that is meant; without it the first. */
+  /** `simplex`: the selected one of the face; by default the first. */
   pickFace(side, face, simplex) {
     const body = this.events.bodies[side],
       meant = simplex === undefined ? body.firstSimplex[face] : simplex;
@@ -88,7 +88,7 @@ class Selection {
   }
 }
 
-// ---- which events the table lists
+// ---- the events listed in the table
 class EventFilter {
   constructor() {
     this.clear();
@@ -151,7 +151,7 @@ class EventFilter {
     return out;
   }
 
-  /** Tells whether an event changes the region, or compares one of its faces. */
+  /** Returns true if an event changes the region, or compares one of its faces. */
   concernsRegion(events, i) {
     const { side, region } = this;
     if (events.regions(i).some((r) => r.region === region && (side < 0 || r.side === side))) return true;
@@ -164,8 +164,7 @@ class EventFilter {
   }
 }
 
-// ---- the events as a table. Only the rows that can be seen are in the document, so that a million is as
-// quick as ten.
+// ---- the events as a table. The document has only the visible rows, so that a million is as fast as ten.
 const TALLEST = 5e6; // pixels: browsers cannot scroll much further
 
 class EventTable {
@@ -177,8 +176,8 @@ class EventTable {
     this.body = byId("event-body");
     this.spacer = byId("event-spacer");
     this.rows = new Uint32Array(0); // events that pass the filter
-    this.first = 0; // of these, the uppermost that is shown
-    this.known = 0; // where the bar was put for `first`, which is then not to be rounded
+    this.first = 0; // the first visible one
+    this.known = 0; // scroll position set for `first`, which is then not to be rounded
     this.box.addEventListener("scroll", () => {
       if (Math.abs(this.box.scrollTop - this.known) >= 1) this.first = this.rowAt(this.box.scrollTop);
       this.draw();
@@ -228,7 +227,7 @@ class EventTable {
     this.follow();
   }
 
-  /** Scrolls, if need be, to the event that is selected, or the last one before it that is listed. */
+  /** Scrolls, if necessary, to the selected event, or to the last one before it that is listed. */
   follow() {
     this.row = Math.max(0, lastAtMost(this.rows, this.selection.event));
     if (this.row < this.first || this.row >= this.first + this.fitting - 1)
@@ -242,7 +241,7 @@ class EventTable {
     this.known = this.box.scrollTop;
   }
 
-  /** Moves the selection by so many listed events. */
+  /** Moves the selection by `by` listed events. */
   step(by) {
     if (!this.rows.length) return;
     const here = lastAtMost(this.rows, this.selection.event),
@@ -284,7 +283,7 @@ class EventTable {
       const cell = document.createElement("span");
       cell.setAttribute("role", "cell");
       cell.textContent = text;
-      cell.title = text; // which may not fit
+      cell.title = text; // which may be too long
       if (column === 2) cell.style.setProperty("--kind", events.kindOf(i).colour);
       line.append(cell);
     });
@@ -296,7 +295,7 @@ class EventTable {
 class FilterForm {
   constructor(events, filter, table) {
     Object.assign(this, { events, filter, table });
-    this.listeners = []; // told when another part of the work is listed
+    this.listeners = []; // notified when another part of the work is listed
     this.listKinds();
     byId("filter-side").closest("label").hidden = byId("filter-pair").closest("label").hidden =
       events.bodies.length < 2;
@@ -306,7 +305,7 @@ class FilterForm {
     byId("filter-clear").onclick = () => this.clear();
   }
 
-  /** Offers the kinds of events that there are. */
+  /** Lists the kinds of events of the run. */
   listKinds() {
     const kind = byId("filter-kind"),
       present = new Set(this.events.kind),
@@ -360,7 +359,7 @@ class FilterForm {
   }
 }
 
-// ---- beside the view: the event, and the face or region that is selected, in words and numbers
+// ---- beside the view: the event, and the selected face or region, in words and numbers
 class Panel {
   constructor(events, selection, wrappers) {
     this.events = events;
@@ -421,7 +420,7 @@ class Panel {
     byId("event-parts").replaceChildren(...parts);
   }
 
-  /** Goes from one wrong pair of the step to the next, and asks why. */
+  /** Moves from one wrong pair of the step to the next, and explains it. */
   wrongButton(wrong) {
     let next = 0;
     const button = textButton(plural(wrong.length, "wrong pair"), () => {
@@ -490,28 +489,28 @@ class Panel {
   }
 }
 
-// ---- beside the view: why the two faces of an event, or two that were clicked, come out as they do; and for a
-// step without contact what parts the bodies
+// ---- beside the view: why the two faces of an event, or two that were clicked, intersect or not; and for a
+// step without contact what separates the bodies
 /** Returns a number with four digits. */
 const short = (x) => {
   const text = Math.abs(x) >= 1e6 ? x.toExponential(2) : String(Number(x.toPrecision(4)));
   return text.replace("e+", "e").replace("-", "\u2212");
 };
 
-/** Returns a positive number rounded down to four digits: of a lower bound, one. */
+/** Returns a positive number rounded down to four digits, for lower bounds. */
 const least = (x) => {
   const near = Number(x.toPrecision(4));
   return short(near > x ? x - 0.5 * 10 ** (Math.floor(Math.log10(x)) - 3) : x);
 };
-/** Distances of more ulps are shown without them: doubles decide these easily. */
+/** Distances of more ulps are shown without them: double arithmetic decides them reliably. */
 const MOST_ULPS = 1e6;
 
 class WhyPanel {
   constructor(explanations, events, selection) {
     Object.assign(this, { explanations, events, selection });
-    this.listeners = []; // told when what is explained, or the row that is pointed out, has changed
+    this.listeners = []; // notified when the explanation, or the highlighted row, has changed
     this.now = null; // {kind: "pair" | "step", key, found}
-    this.row = -1; // of the way, whose boxes the view shows
+    this.row = -1; // of the path, whose boxes the view shows
     byId("why-copy").onclick = () => this.copy();
     byId("why-way").addEventListener("click", (e) => this.point(e.target.closest("[data-row]")));
     if (!explanations.none) selection.listeners.push(() => this.show());
@@ -521,7 +520,7 @@ class WhyPanel {
     for (const listener of this.listeners) listener();
   }
 
-  /** Returns the two simplices that are to be explained; null: none. */
+  /** Returns the two simplices to be explained; null: none. */
   asked() {
     const { events, selection } = this,
       chosen = selection.chosen;
@@ -602,7 +601,7 @@ class WhyPanel {
           : ["distance", short(e.distance)],
       );
     else {
-      // Those that look alike, once.
+      // Those with equal text, once.
       const points = [...new Set(e.points.map((p) => `(${this.world(p).map(short).join(", ")})`))];
       rows.push([
         "contact",
@@ -692,7 +691,7 @@ class WhyPanel {
     return textButton("why they do not meet", () => this.selection.choose(near));
   }
 
-  // -- the way from the roots, and facts
+  // -- the path from the roots, and facts
   showWay(rows) {
     byId("why-table").hidden = !rows.length;
     byId("why-way").replaceChildren(
@@ -716,7 +715,7 @@ class WhyPanel {
     );
   }
 
-  /** Points out the boxes of a row, or no longer. */
+  /** Highlights the boxes of a row, or clears the highlight. */
   point(button) {
     if (!button) return;
     const row = Number(button.dataset.row);
@@ -726,7 +725,7 @@ class WhyPanel {
     this.tell();
   }
 
-  /** Returns the nodes of the row that is pointed out. */
+  /** Returns the nodes of the highlighted row. */
   nodes() {
     if (this.row < 0 || !this.now || this.now.kind !== "pair") return [];
     return this.now.found.rows[this.row].nodes.map((number, side) => ({ side, number }));
@@ -741,11 +740,12 @@ class WhyPanel {
   }
 }
 
-// ---- where the work went, as an icicle: the query above, its phases, and beneath each what decided
+// ---- the distribution of the work, as an icicle: the query on top, its phases, and beneath each the
+// deciding tests
 const SVG = document.querySelector(".about svg").namespaceURI;
 
 class WorkIcicle {
-  /** `work`: {outcomes: [{phase, outcome, events, operations, micros}], timed}; null: was not recorded. */
+  /** `work`: {outcomes: [{phase, outcome, events, operations, micros}], timed}; null: not recorded. */
   constructor(work, events, filter, form, selection) {
     if (!work) return;
     Object.assign(this, { work, events, filter, form, selection });
@@ -786,18 +786,18 @@ class WorkIcicle {
   get scope() {
     return byId("work-scope").value;
   }
-  /** The parts that the chart shows: of the run, or of the step that is on show. */
+  /** The parts in the chart: of the run, or of the current step. */
   get outcomes() {
     return this.scope === "run" ? this.work.outcomes : this.ofStep.get(this.shownStep) || [];
   }
 
-  /** The phase that fills the chart; null: all do. */
+  /** The phase that fills the chart; null: all. */
   get zoom() {
     return this.filter.work ? this.filter.work.phase : null;
   }
 
-  /** Returns the parts, a row for each depth: {key, name, value, from, parts: numbers of outcomes}. `wide`: returns the
-      value of an outcome that shows. */
+  /** Returns the parts, a row for each depth: {key, name, value, from, parts: numbers of outcomes}.
+      `wide`: returns the value of a visible outcome. */
   rows(wide) {
     const { outcomes } = this;
     const row = (nameOf) => {
@@ -853,7 +853,7 @@ class WorkIcicle {
     this.mark();
   }
 
-  /** Makes a rectangle with its name, if that fits, that is a button for the filter. */
+  /** Makes a rectangle that is a button for the filter, with its name if that fits. */
   part(part, all, { x, y, w, height, colour, depth }) {
     const group = document.createElementNS(SVG, "g"),
       rect = document.createElementNS(SVG, "rect"),
@@ -896,7 +896,7 @@ class WorkIcicle {
     this.form.showWork(part && !same ? { name: part.key, phase: part.phase, parts: new Set(part.parts) } : null);
   }
 
-  /** Marks the part that is listed, and the one that the event belongs to. */
+  /** Marks the listed part, and the part of the event. */
   mark() {
     const listed = this.filter.work ? [...this.filter.work.parts].join(" ") : "",
       here = this.events.work[this.selection.event];
@@ -908,7 +908,7 @@ class WorkIcicle {
   }
 }
 
-// ---- rows of the page's tables lead to regions and time steps, and show which of them is selected
+// ---- rows of the page's tables link to regions and time steps, and show which of them is selected
 class RowLinks {
   constructor(events, selection) {
     Object.assign(this, { events, selection, rows: [] });

@@ -1,7 +1,7 @@
-// ---- numbers packed as text by assets.hpp
+// ---- number arrays packed as text by assets.hpp
 const NONE = 0xffffffff;
 
-/** Returns a Float32Array, or a Uint32Array in which NONE stands for kNull. */
+/** Returns a Float32Array, or a Uint32Array in which NONE encodes kNull. */
 function unpack(text) {
   const raw = atob(text.slice(3)),
     size = Number(text[1]),
@@ -24,7 +24,7 @@ function unpack(text) {
   return out;
 }
 
-/** Returns the largest index whose value is at most `value`, of ascending ones; -1: none. */
+/** Returns the largest index whose value is at most `value`, in an ascending array; -1: none. */
 function lastAtMost(ascending, value) {
   let low = 0,
     high = ascending.length;
@@ -36,7 +36,7 @@ function lastAtMost(ascending, value) {
   return low - 1;
 }
 
-// ---- a body: its LRB-rep as arrays, and what happened to its faces
+// ---- a body: its LRB-rep as arrays, and the history of its faces
 const SIDES = ["A", "B"];
 
 class Body {
@@ -63,8 +63,8 @@ class Body {
       node: unpack(json.boxes.node),
       depth: unpack(json.boxes.depth),
       places: unpack(json.boxes.places),
-      whole: json.boxes.whole, // down to this depth the page has all of them
-      atDepth: unpack(json.boxes.atDepth), // how many there are
+      whole: json.boxes.whole, // the page has all boxes down to this depth
+      atDepth: unpack(json.boxes.atDepth), // number of boxes
     };
     this.counts = Object.fromEntries(Object.entries(json.counts).map(([name, text]) => [name, unpack(text)]));
     this.counts.misses = this.counts.tests.map((n, f) => n - this.counts.hits[f]);
@@ -124,10 +124,9 @@ function grouped(values, groups) {
   return { of: (g) => members.subarray(offsets[g], offsets[g + 1]) };
 }
 
-// ---- the run's events, as far as the page has them. An event is known here by its index among these; what
-// people see is its id, its number in the trace. What the numbers `a` and `b` of a kind mean is taken from
-// the
-// kind's words, so that new kinds are shown too.
+// ---- the events of the run that the page has. An event's index is its position among these; the number
+// shown to users is its id, its number in the trace. The meaning of the numbers `a` and `b` of a kind is
+// taken from the kind's words, so that new kinds are shown without a change.
 class Events {
   constructor(json, bodies) {
     this.bodies = bodies;
@@ -141,7 +140,7 @@ class Events {
     this.dim = json.dim;
     this.engine = json.engine;
     this.frame = { origin: json.origin, unit: json.unit }; // x_world = origin + unit * x
-    this.work = unpack(json.events.work); // number of the part of the work that the event is; NONE: none
+    this.work = unpack(json.events.work); // number of the event's part of the work; NONE: none
     this.wrong = wrongPairs(json.wrong, json.steps.count);
     this.phases = json.phases;
     this.relations = json.relations;
@@ -159,11 +158,12 @@ class Events {
     this.REGION = kind("region");
     this.PASS = kind("pass");
     this.PASS_END = kind("pass end");
-    /** Of a construction, which begins with the body itself: [{first, last, words}], ids of events; else null. */
+    /** Passes of a construction, which begins with the body itself: [{first, last, words}], ids of events;
+        else null. */
     this.passes = json.passes;
   }
 
-  /** Takes other events of the same run: all of them. */
+  /** Replaces the events by others of the same run: all of them. */
   replace(columns) {
     const wrong = new Map([...this.stepNumbers].map((number, step) => [number, this.wrong[step]]));
     Object.assign(this, columns);
@@ -173,28 +173,28 @@ class Events {
   id(i) {
     return this.ids ? this.ids[i] : i;
   }
-  /** Returns the last event that is here and not later than the one with this id. */
+  /** Returns the last event on the page that is not later than the one with this id. */
   at(id) {
     return Math.max(0, this.ids ? lastAtMost(this.ids, id) : Math.min(id, this.count - 1));
   }
-  /** Returns the first event that is here and not earlier than the one with this id. */
+  /** Returns the first event on the page that is not earlier than the one with this id. */
   from(id) {
     return this.ids ? lastAtMost(this.ids, id - 1) + 1 : id;
   }
-  /** Returns the event with this id; -1: it is not here. */
+  /** Returns the event with this id; -1: not on the page. */
   find(id) {
     const i = id === NONE ? -1 : this.at(id);
     return i >= 0 && this.id(i) === id ? i : -1;
   }
 
-  /** Returns the index of an event's time step among those that are here. */
+  /** Returns the index of an event's time step among those on the page. */
   step(i) {
     return lastAtMost(this.firstOfStep, i);
   }
   endOfStep(step) {
     return step + 1 < this.firstOfStep.length ? this.firstOfStep[step + 1] : this.count;
   }
-  /** Returns the number of an event's time step, as the scenario has it. */
+  /** Returns the number of an event's time step in the scenario. */
   stepNumber(i) {
     return this.stepNumbers[this.step(i)];
   }
@@ -204,7 +204,7 @@ class Events {
   changesWrapper(i) {
     return [this.REFINE, this.COARSEN, this.REGION].includes(this.kind[i]);
   }
-  /** Tells whether an event concerns a body. */
+  /** Returns true if an event concerns a body. */
   concerns(i, side) {
     const { a, b } = this.kindOf(i);
     if (a.side >= 0 || b.side >= 0) return true; // both
@@ -214,7 +214,7 @@ class Events {
     return this.meet[i] > 0;
   }
 
-  /** Returns what an event is about, of one sort: [{side, number}]. */
+  /** Returns the elements of one sort that an event concerns: [{side, number}]. */
   about(i, sort) {
     const kind = this.kindOf(i),
       out = [];
@@ -225,7 +225,7 @@ class Events {
       if (r.sort === sort && number !== NONE) out.push({ side: r.side >= 0 ? r.side : this.side[i], number });
     return out;
   }
-  /** Returns the faces that an event compares: [{side, face}]; none if the bodies are too large for the
+  /** Returns the faces that an event compares: [{side, face}]; empty if the bodies are too large for the
       page. */
   faces(i) {
     return this.about(i, "simplex")
@@ -235,8 +235,8 @@ class Events {
   regions(i) {
     return this.about(i, "region").map((r) => ({ side: r.side, region: r.number }));
   }
-  /** Returns the number of regions between what the event is about and the outside; of two faces the
-      greater; -1: none. */
+  /** Returns the number of regions between the event's element and the outside; the larger one of two
+      faces; -1: none. */
   level(i) {
     const [region] = this.regions(i);
     if (region) return this.bodies[region.side].complete ? this.bodies[region.side].depth(region.region) : -1;
@@ -247,7 +247,7 @@ class Events {
     const id = this.id(i);
     return (this.passes || []).find((p) => p.first <= id && id <= p.last) || null;
   }
-  /** Returns the regions that a construction made in the pass of an event, so far: [{side, region}]. */
+  /** Returns the regions that a construction has made so far in the pass of an event: [{side, region}]. */
   builtIn(i) {
     const pass = this.pass(i),
       out = [];
@@ -255,7 +255,7 @@ class Events {
       if (this.kind[k] === this.REGION) out.push({ side: 0, region: this.a[k] });
     return out;
   }
-  /** Returns the event that compares the faces which led to this one; -1: none that is here. */
+  /** Returns the event of the face comparison that led to this one; -1: none on the page. */
   test(i) {
     if (this.about(i, "simplex").length > 0) return i;
     const cause = this.find(this.cause[i]);
@@ -263,7 +263,8 @@ class Events {
   }
 }
 
-/** Returns what a number of an event stands for: {sort, side, words}; side -1: that of the event, if it has one. */
+/** Returns the meaning of a number of an event: {sort, side, words}; side -1: that of the event, if it has
+    one. */
 function role(words) {
   const side = / of A$/.test(words) ? 0 : / of B$/.test(words) ? 1 : -1;
   const sorts = ["simplex", "node", "region", "vertex", "relation", "phase"];
@@ -279,9 +280,9 @@ function wrongPairs(json, steps) {
   return out;
 }
 
-// ---- why two faces come out as they do, and what parts bodies that are apart: what explanations.cpp packed
+// ---- why two faces intersect or not, and what separates the bodies: the data packed by explanations.cpp
 class Explanations {
-  /** `json`: null where the page explains nothing. `stepNumbers`: of the steps that it was made for. */
+  /** `json`: null if the page has no explanations. `stepNumbers`: the steps with explanations. */
   constructor(json, stepNumbers) {
     this.none = !json;
     if (!json) return;
@@ -290,7 +291,7 @@ class Explanations {
     this.columns = Object.fromEntries(
       Object.entries(pairs).map(([name, text]) => [name, typeof text === "string" ? unpack(text) : text]),
     );
-    const number = (step) => stepNumbers[step]; // steps are known by their numbers: more may be loaded
+    const number = (step) => stepNumbers[step]; // more steps may be loaded: identified by number
     this.steps = new Map(steps.map((s) => [number(s.step), s]));
     this.numbers = new Map();
     for (let i = 0; i < pairs.count; i++)
@@ -324,7 +325,7 @@ class Explanations {
       points: Array.from({ length: points.length / 3 }, (_, k) => [...points.subarray(3 * k, 3 * k + 3)]),
       distance: c.distance[i],
       ulps: c.ulps[i],
-      // For A's corners by B's plane, then B's by A's: {distance, exact, inDouble}.
+      // A's corners against B's plane, then B's against A's: {distance, exact, inDouble}.
       corners: [0, 3].map((first) =>
         [0, 1, 2].map((k) => {
           const sign = c.signs[6 * i + first + k];
@@ -338,20 +339,20 @@ class Explanations {
     };
   }
 
-  /** Returns what parts the bodies at a step; null: they meet there, or the page does not say. */
+  /** Returns what separates the bodies at a step; null: they intersect, or the page has no explanation. */
   step(step) {
     return this.none ? null : this.steps.get(step) || null;
   }
 
-  /** Returns the command that explains a pair, or without one the step; empty: there is none. */
+  /** Returns the command that explains a pair, or the step if no pair is given; empty: no command. */
   commandFor(stepNumber, simplices) {
     if (this.none || !this.command) return "";
     return `${this.command} --step ${stepNumber}${simplices ? ` --pair ${simplices.join(",")}` : ""}`;
   }
 }
 
-// ---- both wrappers after an event: replayed from the beginning of its time step, as trace/include/lrbscope/trace/replay.hpp
-// does it
+// ---- both wrappers after an event: replayed from the beginning of its time step, as in
+// trace/include/lrbscope/trace/replay.hpp
 class Wrappers {
   constructor(bodies, events, mode) {
     this.bodies = bodies;
@@ -359,10 +360,10 @@ class Wrappers {
     this.byFace = mode === "unregularised";
     this.excluded = bodies.map((b) => new Uint8Array(b.regionCount));
     this.discarded = bodies.map((b) => (this.byFace ? new Uint8Array(b.faceCount) : null));
-    this.bare = events.passes !== null; // wrappers begin with the bodies themselves
+    this.bare = events.passes !== null; // wrappers start as the bodies themselves
     this.outermost = bodies.map((b) => b.outer.reduce((n, cell) => n + (cell === NONE ? 1 : 0), 0));
-    this.at = -1; // the event that the wrappers stand after
-    this.version = 0; // grows whenever a wrapper changes
+    this.at = -1; // the event after which the wrappers are current
+    this.version = 0; // incremented whenever a wrapper changes
     this.reset();
   }
 
@@ -373,7 +374,7 @@ class Wrappers {
     this.version++;
   }
 
-  /** The solid is always included, the outside never: `solid` says which of the two NONE stands for. */
+  /** The solid is always included, the outside never: `solid` selects which of the two NONE means. */
   included(side, cell, solid) {
     return cell === NONE ? solid : !this.excluded[side][cell];
   }
@@ -384,7 +385,7 @@ class Wrappers {
     return this.included(side, body.inner[face], true) !== inFront;
   }
 
-  /** Moves to just after an event: forward by what lies between, backward by beginning the step again. */
+  /** Moves to just after an event: forward by the events in between, backward by restarting the step. */
   seek(event) {
     const first = this.events.firstOfStep[this.events.step(event)];
     const forward = this.at >= first && this.at <= event;
@@ -404,7 +405,7 @@ class Wrappers {
     this.version++;
   }
 
-  /** Returns the face that a refinement takes away where wrappers are refined face by face; -1: all of the
+  /** Returns the face that a refinement removes if wrappers are refined face by face; -1: the entire
       region. */
   refinedFace(event, side, region) {
     const cause = this.events.find(this.events.cause[event]);
@@ -426,7 +427,7 @@ class Wrappers {
     if (this.byFace) for (const lid of this.bodies[side].lids(region)) this.discarded[side][lid] = 0;
   }
 
-  /** Returns the number of a region's faces on the boundary. Refining it changes nothing but these. */
+  /** Returns the number of a region's faces on the boundary. Only these change when it is refined. */
   visibleOf(side, region) {
     const count = (faces) => faces.reduce((n, face) => n + (this.onBoundary(side, face) ? 1 : 0), 0);
     return count(this.bodies[side].lids(region)) + count(this.bodies[side].floor(region));
@@ -440,7 +441,7 @@ const plural = (n, one, many = one + "s") => `${digits(n)} ${n === 1 ? one : man
 const relationWords = (name) =>
   ({ a_inside_b: "A inside B", b_inside_a: "B inside A" })[name] || name.replaceAll("_", " ");
 
-/** Returns what an event is about. */
+/** Describes the elements that an event concerns. */
 function eventWords(events, i) {
   const two = events.bodies.length > 1,
     kind = events.kind[i],
@@ -470,7 +471,8 @@ function eventWords(events, i) {
     .join(", ");
 }
 
-/** Returns what a step begins with. A body without regions, such as an open one, has no wrapper. */
+/** Describes the state at the start of a step. A body without regions, such as an open one, has no
+    wrapper. */
 function firstWrapperWords(bodies) {
   const bare = bodies.filter((b) => !b.regionCount);
   if (bodies.length === 1) return bare.length ? "the body (it has no wrapper)" : "the outermost wrapper";
@@ -479,14 +481,15 @@ function firstWrapperWords(bodies) {
   return `${SIDES[bare[0].side]} (it has no wrapper) and ${SIDES[1 - bare[0].side]}'s outermost wrapper`;
 }
 
-/** Returns how many faces are shown of each body: of its wrapper, or of itself where it has none. */
+/** Returns the number of visible faces of each body: of its wrapper, or of the body itself if it has no
+    wrapper. */
 function sizeWords(bodies, sizes) {
   const one = (n, side) =>
     `${bodies.length > 1 ? `${SIDES[side]} ` : ""}${digits(n)}${bodies[side].regionCount ? "" : " (no wrapper)"}`;
   return `${sizes.map(one).join(" + ")} faces`;
 }
 
-/** Returns what an event of a construction is about. */
+/** Describes an event of a construction. */
 function builtWords(events, i) {
   const a = events.a[i],
     b = events.b[i];
@@ -508,10 +511,10 @@ function builtWords(events, i) {
   return `${digits(a)} ${kind.a.words}, ${digits(b)} ${kind.b.words}`;
 }
 
-/** Returns how an event came out; empty: nothing can be said. */
+/** Returns the outcome of an event; empty: unknown. */
 const outcomeWords = (events, i) => events.outcomes[events.outcome[i]] || "";
 
-/** Returns where an event is in the run. */
+/** Returns the position of an event in the run. */
 function eventPlace(events, i) {
   const event = `event ${digits(events.id(i))}`;
   return events.firstOfStep.length > 1

@@ -1,16 +1,16 @@
-// ---- where one looks from. The same camera as a scenario's: perspective over 0.6 radians, or orthographic.
-const FIELD = 0.6; // radians from bottom to top, as render/include/lrbscope/render/camera.hpp has it
-const VIEW_FROM = [0.62, -0.68, 0.42]; // and the direction that frames are seen from
+// ---- the camera. The same as a scenario's: perspective over 0.6 radians, or orthographic.
+const FIELD = 0.6; // radians from bottom to top, as in render/include/lrbscope/render/camera.hpp
+const VIEW_FROM = [0.62, -0.68, 0.42]; // and the default view direction of frames
 
 class SceneCamera {
-  /** `scene` says how the page's unit is the world's (origin and unit: x_world = origin + unit * x), and from where frames are seen
-      (view: from, up, orthographic; null: not said). */
+  /** `scene` gives the page's frame (origin and unit: x_world = origin + unit * x), and the frames'
+      viewpoint (view: from, up, orthographic; null: not given). */
   constructor(canvas, scene, changed) {
     this.frame = scene;
     this.perspective = new THREE.PerspectiveCamera((FIELD * 180) / Math.PI, 1, 0.01, 100);
     this.flat = new THREE.OrthographicCamera(-1, 1, 1, -1, -100, 100);
     this.camera = this.perspective;
-    this.plane = scene.dim === 2; // seen from above, without turning
+    this.plane = scene.dim === 2; // seen from above, without rotation
     const { from, up, orthographic } = scene.view || { from: VIEW_FROM, up: [0, 0, 1], orthographic: false };
     this.from = this.plane ? [0, 0, 1] : from;
     this.up = this.plane ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(...up).normalize();
@@ -46,7 +46,7 @@ class SceneCamera {
       { passive: true, capture: true },
     );
     this.controls.addEventListener("change", changed);
-    this.fitted = false; // all is shown, until somebody looks closer: then all is shown in another window, too
+    this.fitted = false; // true after fit(): the view is refitted to a resized window
     this.controls.addEventListener("start", () => {
       this.fitted = false;
     });
@@ -66,7 +66,7 @@ class SceneCamera {
     this.flat.right = this.aspect;
   }
 
-  /** Called before drawing: the range of depths follows the distance. */
+  /** Called before drawing: updates the range of depths to the distance. */
   prepare(radius) {
     const d = this.distance;
     this.perspective.near = Math.max(d / 500, d - 4 * radius);
@@ -76,7 +76,7 @@ class SceneCamera {
     this.camera.updateProjectionMatrix();
   }
 
-  /** Looks at a ball from where one stands. */
+  /** Looks at a ball from the current direction. */
   lookAt(centre, radius) {
     this.fitted = false;
     const way = this.camera.position.clone().sub(this.controls.target);
@@ -89,8 +89,8 @@ class SceneCamera {
     this.controls.update();
   }
 
-  /** Shows all points as large as can be, from where one stands or from a direction; as render/include/lrbscope/render/camera.hpp
-      does. */
+  /** Shows all points as large as possible, from the current or a given direction; as in
+      render/include/lrbscope/render/camera.hpp. */
   fit(points, from) {
     this.fitted = true;
     const out = (
@@ -100,7 +100,7 @@ class SceneCamera {
       up = out.clone().cross(right);
     const share = 0.92,
       slopeY = Math.tan(FIELD / 2) * share,
-      slopeX = slopeY * this.aspect; // the rest stays free
+      slopeX = slopeY * this.aspect; // the other axis is free
     const most = {
       right: -Infinity,
       left: -Infinity,
@@ -110,7 +110,7 @@ class SceneCamera {
       far: Infinity,
     };
     for (const p of points) {
-      // depth towards the eye moves a point away from the middle
+      // moving towards the eye moves a point away from the centre
       const x = p.dot(right),
         y = p.dot(up),
         z = p.dot(out);
@@ -141,7 +141,7 @@ class SceneCamera {
     this.controls.update();
   }
 
-  /** Turns about the target, in radians. */
+  /** Rotates about the target, in radians. */
   turn(azimuth, elevation) {
     if (this.plane) return;
     const upright = new THREE.Quaternion().setFromUnitVectors(this.up, new THREE.Vector3(0, 1, 0));
@@ -157,7 +157,7 @@ class SceneCamera {
     this.controls.update();
   }
 
-  /** Returns half the height of what an orthographic camera shows. */
+  /** Returns half the height of an orthographic camera's view. */
   get halfHeight() {
     return this.orthographic ? 1 / this.flat.zoom : this.distance * Math.tan(FIELD / 2);
   }
@@ -175,10 +175,10 @@ class SceneCamera {
     next.add(this.lamp);
     this.camera = this.controls.object = next;
     this.controls.update();
-    this.controls.dispatchEvent({ type: "change" }); // which update() only does if the camera has moved
+    this.controls.dispatchEvent({ type: "change" }); // update() only does so if the camera has moved
   }
 
-  /** Looks as json() of another view says. */
+  /** Sets the camera from json() of another view. */
   set({ projection, eye, target }) {
     this.fitted = false;
     const { origin, unit } = this.frame,
@@ -212,7 +212,7 @@ class SceneCamera {
   }
 }
 
-// ---- clicks in the view: which face is meant
+// ---- clicks in the view: picks the face
 class Picker {
   constructor(view) {
     this.view = view;
@@ -222,7 +222,7 @@ class Picker {
       down = [e.clientX, e.clientY];
     });
     canvas.addEventListener("click", (e) => {
-      if (down && Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return; // the view was turned
+      if (down && Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return; // the view was rotated
       const hit = this.under(e.clientX, e.clientY, e.altKey);
       if (hit) selection.pickFace(hit.side, hit.face, hit.simplex);
       else selection.pick(null);
@@ -233,20 +233,20 @@ class Picker {
     });
   }
 
-  /** Returns the face under a point of the screen, {side, face, simplex}; `through`: lids are looked through. */
+  /** Returns the face under a point of the screen, {side, face, simplex}; `through`: lids are ignored. */
   under(x, y, through = false) {
     const { views, now } = this.view;
     const pieces = views.flatMap((v) => v.pieces);
     const lids = through ? [] : views.filter((v) => v.lids.mesh.visible).map((v) => v.lids);
     const real = views.map((v) => v.real);
     if (now.isolate) return this.nearest(x, y, pieces) || this.nearest(x, y, real);
-    // What is seen through is not what is clicked, unless there is nothing else.
+    // A ghost's real faces are picked only if no lids are visible.
     return now.ghost && lids.length
       ? this.nearest(x, y, lids)
       : this.nearest(x, y, [...pieces, ...lids, ...real]);
   }
 
-  /** Returns the nearest face of some FaceMesh. */
+  /** Returns the nearest face of several FaceMesh. */
   nearest(x, y, among) {
     const { canvas, camera } = this.view;
     const box = canvas.getBoundingClientRect();
@@ -262,14 +262,14 @@ class Picker {
   }
 }
 
-// ---- the view in three dimensions: draws what is selected, and selects what is clicked
+// ---- the 3D view: draws the selection, and selects by clicks
 class SceneView {
   constructor(scene, selection, wrappers, why) {
     Object.assign(this, { selection, wrappers, events: selection.events, bodies: selection.events.bodies });
     this.canvas = byId("view-canvas");
     this.colours = new Colours(scene.colours);
     this.poses = scene.steps.poses.map(unpack);
-    /** How things are shown; change it through look(). */
+    /** The display state; change it through look(). */
     this.now = {
       ghost: false,
       explode: 0,
@@ -297,12 +297,12 @@ class SceneView {
     selection.listeners.push(() => this.redraw());
     new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
     this.picker = new Picker(this);
-    this.canvas.addEventListener("webglcontextlost", (e) => e.preventDefault()); // it comes back
+    this.canvas.addEventListener("webglcontextlost", (e) => e.preventDefault()); // it is restored later
     this.canvas.addEventListener("webglcontextrestored", () => this.redraw());
     this.resize();
   }
 
-  /** Takes the poses of all steps, of other events. */
+  /** Takes the poses of all steps, for other events. */
   takePoses(poses) {
     this.poses = poses;
     this.keys = {};
@@ -338,7 +338,7 @@ class SceneView {
     this.place();
     this.paint();
     this.shape();
-    this.paint(); // what shape() has made
+    this.paint(); // the objects made by shape()
     this.mark();
     this.whyMarks.draw();
     this.measured.draw();
@@ -353,7 +353,7 @@ class SceneView {
     this.measured.write();
   }
 
-  /** Puts a ring around the faces that the event compares, where they are too small to be noticed. */
+  /** Draws a ring around the faces that the event compares, if they are too small to be noticed. */
   circle() {
     const faces = this.comparedFaces(),
       ring = byId("ring"),
@@ -365,7 +365,7 @@ class SceneView {
     ring.style.top = `${50 * (1 - at.y)}%`;
   }
 
-  /** Does something again if what it depends on has changed. */
+  /** Repeats an action if its inputs have changed. */
   once(what, key, action) {
     if (this.keys[what] === key) return;
     this.keys[what] = key;
@@ -385,7 +385,7 @@ class SceneView {
   shape() {
     const { ghost, explode, isolate, lids, boxes, by, per } = this.now,
       exploded = explode > 0 && !isolate;
-    // The faces that were tested, which lids would veil.
+    // The faces that were tested, which lids would hide.
     const insideOnly = ghost && per === "face" && COUNTERS.includes(by);
     this.views.forEach((view, side) => {
       const shown = lids && !isolate && !exploded && !insideOnly;
@@ -430,7 +430,7 @@ class SceneView {
       () => {
         const counts = counter ? this.countsOf(by, per, scope) : null,
           mode = this.colours.mode(this.bodies, by, counts, newest);
-        // Mostly real faces are tested: they must be seen.
+        // Mostly real faces are tested: they must be visible.
         const veil = by === "kind" ? 0.49 : counter && per === "face" ? 0.2 : 0.69;
         this.views.forEach((view, side) => {
           view.paint(mode, veil);
@@ -446,7 +446,7 @@ class SceneView {
     );
   }
 
-  /** Returns the layer that a construction makes in the pass on show; 0 between passes. */
+  /** Returns the layer that a construction makes in the current pass; 0 between passes. */
   newestLayer() {
     const { events } = this,
       built = events.passes && events.pass(this.selection.event) ? events.builtIn(this.selection.event) : [];
@@ -459,14 +459,14 @@ class SceneView {
     return this.bodies.map((b, side) => (per === "face" ? all[side][by] : sumsOfGroups(b, per, all[side][by])));
   }
 
-  // -- what is pointed out
+  // -- highlights
   mark() {
     const { events, colours } = this,
       i = this.selection.event,
       kind = events.kind[i],
       compared = this.comparedFaces();
     const contacts = this.contacts();
-    const counting = COUNTERS.includes(this.now.by); // then the faces' own colours are to be seen
+    const counting = COUNTERS.includes(this.now.by); // the faces' own colours must then be visible
     this.marks.set(
       "contacts",
       counting ? "" : `${events.step(i)} ${contacts.length}`,
@@ -514,7 +514,7 @@ class SceneView {
     });
   }
 
-  /** Returns the two faces that were chosen, or else those that the event is about: [{side, face}]. */
+  /** Returns the two faces that were chosen, or else those of the event: [{side, face}]. */
   comparedFaces() {
     const { chosen, event } = this.selection;
     if (chosen.every((s) => s !== NONE))
@@ -547,14 +547,14 @@ class SceneView {
       : [...this.bodies[p.side].lids(p.region)].map((face) => ({ side: p.side, face }));
   }
 
-  // -- where to look
-  /** Returns points that reach as far as both bodies do where they stand. */
+  // -- framing
+  /** Returns points that span both bodies at their current poses. */
   extremes() {
     this.place();
     return this.views.flatMap((view) => view.reached.map((p) => view.toWorld(p)));
   }
 
-  /** Returns a ball around them. */
+  /** Returns a bounding ball of them. */
   reach() {
     const points = this.extremes();
     const ball = ballOf(new THREE.Box3().setFromPoints(points));
@@ -571,7 +571,7 @@ class SceneView {
     return ballOf(box);
   }
 
-  /** Frames what is selected, else what the event is about, else everything. */
+  /** Frames the selection, else the elements of the event, else everything. */
   frameSelection() {
     const { picked, event } = this.selection,
       compared = this.comparedFaces();
@@ -610,18 +610,19 @@ function ballOf(box) {
   };
 }
 
-// ---- the same view beside another run's, in a page that compares them (index.html?alone in a frame): one camera, one step
+// ---- the same view beside another run's, in a page that compares them (index.html?alone in a frame): common
+// camera and step
 class Together {
   constructor(view, selection, events) {
     this.view = view;
     this.selection = selection;
     this.events = events;
-    this.listening = false; // to what the other view does: not to be told back
+    this.listening = false; // while applying the other view's state: not to be sent back
     document.documentElement.classList.add("alone");
     view.camera.controls.addEventListener("change", () => this.tell({ camera: view.camera.json() }));
     selection.listeners.push((what) => what === "event" && this.tell({ step: this.step }));
     window.addEventListener("message", (e) => e.source === parent && e.data.lrbscope && this.hear(e.data.lrbscope));
-    this.tell({ camera: view.camera.json(), step: this.step }); // the view that comes last sets both
+    this.tell({ camera: view.camera.json(), step: this.step }); // the view that is created last sets both
   }
 
   get step() {

@@ -1,4 +1,4 @@
-// Views of runs side by side: what one is told of camera and step, the others are told, too.
+// Views of runs side by side: camera and step of one are forwarded to the others.
 const views = [...document.querySelectorAll(".views iframe")];
 window.addEventListener("message", (e) => {
   if (!e.data.lrbscope) return;
