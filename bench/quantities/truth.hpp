@@ -23,8 +23,8 @@ struct Asked {
   double size = 0;  ///< diagonal of the larger body's box
 };
 
-/// Returns why this is not asked about a case: bodies in the plane, coordinates that are no doubles, too many
-/// faces for rational arithmetic; empty if it is.
+/// Returns why a quantity is not queried for a case: 2D bodies, coordinates that are not doubles, too many
+/// faces for rational arithmetic. Empty if it is queried.
 std::string why_not_asked(Quantity quantity, const cases::Case& c);
 
 /// Returns the query. B approaches from its side of A, starting at a distance at which the bodies are
