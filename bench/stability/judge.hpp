@@ -29,7 +29,7 @@ std::string to_line(const RightAnswer& e);
 /// Reads such a line. Throws InputError, or nlohmann's exceptions if it is not JSON.
 RightAnswer expected_from(const std::string& line);
 
-/// Returns the relation with this name. Throws InputError if there is none.
+/// Returns the relation with this name. Throws InputError for an unknown name.
 Relation relation_from(const std::string& word);
 
 /// Sets outcome, counts and relations of the record. For a method that lists no pairs, counts are of contacts

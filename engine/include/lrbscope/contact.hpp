@@ -103,8 +103,8 @@ struct ContactRegion {
   /// An estimate of how far B must move along `normal` to leave this region; 0 if it only touches or the
   /// bodies are flush. It is the extent, along `normal`, from the nearest point of the part of B that the
   /// region encloses in A to the farthest point of the part of A that it encloses in B, contact points
-  /// included. After such a move a plane separates these two parts. Other parts are not considered. Convex
-  /// bodies have none. Concave bodies may still intersect in other regions, each with its own depth, or
+  /// included. After such a move a plane separates these two parts. Other parts, which only concave bodies
+  /// have, are not considered: these may still intersect in other regions, each with its own depth, or
   /// collide during the move. Parts that are side by side may separate earlier.
   double depth_estimate = 0;
 };
