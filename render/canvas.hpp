@@ -75,7 +75,7 @@ struct PaperPage {
   double width = 0, height = 0;             ///< points
   std::optional<Rgba> background = kWhite;  ///< nullopt: transparent
   std::string title;                        ///< in a PDF's properties; empty: none
-  std::string creator;                      ///< the same for the program's name
+  std::string creator;                      ///< the program's name in a PDF's properties; empty: none
 };
 
 /// Returns the page painted by `paint`, in points, as a PDF. It contains no creation date, so that equal

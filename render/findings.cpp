@@ -253,7 +253,7 @@ bool is_inside_out(const Mesh& mesh, const MeshReport& report, FaceId f) {
   });
 }
 
-/// Looks along a normal, slightly oblique.
+/// Returns a direction along a normal, tilted slightly.
 ViewDirection tilted(const Vector3d& n) {
   ViewDirection view;
   view.from = n.normalized() + kTilt * ViewDirection{}.from.normalized();

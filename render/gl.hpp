@@ -1,6 +1,6 @@
 #pragma once
-/// The functions of OpenGL 3.3 core used by render, loaded at run time. The code that makes the context
-/// (Offscreen) selects the library; nothing else links one.
+/// The functions of OpenGL 3.3 core used by render, loaded at run time. Only the code that creates the
+/// context (Offscreen) links a library of OpenGL.
 
 #include <cstddef>
 #include <memory>
@@ -145,8 +145,8 @@ GlProgram make_program(const Gl& gl, const std::string& name, const std::string&
 
 class Offscreen {
  public:
-  /// Makes a context and makes it current on the calling thread. Throws EnvironmentError that states what is
-  /// missing. Environment settings known to crash Mesa are rejected first.
+  /// Creates a context and makes it current on the calling thread. Throws EnvironmentError, which names the
+  /// missing part. Environment settings known to crash Mesa are rejected first.
   Offscreen();
   ~Offscreen();
   Offscreen(const Offscreen&) = delete;

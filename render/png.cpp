@@ -46,7 +46,7 @@ void keep_silent(png_structp /*png*/, png_const_charp /*text*/) {}
 /// `body` must not need a destructor.
 template <class Body>
 bool succeeds(png_structp png, const Body& body) {
-  if (setjmp(png_jmpbuf(png)) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's way
+  if (setjmp(png_jmpbuf(png)) != 0) return false;  // NOLINT(cert-err52-cpp): required by libpng
   body();
   return true;
 }

@@ -254,7 +254,7 @@ class Scene3dBuilder {
   enum class Edges : std::uint8_t {
     all,
     rim,         ///< edges of exactly one face
-    rim_on_top,  ///< the same, visible through everything
+    rim_on_top,  ///< as rim, visible through all faces
   };
 
   /// Draws edges of faces as lines, each once. Lines keep their full width at outlines, where face edges show

@@ -155,7 +155,8 @@ class ScreenMeshBuilder {
     return norm > 0 ? Vector3d(line / norm) : Vector3d::Zero();
   }
 
-  /// Returns the visible part of a triangle in the eye's frame; fewer than three corners if there is none.
+  /// Returns the visible part of a triangle in the eye's frame. It has fewer than three corners if nothing is
+  /// visible.
   std::vector<Vector3d> visible_part(const DrawTriangle& t) const {
     std::vector<Vector3d> polygon;
     for (const Vector3d& x : t.x) polygon.push_back(p_.to_eye(x));

@@ -13,7 +13,7 @@
 
 namespace lrb::cli {
 
-/// Returns the chart of lower and upper bounds against work; `what` names the number, `work` the unit of the
+/// Returns the chart of lower and upper bounds against work. `what`: name of the number; `work`: unit of the
 /// work.
 report::Gnuplot bounds_chart(const std::vector<Bounds>& history, const std::string& what,
                              const std::string& work);
@@ -30,8 +30,8 @@ struct DrawOptions {
 };
 /// Returns the style of the pictures. Throws InputError for an unsupported size.
 render::Look look_of(const DrawOptions& options);
-/// Adds --draw, --size, --up, --chart and, unless there is another option for it, --course. `picture`: what
-/// --draw draws.
+/// Adds --draw, --size, --up, --chart and, if `with_history`, --course. `picture`: content of the picture
+/// that --draw writes.
 void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture,
                       bool with_history = true);
 

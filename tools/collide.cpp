@@ -55,7 +55,7 @@ Eigen::Vector3d beside(const spec::Motion& motion, const Eigen::Vector3d& up,
   return 0.8 * side.normalized() + 0.3 * motion.from.normalized() + 0.45 * up.normalized();
 }
 
-/// Looks from the direction that hides least of the contacts, and omits a close-up that would show almost
+/// Selects the view direction that hides least of the contacts, and omits a close-up that would show almost
 /// everything.
 void choose_views(const CollideOptions& o, spec::Scenario& scenario, run::Recording& recording) {
   const run::RecordedRun recorded = run::recorded_run_of(scenario, recording);
@@ -85,8 +85,8 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
     s.motion.kind = spec::Motion::Kind::poses;
     s.motion.poses = io::open_poses(o.poses).poses;
   } else {
-    // The default direction is oblique: along an axis, bodies aligned with it would touch with entire faces
-    // first.
+    // The default direction is oblique: along an axis, the first contact of axis-aligned bodies would be
+    // entire faces.
     Eigen::Vector3d direction(1, 0.35, 0.25);
     if (!o.approach.empty()) direction = io::parse_vector(o.approach, "--approach");
     if (!(direction.squaredNorm() > 0)) throw InputError("--approach: expected a direction other than zero");

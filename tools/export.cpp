@@ -96,7 +96,7 @@ trace::EventId event_of(const ExportOptions& o, const trace::Trace& trace) {
   return run::last_event(trace, static_cast<std::size_t>(at - trace.steps.begin()));
 }
 
-/// Returns the contact regions of two bodies, whatever the run's request.
+/// Returns the contact regions of two bodies, independent of the run's request.
 std::vector<ContactRegion> contacts_of(const run::Recording& run, const trace::Step& step) {
   CollideRequest request;
   request.contacts = true;

@@ -40,7 +40,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kRegionDigits = 3;
 
-/// Returns all regions, in the given order. The keys are those of `--json`.
+/// Returns all regions, in the given order, with the keys of `--json`.
 Json regions_json(std::span<const bodies::RegionFigures> regions) {
   Json out = Json::array();
   for (const bodies::RegionFigures& r : regions)

@@ -157,7 +157,7 @@ std::vector<paper::ContactStep> sweep_objects(std::span<const paper::PaperObject
 }
 
 /// Takes the protocol and the resolutions from the shards to be merged; drops the series if the experiment
-/// has none. Throws InputError if there is nothing to divide into shards.
+/// defines none. Throws InputError if there is nothing to divide into shards.
 void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
   if (!experiment.collides() && (!o.shard.empty() || !o.merge.empty()))
     throw InputError("experiment " + experiment.name +

@@ -121,7 +121,7 @@ void wait_for(const sigset_t& signals) {
   abandon_atomic_files();
   const std::string line = farewell(signal);
   if (write(STDERR_FILENO, line.data(), line.size()) < 0) {
-    // No further place to report an error.
+    // Nowhere left to report an error.
   }
   die_of(signal);
 }
@@ -138,7 +138,7 @@ void wait_for(const sigset_t& signals) {
   }
   abandon_atomic_files();
   if (write(STDERR_FILENO, line.data(), line.size()) < 0) {
-    // No further place to report an error.
+    // Nowhere left to report an error.
   }
   _exit(kEnvironment);
 }

@@ -43,7 +43,7 @@ class JsonIndex {
  public:
   explicit JsonIndex(const std::string& text);
   std::size_t offset(const std::string& pointer) const;
-  /// Returns the pointer of the first duplicate key, or an empty string if there is none.
+  /// Returns the pointer of the first duplicate key, or an empty string if all keys are unique.
   const std::string& duplicate() const { return duplicate_; }
 
  private:
@@ -91,7 +91,7 @@ class JsonNode {
  public:
   explicit JsonNode(const JsonText& text) : text_(&text), value_(&text.root()) {}
 
-  /// Requires an object with no other keys. For an unknown key the error suggests the closest known one.
+  /// Requires an object with these keys only. For an unknown key the error suggests the closest known one.
   const JsonNode& object(const std::vector<std::string>& keys) const;
   bool has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
   JsonNode at(const std::string& key) const;  ///< requires that the member exists

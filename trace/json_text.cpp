@@ -101,7 +101,7 @@ std::string plain_reason(const std::string& what) {
     const std::size_t expected = reason.find("; expected ", last_read);
     reason = reason.substr(0, last_read) + (expected == std::string::npos ? "" : reason.substr(expected));
   }
-  return printable_name(reason);  // on one line, whatever text it quotes
+  return printable_name(reason);  // on one line, even if it quotes other text
 }
 
 /// An iterator over a text. The parser reads through a copy of it; `seen` tracks the copy's position.

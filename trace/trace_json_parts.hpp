@@ -11,13 +11,13 @@ void write_json(JsonWriter& w, const Counters& counters);
 void write_json(JsonWriter& w, const CollideRequest& request);
 /// Writes {"faces", "refined"}, each for A and B.
 void write_json(JsonWriter& w, const Separation& separation);
-/// Writes "course", the convergence of bounds: a list of [work, lower, upper], or of [work, t0, t1, lower,
-/// upper]. Infinite values are written as null.
+/// Writes the convergence of bounds (key "course"): a list of [work, lower, upper], or of [work, t0, t1,
+/// lower, upper]. Infinite values are written as null.
 void write_history(JsonWriter& w, const std::vector<Bounds>& history);
 void write_history(JsonWriter& w, const std::vector<ContactBounds>& history);
 void write_json(JsonWriter& w, const MeasuredDistance& m);
 void write_json(JsonWriter& w, const MeasuredClash& m);
-/// Writes the members of a first contact except its course, without brackets.
+/// Writes the members of a first contact except its bound history, without brackets.
 void write_answer(JsonWriter& w, const MeasuredApproach& m);
 void write_json(JsonWriter& w, const MeasuredApproach& m);
 /// Writes a pose as the 12 numbers of a 3x4 matrix, row by row, as in pose files.

@@ -125,7 +125,7 @@ class EventParser final : public nlohmann::json_sax<Json> {
     return true;
   }
 
-  /// Rejects a value in place of the array of events or of an event.
+  /// Rejects any other value where the array of events or an event is expected.
   void check_place(const Json& j) const {
     if (!in_events_) return;
     if (stack_.size() == 1 && !j.is_array()) {
@@ -143,7 +143,7 @@ class EventParser final : public nlohmann::json_sax<Json> {
     return &(*member_ = std::move(j));
   }
 
-  /// Limits memory. An event is kept until it is complete, everything else to the end.
+  /// Limits memory. An event is kept until it is complete, all other values until the end.
   void hold(std::uint64_t bytes) {
     constexpr std::uint64_t kLargestEvent = std::uint64_t{1} << 16;  // written events take less than 2000
     constexpr std::uint64_t kFree = std::uint64_t{16} << 20, kPerByte = 8;

@@ -507,7 +507,7 @@ class TraceWriter {
   /// Updates the pending work after a pair of nodes.
   void count_pending(const Event& e) {
     const NodeWork work = e.work();
-    // The pair itself is done. Its overlapping child pairs, or face pairs at leaves, are what it adds.
+    // The pair itself is done. It adds its overlapping child pairs or, at leaves, face pairs.
     if (pending_pairs_ > 0) --pending_pairs_;
     if (e.node_end().step == NodeStep::leaves)
       pending_tests_ += work.met - std::min(work.met, work.rejected);

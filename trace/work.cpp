@@ -197,8 +197,8 @@ std::optional<WorkPart> part_of_phase(Phase phase) {
       return WorkPart::contact_geometry;
     case Phase::cache:
       return WorkPart::cache_making;
-    case Phase::kept:    // its regions are counted with those of the wrappers
-    case Phase::cached:  // its tests are counted with the others
+    case Phase::kept:    // its regions count as work of the wrappers
+    case Phase::cached:  // its tests count as work of the other parts
       return {};
   }
   return {};

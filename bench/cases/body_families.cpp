@@ -131,7 +131,7 @@ bool share_a_cell(const Cells& a, const Cells& b, const Vector3d& shift) {
   });
 }
 
-/// Half the time in whole cells, else in half cells; small enough that grids of n cells intersect.
+/// Half of the shifts are whole cells, the others half cells; small enough that grids of n cells intersect.
 Vector3d grid_shift(RandomEngine& random, int n, bool flat) {
   const double step = random() % 2 ? 1 : 0.5;
   Vector3d s;
@@ -223,7 +223,7 @@ Case one_piece_inside(RandomEngine& random) {
   return {large_ball(), pieces, {}, any_pose(random, 1), Relation::b_inside_a, true};
 }
 
-/// Each contains a piece of the other: the relation names A first.
+/// Each body contains a piece of the other; the relation names A first.
 Case each_holds_a_piece() {
   const Mesh big = shapes::icosphere(1, 3), tiny = shapes::icosphere(0, 0.5);
   return {body(shapes::several({big, shapes::translated(tiny, {20, 0, 0})})),

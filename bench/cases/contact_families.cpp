@@ -114,7 +114,7 @@ Case make_touch(RandomEngine& random, double dial) {
     c.pose_b.t = start + middle * away;
     (in_contact(c) ? near : far) = middle;
   }
-  // Vertex on vertex from the initial position belongs to another family.
+  // Vertex on vertex at the initial position belongs to another family.
   c.pose_b.t = start + (random() % 2 && near > 0 ? near : far) * away;
   return c;
 }
@@ -183,7 +183,7 @@ Case make_identical(RandomEngine& random, double dial) {
 }
 
 Case make_hub(RandomEngine& random, double dial) {
-  // Tip on tip n^2 pairs intersect: rarely with all hundred faces.
+  // Tip on tip (kind 0) n^2 pairs intersect, so the maximum of 100 faces is rare.
   const int n = 3 + static_cast<int>((random() % 8 ? 21 : 97) * dial);
   static const Body kPoly = body(screw(64, 1, 0));
   Case c{body(cone(n, 1)), body(cone(pick(random, 3, n), 1)), {}, {}, {}, {}};

@@ -125,8 +125,8 @@ Eigen::Matrix3d grid_turn(RandomEngine& random, bool reflections) {
   return r;
 }
 
-// Cases of the other families, queried both ways. They are drawn from all families in their order: adding a
-// family changes which cases these are.
+// Cases of the other families, queried both ways, drawn from all families in their order. Adding a family
+// changes the selection.
 
 namespace {
 

@@ -30,15 +30,14 @@ struct Case {
 };
 
 struct Family {
-  const char* name;  ///< its row in the table
+  const char* name;  ///< name of its row in the table
   const char* what;
   Case (*make)(RandomEngine& random, double dial);
-  const char* benign = "";      ///< meaning of dial 0: "1e-1 apart"
-  const char* degenerate = "";  ///< meaning of dial 1: "exactly in contact"
-  bool both_ways = false;       ///< tests whether the answer to (B, A) is that to (A, B) transposed
-  int rank = 1000;              ///< the families' order in tables: by rank, then by file
-  /// Returns the physical value of a difficulty, in a few characters such as "1e-6"; null: it has no single
-  /// value.
+  const char* benign = "";      ///< meaning of difficulty 0: "1e-1 apart"
+  const char* degenerate = "";  ///< meaning of difficulty 1: "exactly in contact"
+  bool both_ways = false;       ///< tests whether the answer to (B, A) is the transpose of (A, B)'s
+  int rank = 1000;              ///< order of families in tables: by rank, then by file
+  /// Returns the physical value of a difficulty as a short text such as "1e-6"; null: it has no single value.
   std::string (*value)(double dial) = nullptr;
 };
 inline int rank_of(const Family& f) {
@@ -57,8 +56,8 @@ const Family* find_family(const std::string& name);
 inline constexpr int kDialSettings = 11;
 double dial_value(int setting);  ///< 0 .. 1
 
-/// Returns the random numbers that a case is drawn from. They do not depend on the difficulty: a case is the
-/// same at all difficulties, except for the quantities that the difficulty changes.
+/// Returns the random engine of a case. It does not depend on the difficulty: a case is the same at all
+/// difficulties, except for the quantities that the difficulty changes.
 RandomEngine case_random(const Family& family, std::uint64_t seed, std::uint64_t index);
 
 /// Makes case `index` of the family at a difficulty, the same on every machine. Throws InputError if the
@@ -73,13 +72,13 @@ Pose any_pose(RandomEngine& random, double distance = 3);  ///< random rotation 
 /// Applies the same motion to the world after both poses. It rounds, so that exact contact becomes almost
 /// exact contact.
 void move_both(Case& c, const Pose& by);
-/// Returns the distance of a case from its family's degenerate configuration: 0.1 at dial 0, 1e-16 at 0.9, 0
-/// at 1. In the bodies' unit; bodies are a few units wide.
+/// Returns the distance of a case from its family's degenerate configuration: 0.1 at difficulty 0, 1e-16 at
+/// 0.9, 0 at 1. In the bodies' unit; bodies are a few units wide.
 double slack(double dial);
-std::string slack_value(double dial);     ///< the same in a few characters
+std::string slack_value(double dial);     ///< as a short text
 std::string rounded_value(double value);  ///< one digit and an exponent: "0.1", "2e-3", "6e4"
-/// Moves B by `by` in a random direction and rotates it by up to `by` radians. 0 moves nothing, but draws as
-/// many random numbers.
+/// Moves B by `by` in a random direction and rotates it by up to `by` radians. For 0 nothing moves, but the
+/// same number of random numbers is drawn.
 void loosen(RandomEngine& random, Case& c, double by);
 double nudged(double x, int ulps);
 int pick(RandomEngine& random, int low, int high);  ///< low to high, inclusive

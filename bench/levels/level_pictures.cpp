@@ -19,8 +19,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Cuts a triangle at the middle of its longest edge until all are short. Neighbours cut an edge that they
-/// share at the same points, so that no cracks appear.
+/// Splits a triangle at the midpoint of its longest edge until all edges are short. Neighbours split a shared
+/// edge at the same points, so there are no cracks.
 void cut_triangle(LidPiece triangle, double longest, std::vector<LidPiece>& out) {
   std::vector<LidPiece> left = {triangle};
   while (!left.empty()) {
@@ -53,7 +53,7 @@ void cut_lid(const LrbRep& rep, FaceId lid, double longest, std::vector<LidPiece
     cut_triangle({{x(0), x(i), x(i + 1)}, 0}, longest, out);
 }
 
-/// Measures points one after another; the face that was nearest to one is tried first for the next.
+/// Measures distances of points. The nearest face of a point is the first candidate for the next.
 class Gauge {
  public:
   Gauge(const LrbRep& rep, const std::vector<Vector3d>& vertices)
@@ -75,7 +75,7 @@ class Gauge {
 }  // namespace
 
 MeasuredLids measure_lids(const LrbRep& rep, std::span<const FaceId> lids, double longest, unsigned threads) {
-  constexpr std::size_t kAtOnce = 16;  // lids
+  constexpr std::size_t kAtOnce = 16;  // lids per task
   const std::vector<Vector3d> vertices = vertices_in_units(rep);
   std::vector<MeasuredLids> parts((lids.size() + kAtOnce - 1) / kAtOnce);
   const int corners = rep.dim();
@@ -108,9 +108,9 @@ namespace {
 
 constexpr int kPanelWidth = 600, kPanelHeight = 480;
 constexpr float kCaptionHeight = 24;
-constexpr double kPieces = 120;  ///< pieces of lids along the largest side: about four pixels each
+constexpr double kPieces = 120;  ///< pieces of lids along the largest side, of about four pixels each
 
-/// Returns the camera that shows the body and the coarsest of the wrappers.
+/// Returns the camera that shows the body and the coarsest wrapper.
 run::CameraFit camera_for(const ShownBody& shown, std::span<const ShownLevel> levels) {
   const LrbRep& rep = *shown.rep;
   double coarsest = 0;
@@ -163,12 +163,12 @@ void add_pieces(const LrbRep& rep, const MeasuredLids& lids, const render::Scale
     render::DrawTriangle t;
     t.x = p.x;
     t.colour = colour;
-    t.nudge = 1;  // in a region without volume a lid lies on what it hides
+    t.nudge = 1;  // in a region without volume a lid coincides with its floor
     list.triangles.push_back(t);
   }
 }
 
-/// Draws the edges of lids, unless they are so many that they would hide the colours.
+/// Draws the edges of lids, unless there are so many that they would hide the colours.
 void add_edges(const LrbRep& rep, const std::vector<FaceId>& boundary, render::DrawList& list) {
   constexpr std::size_t kMax = 2500;
   std::vector<std::pair<VertexId, VertexId>> edges;
@@ -192,7 +192,7 @@ void add_edges(const LrbRep& rep, const std::vector<FaceId>& boundary, render::D
   }
 }
 
-/// Draws a wrapper: its lids in the scale's colours, its real faces, which are off by nothing, pale.
+/// Draws a wrapper: lids in the scale's colours, real faces (deviation 0) pale.
 render::DrawList distance_list(const LrbRep& rep, const std::vector<FaceId>& boundary,
                                const MeasuredLids& lids, const render::ScaleBar& scale, double size) {
   render::DrawList list;
@@ -217,7 +217,7 @@ render::DrawList distance_list(const LrbRep& rep, const std::vector<FaceId>& bou
   return list;
 }
 
-/// Returns the scale of a row of tolerances: from half of the smallest one to the largest.
+/// Returns a scale for a list of tolerances: from half of the smallest to the largest.
 render::ScaleBar scale_for(std::span<const ShownLevel> levels) {
   constexpr double kBelow = 2, kMinRange = 10;
   double low = 1, high = 0;
@@ -250,7 +250,7 @@ render::Image draw_wrappers(const ShownBody& shown, std::span<const ShownLevel> 
   const LrbRep& rep = *shown.rep;
   const run::CameraFit camera = camera_for(shown, levels);
   std::vector<run::Panel> panels;
-  if (levels.front().figures.bound > 0) {  // none of them is the body itself
+  if (levels.front().figures.bound > 0) {  // no level is the body itself
     Wrapper bare(rep);
     bare.refine_all();
     panels.push_back({wrapper_list(rep, bare), camera,

@@ -13,49 +13,50 @@
 
 namespace lrb::levels {
 
-/// The body in the pictures, and how it is seen.
+/// The body in the pictures, and its view.
 struct ShownBody {
   const LrbRep* rep;
-  double size;  ///< largest side of the body's box, which distances are shares of
+  double size;  ///< largest side of the body's box; distances are fractions of it
   render::ViewDirection view;
   unsigned threads;
 };
 
-/// A panel's wrapper.
+/// The wrapper of a panel.
 struct ShownLevel {
   bodies::LevelFigures figures;
-  double sampled = 0;  ///< the largest distance found on its lids; mesh's unit
+  double sampled = 0;  ///< largest sampled distance of its lids; mesh's unit
 };
 
-/// Draws the body and its wrappers side by side, each with its faces and what it is proved to be off.
+/// Draws the body and its wrappers side by side, each with its number of faces and its proven maximum
+/// deviation.
 render::Image draw_wrappers(const ShownBody& shown, std::span<const ShownLevel> levels);
 
-/// Draws how far the lids of each wrapper are from the body, on one scale for all, and notes the largest
-/// distance of each level.
+/// Draws the distance of each wrapper's lids from the body, on a common scale, and sets the largest distance
+/// of each level.
 render::Image draw_distances(const ShownBody& shown, std::span<ShownLevel> levels);
 
-/// Returns what stands below a panel.
+/// Returns the caption of a panel.
 std::string caption_of(const bodies::LevelFigures& level, double size);
 
-/// Returns a positive number with three significant digits, rounded upward: a bound stays one.
+/// Returns a positive number with three significant digits, rounded up, so that it remains an upper bound.
 std::string upward_text(double value);
 
 /// A piece of a lid, small enough for one colour.
 struct LidPiece {
   /// Mesh's frame; 2D: the third is not used.
   std::array<Eigen::Vector3d, 3> x{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  double off = 0;  ///< distance of its middle from the nearest real face; mesh's unit
+  double off = 0;  ///< distance of its centroid from the nearest real face; mesh's unit
 };
 
 struct MeasuredLids {
   std::vector<LidPiece> pieces;
-  /// The largest distance at the pieces' middles and the lids' corners: never more than the true largest one
-  /// but for rounding.
+  /// The largest distance at the pieces' centroids and the lids' corners: at most the true maximum, up to
+  /// rounding.
   double largest = 0;
 };
 
-/// Cuts lids into pieces with edges no longer than `longest` (mesh's unit), and measures each. The same on
-/// any number of threads.
+/// Splits lids into pieces with edges of at most `longest` (mesh's unit), and measures each. The result does
+/// not depend on the number of threads.
 MeasuredLids measure_lids(const LrbRep& rep, std::span<const FaceId> lids, double longest, unsigned threads);
 
 }  // namespace lrb::levels

@@ -47,7 +47,7 @@ report::Chart curve_chart(const LevelCurve& c) {
   double least = 1, most = 0;
   const auto add = [&](std::size_t series, double distance, std::uint32_t faces) {
     const double x = distance / c.size;
-    if (!(x > 0)) return;  // has no place on a logarithmic axis
+    if (!(x > 0)) return;  // cannot be on a logarithmic axis
     const auto at = std::upper_bound(all[series].x.begin(), all[series].x.end(), x) - all[series].x.begin();
     all[series].x.insert(all[series].x.begin() + at, x);
     all[series].y.insert(all[series].y.begin() + at, faces);
@@ -184,7 +184,7 @@ std::vector<std::string> write_level_report(const LrbRep& rep, const LevelReport
 
 namespace {
 
-/// Returns the real triangles as OFF.
+/// Returns the real triangles in OFF format.
 std::string off_text(const LrbRep& rep) {
   constexpr int kAllDigits = 17;
   const Mesh mesh = methods::real_mesh(rep);

@@ -1,5 +1,5 @@
-// Building a body lean and to fit, its levels of detail, and loading its .lrb; and scaling: the same for
-// rocks of 31,000 to 2,000,000 faces, with the exponent of the growth of time (tests/scaling measures
+// Building a body lean and to fit, its levels of detail, and loading its .lrb. Scaling: the same benchmarks
+// on rocks of 31,000 to 2,000,000 faces, with the exponent of the growth of time (tests/scaling measures
 // memory). Times are processor times of one thread; `lrbscope inspect` prints the figures of a body.
 #include <filesystem>
 #include <string>

@@ -1,4 +1,4 @@
-// Penetration depths of non-convex bodies: their time, and the lower bound as a share of the upper one.
+// Penetration depths of non-convex bodies: running time, and ratio of the lower bound to the upper one.
 #include <algorithm>
 
 #include "bench/micro/poses.hpp"

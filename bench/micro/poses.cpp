@@ -57,7 +57,7 @@ const std::vector<Pose>& poses_at(const Subject& subject, double depth, int coun
 
 std::vector<Pose> path_from(const Subject& subject, const Pose& start, double length, int steps,
                             bool separate) {
-  constexpr double kRoom = 1;  // the copy stays this close to its start, in diagonals
+  constexpr double kRoom = 1;  // maximum distance of the copy from its start, in diagonals
   shapes::RandomEngine random(1);
   Workspace workspace;
   CollideRequest any;

@@ -37,7 +37,8 @@ const LrbRep& body() {
   return rep;
 }
 
-/// A mixture as in the paper's runs: mostly tests, every tenth event a refinement, every hundredth a contact.
+/// A mixture typical of the paper's runs: mostly tests, every tenth event a refinement, every hundredth a
+/// contact.
 const std::vector<Call>& calls() {
   static const std::vector<Call> all = [] {
     std::mt19937 random(1);
@@ -85,7 +86,7 @@ void report(benchmark::State& state) {
                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-/// The calls alone, with a probe that only adds up: subtract this time.
+/// Only the calls, with a probe that only counts: subtract this time.
 void calls_alone(benchmark::State& state) {
   struct Sum {
     std::uint64_t sum = 0;
@@ -126,7 +127,7 @@ void record(benchmark::State& state) {
 }
 BENCHMARK(record)->ArgName("wall")->Arg(0)->Arg(1);
 
-/// A query of two crossing bodies, alone (-1) or recorded at an event level. The cost of an event is the
+/// A query of two intersecting bodies, alone (-1) or recorded at an event level. The cost of an event is the
 /// additional time divided by the number of events.
 void watched_query(benchmark::State& state) {
   static const LrbRep rock = build_lrb(shapes::bumpy_sphere(5, 7, 0.3));

@@ -1,14 +1,14 @@
-/// The worker: a program beside lrbscope that runs cases with methods whose code lrbscope does not contain,
-/// and which may crash or hang.
+/// The worker: a program beside lrbscope that runs cases with methods that are not linked into lrbscope and
+/// may crash or hang.
 ///
-/// It writes everything as JSON lines to stdout:
+/// It writes its output as JSON lines to stdout:
 ///   --list                its methods
 ///   --family F --seed S --cases N --begin K --end L
 ///                         the correct answers (RightAnswer) to cases K .. L - 1; case k is number k % N at
 ///                         difficulty k / N
 ///   ... --method M [--expected FILE] [--pairs]
-///                         a record for each; the correct answers are read from the file's lines, the first
-///                         of which is case 0's, or computed; with --pairs also the lists of pairs
+///                         a record for each; the correct answers are read from the file (one line per
+///                         case, from case 0 on) or computed; with --pairs also the lists of pairs
 ///   --questions FILE --method M [--setting X] [--pairs] --begin K --end L
 ///                         a bench::Record for each of a data set's queries K .. L - 1
 /// Exit codes: 0, or 2 with the line {"error": "..."}.

@@ -1,5 +1,5 @@
-/// lrbscope-quantities: a worker like methods.cpp, for methods that answer with a number. --quantity Q
-/// selects the number, or the data set of --questions does; without --method it prints the correct answers.
+/// lrbscope-quantities: a worker like methods.cpp, for methods that return a number. --quantity Q or the data
+/// set of --questions selects the quantity. Without --method it prints the correct answers.
 
 #include <algorithm>
 #include <optional>
@@ -39,7 +39,7 @@ bool says_contact(methods::Quantity quantity, const NumberAnswer& answer) {
   return quantity == methods::Quantity::depth ? answer.upper > 0 : answer.upper <= 0;
 }
 
-/// Runs a query with a method at a parameter value. A rejection is also an outcome. Throws InputError if the
+/// Runs a query with a method at a parameter value. A rejection is a valid outcome. Throws InputError if the
 /// query does not exist.
 bench::Record bench_record(const NumberMethod& method, std::optional<double> setting, const DataSet& set,
                            std::uint64_t question) {

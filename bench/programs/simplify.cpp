@@ -1,8 +1,8 @@
 /// lrbscope-simplify N...: reads a mesh of triangles (OFF) from file descriptor 3, simplifies it to N faces
-/// for each N, largest first, and prints a line for each: its faces, the maximum distance of its points from
-/// the mesh, and that of the mesh's points from it, both sampled. Edges collapse by Garland and Heckbert's
-/// quadrics and may cut off corners: the result does not enclose the mesh. A separate program, because CGAL's
-/// licence is the GPL.
+/// for each N, largest first, and prints a line for each: its number of faces, and the one-sided Hausdorff
+/// distances from the result to the mesh and back, both sampled. Edges are collapsed by Garland and
+/// Heckbert's quadrics, which may cut off corners: the result does not enclose the mesh. A separate program,
+/// because CGAL's licence is the GPL.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

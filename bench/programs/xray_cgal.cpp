@@ -1,6 +1,6 @@
 /// lrbscope-xray-cgal: like lrbscope-xray-fcl, for CGAL's AABB_tree (xray_form.hpp: input and output).
-/// Queries the tree over B's triangles with one triangle of A after another, moved into B's frame. The traits
-/// do the same as CGAL's own and report it. A's tree is a root with a leaf for each triangle. A separate
+/// Queries the tree over B's triangles with each triangle of A, transformed to B's frame. The traits work
+/// like CGAL's own and report each test. A's tree is a root with a leaf for each triangle. A separate
 /// program, because CGAL's licence is the GPL.
 #include <cstdio>
 #include <map>
@@ -105,7 +105,7 @@ class Numbers {
   std::map<const Node*, std::size_t> numbers_;
 };
 
-/// Does the same as CGAL's Listing_primitive_traits for triangle i of A, and reports it.
+/// Works like CGAL's Listing_primitive_traits for triangle i of A, and reports each test.
 struct Told {
   const Tree& tree;
   const Numbers& numbers;

@@ -1,7 +1,7 @@
-/// lrbscope-xray-fcl: runs FCL's own collision of two BVHModel<OBBRSS>, and prints each test of bounding
-/// volumes and each test of leaves, and at the end FCL's own counts of both (xray_form.hpp). The recorder
-/// overrides the two virtual functions of FCL's traversal that perform these tests, and forwards to them. A
-/// separate program, because FCL's packaged code may be compiled in one way only.
+/// lrbscope-xray-fcl: runs FCL's collision of two BVHModel<OBBRSS>, and prints each test of bounding volumes
+/// and of leaves, and at the end FCL's own counts of both (xray_form.hpp). The recorder overrides the two
+/// virtual functions of FCL's traversal that perform these tests, and forwards to them. A separate program,
+/// because all code that uses FCL's package must be compiled with the same flags.
 #include <cstdio>
 #include <vector>
 
@@ -17,7 +17,7 @@ namespace {
 using Model = fcl::BVHModel<fcl::OBBRSSd>;
 using Traversal = fcl::detail::MeshCollisionTraversalNodeOBBRSSd;
 
-/// FCL's traversal with reports.
+/// FCL's traversal, with a report of each test.
 class Recorder : public Traversal {
  public:
   bool BVTesting(int b1, int b2) const override {

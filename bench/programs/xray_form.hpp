@@ -1,6 +1,6 @@
 #pragma once
-/// Input and output format of the programs lrbscope-xray-*. It needs no part of lrbscope, so that each
-/// program can have the licence of the engine it records.
+/// Input and output format of the programs lrbscope-xray-*. It uses no part of lrbscope, so that each program
+/// can have the licence of the engine it records.
 ///
 /// Input, from file descriptor 3, numbers between white space: for each body the numbers of vertices and
 /// triangles, the vertices, the corners of the triangles; then the number of poses, and for each the 12

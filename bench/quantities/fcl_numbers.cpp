@@ -1,5 +1,5 @@
-// FCL as packaged: distance() of two BVHModels, continuousCollide() by each solver that takes them, and the
-// largest penetration depth of collide()'s contacts.
+// FCL as packaged: distance() of two BVHModels, continuousCollide() with each solver that supports them, and
+// the maximum penetration depth of collide()'s contacts.
 #include "bench/quantities/number_method.hpp"
 
 #ifdef LRB_HAS_FCL
@@ -38,7 +38,8 @@ fcl::Transform3d moved(const Eigen::Vector3d& by) {
   return t;
 }
 
-/// FCL drops a pair only where it is within both of its errors, the relative of which is at most 1.
+/// FCL rejects a pair only if it is within both the absolute and the relative error. The relative error is at
+/// most 1.
 template <class Volume>
 NumberAnswer fcl_distance(const Asked& q, Setting tolerance) {
   const auto a = model_of<Volume>(q.a), b = model_of<Volume>(q.b);
@@ -48,12 +49,12 @@ NumberAnswer fcl_distance(const Asked& q, Setting tolerance) {
   fcl::DistanceResultd result;
   const Stopwatch watch;
   const double d = fcl::distance(&a, moved({0, 0, 0}), &b, moved({0, 0, 0}), request, result);
-  const double us = watch.microseconds(), least = std::max(0.0, d);  // -1: they meet
+  const double us = watch.microseconds(), least = std::max(0.0, d);  // -1: the surfaces intersect
   return {least, least, us};
 }
 
-/// B is FCL's first body: of a second one that comes nearer its advancement sees nothing. The solver of
-/// polynomials looks at vertices without their poses: B is put where the motion begins.
+/// B is FCL's first body, because its conservative advancement ignores a second body that approaches. The
+/// polynomial solver uses vertices without their poses, so B's vertices are those at the start of the motion.
 template <class Volume>
 NumberAnswer fcl_first_contact(const Asked& q, fcl::CCDSolverType solver, std::size_t iterations) {
   const bool in_place = solver == fcl::CCDC_POLYNOMIAL_SOLVER;

@@ -18,7 +18,7 @@ std::string words(Quantity quantity, double lower, double upper) {
   return first == last ? first : first + " to " + last;
 }
 
-/// Returns whether a number is the one that stands for "they meet", or "never".
+/// Returns true if an interval is the special value of its quantity: 0 ("in contact") or kNever.
 bool is_special(Quantity quantity, double least, double most) {
   return quantity == Quantity::first_contact ? least >= kNever : most <= 0;
 }

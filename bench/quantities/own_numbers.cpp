@@ -22,7 +22,7 @@ NumberAnswer answer_of(const Asked& q, DistanceRequest request) {
   const Stopwatch watch;
   const DistanceResult r = distance(q.a, Pose{}, q.b, Pose{}, request);
   const double us = watch.microseconds();
-  // Nothing but a lower bound: records hold finite numbers.
+  // Only a lower bound may be known; records contain finite numbers.
   return {r.lower, std::min(r.upper, std::numeric_limits<double>::max()), us};
 }
 
@@ -67,7 +67,7 @@ NumberAnswer our_depth(const Asked& q, Setting) {
   return {r.depth->lower, r.depth->upper, us};
 }
 
-/// Asks the exact query at n + 1 equal times.
+/// Runs the exact query at n + 1 equally spaced times.
 NumberAnswer sampled(const Asked& q, int n) {
   const Motion motion = motion_of(q);
   CollideRequest any;
@@ -93,7 +93,7 @@ NumberMethod ours(Quantity quantity, const char* title, NumberAnswer (*ask)(cons
   return m;
 }
 
-/// Returns ours, asked for less than the narrowest interval: in `chart` alone.
+/// Returns a method of lrbscope that computes less than the narrowest interval. For charts only.
 NumberMethod less(const char* name, const char* title, const char* remark, methods::MethodStyle style,
                   NumberAnswer (*ask)(const Asked&, Setting)) {
   NumberMethod m = ours(Quantity::distance, title, ask);

@@ -1,7 +1,7 @@
 #pragma once
-/// The squared distance of two simplices in rational arithmetic, by the textbook: for every pair of features
-/// (corner, edge, triangle) the nearest points of their planes are found from the normal equations, and count
-/// if they lie in both features. Shares no code and no formula with the engine.
+/// The squared distance of two simplices in rational arithmetic. For every pair of features (corner, edge,
+/// triangle) the closest points of their planes are computed from the normal equations, and count if they lie
+/// in both features. Shares no code and no formula with the engine.
 
 #include <algorithm>
 #include <array>
@@ -13,11 +13,11 @@
 
 namespace lrb::oracle {
 
-using Rational = boost::multiprecision::cpp_rational;  // what a double is, exactly
+using Rational = boost::multiprecision::cpp_rational;  // represents doubles exactly
 
 using Corners = std::vector<std::array<double, 3>>;  ///< 1 to 3 points
 
-/// Solves a linear system in place; none if it is singular.
+/// Solves a linear system in place. Returns nullopt if it is singular.
 inline std::optional<std::vector<Rational>> solve(std::vector<std::vector<Rational>> m,
                                                   std::vector<Rational> r) {
   const std::size_t n = r.size();
@@ -47,7 +47,8 @@ inline std::array<Rational, 3> minus(const std::array<Rational, 3>& x, const std
   return {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
 }
 
-/// Returns the squared distance of the planes of two features if their nearest points lie in the features.
+/// Returns the squared distance of the planes of two features, or nullopt if the closest points are not in
+/// the features.
 inline std::optional<Rational> feature_distance_sq(const RationalPoints& f, const RationalPoints& g) {
   std::vector<std::array<Rational, 3>> ways;  // along f, then against g
   for (std::size_t k = 1; k < f.size(); ++k) ways.push_back(minus(f[k], f[0]));
@@ -97,10 +98,11 @@ inline Rational square(double x) {
   return r * r;
 }
 
-// When two sets of triangles first meet as one of them moves straight, in rational arithmetic. Triangles
-// first meet where a corner comes into the plane of the other's face, or two edges come into one plane: each
-// such time is a rational number, and whether they meet then is decided by rational distances. Triangles
-// must not move within the plane of a face that they meet. Shares no code with the engine.
+// The time of first contact of two sets of triangles, one of which translates at constant velocity, in
+// rational arithmetic. Triangles first intersect when a corner enters the plane of the other's face, or two
+// edges become coplanar. Each such time is a rational number, and rational distances decide whether the
+// triangles intersect at that time. Triangles must not slide within the plane of a face that they intersect.
+// Shares no code with the engine.
 
 using RationalPoint = std::array<Rational, 3>;
 
@@ -114,7 +116,7 @@ inline RationalPoint moved(const RationalPoint& x, const RationalPoint& way, con
   return {x[0] + t * way[0], x[1] + t * way[1], x[2] + t * way[2]};
 }
 
-/// Returns true if two triangles meet.
+/// Returns true if two triangles intersect.
 inline bool triangles_meet(const RationalPoints& a, const RationalPoints& b) {
   const auto features = [](const RationalPoints& c) {
     std::vector<RationalPoints> all;
@@ -134,9 +136,9 @@ inline bool triangles_meet(const RationalPoints& a, const RationalPoints& b) {
   return false;
 }
 
-/// Returns true if doubles show that two triangles are apart: by more than a billionth of their sizes and
-/// distance, along a normal or a product of two edges. Seen from a corner, so that nothing is lost where the
-/// world's origin is far.
+/// Returns true if doubles prove that two triangles are disjoint: separated by more than a billionth of their
+/// sizes and distance, along a normal or a cross product of two edges. Coordinates are relative to a corner,
+/// so that precision does not depend on the distance to the world's origin.
 inline bool clearly_apart(const RationalPoints& a, const RationalPoints& b) {
   using Point = std::array<double, 3>;
   std::array<Point, 3> x[2];
@@ -176,12 +178,12 @@ inline bool clearly_apart(const RationalPoints& a, const RationalPoints& b) {
   return false;
 }
 
-/// Returns the first t from 0 to 1, no later than `before`, at which triangle b, moved by t times `by`, meets
-/// triangle a; none if there is none.
+/// Returns the first t in [0, 1], at most `before`, at which triangle b, translated by t * `by`, intersects
+/// triangle a. Returns nullopt if there is no such t.
 inline std::optional<Rational> first_time(const RationalPoints& of_a, const RationalPoints& of_b,
                                           const RationalPoint& by, const Rational& before = 1) {
   std::vector<Rational> times = {0};
-  /// Adds when `from` + t `turn` is in the plane across n.
+  /// Adds the time at which `from` + sign * t * `by` is in the plane through 0 with normal n.
   const auto add = [&](const RationalPoint& n, const RationalPoint& from, const Rational& sign) {
     const Rational speed = sign * dot(n, by);
     if (speed == 0) return;

@@ -13,10 +13,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Rational brute force takes seconds for more.
+/// Maximum number of faces, to bound the time of rational brute force to seconds.
 constexpr std::uint32_t kMaxFaces = 100, kMaxFacesForDepth = 20;
 
-/// Returns the vector with 20 bits to a coordinate, so that a quarter and three quarters of it are exact.
+/// Returns the vector with 20 bits per coordinate, so that its products with 1/4 and 3/4 are exact.
 Vector3d rounded(const Vector3d& x) {
   Vector3d out;
   for (int k = 0; k < 3; ++k) {
@@ -47,7 +47,7 @@ Asked asked(const cases::Case& c) {
   Asked out{methods::at_pose(*c.a, c.pose_a), methods::at_pose(*c.b, c.pose_b)};
   const Eigen::AlignedBox3d box_a = shapes::box_of(out.a), box_b = shapes::box_of(out.b);
   out.size = std::max(box_a.diagonal().norm(), box_b.diagonal().norm());
-  // Not quite between the middles: the oracle wants no faces that slide along each other.
+  // Not quite between the centres, because the oracle does not support faces that slide along each other.
   Vector3d direction = box_b.center() - box_a.center();
   direction = direction.norm() > 0 ? direction.normalized() : Vector3d(0, 0, 1);
   direction += Vector3d(0.0312, 0.0487, -0.0256);
@@ -92,7 +92,7 @@ struct Triangles {
 };
 
 struct RankedPair {
-  double bound;  ///< no more than what is looked for
+  double bound;  ///< lower bound on the quantity of the pair
   std::size_t a, b;
   bool operator<(const RankedPair& o) const { return bound < o.bound; }
 };
@@ -120,7 +120,7 @@ oracle::Corners corners_of(const LrbRep& rep, std::size_t t) {
   return out;
 }
 
-/// Returns the squared distance, of pairs with the nearest boxes first.
+/// Returns the squared distance. Pairs are processed in ascending order of the distance of their boxes.
 Rational distance_sq(const Asked& q) {
   const Triangles a(q.a), b(q.b);
   std::vector<RankedPair> pairs;
@@ -137,7 +137,8 @@ Rational distance_sq(const Asked& q) {
   return *least;
 }
 
-/// Returns a bound on when a box that moves from `from` by `way` may meet another; more than 1: never.
+/// Returns a lower bound on the time t at which box b, translated by `from` + t * `way`, intersects box a;
+/// above 1: never.
 double box_time(const AlignedBox3d& a, const AlignedBox3d& b, const Vector3d& from, const Vector3d& way) {
   double begin = 0, end = 1;
   for (int k = 0; k < 3; ++k) {
@@ -174,7 +175,7 @@ std::optional<Rational> first_time(const Asked& q) {
   return first;
 }
 
-/// Normals of a body's triangles, and its edges, each once.
+/// The normals of a body's triangles, and its edges, each once.
 struct ConvexParts {
   std::vector<RationalPoint> normals, edges;
   bool convex = true;
@@ -196,7 +197,7 @@ struct ConvexParts {
   }
 };
 
-/// Returns the squared way out along n: how far A reaches beyond B's beginning.
+/// Returns the squared separation along n: the overlap of the projections of A and B.
 Rational separation_vector_squared(const Triangles& a, const Triangles& b, const RationalPoint& n) {
   std::optional<Rational> far, near;
   for (const RationalPoint& x : a.points)
@@ -207,7 +208,7 @@ Rational separation_vector_squared(const Triangles& a, const Triangles& b, const
   return overlap <= 0 ? Rational(0) : Rational(overlap * overlap / oracle::dot(n, n));
 }
 
-/// Returns the squared depth of two convex bodies; none if one is not convex.
+/// Returns the squared depth of two convex bodies, or nullopt if one is not convex.
 std::optional<Rational> depth_sq(const Asked& q) {
   const Triangles a(q.a), b(q.b);
   const ConvexParts of_a(a), of_b(b);

@@ -1,6 +1,6 @@
 #pragma once
 /// The right answer as an interval of doubles, by rational arithmetic: brute force over all pairs of
-/// triangles, or over all planes that may part convex bodies. Shares no formula with the engine.
+/// triangles, or over all candidate separating planes of convex bodies. Shares no formula with the engine.
 
 #include <string>
 
@@ -11,24 +11,24 @@
 
 namespace lrb::stability {
 
-// A case as it is put to methods that answer with a number: both bodies where they are in the world, so that
-// all methods get the same doubles.
+// A case as input of methods that return a number: both bodies in world coordinates, so that all methods get
+// the same doubles.
 
 using methods::Quantity;
 
 struct Asked {
   LrbRep a, b;
-  /// Where a motion of B has it at t = 0 and t = 1, beside where it is; at t = 3/4 it is there, but for the
-  /// rounding of methods: these are exact.
+  /// Translation of B at t = 0 and t = 1. Exactly zero at t = 3/4; methods may round.
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
-  double size = 0;  ///< of the larger body: its box's diagonal
+  double size = 0;  ///< diagonal of the larger body's box
 };
 
-/// Returns why this is not asked about a case: bodies in the plane, coordinates that are no doubles, too many
-/// faces for rational arithmetic; empty if it is.
+/// Returns why a quantity is not queried for a case: 2D bodies, coordinates that are not doubles, too many
+/// faces for rational arithmetic. Empty if it is queried.
 std::string why_not_asked(Quantity quantity, const cases::Case& c);
 
-/// Makes the question. B comes from the side of A on which it is, from far enough to be apart there.
+/// Returns the query. B approaches from its side of A, starting at a distance at which the bodies are
+/// separate.
 Asked asked(const cases::Case& c);
 
 using methods::kNever;

@@ -1,7 +1,7 @@
-// Two sphere trees are descended together to a given level: an approximate, interruptible answer (P. M.
-// Hubbard, "Collision Detection for Interactive Graphics Applications", PhD thesis, Brown University, 1994:
-// the paper's Hub94). Spheres contain the triangles below them, so that no contact is missed; spheres that
-// overlap at the last level count as contact.
+// Descends two sphere trees together to a given level: an approximate, interruptible answer (P. M. Hubbard,
+// "Collision Detection for Interactive Graphics Applications", PhD thesis, Brown University, 1994: the
+// paper's Hub94). Spheres contain the triangles below them, so no contact is missed. Overlapping spheres at
+// the last level count as contact.
 
 #include <algorithm>
 

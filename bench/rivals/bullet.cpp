@@ -62,8 +62,7 @@ class Bullet : public Method {
  public:
   Bullet() : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
-    // Needed as well: contactPairTest() looks in a second table, and reports no contact if it finds no entry
-    // there.
+    // Also required: contactPairTest() uses a second table, and reports no contact without an entry there.
     dispatcher_.registerClosestPointsCreateFunc(GIMPACT_SHAPE_PROXYTYPE, GIMPACT_SHAPE_PROXYTYPE, &create_);
   }
 

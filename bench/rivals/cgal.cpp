@@ -1,5 +1,5 @@
 // CGAL, with its kernel of exact predicates and inexact constructions, as in its manual: the collision
-// detection of rigid triangle meshes, and the AABB tree queried with one triangle after another.
+// detection of rigid triangle meshes, and the AABB tree queried with each triangle of the other body.
 #include "bench/rivals/method.hpp"
 
 namespace lrb::methods {

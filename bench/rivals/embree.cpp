@@ -1,6 +1,6 @@
-// Embree's rtcCollide: two trees of triangle boxes are descended against each other. A callback gets the
-// contents of overlapping leaves and tests the triangles, as in Embree's own example. Its boxes are in world
-// coordinates: when a body moves, its tree must be refitted or rebuilt before the query.
+// Embree's rtcCollide: a dual traversal of two trees of triangle boxes. A callback gets the contents of
+// overlapping leaves and tests the triangles, as in Embree's own example. Its boxes are in world coordinates,
+// so the tree of a moved body must be refitted or rebuilt before the query.
 #include "bench/rivals/method.hpp"
 
 namespace lrb::methods {

@@ -194,7 +194,7 @@ constexpr auto words_of(Quantity) {
                                             {Quantity::depth, "depth"}});
 }
 
-/// Value of a first contact if there is none: motions end at 1.
+/// Value of a first contact that does not exist: motions end at 1.
 inline constexpr double kNever = 2;
 
 }  // namespace lrb::methods

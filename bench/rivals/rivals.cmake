@@ -90,8 +90,8 @@ set_property(GLOBAL PROPERTY lrb_own_methods ours plain_double spheres)
 add_library(lrb_own_methods STATIC rivals/ours.cpp rivals/approximations.cpp)
 target_link_libraries(lrb_own_methods PUBLIC lrb::methods)
 
-# lrb_register_methods(TARGET [PEER...]): links a program with lrbscope's methods, unless it is one of the
-# further workers, and with those of the given engines; registered_methods() returns them.
+# lrb_register_methods(TARGET [PEER...]): links a program with the methods of the given engines and, unless it
+# is one of the further workers, of lrbscope; registered_methods() returns all of them.
 function(lrb_register_methods target)
   set(names ${ARGN})
   foreach(name IN LISTS names)

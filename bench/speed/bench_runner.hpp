@@ -1,5 +1,5 @@
 #pragma once
-/// Puts a data set's questions to one method, and measures the time. For worker programs.
+/// Runs one method on the queries of a data set, and measures the time. For worker programs.
 
 #include <algorithm>
 #include <array>
@@ -17,12 +17,11 @@ namespace lrb::bench {
 
 class BenchRunner {
  public:
-  /// The method must be present. `keep`: the records hold pairs and points.
+  /// The method must be present. `keep`: records contain pairs and points.
   BenchRunner(const methods::MethodEntry& entry, std::optional<double> setting, const DataSet& set,
               bool keep);
 
-  /// Puts a question to the method. A refusal is an outcome, too. Throws InputError if there is no such
-  /// question.
+  /// Runs the method on a query. A rejection is a valid outcome. Throws InputError if there is no such query.
   Record ask(std::uint64_t question);
 
  private:
@@ -42,23 +41,22 @@ class BenchRunner {
   std::map<std::pair<std::size_t, std::size_t>, Built> built_;  ///< by body and side
 };
 
-/// Returns every pair of real triangles that meets: by a sweep over boxes in the world, and exact tests of
-/// what is left. Shares with the query the predicates and the definition of world coordinates, and nothing
-/// else.
+/// Returns every intersecting pair of real triangles: by a sweep over world AABBs, and exact tests of the
+/// candidates. Shares with the engine's query only the predicates and the definition of world coordinates.
 std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
                                      const Pose& pose_b);
 
-// Asks the same again and again, to measure how long an answer takes.
+// Repeats a query, to measure the time of an answer.
 
-/// Walks over more memory than most last-level caches hold: what a query needs is fetched again after it.
+/// Reads more memory than most last-level caches contain, so that the next query fetches its data again.
 void sweep_caches();
 
 struct QueryTimes {
-  double cold_us = 0;  ///< of the first answer, after caches were swept
-  double hot_us = 0;   ///< the best of a few more
+  double cold_us = 0;  ///< of the first query, after caches were swept
+  double hot_us = 0;   ///< minimum of some repetitions
 };
 
-/// Returns the first answer of query(), which has `microseconds`, and fills in the times.
+/// Returns the first answer of query(), which has a member `microseconds`, and sets the times.
 template <class Query>
 auto ask_again_and_again(const Query& query, QueryTimes& times) {
   constexpr int kMax = 25, kLeast = 3;

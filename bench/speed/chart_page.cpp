@@ -34,7 +34,7 @@ ChartWords of_pairs() {
         "measured deviation."}}};
 }
 
-/// Purpose, definition of the error and proof for one number.
+/// Purpose, definition of the error, and proof for one quantity.
 struct NumberWords {
   const char *name, *purpose, *error, *judged, *proved;
 };
@@ -103,7 +103,7 @@ std::string percent_or_dash(const std::optional<double>& x) {
   return x ? render::short_number(*x) : "\u2013";
 }
 
-/// Returns the tooltip of a point, line by line.
+/// Returns the tooltip of a point, with its line breaks.
 std::string note_of(const Point& p) {
   std::string out = name_of(p.method, p.setting) + "\nmedian " + render::short_number(p.median) +
                     " \u00b5s, p95 " + render::short_number(p.p95) + ", p99 " + render::short_number(p.p99);
@@ -127,7 +127,7 @@ struct Spare {
   const char* shape;
 };
 
-/// Styles for methods that do not say how they are drawn, taken in turn; none of our methods looks like this.
+/// Styles for methods that define none, assigned in turn. They differ from the styles of lrbscope's methods.
 constexpr std::array<Spare, 8> kSpares = {{
     {"#2f4b7c", "triangle"},
     {"#f95d6a", "rectRot"},
@@ -139,9 +139,9 @@ constexpr std::array<Spare, 8> kSpares = {{
     {"#b0006d", "crossRot"},
 }};
 
-/// How the series of a chart are drawn: what every method says of itself, a series for each title (variants
-/// of ours, and engines of one house, may share one). A method without a style gets a series of its own
-/// under its name, with a colour and a shape that differ from those of the others as far as there are enough.
+/// Returns the styles of a chart's series, one for each title in the methods' own styles (variants of
+/// lrbscope and engines of one project may share a title). A method without a style gets its own series under
+/// its name, with a spare colour and shape, distinct as long as there are enough.
 std::vector<methods::MethodStyle> styles_of(const std::vector<methods::MethodInfo>& methods,
                                             std::map<std::string, std::size_t>& series_of) {
   std::vector<methods::MethodStyle> out;
@@ -160,8 +160,7 @@ std::vector<methods::MethodStyle> styles_of(const std::vector<methods::MethodInf
   return out;
 }
 
-/// Returns the value at which an error of zero is drawn on a logarithmic axis. Numbers are known to about
-/// 1e-12.
+/// Returns the value at which a zero error is drawn on a logarithmic axis. Numbers are known to about 1e-12.
 double no_error(Quantity quantity) {
   return quantity == Quantity::pairs ? 1e-7 : 1e-14;
 }
@@ -169,13 +168,13 @@ double drawn_error(double error, Quantity quantity) {
   return std::max(error, no_error(quantity));
 }
 
-/// Points without a single answer stand above all others of their panel.
+/// Points without any answer are drawn above all others of their panel.
 double drawn_time(const Point& p, double slowest) {
   constexpr double kAbove = 3;
   return p.median > 0 ? p.median : kAbove * slowest;
 }
 
-/// The slowest median on a data set, over all classes of poses.
+/// Returns the slowest median on a data set, over all classes of poses.
 double slowest_of(const std::vector<Point>& points, const std::string& set) {
   double slowest = 1;
   for (const Point& p : points)
@@ -183,7 +182,7 @@ double slowest_of(const std::vector<Point>& points, const std::string& set) {
   return slowest;
 }
 
-/// A panel's frontier, from exact to coarse.
+/// Returns a panel's frontier, from exact to coarse.
 std::vector<const Point*> frontier(const std::vector<const Point*>& panel) {
   std::vector<const Point*> out;
   for (const Point* p : panel)
@@ -222,7 +221,7 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
     best.y.push_back(p->median);
   }
   chart.series.push_back(std::move(best));
-  // The settings of a method are joined by a line.
+  // A line connects the settings of a method.
   std::map<std::string, std::size_t> series_of;
   const std::vector<methods::MethodStyle> styles = styles_of(methods, series_of);
   for (std::size_t i = 0; i < styles.size(); ++i) {
@@ -251,7 +250,7 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
   return chart;
 }
 
-/// Returns the errors that some method answers for.
+/// Returns the errors that at least one method provides.
 std::vector<std::size_t> errors_in(const std::vector<Point>& points) {
   std::vector<std::size_t> out;
   for (std::size_t m = 0; m < kMetrics; ++m)

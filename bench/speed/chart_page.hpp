@@ -10,30 +10,30 @@
 
 namespace lrb::bench {
 
-/// Returns the charts of speed against accuracy: for each pair of bodies (one at least, all asked for the
-/// same) one for each class of poses. `scene_of` returns where a point leads, relative to the page; empty:
-/// nowhere.
+/// Returns the charts of speed against accuracy: for each pair of bodies (at least one, all for the same
+/// quantity) one per class of poses. `scene_of` returns the link of a point, relative to the page; empty: no
+/// link.
 std::vector<report::Chart> accuracy_charts(const std::vector<DataSet>& sets, const std::vector<Point>& points,
                                            const std::vector<methods::MethodInfo>& methods,
                                            const std::function<std::string(const Point&)>& scene_of);
 
-/// Makes their page.
+/// Returns the page of these charts.
 report::Document accuracy_page(Quantity quantity, const std::vector<Point>& points,
                                const std::vector<methods::MethodInfo>& methods,
                                const std::vector<report::Chart>& charts);
 
-/// Lays them out for print: a row for each pair of bodies, a column for each class of poses.
+/// Arranges the charts for print: a row per pair of bodies, a column per class of poses.
 report::Gnuplot accuracy_print(Quantity quantity, const std::vector<report::Chart>& charts);
 
 /// Returns the points of a panel.
 std::vector<const Point*> panel(const std::vector<Point>& points, const std::string& set, PoseClass c);
 
-// What charts of speed against accuracy say, by what methods were asked for.
+// The texts of charts of speed against accuracy, by the queried quantity.
 
 struct ChartWords {
   std::string title, purpose;
   std::string error;   ///< for the axis
-  std::string proved;  ///< in the key: what a cross is
+  std::string proved;  ///< in the key: the meaning of a cross
   std::vector<report::Text> texts;
 };
 

@@ -156,7 +156,7 @@ DataSet read_data_set(const std::string& path) {
 }
 
 void find_numbers(DataSet& set) {
-  constexpr std::chrono::seconds kLimit(120);  // for one question; some depths take seconds
+  constexpr std::chrono::seconds kLimit(120);  // per query; some depths take seconds
   workers::Job::Task task;
   task.command = {workers::number_worker(), "--questions", write_data_set(set, set.folder)};
   task.end = set.questions.size();

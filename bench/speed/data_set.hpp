@@ -1,7 +1,6 @@
 #pragma once
-/// What methods are asked when they are measured: for the pairs of two bodies, or a number, at poses of
-/// several classes, with the right answers. A data set is a file of its own, so that worker programs can read
-/// it.
+/// The queries on which methods are measured: pairs of two bodies, or a number, at poses of several classes,
+/// with the right answers. A data set has its own file, so that worker programs can read it.
 
 #include <cstdint>
 #include <optional>
@@ -17,11 +16,11 @@
 
 namespace lrb::bench {
 
-using lrb::name_of;  // that of enums, beside those of records
+using lrb::name_of;  // the overload for enums, beside those for records
 
 using methods::Quantity;
 
-/// How poses or a motion were chosen; distances are in diagonals of the larger body.
+/// The choice of poses or motion. Distances are in diagonals of the larger body.
 enum class PoseClass : std::uint8_t {
   apart,
   shallow,
@@ -32,9 +31,9 @@ enum class PoseClass : std::uint8_t {
   gap_100th,
   gap_10th,
   gap_whole,
-  into,   ///< B goes straight at A, and on into it
-  graze,  ///< B goes past A and into it by a hundredth
-  past,   ///< B goes past A a hundredth away, at the nearest along some direction
+  into,   ///< B moves straight towards A and into it
+  graze,  ///< B passes A and penetrates it by a hundredth
+  past,   ///< B passes A at a hundredth, along some direction
 };
 constexpr auto words_of(PoseClass) {
   return std::to_array<EnumWord<PoseClass>>({{PoseClass::apart, "apart"},
@@ -50,18 +49,18 @@ constexpr auto words_of(PoseClass) {
                                              {PoseClass::graze, "graze"},
                                              {PoseClass::past, "past"}});
 }
-/// Returns the classes that are asked for something, in their order.
+/// Returns the pose classes used for a quantity, in their order.
 std::span<const PoseClass> classes_of(Quantity quantity);
 const char* title(PoseClass c);  ///< "0.5 % apart"
 
-/// An LRB-rep in a file, and what it took to make it.
+/// The file of an LRB-rep, and the cost of building it.
 struct BodyFile {
-  std::string file;  ///< .lrb, relative to the data set's
+  std::string file;  ///< .lrb, relative to the data set's file
   std::uint32_t faces = 0;
   double build_seconds = 0;
 };
 
-/// Doubles that hold a number; a first contact that there is none of is at kNever.
+/// An interval that contains a number. Without a first contact both ends are kNever.
 struct KnownNumber {
   double least = 0, most = 0;
 };
@@ -71,21 +70,21 @@ struct Question {
   std::size_t a = 0, b = 0;  ///< indices into DataSet::bodies
   Pose pose_a, pose_b;
   std::vector<SimplexPair> expected;           ///< ascending; see bench_runner.hpp
-  Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};  ///< first contact: where B is at t = 0 and 1, beside pose_b
-  std::optional<KnownNumber> number = {};      ///< what is asked for if it is a number
+  Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};  ///< first contact: translation from pose_b at t = 0 and 1
+  std::optional<KnownNumber> number = {};      ///< the right answer if the quantity is a number
 };
 
 struct DataSet {
   std::string name;                     ///< for files and the command line: "rocks"
-  std::string what;                     ///< for people: "two rocks of 20,480 faces"
-  Quantity quantity = Quantity::pairs;  ///< what is asked for
+  std::string what;                     ///< description: "two rocks of 20,480 faces"
+  Quantity quantity = Quantity::pairs;  ///< the queried quantity
   double diagonal = 0;                  ///< of the larger body's box
   std::vector<BodyFile> bodies;
   std::vector<Question> questions;
-  std::string folder;  ///< the one it was read from; not in the file
+  std::string folder;  ///< folder of the file; not stored in it
 };
 
-/// Returns true if all right answers are there.
+/// Returns true if all queries have a right answer.
 bool is_complete(const DataSet& set);
 
 /// Returns the 3x4 matrix, row by row.
@@ -96,9 +95,9 @@ std::string write_data_set(const DataSet& set, const std::string& folder);
 /// Reads a data set. Throws InputError that names the file.
 DataSet read_data_set(const std::string& path);
 
-/// Fills in the numbers that a data set asks for: our own intervals at their narrowest, as the worker of
-/// methods that answer with a number finds them. Throws EnvironmentError if that is not there, and
-/// InputError, which names the question, for one that has no answer.
+/// Computes the numbers that a data set needs: lrbscope's intervals at their narrowest, as returned by the
+/// worker of methods that return a number. Throws EnvironmentError if that program is missing, and
+/// InputError, which names the query, if a query has no answer.
 void find_numbers(DataSet& set);
 
 }  // namespace lrb::bench

@@ -54,7 +54,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns how far B goes beyond first contact, in diagonals of the larger body; negative: apart.
+/// Returns the motion of B beyond first contact, in diagonals of the larger body; negative: separate.
 double depth_of(PoseClass c) {
   switch (c) {
     case PoseClass::apart:
@@ -76,7 +76,7 @@ double depth_of(PoseClass c) {
   }
 }
 
-constexpr double kSmall = 0.1;  // size of B over that of A
+constexpr double kSmall = 0.1;  // size of B / size of A
 
 std::uint32_t whole_root(double x) {
   return static_cast<std::uint32_t>(std::max(2.0, std::round(std::sqrt(x))));
@@ -136,8 +136,8 @@ class Maker {
     set_.questions.push_back(std::move(q));
   }
 
-  /// B at one pose, or on a straight motion that is two diagonals long and begins anywhere, so that no method
-  /// that asks at equal times is lucky.
+  /// Adds B at one pose, or on a straight motion that is two diagonals long and starts at a random distance,
+  /// so that no method that samples equal times is favoured.
   void add_numbers(PoseClass c) {
     Approaches approaches(reps_[0], reps_[1], set_.diagonal, o_.seed);
     shapes::RandomEngine random(o_.seed);
@@ -160,7 +160,7 @@ class Maker {
 
   void add_approaches(PoseClass c, std::size_t b) {
     Approaches approaches(reps_[0], reps_[b], set_.diagonal, o_.seed);
-    // If one body is small the depth is 1 % of its own size, because that is all there is to go into.
+    // If one body is small the depth is 1 % of its own size, because it cannot be deeper.
     const double depth = depth_of(c) * (c == PoseClass::small ? kSmall : 1);
     for (int i = 0; i < o_.poses; ++i) ask(c, 0, b, Pose{}, approaches.next(depth).pose);
   }
@@ -194,7 +194,7 @@ std::vector<BodyPair> generated_pairs(std::uint32_t faces) {
   const double segments = std::max(12.0, std::round(n / (2 * sides)));
   const generators::GeneratorValues rock = {{"frequency", frequency}};
   const double points = std::max(4.0, std::round(std::sqrt(n / 400)));
-  // A gear of 16 teeth has faces for about 64 points on each ring and side.
+  // A gear of 16 teeth has faces for about 64 points per ring and side.
   const generators::GeneratorValues gear = {{"points", points},
                                             {"rings", std::max(1.0, std::round(n / (64 * points)))}};
   const std::string size = std::to_string(faces);
@@ -247,7 +247,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Returns the question that most points call their worst; the first of the class if none has an error.
+/// Returns the query that is the worst of most points, or the first of the class if no point has an error.
 std::uint64_t question_of(const DataSet& set, const std::vector<const Point*>& panel, PoseClass c) {
   std::map<std::uint64_t, std::size_t> votes;
   for (const Point* p : panel)
@@ -263,7 +263,7 @@ std::uint64_t question_of(const DataSet& set, const std::vector<const Point*>& p
   return best;
 }
 
-/// Returns the poses of B that a scene shows: that of the question, or some on its way, up to first contact
+/// Returns the poses of B in a scene: the pose of the query or, for a motion, some poses up to first contact
 /// or its end.
 std::vector<Pose> poses_of(const DataSet& set, const Question& q) {
   if (set.quantity != Quantity::first_contact) return {q.pose_b};

@@ -19,20 +19,20 @@
 
 namespace lrb::bench {
 
-// Finds poses at which two bodies are some way apart, or in each other.
+// Finds poses at which two bodies are at a given distance or penetrate each other.
 
 struct Approach {
-  Pose pose;                           ///< of B; A's moves nothing
-  Eigen::Vector3d direction{0, 0, 1};  ///< from A to B: the one that B came along
+  Pose pose;                           ///< of B; A's is the identity
+  Eigen::Vector3d direction{0, 0, 1};  ///< from A to B, opposite to B's approach
 };
 
-/// Turns B at random, and moves it along random directions until it first meets A, and on.
+/// Rotates B at random, and moves it against A along random directions, to first contact and beyond.
 class Approaches {
  public:
   /// Keeps references to the bodies. `diagonal`: of the larger one.
   Approaches(const LrbRep& a, const LrbRep& b, double diagonal, std::uint64_t seed);
 
-  /// Returns the next one, `depth` diagonals beyond first contact; negative: apart.
+  /// Returns the next approach, `depth` diagonals beyond first contact; negative: separate.
   Approach next(double depth);
 
  private:
@@ -45,8 +45,9 @@ class Approaches {
   CollideRequest request_;
 };
 
-/// Returns how far out along a way two bodies first meet, coming in from `far`: tries one place every `step`
-/// as long as it is beyond `near`, then halves. None: they meet nowhere there. meets(s): at s.
+/// Returns about the largest s at which two bodies intersect, coming from s = `far`: tests at intervals of
+/// `step` down to `near`, then bisects. Returns nullopt if no test finds an intersection. meets(s): whether
+/// the bodies intersect at s.
 template <class Meets>
 std::optional<double> first_meeting(double far, double near, double step, const Meets& meets) {
   constexpr int kHalvings = 40;
@@ -65,31 +66,32 @@ struct BodyPair {
   std::function<Mesh()> a, b;
 };
 
-/// Makes pairs of generated bodies of about `faces` real faces each: two rocks, a knot and a gear, two balls.
+/// Returns pairs of generated bodies of about `faces` real faces each: two rocks, a knot and a gear, two
+/// balls.
 std::vector<BodyPair> generated_pairs(std::uint32_t faces);
-/// Returns each mesh or LRB-rep of a folder, by name, paired with the next one. Throws InputError if there
-/// are fewer than two.
+/// Returns each mesh or LRB-rep of a folder, in order of names, paired with the next. Throws InputError if
+/// there are fewer than two.
 std::vector<BodyPair> pairs_of_models(const std::string& folder);
 
 struct SetOptions {
-  int poses = 12;  ///< number for each class; identical bodies at identical poses: a quarter of it
+  int poses = 12;  ///< number per class; identical bodies at identical poses: a quarter
   std::uint64_t seed = 1;
-  Quantity quantity = Quantity::pairs;  ///< what is asked for
+  Quantity quantity = Quantity::pairs;  ///< the queried quantity
 };
 
-/// Writes the data set and its bodies into a folder and returns the set, or reads what is there if it was
-/// made from the same bodies and options. Throws InputError if a body cannot be an LRB-rep, and as
-/// find_numbers() does.
+/// Writes a data set and its bodies into a folder and returns it, or reads the existing one if it was made
+/// from the same bodies and options. Throws InputError if an LRB-rep of a body cannot be built, and the
+/// exceptions of find_numbers().
 DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder);
 
-// Makes what a point of a chart leads to: a question as a scenario, run, with trace, pictures and page.
+// Makes the targets of links in charts: a query as a scenario, run, with trace, pictures and page.
 
-/// The name of a data set and a class of poses.
+/// The name of a data set, and a class of poses.
 using SceneKey = std::pair<std::string, PoseClass>;
 
-/// Chooses for each data set and class of poses the question that most methods answer worst. Writes
-/// folder/scenes/SET-CLASS.scenario.json and its run, folder/scenes/SET-CLASS/; keeps those that are there.
-/// Returns their pages, relative to the folder.
+/// Chooses for each data set and class of poses the query that is the worst of most methods. Writes
+/// folder/scenes/SET-CLASS.scenario.json and its run, folder/scenes/SET-CLASS/; keeps existing ones. Returns
+/// their pages, relative to the folder.
 std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
                                              const std::vector<Point>& points, const std::string& folder,
                                              const run::ProgressReport& progress);

@@ -16,8 +16,8 @@
 namespace lrb::bench {
 namespace {
 
-/// The number of points between which distances are measured: enough for three digits, few enough for all
-/// pairs.
+/// The number of points between which distances are measured: enough for three digits, few enough to compare
+/// all pairs.
 constexpr std::size_t kMaxPoints = 1500;
 
 std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points) {
@@ -305,9 +305,9 @@ Point finished(Gathered g) {
   return p;
 }
 
-/// Marks the points that are not dominated: no other point is at least as fast and as accurate, and better in
-/// one of the two. A point without an answer has no time; one that only answers yes or no, or knows the poses
-/// in advance, answers another query.
+/// Marks the Pareto frontier: a point is dominated if another one is at least as fast and as accurate, and
+/// better in one of the two. Points without an answer are excluded, and methods that return only a boolean or
+/// know the poses in advance, because they answer another query.
 void mark_frontiers(std::vector<Point>& points, const std::vector<methods::MethodInfo>& methods) {
   const auto reported_more = [&](const Point& p) {
     return std::any_of(methods.begin(), methods.end(), [&](const methods::MethodInfo& m) {

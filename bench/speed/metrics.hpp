@@ -20,7 +20,7 @@ namespace lrb::bench {
 
 /// An error measure, from 0 (exact) to its worst value, which is the score of an unanswered query.
 enum class Metric : std::uint8_t {
-  contact,    ///< reports contact if there is none, or the reverse
+  contact,    ///< reports contact of disjoint bodies, or the reverse
   precision,  ///< share of the reported pairs that do not intersect (1 - precision)
   recall,     ///< share of the intersecting pairs that were not reported (1 - recall)
   hausdorff,  ///< distance of the contact regions
@@ -64,7 +64,7 @@ inline constexpr auto kMetricInfos = std::to_array<MetricInfo>({
 });
 inline constexpr std::size_t kMetrics = kMetricInfos.size();
 
-/// Returns the row of a metric. Row `i` of the table is that of static_cast<Metric>(i).
+/// Returns the row of a metric: row static_cast<std::size_t>(m) of the table.
 constexpr const MetricInfo& metric_info(Metric m) {
   return kMetricInfos[static_cast<std::size_t>(m)];
 }
@@ -93,11 +93,11 @@ struct Point {
   double build_seconds = 0, bytes = 0;  ///< of both bodies
   double face_tests = 0;                ///< mean; 0: not counted
   std::uint64_t worst_question = 0;     ///< the one with the largest error
-  bool frontier = false;                ///< no other point of its data set is both faster and more accurate
+  bool frontier = false;                ///< not dominated by another point of its data set
 
   std::size_t failed() const { return rejected + crashed + timed_out; }
-  /// Returns the error that the chart shows: that of the number or the contact region if the method provides
-  /// one, else that of its yes or no.
+  /// Returns the error on the chart's axis: of the number or the contact region if the method provides one,
+  /// else of its boolean answer.
   double error() const;
   bool says_only_yes_or_no() const;
 };

@@ -55,7 +55,7 @@ bool is_peer(const methods::MethodInfo& m) {
   return m.role == Role::peer || m.role == Role::aim;
 }
 
-/// Returns the name of the method that plays a part; "" if there is none.
+/// Returns the name of the method with a role, or "" if the method is missing.
 std::string method_in(const std::vector<methods::MethodInfo>& methods, Role role) {
   for (const methods::MethodInfo& m : methods)
     if (m.role == role) return m.name;
@@ -184,8 +184,8 @@ std::string means_of(const PeerTable& t) {
   return out + "\n";
 }
 
-/// Lists, by class of poses and mode, all peers that are faster somewhere, and by how much at most: "2.1x
-/// (cold 1.3x)".
+/// Lists, by class of poses and mode, all other engines that are faster somewhere, with the maximum factor:
+/// "2.1x (cold 1.3x)".
 std::string ahead_of(const PeerTable& t) {
   std::string out;
   std::size_t compared = 0, behind = 0;

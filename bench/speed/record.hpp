@@ -1,6 +1,6 @@
 #pragma once
-/// Raw records: what a method answered to a question, and how long it took. A file has one JSON object on
-/// each line; everything else is computed from these.
+/// Raw records: the answer of a method to a query, and its time. A file contains one JSON object per line.
+/// All other results are computed from these.
 
 #include <cstdint>
 #include <optional>
@@ -28,12 +28,12 @@ struct Reply {
   std::uint64_t count = 0;              ///< number of pairs
   std::uint64_t missed = 0, extra = 0;  ///< compared with the exact list
   double cold_us = 0;                   ///< time of the first query, after caches were swept
-  double hot_us = 0;                    ///< the best time of a few repeats
+  double hot_us = 0;                    ///< minimum time of some repetitions
   std::uint64_t face_tests = 0;
-  std::optional<double> error_bound;   ///< as in methods::MethodAnswer; of a number: how wide its interval is
-  std::optional<double> lower, upper;  ///< the number, if one was asked for; equal: no interval
-  std::vector<SimplexPair> pairs;      ///< if they are kept
-  std::vector<Eigen::Vector3d> points;  ///< if they are kept, and the method gives them
+  std::optional<double> error_bound;    ///< as in methods::MethodAnswer; of a number: width of its interval
+  std::optional<double> lower, upper;   ///< the number, if that is the quantity; equal: no interval
+  std::vector<SimplexPair> pairs;       ///< if kept
+  std::vector<Eigen::Vector3d> points;  ///< if kept, and the method provides them
   friend bool operator==(const Reply&, const Reply&) = default;
 };
 
@@ -43,20 +43,20 @@ struct Record {
   std::uint64_t question = 0;
   PoseClass pose_class = PoseClass::apart;
   Outcome outcome = Outcome::answered;
-  std::string message;  ///< says what went wrong if there is no answer
+  std::string message;  ///< reason if there is no answer
   Reply all, first;
   double build_seconds = 0;  ///< for both bodies
   double bytes = 0;          ///< growth of the heap by both bodies
 };
 
 nlohmann::ordered_json to_json(const Record& r);
-/// Reads a record. Throws InputError that says what is wrong with the value.
+/// Reads a record. Throws InputError, which describes the error in the value, if it is invalid.
 Record record_from(const nlohmann::json& value);
-/// Reads a file of records; none if there is no file. Skips lines that are not whole, which a run that was
-/// interrupted leaves.
+/// Reads a file of records. Returns an empty list if the file does not exist. Skips incomplete lines, which
+/// interrupted runs leave.
 std::vector<Record> read_records(const std::string& path);
 
-/// Returns the method with its setting: "fcl", "spheres 4".
+/// Returns the method's name with its setting: "fcl", "spheres 4".
 std::string name_of(const Record& r);
 std::string name_of(const std::string& method, std::optional<double> setting);
 

@@ -16,7 +16,7 @@ namespace {
 
 using Key = std::tuple<std::string, std::string, std::uint64_t>;  // set, method at its setting, question
 
-/// A file that lines are added to, each at once.
+/// A file to which lines are appended; each is flushed at once.
 class Appender {
  public:
   explicit Appender(const std::string& path) : path_(path), out_(path, std::ios::app) {}
@@ -40,7 +40,7 @@ class Survey {
   std::vector<Record> run() {
     for (Record& r : read_records(o_.folder + "/records.jsonl")) known_[key(r)] = std::move(r);
     for (const DataSet& set : o_.sets) {
-      // Questions of a class stand together.
+      // The queries of a class are contiguous.
       for (std::uint64_t begin = 0, end = 0; begin < set.questions.size(); begin = end) {
         while (end < set.questions.size() && set.questions[end].pose_class == set.questions[begin].pose_class)
           ++end;
@@ -91,7 +91,7 @@ class Survey {
     known_[key(r)] = std::move(r);
   }
 
-  /// Returns the records that were asked for, in order.
+  /// Returns the requested records, in order.
   std::vector<Record> collect() const {
     std::vector<Record> out;
     for (const DataSet& set : o_.sets)

@@ -18,7 +18,7 @@ Side side(std::size_t body) {
   return body == 0 ? Side::a : Side::b;
 }
 
-/// Outlines tell the bodies apart, and needles and faces without area show nothing else.
+/// Outlines distinguish the bodies, and are the only visible part of needles and faces without area.
 void add_outline(render::DrawList& list, const Piece& p, render::Rgba colour, float width,
                  std::int8_t nudge) {
   for (std::size_t k = 0; k < p.corners.size(); ++k) {
@@ -34,7 +34,7 @@ void add_outline(render::DrawList& list, const Piece& p, render::Rgba colour, fl
 
 void add_mark(render::DrawList& list, const Piece& p, Mark m, std::size_t body, bool see_through) {
   const render::Rgba colour = colour_of(m);
-  // Where marks lie in one plane, the worse one is drawn in front.
+  // Of coplanar marks the more severe one is drawn in front.
   const auto nudge = static_cast<std::int8_t>(2 * static_cast<int>(m) + static_cast<int>(body));
   for (std::size_t k = 2; k < p.corners.size(); ++k) {
     render::DrawTriangle t;
@@ -74,7 +74,7 @@ void add_body(render::DrawList& list, const Piece& p, std::size_t body, std::uin
   }
 }
 
-/// Draws the inside of a 2D body, unless it is too large to be filled in doubles.
+/// Fills a 2D body, unless it is too large to be filled in doubles.
 void add_fill(render::DrawList& list, const PosedBody& body, std::size_t i, const PictureFrame& frame) {
   constexpr double kLargest = 1e6;
   render::DrawFill fill;
@@ -192,7 +192,7 @@ struct WidePiece {
   std::vector<bool> edges;
 };
 
-/// Does one pass of Sutherland and Hodgman (I. Sutherland, G. Hodgman, "Reentrant Polygon Clipping", 1974):
+/// One pass of Sutherland-Hodgman clipping (I. Sutherland, G. Hodgman, "Reentrant Polygon Clipping", 1974):
 /// keeps the part with sign * x[axis] <= reach.
 WidePiece clip(const WidePiece& in, std::size_t axis, int sign, const Wide& reach) {
   WidePiece out;
@@ -210,7 +210,7 @@ WidePiece clip(const WidePiece& in, std::size_t axis, int sign, const Wide& reac
       const Wide t = dp / (dp - dq);
       WidePoint cut;
       for (std::size_t k = 0; k < 3; ++k) cut[k] = p[k] + t * (q[k] - p[k]);
-      // On leaving, the next side runs along the cube, which is not an outline; on entering, along the old
+      // On leaving, the next side lies on the cube and is not an outline; on entering, it lies on the old
       // side.
       out.corners.push_back(cut), out.edges.push_back(dp > 0 && in.edges[i]);
     }
@@ -263,7 +263,7 @@ PictureFrame::PictureFrame(const Eigen::AlignedBox3d& box) {
   const Eigen::Vector3d low = box.min() * before_, high = box.max() * before_;
   middle_ = low / 2 + high / 2;
   radius_ = (high - low).maxCoeff() / 2;
-  // Bodies that have collapsed to a point are drawn as a point, so that any size will do.
+  // Bodies that have collapsed to a point are drawn as a point, so any size is valid.
   if (!(radius_ > 0)) radius_ = std::max(largest * before_, std::numeric_limits<double>::min());
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a worst case's picture shows: two posed bodies, and a mark on each of their simplices.
+/// The content of a worst case's picture: two posed bodies, and a mark on each of their simplices.
 
 #include <array>
 #include <optional>
@@ -14,10 +14,11 @@
 
 namespace lrb::stability {
 
-// Brings cases of any size and place to where they can be drawn, with bodies of 1e-120 as well as at 1e16.
+// Scales and translates cases of any size and position for drawing, from bodies of size 1e-120 to bodies at
+// 1e16.
 
-/// A convex piece of a face in a picture's frame; `edges[i]` tells whether the side from corner i to the next
-/// one belongs to the face's outline. With two corners it is a segment of a 2D body.
+/// A convex piece of a face in a picture's frame. `edges[i]`: the side from corner i to the next one belongs
+/// to the face's outline. With two corners it is a segment of a 2D body.
 struct Piece {
   std::vector<Eigen::Vector3d> corners;
   std::vector<bool> edges;
@@ -26,7 +27,7 @@ struct Piece {
 /// The posed real simplices of one body, in world coordinates.
 class PosedBody {
  public:
-  /// Throws InputError that names the first vertex whose world coordinates are not finite.
+  /// Throws InputError, which names the first vertex whose world coordinates are not finite, if there is one.
   PosedBody(const LrbRep& rep, const Pose& pose);
 
   std::uint32_t size() const { return rep_->real_simplex_count(); }
@@ -37,45 +38,45 @@ class PosedBody {
 
  private:
   const LrbRep* rep_;
-  std::vector<Eigen::Vector3d> x_;  ///< (|V|); vertices that only pseudo faces use may not be finite
+  std::vector<Eigen::Vector3d> x_;  ///< (|V|); vertices used only by pseudo faces may not be finite
   Eigen::AlignedBox3d box_;
 };
 
-/// Returns the length of a box's diagonal, whose square may not fit into a double.
+/// Returns the length of a box's diagonal. Its square may overflow a double.
 double diagonal(const Eigen::AlignedBox3d& box);
 
-/// Maps a box of the world to the cube [-1, 1]^3: its middle to the origin, its longest side to 2.
+/// Maps a box of the world to the cube [-1, 1]^3: its centre to the origin, its longest side to 2.
 class PictureFrame {
  public:
   explicit PictureFrame(const Eigen::AlignedBox3d& box);
 
-  /// Maps a point. Takes differences first, which is exact near the middle, however far that is from the
-  /// world's origin.
+  /// Maps a point. Differences are taken first, which is exact near the centre, even far from the world's
+  /// origin.
   Eigen::Vector3d operator()(const Eigen::Vector3d& world) const {
     return (world * before_ - middle_) / radius_;
   }
-  /// Returns what of a piece lies in [-reach, reach]^3; no corners if nothing does. A piece may be 1e60 times
-  /// as large as the cube, so it is cut with 100 digits.
+  /// Returns the part of a piece in [-reach, reach]^3, or no corners if it is empty. A piece may be 1e60
+  /// times larger than the cube, so it is clipped with 100 digits.
   Piece cut(const Piece& world, double reach) const;
 
  private:
   Eigen::Vector3d middle_;
-  double before_ = 1;  ///< keeps differences of the largest doubles finite
+  double before_ = 1;  ///< scale that keeps differences of the largest doubles finite
   double radius_ = 1;
 };
 
 using Pairs = std::vector<SimplexPair>;
 
-/// What became of a simplex. A simplex with several marks shows the last of these.
+/// The mark of a simplex. Of several marks the last one in this order is shown.
 enum class Mark : std::uint8_t { none, found, extra, missed };
 render::Rgba colour_of(Mark m);
 
-/// RightAnswer and answered pairs, told apart; each list ascending.
+/// The comparison of expected and answered pairs; each list ascending.
 struct Verdict {
   Pairs found, missed, extra;
-  bool listed = false;  ///< the method gave a list; else everything expected counts as found
+  bool listed = false;  ///< the method returned a list; otherwise all expected pairs count as found
 
-  /// Returns the pairs to look at.
+  /// Returns the pairs of the most severe non-empty kind.
   const Pairs& worst() const { return !missed.empty() ? missed : !extra.empty() ? extra : found; }
 };
 Verdict compare(std::span<const SimplexPair> expected, const std::optional<Pairs>& answered);
@@ -86,7 +87,7 @@ struct CasePicture {
   std::array<std::vector<Mark>, 2> marks;
   Eigen::AlignedBox3d box;
 
-  /// Throws InputError if a pair names no real simplex, or the bodies cannot be drawn.
+  /// Throws InputError if a pair refers to no real simplex, or the bodies cannot be drawn.
   CasePicture(const cases::Case& c, const Verdict& verdict);
 
   bool flat() const { return bodies[0].dim() == 2; }
@@ -98,11 +99,11 @@ struct CasePicture {
   void mark(const Pairs& pairs, Mark m);
 };
 
-/// Makes a draw list: bodies translucent, marks in their colours. What lies beyond [-reach, reach]^3 of the
-/// frame is cut off.
+/// Returns a draw list: bodies translucent, marks in their colours. Geometry outside [-reach, reach]^3 of the
+/// frame is clipped.
 render::DrawList draw_list(const CasePicture& s, const PictureFrame& frame, double reach);
 
-/// Adds a dot for each mark smaller than `least`, in the frame's unit.
+/// Adds a dot for each mark smaller than `least`, in units of the frame.
 void add_dots(render::DrawList& list, const CasePicture& s, const PictureFrame& frame, double reach,
               double least);
 

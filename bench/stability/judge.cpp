@@ -121,7 +121,7 @@ void judge(Record& record, const MethodInfo& info, const MethodAnswer& answer, c
     record.relation = in_brief(answer.contact, *answer.inside);
     record.expected_relation = in_brief(!expected.pairs.empty(), is_inside(expected.relation));
   }
-  // Bodies that are not closed can only be asked about their surfaces.
+  // For bodies that are not closed, only surface queries are defined.
   conclude(record, answer.relation || expected.relation != Relation::undefined,
            !info.has(methods::Trait::loose) || expected.pairs.empty());
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Decides whether an answer was right.
+/// Decides whether an answer is right.
 
 #include <optional>
 #include <string>
@@ -17,29 +17,29 @@ namespace lrb::stability {
 struct RightAnswer {
   std::vector<SimplexPair> pairs;
   Relation relation = Relation::separate;
-  /// Where a number is asked for: hold it. A first contact that there is none of is at 2.
+  /// For a number: the interval [least, most] that contains it. Without a first contact both are 2.
   std::optional<double> least = {}, most = {};
-  std::string rejection;  ///< if not empty, the question has no answer, and this says why
+  std::string rejection;  ///< reason why the query has no answer; empty: it has one
 };
 
 RightAnswer expected_answer(const cases::Case& c);
 
-/// Writes it on one line, for the workers that compare with it.
+/// Returns the answer on one line, for the workers that compare with it.
 std::string to_line(const RightAnswer& e);
-/// Reads such a line. Throws InputError, or nlohmann's exceptions for what is no JSON.
+/// Reads such a line. Throws InputError, or nlohmann's exceptions if it is not JSON.
 RightAnswer expected_from(const std::string& line);
 
-/// Returns the relation with this name. Throws InputError.
+/// Returns the relation with this name. Throws InputError for an unknown name.
 Relation relation_from(const std::string& word);
 
-/// Fills in outcome, counts and relations. For a method that lists no pairs, counts are of contacts (0 or 1),
-/// and relations are "contact", "inside", "separate".
+/// Sets outcome, counts and relations of the record. For a method that lists no pairs, counts are of contacts
+/// (0 or 1), and relations are "contact", "inside", "separate".
 void judge(Record& record, const methods::MethodInfo& info, const methods::MethodAnswer& answer,
            const RightAnswer& expected);
 
-/// Does the same for a method against itself with the bodies exchanged: the answer to (B, A) must be the
-/// transpose of that to (A, B). `several`: both bodies have several pieces; each may then hold a piece of the
-/// other, of which the relation names only one.
+/// Compares a method with itself for exchanged bodies: the answer to (B, A) must be the transpose of the
+/// answer to (A, B). `several`: both bodies have several pieces. Each body may then contain a piece of the
+/// other, and the relation names only one of these.
 void judge_swapped(Record& record, const methods::MethodInfo& info, const methods::MethodAnswer& answer,
                    const methods::MethodAnswer& swapped, bool several);
 

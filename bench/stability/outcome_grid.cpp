@@ -12,7 +12,7 @@
 namespace lrb::stability {
 namespace {
 
-/// Returns how bad a record is, for comparison.
+/// Returns a key that orders records by severity of their failure.
 auto badness(const Record& r) {
   const int kind = r.outcome == Outcome::crashed ? 2 : r.outcome == Outcome::timed_out ? 1 : 0;
   return std::tuple(kind, r.missed + r.extra, -r.dial);
@@ -159,7 +159,7 @@ std::vector<Record> read_records(const std::string& path) {
 
 namespace {
 
-/// Returns the first setting at which something fails, or -1.
+/// Returns the lowest difficulty with a failure, or -1.
 int first_failure(const Cell& c) {
   for (int d = 0; d < kDialSettings; ++d)
     if (c.wrong[d] + c.crashed[d] + c.timed_out[d] > 0) return d;

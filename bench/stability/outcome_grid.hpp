@@ -1,9 +1,9 @@
 #pragma once
-/// The stability experiment: what every method answered to every case of every family, and the grid of
-/// families x methods that is counted from it.
+/// The stability experiment: the answers of every method to every case of every family, and the grid of
+/// families x methods counted from them.
 ///
-/// Raw records come first (JSON Lines, one for each case and method); grid, page and pictures are made from
-/// nothing else.
+/// The raw records (JSON Lines, one per case and method) are written first. Grid, page and pictures are
+/// computed from them alone.
 
 #include <algorithm>
 #include <array>
@@ -25,11 +25,11 @@ namespace lrb::stability {
 using cases::kDialSettings;
 using methods::Quantity;
 
-/// What became of one case that was put to one method.
+/// The outcome of one case for one method.
 enum class Outcome : std::uint8_t {
   right,      ///< all that the method answers is right
-  wrong,      ///< pairs missed or too many, or a wrong relation
-  rejected,   ///< it said that it cannot answer
+  wrong,      ///< missed or extra pairs, or a wrong relation
+  rejected,   ///< the method reported that it cannot answer
   crashed,    ///< its process died
   timed_out,  ///< it did not answer in time
 };
@@ -43,31 +43,31 @@ constexpr auto words_of(Outcome) {
 
 struct FamilyRow {
   std::string name, what;
-  std::string benign, degenerate;        ///< what the ends of the dial mean: "gap 1e-1", "gap 1 ulp"
-  std::vector<std::string> values = {};  ///< (kDialSettings) what each setting means, "1e-6"; or empty
+  std::string benign, degenerate;        ///< meaning of difficulties 0 and 10: "gap 1e-1", "gap 1 ulp"
+  std::vector<std::string> values = {};  ///< (kDialSettings) parameter of each difficulty, "1e-6"; or empty
 };
 
 struct Record {
   std::string family, method;
-  int dial = 0;  ///< 0 .. kDialSettings - 1
+  int dial = 0;  ///< difficulty, 0 .. kDialSettings - 1
   std::uint64_t case_index = 0, seed = 0;
   Outcome outcome = Outcome::right;
-  std::uint64_t expected = 0;  ///< number of pairs that meet, by exact brute force
+  std::uint64_t expected = 0;  ///< number of intersecting pairs, by exact brute force
   std::uint64_t missed = 0, extra = 0;
-  std::string relation, expected_relation;  ///< empty: the method gives none
+  std::string relation, expected_relation;  ///< empty: not reported by the method
   double microseconds = 0;                  ///< time of the query alone
-  std::string message;                      ///< of a refusal or a crash
+  std::string message;                      ///< of a rejection or a crash
 };
 
-/// One family put to one method.
+/// The results of one method on one family.
 struct Cell {
   std::array<std::uint64_t, kDialSettings> cases{}, wrong{}, rejected{}, crashed{}, timed_out{};
-  std::optional<Record> worst;  ///< one of those that failed, with the lowest dial setting
+  std::optional<Record> worst;  ///< a failure of the lowest difficulty
 
   static std::uint64_t sum(const std::array<std::uint64_t, kDialSettings>& counts);
-  /// Returns the number of failures; refusals are none.
+  /// Returns the number of failures. Rejections do not count as failures.
   std::uint64_t failures() const { return sum(wrong) + sum(crashed) + sum(timed_out); }
-  /// Returns the number of cases that were not refused.
+  /// Returns the number of cases that were not rejected.
   std::uint64_t answered() const { return sum(cases) - sum(rejected); }
 };
 
@@ -75,8 +75,8 @@ struct Grid {
   std::vector<workers::MethodColumn> methods;
   std::vector<FamilyRow> families;
   std::vector<Cell> cells;              ///< (|families| x |methods|), row by row
-  Quantity quantity = Quantity::pairs;  ///< what was asked for
-  std::string command;                  ///< the command that made it
+  Quantity quantity = Quantity::pairs;  ///< the queried quantity
+  std::string command;                  ///< the command that produced the grid
   double seconds = 0;
 
   const Cell& at(std::size_t family, std::size_t method) const {
@@ -84,43 +84,43 @@ struct Grid {
   }
 };
 
-/// Counts records; skips those of other methods and families.
+/// Counts records. Skips records of other methods and families.
 Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRow> families,
                 const std::vector<Record>& records);
 
 /// Returns the grid without the methods that are absent from this build.
 Grid present_part(const Grid& grid);
-/// Names these in a sentence; empty: none is absent.
+/// Returns a sentence that names the absent methods, or an empty string if none is absent.
 std::string absent_words(const Grid& grid);
 
 /// Returns the families of all_families(), in their order.
 std::vector<FamilyRow> family_rows();
 
-// Writes and reads records as JSON Lines: what the experiment leaves behind, and what everything else is
-// counted from.
+// Writing and reading records as JSON Lines: the output of the experiment, and the source of all other
+// results.
 
 nlohmann::ordered_json to_json(const Record& r);
-/// Reads a record. Throws InputError that says what is wrong with the value.
+/// Reads a record. Throws InputError, which describes the error in the value, if it is invalid.
 Record record_from(const nlohmann::json& value);
 
-/// Returns the records, one on each line.
+/// Returns the records, one per line.
 std::string to_lines(const std::vector<Record>& records);
-/// Reads them. Throws InputError that names file and line.
+/// Reads the records of a file. Throws InputError, which names file and line, if one is invalid.
 std::vector<Record> read_records(const std::string& path);
 
-/// A cell in few numbers, the same for page and print.
+/// The totals of a cell, for page and print.
 struct CellSummary {
   std::uint64_t cases = 0, wrong = 0, rejected = 0, crashed = 0, timed_out = 0;
-  int first_failing = -1;  ///< the lowest dial setting with a failure; -1: none
+  int first_failing = -1;  ///< the lowest difficulty with a failure; -1: none
 
-  /// Returns the number of failures. A refusal is none, because it gives no wrong answer; it has a mark of
-  /// its own.
+  /// Returns the number of failures. Rejections do not count, because they give no wrong answer; they have
+  /// their own mark.
   std::uint64_t failures() const { return wrong + crashed + timed_out; }
   std::uint64_t answered() const { return cases - rejected; }
   double failure_share() const {
     return answered() == 0 ? 0 : static_cast<double>(failures()) / static_cast<double>(answered());
   }
-  /// Returns how bad it is, from 0 (no failure) to 4; see kLevelNames.
+  /// Returns the severity, from 0 (no failure) to 4; see kLevelNames.
   int level() const {
     const double share = failure_share();
     return share <= 0 ? 0 : share < 0.01 ? 1 : share < 0.1 ? 2 : share < 0.5 ? 3 : 4;
@@ -145,7 +145,7 @@ inline CellSummary summarise(const Cell& cell) {
   return s;
 }
 
-/// Returns all families put to one method, as one cell.
+/// Returns the sum of a method's cells over all families.
 inline Cell sum_of_column(const Grid& grid, std::size_t method) {
   Cell sum;
   for (std::size_t f = 0; f < grid.families.size(); ++f) {
@@ -161,8 +161,8 @@ inline Cell sum_of_column(const Grid& grid, std::size_t method) {
   return sum;
 }
 
-/// Returns the grid as text: a row for each family; in each cell failures/answered and the dial setting from
-/// which on it fails; and what the columns mean.
+/// Returns the grid as text: a row per family; in each cell failures/answered and the lowest difficulty with
+/// a failure; then the meaning of the columns.
 std::string table(const Grid& grid);
 
 }  // namespace lrb::stability

@@ -22,14 +22,14 @@
 namespace lrb::stability {
 namespace {
 
-constexpr double kBruteForceTimeout = 120;  // seconds: brute force is slow, but never hangs
+constexpr double kBruteForceTimeout = 120;  // seconds; brute force is slow, but never hangs
 constexpr const char* kGivenFile = "/proc/self/fd/3";
 
 workers::Job::Clock::duration seconds(double s) {
   return std::chrono::duration_cast<workers::Job::Clock::duration>(std::chrono::duration<double>(s));
 }
 
-/// A file without a name: it disappears when nobody has it open, whatever happens.
+/// An unnamed file. It is deleted when its last descriptor is closed, even after a crash.
 class NamelessFile {
  public:
   NamelessFile() : file_(memfd_create("lrbscope-expected", MFD_CLOEXEC)) {
@@ -79,10 +79,10 @@ std::vector<std::string> command_of(const std::string& program, Quantity quantit
   return command;
 }
 
-/// What is known about one family while its jobs run.
+/// The state of one family while its jobs run.
 struct FamilyWork {
   std::string name;
-  NamelessFile expected;                      ///< a line for each case
+  NamelessFile expected;                      ///< one line per case
   std::vector<std::uint64_t> expected_pairs;  ///< number of pairs, by case
   bool expected_done = false;
   std::vector<std::vector<Record>> records;  ///< method by method
@@ -120,8 +120,8 @@ class Experiment {
     std::function<void()> on_done;
   };
 
-  /// Starts the next method of a family whose right answers are known, or finds the right answers to the next
-  /// family.
+  /// Starts the next method of a family with known right answers, or else the computation of the right
+  /// answers of the next family.
   bool start_one() {
     for (const auto& family : open_)
       if (family->expected_done && family->methods_begun < o_.methods.size()) {
@@ -185,7 +185,7 @@ class Experiment {
     notify(family.name + ", " + o_.methods[m].column.name);
   }
 
-  /// Hands over families in their order.
+  /// Passes on finished families in their order.
   void hand_over_finished() {
     while (!open_.empty() && open_.front()->methods_done == o_.methods.size()) {
       for (std::vector<Record>& r : open_.front()->records)

@@ -1,5 +1,5 @@
 #pragma once
-/// The stability experiment: puts every case to every method, in processes that may die or hang.
+/// The stability experiment: runs every method on every case, in worker processes that may crash or hang.
 
 #include <cstdint>
 #include <functional>
@@ -18,47 +18,47 @@
 namespace lrb::stability {
 
 struct ExperimentOptions {
-  Quantity quantity = Quantity::pairs;         ///< what is asked for; the methods are of workers that know it
-  std::vector<std::string> families;           ///< by name
+  Quantity quantity = Quantity::pairs;  ///< queried quantity; the workers of the methods must support it
+  std::vector<std::string> families;    ///< by name
   std::vector<workers::WorkerMethod> methods;  ///< absent ones are skipped
-  std::uint64_t cases = 1;                     ///< for each setting of the dial
+  std::uint64_t cases = 1;                     ///< per difficulty
   std::uint64_t seed = 1;
-  std::optional<int> dial;  ///< only this setting; nothing: all
-  unsigned jobs = 2;        ///< number of workers at a time
-  double timeout = 5;       ///< time in seconds that a method has for a case before it counts as hanging
+  std::optional<int> dial;  ///< only this difficulty; nullopt: all
+  unsigned jobs = 2;        ///< number of concurrent workers
+  double timeout = 5;       ///< time limit per case in seconds, after which a method counts as hanging
 };
 
 using ProgressFunction =
     std::function<void(std::uint64_t done, std::uint64_t total, const std::string& what)>;
 
-/// Returns one record for every method and case, in the order of families, methods, dial and case: the same,
-/// except for times, for any number of jobs. Finds a family's right answers once, by exact brute force.
-/// Throws EnvironmentError if a worker cannot work.
+/// Returns one record per method and case, in the order of families, methods, difficulty and case. Except for
+/// times the records do not depend on the number of jobs. The right answers of a family are computed once, by
+/// exact brute force. Throws EnvironmentError if a worker cannot run.
 std::vector<Record> run_experiment(const ExperimentOptions& options, const ProgressFunction& progress);
 
-/// One case again, in a process of its own.
+/// A single case, run again in its own process.
 struct Replay {
   Record record;
   std::vector<SimplexPair> expected;
-  std::optional<std::vector<SimplexPair>> answered;  ///< nothing: no answer, or one without a list
+  std::optional<std::vector<SimplexPair>> answered;  ///< nullopt: no answer, or one without a list of pairs
 };
 
 Replay replay(const workers::WorkerMethod& method, const std::string& family, int dial,
               std::uint64_t case_index, std::uint64_t seed, double timeout,
               Quantity quantity = Quantity::pairs);
 
-// Puts cases to one method.
+// Runs one method on cases.
 
 class StabilityRunner {
  public:
   /// The method must be present.
   explicit StabilityRunner(const methods::MethodEntry& entry) : info_(entry.info), method_(entry.make()) {}
 
-  /// Puts a case to the method and fills in outcome, counts, relations, time and message of the record; keeps
-  /// what the method answered.
+  /// Runs the method on a case. Sets outcome, counts, relations, time and message of the record, and stores
+  /// the answer.
   void ask(const cases::Family& family, const cases::Case& c, const RightAnswer& expected, Record& record);
 
-  /// Returns the pairs of the last ask(); nothing if there was no answer, or none that lists pairs.
+  /// Returns the pairs of the last ask(), or nullopt if there was no answer or it contains no list of pairs.
   const std::optional<std::vector<SimplexPair>>& pairs() const { return pairs_; }
 
  private:
@@ -72,7 +72,8 @@ class StabilityRunner {
 
   methods::MethodInfo info_;
   std::unique_ptr<methods::Method> method_;
-  std::map<std::pair<std::uint64_t, int>, BodyPointer> kept_;  ///< by hash and side: families share bodies
+  std::map<std::pair<std::uint64_t, int>, BodyPointer>
+      kept_;  ///< by hash and side, because families share bodies
   std::optional<std::vector<SimplexPair>> pairs_;
 };
 

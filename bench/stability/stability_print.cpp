@@ -13,11 +13,11 @@ namespace {
 
 namespace page = render::page;
 
-// ---- the grid. Units are those of one cell, x to the right, y up, with the first row's top at 0
+// ---- The grid. Units: one cell; x to the right, y up, the first row's top at 0.
 
 constexpr double kCellWidth = 17, kCellHeight = 10.5;  // millimetres
 constexpr double kLeft = 2.9, kBottom = 1.8;
-constexpr double kFont = 6.5, kSmall = 0.8, kLine = 0.24;  // points; share of it
+constexpr double kFont = 6.5, kSmall = 0.8, kLine = 0.24;  // points; fraction of kFont
 
 std::string colour(render::Rgba c) {
   return std::to_string((static_cast<unsigned>(c.r) << 16) + (static_cast<unsigned>(c.g) << 8) + c.b);
@@ -60,7 +60,7 @@ class Sheet {
   std::array<std::vector<std::string>, kStyles> texts_;
 };
 
-/// Breaks text at spaces, and at underscores where a word is longer than a line.
+/// Breaks text at spaces, and words longer than a line at underscores.
 std::vector<std::string> wrap(const std::string& text, std::size_t width) {
   std::vector<std::string> lines;
   std::istringstream in(text);
@@ -120,7 +120,7 @@ void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   mark(s.crashed, "\u2715");
   mark(s.timed_out, "\u25f7");
   mark(s.rejected, "\u2298");
-  // What does not fit beside the failures gets a line of its own.
+  // Marks that do not fit beside the failures get their own line.
   constexpr std::size_t kBeside = 14;  // bytes; a mark's sign has three
   sheet.text(x + 0.95, y + (failures.size() + marks.size() > kBeside ? 0.61 : 0.8), Sheet::small_right,
              marks);
@@ -145,8 +145,8 @@ void add_legend(Sheet& sheet, double y, double columns, const std::string& absen
   double x = -kLeft + 0.1;
   const auto item = [&](render::Rgba c, const std::string& text) {
     constexpr double kCharacter = 0.066;
-    const auto characters =
-        std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; });  // of UTF-8
+    const auto characters = std::count_if(
+        text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; });  // UTF-8 code points
     const double needed = 0.35 + kCharacter * static_cast<double>(characters) + 0.2;
     if (x + needed > columns) {
       x = -kLeft + 0.1;
@@ -168,7 +168,8 @@ void add_legend(Sheet& sheet, double y, double columns, const std::string& absen
   sheet.text(-kLeft + 0.1, y - 0.72, Sheet::small, absent, render::palette::kFaint);
 }
 
-/// The failures of each method by difficulty, in percent. The ends of the dial are below the axis.
+/// The failures of each method by difficulty, in percent. The meanings of the lowest and highest difficulty
+/// are below the axis.
 report::Chart profile(const Grid& grid, std::size_t family) {
   const FamilyRow& row = grid.families[family];
   report::Axis dial{"", false, -0.6, kDialSettings - 0.4};
@@ -181,7 +182,7 @@ report::Chart profile(const Grid& grid, std::size_t family) {
     if (!grid.methods[m].present) continue;
     const Cell& cell = grid.at(family, m);
     report::Series s{grid.methods[m].title, {}, {}};
-    // Points stand side by side where lines would hide each other.
+    // Points are shifted sideways so that lines do not hide each other.
     constexpr double kApart = 0.07;
     const double shift = kApart * (static_cast<double>(m) - static_cast<double>(grid.methods.size() - 1) / 2);
     for (std::size_t i = 0; i < kDialSettings; ++i) {

@@ -14,7 +14,7 @@
 namespace lrb::stability {
 namespace {
 
-/// Returns a difficulty, with its parameter if that is known: "7 of 0 to 10 (4e-13)".
+/// Returns a difficulty, with its parameter if known: "7 of 0 to 10 (4e-13)".
 std::string setting_words(const FamilyRow& family, int dial) {
   std::string out = std::to_string(dial) + " of 0 to " + std::to_string(kDialSettings - 1);
   if (!family.values.empty()) out += " (" + family.values[static_cast<std::size_t>(dial)] + ")";
@@ -58,7 +58,7 @@ report::GridCell page_cell(const Cell& cell, const FamilyRow& family, const std:
   return out;
 }
 
-/// Replaces everything but letters, digits and dashes.
+/// Replaces all characters except letters, digits and dashes.
 std::string plain(const std::string& text) {
   std::string out;
   for (const char c : text) out += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
@@ -132,7 +132,7 @@ report::Grid page_grid(const Grid& grid, const ReportOptions& options) {
   return out;
 }
 
-/// Returns the texts of a page about numbers.
+/// Returns the texts of a page about a number (distance, first contact or depth).
 std::vector<report::Text> texts_of_numbers(Quantity quantity) {
   const char* query =
       quantity == Quantity::distance ? "The distance between the surfaces of two bodies at two poses."

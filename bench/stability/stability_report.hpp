@@ -1,5 +1,5 @@
 #pragma once
-/// Reports the grid of families x methods to people: a page that opens from disk, and the same for print.
+/// Reports the grid of families x methods as a page that opens from disk, and as charts for print.
 
 #include <functional>
 #include <string>
@@ -11,29 +11,29 @@
 namespace lrb::stability {
 
 struct ReportOptions {
-  /// (|cells|) PNG of each cell's worst case, relative to the folder. An empty path, or an empty list: no
-  /// picture.
+  /// (|cells|) PNG of each cell's worst case, relative to the folder. No picture for an empty path or an
+  /// empty list.
   std::vector<std::string> pictures;
-  /// Returns the command that shows one case again; may be null.
+  /// Returns the command that runs one case again; may be null.
   std::function<std::string(const Record&)> command;
   std::vector<report::Link> links;  ///< such as one to the raw records
 };
 
-/// Writes index.html, and as .svg and .png stability (the grid) and stability-profiles (failures by
-/// difficulty, family by family). Without gnuplot it writes the page alone, and the document's notes say so.
-/// Throws InputError if the grid's arrays do not fit together, EnvironmentError if a file cannot be written.
+/// Writes index.html, and the charts stability (the grid) and stability-profiles (failures by difficulty, per
+/// family) as .svg and .png. Without gnuplot only the page is written, and the document's notes report it.
+/// Throws InputError if the sizes of the grid's arrays do not match, EnvironmentError if a file cannot be
+/// written.
 report::Document write_stability_report(const Grid& grid, const report::Folder& folder,
                                         const ReportOptions& options = {});
 
-/// The grid, and for each family a chart of failures by difficulty with a line for each method that is
-/// present.
+/// The grid, and for each family a chart of failures by difficulty with a line per present method.
 report::Gnuplot grid_chart(const Grid& grid);
 report::Gnuplot profile_chart(const Grid& grid);
 
 /// Returns the outcome of a case as text.
 std::string answer_text(const Record& r);
 
-/// Makes the page alone, with pictures read from the folder.
+/// Returns only the page, with pictures read from the folder.
 report::Document stability_page(const Grid& grid, const std::string& folder,
                                 const ReportOptions& options = {});
 

@@ -21,23 +21,24 @@ namespace lrb::stability {
 namespace {
 
 constexpr int kWidth = 1280, kHeight = 720, kGap = 4;
-/// Marks that take up a smaller share of the scene than this get a close-up.
+/// Marks whose combined size is a smaller fraction of the scene than this get a close-up,
 constexpr double kSmallShare = 0.25;
-/// So do marks all over the bodies, if each is smaller than this share.
+/// and so do widespread marks, if the smallest is smaller than this fraction.
 constexpr double kTiny = 0.04;
-/// The extent of a close-up, in sizes of what it is about.
+/// Extent of a close-up, relative to its subject.
 constexpr double kContext = 2.4;
-/// Bodies are cut where close-ups cannot see them any more, in extents of these.
+/// Bodies are clipped beyond the view of close-ups, at this distance in extents of the close-up.
 constexpr double kReach = 6;
 
-// ---- where to look
+// ---- Regions of interest
 
-/// Takes halves first: sums of the largest doubles overflow.
+/// Halves first: sums of the largest doubles overflow.
 Eigen::Vector3d middle_of(const Eigen::AlignedBox3d& box) {
   return box.min() / 2 + box.max() / 2;
 }
 
-/// Returns a box around where two simplices meet, or around the smaller one if they do not.
+/// Returns a box around the intersection of two simplices, or around the smaller one if their boxes are
+/// disjoint.
 Eigen::AlignedBox3d place_of(const CasePicture& s, const SimplexPair& p) {
   const Eigen::AlignedBox3d a = s.bodies[0].box(p.a), b = s.bodies[1].box(p.b);
   const Eigen::AlignedBox3d& smaller = diagonal(a) < diagonal(b) ? a : b;
@@ -75,8 +76,8 @@ std::optional<CloseUp> close_up(const CasePicture& s, const Verdict& verdict) {
   return std::nullopt;
 }
 
-/// Returns the direction from which the marks are seen best, by the sum of their areas in the picture, with
-/// some preference for the usual one.
+/// Returns the direction from which the projected area of the marks is largest, with some preference for the
+/// usual one.
 render::ViewDirection best_view(const CasePicture& s, const PictureFrame& frame) {
   const render::ViewDirection usual;
   std::vector<Eigen::Vector3d> areas;
@@ -105,7 +106,7 @@ render::ViewDirection best_view(const CasePicture& s, const PictureFrame& frame)
   return best;
 }
 
-// ---- pictures
+// ---- Pictures
 
 struct View {
   PictureFrame frame;
@@ -154,7 +155,7 @@ void write_caption(render::Image& image, const std::string& text) {
   render::default_font().draw(image, text, 10, 6, style);
 }
 
-/// Shows where the close-up lies in the whole: a frame in ink, never too small to see.
+/// Frames the location of the close-up in the view of the whole, at a minimum size.
 void frame_place(render::Image& image, const render::Camera& camera,
                  const std::vector<Eigen::Vector3d>& corners, const Eigen::AlignedBox3d& scene) {
   const render::Projection projection(camera, image.width(), image.height(), scene);
@@ -302,7 +303,7 @@ std::vector<std::string> draw_worst_cases(
                       text_of(r, method.title), folder + "/" + file, rasterizer);
       pictures[i] = file;
     } catch (const InputError&) {
-      // Coordinates that are not finite have no place in a picture; the record says what was asked.
+      // Coordinates that are not finite cannot be drawn; the record contains the parameters of the case.
     }
   }
   return pictures;

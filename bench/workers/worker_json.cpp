@@ -19,7 +19,7 @@ inline constexpr auto kFields<methods::MethodInfo> = std::tuple{
     field("rank", &methods::MethodInfo::rank)};
 
 static_assert(covers_all_fields<methods::MethodStyle>);
-// All but the traits, which have separate keys.
+// All members except the traits, which have separate keys.
 static_assert(kFieldCount<methods::MethodInfo> + 1 == detail::member_count<methods::MethodInfo>());
 
 }  // namespace lrb

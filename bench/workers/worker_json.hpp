@@ -1,5 +1,5 @@
 #pragma once
-/// Writes and reads a worker's description of its methods, one line for each.
+/// Writes and reads a worker's description of its methods, one per line.
 
 #include <exception>
 #include <string>
@@ -15,13 +15,13 @@
 namespace lrb::workers {
 
 nlohmann::ordered_json to_json(const methods::MethodInfo& info);
-/// Reads a line. Throws InputError that states what is wrong with it.
+/// Reads a line. Throws InputError, which describes the error in the line, if it is invalid.
 methods::MethodInfo method_info_from(const nlohmann::json& value);
 
 // Outcome of a query that a method rejects, or that ends with an exception.
 
 /// Calls ask(). Records an InputError as a rejection, and any other exception as a crash, with its message.
-/// Record: has a `message`, and an `outcome` that may be refused or crashed.
+/// Record: has a `message`, and an `outcome` with the enumerators `rejected` and `crashed`.
 template <class Record, class Ask>
 void note_failures(Record& record, Ask ask) {
   using Outcome = decltype(record.outcome);

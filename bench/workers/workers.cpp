@@ -18,7 +18,7 @@
 namespace lrb::workers {
 namespace {
 
-constexpr int kPatience = 3;  // consecutive cases on which a method may hang
+constexpr int kPatience = 3;  // number of consecutive time-outs after which a method is abandoned
 constexpr int kBadInput = 2;  // an exit code that does not count as a crash
 
 std::string how_it_ended(int status) {

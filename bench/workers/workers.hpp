@@ -12,11 +12,11 @@
 
 namespace lrb::workers {
 
-// Runs the cases of one family with one method, or with exact brute force, in a chain of worker processes: if
-// one dies or hangs, the next begins after its current case. If several consecutive cases hang, the remaining
-// ones are skipped and count as time-outs, so that the run ends in bounded time.
+// Runs the cases of one family with one method, or with exact brute force, in a sequence of worker processes.
+// If one crashes or hangs, the next continues after its current case. If several consecutive cases hang, the
+// remaining ones are skipped and count as time-outs, so that the running time is bounded.
 
-/// What ended a worker before its work was done.
+/// The reason why a worker ended before its work was complete.
 struct WorkerFailure {
   bool timed_out = false;
   std::string message;
@@ -30,7 +30,7 @@ class Job {
     std::vector<std::string> command;  ///< without --begin and --end
     std::uint64_t begin = 0, end = 0;  ///< cases
     int given = -1;                    ///< file descriptor passed to the worker, see Child
-    Clock::duration limit{};           ///< for one case
+    Clock::duration limit{};           ///< per case
     /// Called in order for each case, with its line or the failure in its place.
     std::function<void(std::uint64_t k, const std::string& line)> on_line;
     std::function<void(std::uint64_t k, const WorkerFailure& mishap)> on_mishap;
@@ -76,10 +76,10 @@ struct WorkerMethod {
 /// Queries the workers in the folder of the running program, or in the folder named by the environment
 /// variable LRBSCOPE_METHODS. Throws EnvironmentError if there is no worker or one does not answer.
 std::vector<WorkerMethod> find_all_methods();
-/// Returns those that take part in the stability experiment.
+/// Returns the methods of the stability experiment.
 std::vector<WorkerMethod> find_methods();
 
-/// Returns those that answer with a number. Throws EnvironmentError if their worker is missing.
+/// Returns the methods that return a number. Throws EnvironmentError if their worker is missing.
 std::vector<WorkerMethod> find_number_methods(methods::Quantity quantity);
 /// Returns the path of that worker. Throws EnvironmentError if it is missing.
 std::string number_worker();

@@ -47,7 +47,7 @@ std::vector<std::uint32_t> leaves_of(const trace::TreeShape& tree) {
 struct Visit {
   std::size_t parent = kNone;  ///< index of a visit; kNone: the first pair
   std::optional<NodeStep> step;
-  std::uint8_t children = 0;  ///< pairs descended into from it
+  std::uint8_t children = 0;  ///< number of child pairs visited from it
   static constexpr std::size_t kNone = ~std::size_t{0};
 };
 
@@ -59,7 +59,7 @@ class Descent {
         parents_{parents_of(trees[0]), parents_of(trees[1])},
         leaves_{leaves_of(trees[0]), leaves_of(trees[1])} {}
 
-  /// Returns a visit for each event; those of leaf tests are unused.
+  /// Returns a visit for each event; visits of leaf tests are unused.
   std::vector<Visit> visits_of(const std::vector<ForeignEvent>& events) {
     std::vector<Visit> out(events.size());
     visited_.clear();
@@ -80,7 +80,7 @@ class Descent {
  private:
   static std::uint64_t key(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
 
-  /// Finds the predecessor of visit i, of nodes a and b.
+  /// Links visit i, of nodes a and b, to its predecessor.
   void lead(std::uint32_t a, std::uint32_t b, std::size_t i, std::vector<Visit>& out) const {
     const std::uint32_t up_a = parents_[0][a], up_b = parents_[1][b];
     const struct {

@@ -1,6 +1,6 @@
 #pragma once
 /// The traversal of another engine for the collision query of two bodies, recorded inside that engine by a
-/// separate program (worker_programs/xray_*.cpp).
+/// separate program (bench/programs/xray_*.cpp).
 
 #include <array>
 #include <cstdint>
@@ -43,7 +43,7 @@ struct PosePair {
 ForeignWalk walk_of(const std::string& engine, const LrbRep& a, const LrbRep& b,
                     std::span<const PosePair> poses);
 
-// Another engine's traversal as a recorded run, so that all pictures and statistics work for it as well.
+// Another engine's traversal as a recorded run, so that all pictures and statistics apply to it.
 
 /// Returns a recording of the traversal at the steps of `ours`, with its bodies. The results are those of
 /// `ours`, so that pictures show the actual intersections; the other engine's answer is in the trace. A pair

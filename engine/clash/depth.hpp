@@ -17,7 +17,7 @@ namespace lrb::penetration {
 class DepthFinder {
  public:
   /// `query`: begun with the bodies, which must be closed. `result`: all pairs of intersecting simplices.
-  /// teller: null, or notified of bounds on the depth.
+  /// adapter: null, or notified of bounds on the depth.
   DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies,
               SeparationSearch& penetration, BoundsProbeAdapter* adapter = nullptr);
 
@@ -56,9 +56,9 @@ class DepthFinder {
   const UnitBodies& bodies_;
   SeparationSearch& separation_search_;
   BoundsProbeAdapter* adapter_;
-  double reported_lower_ = 0;                  ///< lower bound on the depth, world units; only with a teller
-  std::uint64_t grown_ = 0;                    ///< number of expansion steps; only with a teller
-  std::optional<ConvexPoints> whole_[2];       ///< the set of a convex body
+  double reported_lower_ = 0;             ///< lower bound on the depth, world units; only with an adapter
+  std::uint64_t grown_ = 0;               ///< number of expansion steps; only with an adapter
+  std::optional<ConvexPoints> whole_[2];  ///< the set of a convex body
   std::optional<SurfaceDistance> surface_[2];  ///< built on first use
   std::vector<Vector3d> common_;               ///< points of both bodies at their poses, the deepest first
 };

@@ -28,8 +28,8 @@ class OverlapProof {
   /// which must be less than 2 and should be slightly above the depth. Returns false if no point is in both
   /// bodies.
   bool begin(const std::vector<Vector3d>& common, double most);
-  /// Continues until about `max_points` more points have been tried, or nothing more can be proven. Returns
-  /// the number of points tried.
+  /// Continues until about `max_points` more points have been tried, or no larger bound can be proven.
+  /// Returns the number of points tried.
   unsigned grow(unsigned max_points);
   /// Returns a proven lower bound: after all shorter translations of B the interiors overlap.
   double lower() const { return lower_; }

@@ -73,7 +73,7 @@ class SimpleCut {
 /// A face that intersects the other surface is cut into cells by it. Each cell is inside, outside or on the
 /// other solid. Cells and uncut faces belong to the same piece if they share a part of an edge that is not on
 /// the other surface: edges are cut where they intersect it, and one point of each part decides.
-/// only_rational: cut all faces in rational arithmetic, not only those that are not simple; the result is the
+/// only_rational: cut all faces in rational arithmetic, and not only non-simple faces; the result is the
 /// same.
 std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context, const CollideResult& result,
                                                            bool only_rational = false,

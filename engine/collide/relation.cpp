@@ -25,8 +25,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// The direction of a ray: along a world axis, or opposite to it. The parity of crossings is the same for
-/// all.
+/// The direction of a ray: along a world axis, or opposite to it. All directions give the same parity of
+/// crossings.
 struct Direction {
   int axis = 0;
   bool backward = false;

@@ -104,8 +104,8 @@ bool measure_cap(const HullLoops& hull, ChainCap& cap, double most);
 double off_of(const HullLoops& hull, const ChainCap& cap);
 
 /// Returns CapVerdict::stands if, exactly, the cap intersects the front and the chain only in the chain's
-/// ends, leaves these ends between the chain and its neighbours on the outer side, and no other component is
-/// beneath it; otherwise returns the obstacle. `boxes` (components).
+/// ends, leaves these ends between the chain and its neighbours on the outer side, and does not enclose
+/// another component; otherwise returns the obstacle. `boxes` (components).
 CapVerdict judge_chain_cap(const HullLoops& hull, const AabbTree& tree, const ChainCap& cap,
                            std::span<const Eigen::AlignedBox3d> boxes);
 

@@ -31,7 +31,7 @@ Workers::Workers(unsigned threads)
 Workers::~Workers() = default;
 
 void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsigned)>& work) {
-  // Single thread: a plain loop. The first exception ends it, which is that of the lowest index.
+  // Single thread: a plain loop, which ends at the first exception, that is, at the lowest failing index.
   if (!pool_ || n < 2) {
     for (std::size_t i = 0; i < n; ++i) work(i, 0);
     return;

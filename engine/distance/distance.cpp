@@ -33,7 +33,7 @@ class WorldWalk {
   WorldWalk(QueryContext& ctx, NearestPairs& found);
 
   /// Returns true if the traversal was completed or the request is answered, false after `max_steps` steps
-  /// (0: no limit). teller: null, or notified of bounds.
+  /// (0: no limit). adapter: null, or notified of bounds.
   bool run(std::uint64_t max_steps, BoundsProbeAdapter* adapter);
   /// Returns a lower bound on the distances of all unmeasured pairs.
   double rest() const;

@@ -80,7 +80,7 @@ class FloatWalk {
   FloatWalk(DistanceContext& context, NearestPairs& found, const DistanceRequest& request,
             const TreeKernel& tree, double unit, bool descend, FarPairs* far);
 
-  /// Returns true if the traversal was completed, or if the surfaces were found to intersect. teller: null,
+  /// Returns true if the traversal was completed, or if the surfaces were found to intersect. adapter: null,
   /// or notified of bounds.
   bool run(BoundsProbeAdapter* adapter);
   /// Measures the pairs that may be the closest. Returns a lower bound on the distances of all others.

@@ -1,8 +1,8 @@
-// The intersection of two triangles of which at least one has no area. All in rational arithmetic, because
+// The intersection of two triangles, at least one of which has no area. All in rational arithmetic, because
 // such pairs are rare.
 // 1. Replace each triangle by its convex hull: a triangle, a segment or a point. Test these exactly.
+// 2. Clip the hull of smaller dimension, a segment or a point, to the other one.
 // 3. Return the end points of the remaining part, each with the features that contain it.
-// 3. Return the ends of the part that is left, each with the features on which it lies.
 
 #include <algorithm>
 #include <utility>

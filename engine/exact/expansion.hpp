@@ -159,7 +159,7 @@ Expansion<4 * M> product(const Expansion<M>& e, const Expansion<2>& f) {
 }
 
 // Determinants in 64-bit fixed point: exact, almost branch-free, and about ten times faster than expansions.
-// For points whose coordinates share an exponent range, as those of neighbouring faces nearly always do.
+// For points whose coordinates share an exponent range, which is true for nearly all neighbouring faces.
 
 __extension__ using Int128 = __int128;
 __extension__ using UInt128 = unsigned __int128;

@@ -4,7 +4,7 @@
 // 1. Reject faces whose bounding box the ray misses.
 // 2. Project along x: sides of the point relative to the three edges. Strictly on both sides: a miss.
 // 3. Test exactly whether the point is on the face.
-// 4. Replace zero sides by those of the perturbed point. All equal: the ray's line crosses the face.
+// 4. Replace zero sides by the sides of the perturbed point. All equal: the ray's line crosses the face.
 // 5. The side of the plane decides whether the crossing is ahead of the origin or behind it.
 
 #include "engine/exact/locate.hpp"

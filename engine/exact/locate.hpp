@@ -64,7 +64,7 @@ std::optional<std::vector<RationalPoint>> sample_cells(const double* const tri[3
                                                        std::span<const std::array<const double*, 3>> others,
                                                        std::size_t limit);
 
-/// Returns the same for a 2D segment, cut by points (and by the ends of segments that overlap it).
+/// The 2D version: a segment, cut by points (and by the ends of segments that overlap it).
 std::optional<std::vector<RationalPoint>> sample_cells_2d(
     const double* const seg[2], std::span<const std::array<const double*, 2>> others, std::size_t limit);
 

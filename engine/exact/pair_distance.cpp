@@ -121,7 +121,7 @@ class Pair {
 
   /// `spot`: on the simplex of `side`; `other`: on the other one.
   void see(Fraction square, int side, ClosestFeature spot, ClosestFeature other) {
-    // Of equal distances the first one is kept, so that the result is reproducible.
+    // Keeps the first of equal distances, so that the result is reproducible.
     if (found_ && !less(square, nearest_.square)) return;
     found_ = true;
     nearest_.square = std::move(square);

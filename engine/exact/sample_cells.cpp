@@ -206,8 +206,8 @@ class Slabs {
   bool whole() const { return whole_; }
 
   /// Returns the first gap of the cell that borders on the cut `edge` (an edge of the triangle) at a point
-  /// that is on no other cut. Near such a point there is only one cell, and every slab that reaches the point
-  /// has a gap of it along the edge; a vertical edge bounds the first slab or the last.
+  /// that is not on other cuts. Near such a point there is only one cell, and every slab that reaches the
+  /// point has a gap of it along the edge; a vertical edge bounds the first slab or the last.
   std::size_t gap_beside(std::size_t edge, const Planar& p) const {
     const bool vertical = cuts_[edge].is_vertical();
     // Find a slab that contains p, then the gap of that slab that touches the edge at p.

@@ -40,7 +40,7 @@ inline void append(PairContact& r, const ContactCorner& c) {
 /// Intersects two coplanar triangles with area: a polygon, a segment, a point or nothing.
 PairContact contact_in_plane(const double* const a[3], const double* const b[3]);
 
-/// Intersects two triangles of which at least one has no area: a segment, a point or nothing.
+/// Intersects two triangles, at least one of which has no area: a segment, a point or nothing.
 PairContact contact_of_degenerate(const double* const a[3], const double* const b[3]);
 
 // Coplanar triangles, and triangles with collinear corners.

@@ -179,7 +179,7 @@ class FacePairs {
   FacePairs& operator=(const FacePairs&) = delete;
 
   /// Calls visit(f, g), f < g, once for each pair of faces with intersecting AABBs, except for pairs proven
-  /// to share nothing but perhaps one corner by index. In unspecified order, and concurrently if `workers`
+  /// to intersect at most in one corner shared by index. In unspecified order, and concurrently if `workers`
   /// has several threads.
   void for_each(const Visit& visit, Workers& workers) const;
 

@@ -1,6 +1,6 @@
 // Merging of coincident vertices along open edges:
 // 1. Find the first vertex at each position. Sort the sides of faces by the positions of their ends.
-// 2. A side is open if no other side at the same positions has the same (merged) vertices.
+// 2. A side is open if all other sides at the same positions have different (merged) vertices.
 // 3. Merge the ends of open sides that match one to one in opposite directions, until nothing changes.
 // 4. Then merge all open sides at each position once. If that changed anything, return to step 3.
 // 5. Replace each merged vertex by the smallest of its set.

@@ -50,7 +50,7 @@ bool cover_each_other(const double* const a[3], const double* const b[3]) {
 }
 
 bool overlap_3d(const double* const a[3], const double* const b[3]) {
-  // If some corner of b is off the plane of a, only a proper crossing counts as overlap.
+  // If some corner of b is not in the plane of a, only a proper crossing counts as overlap.
   for (int k = 0; k < 3; ++k)
     if (exact::orient3d(a[0], a[1], a[2], b[k]) != 0)
       return exact::meet_triangles(a, b) == exact::Meet::cross;

@@ -31,9 +31,9 @@ void find_crossings(const Mesh& mesh, const std::vector<FaceUse>& use,
                     const std::function<bool(FaceId, FaceId)>& wanted,
                     const std::function<void(FaceId, FaceId)>& found);
 
-/// The same for faces that cross, or that overlap in one plane with the same orientation. A solid that
-/// overlaps itself has such faces; one that only touches itself has none. (An overlap without such faces is
-/// not found: its parts would have to pass exactly through each other's boundaries everywhere.)
+/// As above, for faces that cross, or that overlap in one plane with the same orientation. A solid that
+/// overlaps itself has such faces; a solid that only touches itself does not. (An overlap without such faces
+/// is not found: its parts would have to pass exactly through each other's boundaries everywhere.)
 void find_overlaps(const Mesh& mesh, const std::vector<FaceUse>& use,
                    const std::function<bool(FaceId, FaceId)>& wanted,
                    const std::function<void(FaceId, FaceId)>& found);

@@ -30,8 +30,8 @@ class FirstAtPosition {
   explicit FirstAtPosition(std::span<const Eigen::Vector3d> points)
       : points_(points), slots_(std::bit_ceil(2 * points.size() + 1), kNull) {}
 
-  /// Returns the first vertex at the position of v among those passed so far, which is v itself if there is
-  /// no other. Points with a NaN equal none. Pass each vertex once.
+  /// Returns the first vertex at the position of v among those passed so far, or v itself if it is the first.
+  /// A point with a NaN differs from all others. Pass each vertex once.
   VertexId operator()(VertexId v) {
     const Eigen::Vector3d& x = points_[v];
     if (x.hasNaN()) return v;

@@ -359,8 +359,8 @@ inline void test_stack(TreeKernel& k) {
 template <class Walk>
 void run_tested(TreeKernel& k, std::uint64_t end) {
   while (k.stack_size + k.tested_size != 0 && may_go_on(k, end)) {
-    // Test if a batch is complete or there is nothing else to do. Otherwise expand a tested pair, which may
-    // push more.
+    // Test if a batch is complete or no tested pair is left. Otherwise expand a tested pair, which may push
+    // more.
     if (k.stack_size - k.base >= 8 || k.tested_size == 0) {
       test_stack(k);
     } else {

@@ -47,7 +47,8 @@ struct PairKernel {
   float sweep_turn, margin;
 };
 
-/// Runs the kernel with the instruction set of run_tree_kernel(). The result is the same for each.
+/// Runs the kernel with the instruction set of run_tree_kernel(). The result does not depend on the
+/// instruction set.
 void run_pair_kernel(const PairKernel& k);
 
 }  // namespace lrb

@@ -31,7 +31,7 @@ enum class Certainty : std::uint8_t {
 /// A pair of real simplices that boxes and planes could not prove disjoint.
 struct Candidate {
   SimplexId a, b;
-  Certainty certainty;  ///< none if there is a margin
+  Certainty certainty;  ///< Certainty::none with a margin
   // For touch_if_shared:
   Side side;             ///< the body to whose simplex the corners belong
   std::uint8_t corners;  ///< bit k: corner k

@@ -2,8 +2,8 @@
 // plain loops over plain arrays: if a library's inline function were compiled here for a newer processor, the
 // linker could select that copy for the entire program.
 //
-// The floating-point operations are the same for every instruction set and are not contracted, so that
-// counters and traces do not depend on the processor.
+// All instruction sets perform the same floating-point operations, which are not contracted, so that counters
+// and traces do not depend on the processor.
 
 #include "engine/tree/kernel_walk.inl"
 

@@ -11,8 +11,8 @@ False
 >>> m.in_collision_internal(return_names=True)
 (True, {('left', 'right')})
 
-Objects collide if their surfaces intersect, or if one is inside another that is a solid. Contacts are where
-surfaces intersect; an object inside another has none. Distances are those of the solids, 0 if objects collide.
+Objects collide if their surfaces intersect, or if one is inside another that is a solid. Only intersecting
+surfaces have contacts, not an object inside another. Distances refer to the solids, 0 if objects collide.
 """
 
 from __future__ import annotations
@@ -118,8 +118,8 @@ class _BodyCache:
         self._bodies: OrderedDict[Any, Body] = OrderedDict()
 
     def body(self, mesh: _Mesh) -> Body:
-        """Return the body of an object with `vertices` and `faces`; without regions, which no answer of this
-        module needs.
+        """Return the body of an object with `vertices` and `faces`, without regions, which this module does not
+        use.
         """
         if isinstance(mesh, _core.Body):
             return mesh
@@ -157,7 +157,7 @@ def _face_normal(body: Body, pose: _Floats, face: int) -> _Floats:
 
 
 def contacts_of(result: Result, body: Body, pose: _Floats) -> Iterator[tuple[int, _Floats, _Floats, float]]:
-    """Yield (pair's number, point, normal, depth) for each pair of a result with contacts. body, pose: A."""
+    """Yield (index of the pair, point, normal, depth) for each pair of a result with contacts. body, pose: A."""
     points, pair_of_point = result.points
     middles = np.zeros((len(result.pairs), 3))
     np.add.at(middles, pair_of_point, points)
@@ -178,8 +178,8 @@ def _contact_data(names: _Names, result: Result, body: Body, pose: _Floats) -> _
 
 
 def _answer(first: Any, *rest: tuple[bool, Any]) -> Any:
-    """Return the requested values: `first` alone, or followed by the wanted ones of `rest`, (wanted, value)
-    each.
+    """Return the requested values: `first` alone, or followed by the values of `rest`, a list of
+    (wanted, value), that are wanted.
     """
     more = tuple(value for wanted, value in rest if wanted)
     return (first, *more) if more else first
@@ -194,7 +194,7 @@ def _sorted_names(names: _Names) -> _Names:
 
 
 class CollisionManager:
-    """Named objects: which of them collide and which are close. Accepts any object with `vertices` and
+    """Collisions and distances of named objects. Accepts any object with `vertices` and
     `faces`, or a Body. The objects are bodies of a Scene.
     """
 

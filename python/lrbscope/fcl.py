@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     _DistanceCallback = Callable[["CollisionObject", "CollisionObject", Any], tuple[bool, float]]
 
 facets: int = 64
-"""int: the number of facets around the axis of shapes made from now on."""
+"""int: the number of facets around the axis, for shapes made afterwards."""
 
 
 class Unsupported(NotImplementedError):
@@ -48,14 +48,14 @@ class Unsupported(NotImplementedError):
 
 
 class GJKSolverType(enum.IntEnum):
-    """Which solver FCL uses; has no effect here."""
+    """The solver of FCL; has no effect here."""
 
     GST_LIBCCD = 0
     GST_INDEP = 1
 
 
 class CCDMotionType(enum.IntEnum):
-    """How objects move between two poses."""
+    """The motion of objects between two poses."""
 
     CCDM_TRANS = 0
     CCDM_LINEAR = 1
@@ -64,7 +64,7 @@ class CCDMotionType(enum.IntEnum):
 
 
 class CCDSolverType(enum.IntEnum):
-    """Which solver FCL uses; has no effect here."""
+    """The solver of FCL; has no effect here."""
 
     CCDC_NAIVE = 0
     CCDC_CONSERVATIVE_ADVANCEMENT = 1
@@ -232,7 +232,7 @@ class BVHModel(CollisionGeometry):
         return self._state
 
     def beginModel(self, num_tris_: int = 0, num_vertices_: int = 0) -> int:
-        """Start a new model. The numbers are not needed. Returns 0."""
+        """Start a new model. The arguments have no effect. Returns 0."""
         self._state, self._vertices, self._triangles, self._made = 1, [], [], None
         return 0
 
@@ -403,7 +403,7 @@ class Capsule(CollisionGeometry):
 
 
 class Cone(CollisionGeometry):
-    """A cone of height lz along z, base down, the middle of its height at the origin."""
+    """A cone of height lz along z, base down, with the midpoint of its axis at the origin."""
 
     _node_type = 13
     _object_type = 2
@@ -542,7 +542,7 @@ class Contact:
 
 
 class CostSource:
-    """Never made: costs are not supported."""
+    """Never created: costs are not supported."""
 
 
 class CollisionRequest:
@@ -657,7 +657,7 @@ def _contact(o1: CollisionObject, o2: CollisionObject, b1: int = -1, b2: int = -
 def _contacts(o1: CollisionObject, o2: CollisionObject, result: Result, full: bool) -> Iterator[Contact]:
     """Yield a Contact for each pair of triangles.
 
-    If one object is a shape, for each triangle of the other; for two shapes, for each contact region.
+    If one object is a shape: for each triangle of the other. For two shapes: for each contact region.
     """
     found: Iterable[tuple[int, Any, Any, float]] = ((i, None, None, 0.0) for i in range(len(result.pairs)))
     if full:
@@ -684,7 +684,7 @@ def collide(
     request: CollisionRequest | None = None,
     result: CollisionResult | None = None,
 ) -> int:
-    """Find whether and where two objects collide. Returns the number of contacts; adds to `result`."""
+    """Find the contacts of two objects. Returns their number; adds them to `result`."""
     request = CollisionRequest() if request is None else request
     result = CollisionResult() if result is None else result
     many = request.num_max_contacts > 1 or request.enable_contact

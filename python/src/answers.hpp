@@ -38,8 +38,7 @@ bool in_contact(const CollideResult& r);
 /// Returns an index as Python counts, from the end if negative. Throws IndexError if it is out of range.
 std::size_t checked_index(py::ssize_t i, std::size_t n);
 
-/// Gives a list-like class an iterator, without which type checkers and isinstance() do not accept it as
-/// iterable.
+/// Adds an iterator to a list-like class. Type checkers and isinstance() require one for iterables.
 template <class Class>
 void bind_iterator(Class& c) {
   c.def("__iter__", [](const py::object& self) {

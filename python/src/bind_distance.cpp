@@ -159,7 +159,7 @@ py::array_t<double> points_of(const DistanceResult& r) {
   return out;
 }
 
-/// Returns an id as a Python int, or None if there is none.
+/// Returns an id as a Python int, or None for kNull.
 template <class Id>
 py::object id_of(Id id) {
   if (id == kNull) return py::none();

@@ -47,7 +47,7 @@ RecordedPtr trace_of(py::handle a, py::handle b, py::handle poses_b, py::handle 
   trace::RecorderSettings settings;
   const py::none no;
   settings.request = request_of({mode, no, no, tolerance, max_tests, no, separation, no, recursion});
-  // Pictures show contacts; a request for less than all pairs has none.
+  // Pictures show contacts, which only a request for all pairs returns.
   settings.request.contacts =
       flag(contacts, "contacts", settings.request.mode == Mode::all_pairs && !settings.request.is_coarse());
   settings.level = word(events, "events", settings.level);

@@ -70,7 +70,7 @@ py::array_t<bool> real_of(const BodyWrapper& w) {
   return out;
 }
 
-/// Returns the region that the wrapper has behind a face of its boundary, on either side; else None.
+/// Returns the wrapper's region behind a face of its boundary, on either side, or None.
 py::object region_behind(const BodyWrapper& w, py::handle given) {
   const FaceId f = face(w, given);
   const LrbRep& rep = w.body->rep();

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A detail smaller than this share of the bodies gets a close-up.
+/// A detail smaller than this fraction of the bodies gets a close-up.
 constexpr double kSmall = 0.12;
 constexpr int kGhosts = 4;
 
@@ -43,7 +43,7 @@ std::string digits(double value) {
   return io::number_text(value, 9);
 }
 
-/// The picture of an answer: the whole and, if its subject is small, a close-up on its right.
+/// The picture of an answer: the whole and, if its subject is small, a close-up to the right.
 struct AnswerPicture {
   AnswerPicture(const PosedBodies& posed, std::span<const ContactRegion> contacts = {})
       : bodies(posed), scene(scene_of(posed, contacts)) {
@@ -56,7 +56,7 @@ struct AnswerPicture {
     for (const Vector3d& x : real_corners(rep, pose)) whole.push_back(x);
   }
 
-  /// Draws B at another pose, translucent, under the rest of the list.
+  /// Draws B at another pose, translucent, below the rest of the list.
   void add_ghost(const Pose& pose, std::uint8_t alpha) {
     SceneBody body = bodies.in_scene()[1];
     body.pose = pose;
@@ -77,7 +77,7 @@ struct AnswerPicture {
     scene.key.push_back({Mark::point, palette::kContact, what});
   }
 
-  /// Draws the path of B's centre up to a time.
+  /// Draws the path of B's centre from t = 0 to a given time.
   void add_path(const Motion& motion, double until) {
     constexpr int kPieces = 64;
     const Vector3d centre = bounds(body_points(bodies.b, {})).center();
@@ -116,9 +116,9 @@ struct AnswerPicture {
   PosedBodies bodies;
   Scene scene;
   Overlay overlay;
-  std::vector<Vector3d> whole;         ///< all that the picture shows
+  std::vector<Vector3d> whole;         ///< all points that the picture shows
   std::vector<Vector3d> detail;        ///< its subject; may be empty
-  Vector3d across = Vector3d::Zero();  ///< a direction that is seen from the side; 0: none
+  Vector3d across = Vector3d::Zero();  ///< a direction to show from the side; 0: none
 
  private:
   CameraFit close_up(const FitOptions& fit) const {
@@ -220,8 +220,8 @@ Look screen_of(int width, int height) {
   return look;
 }
 
-/// Returns a direction from which both faces are seen from their fronts; if they face opposite ways, A's from
-/// its front and B's from its back.
+/// Returns a direction that shows the fronts of both faces. For faces with opposite normals it shows A's
+/// front and B's back.
 ViewDirection onto_both(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
   constexpr double kOpposite = 0.5;  // of unit normals' sum
   const Vector3d of_a = (a[1] - a[0]).cross(a[2] - a[0]).stableNormalized(),
@@ -235,7 +235,8 @@ ViewDirection onto_both(const std::vector<Vector3d>& a, const std::vector<Vector
   return out;
 }
 
-/// Adds a square of the plane across the segment between two points, at its midpoint. `side`: its length.
+/// Adds a square of the plane perpendicular to the segment between two points, at its midpoint. `side`: its
+/// length.
 void add_plane(DrawList& list, const std::array<Vector3d, 2>& nearest, double side) {
   const Vector3d normal = (nearest[1] - nearest[0]).normalized(), u = normal.unitOrthogonal() * (side / 2);
   const Vector3d v = normal.cross(u), middle = (nearest[0] + nearest[1]) / 2;
@@ -257,7 +258,7 @@ Image picture_of(const PairExplanation& pair, const PosedBodies& bodies) {
   Scene scene = build_scene(named, highlight);
   outline(scene.list, of_a, palette::edge_of(palette::body(Side::a)), 3);
   outline(scene.list, of_b, palette::edge_of(palette::body(Side::b)), 3);
-  // The contact's corners, or the closest points, and what they span.
+  // The contact's corners, or the closest points, with the segment, polygon or plane between them.
   std::vector<Vector3d> points(pair.nearest.begin(), pair.nearest.end());
   if (!apart) points.clear();
   for (int i = 0; i < pair.contact.corner_count && !apart; ++i) points.push_back(pair.contact.corners[i].x);
@@ -289,8 +290,7 @@ Image picture_of(const PairExplanation& pair, const PosedBodies& bodies) {
 
 namespace {
 
-/// Returns the points that a close-up shows: the points of both bodies that are closest to the plane, or both
-/// boxes.
+/// Returns the points of a close-up: the points of both bodies that are closest to the plane, or both boxes.
 std::vector<Vector3d> close_points(const WalkExplanation& walk) {
   if (walk.plane) return {walk.plane->reach.begin(), walk.plane->reach.end()};
   std::vector<Vector3d> out;
@@ -301,7 +301,7 @@ std::vector<Vector3d> close_points(const WalkExplanation& walk) {
   return out;
 }
 
-/// Returns a camera close by that looks along the plane, so that the gap is visible.
+/// Returns a close camera that looks along the plane, so that the gap is visible.
 CameraFit camera_along(const WalkExplanation& walk, const Square& square, int dim,
                        const Eigen::AlignedBox3d& whole) {
   constexpr double kContext = 1.5, kLeast = 0.03;

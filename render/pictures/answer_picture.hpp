@@ -10,10 +10,10 @@
 
 namespace lrb::run {
 
-// `look` sets the size and the direction that points up. EnvironmentError if this machine cannot draw.
+// `look` sets the size and the up direction. All throw EnvironmentError if this machine cannot render.
 
-/// Draws both bodies with the segment between their closest points and its length; beside it, if it is short,
-/// a close-up.
+/// Draws both bodies with the segment between their closest points and its length, and a close-up of the
+/// segment if it is short.
 render::Image picture_of(const DistanceResult& result, const PosedBodies& bodies, const render::Look& look);
 
 /// Draws both bodies at their first contact, B at earlier times as ghosts, and the path of B's centre.
@@ -21,22 +21,22 @@ render::Image picture_of(const DistanceResult& result, const PosedBodies& bodies
 render::Image picture_of(const FirstContactResult& result, const LrbRep& a, const LrbRep& b,
                          const Motion& motion_b, const render::Look& look);
 
-/// Draws both solids with their contacts and the separation vector of B, and as a ghost B moved by it. The
-/// title is the kind of contact.
+/// Draws both solids with their contacts and the separation vector of B, and B translated by it as a ghost.
+/// The title is the kind of contact.
 render::Image picture_of(const ClashResult& result, const PosedBodies& bodies, const render::Look& look);
 
 /// Draws two faces and the bodies around them: their intersection, or the segment between their closest
-/// points and a separating plane across it.
+/// points and a separating plane perpendicular to it.
 render::Image picture_of(const PairExplanation& pair, const PosedBodies& bodies);
 
-/// Draws both bodies with the separating plane or boxes, and beside the whole a close-up along the plane.
+/// Draws both bodies with the separating plane or boxes, and a close-up along the plane.
 render::Image picture_of(const WalkExplanation& walk, const PosedBodies& bodies);
 
-/// Draws two separate bodies under the wrappers that prove it: outermost wrappers in panel (a), refined as
-/// far as was needed in panel (b).
+/// Draws two separate bodies below the wrappers that prove it: outermost wrappers in panel (a), refined as
+/// far as needed in panel (b).
 render::Image picture_of(const Separation& separation, const PosedBodies& bodies);
 
-/// The size of the pictures of the first three, unless `look` has another.
+/// The size of the first three pictures, unless `look` sets another.
 inline constexpr int kAnswerWidth = 1200, kAnswerHeight = 750;
 
 }  // namespace lrb::run

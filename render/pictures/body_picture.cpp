@@ -30,7 +30,7 @@ Image body_sheet(const LrbRep& rep, const Look& look) {
   options.style = look.style;
   options.scale = static_cast<float>(look.scale()) * style_of(look.style).weight;
   std::vector<Panel> panels;
-  // Layers [0, hidden) are included: none is the body itself, all is the outermost wrapper.
+  // Includes layers [0, hidden): no layer is the body itself, all layers are the outermost wrapper.
   for (const std::size_t hidden : evenly(rep.layer_count() + std::size_t{1}, kMaxPanels)) {
     Wrapper wrapper(rep);
     for (RegionId r = 0; r < rep.region_count(); ++r)
@@ -48,15 +48,15 @@ Image body_sheet(const LrbRep& rep, const Look& look) {
 
 namespace {
 
-constexpr double kAround = 1.25;    // extent of a close-up, in sizes of the region
-constexpr double kMinShown = 0.02;  // of the body's size, however small the region
-constexpr double kTilt = 0.45;      // share of the usual direction, added to the outlook of the lids
+constexpr double kAround = 1.25;    // extent of a close-up, relative to the region
+constexpr double kMinShown = 0.02;  // minimum extent of a close-up, relative to the body
+constexpr double kTilt = 0.45;      // weight of the usual direction, added to the outlook of the lids
 
 constexpr Rgba kLids = palette::kOrange;
 constexpr double kPseudoPale = 0.55;  // of the body's colour
 constexpr std::uint8_t kLidAlpha = 95, kGhostAlpha = 26;
 
-/// Makes the panels of a sheet of regions.
+/// Draws the panels of a contact sheet of regions.
 class RegionSheet {
  public:
   RegionSheet(const LrbRep& rep, const Look& look) : rep_(rep), look_(look), style_(style_of(look.style)) {
@@ -65,7 +65,7 @@ class RegionSheet {
     scale_ = static_cast<float>(look.scale()) * style_.weight;
   }
 
-  /// Returns the panel of the body, coloured by values on a scale.
+  /// Returns the panel of the body, coloured by the values on a scale.
   Panel whole(std::span<const double> values, const ScaleBar& scale) const {
     DrawList list;
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
@@ -109,7 +109,7 @@ class RegionSheet {
   Rgba real_colour() const { return style_.body(Side::a); }
   Rgba pseudo_colour() const { return style_.pale(real_colour(), kPseudoPale); }
 
-  /// Adds a face; in 2D as a line of a width in pixels of a screen.
+  /// Adds a face; in 2D as a line of this width in screen pixels.
   void add(DrawList& list, FaceId f, const DrawTriangle& like, float width) const {
     if (rep_.dim() == 3) return list.add_polygon(corners_of(rep_, f), like);
     DrawLine line;
@@ -160,7 +160,7 @@ Vector3d outlook(const LrbRep& rep, RegionId r) {
       area += n.norm();
     }
   }
-  constexpr double kAllRound = 0.2;  // of the lids' area; below it they face nearly all ways
+  constexpr double kAllRound = 0.2;  // of the lids' area; below it the lids face nearly all directions
   return area > 0 && sum.norm() > kAllRound * area ? Vector3d(sum.normalized()) : Vector3d::Zero();
 }
 
@@ -189,7 +189,7 @@ std::string number_and(std::size_t n, const char* what) {
   return group_digits(n) + " " + what + (n == 1 ? "" : "s");
 }
 
-/// Returns the first few regions of a set, by their numbers.
+/// Returns the numbers of the first few regions of a set.
 std::string list_of(const std::set<std::uint32_t>& regions) {
   constexpr std::size_t kMax = 6;
   std::string out;

@@ -8,31 +8,31 @@
 
 namespace lrb::run {
 
-// Sheets: panels (a), (b), ... of the look's size, in pixels of the file, seen from its first view.
+// Contact sheets: panels (a), (b), ... of the look's size, in pixels of the file, seen from its first view.
 
-/// Draws a body: itself, some wrappers between, and its outermost wrapper.
+/// Draws a body, some of its intermediate wrappers, and its outermost wrapper.
 render::Image body_sheet(const LrbRep& rep, const render::Look& look);
 
 /// The size of a panel unless one is requested.
 inline constexpr int kBodySheetWidth = 640, kBodySheetHeight = 520;
 
-/// A region to show, and its caption.
+/// A region to draw, and its caption.
 struct ShownRegion {
   RegionId region = 0;
   std::string caption;
 };
 
-/// Draws regions of a body: in panel (a) the body's real faces, coloured by a value; then each region close
-/// up from the direction that its lids face, its lids translucent over its floor, with the rest as a ghost.
-/// `values`: (|real faces|); `name`: of the value.
+/// Draws regions of a body: in panel (a) the body's real faces, coloured by a value; then a close-up of each
+/// region from the direction that its lids face, with its lids translucent over its floor, and the rest as a
+/// ghost. `values`: (|real faces|); `name`: of the value.
 render::Image region_sheet(const LrbRep& rep, std::span<const double> values, const std::string& name,
                            std::span<const ShownRegion> regions, const render::Look& look);
 
-/// Returns the mean direction that a region's lids face; zero if they face nearly all ways, and in 2D.
+/// Returns the mean direction of a region's lids; zero if they face nearly all directions, and in 2D.
 Eigen::Vector3d outlook(const LrbRep& rep, RegionId r);
 
 /// Describes regions: a single one by its layer, lids, floor, parent and neighbours, several by their
-/// numbers. `owner`: follows a region's number, such as " of A".
+/// numbers. `owner`: text after a region's number, such as " of A".
 std::string region_words(const LrbRep& rep, std::span<const RegionId> regions, const std::string& owner);
 
 }  // namespace lrb::run

@@ -10,14 +10,14 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kGap = 4, kStrips = 120;    // pixels of a screen: between panels, for title and legend
-constexpr double kShape = 0.72;           // a panel's height over its width
-constexpr float kPanelText = 0.8F;        // of panels, over the title's
-constexpr double kLonely = 0.5;           // of the body's size, around a point without faces
+constexpr int kGap = 4, kStrips = 120;    // screen pixels: between panels, for title and legend
+constexpr double kShape = 0.72;           // height / width of a panel
+constexpr float kPanelText = 0.8F;        // text size of panels / of the title
+constexpr double kLonely = 0.5;           // around a point without faces, relative to the body
 constexpr float kUsualText = 16;          // pixels: text height at which lines and points have scale 1
-constexpr double kCloseUpContext = 1.15;  // of the close-ups' sizes
-constexpr double kLoopContext = 1.6;      // the same for a boundary loop, which needs its surroundings
-constexpr double kMinCloseUp = 1e-6;      // of the body's size, in a close-up of a point
+constexpr double kCloseUpContext = 1.15;  // relative to the detail
+constexpr double kLoopContext = 1.6;      // relative to a boundary loop, to show its surroundings
+constexpr double kMinCloseUp = 1e-6;      // in a close-up of a point, relative to the body
 
 /// Returns the camera of a close-up. `close`: of the kind.
 CameraFit close_camera(const FaultyMesh& faulty, MeshFault kind, const findings::CloseUp& close) {
@@ -62,7 +62,7 @@ void write_caption(Image& panel, const std::string& text, float height, const St
   }
 }
 
-/// The grid of panels: the whole, then one for each kind.
+/// The grid of panels: the whole mesh, then one panel per kind.
 struct Grid {
   explicit Grid(std::size_t kinds)
       : panels(static_cast<int>(kinds) + 1),
@@ -73,7 +73,7 @@ struct Grid {
   int panels, across, down;
 };
 
-/// Draws the whole or, if there is a `kind`, its first offender close up.
+/// Draws the whole mesh or, if there is a `kind`, a close-up of its first finding.
 Image draw_one(Rasterizer& rasterizer, const FaultyMesh& faulty, const Look& look, const MeshFault* kind,
                const PixelRect& place, float text) {
   findings::Options options;

@@ -16,9 +16,9 @@ struct FaultyMesh {
   const std::vector<BoundaryLoop>& loops;
 };
 
-/// Draws a mesh's findings: the whole mesh in panel (a), seen from the look's first view, then the first
-/// offender of each kind close up. Open edges are all drawn, and the longest loop close up. `look`: in pixels
-/// of the file; height 0: as high as needed. Returns nullopt if no finding has a position.
+/// Draws a mesh's findings: the whole mesh in panel (a), from the look's first view, then a close-up of the
+/// first finding of each kind. All open edges are drawn; the close-up shows the longest loop. `look`: in
+/// pixels of the file; height 0: as required. Returns nullopt if no finding has a position.
 std::optional<render::Image> picture_of(const FaultyMesh& faulty, const render::Look& look);
 
 /// The width of the picture unless one is requested.

@@ -1,5 +1,5 @@
 #pragma once
-/// The appearance of pictures: events that they show, cameras, colours, sizes.
+/// The appearance of pictures: their events, cameras, colours and sizes.
 
 #include <array>
 #include <cstdint>
@@ -23,27 +23,28 @@ struct Look {
     Camera camera = Camera::scene;
     bool orthographic = false;
     Eigen::Vector3d eye{0, 0, 0};             ///< fixed: position of the eye, world frame
-    Eigen::Vector3d target{0, 0, 0};          ///< fixed: point that it looks at
+    Eigen::Vector3d target{0, 0, 0};          ///< fixed: target point of the camera
     Eigen::Vector3d from{0.62, -0.68, 0.42};  ///< scene, contact, orbit: direction from target to viewer
     Eigen::Vector3d up{0, 0, 1};
-    std::optional<Eigen::Vector3d> look_at;  ///< centre of the picture, at the same scale; nullopt: fitted
-    double turn_degrees = 0;                 ///< orbit: over all frames
-    double zoom = 1;                         ///< above 1: closer
-    bool wrapper = true;                     ///< false: the bodies alone, without the lids of their wrappers
+    std::optional<Eigen::Vector3d>
+        look_at;              ///< centre of the picture, which does not change the scale; nullopt: fitted
+    double turn_degrees = 0;  ///< orbit: rotation over all frames
+    double zoom = 1;          ///< above 1: closer
+    bool wrapper = true;      ///< false: the bodies alone, without the lids of their wrappers
     std::string title;
-    bool directed = false;  ///< a call sets direction or projection: not for 2D bodies
+    bool directed = false;  ///< the caller set a direction or projection, which 2D bodies do not accept
   };
-  int width = 1280, height = 720;  ///< pixels of a screen, 1/96 inch each
-  double dpi = 0;  ///< pixels per inch of what is printed; 0: as on a screen, and not written into the file
+  int width = 1280, height = 720;  ///< screen pixels, 1/96 inch each
+  double dpi = 0;                  ///< pixels per inch in print; 0: as on a screen, not written to the file
   int supersampling = 2;
-  std::vector<View> views;  ///< side by side; none: one of the whole scene
+  std::vector<View> views;  ///< side by side; empty: one of the whole scene
   bool transparent = false;
   StyleName style = StyleName::screen;
   bool titles = true;  ///< above and below a picture: its title, the event, counters, and titles of views
   bool legend = true;  ///< colour key and scale
 
-  static constexpr double kScreenDpi = 96;  ///< of CSS, by definition
-  /// Returns the number of pixels per pixel of a screen.
+  static constexpr double kScreenDpi = 96;  ///< by definition of CSS
+  /// Returns the number of pixels per screen pixel.
   double scale() const { return dpi > 0 ? dpi / kScreenDpi : 1; }
   View first_view() const { return views.empty() ? View{} : views[0]; }
   /// Returns the background; nullopt if pictures are transparent.
@@ -59,12 +60,12 @@ struct FrameSpec : Look {
     none,
     step,
     refinement,
-    pass,   ///< of a construction: the body itself, and the end of each pass that made regions
+    pass,   ///< of a construction: the body itself, and the end of each pass that created regions
     every,  ///< event
-    events  ///< given as a list, so the file has no word for it
+    events  ///< given as a list; not a keyword in files
   };
-  /// The meaning of the colours of faces. From face_tests on: numbers of the time step so far
-  /// (trace/include/lrbscope/trace/counters.hpp); some need more events than face tests: needed_level().
+  /// The meaning of face colours. From face_tests on: counters of the time step so far
+  /// (trace/include/lrbscope/trace/counters.hpp). Some need more events than face tests: needed_level().
   enum class ColourBy : std::uint8_t {
     kind,
     layer,
@@ -77,12 +78,12 @@ struct FrameSpec : Look {
     box_tests,
     plane_tests,
   };
-  /// Whose numbers colour a face: its own, or the sum over the faces of its region or of its level.
+  /// Source of the number that colours a face: the face, or the sum over its region or its region depth.
   enum class ColourPer : std::uint8_t { face, region, level };
   At at = At::step;
   std::uint32_t every = 1;            ///< steps, refinements or events between two frames
   std::vector<std::uint32_t> events;  ///< events: event numbers
-  std::uint32_t most = 120;  ///< largest number of frames; if there are more, evenly chosen ones are drawn
+  std::uint32_t most = 120;           ///< maximum number of frames; evenly chosen if there are more
   ColourBy colour_by = ColourBy::kind;
   ColourPer colour_per = ColourPer::face;
   std::array<std::vector<RegionId>, 2> isolate;  ///< regions of A and B to show alone; none: everything
@@ -90,7 +91,7 @@ struct FrameSpec : Look {
   bool svg = false;        ///< writes each view of a frame as SVG as well (2D)
   std::optional<std::uint32_t> node_boxes;  ///< draws the boxes of visited tree nodes of this depth
   double explode = 0;                       ///< regions are moved outward by this share of their distance
-  std::uint32_t montage = 0;                ///< number of panels of the montage, evenly chosen; 0: no montage
+  std::uint32_t montage = 0;                ///< number of evenly chosen panels in the montage; 0: no montage
   std::uint32_t montage_columns = 0;        ///< 0: nearly square
 };
 constexpr auto words_of(FrameSpec::At) {
@@ -129,14 +130,14 @@ constexpr auto words_of(StyleName) {
   return std::to_array<EnumWord<Word>>(
       {{Word::screen, "screen"}, {Word::print, "print"}, {Word::dark, "dark"}});
 }
-/// Returns the events that colours need.
+/// Returns the event detail that a colouring requires.
 constexpr EventLevel needed_level(FrameSpec::ColourBy by) {
   using Word = FrameSpec::ColourBy;
   if (by == Word::plane_tests) return EventLevel::all;
   return by == Word::expansions || by == Word::box_tests ? EventLevel::nodes : EventLevel::faces;
 }
 
-/// Returns the events that frames need.
+/// Returns the event detail that frames require.
 constexpr EventLevel needed_level(const FrameSpec& frames) {
   const EventLevel colours = needed_level(frames.colour_by);
   return frames.node_boxes && colours == EventLevel::faces ? EventLevel::nodes : colours;

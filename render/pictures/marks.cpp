@@ -105,7 +105,7 @@ void write_beside(render::DrawList& list, const Vector3d& x, float below, const 
   list.labels.push_back(label);
 }
 
-/// Draws the barbs of an arrow's head in the plane of the arrow and `across`.
+/// Draws the barbs of an arrowhead in the plane of the arrow and `across`.
 void add_barbs(render::DrawList& list, const MarkedSegment& way, const Vector3d& across,
                render::Rgba colour) {
   constexpr double kHeadLength = 0.24, kHeadWidth = 0.11;
@@ -185,7 +185,7 @@ void add_separation_vector(render::Scene& scene, const MarkedSegment& way, int d
   scene.key.push_back({render::LegendItem::Mark::line, kSeparationColour, "B leaves A this way"});
 }
 
-// The separating plane.
+// Separating planes.
 
 namespace {
 
@@ -203,7 +203,7 @@ Square square(const Vector3d& n, double at, Vector3d middle, double half, int di
 }  // namespace
 
 Square separating_square(const SeparatingPlane& plane, const PosedBodies& bodies) {
-  constexpr double kShare = 0.35;  // of the smaller body's diagonal, from the centre to a corner
+  constexpr double kShare = 0.35;  // from the centre to a corner, relative to the smaller body's diagonal
   const Eigen::AlignedBox3d of_a = render::bounds(render::body_points(bodies.a, bodies.pose_a)),
                             of_b = render::bounds(render::body_points(bodies.b, bodies.pose_b));
   const Eigen::AlignedBox3d& smaller = of_a.diagonal().norm() < of_b.diagonal().norm() ? of_a : of_b;
@@ -256,7 +256,7 @@ void add_separating_plane(render::DrawList& list, const WalkExplanation& walk, c
 
 std::string separating_plane_text(const WalkExplanation& walk, const PosedBodies& bodies) {
   if (!walk.plane && !walk.nearest_boxes) return {};
-  // Not the gap of the plane or of the boxes: it can grow while the bodies approach.
+  // Not the gap of the plane or of the boxes, which can grow while the bodies approach.
   DistanceRequest request;
   request.relation = false;
   const double gap = distance(bodies.a, bodies.pose_a, bodies.b, bodies.pose_b, request).lower;
@@ -264,11 +264,11 @@ std::string separating_plane_text(const WalkExplanation& walk, const PosedBodies
          (gap > 0 ? ", gap >= " + io::lower_text(gap) : "");
 }
 
-// The boxes of a tree's nodes.
+// Boxes of tree nodes.
 
 namespace {
 
-/// Returns the box of a node's child, as the node holds it, or with kWhole its own.
+/// Returns the box of a node's child, or with kWhole of the node itself, in the body's frame.
 TreeBox box_in_body(const ObbTree& tree, std::uint32_t node, int child) {
   const WorldBox box = box_of(tree, node, child, Pose{});
   TreeBox out;
@@ -305,13 +305,13 @@ std::vector<TreeBox> tree_boxes(const ObbTree& tree, std::size_t most) {
 
 namespace {
 
-/// Where a node stands: its parent, and as which child.
+/// Position of a node in the tree: its parent, and its index among the children.
 struct Place {
   std::uint32_t parent = kNull, depth = 0;
   int child = kWhole;
 };
 
-/// Returns the places of all nodes. Children come after their parents.
+/// Returns the positions of all nodes. Children come after their parents.
 std::vector<Place> places_of(const ObbTree& tree) {
   const std::vector<TreeNode>& nodes = tree.nodes();
   std::vector<Place> out(nodes.size());
@@ -361,7 +361,7 @@ std::vector<TreeBox> boxes_on_paths(const ObbTree& tree, std::uint32_t below,
   const std::vector<std::uint32_t> leaves = leaves_of(tree);
   std::vector<bool> taken(places.size());
   for (const SimplexId s : to) {
-    if (s >= leaves.size()) continue;  // of a pseudo face: the tree holds real ones
+    if (s >= leaves.size()) continue;  // a pseudo face: the tree contains only real ones
     for (std::uint32_t n = leaves[s.value()]; n != kNull && places[n].depth > below; n = places[n].parent) {
       if (taken[n]) break;
       if (out.size() == most) return out;

@@ -36,7 +36,7 @@ struct BoxStyle {
 void add_box(render::DrawList& list, const Eigen::Vector3d& centre,
              const std::array<Eigen::Vector3d, 3>& half, const BoxStyle& style);
 
-/// Colours on a screen, also of the marks before texts about them.
+/// Colours on a screen, also used for the marks before texts.
 inline constexpr render::Rgba kGapColour = render::palette::kInk;
 inline constexpr render::Rgba kSeparationColour = render::palette::kGreen;  ///< plane and vector
 
@@ -46,52 +46,53 @@ struct MarkedSegment {
   std::string text;
 };
 
-/// Returns the segment between the closest points; nullopt if the bodies are not separate.
+/// Returns the segment between the closest points, or nullopt if the bodies are not separate.
 std::optional<MarkedSegment> gap_of(const ProvedInterval& distance, const Eigen::Vector3d& point_a,
                                     const Eigen::Vector3d& point_b);
-/// Returns the separation vector of B, centred at the contacts or, without any, at the intersection of the
-/// bodies' boxes; nullopt if there is no vector.
+/// Returns the separation vector of B, centred at the contacts or, if there are none, at the intersection of
+/// the bodies' boxes. Returns nullopt if there is no vector.
 std::optional<MarkedSegment> separation_vector_of(const std::optional<ProvedInterval>& depth,
                                                   const Eigen::Vector3d& translation,
                                                   const PosedBodies& bodies,
                                                   std::span<const ContactRegion> contacts);
 
-/// Add it to a scene, visible through everything, and its line to the key.
+/// Add the mark to a scene, visible through all faces, and its line to the key.
 void add_gap(render::Scene& scene, const MarkedSegment& gap, const render::Style& style);
 void add_separation_vector(render::Scene& scene, const MarkedSegment& vector, int dim);
 
-/// Adds the separating plane that was found, else the closest of the separated boxes and a plane between
-/// them; nothing if the walk found neither. `through`: boxes are visible through faces in front of them.
+/// Adds the separating plane, or otherwise the closest pair of separated boxes and a plane between them. Adds
+/// nothing without plane and boxes. `through`: boxes are visible through faces in front of them.
 void add_separating_plane(render::DrawList& list, const WalkExplanation& walk, const PosedBodies& bodies,
                           const render::Style& style, bool through = false);
 
-/// Returns a short text with a lower bound of the distance of the surfaces: "a plane parts them, gap >=
-/// 0.12"; empty if the walk found neither plane nor boxes.
+/// Returns a short text with a lower bound on the distance of the surfaces: "a plane parts them, gap >=
+/// 0.12". Returns an empty text without plane and boxes.
 std::string separating_plane_text(const WalkExplanation& walk, const PosedBodies& bodies);
 
 /// The corners of a square in the world. In 2D it is a segment between corners 0 and 1.
 using Square = std::array<Eigen::Vector3d, 4>;
-/// Returns a square in the middle of the gap at a separating plane, beside the centre of the smaller body and
-/// in proportion to it.
+/// Returns a square in the middle of the gap at a separating plane, near the centre of the smaller body and
+/// scaled to it.
 Square separating_square(const SeparatingPlane& plane, const PosedBodies& bodies);
-/// Returns a square in the gap between two boxes, in proportion to the smaller one.
+/// Returns a square in the gap between two boxes, scaled to the smaller one.
 Square separating_square(const PartedBoxes& boxes, int dim);
-/// Returns the square of the plane that was found, else of the boxes; nullopt if there is neither.
+/// Returns the square of the separating plane, or otherwise of the boxes. Returns nullopt if there is
+/// neither.
 std::optional<Square> separating_square(const WalkExplanation& walk, const PosedBodies& bodies);
 
 /// Adds a translucent convex polygon in the colour of separating planes.
 void add_sheet(render::DrawList& list, const std::vector<Eigen::Vector3d>& corners);
 
-/// Returns an interval in words: "0.25", or "0.2 to 0.3" if its ends differ in four digits.
+/// Returns an interval as text: "0.25", or "0.2 to 0.3" if its ends differ in four digits.
 std::string interval_words(double lower, double upper);
-/// Returns the kind of contact in words: "A inside B", "touching in faces".
+/// Returns the kind of contact as text: "A inside B", "touching in faces".
 std::string kind_words(ClashKind kind);
-/// Adds the reason of a kind that is undecided: "undecided: A intersects itself".
+/// Appends the reason if the kind is undecided: "undecided: A intersects itself".
 std::string kind_words(ClashKind kind, ClashReason reason);
 
-// Outlines that are visible through everything.
+// Outlines that are visible through all faces.
 
-inline constexpr float kHalo = 1.5F;  ///< width around lines and points that lie over others
+inline constexpr float kHalo = 1.5F;  ///< width of the halo around lines and points
 
 /// Returns the corners of a simplex in the world.
 std::vector<Eigen::Vector3d> corners_of(const LrbRep& rep, const Pose& pose, SimplexId s);
@@ -104,17 +105,18 @@ void outline(render::DrawList& list, const std::vector<Eigen::Vector3d>& corners
 void add_mark(render::DrawList& list, const Eigen::Vector3d& x, render::Rgba colour, float radius,
               render::Rgba halo = render::kWhite);
 
-/// A wrong pair in another engine's answer: disjoint faces that it reported, or intersecting ones it missed.
+/// A wrong pair in another engine's answer: disjoint faces that were reported, or intersecting faces that
+/// were missed.
 struct WrongPair {
   SimplexPair pair;
   bool missed = false;
 };
 
-/// Adds the outlines of the faces of such pairs.
+/// Adds the outlines of the faces of wrong pairs.
 void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const PosedBodies& bodies,
                      render::Rgba halo);
 
-// The boxes of a tree's nodes.
+// Boxes of tree nodes.
 
 struct TreeBox {
   std::uint32_t node = 0;   ///< index into ObbTree::nodes()
@@ -123,14 +125,14 @@ struct TreeBox {
   Eigen::Matrix3d half;     ///< columns: from the centre to the centres of three sides
 };
 
-/// Returns the boxes of all nodes by depth, down to the greatest depth at which there are at most `most`.
+/// Returns the boxes of all nodes by depth, down to the maximum depth with at most `most` boxes in total.
 std::vector<TreeBox> tree_boxes(const ObbTree& tree, std::size_t most);
 
-/// Returns the number of nodes at each depth, from the root on.
+/// Returns the number of nodes at each depth, starting at the root.
 std::vector<std::uint32_t> nodes_by_depth(const ObbTree& tree);
 
-/// Returns the boxes of nodes below a depth on the paths from the root to some simplices, in the order of
-/// these, at most `most`.
+/// Returns the boxes of nodes deeper than `below` on the paths from the root to the given simplices, in the
+/// order of the simplices, at most `most`.
 std::vector<TreeBox> boxes_on_paths(const ObbTree& tree, std::uint32_t below,
                                     const std::vector<SimplexId>& to, std::size_t most);
 

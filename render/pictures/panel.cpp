@@ -52,7 +52,7 @@ Image draw_row(Rasterizer& rasterizer, std::span<const Panel> panels, const Look
     if (look.titles && !panels[i].title.empty())
       default_font().draw(panel, panels[i].title, static_cast<int>(text.height / 2),
                           static_cast<int>(text.height / 3), text);
-    // Copied, not blended: a transparent panel keeps its alpha.
+    // Copied, not blended, so that a transparent panel keeps its alpha.
     for (int y = 0; y < place.height; ++y)
       std::copy_n(&panel.at(0, y), place.width, &out.at(place.x, place.y + y));
   }
@@ -79,7 +79,7 @@ Image draw_sheet(std::span<const Panel> panels, const Look& look, MontageOptions
 
 Image with_overlay(const Image& picture, const Overlay& overlay, double scale) {
   const auto s = static_cast<float>(scale);
-  const int room = static_cast<int>(600 * s);  // more than the overlay needs; the rest is cut off
+  const int room = static_cast<int>(600 * s);  // more than the overlay needs; the rest is cropped
   const int width = picture.width();
   const OverlayLayout tentative = lay_out(overlay, width, picture.height() + room, s);
   const int height = 2 * picture.height() + room - tentative.picture.height;
@@ -147,7 +147,7 @@ Camera camera_for(const Look::View& view, const Framing& framing, double width, 
     FitOptions options;
     options.view = {view.from, view.up};
     options.orthographic = view.orthographic;
-    constexpr double kRoomAround = 1.6;  // in sizes of the contacts
+    constexpr double kRoomAround = 1.6;  // relative to the contacts
     camera = close
                  ? fit_contact(framing.contacts, bounds(framing.points), width, height, options, kRoomAround)
                  : fit_camera(framing.points, width, height, options);
@@ -211,7 +211,7 @@ Vector3d broadside(const Eigen::AlignedBox3d& box, const Vector3d& up) {
   const Vector3d size = box.sizes();
   constexpr double kClearly = 1.15;
   Vector3d out = 0.42 * up.normalized();
-  // Two level sides of about one length are both seen; else most of the longer one.
+  // Of two horizontal sides of similar length both are shown; otherwise mainly the longer one.
   out[first] = size[first] > kClearly * size[second]   ? 0.38
                : size[second] > kClearly * size[first] ? 0.84
                                                        : 0.62;

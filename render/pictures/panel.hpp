@@ -25,7 +25,7 @@ using Mark = render::LegendItem::Mark;
 /// Returns the camera for a picture of this size in pixels.
 using CameraFit = std::function<render::Camera(double width, double height)>;
 
-/// A draw list, its camera and its title.
+/// A draw list with its camera and title.
 struct Panel {
   render::DrawList list;
   CameraFit camera;
@@ -34,18 +34,18 @@ struct Panel {
   render::Lighting lighting = {};
 };
 
-/// Lighting that shows the shape and keeps colours close to those of a scale.
+/// Lighting that shows the shape but hardly changes the colours of a scale.
 inline const render::Lighting kScaleLighting{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
 
 /// Draws a panel without its title.
 render::Image draw_panel(render::Rasterizer& rasterizer, const Panel& panel, const render::Look& look,
                          int width, int height);
 
-/// Returns the places of panels in a picture, side by side along its longer side.
+/// Returns the rectangles of panels in a picture, side by side along its longer side.
 std::vector<render::PixelRect> panel_places(const render::PixelRect& picture, std::size_t panels,
                                             double scale);
 
-/// Draws panels, each with its title in it, side by side.
+/// Draws panels side by side, each with its title inside.
 render::Image draw_row(render::Rasterizer& rasterizer, std::span<const Panel> panels,
                        const render::Look& look, const render::PixelRect& picture);
 
@@ -53,14 +53,14 @@ render::Image draw_row(render::Rasterizer& rasterizer, std::span<const Panel> pa
 render::Image draw_panels(std::span<const Panel> panels, const render::Overlay& overlay,
                           const render::Look& look);
 
-/// Draws panels of the look's size in rows, with letters and their titles below them.
+/// Draws panels of the look's size in rows, with letters and titles below them.
 render::Image draw_sheet(std::span<const Panel> panels, const render::Look& look,
                          render::MontageOptions options = {});
 
-/// Adds an overlay above and below a picture, which keeps its size.
+/// Adds an overlay above and below a picture. The picture keeps its size.
 render::Image with_overlay(const render::Image& picture, const render::Overlay& overlay, double scale = 1);
 
-/// Clears the texts of a frame that `look` leaves out.
+/// Clears the texts of a frame that `look` omits.
 void leave_out_texts(render::Overlay& overlay, const render::Look& look);
 
 /// Converts the size to pixels of the file.
@@ -69,10 +69,10 @@ void to_pixels(render::Look& look);
 /// Writes a picture, and creates its folder. Throws EnvironmentError if it cannot be written.
 void write_picture(const render::Image& picture, const std::string& path, double dpi = 0);
 
-/// Adds the items whose text is not in `all` yet.
+/// Adds the items whose text is not yet in `all`.
 void merge_key(std::vector<render::LegendItem>& all, const std::vector<render::LegendItem>& some);
 
-/// Returns `wanted` indices below `count`, as evenly spaced as can be, first and last among them.
+/// Returns `wanted` indices below `count`, as evenly spaced as possible, including the first and the last.
 std::vector<std::size_t> evenly(std::size_t count, std::size_t wanted);
 
 // Cameras.
@@ -80,9 +80,10 @@ std::vector<std::size_t> evenly(std::size_t count, std::size_t wanted);
 /// Returns cameras that show all points, from above in 2D.
 CameraFit fit_points(std::vector<Eigen::Vector3d> points, int dim, const render::FitOptions& options = {});
 
-/// The points that the cameras of a sequence show, so that the picture stands still while the bodies move.
+/// The points that the cameras of a sequence show. They are constant, so that the picture does not move with
+/// the bodies.
 struct Framing {
-  std::vector<Eigen::Vector3d> points;  ///< of both bodies, in all steps shown
+  std::vector<Eigen::Vector3d> points;  ///< of both bodies, at all shown steps
   /// Corners of all contact regions, or of the faces of coarse answers. Empty: contact views show the whole.
   std::vector<Eigen::Vector3d> contacts;
   int dim = 3;
@@ -104,7 +105,7 @@ struct PosedBodies {
   int dim() const { return a.dim(); }
   /// Returns both bodies for a scene, without wrappers.
   std::vector<render::SceneBody> in_scene() const;
-  /// Returns all points that they can show.
+  /// Returns all points of the bodies that can be visible.
   std::vector<Eigen::Vector3d> points() const;
   std::string title() const { return a.name() + "  ·  " + b.name(); }
 };
@@ -118,7 +119,7 @@ std::vector<Eigen::Vector3d> region_corners(const LrbRep& rep, RegionId region);
 /// Returns the box around a body's real faces.
 Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose = {});
 
-/// Returns a direction from which a box is seen from its longer level side, aslant and slightly from above.
+/// Returns a direction that shows a box from its longer horizontal side, obliquely and slightly from above.
 /// `up` is an axis.
 Eigen::Vector3d broadside(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& up);
 

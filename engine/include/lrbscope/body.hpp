@@ -125,8 +125,8 @@ struct MadeBody {
   std::uint32_t turned = 0;        ///< number of inward-oriented components
 };
 
-/// Reorients inward-oriented components, if `turn`, and builds an LRB-rep. A mesh that has none, or one whose
-/// proof fails, becomes a body without regions, and a note gives the reason. Throws InputError if the mesh
+/// Reorients inward-oriented components, if `turn`, and builds an LRB-rep. A mesh without an LRB-rep, or with
+/// a failed proof, becomes a body without regions, and a note gives the reason. Throws InputError if the mesh
 /// cannot be queried at all.
 MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn = true);
 

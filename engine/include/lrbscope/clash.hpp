@@ -104,7 +104,7 @@ struct SurfacePieces {
 
 struct ClashResult {
   ClashKind kind = ClashKind::undecided;
-  ClashReason reason = ClashReason::none;  ///< none unless the kind is undecided
+  ClashReason reason = ClashReason::none;  ///< other than none only if the kind is undecided
   bool shares_faces = false;  ///< surfaces coincide in an area, with both solids on the same side of it
   Answer interiors_overlap = Answer::unknown;
   std::array<SurfacePieces, 2> pieces;  ///< of A's surface and of B's; counted if the surfaces intersect

@@ -29,10 +29,10 @@ Meet meet_triangles(const double* const a[3], const double* const b[3]);
 Meet meet_segments(const double* const a[2], const double* const b[2]);
 
 /// Returns true if two triangles of one complex intersect only in the vertices and edges that they share by
-/// index: nowhere, in one common corner, or in one common edge. ia, ib: vertex indices of the corners.
+/// index: they are disjoint, or share one corner or one edge. ia, ib: vertex indices of the corners.
 bool meet_only_in_shared(const double* const a[3], const VertexId ia[3], const double* const b[3],
                          const VertexId ib[3]);
-/// Returns the same for two segments in 2D.
+/// The 2D version, for two segments.
 bool meet_only_in_shared_2d(const double* const a[2], const VertexId ia[2], const double* const b[2],
                             const VertexId ib[2]);
 
@@ -103,8 +103,8 @@ struct ContactRegion {
   /// An estimate of how far B must move along `normal` to leave this region; 0 if it only touches or the
   /// bodies are flush. It is the extent, along `normal`, from the nearest point of the part of B that the
   /// region encloses in A to the farthest point of the part of A that it encloses in B, contact points
-  /// included. After such a move a plane separates these two parts. Other parts are not considered. Convex
-  /// bodies have none. Concave bodies may still intersect in other regions, each with its own depth, or
+  /// included. After such a move a plane separates these two parts. Other parts, which only concave bodies
+  /// have, are not considered: these may still intersect in other regions, each with its own depth, or
   /// collide during the move. Parts that are side by side may separate earlier.
   double depth_estimate = 0;
 };

@@ -32,7 +32,7 @@ struct Error {
   friend bool operator==(const Error&, const Error&) = default;
 };
 
-/// Either a value of type T, which may be a reference, or an error (Refusal).
+/// Either a value of type T, which may be a reference, or an error (Error).
 template <class T>
 class [[nodiscard]] Expected {
   using Value = std::remove_reference_t<T>;

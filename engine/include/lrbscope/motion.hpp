@@ -17,7 +17,7 @@ namespace lrb {
 /// later one applies; the jump there is at most the rounding error of the poses.
 ///
 /// at(t) evaluates this function in doubles. Pose::apply() of at(t) deviates from the exact function by at
-/// most rounding_of_motion() (motion_bounds.hpp), about 1e-15 of the magnitude of the summands.
+/// most MovingBody::rounding() (motion_bounds.hpp), about 1e-15 of the magnitude of the summands.
 class Motion {
  public:
   struct Piece {

@@ -97,7 +97,7 @@ struct TreeQuality {
   /// Sum of the areas of inner nodes / area of the root: expected number of inner nodes that a random line
   /// visits.
   double sah_inner = 0;
-  double sah_leaves = 0;  ///< the same for leaves
+  double sah_leaves = 0;  ///< as sah_inner, for leaves
   double child_fill = 0;  ///< children / (inner nodes x 8); best 1
   double leaf_fill = 0;   ///< simplices / (leaves x 8); best 1
   /// Fraction of sibling pairs whose boxes overlap, as stored in the parent, on its axes; best near 0.

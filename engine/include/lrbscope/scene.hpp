@@ -78,7 +78,7 @@ class Scene {
   /// first; equal gaps are in ascending order of keys. With 0 these are the pairs that collide() queries.
   /// Valid until the next call of near().
   std::span<const ScenePair> near(double within = 0);
-  /// Return the same for a body from outside the scene (A) and those of the scene (B), and for the bodies of
+  /// As above, for a body from outside the scene (A) and the bodies of the scene (B), and for the bodies of
   /// this scene (A) and of another (B).
   std::span<const ScenePair> near(const Body& body, const Pose& pose, double within = 0);
   std::span<const ScenePair> near(Scene& other, double within = 0);
@@ -110,7 +110,7 @@ class Scene {
   std::optional<SceneDistance> nearest(Scene& other, const DistanceRequest& request = {},
                                        Apart apart = Apart::surfaces);
 
-  /// The work of the last call. `broad_phase` is that of the last call that updated the scene's broad phase.
+  /// The work of the last call. `broad_phase`: of the last call that updated the scene's broad phase.
   struct Work {
     std::size_t moved = 0;  ///< bodies whose AABBs were recomputed
     std::size_t near = 0;   ///< pairs with intersecting AABBs: the number of queries of collide()

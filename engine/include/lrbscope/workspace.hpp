@@ -19,8 +19,8 @@
 namespace lrb {
 
 // Batches: many queries on all cores. The answers are in the order of the queries and bitwise equal for any
-// number of threads. (Only CollideRequest::max_time, a limit in seconds, depends on the machine.) A rejected
-// query has its error in place of its answer and does not affect the others.
+// number of threads. (Only CollideRequest::max_time, a limit in seconds, depends on the machine.) The answer
+// to a rejected query is its error; other queries are not affected.
 
 /// One query of a batch: two bodies with their poses.
 struct PosedPair {

@@ -116,15 +116,15 @@ struct WrapperLevel {
 };
 
 /// Returns the reason why a body can have no levels of detail, as a clause, or an empty string if it can. (A
-/// small body without regions has none and needs none.)
+/// small body without regions does not need levels.)
 std::string why_no_levels(const LrbRep& rep);
 /// Returns the reason as one line that names the body and the effect on queries, or an empty string.
 std::string note_no_levels(const LrbRep& rep);
 
 /// The levels of detail of one body: a sequence of wrappers from the outermost one inward, up to half the
-/// body's faces. Each has about a third more faces than the previous one (a tenth where there are few).
-/// LrbRep::levels() creates and owns them. An LRB-rep has none if it has no regions, is not closed or
-/// intersects itself.
+/// body's faces. Each has about a third more faces than the previous one (a tenth for small numbers of
+/// faces). LrbRep::levels() creates and owns them. An LRB-rep has no levels if it has no regions, is not
+/// closed or intersects itself.
 ///
 /// A region is included only together with all regions that it hides, so that the wrapper encloses the body.
 /// Enclosure requires that the LRB-rep is embedded (validate.hpp), as those of the builders are. A region

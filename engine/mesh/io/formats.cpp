@@ -115,7 +115,7 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   if (bytes.find_first_not_of(" \t\r\n\v\f") == std::string_view::npos)
     reject(name, bytes.empty() ? "an empty file" : "only white space", "export or copy the file again");
 
-  // First token with and without "#" comments: PLY and STL have none.
+  // First token with and without "#" comments, which PLY and STL do not have.
   const std::string_view first = TextCursor(bytes, name, {.hash_comments = true}).any_token();
   const std::string_view first_of_all = TextCursor(bytes, name, {}).any_token();
   if (first_of_all == "ply") return MeshFormat::ply;

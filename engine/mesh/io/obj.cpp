@@ -150,7 +150,7 @@ class ObjReader {
     // Beyond the vertices so far: legal if the vertex follows.
     if (index > count) forward_.push_back({index, text_.line()});
     return static_cast<VertexId>(index < 0 ? count + index
-                                           : index - 1);  // indices that are too large are refused at the end
+                                           : index - 1);  // too large indices are rejected at the end
   }
 
   void check_forward_references() const {

@@ -19,7 +19,7 @@ struct Camera {
   double half_height = 1;  ///< orthographic: from the centre to the top edge, world units
 };
 
-/// Returns the box around points; empty if there are none.
+/// Returns the box around points, or an empty box without points.
 Eigen::AlignedBox3d bounds(std::span<const Eigen::Vector3d> points);
 
 /// A view direction and an up vector.

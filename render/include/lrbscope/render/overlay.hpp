@@ -141,7 +141,7 @@ struct TextStyle {
 
 struct TextSize {
   int width = 0;   ///< width of the line, pixels, rounded up
-  int height = 0;  ///< ascent to descent, rounded up: the same for every text of a style
+  int height = 0;  ///< ascent to descent, rounded up; depends only on the style
   int ascent = 0;  ///< height above the baseline, pixels
 };
 

@@ -30,7 +30,7 @@ namespace lrb::render::findings {
 // strong colours.
 
 /// Returns the kinds of faults in the report that have a location, in the order of MeshFault. A face that
-/// names a vertex twice is drawn as one of zero area if it also has zero area.
+/// lists a vertex twice is drawn as a zero-area face if it also has zero area.
 std::vector<MeshFault> kinds(const MeshReport& report);
 
 /// Returns the legend's entry for a kind.
@@ -90,8 +90,8 @@ struct SceneBody {
   std::span<const double> face_values;  ///< (|F|) for ColourBy::value; empty: none
   std::string name;                     ///< in the legend; empty: "A", "B"
   std::optional<Rgba> colour = {};      ///< nullopt: the colour of the side
-  /// (|real F|) or (|F|): faces with a nonzero entry are drawn in the contact colour; empty: none. Includes
-  /// pseudo faces if a wrapper is shown, even if it has been refined beyond them.
+  /// (|real F|) or (|F|): faces with a nonzero entry have the contact colour; empty: none. Includes pseudo
+  /// faces if a wrapper is shown, even if it has been refined beyond them.
   std::span<const std::uint8_t> in_contact = {};
 };
 

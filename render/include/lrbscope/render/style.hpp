@@ -174,7 +174,7 @@ struct Style {
   Rgba contact, refining, under_test;
   Rgba front, back;    ///< faces outside the focus of a picture of findings
   Rgba edge_ink;       ///< colour that lines along bodies are mixed towards
-  Rgba solid_ink;      ///< the same for solids under regions, in 2D
+  Rgba solid_ink;      ///< colour that solids under regions are mixed towards, in 2D
   double solid_share;  ///< mixing share of solid_ink
   double lid_pale;     ///< share by which pseudo faces fade towards the paper
   float weight;        ///< factor of the widths of lines and points: paper resolves finer ones than a screen

@@ -104,9 +104,9 @@ struct PassSummary {
   BuildStage stage = BuildStage::fit;
   std::uint32_t layer = 0;  ///< of the regions it made
   float max_deviation = 0;  ///< maximum deviation allowed for caps, mesh units; 0: unlimited
-  float off = 0;            ///< largest measured deviation of its caps; 0: not measured
+  float off = 0;            ///< maximum measured deviation of its caps; 0: not measured
   std::uint32_t faces_before = 0, faces_after = 0;
-  std::uint32_t regions = 0;  ///< regions made
+  std::uint32_t regions = 0;  ///< number of regions made
   std::uint32_t merged = 0;   ///< pieces merged into them
   std::uint32_t patches = 0;
   std::uint32_t retried = 0;  ///< patches whose first cap intersected something, so that a second was built
@@ -118,15 +118,15 @@ struct PassSummary {
 
   std::uint32_t accepted() const { return caps[0]; }
   std::uint32_t rejected() const { return patches - accepted(); }
-  /// Returns the number shown to users, from 1; passes without regions have none.
+  /// Returns the number shown to users, from 1. Only for passes that made regions.
   std::uint32_t number() const { return layer + 1; }
 };
 
 /// Returns the passes of a construction in order. Empty for other traces.
 std::vector<PassSummary> passes_of(const Trace& trace);
 
-/// Returns the number of faces of the front over the events, from the body's own: at each event that changes
-/// it, and at the last one.
+/// Returns the number of faces of the front over the events, starting with the body itself: at each event
+/// that changes it, and at the last one.
 Chart chart_over_construction(const Trace& trace);
 /// Returns curves over the passes: patches with an accepted cap, and rejected patches by the most frequent
 /// reasons.

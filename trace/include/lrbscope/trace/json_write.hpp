@@ -51,8 +51,8 @@ class StringSink final : public ByteSink {
   std::string text;
 };
 
-/// Writes values only; the caller writes brackets and commas. Used for events, of which there can be
-/// millions.
+/// Writes values only; the caller writes brackets and commas. Used for events, because a trace can have
+/// millions of them.
 class JsonOut {
  public:
   explicit JsonOut(ByteSink& sink) : sink_(&sink), buffer_(kBuffer) {}

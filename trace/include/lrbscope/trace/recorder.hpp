@@ -161,8 +161,8 @@ class Recorder final : public CollideProbe {
     return settings_.request.recursion == Recursion::complete ? kNull : last_hit_;
   }
 
-  /// Returns 1 + the refine event of this step that put the simplex's face on the boundary, or 0 if there is
-  /// none.
+  /// Returns 1 + the refine event of this step that put the simplex's face on the boundary, or 0 if it was on
+  /// the boundary before.
   std::uint32_t brought_in(std::size_t side, SimplexId simplex) const {
     const LrbRep& rep = *reps_[side];
     const CellId cell = rep.outer_cell(rep.face_of_simplex(simplex));

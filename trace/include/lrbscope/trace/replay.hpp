@@ -81,7 +81,7 @@ class Cursor {
   void seek(EventId event);
   bool next();      ///< Moves forward one event. Returns false at the end.
   bool previous();  ///< Moves back one event. Returns false before the first.
-  /// Moves to the next event of a kind. Returns false without moving if there is none.
+  /// Moves to the next event of a kind. Returns false without moving if no such event follows.
   bool next(EventKind kind);
 
   /// Returns the event just before the cursor. Must not be called at_start().
@@ -100,8 +100,8 @@ class Cursor {
   /// Returns the pair under test: the event's own if it is a face test or a contact, its cause's if it is a
   /// refinement, else nullopt.
   std::optional<TestedPair> pair_under_test() const;
-  /// Returns the regions refined together with the event: its own, and those of the events directly before it
-  /// with the same cause. Empty unless the event is a refinement.
+  /// Returns the regions refined together with the event: its own, and the regions of the events directly
+  /// before it with the same cause. Empty unless the event is a refinement.
   std::vector<RefinedRegion> refined() const;
 
  private:

@@ -68,7 +68,7 @@ struct MeasuredApproach {
 
 MeasuredDistance measured(const DistanceResult& result, std::vector<Bounds> history);
 MeasuredClash measured(const ClashResult& result, std::vector<Bounds> history);
-/// Leaves step and length empty; they depend on the steps of the trace.
+/// Converts a result. `step` and `length` stay empty, because they depend on the steps of the trace.
 MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> history);
 
 /// Return a one-line summary: "[0.25, 0.25] in 31 looks".
@@ -203,7 +203,7 @@ struct Event {
   /// (kNull in the complete query, which refines regions before it tests). Face test: the later of the
   /// refinements that exposed its faces. Node pair: the parent pair. Plane test: the pair of leaves. End: the
   /// beginning of the phase. Patch, pass end: the pass. Cap: the patch. Region, merged: the cap, or the pass
-  /// if it has none.
+  /// for regions without a cap.
   EventId cause = kNull;
   std::uint32_t boundary = kNull;
   std::uint16_t depth_a = 0;
