@@ -128,7 +128,7 @@ void check_drawable(const LrbRep& rep, std::vector<double>& shares) {
   if (rep.self_intersecting())
     throw InputError(
         name +
-        ": crosses itself; no wrapper of it is proved to be near it, so there is nothing to draw; leave "
+        ": intersects itself, so no wrapper has a proven deviation and there is nothing to draw; leave "
         "out -o");
   std::sort(shares.begin(), shares.end());
   shares.erase(std::unique(shares.begin(), shares.end()), shares.end());

@@ -30,8 +30,8 @@ _Colours = Literal[
     "plane_tests",
 ]
 _Vector = npt.ArrayLike
-# One pose gives one answer, many poses give as many. The number of an array's dimensions is not part of its
-# type: a query with an array returns either kind, typed Any.
+# One pose gives one answer, many poses give as many. Types of arrays do not include the number of dimensions,
+# so a query with an array returns either kind, typed Any.
 _Rows = Sequence[Sequence[float]]
 _Poses = Sequence[npt.NDArray[Any]] | Sequence[_Rows]
 _Array = npt.NDArray[Any]

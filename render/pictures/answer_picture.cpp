@@ -149,12 +149,12 @@ Image picture_of(const DistanceResult& result, const PosedBodies& bodies, const 
           gap_of({result.lower, result.upper}, result.witness[0].point, result.witness[1].point)) {
     add_gap(p.scene, *gap, style_of(StyleName::screen));
     p.show(*gap);
-    p.overlay.event = gap->text + " apart" + (result.solids_meet() ? ", one inside the other" : "");
+    p.overlay.event = "distance " + gap->text + (result.solids_meet() ? ", one inside the other" : "");
   } else if (result.meet) {
     p.mark_point(result.witness[0].point, "a point of both");
-    p.overlay.event = "the surfaces meet";
+    p.overlay.event = "the surfaces intersect";
   } else {
-    p.overlay.event = "not told apart";
+    p.overlay.event = "undecided";
   }
   p.add_interval("distance", result.lower, result.upper);
   return p.draw(look);
@@ -197,8 +197,8 @@ Image picture_of(const ClashResult& result, const PosedBodies& bodies, const Loo
     add_separation_vector(p.scene, *vector, bodies.dim());
     p.show(*vector);
     p.across = result.translation;
-    p.overlay.event = vector->text + " deep: B is apart when it has moved by the arrow";
-    p.scene.key.push_back({Mark::translucent, palette::body(Side::b), "B when it is apart"});
+    p.overlay.event = "depth " + vector->text + ": the arrow separates B from A";
+    p.scene.key.push_back({Mark::translucent, palette::body(Side::b), "B after separation"});
   } else {
     p.overlay.event = result.distance.upper > 0
                           ? interval_words(result.distance.lower, result.distance.upper) + " apart"
@@ -274,8 +274,8 @@ Image picture_of(const PairExplanation& pair, const PosedBodies& bodies) {
                   : pair.meet == exact::Meet::cross ? "the faces cross"
                                                     : "the faces touch";
   overlay.key = std::move(scene.key);
-  overlay.key.push_back({Mark::line, palette::kContact, apart ? "nearest points" : "contact"});
-  if (apart && in_3d) overlay.key.push_back({Mark::translucent, palette::kGreen, "plane that parts them"});
+  overlay.key.push_back({Mark::line, palette::kContact, apart ? "closest points" : "contact"});
+  if (apart && in_3d) overlay.key.push_back({Mark::translucent, palette::kGreen, "separating plane"});
 
   FitOptions fit;
   const Vector3d across = pair.nearest[1] - pair.nearest[0];
@@ -341,9 +341,9 @@ Image picture_of(const WalkExplanation& walk, const PosedBodies& bodies) {
         overlay.key.push_back({Mark::line, palette::edge_of(palette::body(side)),
                                "box of " + std::string(name_of(side)) + "'s"});
     overlay.key.push_back({dim == 2 ? Mark::line : Mark::translucent, kSeparationColour,
-                           walk.plane ? "plane that parts them" : "between the boxes"});
-    panels.push_back({scene.list, camera_along(walk, *square, dim, bounds(points)),
-                      "Where they come nearest to what parts them"});
+                           walk.plane ? "separating plane" : "between the boxes"});
+    panels.push_back(
+        {scene.list, camera_along(walk, *square, dim, bounds(points)), "Closest to the separating plane"});
   }
   return draw_panels(panels, overlay, screen_of(1600, 900));
 }

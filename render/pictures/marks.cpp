@@ -260,7 +260,7 @@ std::string separating_plane_text(const WalkExplanation& walk, const PosedBodies
   DistanceRequest request;
   request.relation = false;
   const double gap = distance(bodies.a, bodies.pose_a, bodies.b, bodies.pose_b, request).lower;
-  return std::string(walk.plane ? "a plane parts them" : "boxes part them") +
+  return std::string(walk.plane ? "by a plane" : "by boxes") +
          (gap > 0 ? ", gap >= " + io::lower_text(gap) : "");
 }
 

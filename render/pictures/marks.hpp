@@ -65,8 +65,8 @@ void add_separation_vector(render::Scene& scene, const MarkedSegment& vector, in
 void add_separating_plane(render::DrawList& list, const WalkExplanation& walk, const PosedBodies& bodies,
                           const render::Style& style, bool through = false);
 
-/// Returns a short text with a lower bound on the distance of the surfaces: "a plane parts them, gap >=
-/// 0.12". Returns an empty text without plane and boxes.
+/// Returns a short text with a lower bound on the distance of the surfaces: "by a plane, gap >= 0.12".
+/// Returns an empty text without plane and boxes.
 std::string separating_plane_text(const WalkExplanation& walk, const PosedBodies& bodies);
 
 /// The corners of a square in the world. In 2D it is a segment between corners 0 and 1.

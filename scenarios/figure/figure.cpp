@@ -24,7 +24,7 @@ using View = render::FrameSpec::View;
 
 /// Returns a caption without its redundant parts.
 std::string shortened(std::string words) {
-  const std::string none = ": 0 pairs of faces meet";
+  const std::string none = ": 0 intersecting pairs of faces";
   if (words.ends_with(none)) words.resize(words.size() - none.size());
   return words;
 }

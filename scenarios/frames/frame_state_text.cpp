@@ -212,7 +212,7 @@ std::string FrameState::relation_text() const {
                : "unresolved: the limit was reached before the coarsest wrappers were compared";
   if (now_.separating) {
     const std::string words = separating_plane_text(*now_.separating, bodies());
-    if (!words.empty()) return "separate: " + words;
+    if (!words.empty()) return "separated " + words;
   }
   const bool open = !run_.reps[0]->closed() || !run_.reps[1]->closed();
   return (r.relation == Relation::undefined && open ? open_text() : relation_words(r.relation)) + ": " +

@@ -336,7 +336,7 @@ std::string result_text(const GoldenResult& r) {
   constexpr std::size_t kMaxLines = 12;
   const GoldenVerdict& v = r.verdict;
   if (!v.rejection.empty())
-    return "FAIL  " + r.name + ": " + v.rejection + "\n      approve it once that is mended: " + r.approve +
+    return "FAIL  " + r.name + ": " + v.rejection + "\n      approve it after fixing that: " + r.approve +
            "\n";
   std::string head = v.answers_differ ? "answers " + answers_words(r)
                      : v.divergence   ? "events or counters differ"

@@ -136,7 +136,7 @@ Document& Document::verdict(std::string word, bool good) {
 }
 
 Document& Document::version(std::string lrbscope) {
-  footer_ = "lrbscope " + std::move(lrbscope) + ". This page holds all it needs and fetches nothing.";
+  footer_ = "lrbscope " + std::move(lrbscope) + ". This page is self-contained and fetches nothing.";
   return *this;
 }
 

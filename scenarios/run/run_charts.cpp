@@ -21,25 +21,25 @@ constexpr const char* kLength = "length, mesh units";
 
 /// Descriptions of the verdicts, in the order of the enum.
 constexpr std::array<std::string_view, kWords<CapVerdict>.size()> kMeanings = {
-    "it became part of the hull",
-    "with fewer faces it would stand off the body by more than the pass allows",
+    "it became part of the front",
+    "with fewer faces its deviation would exceed the limit of the pass",
     "with fewer faces it would add more space than a collapse may",
     "with fewer faces some would be needles",
-    "no point lies in front of the faces that would have to go, and within the bounds of all hulls",
+    "no position for the new vertex is in front of all removed faces and within the bounds",
     "collapsing any more edges would leave no surface",
     "it saves too few faces to be worth a region",
     "a polygon of the mesh has one face in the LRB-rep: it is covered as a whole or not at all",
-    "at its ring it would have left the hull inward",
-    "its own faces met in more than they share",
-    "it met what it was to cover",
-    "it met another part of the hull: a gap is too narrow for it",
-    "another component may lie under it",
-    "a cap that adds less area for what it saves was put there first",
+    "at its boundary it would have turned inward",
+    "its own faces intersected",
+    "it intersected the faces to be covered",
+    "it intersected another part of the front: a gap is too narrow for it",
+    "it might enclose another component",
+    "another cap of the same pass, with less area per removed face, was accepted first",
     "bridging joins one outline with its convex hull, and there are several",
-    "bridging is left out for hulls with very large polygons or fans",
-    "the convex hull has no inside, or the outline crosses itself",
+    "bridging is skipped for convex hulls with very large polygons or fans",
+    "the convex hull has no interior, or the outline intersects itself",
     "coordinates are too large for a wrapper around them",
-    "the wrapper that was planned does not hold the last hull"};
+    "the planned wrapper does not contain the front"};
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
   return short_number(100.0 * static_cast<double>(part) / static_cast<double>(whole)) + " %";

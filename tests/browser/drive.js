@@ -249,7 +249,7 @@
     check(empty.length > 0, "steps without contact are explained");
     selection.goTo(events.endOfStep(lastAtMost(events.stepNumbers, empty[0])) - 1);
     await frame();
-    check(/What parts the bodies.*Apart/s.test(text()), "in words", text());
+    check(/What separates the bodies.*Apart/s.test(text()), "in words", text());
     check(view.whyMarks.group.children.length > 0, "and in the view");
     press("y");
     await frame();

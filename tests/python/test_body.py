@@ -98,7 +98,7 @@ def test_vertices_and_faces_make_the_body_again(ball, tmp_path):
 def test_what_is_inside_out_is_turned_and_said():
     vertices, faces = cube_arrays()
     body = Body(vertices, faces[:, ::-1], name="inverted")
-    assert any("inside out" in note for note in body.notes)
+    assert any("flipped" in note for note in body.notes)
     assert lrbscope.collide(Body(*cube_arrays(0.5, 0.25)), body).relation == "a_inside_b"
 
 

@@ -128,5 +128,5 @@ def test_f6_a_file_name_that_is_no_utf8_loads(odd_file, cube):
 def test_f6_an_error_names_a_file_whose_name_is_no_utf8(name):
     with pytest.raises(InputError, match=r"\\xff"):
         Body.load(name)
-    with pytest.raises(InputError, match="name: expected characters"):
+    with pytest.raises(InputError, match="name: expected a valid Unicode string"):
         Body(*cube_arrays(), name="a\udcff")

@@ -403,7 +403,7 @@ TEST_CASE("run and render: a tolerance, a limit, certificates; answers as query 
     const std::string page = slurp(folder / "one/index.html");
     CHECK((page.find("Error bound") != std::string::npos) ==
           (query.contains("tolerance") || query.contains("max_tests")));
-    CHECK((page.find("Proof that the bodies are apart") != std::string::npos) == proved);
+    CHECK((page.find("Proof of separation") != std::string::npos) == proved);
     REQUIRE(run(folder, {"render", "one/trace.json", "-o", "two", "--size", "400x300"}).code == 0);
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const std::string frame = "/frames/frame_000" + std::to_string(i) + ".png";

@@ -42,7 +42,7 @@ TEST_CASE("compare: the same run, another recursion, other levels of events; and
   CHECK(paper.code == 0);
   CHECK(paper.out.find("recursion: expected complete, found paper") != std::string::npos);
   CHECK(paper.out.find("step 0, event 1 of the step: ") != std::string::npos);
-  CHECK(slurp(runs.folder / "out/index.html").find("Step by step") != std::string::npos);
+  CHECK(slurp(runs.folder / "out/index.html").find("<h2>Steps</h2>") != std::string::npos);
   CHECK(render::read_png(runs.folder / "out/compare.png").image.width() > two);  // with the difference
 
   const Outcome nodes = run(runs.folder, {"--quiet", "compare", "one", "nodes", "-o", "out2"});

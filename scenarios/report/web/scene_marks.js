@@ -112,9 +112,9 @@ class WhyMarks {
       meet === 0
         ? [
             [colours.selected, "between the nearest points"],
-            [colours.refining, "plane that parts the faces"],
+            [colours.refining, "plane that separates the faces"],
           ]
-        : [[colours.underTest, "where they meet"]],
+        : [[colours.underTest, "intersection"]],
       "why",
     );
   }
@@ -133,7 +133,7 @@ class WhyMarks {
       [
         ...(boxes ? [[mixed(colours.bodies[0], colours.ink, 0.3), "closest pair of disjoint boxes"]] : []),
         ...(square.length
-          ? [[colours.refining, plane ? "plane that parts the bodies" : "plane that parts these boxes"]]
+          ? [[colours.refining, plane ? "plane that separates the bodies" : "plane that separates these boxes"]]
           : []),
       ],
       "why",
@@ -330,7 +330,7 @@ class Legend {
     if (this.view.events.passes) items.push([css(colours.refining), "lids that are new in this pass", ""]);
     else
       items.push(
-        [css(colours.contact), "faces that meet", ""],
+        [css(colours.contact), "intersecting faces", ""],
         [css(colours.refining), "region being refined", ""],
         [css(colours.underTest), "pair under test", ""],
       );

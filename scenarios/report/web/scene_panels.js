@@ -592,7 +592,7 @@ class WhyPanel {
           return `${where}${exact ? ` ${short(Math.abs(distance))}` : ""}${wrong}`;
         })
         .join("; "),
-      `On which side of the other face\u2019s ${this.events.dim === 3 ? "plane" : "line"}, exactly, and how far off`,
+      `On which side of the other face\u2019s ${this.events.dim === 3 ? "plane" : "line"}, exactly, and at which distance`,
     ]);
     if (e.meet === 0)
       rows.push(
@@ -642,7 +642,7 @@ class WhyPanel {
 
   // -- a step
   showStep(e) {
-    this.title("What parts the bodies");
+    this.title("What separates the bodies");
     byId("why-note").textContent = "";
     byId("why-regions").replaceChildren();
     byId("why-verdict").textContent = this.stepWords(e);
@@ -654,7 +654,7 @@ class WhyPanel {
       [
         "pairs of faces",
         e.facePairs > 0
-          ? `${digits(e.facePairs)} whose boxes meet; planes part ${digits(e.facePairs - e.left)}, ` +
+          ? `${digits(e.facePairs)} with overlapping boxes; planes separate ${digits(e.facePairs - e.left)}, ` +
             `${digits(e.left)} are compared`
           : "none: the walk did not come so far",
       ],
@@ -671,13 +671,13 @@ class WhyPanel {
     if (e.plane)
       return `Apart: a plane has all of A on one side and all of B on the other, gap >= ${least(e.plane.gap)}.`;
     const what = inside
-      ? "No two faces meet, though one body is inside the other"
+      ? "No faces intersect; one body is inside the other"
       : "Apart, though no plane was found that has one body on each side";
     const last =
       e.left > 0
         ? ", or in faces that planes and tests part"
         : e.facePairs > 0
-          ? ", or in faces that planes part"
+          ? ", or in faces separated by planes"
           : "";
     return `${what}: the traversal ended in pairs of disjoint boxes${last}.`;
   }

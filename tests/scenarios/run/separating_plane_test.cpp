@@ -33,7 +33,7 @@ TEST_CASE("captions: a gap is a lower bound of the distance, and shrinks as the 
     const WalkExplanation walk = explain_walk(ring, {}, ring, through);
     REQUIRE(walk.result.pairs.empty());
     const std::string words = run::separating_plane_text(walk, {ring, {}, ring, through});
-    CHECK(words.starts_with(walk.plane ? "a plane parts them, " : "boxes part them, "));
+    CHECK(words.starts_with(walk.plane ? "by a plane, " : "by boxes, "));
     if (x == 4 || x < 2) CHECK(walk.plane.has_value() == (x == 4));
     const double gap = gap_in(words), distance = lrb::distance(ring, {}, ring, through).upper;
     CHECK(gap <= distance);
