@@ -122,7 +122,7 @@ class Writer {
     begin("boxes, sort and sweep", "broad phase", "X", kBroadPhase, span);
     w_.member("box tests", s.broad_phase.box_tests).member("swaps", s.broad_phase.swaps);
     w_.member("sorted afresh", s.broad_phase.sorted_afresh);
-    w_.member("overlapping pairs of boxes", std::uint64_t{s.queries.size()});
+    w_.member("pairs of boxes that meet", std::uint64_t{s.queries.size()});
     end();
   }
 

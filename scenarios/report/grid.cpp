@@ -104,7 +104,7 @@ std::string legend_html(const Grid& grid) {
   std::string out = "<ul class=\"key\">";
   for (std::size_t i = 0; i < grid.level_names.size(); ++i)
     out += fill(R"(<li><i class="swatch level-{}"></i>{}</li>)", {std::to_string(i), grid.level_names[i]});
-  out += "<li><i class=\"swatch only-refused\"></i>refusals alone</li></ul><ul class=\"key\">";
+  out += "<li><i class=\"swatch only-refused\"></i>only refusals</li></ul><ul class=\"key\">";
   for (std::size_t k = 0; k < kParts; ++k)
     out += fill(
         R"(<li><svg class="swatch" viewBox="0 0 1 1" aria-hidden="true"><rect class="{}" width="1" height="1"/></svg>{} {}</li>)",

@@ -40,7 +40,7 @@ case "$name" in
     try "$gear" "$block" 3 0 0
     expect '^separate, 0 pairs'
     refuse "missing.obj: no such file" "$gear" missing.obj 0 0 0
-    refuse "not finite" "$gear" "$block" nan 0 0
+    refuse "finite numbers" "$gear" "$block" nan 0 0
     refuse "usage: " "$gear"
     ;;
   many_poses)

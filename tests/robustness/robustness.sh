@@ -154,7 +154,7 @@ expect 0 "an output folder that is a link itself" "$bin" run short.json -o link_
 
 # --- no memory
 no_memory() {
-  awk 'BEGIN { n = 400; for (i = 0; i <= n; ++i) for (j = 0; j <= n; ++j) print "v", i, j, sin(i * j);
+  awk 'BEGIN { n = 500; for (i = 0; i <= n; ++i) for (j = 0; j <= n; ++j) print "v", i, j, sin(i * j);
     for (i = 0; i < n; ++i) for (j = 0; j < n; ++j) { a = i * (n + 1) + j + 1; print "f", a, a + n + 1, a + 1 } }' >big.obj
   echo "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125" >pose.txt
   # A long array of small objects, like any large trace.

@@ -193,7 +193,7 @@ TEST_CASE("xray: a page with both runs, or one clear error") {
       run(folder, {"--quiet", "xray", "circle.obj", "circle.obj", "--poses", "poses.txt", "-o", "flat"});
   CHECK(flat.code != 0);
   CHECK(flat.error_lines() == 1);
-  CHECK(flat.err.find("circle.obj: a 2D body") != std::string::npos);
+  CHECK(flat.err.find("circle.obj: expected a 3D body, found a 2D body") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder / "flat"));
 }
 
