@@ -132,8 +132,8 @@ TEST_CASE("lrbscope stability --quantity: table, records, a case again, a quanti
   test::Outcome o = test::run(folder, kiss);
   CHECK(o.code == 0);
   CHECK(o.out.find("out/stability-distance/records.jsonl\n") != std::string::npos);
-  CHECK(test::slurp(folder / "out/stability-distance/index.html").find("The distance between the surfaces of two bodies") !=
-        std::string::npos);
+  CHECK(test::slurp(folder / "out/stability-distance/index.html")
+            .find("The distance between the surfaces of two bodies") != std::string::npos);
   std::vector<std::string> again = kiss;
   again.insert(again.end(), {"--dial", "3", "--only", "0"});
   o = test::run(folder, again);
