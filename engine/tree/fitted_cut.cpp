@@ -56,8 +56,8 @@ std::uint32_t number_at(std::uint64_t place) {
   return static_cast<std::uint32_t>(place);
 }
 
-/// Sorts keys that are listed by ascending number. Radix sort, 11 bits of the position at a time; `buffer` is
-/// overwritten.
+/// Sorts keys by position. Equal positions: by number for few keys, otherwise in the order of the list. Radix
+/// sort, 11 bits of the position at a time; `buffer` is overwritten.
 void sort_places(std::vector<std::uint64_t>& places, std::vector<std::uint64_t>& buffer) {
   constexpr std::size_t kFew = 256;  // clearing the counters would take longer
   if (places.size() <= kFew) {
@@ -73,7 +73,7 @@ void sort_places(std::vector<std::uint64_t>& places, std::vector<std::uint64_t>&
   for (int round = 0; round < kRounds; ++round) {
     std::uint32_t sum = 0;
     for (std::uint32_t& count : begin[round]) sum += std::exchange(count, sum);
-    // Stable, so that equal positions stay in the order of their numbers.
+    // Stable, so that equal positions keep their order.
     for (const std::uint64_t place : places)
       buffer[begin[round][place >> (32 + kBits * round) & kMask]++] = place;
     places.swap(buffer);
@@ -205,7 +205,7 @@ void FittedCuts::measure() {
   for (const std::uint32_t i : along(0)) spread_[i] = Spread(soup_.corners[simplices_[i]], origin_, scale_);
 }
 
-/// Orders the range along a direction by the centres of boxes, rounded to float. Ties: by number.
+/// Orders the range along a direction by the centres of boxes, rounded to float.
 void FittedCuts::order_along(const Vector3d& direction, std::vector<std::uint32_t>& order) {
   places_.resize(size_);
   for (std::uint32_t k = 0; k < size_; ++k) {
