@@ -22,27 +22,6 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-/// A box that grows. The fourth coordinate is 0: it fills a vector register.
-struct GrowingBox {
-  Eigen::Array4d low = Eigen::Array4d::Constant(kInfinity), high = -low;
-
-  GrowingBox() = default;
-  explicit GrowingBox(const Box& b)
-      : low(b.min().x(), b.min().y(), b.min().z(), 0), high(b.max().x(), b.max().y(), b.max().z(), 0) {}
-  void extend(const Eigen::Vector3d& x) {
-    const Eigen::Array4d y(x.x(), x.y(), x.z(), 0);
-    low = low.min(y);
-    high = high.max(y);
-  }
-  void extend(const GrowingBox& box) {
-    low = low.min(box.low);
-    high = high.max(box.high);
-  }
-  double cost() const {
-    return box_cost(Box(Eigen::Vector3d(low.head<3>()), Eigen::Vector3d(high.head<3>())));
-  }
-};
-
 class BinaryBuilder {
  public:
   BinaryBuilder(Soup& soup, Workers& workers, Splits splits)
@@ -135,32 +114,25 @@ class BinaryBuilder {
     const Split best = splits_.all_cuts ? best_of_all(begin, end) : best_binned(begin, end);
     // A stable partition in linear time. The simplices of each half stay in the order of the mesh, in which
     // neighbours mostly are neighbours in memory.
-    std::vector<std::uint32_t> listed(soup_.order.begin() + begin, soup_.order.begin() + end), right;
+    const auto first = soup_.order.begin() + begin, last = soup_.order.begin() + end;
     const auto before = soup_.order_on(best.axis);
+    std::vector<std::uint32_t> listed(first, last);
     std::nth_element(listed.begin(), listed.begin() + best.left, listed.end(), before);
-    const std::uint32_t pivot = listed[best.left];
-    right.reserve(end - begin - best.left);
-    auto to = soup_.order.begin() + begin;
-    for (const std::uint32_t s : std::vector(to, soup_.order.begin() + end))
-      if (before(s, pivot))
-        *to++ = s;
-      else
-        right.push_back(s);
-    std::copy(right.begin(), right.end(), to);
+    std::stable_partition(first, last, [&](std::uint32_t s) { return before(s, listed[best.left]); });
     return begin + best.left;
   }
 
   /// The boxes and numbers of the simplices in each bin of an axis.
   struct Bins {
     double from = 0, per_unit = 0;  ///< where the first bin begins, and bins in a unit of length
-    std::array<GrowingBox, kBins> box;
+    std::array<GrowingBox<double>, kBins> box;
     std::array<std::uint32_t, kBins> count{};
   };
 
   Split best_binned(std::uint32_t begin, std::uint32_t end) const {
-    GrowingBox centres;
+    GrowingBox<double> centres;
     // Bins divide the range of centres, not of boxes, so that every bin is on one side of each cut.
-    for (std::uint32_t i = begin; i < end; ++i) centres.extend(soup_.centre[soup_.order[i]]);
+    for (std::uint32_t i = begin; i < end; ++i) centres.extend(four<double>(soup_.centre[soup_.order[i]]));
     std::array<Bins, 3> bins;
     for (int axis = 0; axis < 3; ++axis) {
       bins[axis].from = centres.low[axis];
@@ -171,7 +143,7 @@ class BinaryBuilder {
     // Pass 1: the box and number of simplices of each bin, on all axes.
     for (std::uint32_t i = begin; i < end; ++i) {
       const std::uint32_t s = soup_.order[i];
-      const GrowingBox box(soup_.box[s]);
+      const GrowingBox<double> box{four<double>(soup_.box[s].min()), four<double>(soup_.box[s].max())};
       for (int axis = 0; axis < 3; ++axis) {
         Bins& of = bins[axis];
         const int b = std::min(kBins - 1, static_cast<int>((soup_.centre[s][axis] - of.from) * of.per_unit));
@@ -221,21 +193,21 @@ class BinaryBuilder {
   static void try_axis(const Bins& bins, std::uint32_t count, int axis, Split& best) {
     // Pass 2, from the right: the cost of everything right of each boundary.
     std::array<double, kBins> right_cost{};
-    GrowingBox right;
+    GrowingBox<double> right;
     std::uint32_t right_count = 0;
     for (int b = kBins - 1; b > 0; --b) {
       right.extend(bins.box[b]);
       right_count += bins.count[b];
-      right_cost[b] = right_count ? right.cost() * leaves_for(right_count) : 0;
+      right_cost[b] = right_count ? box_cost(right.sides()) * leaves_for(right_count) : 0;
     }
     // Pass 3, from the left: the cost of each cut, as box cost times number of leaves.
-    GrowingBox left;
+    GrowingBox<double> left;
     std::uint32_t left_count = 0;
     for (int b = 1; b < kBins; ++b) {
       left.extend(bins.box[b - 1]);
       left_count += bins.count[b - 1];
       if (left_count == 0 || left_count == count) continue;
-      const double cost = left.cost() * leaves_for(left_count) + right_cost[b];
+      const double cost = box_cost(left.sides()) * leaves_for(left_count) + right_cost[b];
       if (cost < best.cost) best = {cost, axis, left_count};
     }
   }

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -80,21 +79,6 @@ void sort_places(std::vector<std::uint64_t>& places, std::vector<std::uint64_t>&
   }
 }
 
-/// A box in float that grows.
-struct FloatBox {
-  Eigen::Array4f low = Eigen::Array4f::Constant(std::numeric_limits<float>::infinity()), high = -low;
-
-  void extend(const Eigen::Array4f& x) {
-    low = low.min(x);
-    high = high.max(x);
-  }
-  /// Returns box_cost() of the box at another scale.
-  double cost(double scale) const {
-    const Eigen::Array3d e = (high - low).head<3>().cast<double>() * scale;
-    return e[0] * e[1] + e[1] * e[2] + e[2] * e[0] + kLengthCost * (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
-  }
-};
-
 /// Returns the cost of a cut with these numbers of simplices on its left and right.
 float sum_of_costs(const FittedCuts::Halves& halves, std::uint32_t left, std::uint32_t right) {
   return static_cast<float>(halves.left_cost * leaves_for(left) + halves.right_cost * leaves_for(right));
@@ -138,7 +122,7 @@ FittedCuts::Halves FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
   }
   // Eigenvalues ascend, so column 2 is the longest axis.
   if (effort_.principal > 0) {
-    const Matrix3d axes = principal_axes(all_);
+    const Matrix3d axes = eigenvectors_of_symmetric(all_.covariance());
     for (int k = 0; k < effort_.principal; ++k) order_along(axes.col(2 - k), principal_[k]);
   }
   // Step 2: rank all cuts.
@@ -193,10 +177,8 @@ void FittedCuts::localise() {
   scale_ = 1 / bounds.sizes().norm();
   if (!std::isfinite(scale_)) scale_ = 1;
   for (const std::uint32_t i : along(0))
-    for (int k = 0; k < 3; ++k) {
-      const Vector3d x = scale_ * (soup_.corners[simplices_[i]][k] - origin_);
-      local_[i][k] = {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]), 0.0f};
-    }
+    for (int k = 0; k < 3; ++k)
+      local_[i][k] = four<float>(scale_ * (soup_.corners[simplices_[i]][k] - origin_));
 }
 
 /// Measures the moments of the simplices of the range relative to the same centre and scale, which limits
@@ -250,18 +232,17 @@ FittedCuts::Halves FittedCuts::measured(const Cut& cut, float most) const {
 double FittedCuts::fitted_box_cost(std::span<const std::uint32_t> some, const Spread& spread) const {
   // The candidates for a node's frame: the coordinate axes and the principal axes. The rotation maps x to the
   // sum of x[k] * column[k].
-  const Matrix3d axes = principal_axes(spread);
+  const Matrix3d axes = eigenvectors_of_symmetric(spread.covariance());
   Eigen::Array4f column[3];
-  for (int k = 0; k < 3; ++k)
-    column[k] = {static_cast<float>(axes(k, 0)), static_cast<float>(axes(k, 1)),
-                 static_cast<float>(axes(k, 2)), 0.0f};
-  FloatBox straight, turned;
+  for (int k = 0; k < 3; ++k) column[k] = four<float>(axes.row(k));
+  GrowingBox<float> straight, turned;
   for (const std::uint32_t i : some)
     for (const Eigen::Array4f& x : local_[i]) {
       straight.extend(x);
       turned.extend(x[0] * column[0] + x[1] * column[1] + x[2] * column[2]);
     }
-  return std::min(straight.cost(1 / scale_), turned.cost(1 / scale_));
+  const double unit = 1 / scale_;
+  return std::min(box_cost(straight.sides() * unit), box_cost(turned.sides() * unit));
 }
 
 /// Cuts the range: partitions the order along each axis into left and right, stably.
@@ -353,55 +334,15 @@ Matrix3d Spread::covariance() const {
   return c;
 }
 
-Matrix3d principal_axes(const Spread& spread) {
-  // Jacobi's method, cyclic: each rotation removes one product, and a few rounds remove all.
-  Matrix3d c = spread.covariance(), axes = Matrix3d::Identity();
-  constexpr int kRounds = 6;
-  for (int round = 0; round < kRounds; ++round) {
-    const double off = c(0, 1) * c(0, 1) + c(0, 2) * c(0, 2) + c(1, 2) * c(1, 2);
-    const double on = c(0, 0) * c(0, 0) + c(1, 1) * c(1, 1) + c(2, 2) * c(2, 2);
-    constexpr double kNone = 0x1p-44;  // of squares: the axes are exact to about 2^-22, as floats are
-    if (!(off > kNone * on)) break;
-    for (int k = 0; k < 3; ++k) {
-      const int p = k == 2 ? 1 : 0, q = k == 0 ? 1 : 2, r = 3 - p - q;
-      if (c(p, q) == 0) continue;
-      // The smaller of the two angles that make c(p, q) zero, by its tangent.
-      const double half = (c(q, q) - c(p, p)) / (2 * c(p, q));
-      const double tangent = (half < 0 ? -1 : 1) / (std::abs(half) + std::sqrt(half * half + 1));
-      const double cosine = 1 / std::sqrt(tangent * tangent + 1), sine = tangent * cosine;
-      c(p, p) -= tangent * c(p, q);
-      c(q, q) += tangent * c(p, q);
-      c(p, q) = 0;
-      const auto turn = [&](double& x, double& y) {
-        const double before = x;
-        x = cosine * before - sine * y;
-        y = sine * before + cosine * y;
-      };
-      turn(c(std::min(p, r), std::max(p, r)), c(std::min(q, r), std::max(q, r)));
-      for (int i = 0; i < 3; ++i) turn(axes(i, p), axes(i, q));
-    }
-  }
-  // Shortest first.
-  for (const auto& [i, j] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{0, 1}})
-    if (c(j, j) < c(i, i)) {
-      std::swap(c(i, i), c(j, j));
-      axes.col(i).swap(axes.col(j));
-    }
-  return axes;
-}
-
 Box box_in_frame(const Soup& soup, std::span<const std::uint32_t> which, const Frame& frame) {
-  // Coordinates side by side, for vector instructions; the fourth is 0.
-  Eigen::Array4d column[3], low = Eigen::Array4d::Constant(kInfinity), high = -low;
-  for (int k = 0; k < 3; ++k) column[k] = {frame.axes(0, k), frame.axes(1, k), frame.axes(2, k), 0.0};
+  Eigen::Array4d column[3];
+  for (int k = 0; k < 3; ++k) column[k] = four<double>(frame.axes.col(k));
+  GrowingBox<double> box;
   for (const std::uint32_t s : which)
-    for (const Vector3d& x : soup.corners[s]) {
-      const Eigen::Array4d y = (x[0] - frame.origin[0]) * column[0] + (x[1] - frame.origin[1]) * column[1] +
-                               (x[2] - frame.origin[2]) * column[2];
-      low = low.min(y);
-      high = high.max(y);
-    }
-  return {Vector3d(low.head<3>()), Vector3d(high.head<3>())};
+    for (const Vector3d& x : soup.corners[s])
+      box.extend((x[0] - frame.origin[0]) * column[0] + (x[1] - frame.origin[1]) * column[1] +
+                 (x[2] - frame.origin[2]) * column[2]);
+  return {Vector3d(box.low.head<3>()), Vector3d(box.high.head<3>())};
 }
 
 Frame principal_frame(const Soup& soup, std::span<const std::uint32_t> which, const Spread& spread,
@@ -410,15 +351,13 @@ Frame principal_frame(const Soup& soup, std::span<const std::uint32_t> which, co
   // Without extent there are no principal axes: 1 / 0 is not finite.
   const double scale = 1 / bounds.sizes().norm();
   if (!std::isfinite(scale)) return straight;
-  Matrix3d axes;
+  Spread measured = spread;
+  // Small compared with the body: measure again, with a closer origin and scale.
   if (spread.variance() < kMeasureAgain) {
-    // Small beside the body: measured with a closer origin and scale.
-    Spread again;
-    for (const std::uint32_t s : which) again += Spread(soup.corners[s], straight.origin, scale);
-    axes = principal_axes(again).transpose();
-  } else {
-    axes = principal_axes(spread).transpose();
+    measured = {};
+    for (const std::uint32_t s : which) measured += Spread(soup.corners[s], straight.origin, scale);
   }
+  const Matrix3d axes = eigenvectors_of_symmetric(measured.covariance()).transpose();
   // Round the axes to float before measuring. If rounding spoils orthonormality, fall back to the coordinate
   // axes.
   const Frame principal{axes.cast<float>().cast<double>(), straight.origin};

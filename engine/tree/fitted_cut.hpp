@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -77,16 +78,44 @@ struct Soup {
   }
 };
 
-/// Returns half the surface area of a box.
+/// Returns half the surface area of a box with sides of these lengths.
+inline double half_area(const Eigen::Vector3d& sides) {
+  return sides.x() * sides.y() + sides.y() * sides.z() + sides.z() * sides.x();
+}
 inline double half_area(const Eigen::AlignedBox3d& b) {
-  const Eigen::Vector3d e = b.sizes();
-  return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
+  return half_area(Eigen::Vector3d(b.sizes()));
 }
 
 /// Returns the cost of a box to a query by the surface area heuristic: half its surface area, plus a small
 /// term for its length.
+inline double box_cost(const Eigen::Vector3d& sides) {
+  return half_area(sides) + kLengthCost * sides.squaredNorm();
+}
 inline double box_cost(const Eigen::AlignedBox3d& b) {
-  return half_area(b) + kLengthCost * b.sizes().squaredNorm();
+  return box_cost(Eigen::Vector3d(b.sizes()));
+}
+
+/// A box that grows. Points are x, y, z and 0: four coordinates fill a vector register.
+template <class Scalar>
+struct GrowingBox {
+  using Point = Eigen::Array<Scalar, 4, 1>;
+  Point low = Point::Constant(std::numeric_limits<Scalar>::infinity()), high = -low;
+
+  void extend(const Point& x) {
+    low = low.min(x);
+    high = high.max(x);
+  }
+  void extend(const GrowingBox& box) {
+    low = low.min(box.low);
+    high = high.max(box.high);
+  }
+  Eigen::Vector3d sides() const { return (high - low).template head<3>().template cast<double>(); }
+};
+
+/// Returns a point or vector as a GrowingBox takes it.
+template <class Scalar>
+Eigen::Array<Scalar, 4, 1> four(const Eigen::Vector3d& x) {
+  return {static_cast<Scalar>(x[0]), static_cast<Scalar>(x[1]), static_cast<Scalar>(x[2]), Scalar{0}};
 }
 
 /// Unit axes about an origin: a point x has the coordinates axes * (x - origin).
@@ -97,10 +126,6 @@ struct Frame {
 
 /// Returns the box of some simplices in a frame.
 Eigen::AlignedBox3d box_in_frame(const Soup& soup, std::span<const std::uint32_t> which, const Frame& frame);
-
-/// Returns the principal axes of points with these moments as columns, the shortest axis first. They are
-/// orthonormal up to rounding in double, or not finite.
-Eigen::Matrix3d principal_axes(const Spread& spread);
 
 /// Returns the principal axes of some simplices, or the coordinate axes if the simplices have no extent. Axes
 /// are rounded to float before they are evaluated, as the query uses them. spread: the sum of the moments.
@@ -178,7 +203,7 @@ class FittedCuts {
   double whole_cost_ = 0;
   std::vector<std::uint32_t> simplices_;  ///< ascending; below, simplices are identified by their index here
   std::vector<Spread> spread_;  ///< moments of each simplex; within a range, relative to one origin and scale
-  std::vector<Corners> local_;  ///< of each simplex; within a range, relative to one origin and scale
+  std::vector<Corners> local_;  ///< corners of each simplex: local_ = scale_ (x - origin_) within a range
   Eigen::Vector3d origin_{0, 0, 0};  ///< of `local_`
   double scale_ = 1;                 ///< of `local_`
   /// Range by range, ordered along an axis within each.

@@ -159,7 +159,7 @@ struct EightCertainties {
   std::uint32_t unsure[2][3] = {};  ///< [A's, B's][corner]: the corner may be in the other's plane
 
   /// Writes the decision for one pair. Branch-free, because it is unpredictable.
-  void notify(int lane, Candidate& c) const {
+  void write(int lane, Candidate& c) const {
     const auto is = [lane](std::uint32_t lanes) { return lanes >> lane & 1; };
     const auto value = [](Certainty certainty) { return static_cast<std::uint32_t>(certainty); };
     // A triangle whose decided corners are on one side of a plane intersects the plane in the convex hull of

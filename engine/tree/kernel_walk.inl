@@ -271,7 +271,7 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
       const std::uint32_t pair = begin + static_cast<std::uint32_t>(lane);
       Candidate& found = k.out[k.out_size++];
       found = {block_a.simplex[list.a[pair]], block_b.simplex[list.b[pair]], Certainty::none, Side::a, 0};
-      if constexpr (!kMargin) certainties.notify(lane, found);
+      if constexpr (!kMargin) certainties.write(lane, found);
     }
   }
 }
