@@ -95,11 +95,11 @@ void compare_bodies(Comparison& c, const TraceHeader& x, const TraceHeader& y) {
     const BodyInfo &p = x.bodies[i], &q = y.bodies[i];
     // The hash covers the whole LRB-rep; face and region counts only make the message clearer.
     if (p.hash == q.hash) continue;
-    const auto notify = [](const BodyInfo& b) {
+    const auto text = [](const BodyInfo& b) {
       return to_hex(b.hash) + " (" + std::to_string(b.real_faces) + " real faces, " +
              std::to_string(b.regions) + " regions)";
     };
-    c.found("hash of body " + std::string(name_of(static_cast<Side>(i))), notify(p), notify(q));
+    c.found("hash of body " + std::string(name_of(static_cast<Side>(i))), text(p), text(q));
   }
 }
 

@@ -31,8 +31,8 @@ struct ShownLevel {
 /// deviation.
 render::Image draw_wrappers(const ShownBody& shown, std::span<const ShownLevel> levels);
 
-/// Draws the distance of each wrapper's lids from the body, on a common scale, and sets the largest distance
-/// of each level.
+/// Draws the distance of each wrapper's lids from the body, on a common scale, and stores the largest
+/// distance found for each level in `levels`.
 render::Image draw_distances(const ShownBody& shown, std::span<ShownLevel> levels);
 
 /// Returns the caption of a panel.

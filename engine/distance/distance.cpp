@@ -188,9 +188,9 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
   const TreeKernel tree = set_up_any_kernel(a.tree(), pose_a, b.tree(), pose_b, a.dim(), query.affine);
   bool finished = false;
   double rest = 0;
-  std::optional<BoundsProbeAdapter> reported;
-  if (probe != nullptr) reported.emplace(*probe);
-  BoundsProbeAdapter* const adapter = reported ? &*reported : nullptr;
+  std::optional<BoundsProbeAdapter> adapted;
+  if (probe != nullptr) adapted.emplace(*probe);
+  BoundsProbeAdapter* const adapter = adapted ? &*adapted : nullptr;
   if (suits_floats(tree)) {
     // A likely candidate has given an upper bound already: no descent to a first pair.
     FloatWalk walk(context, found, request, tree, query_unit(a.tree(), b.tree()), !is_likely,
@@ -207,11 +207,11 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
     result.counters.box_tests = walk.box_tests();
   }
   // The probe gets the bounds before and after the exact measurements.
-  if (reported && !found.known_to_meet())
-    reported->notify(result.counters.steps + found.measured(), found.lower(rest), found.upper());
+  if (adapter && !found.known_to_meet())
+    adapter->notify(result.counters.steps + found.measured(), found.lower(rest), found.upper());
   // Step 4.
   found.finish(rest, finished, result);
-  if (reported) reported->notify(result.counters.steps + found.measured(), result.lower, result.upper);
+  if (adapter) adapter->notify(result.counters.steps + found.measured(), result.lower, result.upper);
   return result;
 }
 

@@ -23,6 +23,16 @@ inline std::uint64_t hash_of_point(const Eigen::Vector3d& v) {
   return h;
 }
 
+/// Returns the slot of the vertex at x, or the free slot for it. Open addressing: `slots` are indices of
+/// `points` or kNull, a power of two in number, and not all used.
+inline VertexId& slot_of(const Eigen::Vector3d& x, std::span<const Eigen::Vector3d> points,
+                         std::span<VertexId> slots) {
+  const std::size_t mask = slots.size() - 1;
+  std::size_t i = hash_of_point(x) & mask;
+  while (slots[i] != kNull && points[slots[i]] != x) i = (i + 1) & mask;
+  return slots[i];
+}
+
 /// Finds the first of several vertices with equal coordinates (0 and -0 are equal).
 class FirstAtPosition {
  public:
@@ -35,11 +45,9 @@ class FirstAtPosition {
   VertexId operator()(VertexId v) {
     const Eigen::Vector3d& x = points_[v];
     if (x.hasNaN()) return v;
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t i = hash_of_point(x) & mask;
-    while (slots_[i] != kNull && points_[slots_[i]] != x) i = (i + 1) & mask;
-    if (slots_[i] == kNull) slots_[i] = v;
-    return slots_[i];
+    VertexId& slot = slot_of(x, points_, slots_);
+    if (slot == kNull) slot = v;
+    return slot;
   }
 
  private:
@@ -55,7 +63,7 @@ class VertexMerger {
 
   VertexId id(const Eigen::Vector3d& v) {
     if (2 * vertices_.size() >= slots_.size()) grow();
-    VertexId& slot = find(v);
+    VertexId& slot = slot_of(v, vertices_, slots_);
     if (slot == kNull) {
       slot = static_cast<VertexId>(vertices_.size());
       vertices_.push_back(v);
@@ -64,17 +72,11 @@ class VertexMerger {
   }
 
  private:
-  /// Returns the slot of v, or the free slot for it. The number of slots is a power of two, and at most half
-  /// of them are used.
-  VertexId& find(const Eigen::Vector3d& v) {
-    const std::size_t mask = slots_.size() - 1;
-    for (std::size_t i = hash_of_point(v) & mask;; i = (i + 1) & mask)
-      if (slots_[i] == kNull || vertices_[slots_[i]] == v) return slots_[i];
-  }
-
+  /// Doubles the slots, so that at most half of them are used.
   void grow() {
     slots_.assign(2 * slots_.size(), kNull);
-    for (std::size_t i = 0; i < vertices_.size(); ++i) find(vertices_[i]) = static_cast<VertexId>(i);
+    for (std::size_t i = 0; i < vertices_.size(); ++i)
+      slot_of(vertices_[i], vertices_, slots_) = static_cast<VertexId>(i);
   }
 
   std::vector<Eigen::Vector3d>& vertices_;

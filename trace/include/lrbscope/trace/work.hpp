@@ -73,8 +73,8 @@ const ObbTree& walked_tree(const LrbRep& rep, std::uint32_t walked);
 /// The work at each node of a body's own tree. All arrays have size (nodes).
 struct NodeCounts {
   std::vector<std::uint32_t> visits;     ///< pairs with the node
-  std::vector<std::uint32_t> ended;      ///< of these, pairs without overlapping boxes
-  std::vector<std::uint32_t> box_tests;  ///< in these pairs
+  std::vector<std::uint32_t> ended;      ///< visits in which no boxes overlap
+  std::vector<std::uint32_t> box_tests;  ///< tests of boxes in all visits
 };
 /// Counts over traversals of the body itself; traversals of levels of detail are skipped. `tree` is that of
 /// the body recorded as `side`. Throws InputError if an event names a node that the tree does not have.
