@@ -1,0 +1,145 @@
+#pragma once
+/// A capture: what a program with lrbscope_capture.h recorded of another engine's collision queries. The
+/// meshes and trees of the engine, and for each query its poses, the tests in the engine's order, and its
+/// answer.
+///
+///   const capture::Capture c = capture::read_capture("run.lrbcap");
+///   for (const capture::Query& q : c.queries)
+///     for (const capture::Event& e : q.events) ...
+///
+/// docs/capture.md describes the file byte by byte.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <lrbscope/ids.hpp>
+#include <lrbscope/pose.hpp>
+
+namespace lrb::capture {
+
+/// A triangle mesh as the engine reported it. It need not be closed, and its triangles may be degenerate.
+struct Mesh {
+  std::string name;
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of vertices, in range
+};
+
+/// Kind of bounding volume, with its numbers in the frame of the mesh.
+enum class VolumeKind : std::uint32_t {
+  aabb = 1,    ///< 6: least x, y, z; greatest x, y, z
+  sphere = 2,  ///< 4: centre, radius
+  obb = 3,     ///< 12: centre, then three half axes (orthogonal)
+  rss = 4,     ///< 10: a corner of the rectangle, its two sides as vectors, radius
+  kdop = 5,    ///< 2k: for each direction the least and the greatest product with it
+};
+
+/// A tree of bounding volumes as the engine reported it. Nodes are numbered from 0, the root, in the order of
+/// the description; events are converted to these numbers. Indices of children are in range, but nothing else
+/// is sure: a node may have two parents or none, and a leaf may contain triangles that do not exist.
+struct Tree {
+  std::uint32_t id = 0;            ///< the engine's number of the tree
+  std::uint32_t mesh = 0;          ///< index in Capture::meshes
+  std::uint32_t replaces = kNull;  ///< index in Capture::trees of the tree that this one refits; kNull: none
+  VolumeKind volume = VolumeKind::aabb;
+  std::vector<std::uint32_t> first_child, child;        ///< children of node n: child[first_child[n] ..)
+  std::vector<std::uint32_t> first_triangle, triangle;  ///< triangles of leaf n, in the same form
+  std::vector<double> volumes;                          ///< numbers() for each node, finite
+  std::vector<Eigen::Vector3d> directions;              ///< of a k-DOP
+  std::vector<std::uint32_t> ids;  ///< the engine's own number of each node; empty: equal to ours
+
+  std::size_t size() const { return first_child.size() - 1; }
+  std::span<const std::uint32_t> children(std::uint32_t node) const {
+    return {child.data() + first_child[node], child.data() + first_child[node + 1]};
+  }
+  std::span<const std::uint32_t> triangles(std::uint32_t node) const {
+    return {triangle.data() + first_triangle[node], triangle.data() + first_triangle[node + 1]};
+  }
+  bool is_leaf(std::uint32_t node) const { return children(node).empty(); }
+  /// Returns the number of doubles per volume.
+  std::size_t numbers() const;
+  std::span<const double> volume_of(std::uint32_t node) const {
+    return std::span(volumes).subspan(node * numbers(), numbers());
+  }
+  /// Returns the number by which the engine knows the node.
+  std::uint32_t id_of(std::uint32_t node) const { return ids.empty() ? node : ids[node]; }
+};
+
+enum class QueryKind : std::uint32_t { all_pairs = 1, any = 2, distance = 3, first_contact = 4, self = 5 };
+/// The engine's own answer.
+enum class Verdict : std::uint32_t { separate = 0, intersecting = 1, unreported = 2 };
+
+enum class EventKind : std::uint8_t {
+  nodes = 0,      ///< bounding volumes of node a of tree A and node b of tree B were tested
+  triangles = 1,  ///< triangle a of mesh A and triangle b of mesh B were tested
+  count = 2,      ///< counter a of the engine, with value b
+  phase = 3,      ///< phase a of the engine begins
+};
+/// Axis of an event without a reported axis. Others: 0-2 axes of A, 3-5 axes of B, 6-14 cross products of
+/// edges (6 + 3 i + j), 32 + k direction k of a k-DOP.
+inline constexpr std::uint8_t kNoAxis = 255;
+
+struct Event {
+  std::uint32_t a = 0, b = 0;
+  EventKind kind = EventKind::nodes;
+  std::uint8_t met = 0;    ///< number of tests with overlap; 0: the engine goes no further here
+  std::uint8_t tests = 1;  ///< number of tests: more than 1 for wide nodes
+  std::uint8_t axis = kNoAxis;
+
+  friend bool operator==(const Event&, const Event&) = default;
+};
+
+/// The events of one thread in a query.
+struct Part {
+  std::uint32_t thread = 0;
+  std::size_t first = 0, count = 0;  ///< in Query::events
+};
+
+struct Query {
+  std::uint32_t number = 0;  ///< 1, 2, ... in the order of their beginnings
+  QueryKind kind = QueryKind::all_pairs;
+  /// Indices in Capture::trees; kNull: a single triangle or shape (events then name no node of this side).
+  std::array<std::uint32_t, 2> trees{kNull, kNull};
+  std::array<Pose, 2> poses;  ///< of A and B: rigid, within 1e-6
+  std::uint32_t thread = 0;   ///< that began it
+  double begin_ns = 0;        ///< since the capture began
+  double duration_ns = 0;     ///< 0 if the capture was cut off before the end
+  bool ended = false;         ///< false: the capture was cut off before the end
+  Verdict verdict = Verdict::unreported;
+  std::uint64_t pairs = 0;        ///< the number of pairs that the engine found, by its own count
+  std::uint64_t events_seen = 0;  ///< by the thread that began it; more than stored if events were not kept
+  std::vector<Event> events;      ///< by thread, each in the engine's order
+  std::vector<Part> parts;
+
+  /// Returns true if all events of the query are stored.
+  bool complete() const { return ended && events_seen == (parts.empty() ? 0 : parts.front().count); }
+};
+
+struct Capture {
+  std::string engine;              ///< "FCL 0.7.0, BVHModel<OBBRSS>"
+  std::vector<std::string> names;  ///< of counters and phases
+  std::vector<Mesh> meshes;
+  std::vector<Tree> trees;
+  std::vector<Query> queries;  ///< by number
+  double ns_per_tick = 0;      ///< 0: not known
+  bool cut_off = false;        ///< the file ends within a chunk, or without its last chunk
+};
+
+/// Reads a capture. `first` and `last` limit the queries read (numbers, both included). Throws InputError
+/// that names chunk, query and event for a file that is not a capture, of another version, or inconsistent:
+/// an id that was not defined, a node or triangle that a tree or mesh does not have, a matrix that is not
+/// rigid within 1e-6, events without a query. A file that was cut off is read up to its last whole chunk.
+Capture read_capture(const std::string& path, std::uint32_t first = 1, std::uint32_t last = kNull);
+/// Reads a capture from memory; `name` is used in messages.
+Capture parse_capture(std::span<const std::byte> bytes, const std::string& name, std::uint32_t first = 1,
+                      std::uint32_t last = kNull);
+/// Returns true if the bytes begin as a capture does.
+bool is_capture(std::span<const std::byte> bytes);
+
+}  // namespace lrb::capture
