@@ -1,6 +1,7 @@
 #pragma once
 /// Geometry of the bounding volumes of a captured tree.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,31 +13,64 @@
 
 namespace lrb::profile {
 
+/// The points x with normal.dot(x) <= offset. The normal has unit length.
+struct HalfSpace {
+  Eigen::Vector3d normal;
+  double offset;
+};
+
+/// Clips a convex polygon to a half-space (Sutherland and Hodgman 1974). It becomes empty if it lies outside.
+void clip(std::vector<Eigen::Vector3d>& polygon, const HalfSpace& half);
+/// Returns the area of a planar polygon.
+double area_of(const std::vector<Eigen::Vector3d>& polygon);
+
+/// A k-DOP as a solid. Flat ones have two coincident sides; empty ones have no corners.
+struct Polytope {
+  std::vector<Eigen::Vector3d> corners;  ///< corners shared by several faces occur several times
+  double area = 0, volume = 0;
+};
+
 /// The bounding volumes of a tree, in the frame and unit of its mesh. The tree must outlive this object.
 class Volumes {
  public:
-  explicit Volumes(const capture::Tree& tree) : tree_(&tree) {}
+  /// Throws InputError for k-DOPs whose directions do not span space.
+  explicit Volumes(const capture::Tree& tree);
 
   /// Returns how far p lies outside the volume of a node; 0 inside. For a k-DOP, the largest excess along a
   /// direction, which is at most the distance.
   double outside(std::uint32_t node, const Eigen::Vector3d& p) const;
+  /// Returns how far the volume of a node extends beyond that of another; 0 if it lies inside. Measured by
+  /// outside(); for a sphere or RSS within a box or k-DOP, between the boxes of both.
+  double excess(std::uint32_t node, std::uint32_t beyond) const;
   /// Surface area. For a k-DOP, that of its polytope.
   double area(std::uint32_t node) const;
   double volume(std::uint32_t node) const;
-  /// Returns the smallest box of the volume's own frame that contains it; an OBB's own box.
+  /// Returns true if the volume contains no point, e.g. for a negative radius.
+  bool empty(std::uint32_t node) const;
+  /// Returns the smallest box of the volume's own frame that contains it; an OBB's own box. For a k-DOP, the
+  /// frame is three of its directions if these are orthogonal, else the coordinate axes.
   trace::ShapeBox box(std::uint32_t node) const;
   /// Returns points whose convex hull contains the volume, and that lie on it except for spheres and RSS
   /// (there: corners of box()).
   std::vector<Eigen::Vector3d> corners(std::uint32_t node) const;
+  /// Returns the half-spaces whose intersection is the volume: of an AABB, OBB or k-DOP; none for others.
+  std::vector<HalfSpace> half_spaces(std::uint32_t node) const;
+  /// Returns the solid of a k-DOP.
+  Polytope polytope(std::uint32_t node) const;
 
   const capture::Tree& tree() const { return *tree_; }
 
  private:
+  /// Finds the middle and half of the extent of a k-DOP along its three independent directions.
+  void products(std::uint32_t node, Eigen::Vector3d& middle, Eigen::Vector3d& reach) const;
+
   const capture::Tree* tree_;
+  std::array<std::size_t, 3> spanning_{};  ///< k-DOPs: indices of three independent directions
+  Eigen::Matrix3d from_products_;          ///< k-DOPs: a point from its products with these
 };
 
 /// Returns true if two volumes overlap at these poses, computed in doubles: by separating axes for boxes, by
-/// distance for spheres and RSS, in other cases by the boxes of both.
+/// distance for two spheres or RSS, in other cases by the boxes of both.
 bool overlap(const Volumes& a, std::uint32_t node_a, const Pose& pose_a, const Volumes& b,
              std::uint32_t node_b, const Pose& pose_b);
 

@@ -1,0 +1,476 @@
+#include "scenarios/profile/volumes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <lrbscope/error.hpp>
+
+namespace lrb::profile {
+namespace {
+
+using capture::VolumeKind;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using trace::ShapeBox;
+
+Vector3d point_at(std::span<const double> numbers, std::size_t first) {
+  return {numbers[first], numbers[first + 1], numbers[first + 2]};
+}
+
+/// Returns unit vectors along orthogonal vectors. Zero vectors get directions orthogonal to the others.
+std::array<Vector3d, 3> directions_of(const std::array<Vector3d, 3>& along) {
+  std::array<Vector3d, 3> out;
+  std::array<bool, 3> known{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    known[k] = !along[k].isZero(0);
+    out[k] = known[k] ? along[k].stableNormalized() : Vector3d::Zero();
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (known[k]) continue;
+    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    if (known[i] && known[j])
+      out[k] = out[i].cross(out[j]).normalized();
+    else if (known[i] || known[j])
+      out[k] = out[known[i] ? i : j].unitOrthogonal();
+    else
+      out[k] = Vector3d::Unit(static_cast<Eigen::Index>(k));
+    known[k] = true;
+  }
+  return out;
+}
+
+ShapeBox aabb(const Vector3d& low, const Vector3d& high) {
+  const Vector3d half = (high - low).cwiseMax(0) / 2;
+  return {low + (high - low) / 2,
+          {half.x() * Vector3d::UnitX(), half.y() * Vector3d::UnitY(), half.z() * Vector3d::UnitZ()}};
+}
+
+double outside_box(const ShapeBox& box, const Vector3d& p) {
+  const std::array<Vector3d, 3> axes = directions_of(box.half);
+  const Vector3d d = p - box.centre;
+  Vector3d excess;
+  for (int k = 0; k < 3; ++k)
+    excess[k] = std::max(0.0, std::abs(d.dot(axes[static_cast<std::size_t>(k)])) -
+                                  box.half[static_cast<std::size_t>(k)].norm());
+  return excess.norm();
+}
+
+std::vector<Vector3d> corners_of(const ShapeBox& box) {
+  std::vector<Vector3d> out;
+  for (unsigned i = 0; i < 8; ++i)
+    out.push_back(box.centre + (i & 1 ? 1 : -1) * box.half[0] + (i & 2 ? 1 : -1) * box.half[1] +
+                  (i & 4 ? 1 : -1) * box.half[2]);
+  return out;
+}
+
+/// A rectangle with a radius; a sphere has a rectangle without extent.
+struct Rounded {
+  Vector3d corner;
+  std::array<Vector3d, 2> side;
+  double radius = 0;
+
+  Vector3d point(int i, int j) const { return corner + i * side[0] + j * side[1]; }
+};
+
+bool is_round(VolumeKind kind) {
+  return kind == VolumeKind::sphere || kind == VolumeKind::rss;
+}
+
+Rounded rounded(const capture::Tree& tree, std::uint32_t node) {
+  const auto n = tree.volume_of(node);
+  if (tree.volume == VolumeKind::sphere) return {point_at(n, 0), {Vector3d::Zero(), Vector3d::Zero()}, n[3]};
+  return {point_at(n, 0), {point_at(n, 3), point_at(n, 6)}, n[9]};
+}
+
+/// Returns the distance from a point to the rectangle.
+double distance_to(const Rounded& r, const Vector3d& p) {
+  Vector3d rest = p - r.corner;
+  const Vector3d d = rest;
+  for (const Vector3d& side : r.side) {
+    const double length_sq = side.squaredNorm();
+    if (length_sq > 0) rest -= std::clamp(d.dot(side) / length_sq, 0.0, 1.0) * side;
+  }
+  return rest.norm();
+}
+
+/// Returns the distance between the segments p + s u and q + t v, 0 <= s, t <= 1 (Ericson, Real-Time
+/// Collision Detection, section 5.1.9).
+double segment_distance(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v) {
+  const Vector3d r = p - q;
+  const double a = u.squaredNorm(), e = v.squaredNorm(), f = v.dot(r), c = u.dot(r), b = u.dot(v);
+  double s = 0, t = 0;
+  if (a > 0 && e > 0) {
+    const double d = a * e - b * b;
+    if (d > 0) s = std::clamp((b * f - c * e) / d, 0.0, 1.0);
+    t = (b * s + f) / e;
+    if (t < 0 || t > 1) {
+      t = std::clamp(t, 0.0, 1.0);
+      s = std::clamp((b * t - c) / a, 0.0, 1.0);
+    }
+  } else if (a > 0) {
+    s = std::clamp(-c / a, 0.0, 1.0);
+  } else if (e > 0) {
+    t = std::clamp(f / e, 0.0, 1.0);
+  }
+  return (r + s * u - t * v).norm();
+}
+
+/// Returns true if the segment from p to q passes through the rectangle.
+bool pierces(const Vector3d& p, const Vector3d& q, const Rounded& r) {
+  const Vector3d normal = r.side[0].cross(r.side[1]);
+  const double above = normal.dot(p - r.corner), below = normal.dot(q - r.corner);
+  if (above * below > 0 || above == below) return false;
+  const Vector3d d = p + above / (above - below) * (q - p) - r.corner;
+  for (const Vector3d& side : r.side)
+    if (d.dot(side) < 0 || d.dot(side) > side.squaredNorm()) return false;
+  return true;
+}
+
+double rectangle_distance(const Rounded& a, const Rounded& b) {
+  // Two convex planar pieces are nearest at two edges, or at a corner of one, unless they intersect; then an
+  // edge of one passes through the other.
+  const std::array<std::array<int, 4>, 4> edges = {{{0, 0, 1, 0}, {0, 1, 1, 1}, {0, 0, 0, 1}, {1, 0, 1, 1}}};
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& e : edges) {
+    const Vector3d p = a.point(e[0], e[1]), q = a.point(e[2], e[3]);
+    const Vector3d s = b.point(e[0], e[1]), t = b.point(e[2], e[3]);
+    if (pierces(p, q, b) || pierces(s, t, a)) return 0;
+    for (const auto& f : edges) {
+      const Vector3d from = b.point(f[0], f[1]);
+      least = std::min(least, segment_distance(p, q - p, from, b.point(f[2], f[3]) - from));
+    }
+  }
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      least = std::min({least, distance_to(a, b.point(i, j)), distance_to(b, a.point(i, j))});
+  return least;
+}
+
+/// Returns true if a volume has greatest below least coordinates, or a negative radius.
+bool inverted(const capture::Tree& tree, std::uint32_t node) {
+  const auto n = tree.volume_of(node);
+  switch (tree.volume) {
+    case VolumeKind::aabb:
+      return n[0] > n[3] || n[1] > n[4] || n[2] > n[5];
+    case VolumeKind::sphere:
+    case VolumeKind::rss:
+      return n.back() < 0;
+    case VolumeKind::obb:
+      return false;
+    case VolumeKind::kdop:
+      break;
+  }
+  for (std::size_t k = 0; k < tree.directions.size(); ++k)
+    if (n[2 * k] > n[2 * k + 1]) return true;
+  return false;
+}
+
+ShapeBox placed(const ShapeBox& box, const Pose& pose) {
+  return {pose.apply(box.centre), {pose.r * box.half[0], pose.r * box.half[1], pose.r * box.half[2]}};
+}
+
+/// Returns true if no axis of Gottschalk, Lin and Manocha 1996 separates the boxes: the three of each, and
+/// the products of one from each.
+bool boxes_overlap(const ShapeBox& a, const ShapeBox& b) {
+  constexpr double kParallel = 1e-12;  // squared sine of the angle; such a product is covered by the others
+  const Vector3d d = b.centre - a.centre;
+  const auto separates = [&](const Vector3d& axis) {
+    double reach = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      reach += std::abs(axis.dot(a.half[k])) + std::abs(axis.dot(b.half[k]));
+    return std::abs(axis.dot(d)) > reach;
+  };
+  const std::array<Vector3d, 3> of_a = directions_of(a.half), of_b = directions_of(b.half);
+  for (std::size_t k = 0; k < 3; ++k)
+    if (separates(of_a[k]) || separates(of_b[k])) return false;
+  for (const Vector3d& u : of_a)
+    for (const Vector3d& v : of_b)
+      if (const Vector3d axis = u.cross(v); axis.squaredNorm() > kParallel && separates(axis)) return false;
+  return true;
+}
+
+}  // namespace
+
+void clip(std::vector<Vector3d>& polygon, const HalfSpace& half) {
+  const auto above = [&](const Vector3d& p) { return half.normal.dot(p) - half.offset; };
+  std::vector<Vector3d> kept;
+  kept.reserve(polygon.size() + 1);
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector3d& p = polygon[i];
+    const Vector3d& q = polygon[(i + 1) % polygon.size()];
+    const double of_p = above(p), of_q = above(q);
+    if (of_p <= 0) kept.push_back(p);
+    if ((of_p < 0 && of_q > 0) || (of_p > 0 && of_q < 0)) kept.push_back(p + of_p / (of_p - of_q) * (q - p));
+  }
+  polygon = std::move(kept);
+}
+
+double area_of(const std::vector<Vector3d>& polygon) {
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t i = 2; i < polygon.size(); ++i)
+    sum += (polygon[i - 1] - polygon[0]).cross(polygon[i] - polygon[0]);
+  return sum.norm() / 2;
+}
+
+Volumes::Volumes(const capture::Tree& tree) : tree_(&tree), from_products_(Matrix3d::Identity()) {
+  if (tree.volume != VolumeKind::kdop) return;
+  constexpr double kFlat = 1e-6;  // least volume of the parallelepiped of three unit directions
+  // Each direction is chosen to be as independent of those before as possible.
+  const std::vector<Vector3d>& d = tree.directions;
+  std::array<double, 3> best{};
+  const auto choose = [&](std::size_t which, const auto& independence) {
+    for (std::size_t k = 0; k < d.size(); ++k) {
+      if (d[k].isZero(0)) continue;
+      const double value = independence(d[k].normalized());
+      if (value > best[which]) best[which] = value, spanning_[which] = k;
+    }
+    return d.empty() ? Vector3d::Zero().eval() : d[spanning_[which]].normalized();
+  };
+  const Vector3d u = choose(0, [](const Vector3d&) { return 1.0; });
+  const Vector3d v = choose(1, [&](const Vector3d& w) { return u.cross(w).norm(); });
+  choose(2, [&](const Vector3d& w) { return std::abs(u.cross(v).dot(w)); });
+  if (best[2] < kFlat)
+    throw InputError("tree " + std::to_string(tree.id) +
+                     ": expected directions of its k-DOPs that span space, found " +
+                     std::to_string(d.size()) + " in one plane; report at least three independent ones");
+  Matrix3d rows;
+  for (int i = 0; i < 3; ++i) rows.row(i) = d[spanning_[static_cast<std::size_t>(i)]];
+  from_products_ = rows.inverse();
+}
+
+double Volumes::outside(std::uint32_t node, const Vector3d& p) const {
+  const auto n = tree_->volume_of(node);
+  switch (tree_->volume) {
+    case VolumeKind::aabb:
+      return (point_at(n, 0) - p).cwiseMax(p - point_at(n, 3)).cwiseMax(0).norm();
+    case VolumeKind::sphere:
+      return std::max(0.0, (p - point_at(n, 0)).norm() - n[3]);
+    case VolumeKind::obb:
+      return outside_box(box(node), p);
+    case VolumeKind::rss: {
+      const Rounded r = rounded(*tree_, node);
+      return std::max(0.0, distance_to(r, p) - r.radius);
+    }
+    case VolumeKind::kdop: {
+      double most = 0;
+      for (std::size_t k = 0; k < tree_->directions.size(); ++k) {
+        const Vector3d& d = tree_->directions[k];
+        const double along = d.dot(p), excess = std::max(n[2 * k] - along, along - n[2 * k + 1]);
+        if (excess > 0 && !d.isZero(0)) most = std::max(most, excess / d.norm());
+      }
+      return most;
+    }
+  }
+  return 0;
+}
+
+double Volumes::excess(std::uint32_t node, std::uint32_t beyond) const {
+  if (is_round(tree_->volume)) {
+    // The distance to a rectangle is convex, so a corner is farthest. From there the radius leads further
+    // out.
+    const Rounded r = rounded(*tree_, node), other = rounded(*tree_, beyond);
+    double farthest = 0;
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j) farthest = std::max(farthest, distance_to(other, r.point(i, j)));
+    return std::max(0.0, farthest + r.radius - other.radius);
+  }
+  double most = 0;
+  for (const Vector3d& p : corners(node)) most = std::max(most, outside(beyond, p));
+  return most;
+}
+
+double Volumes::area(std::uint32_t node) const {
+  constexpr double kPi = std::numbers::pi;
+  const auto n = tree_->volume_of(node);
+  switch (tree_->volume) {
+    case VolumeKind::sphere:
+      return 4 * kPi * std::pow(std::max(0.0, n[3]), 2);
+    case VolumeKind::rss: {
+      // Both faces, half cylinders along the four sides, and a sphere at the corners.
+      const double a = point_at(n, 3).norm(), b = point_at(n, 6).norm(), r = std::max(0.0, n[9]);
+      return 2 * a * b + 2 * kPi * (a + b) * r + 4 * kPi * r * r;
+    }
+    case VolumeKind::kdop:
+      return polytope(node).area;
+    case VolumeKind::aabb:
+    case VolumeKind::obb:
+      break;
+  }
+  return empty(node) ? 0 : box(node).area();
+}
+
+double Volumes::volume(std::uint32_t node) const {
+  constexpr double kPi = std::numbers::pi;
+  const auto n = tree_->volume_of(node);
+  switch (tree_->volume) {
+    case VolumeKind::sphere:
+      return 4 * kPi / 3 * std::pow(std::max(0.0, n[3]), 3);
+    case VolumeKind::rss: {
+      const double a = point_at(n, 3).norm(), b = point_at(n, 6).norm(), r = std::max(0.0, n[9]);
+      return 2 * a * b * r + kPi * (a + b) * r * r + 4 * kPi / 3 * r * r * r;
+    }
+    case VolumeKind::kdop:
+      return polytope(node).volume;
+    case VolumeKind::aabb:
+    case VolumeKind::obb:
+      break;
+  }
+  const ShapeBox b = box(node);
+  return empty(node) ? 0 : 8 * b.half[0].norm() * b.half[1].norm() * b.half[2].norm();
+}
+
+bool Volumes::empty(std::uint32_t node) const {
+  return inverted(*tree_, node) || (tree_->volume == VolumeKind::kdop && polytope(node).corners.empty());
+}
+
+ShapeBox Volumes::box(std::uint32_t node) const {
+  const auto n = tree_->volume_of(node);
+  switch (tree_->volume) {
+    case VolumeKind::aabb:
+      return aabb(point_at(n, 0), point_at(n, 3));
+    case VolumeKind::obb:
+      return {point_at(n, 0), {point_at(n, 3), point_at(n, 6), point_at(n, 9)}};
+    case VolumeKind::sphere: {
+      const Vector3d reach = Vector3d::Constant(std::max(0.0, n[3]));
+      return aabb(point_at(n, 0) - reach, point_at(n, 0) + reach);
+    }
+    case VolumeKind::rss: {
+      const std::array<Vector3d, 3> side = {point_at(n, 3), point_at(n, 6), Vector3d::Zero()};
+      const std::array<Vector3d, 3> axes = directions_of(side);
+      ShapeBox out{point_at(n, 0) + side[0] / 2 + side[1] / 2, {}};
+      for (std::size_t k = 0; k < 3; ++k) out.half[k] = side[k] / 2 + std::max(0.0, n[9]) * axes[k];
+      return out;
+    }
+    case VolumeKind::kdop:
+      break;
+  }
+  // A k-DOP.
+  constexpr double kOrthogonal = 1e-9;
+  const Matrix3d gram = from_products_.transpose() * from_products_;
+  if (Matrix3d(gram.diagonal().asDiagonal()).isApprox(gram, kOrthogonal)) {
+    Vector3d middle, reach;
+    products(node, middle, reach);
+    ShapeBox out{from_products_ * middle, {}};
+    for (int i = 0; i < 3; ++i)
+      out.half[static_cast<std::size_t>(i)] = std::max(0.0, reach[i]) * from_products_.col(i);
+    return out;
+  }
+  const std::vector<Vector3d> all = polytope(node).corners;
+  if (all.empty()) return aabb(Vector3d::Zero(), Vector3d::Zero());
+  Vector3d low = all[0], high = all[0];
+  for (const Vector3d& p : all) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  return aabb(low, high);
+}
+
+void Volumes::products(std::uint32_t node, Vector3d& middle, Vector3d& reach) const {
+  const auto n = tree_->volume_of(node);
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t k = 2 * spanning_[static_cast<std::size_t>(i)];
+    reach[i] = (n[k + 1] - n[k]) / 2;
+    middle[i] = n[k] + reach[i];
+  }
+}
+
+std::vector<Vector3d> Volumes::corners(std::uint32_t node) const {
+  return tree_->volume == VolumeKind::kdop ? polytope(node).corners : corners_of(box(node));
+}
+
+std::vector<HalfSpace> Volumes::half_spaces(std::uint32_t node) const {
+  std::vector<HalfSpace> out;
+  const auto between = [&](const Vector3d& along, double least, double greatest) {
+    out.push_back({along, greatest});
+    out.push_back({-along, -least});
+  };
+  const auto n = tree_->volume_of(node);
+  switch (tree_->volume) {
+    case VolumeKind::aabb:
+      for (int k = 0; k < 3; ++k)
+        between(Vector3d::Unit(k), n[static_cast<std::size_t>(k)], n[static_cast<std::size_t>(k) + 3]);
+      break;
+    case VolumeKind::obb: {
+      const ShapeBox b = box(node);
+      const std::array<Vector3d, 3> axes = directions_of(b.half);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double centre = axes[k].dot(b.centre), half = b.half[k].norm();
+        between(axes[k], centre - half, centre + half);
+      }
+      break;
+    }
+    case VolumeKind::kdop:
+      for (std::size_t k = 0; k < tree_->directions.size(); ++k) {
+        const Vector3d& d = tree_->directions[k];
+        const double length = d.norm();
+        if (length > 0) between(d / length, n[2 * k] / length, n[2 * k + 1] / length);
+      }
+      break;
+    case VolumeKind::sphere:
+    case VolumeKind::rss:
+      break;
+  }
+  return out;
+}
+
+Polytope Volumes::polytope(std::uint32_t node) const {
+  if (inverted(*tree_, node)) return {};
+  // The polytope lies in the parallelepiped of three directions: in a ball about its centre.
+  Vector3d middle, reach;
+  products(node, middle, reach);
+  const Vector3d centre = from_products_ * middle;
+  double radius = 0, most = 0;
+  for (int i = 0; i < 3; ++i) radius += from_products_.col(i).norm() * reach[i];
+  most = std::max(radius, centre.norm());
+  // Rounding errors must not remove the sides of flat ones: the other planes are moved by this much.
+  const double slack = 1e-13 * most;
+  const std::vector<HalfSpace> all = half_spaces(node);
+  Polytope out;
+  // Each face is a square in its plane, larger than the ball, clipped to the other half-spaces.
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [normal, offset] = all[i];
+    const bool is_covered = std::any_of(all.begin(), all.end(), [&](const HalfSpace& h) {
+      const auto j = static_cast<std::size_t>(&h - all.data());  // parallel and tighter, or equal and earlier
+      return j != i && h.normal.isApprox(normal, 1e-12) &&
+             (h.offset < offset - slack || (h.offset <= offset + slack && j < i));
+    });
+    if (is_covered) continue;
+    const Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
+    const Vector3d at = centre + (offset - normal.dot(centre)) * normal;
+    const double far = 2 * radius + slack;
+    std::vector<Vector3d> face = {at - far * u - far * v, at + far * u - far * v, at + far * u + far * v,
+                                  at - far * u + far * v};
+    for (std::size_t j = 0; j < all.size() && !face.empty(); ++j)
+      if (j != i && !all[j].normal.isApprox(normal, 1e-12))
+        clip(face, {all[j].normal, all[j].offset + slack});
+    if (face.empty()) continue;
+    const double area = area_of(face);
+    out.area += area;
+    out.volume += area * (offset - normal.dot(centre)) / 3;  // of the pyramid to the centre
+    out.corners.insert(out.corners.end(), face.begin(), face.end());
+  }
+  out.volume = std::max(0.0, out.volume);
+  return out;
+}
+
+bool overlap(const Volumes& a, std::uint32_t node_a, const Pose& pose_a, const Volumes& b,
+             std::uint32_t node_b, const Pose& pose_b) {
+  if (inverted(a.tree(), node_a) || inverted(b.tree(), node_b)) return false;
+  const VolumeKind of_a = a.tree().volume, of_b = b.tree().volume;
+  if (is_round(of_a) && is_round(of_b)) {
+    const auto place = [](Rounded r, const Pose& pose) {
+      r.corner = pose.apply(r.corner);
+      for (Vector3d& side : r.side) side = pose.r * side;
+      return r;
+    };
+    const Rounded x = place(rounded(a.tree(), node_a), pose_a), y = place(rounded(b.tree(), node_b), pose_b);
+    if (of_a == VolumeKind::sphere && of_b == VolumeKind::sphere)
+      return (x.corner - y.corner).norm() <= x.radius + y.radius;
+    return rectangle_distance(x, y) <= x.radius + y.radius;
+  }
+  return boxes_overlap(placed(a.box(node_a), pose_a), placed(b.box(node_b), pose_b));
+}
+
+}  // namespace lrb::profile
