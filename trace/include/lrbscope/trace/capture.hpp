@@ -78,8 +78,8 @@ enum class Verdict : std::uint32_t { separate = 0, intersecting = 1, unreported 
 enum class EventKind : std::uint8_t {
   nodes = 0,      ///< bounding volumes of node a of tree A and node b of tree B were tested
   triangles = 1,  ///< triangle a of mesh A and triangle b of mesh B were tested
-  count = 2,      ///< counter a of the engine, with value b
-  phase = 3,      ///< phase a of the engine begins
+  count = 2,      ///< counter Capture::names[a] of the engine, with value b
+  phase = 3,      ///< phase Capture::names[a] of the engine begins
 };
 /// Axis of an event without a reported axis. Others: 0-2 axes of A, 3-5 axes of B, 6-14 cross products of
 /// edges (6 + 3 i + j), 32 + k direction k of a k-DOP.
@@ -115,7 +115,7 @@ struct Query {
   std::uint64_t pairs = 0;        ///< the number of pairs that the engine found, by its own count
   std::uint64_t events_seen = 0;  ///< by the thread that began it; more than stored if events were not kept
   std::vector<Event> events;      ///< by thread, each in the engine's order
-  std::vector<Part> parts;
+  std::vector<Part> parts;        ///< the first is that of `thread`; a helper has one each time it joined
 
   /// Returns true if all events of the query are stored.
   bool complete() const { return ended && events_seen == (parts.empty() ? 0 : parts.front().count); }
