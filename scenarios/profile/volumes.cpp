@@ -170,6 +170,43 @@ bool inverted(const capture::Tree& tree, std::uint32_t node) {
   return false;
 }
 
+/// Returns the solid in the given half-spaces, which lies in a ball.
+Polytope solid(std::span<const HalfSpace> all, const Vector3d& centre, double radius) {
+  constexpr double kRounding = 1e-13, kSameNormal = 1e-12;  // relative
+  // Rounding errors must not remove the sides of flat solids: the other planes are moved by this much.
+  const double slack = kRounding * std::max(radius, centre.norm());
+  Polytope out;
+  // Each face is a square in its plane, larger than the ball, clipped to the other half-spaces.
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [normal, offset] = all[i];
+    bool is_covered = false;  // by a parallel plane that is tighter, or equal and earlier
+    std::vector<HalfSpace> others;
+    for (std::size_t j = 0; j < all.size(); ++j) {
+      if (j == i) continue;
+      if (!all[j].normal.isApprox(normal, kSameNormal))
+        others.push_back({all[j].normal, all[j].offset + slack});
+      else
+        is_covered =
+            is_covered || all[j].offset < offset - slack || (all[j].offset <= offset + slack && j < i);
+    }
+    if (is_covered) continue;
+    const Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
+    const Vector3d at = centre + (offset - normal.dot(centre)) * normal;
+    const double far = 2 * radius + slack;
+    std::vector<Vector3d> face = {at - far * u - far * v, at + far * u - far * v, at + far * u + far * v,
+                                  at - far * u + far * v};
+    for (const HalfSpace& half : others)
+      if (!face.empty()) clip(face, half);
+    if (face.empty()) continue;
+    const double area = area_of(face);
+    out.area += area;
+    out.volume += area * (offset - normal.dot(centre)) / 3;  // of the pyramid to the centre
+    out.corners.insert(out.corners.end(), face.begin(), face.end());
+  }
+  out.volume = std::max(0.0, out.volume);
+  return out;
+}
+
 ShapeBox placed(const ShapeBox& box, const Pose& pose) {
   return {pose.apply(box.centre), {pose.r * box.half[0], pose.r * box.half[1], pose.r * box.half[2]}};
 }
@@ -279,7 +316,16 @@ double Volumes::excess(std::uint32_t node, std::uint32_t beyond) const {
       for (int j = 0; j < 2; ++j) farthest = std::max(farthest, distance_to(other, r.point(i, j)));
     return std::max(0.0, farthest + r.radius - other.radius);
   }
+  const auto n = tree_->volume_of(node), m = tree_->volume_of(beyond);
+  if (tree_->volume == VolumeKind::aabb)
+    return (point_at(m, 0) - point_at(n, 0)).cwiseMax(point_at(n, 3) - point_at(m, 3)).cwiseMax(0).norm();
   double most = 0;
+  if (tree_->volume == VolumeKind::kdop) {
+    bool is_inside = true;  // most are nested in every direction
+    for (std::size_t k = 0; k < n.size(); k += 2)
+      is_inside = is_inside && m[k] <= n[k] && n[k + 1] <= m[k + 1];
+    if (is_inside) return 0;
+  }
   for (const Vector3d& p : corners(node)) most = std::max(most, outside(beyond, p));
   return most;
 }
@@ -417,42 +463,43 @@ std::vector<HalfSpace> Volumes::half_spaces(std::uint32_t node) const {
 
 Polytope Volumes::polytope(std::uint32_t node) const {
   if (inverted(*tree_, node)) return {};
-  // The polytope lies in the parallelepiped of three directions: in a ball about its centre.
+  // It lies in the parallelepiped of three directions.
   Vector3d middle, reach;
   products(node, middle, reach);
-  const Vector3d centre = from_products_ * middle;
-  double radius = 0, most = 0;
+  double radius = 0;
   for (int i = 0; i < 3; ++i) radius += from_products_.col(i).norm() * reach[i];
-  most = std::max(radius, centre.norm());
-  // Rounding errors must not remove the sides of flat ones: the other planes are moved by this much.
-  const double slack = 1e-13 * most;
-  const std::vector<HalfSpace> all = half_spaces(node);
-  Polytope out;
-  // Each face is a square in its plane, larger than the ball, clipped to the other half-spaces.
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto [normal, offset] = all[i];
-    const bool is_covered = std::any_of(all.begin(), all.end(), [&](const HalfSpace& h) {
-      const auto j = static_cast<std::size_t>(&h - all.data());  // parallel and tighter, or equal and earlier
-      return j != i && h.normal.isApprox(normal, 1e-12) &&
-             (h.offset < offset - slack || (h.offset <= offset + slack && j < i));
-    });
-    if (is_covered) continue;
-    const Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
-    const Vector3d at = centre + (offset - normal.dot(centre)) * normal;
-    const double far = 2 * radius + slack;
-    std::vector<Vector3d> face = {at - far * u - far * v, at + far * u - far * v, at + far * u + far * v,
-                                  at - far * u + far * v};
-    for (std::size_t j = 0; j < all.size() && !face.empty(); ++j)
-      if (j != i && !all[j].normal.isApprox(normal, 1e-12))
-        clip(face, {all[j].normal, all[j].offset + slack});
-    if (face.empty()) continue;
-    const double area = area_of(face);
-    out.area += area;
-    out.volume += area * (offset - normal.dot(centre)) / 3;  // of the pyramid to the centre
-    out.corners.insert(out.corners.end(), face.begin(), face.end());
+  return solid(half_spaces(node), from_products_ * middle, radius);
+}
+
+std::optional<double> Volumes::shared_volume(std::uint32_t node, std::uint32_t other) const {
+  if (inverted(*tree_, node) || inverted(*tree_, other)) return 0;
+  const auto n = tree_->volume_of(node), m = tree_->volume_of(other);
+  switch (tree_->volume) {
+    case VolumeKind::aabb: {
+      const Vector3d extent =
+          point_at(n, 3).cwiseMin(point_at(m, 3)) - point_at(n, 0).cwiseMax(point_at(m, 0));
+      return extent.cwiseMax(0).prod();
+    }
+    case VolumeKind::sphere: {
+      const double r = std::max(n[3], m[3]), s = std::min(n[3], m[3]);
+      const double d = (point_at(n, 0) - point_at(m, 0)).norm();
+      if (d >= r + s) return 0;
+      if (d <= r - s) return 4 * std::numbers::pi / 3 * s * s * s;
+      // Two caps (Weisstein, "Sphere-Sphere Intersection").
+      return std::numbers::pi * std::pow(r + s - d, 2) * (d * d + 2 * d * (r + s) - 3 * (r - s) * (r - s)) /
+             (12 * d);
+    }
+    case VolumeKind::rss:
+      return {};
+    case VolumeKind::obb:
+    case VolumeKind::kdop:
+      break;
   }
-  out.volume = std::max(0.0, out.volume);
-  return out;
+  std::vector<HalfSpace> both = half_spaces(node);
+  const std::vector<HalfSpace> of_other = half_spaces(other);
+  both.insert(both.end(), of_other.begin(), of_other.end());
+  const ShapeBox b = box(node);
+  return solid(both, b.centre, b.half[0].norm() + b.half[1].norm() + b.half[2].norm()).volume;
 }
 
 bool overlap(const Volumes& a, std::uint32_t node_a, const Pose& pose_a, const Volumes& b,

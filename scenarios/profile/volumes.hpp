@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -42,6 +43,8 @@ class Volumes {
   /// Returns how far the volume of a node extends beyond that of another; 0 if it lies inside. Measured by
   /// outside(); for a sphere or RSS within a box or k-DOP, between the boxes of both.
   double excess(std::uint32_t node, std::uint32_t beyond) const;
+  /// Returns the volume of the intersection with another volume; nullopt for RSS.
+  std::optional<double> shared_volume(std::uint32_t node, std::uint32_t other) const;
   /// Surface area. For a k-DOP, that of its polytope.
   double area(std::uint32_t node) const;
   double volume(std::uint32_t node) const;

@@ -349,3 +349,33 @@ TEST_CASE("how far a volume extends beyond another is the farthest of its points
     }
   }
 }
+
+TEST_CASE("the volume that two share is that found by sampling") {
+  shapes::RandomEngine random(23);
+  for (int i = 0; i < 24; ++i) {
+    const auto make = [&] {
+      if (i % 4 == 0) return random_obb(random);
+      if (i % 4 == 1) return random_kdop(random, 12);
+      if (i % 4 == 2)
+        return one_node(VolumeKind::sphere, {shapes::uniform(random), 0, 0, shapes::uniform(random, 0.4, 1)});
+      return one_node(VolumeKind::aabb, {0, shapes::uniform(random), 0, 1, 2, shapes::uniform(random)});
+    };
+    capture::Tree t = make();
+    const capture::Tree other = make();
+    t.volumes.insert(t.volumes.end(), other.volumes.begin(), other.volumes.end());
+    t.first_child = t.first_triangle = {0, 0, 0};
+    const Volumes v(t);
+    const trace::ShapeBox box = v.box(0);
+    constexpr int kSamples = 40'000;
+    int inside = 0;
+    for (int j = 0; j < kSamples; ++j) {
+      const Vector3d p = random_point(random, box);
+      inside += v.outside(0, p) == 0 && v.outside(1, p) == 0;
+    }
+    const double of_box = 8 * box.half[0].norm() * box.half[1].norm() * box.half[2].norm();
+    REQUIRE(v.shared_volume(0, 1));
+    CHECK(std::abs(*v.shared_volume(0, 1) / of_box - static_cast<double>(inside) / kSamples) < 0.012);
+    CHECK(*v.shared_volume(0, 1) == doctest::Approx(*v.shared_volume(1, 0)));
+    CHECK(*v.shared_volume(1, 1) == doctest::Approx(v.volume(1)));
+  }
+}
