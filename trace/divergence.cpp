@@ -35,6 +35,17 @@ std::string words(const std::optional<Separation>& s) {
                  " faces"
            : "none";
 }
+std::string words(const EngineReport& r) {
+  std::string out = std::string(name_of(r.query)) + ", " + std::string(name_of(r.verdict)) + ", " +
+                    std::to_string(r.pairs) + (r.pairs == 1 ? " pair" : " pairs");
+  if (!r.complete) out += ", not all events";
+  const auto add = [&](const std::vector<EngineReport::Mark>& marks, const char* what) {
+    if (!marks.empty()) out += ", " + std::to_string(marks.size()) + " " + what;
+  };
+  add(r.counts, "counts");
+  add(r.phases, "phases");
+  return out;
+}
 template <class Measured>
 std::string words(const std::optional<Measured>& m) {
   return m ? words(*m) : "none";
@@ -103,12 +114,20 @@ void compare_bodies(Comparison& c, const TraceHeader& x, const TraceHeader& y) {
   }
 }
 
+/// Returns a report without what differs from run to run.
+std::optional<EngineReport> without_times(std::optional<EngineReport> report) {
+  if (report) report->thread = 0, report->begin_ns = report->duration_ns = 0;
+  return report;
+}
+
 /// Compares the fields of two records; `before` is the prefix of their names.
 template <class Record>
 void compare_fields(Comparison& c, const Record& x, const Record& y, const std::string& before) {
   for_each_field<Record>([&](const auto& field) {
     const auto &expected = x.*field.member, &actual = y.*field.member;
-    if constexpr (std::is_same_v<decltype(expected), const Counters&>) {
+    if constexpr (std::is_same_v<decltype(expected), const std::optional<EngineReport>&>) {
+      c.same(before + std::string(field.name), without_times(expected), without_times(actual));
+    } else if constexpr (std::is_same_v<decltype(expected), const Counters&>) {
       compare_fields(c, expected, actual, "counter ");
     } else if constexpr (std::is_same_v<decltype(expected), const std::uint64_t&>) {
       if (field.form == Form::hash && expected != actual)

@@ -263,6 +263,30 @@ void read_value(const TraceNode& node, MeasuredClash& m) {
   read_history(node.at("course"), m.history);
 }
 
+void read_marks(const TraceNode& node, std::vector<EngineReport::Mark>& marks, bool with_value) {
+  const std::size_t count = node.array_size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const TraceNode item = node.at(i);
+    if (item.array_size() != (with_value ? 3 : 2))
+      item.fail(with_value ? "name, place and value" : "name and place");
+    marks.push_back({item.at(std::size_t{0}).integer<std::uint32_t>(),
+                     item.at(std::size_t{1}).integer<std::uint32_t>(),
+                     with_value ? item.at(std::size_t{2}).integer<std::uint32_t>() : 0});
+  }
+}
+
+void read_value(const TraceNode& node, EngineReport& r) {
+  r.query = node.at("query").named<EngineQuery>();
+  r.verdict = node.at("verdict").named<EngineVerdict>();
+  r.pairs = node.at("pairs").integer<std::uint64_t>();
+  r.complete = node.at("complete").boolean();
+  r.thread = node.at("thread").integer<std::uint32_t>();
+  r.begin_ns = node.at("begin_ns").integer<std::uint64_t>();
+  r.duration_ns = node.at("duration_ns").integer<std::uint64_t>();
+  if (node.has("counts")) read_marks(node.at("counts"), r.counts, true);
+  if (node.has("phases")) read_marks(node.at("phases"), r.phases, false);
+}
+
 template <class Record>
 void read_record(const TraceNode& node, Record& record, bool coarse = false);
 
@@ -283,7 +307,8 @@ void read_field(const TraceNode& node, const Field<Record, Value>& field, Value&
                                                               : node.least(0);
   else if constexpr (std::is_same_v<Value, std::optional<Separation>> ||
                      std::is_same_v<Value, std::optional<MeasuredDistance>> ||
-                     std::is_same_v<Value, std::optional<MeasuredClash>>)
+                     std::is_same_v<Value, std::optional<MeasuredClash>> ||
+                     std::is_same_v<Value, std::optional<EngineReport>>)
     read_value(node, value.emplace());
   else if constexpr (std::is_same_v<Value, Counters>)
     read_record(node, value);

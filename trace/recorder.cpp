@@ -192,6 +192,7 @@ void Recorder::start_over() {
   header.event_cap = settings_.event_cap;
   header.level = settings_.level;
   header.engine = settings_.engine;
+  header.names = settings_.names;
   header.coherent = settings_.coherent;
   for (std::size_t side = 0; side < 2; ++side) {
     if (!reps_[side]) continue;
@@ -238,6 +239,11 @@ void Recorder::add(MeasuredDistance distance) {
 void Recorder::add(MeasuredClash clash) {
   if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
   trace_.steps.back().result.clash = std::move(clash);
+}
+
+void Recorder::add(EngineReport report) {
+  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
+  trace_.steps.back().result.engine = std::move(report);
 }
 
 void Recorder::end_step(const CollideResult& result) {

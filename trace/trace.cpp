@@ -108,6 +108,10 @@ std::size_t Trace::step_of(EventId event) const {
   return static_cast<std::size_t>(after - steps.begin()) - 1;
 }
 
+bool Trace::has_engine_reports() const {
+  return std::any_of(steps.begin(), steps.end(), [](const Step& s) { return s.result.engine.has_value(); });
+}
+
 bool equal(const Pose& x, const Pose& y) {
   // Bitwise, so that -0 and 0 differ and NaN equals itself.
   const auto same = [](double p, double q) {
@@ -128,7 +132,7 @@ bool equal(const Step& x, const Step& y) {
 bool equal(const TraceHeader& x, const TraceHeader& y) {
   return x.lrbscope == y.lrbscope && x.scenario == y.scenario && x.scenario_hash == y.scenario_hash &&
          x.bodies == y.bodies && x.request == y.request && x.clock == y.clock && x.event_cap == y.event_cap &&
-         x.level == y.level && x.engine == y.engine && x.coherent == y.coherent &&
+         x.level == y.level && x.engine == y.engine && x.names == y.names && x.coherent == y.coherent &&
          x.construction == y.construction && x.first_contact == y.first_contact && x.pictures == y.pictures;
 }
 
@@ -196,6 +200,20 @@ class Checker {
     if (s.events_seen < t_.events_of(i).size()) fail(name + ": fewer events seen than stored");
     if (!(s.result.error_bound >= 0)) fail(name + ": its error bound is negative");
     if (s.result.separation) check_separation(*s.result.separation, name);
+    if (s.result.engine) check_report(*s.result.engine, s, name);
+  }
+
+  void check_report(const EngineReport& report, const Step& step, const std::string& name) const {
+    for (const std::vector<EngineReport::Mark>* marks : {&report.counts, &report.phases}) {
+      std::uint32_t before = 0;
+      for (const EngineReport::Mark& mark : *marks) {
+        if (mark.name >= t_.header.names.size())
+          fail(name + ": a counter or phase of the engine has no name");
+        if (mark.at < before || mark.at > step.events_seen)
+          fail(name + ": a counter or phase of the engine is out of order");
+        before = mark.at;
+      }
+    }
   }
 
   void check_separation(const Separation& separation, const std::string& step) const {

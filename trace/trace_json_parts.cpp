@@ -29,7 +29,8 @@ void write_value(JsonWriter& w, const T& value, Form form) {
   else if constexpr (std::is_same_v<T, std::optional<Separation>>)
     write_json(w, value.value());
   else if constexpr (std::is_same_v<T, std::optional<MeasuredDistance>> ||
-                     std::is_same_v<T, std::optional<MeasuredClash>>)
+                     std::is_same_v<T, std::optional<MeasuredClash>> ||
+                     std::is_same_v<T, std::optional<EngineReport>>)
     write_json(w, value.value());
   else if constexpr (std::is_same_v<T, Counters>)
     write_json(w, value);
@@ -136,6 +137,25 @@ void write_json(JsonWriter& w, const MeasuredApproach& m) {
   w.end_object();
 }
 
+void write_json(JsonWriter& w, const EngineReport& r) {
+  w.begin_object().member("query", name_of(r.query)).member("verdict", name_of(r.verdict));
+  w.member("pairs", r.pairs).member("complete", r.complete).member("thread", r.thread);
+  w.member("begin_ns", r.begin_ns).member("duration_ns", r.duration_ns);
+  const auto write = [&](const char* key, const std::vector<EngineReport::Mark>& marks, bool with_value) {
+    if (marks.empty()) return;
+    w.key(key).begin_array();
+    for (const EngineReport::Mark& mark : marks) {
+      w.begin_array().value(mark.name).value(mark.at);
+      if (with_value) w.value(mark.value);
+      w.end_array();
+    }
+    w.end_array();
+  };
+  write("counts", r.counts, true);
+  write("phases", r.phases, false);
+  w.end_object();
+}
+
 void write_json(JsonWriter& w, const Pose& pose) {
   w.begin_array();
   for (int row = 0; row < 3; ++row) {
@@ -198,15 +218,21 @@ void write_totals(JsonWriter& w, const Trace& t) {
 }  // namespace
 
 void write_metadata(const Trace& trace, JsonOut& out) {
+  constexpr std::uint32_t kVersionWithoutReports = 3;
   const TraceHeader& h = trace.header;
   JsonWriter w(out, 2);
   w.begin_object();
-  w.member("format", kTraceFormat).member("version", kTraceVersion).member("lrbscope", h.lrbscope);
+  const std::uint32_t version = trace.has_engine_reports() ? kTraceVersion : kVersionWithoutReports;
+  w.member("format", kTraceFormat).member("version", version).member("lrbscope", h.lrbscope);
   w.key("scenario");
   write_scenario(w, h);
   w.member("clock", name_of(h.clock));
   if (h.level != EventLevel::faces) w.member("level", name_of(h.level));
   if (!h.engine.empty()) w.member("engine", h.engine);
+  if (!h.names.empty()) {
+    w.key("names");
+    write_array(w, h.names);
+  }
   if (h.coherent) w.member("coherent", true);
   if (h.construction) w.member("construction", true);
   if (!h.pictures.empty()) w.key("pictures").json(h.pictures);

@@ -6,6 +6,9 @@
 
 namespace lrb::trace {
 
+/// Category of slices that show another engine's queries and phases.
+inline constexpr std::string_view kEngineCategory = "engine";
+
 void write_json(JsonWriter& w, const BodyInfo& body);
 void write_json(JsonWriter& w, const Counters& counters);
 void write_json(JsonWriter& w, const CollideRequest& request);
@@ -20,6 +23,7 @@ void write_json(JsonWriter& w, const MeasuredClash& m);
 /// Writes the members of a first contact except its bound history, without brackets.
 void write_answer(JsonWriter& w, const MeasuredApproach& m);
 void write_json(JsonWriter& w, const MeasuredApproach& m);
+void write_json(JsonWriter& w, const EngineReport& report);
 /// Writes a pose as the 12 numbers of a 3x4 matrix, row by row, as in pose files.
 void write_json(JsonWriter& w, const Pose& pose);
 /// Writes the members of a step's answer to `request`, without brackets.

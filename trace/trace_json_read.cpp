@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trace/json_read.hpp"
+#include "trace/trace_json_parts.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace_json.hpp>
 
@@ -207,12 +208,13 @@ void read_node_pair(const TraceNode& args, Event& e) {
     work.rejected = args.at("parted by planes").integer<std::uint8_t>();
     work.certain = args.at("certain").integer<std::uint8_t>();
   }
-  if (work.met == 0) {
+  if (work.met == 0 && !args.has("axis")) {
     end.apart = args.has("apart along");
     end.axis = args.at(end.apart ? "apart along" : "overlap least along").named<BoxAxis>();
   }
   const auto pairs_above = args.at("pairs above").integer<std::uint16_t>();
   e = Event::of(payload::NodePair{e.a, e.b, work, end, pairs_above}, e.cause);
+  if (args.has("axis")) e.set_engine_axis(args.at("axis").integer<std::uint8_t>());
 }
 
 /// Reads the fields of events at EventLevel::nodes and above.
@@ -299,7 +301,8 @@ class Reader {
 
  private:
   void take_event(const TraceNode& node) {
-    if (node.at("ph").string() != "X") return;  // names, counters and flows can be derived from the rest
+    // Names, counters, flows and slices of another engine's queries can be derived from the rest.
+    if (node.at("ph").string() != "X" || node.at("cat").string() == kEngineCategory) return;
     // Event numbers are 32-bit ids, and must be consecutive.
     if (t_.events.size() >= kMaxId) node.fail("fewer events");
     Event e;
@@ -323,6 +326,10 @@ class Reader {
     h.clock = metadata.at("clock").named<Clock>();
     if (metadata.has("level")) h.level = metadata.at("level").named<EventLevel>();
     if (metadata.has("engine")) h.engine = metadata.at("engine").string();
+    if (metadata.has("names")) {
+      const TraceNode names = metadata.at("names");
+      for (std::size_t i = 0, n = names.array_size(); i < n; ++i) h.names.push_back(names.at(i).string());
+    }
     if (metadata.has("coherent")) h.coherent = metadata.at("coherent").boolean();
     if (metadata.has("construction")) h.construction = metadata.at("construction").boolean();
     if (metadata.has("pictures")) h.pictures = metadata.at("pictures").object_text();

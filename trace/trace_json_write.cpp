@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -132,6 +133,7 @@ class TraceWriter {
     out_.raw("{\"traceEvents\": [\n");
     write_names();
     for (EventId i = 0; i < t_.events.size(); ++i) write_event(i);
+    if (t_.has_engine_reports()) write_engine();
     out_.raw("\n],\n\"metadata\": ");
     write_metadata(t_, out_);
     out_.raw("\n}\n");
@@ -182,6 +184,107 @@ class TraceWriter {
     }
   }
 
+  // Another engine's queries in its own time, as a second process with a track for each of its threads; its
+  // phases and counters among the events.
+
+  void write_engine() {
+    constexpr int kQueries = 2;
+    write_engine_name("process_name", kQueries, 0, t_.header.engine + ": queries, in its own time");
+    std::set<std::uint32_t> threads;
+    for (const Step& s : t_.steps)
+      if (s.result.engine) threads.insert(s.result.engine->thread);
+    for (const std::uint32_t thread : threads)
+      write_engine_name("thread_name", kQueries, thread, "thread " + std::to_string(thread));
+    for (std::size_t i = 0; i < t_.steps.size(); ++i) {
+      if (!t_.steps[i].result.engine) continue;
+      const EngineReport& r = *t_.steps[i].result.engine;
+      begin_engine_slice(report_name(t_.steps[i].index, r), kQueries, r.thread);
+      write_ns(r.begin_ns);
+      out_.raw(",\"dur\":");
+      write_ns(std::max<std::uint64_t>(r.duration_ns, 1));
+      out_.raw(",\"args\":{\"time step\":");
+      out_.number(std::uint64_t{t_.steps[i].index});
+      write_word("query", name_of(r.query));
+      write_word("verdict", name_of(r.verdict));
+      write_number("pairs", r.pairs);
+      for (std::size_t k = 0; k < r.counts.size(); ++k)
+        if (is_last_of_name(r.counts, k)) write_named(t_.header.names[r.counts[k].name], r.counts[k].value);
+      out_.raw("}}");
+      write_marks(i, r);
+    }
+  }
+
+  static std::string report_name(std::uint32_t index, const EngineReport& r) {
+    std::string out = "query " + std::to_string(index) + ": " + std::string(name_of(r.verdict));
+    if (r.pairs > 0) out += ", " + std::to_string(r.pairs) + (r.pairs == 1 ? " pair" : " pairs");
+    return out;
+  }
+  static bool is_last_of_name(const std::vector<EngineReport::Mark>& marks, std::size_t k) {
+    return std::none_of(marks.begin() + static_cast<std::ptrdiff_t>(k) + 1, marks.end(),
+                        [&](const EngineReport::Mark& m) { return m.name == marks[k].name; });
+  }
+
+  /// Writes phases as slices up to the next one, and values of counters, at their places among the events.
+  void write_marks(std::size_t step, const EngineReport& r) {
+    const std::size_t stored = t_.events_of(step).size();
+    const EventId first = t_.steps[step].first_event;
+    const auto time_of = [&](std::size_t at) {
+      const EventId event = first + static_cast<EventId>(std::min(at, stored - 1));
+      return wall() ? begin_of(event) : first + std::min(at, stored);
+    };
+    if (stored == 0) return;
+    for (std::size_t k = 0; k < r.phases.size(); ++k) {
+      const std::uint64_t begin = time_of(r.phases[k].at);
+      const std::uint64_t end = time_of(k + 1 < r.phases.size() ? r.phases[k + 1].at : stored);
+      if (end <= begin) continue;
+      begin_engine_slice(t_.header.names[r.phases[k].name], 1, static_cast<std::uint32_t>(Thread::phases));
+      write_time(begin);
+      out_.raw(",\"dur\":");
+      write_time(end - begin);
+      out_.raw(",\"args\":{}}");
+    }
+    for (const EngineReport::Mark& mark : r.counts) {
+      out_.raw(",\n{\"name\":");
+      out_.string(t_.header.names[mark.name]);
+      out_.raw(",\"cat\":\"counter\",\"ph\":\"C\",\"pid\":1,\"tid\":0,\"ts\":");
+      write_time(time_of(mark.at));
+      out_.raw(",\"args\":{\"value\":");
+      out_.number(std::uint64_t{mark.value});
+      out_.raw("}}");
+    }
+  }
+
+  void begin_engine_slice(std::string_view name, int process, std::uint32_t thread) {
+    out_.raw(",\n{\"name\":");
+    out_.string(name);
+    out_.raw(",\"cat\":\"");
+    out_.raw(kEngineCategory);
+    out_.raw("\",\"ph\":\"X\",\"pid\":");
+    out_.number(static_cast<std::uint64_t>(process));
+    out_.raw(",\"tid\":");
+    out_.number(std::uint64_t{thread});
+    out_.raw(",\"ts\":");
+  }
+
+  void write_engine_name(std::string_view field, int process, std::uint32_t thread, const std::string& name) {
+    out_.raw(",\n{\"name\":\"");
+    out_.raw(field);
+    out_.raw("\",\"cat\":\"__metadata\",\"ph\":\"M\",\"ts\":0,\"pid\":");
+    out_.number(static_cast<std::uint64_t>(process));
+    out_.raw(",\"tid\":");
+    out_.number(std::uint64_t{thread});
+    out_.raw(",\"args\":{\"name\":");
+    out_.string(name);
+    out_.raw("}}");
+  }
+
+  void write_named(const std::string& name, std::uint64_t value) {
+    out_.raw(",");
+    out_.string(name);
+    out_.raw(":");
+    out_.number(value);
+  }
+
   void write_thread_field(Thread thread, std::string_view name, std::string_view field) {
     out_.raw(",\n{\"name\":\"");
     out_.raw(name);
@@ -220,9 +323,9 @@ class TraceWriter {
     return wall() ? std::max<std::uint64_t>(t_.wall_ns[last] - t_.wall_ns[i], 1) : last - i + 1;
   }
 
-  /// Writes nanoseconds as microseconds, exactly.
-  void write_time(std::uint64_t value) {
-    if (!wall()) return out_.number(value);
+  /// Writes a time of the trace's clock; nanoseconds as microseconds, exactly.
+  void write_time(std::uint64_t value) { wall() ? write_ns(value) : out_.number(value); }
+  void write_ns(std::uint64_t value) {
     out_.number(value / 1000);
     const auto rest = static_cast<unsigned>(value % 1000);
     const char digits[] = {'.', static_cast<char>('0' + rest / 100), static_cast<char>('0' + rest / 10 % 10),
@@ -353,7 +456,7 @@ class TraceWriter {
   }
 
   void write_node_pair(const Event& e) {
-    const auto [a, b, work, end, pairs_above] = e.node_pair();
+    const auto [a, b, work, end, pairs_above, engine_axis] = e.node_pair();
     write_word("step", name_of(end.step));
     write_number("box tests", work.box_tests);
     write_number("boxes that meet", work.met);
@@ -361,7 +464,10 @@ class TraceWriter {
       write_number("parted by planes", work.rejected);
       write_number("certain", work.certain);
     }
-    if (work.met == 0) write_word(end.apart ? "apart along" : "overlap least along", name_of(end.axis));
+    if (engine_axis > 0)
+      write_number("axis", engine_axis - 1u);
+    else if (work.met == 0)
+      write_word(end.apart ? "apart along" : "overlap least along", name_of(end.axis));
     write_number("pairs above", pairs_above);
     write_cause(e.cause);
   }

@@ -2,8 +2,8 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -53,6 +53,7 @@ std::vector<double> box_tests_by_face(const LrbRep& rep, const TreeShape& tree, 
   // Distribute each node's tests evenly over the simplices beneath it, as a prefix sum from the root:
   // O(nodes).
   for (const std::uint32_t node : tree.from_root()) {
+    if (tree.beneath(node) == 0) continue;  // in a broken tree
     share[node] += static_cast<double>(counts.box_tests[node]) / tree.beneath(node);
     for (const std::uint32_t child : tree.children(node)) share[child] = share[node];
     for (const SimplexId s : tree.simplices(node)) out[rep.face_of_simplex(s)] += share[node];
@@ -108,26 +109,51 @@ void TreeShape::add(std::span<const std::uint32_t> children, std::span<const Sim
   boxes_.push_back(box);
 }
 
-void TreeShape::finish() {
-  depth_.assign(size(), 0);
+TreeShape::Faults TreeShape::finish() {
+  Faults faults;
+  depth_.assign(size(), kNull);
   beneath_.assign(size(), 0);
   order_.clear();
-  if (size() > 0) order_.push_back(0);
-  // Breadth-first order from the root. More nodes than exist means a node with two parents, or a cycle.
-  for (std::size_t i = 0; i < order_.size(); ++i)
-    for (const std::uint32_t child : children(order_[i])) {
-      if (child == 0 || child >= size() || order_.size() >= size())
-        throw std::invalid_argument("TreeShape: the nodes do not form a tree");
-      depth_[child] = depth_[order_[i]] + 1;
+  if (size() == 0) return faults;
+  // Breadth-first order from the root. A link to a node that has been reached (by another parent, or along a
+  // cycle) is left out, so that the remaining links form a tree.
+  order_.push_back(0);
+  depth_[0] = 0;
+  std::vector<char> is_kept(children_.size(), 0);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const std::uint32_t n = order_[i];
+    for (std::uint32_t k = first_child_[n]; k < first_child_[n + 1]; ++k) {
+      const std::uint32_t child = children_[k];
+      if (child >= size() || depth_[child] != kNull) {
+        ++faults.links;
+        continue;
+      }
+      is_kept[k] = 1;
+      depth_[child] = depth_[n] + 1;
       order_.push_back(child);
     }
-  if (order_.size() != size())
-    throw std::invalid_argument("TreeShape: some nodes are not reachable from the root");
+  }
+  faults.unreachable = static_cast<std::uint32_t>(size() - order_.size());
+  if (faults.any()) keep_children(is_kept);
   // In reverse order children come first: sum the simplices bottom up.
   for (auto i = order_.rbegin(); i != order_.rend(); ++i) {
     beneath_[*i] += static_cast<std::uint32_t>(simplices(*i).size());
     for (const std::uint32_t child : children(*i)) beneath_[*i] += beneath_[child];
   }
+  return faults;
+}
+
+void TreeShape::keep_children(const std::vector<char>& is_kept) {
+  std::vector<std::uint32_t> kept;
+  std::uint32_t begin = 0;
+  for (std::uint32_t n = 0; n < size(); ++n) {
+    const std::uint32_t end = first_child_[n + 1];
+    for (std::uint32_t k = begin; k < end; ++k)
+      if (is_kept[k]) kept.push_back(children_[k]);
+    begin = end;
+    first_child_[n + 1] = static_cast<std::uint32_t>(kept.size());
+  }
+  children_ = std::move(kept);
 }
 
 namespace {

@@ -46,6 +46,7 @@ inline constexpr auto kFields<trace::StepResult> =
                field("separation", &trace::StepResult::separation, Kept::if_set),
                field("distance", &trace::StepResult::distance, Kept::if_set),
                field("clash", &trace::StepResult::clash, Kept::if_set),
+               field("engine", &trace::StepResult::engine, Kept::if_set),
                field("counters", &trace::StepResult::counters)};
 
 template <>

@@ -53,7 +53,8 @@ struct RecorderSettings {
   EventLevel level = EventLevel::faces;
   /// Name of another engine whose traversal is recorded over its own trees; empty: lrbscope.
   std::string engine;
-  bool coherent = false;  ///< each step continues from the previous one
+  std::vector<std::string> names;  ///< of that engine's counters and phases
+  bool coherent = false;           ///< each step continues from the previous one
 };
 
 class Recorder final : public CollideProbe {
@@ -71,6 +72,7 @@ class Recorder final : public CollideProbe {
   /// Adds a measurement to the current step. Call before end_step().
   void add(MeasuredDistance distance);
   void add(MeasuredClash clash);
+  void add(EngineReport report);
   void end_step(const CollideResult& result);
 
   void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a,
@@ -119,6 +121,11 @@ class Recorder final : public CollideProbe {
     return last_pair_;
   }
 
+  /// Adds the axis that another engine reported to the last pair of nodes.
+  void set_engine_axis(std::uint8_t axis) {
+    if (last_pair_ != kNull) trace_.events[last_pair_].set_engine_axis(axis);
+  }
+
   void plane_test(SimplexId a, SimplexId b, Side whose) override {
     push(Event::of(payload::PlaneTest{a, b, whose}, last_pair_));
   }
@@ -142,6 +149,7 @@ class Recorder final : public CollideProbe {
   }
 
   std::uint64_t events_seen() const { return seen_; }
+  std::uint64_t events_of_step() const { return seen_ - seen_before_step_; }
   std::uint64_t events_stored() const { return trace_.events.size(); }
 
   /// Replays the recording to fill in wrapper sizes and the ends of node pairs, and returns the trace. The

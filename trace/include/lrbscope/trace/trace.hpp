@@ -76,10 +76,51 @@ std::string words(const MeasuredDistance& m);
 std::string words(const MeasuredClash& m);
 std::string words(const MeasuredApproach& m);
 
-/// Version of the trace format that is written. Readers accept it and older ones, and reject newer ones.
-/// Version 3 added step names that state the result, a flow to each face test, the events at
-/// EventLevel::nodes and above, and construction events.
-inline constexpr std::uint32_t kTraceVersion = 3;
+// The answer of another engine, as it reported it.
+
+/// What the engine was asked for.
+enum class EngineQuery : std::uint8_t { all_pairs, any, distance, first_contact, self };
+constexpr auto words_of(EngineQuery) {
+  return std::to_array<EnumWord<EngineQuery>>({{EngineQuery::all_pairs, "all_pairs"},
+                                               {EngineQuery::any, "any"},
+                                               {EngineQuery::distance, "distance"},
+                                               {EngineQuery::first_contact, "first_contact"},
+                                               {EngineQuery::self, "self"}});
+}
+enum class EngineVerdict : std::uint8_t { separate, intersecting, unreported };
+constexpr auto words_of(EngineVerdict) {
+  return std::to_array<EnumWord<EngineVerdict>>({{EngineVerdict::separate, "separate"},
+                                                 {EngineVerdict::intersecting, "intersecting"},
+                                                 {EngineVerdict::unreported, "unreported"}});
+}
+
+struct EngineReport {
+  /// A counter's value, or the beginning of a phase.
+  struct Mark {
+    std::uint32_t name = 0;   ///< index in TraceHeader::names
+    std::uint32_t at = 0;     ///< number of events of the step before it, the step event included
+    std::uint32_t value = 0;  ///< of a counter
+
+    friend bool operator==(const Mark&, const Mark&) = default;
+  };
+
+  EngineQuery query = EngineQuery::all_pairs;
+  EngineVerdict verdict = EngineVerdict::unreported;
+  std::uint64_t pairs = 0;  ///< number of pairs by the engine's own count
+  bool complete = true;     ///< all its events were recorded
+  std::uint32_t thread = 0;
+  std::uint64_t begin_ns = 0;  ///< since the recording began
+  std::uint64_t duration_ns = 0;
+  std::vector<Mark> counts, phases;  ///< in the engine's order
+
+  friend bool operator==(const EngineReport&, const EngineReport&) = default;
+};
+
+/// Newest version of the trace format that is written and read. Readers accept older versions and reject
+/// newer ones. Version 3 added step names that state the result, a flow to each face test, the events at
+/// EventLevel::nodes and above, and construction events. Version 4 added reports of other engines; a trace
+/// without them is written as version 3.
+inline constexpr std::uint32_t kTraceVersion = 4;
 
 /// Name of the format in a trace's metadata.
 inline constexpr std::string_view kTraceFormat = "lrbscope trace";
@@ -144,6 +185,8 @@ struct NodePair {
   NodeWork work;
   NodeEnd end;
   std::uint16_t pairs_above = 0;  ///< saturates at 65535
+  /// 1 + the axis of the test as another engine reported it (capture::Event::axis); 0: not reported.
+  std::uint16_t engine_axis = 0;
 };
 struct PlaneTest {
   SimplexId a{}, b{};
@@ -245,6 +288,7 @@ struct Event {
             .cause = cause,
             .boundary = std::bit_cast<std::uint32_t>(p.work),
             .depth_a = p.pairs_above,
+            .depth_b = p.engine_axis,
             .kind = EventKind::node_pair,
             .detail = p.end.bits()};
   }
@@ -301,8 +345,9 @@ struct Event {
   }
 
   // Values known only later.
-  void set_tested_by(TestedBy how) { detail = static_cast<std::uint8_t>(how); }  ///< face test
-  void set_node_end(NodeEnd end) { detail = end.bits(); }                        ///< node pair
+  void set_tested_by(TestedBy how) { detail = static_cast<std::uint8_t>(how); }   ///< face test
+  void set_node_end(NodeEnd end) { detail = end.bits(); }                         ///< node pair
+  void set_engine_axis(std::uint8_t axis) { depth_b = std::uint16_t(axis + 1); }  ///< node pair
   /// Refine, coarsen, region, pass end: number of faces of the wrapper after the event.
   void set_wrapper_faces(std::uint32_t faces) { boundary = faces; }
 
@@ -313,7 +358,7 @@ struct Event {
   payload::WrapperChange wrapper_change() const { return {region(), b, boundary, side}; }
   payload::Contact contact() const { return {SimplexId(a), SimplexId(b), meet}; }
   payload::Result result() const { return {static_cast<Relation>(a), b}; }
-  payload::NodePair node_pair() const { return {a, b, work(), node_end(), depth_a}; }
+  payload::NodePair node_pair() const { return {a, b, work(), node_end(), depth_a, depth_b}; }
   payload::PlaneTest plane_test() const { return {SimplexId(a), SimplexId(b), side}; }
   payload::Point point() const { return {VertexId(a), side, where()}; }
   payload::PhaseBegin phase_begin() const { return {phase(), depth_a, depth_b}; }
@@ -388,6 +433,7 @@ struct StepResult {
   std::optional<Separation> separation = {};
   std::optional<MeasuredDistance> distance = {};  ///< if requested
   std::optional<MeasuredClash> clash = {};        ///< if requested
+  std::optional<EngineReport> engine = {};        ///< if another engine reported its answer
 
   friend bool operator==(const StepResult&, const StepResult&) = default;
 };
@@ -412,8 +458,9 @@ struct TraceHeader {
   Clock clock = Clock::event;
   std::uint32_t event_cap = 0;  ///< maximum number of stored events
   EventLevel level = EventLevel::faces;
-  std::string engine;     ///< name of the recorded engine; empty: lrbscope
-  bool coherent = false;  ///< each step continues from the previous one, by a CoherentQuery
+  std::string engine;              ///< name of the recorded engine; empty: lrbscope
+  std::vector<std::string> names;  ///< of that engine's counters and phases
+  bool coherent = false;           ///< each step continues from the previous one, by a CoherentQuery
   /// The construction of one body: its wrapper, the front, starts as the body itself and grows.
   bool construction = false;
   std::optional<MeasuredApproach> first_contact;  ///< of the motion; nullopt: not searched for
@@ -430,6 +477,8 @@ struct Trace {
   std::uint64_t events_seen = 0;  ///< more than events.size() if the cap truncated the recording
 
   bool truncated() const { return events_seen > events.size(); }
+  /// Returns true if another engine reported its answers.
+  bool has_engine_reports() const;
   /// Returns the stored events of a step.
   std::span<const Event> events_of(std::size_t step) const;
   /// Returns the step (index into `steps`) that contains an event.

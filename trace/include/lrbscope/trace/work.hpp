@@ -36,9 +36,16 @@ class TreeShape {
   /// children, which may be added later.
   void add(std::span<const std::uint32_t> children, std::span<const SimplexId> simplices,
            const ShapeBox& box);
-  /// Computes depths and simplex counts after all nodes were added. Throws std::invalid_argument if the nodes
-  /// do not form a tree.
-  void finish();
+  /// Links that a broken tree lost in finish().
+  struct Faults {
+    std::uint32_t links = 0;        ///< to a node that has a parent already, to the root, or to no node
+    std::uint32_t unreachable = 0;  ///< nodes that the root does not reach
+    bool any() const { return links + unreachable > 0; }
+  };
+  /// Computes depths and simplex counts after all nodes were added. If the nodes do not form a tree, each
+  /// keeps its first parent, breadth first from the root; nodes that the root does not reach have the depth
+  /// kNull and are not in from_root().
+  Faults finish();
 
   std::size_t size() const { return boxes_.size(); }
   bool is_leaf(std::uint32_t node) const { return children(node).empty(); }
@@ -49,13 +56,15 @@ class TreeShape {
     return {simplices_.data() + first_simplex_[node], simplices_.data() + first_simplex_[node + 1]};
   }
   const ShapeBox& box(std::uint32_t node) const { return boxes_[node]; }
-  std::uint32_t depth(std::uint32_t node) const { return depth_[node]; }  ///< 0: the root
+  std::uint32_t depth(std::uint32_t node) const { return depth_[node]; }  ///< 0: the root; kNull: not reached
   /// Returns the number of simplices below a node.
   std::uint32_t beneath(std::uint32_t node) const { return beneath_[node]; }
   /// Returns the nodes, parents before children.
   const std::vector<std::uint32_t>& from_root() const { return order_; }
 
  private:
+  void keep_children(const std::vector<char>& is_kept);
+
   std::vector<std::uint32_t> first_child_ = {0}, first_simplex_ = {0};
   std::vector<std::uint32_t> children_;
   std::vector<SimplexId> simplices_;
