@@ -8,7 +8,9 @@
 #include <sstream>
 #include <system_error>
 
+#include "scenarios/io/files.hpp"
 #include "scenarios/record/approach.hpp"
+#include "scenarios/record/engine_run.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/collide.hpp>
@@ -55,17 +57,34 @@ void check_events(const std::string& path, const Recording& run) {
   }
 }
 
-std::vector<CollideResult> contacts_of(const trace::Trace& trace,
-                                       const std::vector<bodies::LoadedBody>& bodies) {
-  std::vector<CollideResult> out;
-  if (bodies.size() < 2 || trace.header.request.mode != Mode::all_pairs || trace.header.request.is_coarse())
-    return out;
-  CollideRequest request = trace.header.request;
-  request.contacts = true;
-  request.separation = false;  // it is stored in the trace
-  for (const trace::Step& step : trace.steps)
-    out.push_back(collide(bodies[0].rep, step.pose_a, bodies[1].rep, step.pose_b, request));
-  return out;
+/// Computes the contacts of each step, which a trace does not contain, and what another engine got wrong.
+void add_contacts(Recording& run) {
+  const trace::Trace& trace = run.trace;
+  if (run.bodies.size() < 2 || trace.header.request.mode != Mode::all_pairs ||
+      trace.header.request.is_coarse())
+    return;
+  for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+    const trace::Step& step = trace.steps[i];
+    const std::optional<trace::EngineReport>& report = step.result.engine;
+    const std::vector<SimplexPair> found = pairs_found(trace.events_of(i));
+    run.results.push_back(exact_answer({run.bodies[0].rep, step.pose_a, run.bodies[1].rep, step.pose_b},
+                                       trace.header.request, report, found));
+    if (trace.header.engine.empty()) continue;
+    // Pairs of a step whose events were cut are not all known.
+    const bool is_whole = step.events_seen == trace.events_of(i).size();
+    run.wrong.push_back(is_whole ? wrong_pairs(found, run.results.back().pairs, report)
+                                 : std::vector<WrongPair>());
+  }
+}
+
+/// Returns the trees of another engine, if they were kept beside the trace.
+std::vector<trace::TreeShape> engine_trees(const std::string& trace_path, const trace::TraceHeader& header) {
+  const std::string path = (std::filesystem::path(trace_path).parent_path() / kTreesFile).string();
+  std::error_code ignored;
+  if (header.engine.empty() || header.bodies.size() != 2 || !std::filesystem::exists(path, ignored))
+    return {};
+  return read_trees(io::read_text(path), printable_name(path),
+                    {header.bodies[0].real_simplices, header.bodies[1].real_simplices});
 }
 
 }  // namespace
@@ -99,9 +118,10 @@ Recording open_run(trace::Trace trace, const std::string& trace_path,
   out.bodies =
       find_bodies(trace_path, bodies,
                   alone ? std::vector<std::string>{"a.lrb"} : std::vector<std::string>{"a.lrb", "b.lrb"});
-  out.trees = trees_of(out.trace, out.bodies);
+  out.trees = out.trace.header.engine.empty() ? trees_of(out.trace, out.bodies)
+                                              : engine_trees(trace_path, out.trace.header);
   check_events(trace_path, out);
-  out.results = contacts_of(out.trace, out.bodies);
+  add_contacts(out);
   return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/record/engine_run.hpp"
 #include "scenarios/run/run_page.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
@@ -62,6 +63,9 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
   std::filesystem::remove(folder + (scenario.gzip ? "/trace.json" : "/trace.json.gz"),
                           error);  // of an earlier run
   trace::save_trace(recording.trace, folder + "/" + trace_file);
+  std::filesystem::remove(folder + "/" + kTreesFile, error);
+  if (!recording.trace.header.engine.empty() && !recording.trees.empty())
+    io::write_text(folder + "/" + kTreesFile, trees_text(recording.trees));
   RunOutcome out;
   out.notes = recording.notes;
   out.mismatches = mismatches(scenario, recording);

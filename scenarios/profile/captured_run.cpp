@@ -1,0 +1,337 @@
+#include "scenarios/profile/captured_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "render/pictures/panel.hpp"
+#include "scenarios/profile/volumes.hpp"
+#include "scenarios/profile/walk.hpp"
+#include "scenarios/record/engine_run.hpp"
+#include <lrbscope/body.hpp>
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/trace/recorder.hpp>
+
+namespace lrb::profile {
+
+using render::counted;
+using render::group_digits;
+
+TreePairs tree_pairs(const capture::Capture& capture) {
+  TreePairs out;
+  std::map<std::array<std::uint32_t, 2>, std::size_t> at;
+  for (std::size_t i = 0; i < capture.queries.size(); ++i) {
+    std::array<std::uint32_t, 2> trees = capture.queries[i].trees;
+    // An engine may name the tree of a query with itself once.
+    if (capture.queries[i].kind == capture::QueryKind::self && trees[1] == kNull) trees[1] = trees[0];
+    if (trees[0] == kNull || trees[1] == kNull) {
+      ++out.without_tree;
+      continue;
+    }
+    const auto [found, is_new] = at.emplace(trees, out.pairs.size());
+    if (is_new) out.pairs.push_back({trees, {}});
+    out.pairs[found->second].queries.push_back(i);
+  }
+  return out;
+}
+
+bodies::LoadedBody captured_body(const capture::Mesh& mesh) {
+  Mesh out;
+  out.name = mesh.name.empty() ? "mesh" : mesh.name;
+  out.vertices = mesh.vertices;
+  for (const auto& corners : mesh.triangles) {
+    const VertexId face[] = {VertexId(corners[0]), VertexId(corners[1]), VertexId(corners[2])};
+    out.add_face(face);
+  }
+  // Both steps keep the numbers of faces: merging corners of a triangle soup, so that a closed one has an
+  // inside, and turning components.
+  join_corners_of_mesh(out);
+  MadeBody made = make_body_of_faces(check(std::move(out)));
+  std::vector<std::string> notes;
+  if (!made.rep.closed())
+    notes.push_back(printable_name(made.rep.name()) +
+                    ": not a closed solid; pairs are exact, but inside and outside are undefined");
+  return {std::move(made.rep), std::move(notes), 0};
+}
+
+namespace {
+
+trace::ShapeBox box_of_node(const capture::Tree& tree, const Volumes& volumes, std::uint32_t node) {
+  const std::span<const double> v = tree.volume_of(node);
+  switch (tree.volume) {
+    case capture::VolumeKind::aabb: {
+      trace::ShapeBox box;
+      for (int k = 0; k < 3; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        box.centre[k] = (v[i] + v[i + 3]) / 2;
+        box.half[i] = Eigen::Vector3d::Zero();
+        box.half[i][k] = (v[i + 3] - v[i]) / 2;
+      }
+      return box;
+    }
+    case capture::VolumeKind::obb: {
+      const auto vector = [&](std::size_t i) { return Eigen::Vector3d(v[i], v[i + 1], v[i + 2]); };
+      return {vector(0), {vector(3), vector(6), vector(9)}};
+    }
+    default:
+      return volumes.box(node);
+  }
+}
+
+}  // namespace
+
+trace::TreeShape captured_shape(const capture::Tree& tree, std::uint32_t triangles, const std::string& name,
+                                std::vector<std::string>& notes) {
+  trace::TreeShape out;
+  const Volumes volumes(tree);
+  std::uint64_t unknown = 0;
+  std::vector<char> is_in_leaf(triangles, 0);
+  for (std::uint32_t n = 0; n < tree.size(); ++n) {
+    std::vector<SimplexId> simplices;
+    for (const std::uint32_t t : tree.triangles(n)) {
+      if (t >= triangles) {
+        ++unknown;
+        continue;
+      }
+      simplices.emplace_back(t);
+      is_in_leaf[t] = 1;
+    }
+    out.add(tree.children(n), simplices, box_of_node(tree, volumes, n));
+  }
+  const trace::TreeShape::Faults faults = out.finish();
+  const auto missing = static_cast<std::uint64_t>(std::count(is_in_leaf.begin(), is_in_leaf.end(), 0));
+  const auto add = [&](std::uint64_t count, const char* one, const char* many) {
+    if (count > 0) notes.push_back(name + ": " + counted(count, one, many));
+  };
+  add(faults.links, "link to a node with another parent is left out",
+      "links to nodes with other parents are left out");
+  add(faults.unreachable, "node is not below the root", "nodes are not below the root");
+  add(unknown, "triangle of a leaf does not exist", "triangles of leaves do not exist");
+  add(missing, "triangle is in no leaf", "triangles are in no leaf");
+  return out;
+}
+
+namespace {
+
+trace::EngineReport report_of(const capture::Query& query) {
+  trace::EngineReport out;
+  // Both enumerations have the same order; the capture's begins with 1.
+  out.query = static_cast<trace::EngineQuery>(static_cast<std::uint32_t>(query.kind) - 1);
+  out.verdict = static_cast<trace::EngineVerdict>(query.verdict);
+  out.pairs = query.pairs;
+  out.complete = query.complete();
+  out.thread = query.thread;
+  out.begin_ns = static_cast<std::uint64_t>(std::llround(std::max(query.begin_ns, 0.0)));
+  out.duration_ns = static_cast<std::uint64_t>(std::llround(std::max(query.duration_ns, 0.0)));
+  return out;
+}
+
+std::vector<SimplexPair> pairs_of(const capture::Query& query) {
+  std::vector<SimplexPair> out;
+  for (const capture::Event& e : query.events)
+    if (e.kind == capture::EventKind::triangles && e.met > 0) out.push_back({SimplexId(e.a), SimplexId(e.b)});
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+std::uint32_t saturated(std::uint64_t value) {
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(value, kNull));
+}
+
+/// Reports an engine's queries to a recorder, as one of lrbscope's would.
+class QueryReplay {
+ public:
+  QueryReplay(trace::Recorder& recorder, Descent descent, bool reports)
+      : recorder_(recorder), descent_(std::move(descent)), reports_(reports) {}
+
+  /// Returns the engine's answer, and adds its counters and phases to `report`.
+  CollideResult replay(const capture::Query& query, trace::EngineReport& report) {
+    const std::vector<Visit> visits = descent_.visits_of(query.events);
+    std::vector<std::uint32_t> reported(visits.size(), kNull);
+    CollideResult result;
+    recorder_.begin(Phase::walk, 0, 0);
+    for (std::size_t i = 0; i < visits.size(); ++i) {
+      const capture::Event& e = query.events[i];
+      switch (e.kind) {
+        case capture::EventKind::nodes:
+          reported[i] = node_pair(e, visits[i], reported);
+          result.counters.node_pairs += 1;
+          result.counters.box_tests += e.tests;
+          break;
+        case capture::EventKind::triangles:
+          triangles(e);
+          result.counters.face_tests += 1;
+          break;
+        case capture::EventKind::count:
+          report.counts.push_back({e.a, saturated(recorder_.events_of_step()), e.b});
+          break;
+        case capture::EventKind::phase:
+          report.phases.push_back({e.a, saturated(recorder_.events_of_step()), 0});
+          break;
+      }
+    }
+    recorder_.end(Phase::walk, result.counters.box_tests);
+    result.counters.real_tests = result.counters.face_tests;
+    result.pairs = pairs_of(query);
+    // The engine's verdict; without one, the pairs that it found.
+    const bool meets = reports_ && query.verdict != capture::Verdict::unreported
+                           ? query.verdict == capture::Verdict::intersecting
+                           : !result.pairs.empty();
+    result.relation = meets ? Relation::crossing : Relation::separate;
+    return result;
+  }
+
+ private:
+  std::uint32_t node_pair(const capture::Event& e, const Visit& v,
+                          const std::vector<std::uint32_t>& reported) {
+    const std::uint32_t id =
+        recorder_.node_pair({.a = e.a,
+                             .b = e.b,
+                             .parent = v.parent == Visit::kNone ? kNull.kValue : reported[v.parent],
+                             .step = v.step.value_or(NodeStep::descend_both),
+                             .box_tests = e.tests,
+                             .met = v.step == NodeStep::leaves ? e.met : v.children});
+    if (reports_ && e.axis != capture::kNoAxis) recorder_.set_engine_axis(e.axis);
+    return id;
+  }
+
+  void triangles(const capture::Event& e) {
+    const exact::Meet meet = e.met > 0 ? exact::Meet::cross : exact::Meet::disjoint;
+    recorder_.face_test(SimplexId(e.a), SimplexId(e.b), meet, 0, 0);
+    if (e.met > 0) recorder_.contact(SimplexId(e.a), SimplexId(e.b), meet);
+  }
+
+  trace::Recorder& recorder_;
+  Descent descent_;
+  bool reports_;
+};
+
+trace::RecorderSettings recorder_settings(const capture::Capture& capture,
+                                          const CapturedRunSettings& settings) {
+  trace::RecorderSettings out;
+  out.scenario = settings.name;
+  out.scenario_hash = settings.hash;
+  out.sources = settings.sources;
+  out.event_cap = settings.event_cap;
+  out.level = EventLevel::nodes;
+  out.engine = capture.engine.empty() ? "another engine" : capture.engine;
+  if (settings.reports) out.names = capture.names;
+  return out;
+}
+
+}  // namespace
+
+run::Recording captured_run(const capture::Capture& capture, const TreePair& pair,
+                            std::vector<bodies::LoadedBody> bodies, const CapturedRunSettings& settings,
+                            std::vector<CollideResult> exact, const run::ProgressReport& progress) {
+  run::Recording out;
+  out.bodies = std::move(bodies);
+  out.results = std::move(exact);
+  std::vector<TreeIndex> indices;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const capture::Tree& tree = capture.trees[pair.trees[side]];
+    const std::uint32_t triangles = out.bodies[side].rep.real_simplex_count();
+    out.trees.push_back(
+        captured_shape(tree, triangles, std::string("tree ") + (side == 0 ? "A" : "B"), out.notes));
+    indices.emplace_back(tree, triangles);
+    for (const std::string& note : out.bodies[side].notes) out.notes.push_back(note);
+  }
+  trace::Recorder recorder(out.bodies[0].rep, out.bodies[1].rep, recorder_settings(capture, settings));
+  QueryReplay replay(recorder, Descent(indices[0], indices[1]), settings.reports);
+  const bool is_known = !out.results.empty();
+  for (std::size_t i = 0; i < pair.queries.size(); ++i) {
+    progress("query", i, pair.queries.size());
+    const capture::Query& query = capture.queries[pair.queries[i]];
+    recorder.begin_step(settings.reports ? query.number : static_cast<std::uint32_t>(i), query.poses[0],
+                        query.poses[1]);
+    std::optional<trace::EngineReport> report = report_of(query);
+    const CollideResult answer = replay.replay(query, *report);
+    if (!settings.reports) report.reset();
+    if (!is_known && settings.check) {
+      out.results.push_back(run::exact_answer(
+          {out.bodies[0].rep, query.poses[0], out.bodies[1].rep, query.poses[1]}, {}, report, answer.pairs));
+      if (report && report->query == trace::EngineQuery::distance)
+        recorder.add(trace::measured(
+            distance(out.bodies[0].rep, query.poses[0], out.bodies[1].rep, query.poses[1]), {}));
+    }
+    if (i < out.results.size())
+      out.wrong.push_back(run::wrong_pairs(answer.pairs, out.results[i].pairs, report));
+    if (report) recorder.add(std::move(*report));
+    recorder.end_step(answer);
+  }
+  out.trace = recorder.take();
+  if (out.trace.truncated())
+    out.notes.push_back(out.trace.header.engine + ": the trace contains only the first " +
+                        std::to_string(out.trace.events.size()) + " of " +
+                        std::to_string(out.trace.events_seen) + " events" +
+                        (settings.reports ? "; choose fewer queries (--queries)" : ""));
+  return out;
+}
+
+std::string captured_words(const capture::Capture& capture, const TreePair& pair) {
+  std::string out;
+  const auto add = [&](const std::string& sentence) { out += (out.empty() ? "" : " ") + sentence; };
+  const auto count = [&](const auto& test) {
+    return static_cast<std::uint64_t>(std::count_if(pair.queries.begin(), pair.queries.end(),
+                                                    [&](std::size_t i) { return test(capture.queries[i]); }));
+  };
+  const auto volume_words = [&](capture::VolumeKind kind, const char* name) {
+    for (const std::uint32_t tree : pair.trees)
+      if (capture.trees[tree].volume == kind)
+        return add(std::string("Its ") + name + " are drawn as the boxes around them.");
+  };
+  volume_words(capture::VolumeKind::sphere, "spheres");
+  volume_words(capture::VolumeKind::rss, "rounded rectangles");
+  volume_words(capture::VolumeKind::kdop, "k-DOPs");
+  if (const std::uint64_t n = count([](const auto& q) { return q.kind == capture::QueryKind::self; }); n > 0)
+    add(counted(n, "query is", "queries are") +
+        " of a body with itself, shown as two equal bodies in one place; only the pairs that the engine found "
+        "are checked.");
+  if (const std::uint64_t n =
+          count([](const auto& q) { return q.kind == capture::QueryKind::first_contact; });
+      n > 0)
+    add(counted(n, "query is a search", "queries are searches") +
+        " for the first contact, shown at the first pose; the answer is not checked.");
+  if (const std::uint64_t n = count([](const auto& q) { return !q.complete(); }); n > 0)
+    add("The capture does not contain all events of " + counted(n, "query.", "queries."));
+  return out;
+}
+
+CapturedTotals& CapturedTotals::operator+=(const CapturedTotals& o) {
+  queries += o.queries, events += o.events;
+  right += o.right, missed += o.missed, false_pairs += o.false_pairs, wrong_verdicts += o.wrong_verdicts;
+  checked = checked || o.checked;
+  return *this;
+}
+
+CapturedTotals totals_of(const run::Recording& run) {
+  CapturedTotals out;
+  out.queries = run.trace.steps.size();
+  out.events = run.trace.events_seen;
+  out.checked = !run.results.empty();
+  for (std::size_t i = 0; i < run.results.size(); ++i) {
+    const run::AnswerScore score = run::score_of(run.trace.steps[i].result, run.wrong[i], run.results[i]);
+    out.right += score.right;
+    out.missed += score.missed;
+    out.false_pairs += score.false_pairs;
+    out.wrong_verdicts += score.verdict == false;
+  }
+  return out;
+}
+
+std::string words(const CapturedTotals& t) {
+  std::string out = counted(t.queries, "query", "queries") + ", " + counted(t.events, "event", "events");
+  if (!t.checked) return out + "; answers not checked";
+  out += "; pairs: " + group_digits(t.right) + " right, " + group_digits(t.missed) + " missed, " +
+         group_digits(t.false_pairs) + " false";
+  if (t.wrong_verdicts > 0) out += "; " + counted(t.wrong_verdicts, "wrong verdict", "wrong verdicts");
+  return out;
+}
+
+}  // namespace lrb::profile

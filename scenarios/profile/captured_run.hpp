@@ -1,0 +1,80 @@
+#pragma once
+/// Converts the queries of a capture to recorded runs, so that all pictures and statistics of runs apply to
+/// another engine's traversals.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/record/recorded_run.hpp"
+#include <lrbscope/trace/capture.hpp>
+#include <lrbscope/trace/work.hpp>
+
+namespace lrb::profile {
+
+/// The queries of a capture between two trees. A tree that was refitted is another tree.
+struct TreePair {
+  std::array<std::uint32_t, 2>
+      trees{};                       ///< indices in Capture::trees; equal in queries of a tree with itself
+  std::vector<std::size_t> queries;  ///< indices in Capture::queries, ascending
+};
+
+struct TreePairs {
+  std::vector<TreePair> pairs;     ///< in the order of their first queries
+  std::uint64_t without_tree = 0;  ///< queries with a single triangle or shape on one side, left out
+};
+TreePairs tree_pairs(const capture::Capture& capture);
+
+/// Returns the body of a captured mesh, without regions. Its simplices are the mesh's triangles, with the
+/// same numbers, whatever the mesh: it may be open, degenerate or self-intersecting. Throws InputError for a
+/// mesh without triangles, or with coordinates that are not finite.
+bodies::LoadedBody captured_body(const capture::Mesh& mesh);
+
+/// Returns the shape of a captured tree, with each volume's own box (Volumes::box). A broken tree keeps what
+/// holds: see TreeShape::finish(); triangles that do not exist are left out. Adds a line to `notes` for each
+/// kind of fault.
+trace::TreeShape captured_shape(const capture::Tree& tree, std::uint32_t triangles, const std::string& name,
+                                std::vector<std::string>& notes);
+
+struct CapturedRunSettings {
+  std::string name;        ///< of the run
+  std::uint64_t hash = 0;  ///< of what defines the run
+  std::array<std::string, 2> sources;
+  std::uint32_t event_cap = 1'000'000;
+  bool check = true;  ///< compute the exact answers
+  /// Number the steps as the capture's queries, and store the engine's own answers in the trace. false: from
+  /// 0, and without them.
+  bool reports = true;
+};
+
+/// Returns a recording of the queries of a pair of trees, one for each step. `bodies`: of both meshes, with
+/// their triangles as first simplices. `exact`: known exact answers of the steps; empty: they are computed,
+/// if the settings say so.
+///
+/// A test of two bounding volumes becomes a node pair. Its `met` is the number of pairs that the engine
+/// descended to from there, and its predecessor is found by Descent. The results are the exact ones, so that
+/// pictures show the actual intersections; the engine's answer is in the trace.
+run::Recording captured_run(const capture::Capture& capture, const TreePair& pair,
+                            std::vector<bodies::LoadedBody> bodies, const CapturedRunSettings& settings,
+                            std::vector<CollideResult> exact, const run::ProgressReport& progress);
+
+/// Returns sentences on what the pictures of a pair's run show: volumes drawn as boxes, queries of one body
+/// with itself, queries that were not kept or not compared. Empty if there is nothing to say.
+std::string captured_words(const capture::Capture& capture, const TreePair& pair);
+
+/// Totals of a run, for one line of text.
+struct CapturedTotals {
+  std::uint64_t queries = 0, events = 0;
+  std::uint64_t right = 0, missed = 0, false_pairs = 0, wrong_verdicts = 0;
+  bool checked = false;
+
+  CapturedTotals& operator+=(const CapturedTotals& o);
+};
+CapturedTotals totals_of(const run::Recording& run);
+/// Returns "40 queries, 12,345 events; 24,702 pairs right, 0 missed, 0 false".
+std::string words(const CapturedTotals& totals);
+
+}  // namespace lrb::profile

@@ -1,0 +1,55 @@
+#pragma once
+/// Runs of other engines: their trees in a file beside the trace, and their answers compared with exact ones.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/pictures/marks.hpp"
+#include "render/pictures/panel.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/trace/trace.hpp>
+#include <lrbscope/trace/work.hpp>
+
+namespace lrb::run {
+
+/// File in a run's folder with the trees of another engine, because its trace names their nodes by number.
+inline constexpr const char* kTreesFile = "trees.json";
+
+/// Returns the trees of A and B as JSON: for each node its children, simplices and box.
+std::string trees_text(std::span<const trace::TreeShape> trees);
+/// Reads them. Throws InputError for a text that is not of two trees, or that names nodes or simplices that
+/// do not exist. `simplices`: the numbers of simplices of A and B; `name` is used in messages.
+std::vector<trace::TreeShape> read_trees(const std::string& text, const std::string& name,
+                                         const std::array<std::uint32_t, 2>& simplices);
+
+/// Returns lrbscope's answer, with contact regions, to a query that another engine answered with the pairs
+/// `found`. For a query of a body with itself, in which all neighbouring faces touch: those of `found` that
+/// intersect.
+CollideResult exact_answer(const PosedBodies& bodies, const CollideRequest& request,
+                           const std::optional<trace::EngineReport>& report,
+                           std::span<const SimplexPair> found);
+
+/// Returns the pairs that an engine found in a step, ascending.
+std::vector<SimplexPair> pairs_found(std::span<const trace::Event> events);
+
+/// Compares the pairs that an engine found, ascending, with the exact answer. Pairs found wrongly come first,
+/// then those missed. A query for any pair misses one only if it found the bodies separate; a query of a body
+/// with itself, or one without all its events, is not known to miss any. The pairs of a search for the first
+/// contact are at other poses and not compared.
+std::vector<WrongPair> wrong_pairs(std::span<const SimplexPair> found, std::span<const SimplexPair> exact,
+                                   const std::optional<trace::EngineReport>& report);
+
+/// The answer of an engine to a query, compared with the exact one.
+struct AnswerScore {
+  std::uint64_t right = 0, missed = 0, false_pairs = 0;  ///< pairs
+  std::optional<bool> verdict;  ///< its verdict is right; nullopt: it has none that can be compared
+};
+/// `wrong`: as returned by wrong_pairs().
+AnswerScore score_of(const trace::StepResult& answer, std::span<const WrongPair> wrong,
+                     const CollideResult& exact);
+
+}  // namespace lrb::run
