@@ -33,6 +33,13 @@ std::vector<report::Table> group_tables(const RecordedRun& run);
 /// the expectation of the surface area heuristic. Returns an empty list for a trace without these events.
 std::vector<report::Table> work_tables(const RecordedRun& run);
 
+/// Adds the verdict and the key figures of a run of another engine that reported its answers.
+void add_engine_answer(report::Document& doc, const RecordedRun& recorded);
+/// Returns the table of such a run's queries: the engine's answers beside the exact ones.
+report::Table engine_table(const RecordedRun& run);
+/// Returns a table of the counters that the engine reported; empty if there are none.
+std::vector<report::Table> engine_counter_tables(const RecordedRun& run);
+
 /// Returns the quality sheet of the bodies.
 report::Table quality_table(const RecordedRun& run);
 

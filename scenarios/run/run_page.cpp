@@ -231,7 +231,9 @@ report::Table steps_table(const trace::Trace& trace) {
 void add_answer(report::Document& doc, const RecordedRun& p, const ReportText& text) {
   const bool two = p.reps.size() == 2;
   doc.command(text.command);
-  if (const trace::Step* step = last_step(*p.trace); two && step != nullptr) {
+  if (p.trace->has_engine_reports()) {
+    add_engine_answer(doc, p);
+  } else if (const trace::Step* step = last_step(*p.trace); two && step != nullptr) {
     doc.verdict(io::in_words(name_of(step->result.relation)));
     doc.each(collision_numbers(p, *step), &report::Document::number);
   } else if (!two) {
@@ -260,6 +262,11 @@ void add_tables(report::Document& doc, const RecordedRun& p) {
   if (p.reps.size() != 2) return;
   if (p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
     doc.table(contact_table(p.results->back(), p.trace->steps.back().index));
+  if (p.trace->has_engine_reports()) {
+    doc.table(engine_table(p)).each(engine_counter_tables(p), &report::Document::table);
+    doc.each(work_tables(p), &report::Document::table);
+    return;
+  }
   constexpr std::size_t kMaxSteps = 200;
   doc.each(work_tables(p), &report::Document::table).each(group_tables(p), &report::Document::table);
   if (p.trace->steps.size() <= kMaxSteps) doc.table(steps_table(*p.trace));

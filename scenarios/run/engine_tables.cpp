@@ -1,0 +1,191 @@
+/// The page of a run of another engine that reported its answers: key figures and a table of queries.
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include "scenarios/io/files.hpp"
+#include "scenarios/record/engine_run.hpp"
+#include "scenarios/run/run_charts.hpp"
+#include <lrbscope/core/strings.hpp>
+#include <lrbscope/render/overlay.hpp>
+
+namespace lrb::run {
+namespace {
+
+bool is_checked(const RecordedRun& p) {
+  return p.results != nullptr && !p.results->empty() && p.wrong != nullptr &&
+         p.wrong->size() == p.results->size();
+}
+
+AnswerScore score_at(const RecordedRun& p, std::size_t step) {
+  return score_of(p.trace->steps[step].result, (*p.wrong)[step], (*p.results)[step]);
+}
+
+/// Sums over the steps of a run.
+struct EngineTotals {
+  AnswerScore pairs;
+  std::uint64_t wrong_verdicts = 0, wrong_queries = 0, intersecting = 0;
+  std::uint64_t box_tests = 0, node_pairs = 0, face_tests = 0;
+};
+
+EngineTotals totals_of(const RecordedRun& p) {
+  EngineTotals out;
+  for (std::size_t i = 0; i < p.trace->steps.size(); ++i) {
+    const trace::StepResult& r = p.trace->steps[i].result;
+    out.intersecting += r.relation == Relation::crossing;
+    out.box_tests += r.counters.box_tests;
+    out.node_pairs += r.counters.node_pairs;
+    out.face_tests += r.counters.face_tests;
+    if (!is_checked(p)) continue;
+    const AnswerScore s = score_at(p, i);
+    out.pairs.right += s.right, out.pairs.missed += s.missed, out.pairs.false_pairs += s.false_pairs;
+    out.wrong_verdicts += s.verdict == false;
+    out.wrong_queries += s.missed + s.false_pairs > 0 || s.verdict == false;
+  }
+  return out;
+}
+
+}  // namespace
+
+void add_engine_answer(report::Document& doc, const RecordedRun& p) {
+  using render::counted, render::group_digits;
+  const EngineTotals t = totals_of(p);
+  const std::size_t steps = p.trace->steps.size();
+  if (!is_checked(p))
+    doc.verdict("answers not checked");
+  else if (t.wrong_queries == 0)
+    doc.verdict("no wrong answer");
+  else
+    doc.verdict("wrong in " + counted(t.wrong_queries, "query", "queries"), false);
+  doc.number({"Queries", group_digits(steps), group_digits(t.intersecting) + " intersecting, by the engine"});
+  if (is_checked(p)) {
+    const std::string wrong = counted(t.wrong_verdicts, "wrong verdict", "wrong verdicts");
+    doc.number({"Right pairs", group_digits(t.pairs.right), "found by the engine, and exact"})
+        .number({"Missed pairs", group_digits(t.pairs.missed), wrong})
+        .number({"False pairs", group_digits(t.pairs.false_pairs), "found, but disjoint"});
+  }
+  doc.number({"Tests of volumes", group_digits(t.box_tests),
+              t.node_pairs == t.box_tests ? "" : "in " + group_digits(t.node_pairs) + " pairs of nodes"})
+      .number({"Tests of triangles", group_digits(t.face_tests),
+               "brute force: " + group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} *
+                                              p.reps[1]->real_simplex_count() * steps)});
+  std::uint64_t faces = 0;
+  for (const LrbRep* rep : p.reps) faces += rep->real_face_count();
+  doc.number(
+      {"Triangles", group_digits(faces),
+       group_digits(p.reps[0]->real_face_count()) + " + " + group_digits(p.reps[1]->real_face_count())});
+}
+
+report::Table engine_table(const RecordedRun& p) {
+  using render::group_digits;
+  constexpr std::size_t kMaxRows = 200;
+  const trace::Trace& trace = *p.trace;
+  const auto any = [&](const auto& test) {
+    return std::any_of(trace.steps.begin(), trace.steps.end(),
+                       [&](const trace::Step& s) { return s.result.engine && test(*s.result.engine); });
+  };
+  const auto first = [&]() -> const trace::EngineReport* {
+    for (const trace::Step& s : trace.steps)
+      if (s.result.engine) return &*s.result.engine;
+    return nullptr;
+  }();
+  const bool has_kinds = any([&](const auto& r) { return r.query != first->query; });
+  const bool has_threads = any([&](const auto& r) { return r.thread != first->thread; });
+  const bool has_times = any([](const auto& r) { return r.duration_ns > 0; });
+  const bool checked = is_checked(p);
+  report::Table t{"Every query", {"query"}, {}, {}, report::Rows::steps};
+  const auto column = [&](bool is_shown, const char* name) {
+    if (is_shown) t.columns.emplace_back(name);
+  };
+  column(has_kinds, "kind");
+  column(true, "engine's verdict");
+  column(checked, "exact");
+  column(true, "engine's pairs");
+  column(checked, "right");
+  column(checked, "missed");
+  column(checked, "false");
+  column(true, "tests of volumes");
+  column(true, "tests of triangles");
+  column(has_times, "microseconds");
+  column(has_threads, "thread");
+  // With many queries, the wrong ones are shown, then those with the most tests.
+  std::vector<std::size_t> order(trace.steps.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (order.size() > kMaxRows) {
+    const auto key = [&](std::size_t i) {
+      const Counters& c = trace.steps[i].result.counters;
+      const bool is_wrong = checked && (!(*p.wrong)[i].empty() || score_at(p, i).verdict == false);
+      return std::pair(is_wrong, c.box_tests + c.face_tests);
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t x, std::size_t y) { return key(x) > key(y); });
+    order.resize(kMaxRows);
+  }
+  for (const std::size_t i : order) {
+    const trace::StepResult& r = trace.steps[i].result;
+    const trace::EngineReport report = r.engine.value_or(trace::EngineReport());
+    std::vector<std::string>& row = t.rows.emplace_back();
+    row.push_back(std::to_string(trace.steps[i].index));
+    const auto cell = [&](bool is_shown, std::string text) {
+      if (is_shown) row.push_back(std::move(text));
+    };
+    const AnswerScore score = checked ? score_at(p, i) : AnswerScore();
+    const bool is_first_contact = report.query == trace::EngineQuery::first_contact;
+    const auto number = [&](std::uint64_t n) { return is_first_contact ? "" : group_digits(n); };
+    cell(has_kinds, io::in_words(name_of(report.query)));
+    cell(true, std::string(name_of(report.verdict)) + (score.verdict == false ? ", wrong" : ""));
+    cell(checked, checked && !is_first_contact ? (*p.results)[i].pairs.empty()
+                                                     ? "no pairs"
+                                                     : group_digits((*p.results)[i].pairs.size()) + " pairs"
+                                               : "");
+    cell(true, group_digits(report.pairs));
+    cell(checked, number(score.right));
+    cell(checked, number(score.missed));
+    cell(checked, number(score.false_pairs));
+    cell(true, group_digits(r.counters.box_tests) + (report.complete ? "" : ", incomplete"));
+    cell(true, group_digits(r.counters.face_tests));
+    cell(has_times, render::short_number(1e-3 * static_cast<double>(report.duration_ns)));
+    cell(has_threads, std::to_string(report.thread));
+  }
+  t.note = "A click on a row shows the query.";
+  if (checked)
+    t.note +=
+        " Right, missed and false pairs of triangles are those of the tests that the engine reported, compared with "
+        "exact answers.";
+  if (has_times) t.note += " Times are the engine's own and include the recording.";
+  if (order.size() < trace.steps.size())
+    t.note += " Of " + group_digits(trace.steps.size()) +
+              " queries, those with wrong answers and then those with the most tests.";
+  return t;
+}
+
+std::vector<report::Table> engine_counter_tables(const RecordedRun& p) {
+  using render::group_digits;
+  struct Sum {
+    std::uint64_t times = 0, all = 0, least = 0, most = 0;
+  };
+  const std::vector<std::string>& names = p.trace->header.names;
+  std::vector<Sum> counts(names.size());
+  for (const trace::Step& s : p.trace->steps) {
+    if (!s.result.engine) continue;
+    for (const trace::EngineReport::Mark& mark : s.result.engine->counts) {
+      Sum& sum = counts[mark.name];
+      sum.least = sum.times == 0 ? mark.value : std::min<std::uint64_t>(sum.least, mark.value);
+      sum.most = std::max<std::uint64_t>(sum.most, mark.value);
+      sum.all += mark.value;
+      ++sum.times;
+    }
+  }
+  report::Table t{"Counters of the engine", {"counter", "values", "least", "mean", "greatest", "sum"}};
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (const Sum& s = counts[i]; s.times > 0)
+      t.rows.push_back({names[i], group_digits(s.times), group_digits(s.least),
+                        render::short_number(static_cast<double>(s.all) / static_cast<double>(s.times)),
+                        group_digits(s.most), group_digits(s.all)});
+  t.note =
+      "As the engine reported them, over all queries. The trace has each value at its place among the tests.";
+  return t.rows.empty() ? std::vector<report::Table>() : std::vector<report::Table>{t};
+}
+
+}  // namespace lrb::run

@@ -1,0 +1,228 @@
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+
+#include "scenarios/compare/side_by_side.hpp"
+#include "scenarios/profile/captured_run.hpp"
+#include "scenarios/report/document.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/terminal.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/core/hash.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/trace/capture.hpp>
+
+namespace lrb::cli {
+namespace {
+
+struct ImportOptions {
+  std::string file, folder, queries;
+  bool no_check = false;
+  PictureOptions picture;
+};
+
+/// A range of queries by number, both included.
+struct QueryRange {
+  std::uint32_t first = 1, last = kNull;
+};
+
+/// Reads "40-60", "40" or "40-". Throws InputError.
+QueryRange range_of(const std::string& text) {
+  QueryRange out;
+  if (text.empty()) return out;
+  const char *at = text.data(), *const end = text.data() + text.size();
+  const auto number = [&](std::uint32_t& value) {
+    const auto [after, error] = std::from_chars(at, end, value);
+    if (error != std::errc()) return false;
+    at = after;
+    return true;
+  };
+  bool ok = number(out.first);
+  if (ok && at == end) {
+    out.last = out.first;
+  } else if (ok && *at == '-') {
+    ++at;
+    ok = at == end || number(out.last);
+  }
+  if (!ok || at != end || out.first == 0 || out.last < out.first)
+    throw InputError("--queries: expected numbers from 1 as 40-60, 40- or 40, found '" +
+                     printable_name(text) + "'");
+  return out;
+}
+
+std::string mesh_name(const capture::Capture& c, std::uint32_t tree) {
+  const std::string& name = c.meshes[c.trees[tree].mesh].name;
+  return name.empty() ? "mesh " + std::to_string(c.trees[tree].mesh + 1) : printable_name(name);
+}
+
+/// The scenario of a run: its title, its pictures and the hash of what defines it.
+spec::Scenario scenario_of(const ImportOptions& o, const capture::Capture& c, const profile::TreePair& pair,
+                           const std::vector<bodies::LoadedBody>& bodies) {
+  spec::Scenario s;
+  s.name = mesh_name(c, pair.trees[0]) + "-" + mesh_name(c, pair.trees[1]) + ", " + c.engine;
+  const capture::Query &first = c.queries[pair.queries.front()], &last = c.queries[pair.queries.back()];
+  s.purpose = "Recorded in " + c.engine + ": " + render::counted(pair.queries.size(), "query", "queries") +
+              " of " + printable_name(std::filesystem::path(o.file).filename().string()) + ", number " +
+              std::to_string(first.number) +
+              (pair.queries.size() > 1 ? " to " + std::to_string(last.number) : "") +
+              "; time steps have these numbers.";
+  if (const std::string more = profile::captured_words(c, pair); !more.empty()) s.purpose += " " + more;
+  s.bodies = {{}, {}};
+  s.event_cap = 5'000'000;  // a trace of about a gigabyte
+  s.events = EventLevel::nodes;
+  s.frames.views = whole_and_contact();
+  s.frames.views[0].wrapper = false;
+  s.frames.views[0].title = "Overview";
+  s.frames.views[1].title = "Contact";
+  s.frames.most = 12;
+  s.frames.colour_by = render::FrameSpec::ColourBy::box_tests;
+  Fnv64 hash;
+  for (const bodies::LoadedBody& body : bodies) hash.add_value(body.rep.hash());
+  for (const std::size_t i : pair.queries)
+    for (const Pose& pose : c.queries[i].poses) {
+      hash.add_bytes(pose.r.data(), sizeof(double) * 9);
+      hash.add_bytes(pose.t.data(), sizeof(double) * 3);
+    }
+  s.hash = hash.value();
+  apply(o.picture, s.frames);
+  return s;
+}
+
+/// The imported run of a pair of trees.
+struct Imported {
+  std::string folder;  ///< relative to the page that lists all runs; empty: this is the only run
+  std::string name;
+  profile::CapturedTotals totals;
+};
+
+Imported import_pair(const ImportOptions& o, const Globals& globals, const capture::Capture& c,
+                     const profile::TreePair& pair, const std::string& folder) {
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  std::vector<bodies::LoadedBody> bodies;
+  for (const std::uint32_t tree : pair.trees)
+    bodies.push_back(profile::captured_body(c.meshes[c.trees[tree].mesh]));
+  spec::Scenario scenario = scenario_of(o, c, pair, bodies);
+  profile::CapturedRunSettings settings;
+  settings.name = scenario.name;
+  settings.hash = scenario.hash;
+  for (std::size_t side = 0; side < 2; ++side)
+    settings.sources[side] = o.file + ", " + mesh_name(c, pair.trees[side]);
+  settings.event_cap = scenario.event_cap;
+  settings.check = !o.no_check;
+  const run::Recording recording = profile::captured_run(c, pair, std::move(bodies), settings, {}, progress);
+  const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress);
+  note(globals, outcome.notes);
+  return {{}, scenario.name, profile::totals_of(recording)};
+}
+
+std::string without_tree_words(std::uint64_t n) {
+  return render::counted(n, "query", "queries") +
+         " with a single triangle or shape instead of a tree on one side " + (n == 1 ? "is" : "are") +
+         " left out";
+}
+
+/// Writes the page that lists the runs of several pairs of trees.
+void write_list(const std::string& folder, const Globals& globals, const capture::Capture& c,
+                const std::string& file, const std::vector<Imported>& runs, const std::string& left_out) {
+  using render::group_digits;
+  const report::Folder locked(folder);
+  report::Document doc(printable_name(std::filesystem::path(file).filename().string()),
+                       "Recorded in " + c.engine + ". A run for each pair of trees with queries." +
+                           (left_out.empty() ? "" : " " + left_out + "."));
+  profile::CapturedTotals all;
+  report::Table table{"Pairs of trees",
+                      {"run", "bodies", "queries", "events", "right", "missed", "false", "wrong verdicts"}};
+  for (const Imported& run : runs) {
+    const profile::CapturedTotals& t = run.totals;
+    all += t;
+    table.rows.push_back({run.folder, run.name, group_digits(t.queries), group_digits(t.events),
+                          t.checked ? group_digits(t.right) : "", t.checked ? group_digits(t.missed) : "",
+                          t.checked ? group_digits(t.false_pairs) : "",
+                          t.checked ? group_digits(t.wrong_verdicts) : ""});
+    doc.link({run.folder + "/index.html", words(t), run.name});
+  }
+  table.note = "Right, missed and false: pairs of triangles, compared with exact answers.";
+  const bool is_wrong = all.missed + all.false_pairs + all.wrong_verdicts > 0;
+  doc.verdict(!all.checked ? "answers not checked"
+              : is_wrong   ? "wrong answers"
+                           : "no wrong answer",
+              !is_wrong);
+  doc.command(globals.command_line)
+      .number({"Pairs of trees", group_digits(runs.size())})
+      .number({"Queries", group_digits(all.queries)})
+      .number({"Events", group_digits(all.events)});
+  if (all.checked)
+    doc.number({"Right pairs", group_digits(all.right)})
+        .number({"Missed pairs", group_digits(all.missed)})
+        .number({"False pairs", group_digits(all.false_pairs)});
+  doc.table(table).write(locked);
+}
+
+int run_import(const ImportOptions& o, const Globals& globals) {
+  const QueryRange range = range_of(o.queries);
+  capture::Capture c = capture::read_capture(o.file, range.first, range.last);
+  if (c.engine.empty()) c.engine = "another engine";
+  profile::TreePairs found = profile::tree_pairs(c);
+  const std::string name = printable_name(o.file);
+  if (found.pairs.empty())
+    throw InputError(name + ": expected queries of two trees, found none" +
+                     (found.without_tree > 0 ? "; " + without_tree_words(found.without_tree)
+                      : o.queries.empty()    ? ""
+                                             : " in --queries " + o.queries));
+  const std::string folder = o.folder.empty() ? "out/import" : o.folder;
+  std::vector<std::string> notes;
+  if (c.cut_off)
+    notes.push_back(name + ": the capture ends within a chunk or without its end; the rest was read");
+  std::string left_out;
+  if (found.without_tree > 0)
+    notes.push_back(name + ": " + (left_out = without_tree_words(found.without_tree)));
+  // A scene of many bodies, or trees that are refitted, make many pairs.
+  constexpr std::size_t kMostPairs = 24;
+  if (found.pairs.size() > kMostPairs) {
+    std::stable_sort(found.pairs.begin(), found.pairs.end(),
+                     [](const auto& x, const auto& y) { return x.queries.size() > y.queries.size(); });
+    const std::string words = render::group_digits(found.pairs.size() - kMostPairs) + " of " +
+                              render::group_digits(found.pairs.size()) +
+                              " pairs of trees, those with the fewest queries, are left out (--queries)";
+    found.pairs.resize(kMostPairs);
+    notes.push_back(name + ": " + words);
+    left_out += (left_out.empty() ? "" : ". ") + words;
+  }
+  note(globals, notes);
+  profile::CapturedTotals totals;
+  if (found.pairs.size() == 1) {
+    totals = import_pair(o, globals, c, found.pairs[0], folder).totals;
+  } else {
+    compare::reject_folder_of_run(folder);
+    std::vector<Imported> runs;
+    for (std::size_t i = 0; i < found.pairs.size(); ++i) {
+      const std::string part = "pair_" + std::to_string(i + 1);
+      runs.push_back(import_pair(o, globals, c, found.pairs[i], folder + "/" + part));
+      runs.back().folder = part;
+      totals += runs.back().totals;
+    }
+    write_list(folder, globals, c, o.file, runs, left_out);
+  }
+  print(c.engine + ": " + words(totals) + "\n" + folder + "/index.html\n");
+  return kOk;
+}
+
+}  // namespace
+
+Command add_import(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "import", "Show queries of any collision engine, captured with lrbscope_capture.h, and check them");
+  const auto o = std::make_shared<ImportOptions>();
+  app->add_option("CAPTURE", o->file, "Capture, as written by a program with lrbscope_capture.h")->required();
+  app->add_option("-o,--output", o->folder, "Output folder [out/import]")->type_name("DIR");
+  app->add_option("--queries", o->queries, "Only these queries, by number from 1: 40-60, 40- or 40")
+      ->type_name("FIRST-LAST");
+  app->add_flag("--no-check", o->no_check, "Do not compare the answers with exact ones");
+  add_picture_options(*app, o->picture);
+  return {app, [o, &globals] { return run_import(*o, globals); }};
+}
+
+}  // namespace lrb::cli
