@@ -245,7 +245,7 @@ class TraceWriter {
     }
     for (const EngineReport::Mark& mark : r.counts) {
       out_.raw(",\n{\"name\":");
-      out_.string(t_.header.names[mark.name]);
+      out_.string("engine: " + t_.header.names[mark.name]);
       out_.raw(",\"cat\":\"counter\",\"ph\":\"C\",\"pid\":1,\"tid\":0,\"ts\":");
       write_time(time_of(mark.at));
       out_.raw(",\"args\":{\"value\":");

@@ -96,6 +96,8 @@ void change(Value& value) {
                           {{0.125, 0.126}},
                           {0, -1, 2},
                           {{1, 0.1, 0.5}}};
+  else if constexpr (std::is_same_v<Value, std::optional<EngineReport>>)
+    value = EngineReport{EngineQuery::self, EngineVerdict::intersecting, 7, false, 2, 3, 4, {}, {}};
   else if constexpr (std::is_same_v<Value, Counters>)
     ++value.box_tests;
   else

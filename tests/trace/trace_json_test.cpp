@@ -278,7 +278,7 @@ TEST_CASE("bad files are refused with one line that says where and what") {
   names("{\"traceEvents\": [{\"ph\": 1}]}", "/traceEvents/0/ph");
   names("{\"traceEvents\": [{}]}", "/traceEvents/0/ph: expected a string, found nothing");
   names(std::string(100000, '['), "nested");
-  names(replaced(good, "\"version\": 3", "\"version\": 4"), "/metadata/version: written in format 4");
+  names(replaced(good, "\"version\": 3", "\"version\": 5"), "/metadata/version: written in format 5");
   names(replaced(good, "\"version\": 3", "\"version\": 0"), "/metadata/version");
   names(replaced(good, "\"version\": 3", "\"version\": \"1\""), "expected an integer");
   names(replaced(good, "lrbscope trace", "another trace"), "found another file format");
