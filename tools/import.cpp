@@ -104,6 +104,8 @@ Imported import_pair(const ImportOptions& o, const Globals& globals, const captu
   std::vector<bodies::LoadedBody> bodies;
   for (const std::uint32_t tree : pair.trees)
     bodies.push_back(profile::captured_body(c.meshes[c.trees[tree].mesh]));
+  note(globals, bodies[0].notes);
+  if (c.trees[pair.trees[0]].mesh != c.trees[pair.trees[1]].mesh) note(globals, bodies[1].notes);
   spec::Scenario scenario = scenario_of(o, c, pair, bodies);
   profile::CapturedRunSettings settings;
   settings.name = scenario.name;

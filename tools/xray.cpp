@@ -80,12 +80,12 @@ int run_xray(const XrayOptions& o, const Globals& globals) {
   progress("build", 2, 2);
   std::vector<bodies::LoadedBody> bodies(std::make_move_iterator(both.begin()),
                                          std::make_move_iterator(both.end()));
-  const xray::ForeignWalk walk = xray::walk_of(o.method, bodies[0].rep, bodies[1].rep, poses);
+  const capture::Capture walk = xray::walk_of(o.method, bodies[0].rep, bodies[1].rep, poses);
   const spec::Scenario scenario = scenario_of(o, bodies);
   const run::Recording ours = run::record(scenario, std::move(bodies), progress);
   const run::Recording theirs = xray::recording_of(walk, ours, scenario);
   const std::string folder = o.folder.empty() ? "out/xray-" + o.method : o.folder;
-  note(globals, xray::write_xray({scenario, walk, theirs, ours, o.method, globals.command_line,
+  note(globals, xray::write_xray({scenario, theirs, ours, o.method, globals.command_line,
                                   "lrbscope why " + shell_word(o.a) + " " + shell_word(o.b) + " --poses " +
                                       shell_word(o.poses)},
                                  folder, progress));

@@ -2,7 +2,6 @@
 /// Queries the tree over B's triangles with each triangle of A, transformed to B's frame. The traits work
 /// like CGAL's own and report each test. A's tree is a root with a leaf for each triangle. A separate
 /// program, because CGAL's licence is the GPL.
-#include <cstdio>
 #include <map>
 #include <vector>
 
@@ -24,8 +23,7 @@ using Traits = CGAL::AABB_traits<Kernel, Primitive>;
 using Tree = CGAL::AABB_tree<Traits>;
 using Node = CGAL::AABB_node<Traits>;
 
-Triangles read_triangles(std::istream& in) {
-  const xray_form::Triangles t = xray_form::read_triangles(in);
+Triangles triangles_of(const xray_form::Triangles& t) {
   std::vector<Point> points;
   for (const auto& v : t.vertices) points.emplace_back(v[0], v[1], v[2]);
   Triangles out;
@@ -33,14 +31,14 @@ Triangles read_triangles(std::istream& in) {
   return out;
 }
 
-Kernel::Aff_transformation_3 read_pose(std::istream& in) {
-  const auto m = xray_form::next_numbers<12, double>(in);
+Kernel::Aff_transformation_3 transform_of(const std::array<double, 12>& m) {
   return {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11]};
 }
 
-void print_box(const CGAL::Bbox_3& box) {
-  xray_form::print_box([&](int k) { return (box.min(k) + box.max(k)) / 2; },
-                       [&](int axis, int k) { return k == axis ? (box.max(k) - box.min(k)) / 2 : 0.0; });
+using Indices = std::vector<std::uint32_t>;
+
+std::array<double, 6> numbers_of(const CGAL::Bbox_3& box) {
+  return {box.min(0), box.min(1), box.min(2), box.max(0), box.max(1), box.max(2)};
 }
 
 /// Numbers of a tree's nodes; leaves for single triangles, for which CGAL has no nodes, follow them. CGAL's
@@ -64,16 +62,13 @@ class Numbers {
 
   std::size_t of(const Node& node) const { return numbers_.at(&node); }
 
-  void print() const {
-    std::printf("tree %zu\n", nodes_.size() + triangles_.size());
+  void add_to(xray_form::TreeNodes& out) const {
     for (const Entry& e : nodes_) {
-      std::printf("node 2 %zu %zu", e.children.at(0), e.children.at(1));
-      print_box(e.node == nullptr ? root_box_ : e.node->bbox());
+      const CGAL::Bbox_3 box = e.node == nullptr ? root_box_ : e.node->bbox();
+      out.add(Indices(e.children.begin(), e.children.end()), Indices{}, numbers_of(box));
     }
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      std::printf("leaf 1 %zu", i);
-      print_box(triangles_[i].bbox());
-    }
+    for (std::size_t i = 0; i < triangles_.size(); ++i)
+      out.add(Indices{}, Indices{static_cast<std::uint32_t>(i)}, numbers_of(triangles_[i].bbox()));
   }
 
  private:
@@ -110,63 +105,71 @@ struct Told {
   const Tree& tree;
   const Numbers& numbers;
   const Triangles& triangles;
-  std::size_t i, box_tests = 0, leaf_tests = 0;
+  std::size_t i, box_tests = 0, leaf_tests = 0, pairs = 0;
 
   bool go_further() const { return true; }
   void intersection(const Triangle& query, const Primitive& primitive) {
     const bool meet = tree.traits().do_intersect_object()(query, primitive);
-    std::printf("t %zu %zu %d\n", i, static_cast<std::size_t>(primitive.id() - triangles.cbegin()),
-                static_cast<int>(meet));
+    LRBCAP_PRIM(i, primitive.id() - triangles.cbegin(), meet);
     ++leaf_tests;
+    pairs += meet;
   }
   bool do_intersect(const Triangle& query, const Node& node) {
     const bool meet = tree.traits().do_intersect_object()(query, node.bbox());
-    std::printf("b %zu %zu %d\n", i + 1, numbers.of(node), static_cast<int>(meet));
+    LRBCAP_NODE(i + 1, numbers.of(node), meet, LRBCAP_NO_AXIS);
     ++box_tests;
     return meet;
   }
 };
 
-void print_flat_tree(const Triangles& triangles) {
+/// The tree of A: a root with a leaf for each triangle.
+std::uint32_t capture_flat_tree(const Triangles& triangles, std::uint32_t mesh) {
+  xray_form::TreeNodes nodes(LRBCAP_AABB);
   CGAL::Bbox_3 whole;
   for (const Triangle& t : triangles) whole += t.bbox();
-  std::printf("tree %zu\nnode %zu", triangles.size() + 1, triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) std::printf(" %zu", i + 1);
-  print_box(whole);
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    std::printf("leaf 1 %zu", i);
-    print_box(triangles[i].bbox());
-  }
+  Indices all;
+  for (std::size_t i = 0; i < triangles.size(); ++i) all.push_back(static_cast<std::uint32_t>(i + 1));
+  nodes.add(all, Indices{}, numbers_of(whole));
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    nodes.add(Indices{}, Indices{static_cast<std::uint32_t>(i)}, numbers_of(triangles[i].bbox()));
+  return nodes.capture(mesh);
 }
 
-int run(std::istream& in) {
-  const Triangles a = read_triangles(in), b = read_triangles(in);
+void run(std::istream& in, const char* file) {
+  const xray_form::Triangles given[] = {xray_form::read_triangles(in), xray_form::read_triangles(in)};
+  const Triangles a = triangles_of(given[0]), b = triangles_of(given[1]);
   if (a.empty() || b.size() < 2) throw xray_form::BadInput();
   Tree tree(b.cbegin(), b.cend());
   tree.build();
   const Numbers numbers(tree, b);
-  std::printf("title CGAL %s, AABB_tree\n", CGAL_VERSION_STR);
-  print_flat_tree(a);
-  numbers.print();
+  LRBCAP_OPEN("CGAL " CGAL_VERSION_STR ", AABB_tree", file);
+  const std::uint32_t tree_a = capture_flat_tree(a, xray_form::capture_mesh(given[0]));
+  xray_form::TreeNodes nodes(LRBCAP_AABB);
+  numbers.add_to(nodes);
+  const std::uint32_t tree_b = nodes.capture(xray_form::capture_mesh(given[1]));
+  const std::uint32_t volume_tests = LRBCAP_NAME("box tests"), leaf_tests = LRBCAP_NAME("triangle tests");
   const auto poses = xray_form::next<int>(in);
   for (int p = 0; p < poses; ++p) {
-    const auto pose_a = read_pose(in), pose_b = read_pose(in);
-    const auto relative = pose_b.inverse() * pose_a;
-    std::printf("pose\n");
-    std::size_t box_tests = 0, leaf_tests = 0;
+    const auto pose_a = xray_form::next_numbers<12, double>(in);
+    const auto pose_b = xray_form::next_numbers<12, double>(in);
+    const auto relative = transform_of(pose_b).inverse() * transform_of(pose_a);
+    std::size_t box_count = 0, leaf_count = 0, pairs = 0;
+    LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, tree_a, pose_a.data(), tree_b, pose_b.data());
     for (std::size_t i = 0; i < a.size(); ++i) {
       Told reported{tree, numbers, b, i};
       tree.traversal(a[i].transform(relative), reported);
-      box_tests += reported.box_tests;
-      leaf_tests += reported.leaf_tests;
+      box_count += reported.box_tests;
+      leaf_count += reported.leaf_tests;
+      pairs += reported.pairs;
     }
-    std::printf("end %zu %zu\n", box_tests, leaf_tests);
+    LRBCAP_COUNT(volume_tests, box_count);
+    LRBCAP_COUNT(leaf_tests, leaf_count);
+    LRBCAP_END(pairs > 0 ? LRBCAP_MEET : LRBCAP_APART, pairs);
   }
-  return 0;
 }
 
 }  // namespace
 
-int main() {
-  return xray_form::exit_code_of(run);
+int main(int argc, char** argv) {
+  return xray_form::exit_code_of(argc, argv, run);
 }

@@ -1,8 +1,8 @@
-/// lrbscope-xray-fcl: runs FCL's collision of two BVHModel<OBBRSS>, and prints each test of bounding volumes
-/// and of leaves, and at the end FCL's own counts of both (xray_form.hpp). The recorder overrides the two
-/// virtual functions of FCL's traversal that perform these tests, and forwards to them. A separate program,
-/// because all code that uses FCL's package must be compiled with the same flags.
-#include <cstdio>
+/// lrbscope-xray-fcl: captures FCL's collision of two BVHModel<OBBRSS>: each test of bounding volumes and of
+/// leaves, and at the end FCL's own counts of both (xray_form.hpp). The recorder overrides the two virtual
+/// functions of FCL's traversal that perform these tests, and forwards to them. A separate program, because
+/// all code that uses FCL's package must be compiled with the same flags.
+#include <stdexcept>
 #include <vector>
 
 #include <fcl/config.h>
@@ -22,19 +22,18 @@ class Recorder : public Traversal {
  public:
   bool BVTesting(int b1, int b2) const override {
     const bool disjoint = Traversal::BVTesting(b1, b2);
-    std::printf("b %d %d %d\n", b1, b2, static_cast<int>(!disjoint));
+    LRBCAP_NODE(b1, b2, !disjoint, LRBCAP_NO_AXIS);
     return disjoint;
   }
   void leafTesting(int b1, int b2) const override {
     const std::size_t before = result->numContacts();
     Traversal::leafTesting(b1, b2);
-    std::printf("t %d %d %d\n", model1->getBV(b1).primitiveId(), model2->getBV(b2).primitiveId(),
-                static_cast<int>(result->numContacts() != before));
+    LRBCAP_PRIM(model1->getBV(b1).primitiveId(), model2->getBV(b2).primitiveId(),
+                result->numContacts() != before);
   }
 };
 
-void read_model(std::istream& in, Model& model) {
-  const xray_form::Triangles t = xray_form::read_triangles(in);
+void read_model(const xray_form::Triangles& t, Model& model) {
   std::vector<fcl::Vector3d> vertices;
   for (const auto& v : t.vertices) vertices.emplace_back(v[0], v[1], v[2]);
   std::vector<fcl::Triangle> triangles;
@@ -44,52 +43,62 @@ void read_model(std::istream& in, Model& model) {
   if (model.endModel() != fcl::BVH_OK) throw xray_form::BadInput();
 }
 
-void print_tree(const Model& model) {
-  std::printf("tree %d\n", model.getNumBVs());
+std::uint32_t capture_tree(const Model& model, std::uint32_t mesh) {
+  using Indices = std::vector<std::uint32_t>;
+  xray_form::TreeNodes nodes(LRBCAP_OBB);
   for (int i = 0; i < model.getNumBVs(); ++i) {
     const auto& node = model.getBV(i);
-    if (node.isLeaf())
-      std::printf("leaf 1 %d", node.primitiveId());
-    else
-      std::printf("node 2 %d %d", node.leftChild(), node.rightChild());
+    const auto index = [](int n) { return static_cast<std::uint32_t>(n); };
     const fcl::OBBd& box = node.bv.obb;
-    xray_form::print_box([&](int k) { return box.To[k]; },
-                         [&](int axis, int k) { return box.axis(k, axis) * box.extent[axis]; });
+    std::vector<double> numbers;
+    for (int k = 0; k < 3; ++k) numbers.push_back(box.To[k]);
+    for (int axis = 0; axis < 3; ++axis)
+      for (int k = 0; k < 3; ++k) numbers.push_back(box.axis(k, axis) * box.extent[axis]);
+    if (node.isLeaf())
+      nodes.add(Indices{}, Indices{index(node.primitiveId())}, numbers);
+    else
+      nodes.add(Indices{index(node.leftChild()), index(node.rightChild())}, Indices{}, numbers);
   }
+  return nodes.capture(mesh);
 }
 
-fcl::Transform3d read_pose(std::istream& in) {
+fcl::Transform3d transform_of(const std::array<double, 12>& m) {
   fcl::Transform3d pose = fcl::Transform3d::Identity();
-  const auto m = xray_form::next_numbers<12, double>(in);
   for (int i = 0; i < 12; ++i) pose.matrix()(i / 4, i % 4) = m[static_cast<std::size_t>(i)];
   return pose;
 }
 
-int run(std::istream& in) {
+void run(std::istream& in, const char* file) {
+  const xray_form::Triangles triangles[] = {xray_form::read_triangles(in), xray_form::read_triangles(in)};
   Model a, b;
-  read_model(in, a);
-  read_model(in, b);
-  std::printf("title FCL %s, BVHModel<OBBRSS>\n", FCL_VERSION);
-  print_tree(a);
-  print_tree(b);
+  read_model(triangles[0], a);
+  read_model(triangles[1], b);
+  LRBCAP_OPEN("FCL " FCL_VERSION ", BVHModel<OBBRSS>", file);
+  const std::uint32_t tree_a = capture_tree(a, xray_form::capture_mesh(triangles[0]));
+  const std::uint32_t tree_b = capture_tree(b, xray_form::capture_mesh(triangles[1]));
+  const std::uint32_t volume_tests = LRBCAP_NAME("num_bv_tests"), leaf_tests = LRBCAP_NAME("num_leaf_tests");
   const auto poses = xray_form::next<int>(in);
   for (int i = 0; i < poses; ++i) {
-    const fcl::Transform3d pose_a = read_pose(in), pose_b = read_pose(in);
+    const auto pose_a = xray_form::next_numbers<12, double>(in);
+    const auto pose_b = xray_form::next_numbers<12, double>(in);
     constexpr std::size_t kAll = std::size_t{1} << 40;
     const fcl::CollisionRequestd request(kAll, false);
     fcl::CollisionResultd result;
     Recorder traversal;
-    if (!fcl::detail::initialize(traversal, a, pose_a, b, pose_b, request, result)) return 1;
+    if (!fcl::detail::initialize(traversal, a, transform_of(pose_a), b, transform_of(pose_b), request,
+                                 result))
+      throw std::runtime_error("FCL does not accept the bodies");
     traversal.enableStatistics(true);
-    std::printf("pose\n");
+    LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, tree_a, pose_a.data(), tree_b, pose_b.data());
     fcl::detail::collide(&traversal);
-    std::printf("end %d %d\n", traversal.num_bv_tests, traversal.num_leaf_tests);
+    LRBCAP_COUNT(volume_tests, traversal.num_bv_tests);
+    LRBCAP_COUNT(leaf_tests, traversal.num_leaf_tests);
+    LRBCAP_END(result.isCollision() ? LRBCAP_MEET : LRBCAP_APART, result.numContacts());
   }
-  return 0;
 }
 
 }  // namespace
 
-int main() {
-  return xray_form::exit_code_of(run);
+int main(int argc, char** argv) {
+  return xray_form::exit_code_of(argc, argv, run);
 }

@@ -240,7 +240,6 @@ run::Recording captured_run(const capture::Capture& capture, const TreePair& pai
     out.trees.push_back(
         captured_shape(tree, triangles, std::string("tree ") + (side == 0 ? "A" : "B"), out.notes));
     indices.emplace_back(tree, triangles);
-    for (const std::string& note : out.bodies[side].notes) out.notes.push_back(note);
   }
   trace::Recorder recorder(out.bodies[0].rep, out.bodies[1].rep, recorder_settings(capture, settings));
   QueryReplay replay(recorder, Descent(indices[0], indices[1]), settings.reports);
