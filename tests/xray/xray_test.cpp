@@ -2,6 +2,8 @@
 /// were built.
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -15,36 +17,9 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/render/image.hpp>
-#include <lrbscope/trace/counters.hpp>
-#include <lrbscope/trace/trace_json.hpp>
-#include <lrbscope/trace/work.hpp>
 
 namespace lrb::test {
 namespace {
-
-using xray::ForeignEvent;
-
-/// A tree of a root, two nodes, and a leaf each for the four triangles of a tetrahedron.
-trace::TreeShape four_leaves() {
-  trace::TreeShape tree;
-  const trace::ShapeBox box{Eigen::Vector3d::Zero(),
-                            {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()}};
-  tree.add(std::array<std::uint32_t, 2>{1, 2}, {}, box);
-  tree.add(std::array<std::uint32_t, 2>{3, 4}, {}, box);
-  tree.add(std::array<std::uint32_t, 2>{5, 6}, {}, box);
-  for (std::uint32_t s = 0; s < 4; ++s) tree.add({}, std::array<SimplexId, 1>{SimplexId(s)}, box);
-  tree.finish();
-  return tree;
-}
-
-run::Recording tetrahedra(spec::Scenario& scenario) {
-  scenario.name = "test";
-  scenario.motion.poses = {Pose::translation({0.1, 0.1, 0.1})};
-  scenario.bodies = {{}, {}};
-  scenario.events = EventLevel::nodes;
-  std::vector<bodies::LoadedBody> bodies(2, bodies::body_of_mesh(shapes::tetrahedron()));
-  return run::record(scenario, std::move(bodies), run::kSilent);
-}
 
 std::vector<xray::PosePair> some_poses() {
   return {{{}, Pose::translation({0.9, 0.05, 0.1})},
@@ -53,75 +28,6 @@ std::vector<xray::PosePair> some_poses() {
 }
 
 }  // namespace
-
-TEST_CASE("a walk of another engine becomes a trace: which pair led to which, and what met") {
-  xray::ForeignWalk walk{"Toy 1.0", {four_leaves(), four_leaves()}, {}};
-  // Both roots; A's first node; B's first node; two leaves of these, tested; B's second node, apart.
-  walk.steps.push_back({{{false, 0, 0, true},
-                         {false, 1, 0, true},
-                         {false, 1, 1, true},
-                         {false, 3, 1, true},
-                         {false, 3, 3, true},
-                         {true, 0, 0, true},
-                         {false, 3, 4, false},
-                         {false, 4, 1, false},
-                         {false, 1, 2, false},
-                         {false, 2, 0, false}},
-                        9,
-                        1});
-  spec::Scenario scenario;
-  const run::Recording ours = tetrahedra(scenario);
-  const run::Recording theirs = xray::recording_of(walk, ours, scenario);
-  std::vector<std::array<std::uint32_t, 5>> found;  // a, b, parent's a, parent's b, met
-  for (const trace::Event& e : theirs.trace.events) {
-    if (e.kind != EventKind::node_pair) continue;
-    const trace::Event* above = e.cause == kNull ? nullptr : &theirs.trace.events[e.cause];
-    found.push_back({e.a, e.b, above ? above->a : 99, above ? above->b : 99, e.work().met});
-  }
-  CHECK(found == std::vector<std::array<std::uint32_t, 5>>{{0, 0, 99, 99, 2},
-                                                           {1, 0, 0, 0, 2},
-                                                           {1, 1, 1, 0, 2},
-                                                           {3, 1, 1, 1, 2},
-                                                           {3, 3, 3, 1, 1},
-                                                           {3, 4, 3, 1, 0},
-                                                           {4, 1, 1, 1, 0},
-                                                           {1, 2, 1, 0, 0},
-                                                           {2, 0, 0, 0, 0}});
-  const trace::Step& step = theirs.trace.steps.at(0);
-  CHECK(step.result.counters.box_tests == 9);
-  CHECK(step.result.counters.face_tests == 1);
-  CHECK(step.result.pair_count == 1);
-  CHECK(theirs.trace.header.engine == "Toy 1.0");
-  CHECK(trace::trace_from_json(trace::trace_to_json(theirs.trace), "t.json") == theirs.trace);
-  // What it got wrong is told step by step.
-  const xray::WrongPairs reported = xray::wrong_pairs(walk.steps[0], ours.results[0].pairs);
-  REQUIRE(theirs.wrong.size() == 1);
-  REQUIRE(theirs.wrong[0].size() == reported.too_many.size() + reported.missing.size());
-  REQUIRE(!reported.missing.empty());  // it looked at one pair of faces alone
-  for (std::size_t i = 0; i < theirs.wrong[0].size(); ++i) {
-    const run::WrongPair& w = theirs.wrong[0][i];
-    const std::size_t many = reported.too_many.size();
-    CHECK(w.missed == (i >= many));
-    CHECK(w.pair == (w.missed ? reported.missing[i - many] : reported.too_many[i]));
-  }
-  const trace::NodeCounts counts = trace::count_nodes(theirs.trees[0], Side::a, theirs.trace.events);
-  CHECK(counts.visits == std::vector<std::uint32_t>{1, 3, 1, 3, 1, 0, 0});
-  const xray::WrongPairs wrong = xray::wrong_pairs(walk.steps[0], {{0, 1}, {2, 2}});
-  CHECK((wrong.too_many == std::vector<SimplexPair>{{0, 0}}));
-  CHECK((wrong.missing == std::vector<SimplexPair>{{0, 1}, {2, 2}}));
-}
-
-TEST_CASE("an engine that tests leaves without a test of their boxes: these are led to, too") {
-  xray::ForeignWalk walk{"Toy 1.0", {four_leaves(), four_leaves()}, {}};
-  walk.steps.push_back({{{false, 3, 1, true}, {true, 0, 0, false}, {true, 0, 1, true}}, 1, 2});
-  spec::Scenario scenario;
-  const run::Recording theirs = xray::recording_of(walk, tetrahedra(scenario), scenario);
-  const auto pair = std::find_if(theirs.trace.events.begin(), theirs.trace.events.end(),
-                                 [](const trace::Event& e) { return e.kind == EventKind::node_pair; });
-  REQUIRE(pair != theirs.trace.events.end());
-  CHECK(pair->work().met == 2);
-  CHECK(pair->node_end().step == NodeStep::descend_b);
-}
 
 TEST_CASE(
     "what an engine's program prints is what it counts, and its pairs are the exact ones in general position") {
@@ -135,18 +41,26 @@ TEST_CASE(
       CHECK_THROWS_AS(xray::walk_of(engine, ball, ring, some_poses()), EnvironmentError);
       continue;
     }
-    const xray::ForeignWalk walk = xray::walk_of(engine, ball, ring, some_poses());
-    REQUIRE(walk.steps.size() == 3);
-    for (std::size_t i = 0; i < walk.steps.size(); ++i) {
-      const xray::ForeignStep& step = walk.steps[i];
-      const auto leaf_tests = static_cast<std::uint64_t>(std::count_if(
-          step.events.begin(), step.events.end(), [](const ForeignEvent& e) { return e.is_leaf_test; }));
-      CHECK(step.leaf_tests == leaf_tests);  // FCL's own statistics
-      CHECK(step.box_tests == step.events.size() - leaf_tests);
+    const capture::Capture walk = xray::walk_of(engine, ball, ring, some_poses());
+    REQUIRE(walk.queries.size() == 3);
+    for (std::size_t i = 0; i < walk.queries.size(); ++i) {
+      const capture::Query& query = walk.queries[i];
+      std::array<std::uint64_t, 4> events{};
+      std::vector<std::uint64_t> counts;  // the engine's own statistics
+      std::vector<SimplexPair> found;
+      for (const capture::Event& e : query.events) {
+        ++events[static_cast<std::size_t>(e.kind)];
+        if (e.kind == capture::EventKind::count) counts.push_back(e.b);
+        if (e.kind == capture::EventKind::triangles && e.met > 0)
+          found.push_back({SimplexId(e.a), SimplexId(e.b)});
+      }
+      CHECK(query.complete());
+      CHECK(counts == std::vector<std::uint64_t>{events[0], events[1]});
+      CHECK(query.pairs == found.size());
+      CHECK((query.verdict == capture::Verdict::intersecting) == !found.empty());
+      std::sort(found.begin(), found.end());
       const CollideResult exact = collide(ball, some_poses()[i].a, ring, some_poses()[i].b);
-      const xray::WrongPairs wrong = xray::wrong_pairs(step, exact.pairs);
-      CHECK(wrong.too_many.empty());
-      CHECK(wrong.missing.empty());
+      CHECK(found == exact.pairs);
       CHECK((i == 2 || exact.pairs.size() > 20));
     }
     ++recorded;

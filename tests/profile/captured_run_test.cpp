@@ -1,0 +1,532 @@
+/// Captures of other engines as recorded runs: bodies of any kind, broken trees, wrong answers, and the
+/// command that imports them.
+
+#include "scenarios/profile/captured_run.hpp"
+
+#include <array>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/bodies/shapes.hpp"
+#include "scenarios/record/engine_run.hpp"
+#include "tests/support/capture_file.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/toy_engine.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/trace_json.hpp>
+
+namespace lrb::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Meshes that engines are given, sound or not. All coordinates are small dyadic numbers.
+std::vector<capture::Mesh> meshes_of_all_kinds() {
+  std::vector<capture::Mesh> out;
+  const Mesh tetrahedron = shapes::tetrahedron(2);
+  out.push_back(captured(tetrahedron, "tetrahedron"));
+  out.push_back(captured(shapes::turned_inside_out(tetrahedron), "inside out"));
+  out.push_back({"sheet", {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}, {{0, 1, 2}, {0, 2, 3}}});
+  out.push_back(
+      captured(shapes::several({tetrahedron, shapes::translated(tetrahedron, {3, 0, 0})}), "two components"));
+  out.push_back(
+      captured(shapes::several({shapes::box(), shapes::translated(shapes::box(), {0.5, 0.25, 0.5})}),
+               "crosses itself"));
+  capture::Mesh degenerate = captured(tetrahedron, "degenerate faces");
+  degenerate.vertices.emplace_back(1, 0, 0);
+  degenerate.triangles.insert(degenerate.triangles.begin() + 1, {0, 4, 1});  // collinear
+  degenerate.triangles.insert(degenerate.triangles.begin(), {2, 2, 3});      // two corners are one
+  degenerate.triangles.push_back({1, 1, 1});                                 // a point
+  out.push_back(degenerate);
+  capture::Mesh duplicates = captured(tetrahedron, "duplicate faces");
+  duplicates.triangles.push_back(duplicates.triangles[0]);
+  duplicates.triangles.insert(duplicates.triangles.begin(), duplicates.triangles[2]);
+  out.push_back(duplicates);
+  capture::Mesh soup{"soup", {}, {}};
+  for (const auto& corners : captured(shapes::box()).triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+    for (const std::uint32_t v : corners) soup.vertices.push_back(shapes::box().vertices[v]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  out.push_back(soup);
+  capture::Mesh fan{"three faces at an edge", {{0, 0, 0}, {0, 0, 2}, {2, 0, 1}, {-1, 1, 1}, {-1, -1, 1}}, {}};
+  fan.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
+  out.push_back(fan);
+  out.push_back(
+      {"one triangle", {{0, 0, 0}, {2, 0, 1}, {0, 2, 1}, {9, 9, 9}}, {{0, 1, 2}}});  // and a vertex unused
+  return out;
+}
+
+run::Recording recorded(const capture::Capture& c, const profile::TreePair& pair,
+                        profile::CapturedRunSettings settings = {}) {
+  settings.name = "test";
+  std::vector<bodies::LoadedBody> bodies;
+  for (const std::uint32_t tree : pair.trees)
+    bodies.push_back(profile::captured_body(c.meshes[c.trees[tree].mesh]));
+  return profile::captured_run(c, pair, std::move(bodies), settings, {}, run::kSilent);
+}
+
+run::Recording recorded(const capture::Capture& c) {
+  const profile::TreePairs pairs = profile::tree_pairs(c);
+  REQUIRE(pairs.pairs.size() == 1);
+  return recorded(c, pairs.pairs[0]);
+}
+
+std::multiset<std::array<double, 3>> corners_of_triangle(const capture::Mesh& mesh, std::size_t t) {
+  std::multiset<std::array<double, 3>> out;
+  for (const std::uint32_t v : mesh.triangles[t])
+    out.insert({mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z()});
+  return out;
+}
+
+std::multiset<std::array<double, 3>> corners_of_simplex(const LrbRep& rep, SimplexId s) {
+  VertexId corners[3];
+  rep.simplex(s, corners);
+  std::multiset<std::array<double, 3>> out;
+  for (const VertexId v : corners) {
+    const Vector3d& x = rep.vertices()[v];
+    out.insert({x.x(), x.y(), x.z()});
+  }
+  return out;
+}
+
+/// A query of two balls with everything right.
+ToyEngine two_balls() {
+  ToyEngine engine;
+  const std::uint32_t a = engine.add(captured(shapes::icosphere(2), "a")),
+                      b = engine.add(captured(shapes::icosphere(2), "b"), 4);
+  REQUIRE(engine.query(a, b, {1.5, 0.25, 0.125}) > 20);
+  return engine;
+}
+
+}  // namespace
+
+TEST_CASE("a captured mesh of any kind becomes a body whose simplices are its triangles") {
+  for (const capture::Mesh& mesh : meshes_of_all_kinds()) {
+    CAPTURE(mesh.name);
+    const bodies::LoadedBody body = profile::captured_body(mesh);
+    REQUIRE(body.rep.real_simplex_count() == mesh.triangles.size());
+    CHECK(body.rep.region_count() == 0);
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      CHECK(corners_of_simplex(body.rep, SimplexId(t)) == corners_of_triangle(mesh, t));
+    const std::set<std::string> closed = {"tetrahedron", "inside out", "two components", "crosses itself",
+                                          "soup"};
+    if (closed.count(mesh.name)) CHECK(body.rep.closed());
+    CHECK(body.notes.empty() == body.rep.closed());
+  }
+}
+
+TEST_CASE("a mesh without triangles, or with a coordinate that is not finite, is refused in one line") {
+  CHECK_THROWS_AS(profile::captured_body({"empty", {{0, 0, 0}}, {}}), InputError);
+  CHECK_THROWS_AS(profile::captured_body({"nan", {{0, 0, 0}, {1, 0, 0}, {0, HUGE_VAL, 0}}, {{0, 1, 2}}}),
+                  InputError);
+}
+
+TEST_CASE(
+    "an engine that is right agrees with the exact answer, and with brute force, for bodies of any kind") {
+  const std::vector<capture::Mesh> meshes = meshes_of_all_kinds();
+  const Vector3d places[] = {{0.25, 0.125, 0.5}, {1, 0, 0}, {0, 0, 0}, {0.5, 0.5, 0.0625}, {20, 0, 0}};
+  std::uint64_t all = 0;
+  for (const capture::Mesh& a : meshes)
+    for (const capture::Mesh& b : meshes) {
+      CAPTURE(a.name);
+      CAPTURE(b.name);
+      ToyEngine engine;
+      const std::uint32_t tree_a = engine.add(a), tree_b = engine.add(b, 1);
+      std::uint64_t expected = 0;
+      for (const Vector3d& place : places) {
+        engine.query(tree_a, tree_b, place);
+        for (std::uint32_t s = 0; s < a.triangles.size(); ++s)
+          for (std::uint32_t t = 0; t < b.triangles.size(); ++t)
+            expected += ToyEngine::meet(a, s, b, t, place);
+      }
+      const run::Recording run = recorded(engine.capture);
+      const profile::CapturedTotals totals = profile::totals_of(run);
+      CHECK(totals.right == expected);
+      CHECK(totals.missed == 0);
+      CHECK(totals.false_pairs == 0);
+      CHECK(totals.wrong_verdicts == 0);
+      CHECK(totals.queries == std::size(places));
+      all += expected;
+    }
+  CHECK(all > 1000);
+}
+
+TEST_CASE("a captured walk becomes a trace: which pair led to which, and what met") {
+  ToyEngine engine;
+  const std::uint32_t tree = engine.add(captured(shapes::tetrahedron()), 1);
+  REQUIRE(engine.capture.trees[tree].size() == 7);  // nodes 1 and 4 below the root, leaves 2, 3, 5, 6
+  capture::Query q;
+  q.number = 7;
+  q.trees = {tree, tree};
+  q.poses[1] = Pose::translation({0.125, 0.125, 0.125});
+  q.ended = true;
+  using capture::EventKind;
+  // Both roots; A's first node; B's first node; two leaves of these, tested; the rest apart.
+  q.events = {{0, 0, EventKind::nodes, 1}, {1, 0, EventKind::nodes, 1}, {1, 1, EventKind::nodes, 1},
+              {2, 1, EventKind::nodes, 1}, {2, 2, EventKind::nodes, 1}, {0, 0, EventKind::triangles, 1},
+              {2, 3, EventKind::nodes, 0}, {3, 1, EventKind::nodes, 0}, {1, 4, EventKind::nodes, 0},
+              {4, 0, EventKind::nodes, 0}};
+  q.events_seen = q.events.size();
+  q.parts = {{0, 0, q.events.size()}};
+  engine.capture.queries = {q};
+  const run::Recording run = recorded(engine.capture);
+  std::vector<std::array<std::uint32_t, 5>> found;  // a, b, parent's a, parent's b, met
+  for (const trace::Event& e : run.trace.events) {
+    if (e.kind != lrb::EventKind::node_pair) continue;
+    const trace::Event* above = e.cause == kNull ? nullptr : &run.trace.events[e.cause];
+    found.push_back({e.a, e.b, above ? above->a : 99, above ? above->b : 99, e.work().met});
+  }
+  CHECK(found == std::vector<std::array<std::uint32_t, 5>>{{0, 0, 99, 99, 2},
+                                                           {1, 0, 0, 0, 2},
+                                                           {1, 1, 1, 0, 2},
+                                                           {2, 1, 1, 1, 2},
+                                                           {2, 2, 2, 1, 1},
+                                                           {2, 3, 2, 1, 0},
+                                                           {3, 1, 1, 1, 0},
+                                                           {1, 4, 1, 0, 0},
+                                                           {4, 0, 0, 0, 0}});
+  const trace::Step& step = run.trace.steps.at(0);
+  CHECK(step.index == 7);
+  CHECK(step.result.counters.box_tests == 9);
+  CHECK(step.result.counters.face_tests == 1);
+  CHECK(step.result.pair_count == 1);
+  CHECK(run.trace.header.engine == "Toy 1.0");
+  CHECK(trace::trace_from_json(trace::trace_to_json(run.trace), "t.json") == run.trace);
+  const trace::NodeCounts counts = trace::count_nodes(run.trees[0], Side::a, run.trace.events);
+  CHECK(counts.visits == std::vector<std::uint32_t>{1, 3, 3, 1, 1, 0, 0});
+}
+
+TEST_CASE("an engine that tests triangles of leaves without a test of their volumes: these are led to, too") {
+  ToyEngine engine;
+  const std::uint32_t tree = engine.add(captured(shapes::tetrahedron()), 1);
+  const capture::Tree& t = engine.capture.trees[tree];
+  capture::Query q;
+  q.number = 1;
+  q.trees = {tree, tree};
+  using capture::EventKind;
+  const std::uint32_t s = t.triangles(2)[0], left = t.triangles(2)[0], right = t.triangles(3)[0];
+  q.events = {
+      {2, 1, EventKind::nodes, 1}, {s, left, EventKind::triangles, 0}, {s, right, EventKind::triangles, 1}};
+  engine.capture.queries = {q};
+  const run::Recording run = recorded(engine.capture);
+  const auto pair = std::find_if(run.trace.events.begin(), run.trace.events.end(),
+                                 [](const trace::Event& e) { return e.kind == lrb::EventKind::node_pair; });
+  REQUIRE(pair != run.trace.events.end());
+  CHECK(pair->work().met == 2);
+  CHECK(pair->node_end().step == NodeStep::descend_b);
+}
+
+TEST_CASE("boxes, axes, wide tests, counters and phases of a capture are those of the trace") {
+  ToyEngine engine = two_balls();
+  engine.capture.names = {"cache misses", "descent"};
+  capture::Query& q = engine.capture.queries[0];
+  q.events.insert(q.events.begin(), {1, 0, capture::EventKind::phase});
+  q.events.push_back({0, 77, capture::EventKind::count});
+  q.events[1].tests = 4, q.events[1].met = 1;
+  q.events_seen = q.parts[0].count = q.events.size();
+  const run::Recording run = recorded(engine.capture);
+  const trace::EngineReport& report = run.trace.steps[0].result.engine.value();
+  CHECK(report.verdict == trace::EngineVerdict::intersecting);
+  CHECK(report.pairs == q.pairs);
+  CHECK(report.begin_ns == 1000);
+  CHECK(report.duration_ns == 500);
+  CHECK(report.complete);
+  CHECK((report.phases == std::vector<trace::EngineReport::Mark>{{1, 2, 0}}));  // after step and begin
+  CHECK(report.counts.at(0).value == 77);
+  CHECK(run.trace.header.names == engine.capture.names);
+  std::size_t i = 1;  // of the query's events, without its phase
+  for (const trace::Event& e : run.trace.events) {
+    if (e.kind != lrb::EventKind::node_pair) continue;
+    while (q.events[i].kind != capture::EventKind::nodes) ++i;
+    CHECK(e.node_pair().engine_axis == (q.events[i].axis == capture::kNoAxis ? 0 : q.events[i].axis + 1));
+    CHECK(e.work().box_tests == q.events[i].tests);
+    ++i;
+  }
+  for (std::uint32_t n = 0; n < run.trees[0].size(); ++n) {
+    const auto volume = engine.capture.trees[0].volume_of(n);
+    const trace::ShapeBox& box = run.trees[0].box(n);
+    for (int k = 0; k < 3; ++k) {
+      CHECK(box.centre[k] - box.half[static_cast<std::size_t>(k)][k] ==
+            doctest::Approx(volume[static_cast<std::size_t>(k)]));
+      CHECK(box.centre[k] + box.half[static_cast<std::size_t>(k)][k] ==
+            doctest::Approx(volume[static_cast<std::size_t>(k + 3)]));
+    }
+  }
+}
+
+TEST_CASE("wrong answers are found pair by pair: those missed, those that are false") {
+  ToyEngine engine;
+  const std::uint32_t a = engine.add(captured(shapes::icosphere(2), "a")),
+                      b = engine.add(captured(shapes::icosphere(2), "b"));
+  std::vector<run::WrongPair> planted;
+  std::uint32_t tested = 0;
+  engine.wrong = [&](std::uint32_t s, std::uint32_t t, bool meets) {
+    if (++tested % 7 != 0) return meets;
+    planted.push_back({{SimplexId(s), SimplexId(t)}, meets});
+    return !meets;
+  };
+  engine.query(a, b, {1.5, 0.25, 0.125});
+  std::uint64_t missed = 0;
+  for (const run::WrongPair& w : planted) missed += w.missed;
+  REQUIRE(missed > 3);
+  REQUIRE(planted.size() - missed > 3);
+  const run::Recording run = recorded(engine.capture);
+  REQUIRE(run.wrong.size() == 1);
+  CHECK(run.wrong[0].size() == planted.size());
+  for (const run::WrongPair& w : planted)
+    CHECK(std::count_if(run.wrong[0].begin(), run.wrong[0].end(), [&](const run::WrongPair& x) {
+            return x.pair == w.pair && x.missed == w.missed;
+          }) == 1);
+  const profile::CapturedTotals totals = profile::totals_of(run);
+  CHECK(totals.missed == missed);
+  CHECK(totals.false_pairs == planted.size() - missed);
+  CHECK(totals.right + missed == run.results[0].pairs.size());
+}
+
+TEST_CASE("what counts as wrong depends on the kind of query") {
+  using capture::QueryKind, capture::Verdict;
+  struct Case {
+    QueryKind kind;
+    Verdict verdict;
+    bool keeps_pairs;  // false: the engine found none
+    bool is_missed, is_wrong_verdict;
+  };
+  const Case cases[] = {{QueryKind::all_pairs, Verdict::intersecting, true, false, false},
+                        {QueryKind::all_pairs, Verdict::intersecting, false, true, false},
+                        {QueryKind::all_pairs, Verdict::separate, false, true, true},
+                        {QueryKind::any, Verdict::intersecting, false, false, false},
+                        {QueryKind::any, Verdict::separate, false, true, true},
+                        {QueryKind::any, Verdict::unreported, false, true, false},
+                        {QueryKind::distance, Verdict::separate, false, true, true},
+                        {QueryKind::distance, Verdict::intersecting, true, false, false},
+                        {QueryKind::first_contact, Verdict::separate, false, false, false},
+                        {QueryKind::self, Verdict::separate, false, false, false}};
+  for (const Case& c : cases) {
+    CAPTURE(static_cast<int>(c.kind));
+    CAPTURE(static_cast<int>(c.verdict));
+    ToyEngine engine = two_balls();
+    capture::Query& q = engine.capture.queries[0];
+    q.kind = c.kind;
+    q.verdict = c.verdict;
+    if (!c.keeps_pairs)
+      for (capture::Event& e : q.events)
+        if (e.kind == capture::EventKind::triangles) e.met = 0;
+    const run::Recording run = recorded(engine.capture);
+    const profile::CapturedTotals totals = profile::totals_of(run);
+    CHECK((totals.missed > 0) == c.is_missed);
+    CHECK(totals.false_pairs == 0);
+    CHECK(totals.wrong_verdicts == c.is_wrong_verdict);
+    CHECK((run.trace.steps[0].result.distance.has_value()) == (c.kind == QueryKind::distance));
+  }
+}
+
+TEST_CASE("a query whose events were not all kept is not said to miss pairs") {
+  ToyEngine engine = two_balls();
+  capture::Query& q = engine.capture.queries[0];
+  q.events.clear();
+  q.parts.clear();
+  run::Recording run = recorded(engine.capture);
+  CHECK(profile::totals_of(run).missed == 0);
+  CHECK_FALSE(run.trace.steps[0].result.engine->complete);
+  CHECK(
+      profile::captured_words(engine.capture, profile::tree_pairs(engine.capture).pairs[0]).find("1 query") !=
+      std::string::npos);
+  q.verdict = capture::Verdict::separate;  // but its verdict is its own
+  run = recorded(engine.capture);
+  CHECK(profile::totals_of(run).missed == run.results[0].pairs.size());
+  CHECK(profile::totals_of(run).wrong_verdicts == 1);
+}
+
+TEST_CASE("a body with itself: the pairs found are checked, and no others expected") {
+  ToyEngine engine;
+  const capture::Mesh mesh =
+      captured(shapes::several({shapes::box(), shapes::translated(shapes::box(), {0.5, 0.25, 0.5})}),
+               "crosses itself");
+  const std::uint32_t tree = engine.add(mesh);
+  engine.query(tree, tree, {0, 0, 0}, capture::QueryKind::self);
+  engine.capture.queries[0].trees[1] = kNull;  // as an engine may tell it
+  capture::Event& last = engine.capture.queries[0].events.back();
+  REQUIRE(last.kind == capture::EventKind::triangles);
+  const run::Recording right = recorded(engine.capture);
+  CHECK(profile::totals_of(right).right > 50);
+  CHECK(profile::totals_of(right).missed + profile::totals_of(right).false_pairs == 0);
+  for (capture::Event& e : engine.capture.queries[0].events)
+    if (e.kind == capture::EventKind::triangles) e.met = 1;
+  const run::Recording all = recorded(engine.capture);
+  CHECK(profile::totals_of(all).right == profile::totals_of(right).right);
+  CHECK(profile::totals_of(all).false_pairs > 0);
+}
+
+TEST_CASE("a walk over a broken tree is recorded with what holds") {
+  ToyEngine engine = two_balls();
+  const std::size_t whole = recorded(engine.capture).trace.events.size();
+  capture::Tree& tree = engine.capture.trees[0];
+  // Two leaves: one gets a triangle that does not exist in place of its own, one a second parent.
+  std::uint32_t leaf = 0;
+  while (!tree.is_leaf(leaf)) ++leaf;
+  const std::uint32_t lost = tree.triangle[tree.first_triangle[leaf]];
+  tree.triangle[tree.first_triangle[leaf]] = 5000;
+  std::uint32_t deep = static_cast<std::uint32_t>(tree.size() - 1);
+  const std::uint32_t orphan = tree.child[tree.first_child[0]];
+  tree.child[tree.first_child[0]] = deep;
+  const run::Recording run = recorded(engine.capture);
+  CHECK(run.trace.events.size() == whole);
+  CHECK(trace::trace_from_json(trace::trace_to_json(run.trace), "t.json") == run.trace);
+  CHECK(run.trees[0].depth(orphan) == kNull);
+  std::string notes;
+  for (const std::string& note : run.notes) notes += note + "\n";
+  CAPTURE(notes);
+  CHECK(notes.find("tree A: 1 link to a node with another parent is left out") != std::string::npos);
+  CHECK(notes.find("nodes are not below the root") != std::string::npos);
+  CHECK(notes.find("tree A: 1 triangle of a leaf does not exist") != std::string::npos);
+  CHECK(notes.find("tree A: 1 triangle is in no leaf") != std::string::npos);
+  CHECK(lost < 320);
+  // Figures of the tree still add up for the part that the root reaches.
+  const trace::NodeCounts counts = trace::count_nodes(run.trees[0], Side::a, run.trace.events);
+  const std::vector<double> values = trace::box_tests_by_face(run.bodies[0].rep, run.trees[0], counts);
+  for (const double v : values) CHECK(std::isfinite(v));
+}
+
+TEST_CASE("a run for each pair of trees; queries without a second tree are counted") {
+  ToyEngine engine;
+  std::vector<std::uint32_t> trees;
+  for (int i = 0; i < 3; ++i) trees.push_back(engine.add(captured(shapes::box())));
+  engine.query(trees[0], trees[1], {0.5, 0.5, 0.5});
+  engine.query(trees[1], trees[2], {0.5, 0.5, 0.5});
+  engine.query(trees[0], trees[1], {3, 0, 0});
+  engine.query(trees[1], trees[0], {0.5, 0, 0});
+  engine.query(trees[0], trees[1], {0.25, 0.5, 0.5});
+  engine.capture.queries[4].trees[0] = kNull;
+  const profile::TreePairs found = profile::tree_pairs(engine.capture);
+  REQUIRE(found.pairs.size() == 3);
+  CHECK(found.without_tree == 1);
+  CHECK(found.pairs[0].queries == std::vector<std::size_t>{0, 2});
+  CHECK((found.pairs[2].trees == std::array<std::uint32_t, 2>{trees[1], trees[0]}));
+  const run::Recording run = recorded(engine.capture, found.pairs[0]);
+  CHECK(run.trace.steps.at(1).index == 3);
+}
+
+TEST_CASE("beyond the limit of events a trace is cut, with a note; answers stay compared") {
+  const ToyEngine engine = two_balls();
+  profile::CapturedRunSettings settings;
+  settings.event_cap = 50;
+  const run::Recording run = recorded(engine.capture, profile::tree_pairs(engine.capture).pairs[0], settings);
+  CHECK(run.trace.events.size() == 50);
+  REQUIRE(run.notes.size() == 1);
+  CHECK(run.notes[0].find("the first 50 of ") != std::string::npos);
+  CHECK(profile::totals_of(run).missed == 0);
+  CHECK(profile::totals_of(run).right == engine.capture.queries[0].pairs);
+}
+
+TEST_CASE("trees of an engine survive a file, which is checked when it is read") {
+  const run::Recording run = recorded(two_balls().capture);
+  const std::string text = run::trees_text(run.trees);
+  const auto trees = run::read_trees(text, "trees.json", {320, 320});
+  REQUIRE(trees.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    REQUIRE(trees[i].size() == run.trees[i].size());
+    for (std::uint32_t n = 0; n < trees[i].size(); ++n) {
+      CHECK(std::equal(trees[i].children(n).begin(), trees[i].children(n).end(),
+                       run.trees[i].children(n).begin(), run.trees[i].children(n).end()));
+      CHECK(std::equal(trees[i].simplices(n).begin(), trees[i].simplices(n).end(),
+                       run.trees[i].simplices(n).begin(), run.trees[i].simplices(n).end()));
+      CHECK(trees[i].box(n).centre == run.trees[i].box(n).centre);
+      CHECK(trees[i].box(n).half == run.trees[i].box(n).half);
+    }
+  }
+  const auto refuses = [&](const std::string& bad) {
+    CHECK_THROWS_AS(run::read_trees(bad, "trees.json", {320, 320}), InputError);
+  };
+  CHECK_THROWS_AS(run::read_trees(text, "trees.json", {320, 319}), InputError);
+  refuses("");
+  refuses("[]");
+  refuses(text.substr(0, text.size() / 2));
+  nlohmann::json document = nlohmann::json::parse(text);
+  document["trees"][1]["children"][0] = {1, 100000};
+  refuses(document.dump());
+  document["trees"][1]["children"][0] = {1, -1};
+  refuses(document.dump());
+  document["trees"].erase(1);
+  refuses(document.dump());
+}
+
+TEST_CASE("import: a run that other commands open, a line of totals, or one clear error") {
+  const Folder folder;
+  ToyEngine engine = two_balls();
+  engine.query(0, 1, {1.25, 0.5, 0.25});
+  engine.query(0, 1, {3, 0, 0});
+  bool is_first = true;
+  engine.wrong = [&](std::uint32_t, std::uint32_t, bool meets) {
+    if (!meets || !is_first) return meets;
+    return is_first = false;
+  };
+  const std::uint64_t found = engine.query(0, 1, {1.5, 0.25, 0.25});
+  write_capture(engine.capture, folder / "run.lrbcap");
+  Outcome outcome = run(folder, {"--quiet", "import", "run.lrbcap", "-o", "out"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.code == 0);
+  std::uint64_t right = found;
+  for (std::size_t i = 0; i < 3; ++i) right += engine.capture.queries[i].pairs;
+  CHECK(outcome.out.find("Toy 1.0: 4 queries, ") == 0);
+  CHECK(outcome.out.find("pairs: " + std::to_string(right) + " right, 1 missed, 0 false\nout/index.html\n") !=
+        std::string::npos);
+  const std::string page = slurp(folder / "out/index.html");
+  CHECK(page.find("wrong in 1 query") != std::string::npos);
+  CHECK(page.find("Every query") != std::string::npos);
+  // What other commands do with the folder.
+  CHECK(run(folder, {"--quiet", "render", "out", "-o", "again", "--colour-by", "box_tests"}).code == 0);
+  CHECK(run(folder, {"--quiet", "compare", "out", "out", "-o", "compared"}).code == 0);
+  CHECK(run(folder, {"why", "--run", "out", "--step", "1"}).code == 0);
+  CHECK(run(folder, {"why", "--run", "out", "--step", "5"}).code == 2);
+  // A part of it, unchecked.
+  outcome = run(folder, {"--quiet", "import", "run.lrbcap", "-o", "part", "--queries", "2-3", "--no-check"});
+  CHECK(outcome.code == 0);
+  CHECK(outcome.out.find("Toy 1.0: 2 queries, ") == 0);
+  CHECK(outcome.out.find("answers not checked") != std::string::npos);
+  // Bad input.
+  folder.write("text.lrbcap", "solid x\n");
+  folder.write("empty.lrbcap", "");
+  for (const std::vector<std::string>& bad :
+       std::vector<std::vector<std::string>>{{"import", "text.lrbcap", "-o", "bad"},
+                                             {"import", "empty.lrbcap", "-o", "bad"},
+                                             {"import", "none.lrbcap", "-o", "bad"},
+                                             {"import", "run.lrbcap", "-o", "bad", "--queries", "9-"},
+                                             {"import", "run.lrbcap", "-o", "bad", "--queries", "3-2"},
+                                             {"import", "run.lrbcap", "-o", "bad", "--queries", "x"},
+                                             {"import", "run.lrbcap", "-o", "bad", "--queries", "0"},
+                                             {"import", "run.lrbcap", "-o", "bad", "--queries", "1-2-3"}}) {
+    CAPTURE(bad.back());
+    check_rejected(folder, bad);
+  }
+}
+
+TEST_CASE("import: many pairs of trees get a page that lists their runs") {
+  const Folder folder;
+  ToyEngine engine;
+  for (const char* name : {"floor", "crate", "ball"}) engine.add(captured(shapes::box(), name));
+  engine.query(0, 1, {0.5, 0.5, 0.5});
+  engine.query(1, 2, {0.5, 0.25, 0.5});
+  engine.query(2, 2, {0, 0, 0}, capture::QueryKind::self);
+  engine.query(0, 1, {0.5, 0.5, 0.5});
+  engine.capture.queries[3].trees[0] = kNull;
+  write_capture(engine.capture, folder / "run.lrbcap");
+  const Outcome outcome = run(folder, {"import", "run.lrbcap", "-o", "out", "--size", "200x150"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.code == 0);
+  CHECK(outcome.out.find("Toy 1.0: 3 queries, ") == 0);
+  CHECK(
+      outcome.err.find("1 query with a single triangle or shape instead of a tree on one side is left out") !=
+      std::string::npos);
+  const std::string page = slurp(folder / "out/index.html");
+  for (const char* text : {"pair_1/index.html", "pair_3/index.html", "floor-crate, Toy 1.0", "is left out"})
+    CHECK(page.find(text) != std::string::npos);
+  CHECK(slurp(folder / "out/pair_3/index.html").find("of a body with itself") != std::string::npos);
+}
+
+}  // namespace lrb::test
