@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/captured_trees.hpp"
 #include <lrbscope/error.hpp>
 
 using namespace lrb;
@@ -55,12 +56,6 @@ capture::Tree random_rss(shapes::RandomEngine& random, int flat = 0) {
   return one_node(VolumeKind::rss, numbers);
 }
 
-const std::vector<Vector3d>& directions_of_18() {
-  static const std::vector<Vector3d> d = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1},  {1, 1, 0}, {1, 0, 1},
-                                          {0, 1, 1}, {1, -1, 0}, {1, 0, -1}, {0, 1, -1}};
-  return d;
-}
-
 /// Returns the k-DOP of random points.
 capture::Tree random_kdop(shapes::RandomEngine& random, int points = 8) {
   std::vector<Vector3d> all;
@@ -68,13 +63,13 @@ capture::Tree random_kdop(shapes::RandomEngine& random, int points = 8) {
   for (int i = 0; i < points; ++i)
     all.emplace_back(centre + shapes::random_direction(random).cwiseProduct(Vector3d(1, 0.7, 0.4)));
   std::vector<double> numbers;
-  for (const Vector3d& d : directions_of_18()) {
+  for (const Vector3d& d : test::directions_of_18()) {
     double least = d.dot(all[0]), greatest = least;
     for (const Vector3d& p : all) least = std::min(least, d.dot(p)), greatest = std::max(greatest, d.dot(p));
     numbers.push_back(least);
     numbers.push_back(greatest);
   }
-  return one_node(VolumeKind::kdop, numbers, directions_of_18());
+  return one_node(VolumeKind::kdop, numbers, test::directions_of_18());
 }
 
 Vector3d random_point(shapes::RandomEngine& random, const trace::ShapeBox& box, double reach = 1) {

@@ -1,0 +1,123 @@
+#pragma once
+/// Figures of a captured tree: quality measures without a query, and faults.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scenarios/profile/tree_faults.hpp"
+#include "scenarios/profile/volumes.hpp"
+#include "scenarios/profile/walk.hpp"
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/obb_tree.hpp>
+#include <lrbscope/trace/capture.hpp>
+
+namespace lrb::profile {
+
+/// Costs in SAH and EPO: the visit of an inner node, and the test of a triangle (Aila, Karras and Laine
+/// 2013).
+inline constexpr double kInnerCost = 1.2, kTriangleCost = 1;
+
+/// End-point overlap (Aila, Karras and Laine, "On Quality Metrics of Bounding Volume Hierarchies", 2013): the
+/// sum over nodes of the area of the surface in the node's volume that does not belong to its subtree, times
+/// the node's cost, over the area of the surface. A node's cost is kInnerCost, or kTriangleCost for each
+/// triangle of a leaf.
+struct Epo {
+  double value = 0;
+  double error = 0;             ///< standard error of `value`; 0 if exact
+  std::uint64_t samples = 0;    ///< points of the surface; 0: exact
+  std::vector<double> by_node;  ///< their sum is `value`
+};
+
+/// Estimates EPO from points of the surface, uniform by area. Takes fewer than `samples` points if these
+/// would need more than a hundred million tests. nullopt: the surface has no area.
+std::optional<Epo> sample_epo(const Volumes& volumes, const capture::Mesh& mesh, const TreeIndex& index,
+                              std::uint64_t samples, std::uint64_t seed);
+/// Computes EPO by clipping triangles to volumes. nullopt: the surface has no area, or the volumes are
+/// spheres or RSS.
+std::optional<Epo> exact_epo(const Volumes& volumes, const capture::Mesh& mesh, const TreeIndex& index);
+
+/// Siblings: children of one node.
+struct SiblingFigures {
+  static constexpr std::size_t kMostChildren = 64;  ///< wider nodes are left out
+  std::uint64_t pairs = 0, overlapping = 0, nodes_left_out = 0;
+  /// Mean over pairs of the volume of the intersection / that of the smaller volume; pairs with a flat volume
+  /// are left out. nullopt: RSS, or no pairs.
+  std::optional<double> shared;
+};
+
+/// Volume of a node / that of the tightest box of its triangles in the frame of Volumes::box(). Nodes whose
+/// triangles lie in a plane along this frame are left out.
+struct LoosenessFigures {
+  double median = 0, p90 = 0, largest = 0;
+  std::uint32_t node = kNull;  ///< of the largest
+};
+
+/// Children whose volumes extend beyond their parent's. No fault: trees of OBBs are fitted to triangles.
+struct BeyondParent {
+  std::uint64_t count = 0, of = 0;
+  double share = 0;  ///< the largest excess, relative to the mesh's diagonal
+  std::uint32_t node = kNull;
+};
+
+struct DepthFigures {
+  std::uint64_t nodes = 0, leaves = 0;
+  double area = 0;  ///< sum of the nodes' areas / the root's
+  double epo = 0;
+};
+
+struct NodeFigures {
+  std::uint32_t node = 0, depth = 0, triangles = 0;  ///< triangles below
+  double area = 0;                                   ///< relative to the root's
+  double epo = 0;
+  double waste = 0;
+};
+
+struct TreeFigures {
+  std::uint32_t nodes = 0, leaves = 0,
+                unreached = 0;                        ///< unreached: not below the root, not in other figures
+  std::uint32_t depth = 0;                            ///< the greatest; 0: the root
+  double mean_depth = 0;                              ///< of leaves
+  std::map<std::uint64_t, std::uint64_t> leaf_sizes;  ///< number of leaves by number of triangles
+  /// Sums of areas / the root's: of inner nodes, and of leaves times their numbers of triangles. nullopt: the
+  /// root has no area.
+  std::optional<double> sah_inner, sah_leaves;
+  std::optional<Epo> epo;
+  SiblingFigures siblings;
+  std::optional<LoosenessFigures> looseness;
+  BeyondParent beyond;
+  std::uint64_t volume_bytes = 0;       ///< of the volumes' numbers as doubles
+  std::vector<DepthFigures> by_depth;   ///< the root's first
+  std::vector<NodeFigures> worst;       ///< by EPO, ten at most
+  std::vector<NodeFigures> most_waste;  ///< by waste, ten at most; empty if none was given
+  std::vector<double> area;             ///< by node
+
+  /// Returns the cost by the surface area heuristic.
+  std::optional<double> sah() const;
+};
+
+struct TreeReport {
+  TreeFigures figures;
+  TreeFaults faults;
+};
+
+struct TreeOptions {
+  bool exact = false;  ///< EPO by clipping if possible
+  std::uint64_t samples = 20'000, seed = 1;
+  double tolerance = 1e-7;             ///< of corners outside volumes, relative to the mesh's diagonal
+  std::span<const double> waste = {};  ///< by node: visits that led to nothing; empty: not known
+};
+
+/// Measures a tree. Throws InputError for one without nodes, and as Volumes.
+TreeReport report_tree(const capture::Tree& tree, const capture::Mesh& mesh, const TreeOptions& options = {});
+
+/// lrbscope's own tree in the form of a capture.
+struct OwnTree {
+  capture::Mesh mesh;  ///< the real simplices; a segment repeats its second corner
+  capture::Tree tree;  ///< OBBs
+};
+OwnTree own_tree(const LrbRep& rep);
+
+}  // namespace lrb::profile

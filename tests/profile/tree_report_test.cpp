@@ -1,0 +1,436 @@
+#include "scenarios/profile/tree_report.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/captured_trees.hpp"
+#include <lrbscope/error.hpp>
+
+using namespace lrb;
+using capture::VolumeKind;
+using Eigen::Vector3d;
+using profile::TreeFault;
+
+namespace {
+
+constexpr VolumeKind kAll[] = {VolumeKind::aabb, VolumeKind::sphere, VolumeKind::obb, VolumeKind::rss,
+                               VolumeKind::kdop};
+
+capture::Mesh captured(Mesh mesh) {
+  return profile::own_tree(bodies::faces_of_mesh(std::move(mesh)).rep).mesh;
+}
+
+std::vector<std::string> texts(const profile::TreeReport& report, const capture::Tree& tree,
+                               const capture::Mesh& mesh) {
+  std::vector<std::string> out;
+  for (const profile::FoundFault& f : report.faults.first) out.push_back(text_of(f, tree, mesh));
+  return out;
+}
+
+std::vector<std::string> faults_of(const capture::Tree& tree, const capture::Mesh& mesh) {
+  return texts(profile::report_tree(tree, mesh), tree, mesh);
+}
+
+/// Replaces the children or triangles of a node.
+void set_range(std::vector<std::uint32_t>& first, std::vector<std::uint32_t>& all, std::uint32_t node,
+               const std::vector<std::uint32_t>& by) {
+  const auto begin = all.begin() + first[node], end = all.begin() + first[node + 1];
+  const auto was = static_cast<std::uint32_t>(end - begin);
+  all.insert(all.erase(begin, end), by.begin(), by.end());
+  for (std::size_t n = node + std::size_t{1}; n < first.size(); ++n)
+    first[n] += static_cast<std::uint32_t>(by.size()) - was;
+}
+void set_children(capture::Tree& tree, std::uint32_t node, const std::vector<std::uint32_t>& by) {
+  set_range(tree.first_child, tree.child, node, by);
+}
+void set_triangles(capture::Tree& tree, std::uint32_t node, const std::vector<std::uint32_t>& by) {
+  set_range(tree.first_triangle, tree.triangle, node, by);
+}
+
+/// Four triangles in the plane z = 0, side by side along x: triangle i between x = i and i + 1.
+capture::Mesh strip(std::uint32_t triangles = 4) {
+  capture::Mesh mesh;
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    const double x = i;
+    for (const Vector3d& v : {Vector3d(x, 0, 0), Vector3d(x + 1, 0, 0), Vector3d(x, 1, 0)})
+      mesh.vertices.push_back(v);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return mesh;
+}
+
+/// The tree of a strip: node 0 over 1 and 2, these over leaves 3 to 6 of triangles 0 to 3. The engine calls
+/// node n 10 n.
+capture::Tree strip_tree(const capture::Mesh& mesh) {
+  capture::Tree tree = test::halving_tree(mesh, VolumeKind::aabb);
+  for (std::uint32_t n = 0; n < tree.size(); ++n) tree.ids.push_back(10 * n);
+  return tree;
+}
+
+using Texts = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("a sound tree of each kind of volume has no faults") {
+  const capture::Mesh mesh = captured(shapes::bumpy_sphere(3, 1));
+  for (const VolumeKind kind : kAll)
+    for (const std::size_t leaf_size : {1, 4}) {
+      const capture::Tree tree = test::halving_tree(mesh, kind, leaf_size);
+      CHECK(faults_of(tree, mesh) == Texts{});
+    }
+}
+
+TEST_CASE("planted faults are named, with the engine's numbers of nodes") {
+  const capture::Mesh mesh = strip();
+  capture::Tree tree = strip_tree(mesh);
+  REQUIRE(faults_of(tree, mesh) == Texts{});
+  SUBCASE("a node with two parents") {
+    set_children(tree, 1, {3, 4, 5});
+    tree.volumes[1 * 6 + 3] = 3;  // room for it
+    CHECK(faults_of(tree, mesh) == Texts{"node 50 has 2 parents: 10 and 20"});
+  }
+  SUBCASE("a node that is twice a child") {
+    set_children(tree, 1, {3, 4, 4});
+    CHECK(faults_of(tree, mesh) == Texts{"node 40 is 2 times a child of node 10"});
+  }
+  SUBCASE("a node without a parent, and so its triangles") {
+    set_children(tree, 0, {2});
+    CHECK(faults_of(tree, mesh) ==
+          Texts{"node 10 has no parent: the root does not reach it nor the 2 below it",
+                "triangle 0 is in no leaf", "triangle 1 is in no leaf"});
+  }
+  SUBCASE("a cycle") {
+    set_children(tree, 4, {1});
+    set_triangles(tree, 4, {});
+    set_triangles(tree, 3, {0, 1});
+    tree.volumes[3 * 6 + 3] = 2;
+    CHECK(faults_of(tree, mesh) == Texts{"node 10 is below itself: 10 - 40 - 10"});
+  }
+  SUBCASE("the root as a child") {
+    set_children(tree, 2, {5, 6, 0});
+    CHECK(faults_of(tree, mesh) == Texts{"node 0 is below itself: 0 - 20 - 0"});
+  }
+  SUBCASE("a cycle that the root does not reach") {
+    set_children(tree, 0, {2});
+    set_children(tree, 4, {1});
+    CHECK(faults_of(tree, mesh) == Texts{"node 10 is below itself: 10 - 40 - 10", "triangle 0 is in no leaf",
+                                         "triangle 1 is in no leaf"});
+  }
+  SUBCASE("a triangle that does not exist") {
+    set_triangles(tree, 5, {2, 4});
+    CHECK(faults_of(tree, mesh) == Texts{"leaf 50 has triangle 4; the mesh has 4"});
+  }
+  SUBCASE("a triangle in two leaves") {
+    set_triangles(tree, 5, {2, 3});
+    tree.volumes[5 * 6 + 3] = 4;
+    CHECK(faults_of(tree, mesh) == Texts{"triangle 3 is in leaf 50 and in leaf 60"});
+  }
+  SUBCASE("a triangle twice in a leaf, and another in none") {
+    set_triangles(tree, 3, {0, 0});
+    set_triangles(tree, 5, {3});
+    tree.volumes[5 * 6 + 3] = 4;
+    CHECK(faults_of(tree, mesh) == Texts{"triangle 3 is in leaf 50 and in leaf 60",
+                                         "triangle 0 is twice in leaf 30", "triangle 2 is in no leaf"});
+  }
+  SUBCASE("a volume that is too small") {
+    tree.volumes[1 * 6 + 4] = 0.75;  // node 1 in y
+    const profile::TreeReport report = profile::report_tree(tree, mesh);
+    CHECK(
+        texts(report, tree, mesh) ==
+        Texts{
+            "triangle 0, corner 2 (0, 1, 0), lies outside node 10 (depth 1) by 0.25, 0.0606 of the diagonal; "
+            "and 1 other corners, by less"});
+    CHECK(report.faults.first[0].by == 0.25);
+    CHECK(report.faults.first[0].by_share == doctest::Approx(0.25 / std::sqrt(17.0)));
+    CHECK(report.figures.beyond.count == 2);
+  }
+  SUBCASE("a volume that is too small by less than the tolerance") {
+    tree.volumes[1 * 6 + 4] = 1 - 4e-7;  // of the diagonal: 0.97e-7
+    CHECK(faults_of(tree, mesh) == Texts{});
+    tree.volumes[1 * 6 + 4] = 1 - 4.2e-7;
+    CHECK(profile::report_tree(tree, mesh).faults.total() == 1);
+    CHECK(profile::report_tree(tree, mesh, {.tolerance = 1e-6}).faults.total() == 0);
+  }
+  SUBCASE("an inverted volume") {
+    std::swap(tree.volumes[6 * 6 + 0], tree.volumes[6 * 6 + 3]);
+    CHECK(faults_of(tree, mesh) ==
+          Texts{"node 60 has an empty volume: its greatest numbers are below its least, "
+                "or its radius is negative"});
+  }
+  SUBCASE("an inner node with triangles") {
+    set_triangles(tree, 2, {3});
+    set_triangles(tree, 6, {});
+    CHECK(faults_of(tree, mesh) ==
+          Texts{"node 20 has both children and 1 triangles", "leaf 60 has no triangles"});
+  }
+}
+
+TEST_CASE("every fault is counted, and the list of each kind is limited") {
+  const capture::Mesh mesh = captured(shapes::icosphere(3));  // 1280 triangles
+  capture::Tree tree = test::halving_tree(mesh, VolumeKind::sphere);
+  for (std::uint32_t n = 0; n < tree.size(); ++n)
+    if (tree.is_leaf(n)) tree.volumes[4 * n + 3] *= -1;
+  const profile::TreeReport report = profile::report_tree(tree, mesh);
+  CHECK(report.faults.total() == 1280);
+  CHECK(report.faults.totals[static_cast<std::size_t>(TreeFault::empty_volume)] == 1280);
+  CHECK(report.faults.first.size() == profile::TreeFaults::kShown);
+}
+
+TEST_CASE("a corner outside is found in every kind of volume, whatever the volumes above contain") {
+  const capture::Mesh mesh = captured(shapes::bumpy_sphere(3, 2));
+  for (const VolumeKind kind : kAll) {
+    capture::Tree tree = test::halving_tree(mesh, kind, 2);
+    const std::size_t numbers = tree.volumes.size() / tree.size();
+    shapes::RandomEngine random(5);
+    for (int i = 0; i < 20; ++i) {
+      const auto n = static_cast<std::uint32_t>(shapes::uniform(random, 0, static_cast<double>(tree.size())));
+      capture::Tree broken = tree;
+      // Halves the volume about its centre: the outermost corners lie outside then.
+      double* x = &broken.volumes[n * numbers];
+      if (kind == VolumeKind::sphere || kind == VolumeKind::rss) x[numbers - 1] /= 2;
+      if (kind == VolumeKind::aabb)
+        for (int k = 0; k < 3; ++k) x[k] += (x[3 + k] - x[k]) / 2;
+      if (kind == VolumeKind::obb)
+        for (int k = 3; k < 12; ++k) x[k] /= 2;
+      if (kind == VolumeKind::kdop) x[0] += (x[1] - x[0]) / 2;
+      const profile::TreeReport report = profile::report_tree(broken, mesh);
+      REQUIRE(report.faults.first.size() == 1);
+      const profile::FoundFault& f = report.faults.first[0];
+      CHECK(f.kind == TreeFault::corner_outside);
+      CHECK(f.node == n);
+      const profile::Volumes volumes(broken);
+      CHECK(f.by == volumes.outside(
+                        n, mesh.vertices[mesh.triangles[f.triangle][static_cast<std::size_t>(f.corner)]]));
+    }
+  }
+}
+
+TEST_CASE("the depths, leaf sizes and SAH of a tree are those counted directly") {
+  const capture::Mesh mesh = captured(shapes::torus(20, 12));
+  for (const VolumeKind kind : kAll) {
+    const capture::Tree tree = test::halving_tree(mesh, kind, 3);
+    const profile::TreeFigures f = profile::report_tree(tree, mesh).figures;
+    const profile::Volumes volumes(tree);
+    double inner = 0, leaves = 0, depths = 0;
+    std::uint64_t leaf_count = 0;
+    // Breadth first: parents come before children.
+    std::vector<std::uint32_t> depth(tree.size(), 0);
+    std::map<std::uint64_t, std::uint64_t> sizes;
+    for (std::uint32_t n = 0; n < tree.size(); ++n) {
+      for (const std::uint32_t c : tree.children(n)) depth[c] = depth[n] + 1;
+      const double share = volumes.area(n) / volumes.area(0);
+      if (!tree.is_leaf(n)) {
+        inner += share;
+        continue;
+      }
+      leaves += share * static_cast<double>(tree.triangles(n).size());
+      depths += depth[n];
+      ++leaf_count;
+      ++sizes[tree.triangles(n).size()];
+    }
+    CHECK(f.nodes == tree.size());
+    CHECK(f.leaves == leaf_count);
+    CHECK(f.unreached == 0);
+    CHECK(f.depth == *std::max_element(depth.begin(), depth.end()));
+    CHECK(f.mean_depth == doctest::Approx(depths / static_cast<double>(leaf_count)));
+    CHECK(f.leaf_sizes == sizes);
+    REQUIRE(f.sah());
+    CHECK(*f.sah_inner == doctest::Approx(inner));
+    CHECK(*f.sah_leaves == doctest::Approx(leaves));
+    CHECK(*f.sah() == doctest::Approx(1.2 * inner + leaves));
+    CHECK(f.volume_bytes == 8 * tree.volumes.size());
+    double by_depth = 0;
+    std::uint64_t nodes = 0;
+    for (const profile::DepthFigures& d : f.by_depth) by_depth += d.epo, nodes += d.nodes;
+    CHECK(nodes == tree.size());
+    REQUIRE(f.epo);
+    CHECK(by_depth == doctest::Approx(f.epo->value));
+    REQUIRE(f.worst.size() == 10);
+    CHECK(f.worst[0].epo == *std::max_element(f.epo->by_node.begin(), f.epo->by_node.end()));
+  }
+}
+
+TEST_CASE("EPO is the surface of others in each node: two crossing triangles by hand") {
+  // Triangle 0 has corners (0,0,0), (2,0,0), (0,2,0), area 2; triangle 1 is the same, moved by 1 in x.
+  capture::Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1, 0, 0}, {3, 0, 0}, {1, 2, 0}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  const capture::Tree tree = test::halving_tree(mesh, VolumeKind::aabb);
+  // Of triangle 1, in the box [0, 2] x [0, 2], the part with x < 2: 1.5. Of triangle 0, in [1, 3], x > 1:
+  // 0.5.
+  profile::TreeOptions options;
+  options.exact = true;
+  const auto epo = profile::report_tree(tree, mesh, options).figures.epo;
+  REQUIRE(epo);
+  CHECK(epo->samples == 0);
+  CHECK(epo->value == doctest::Approx((1.5 + 0.5) / 4).epsilon(1e-6));
+}
+
+TEST_CASE("sampled EPO lies within three standard errors of that by clipping") {
+  const std::vector<Mesh> meshes = {shapes::bumpy_sphere(3, 3), shapes::torus(30, 12), shapes::comb(6),
+                                    shapes::bowl(24, 10)};
+  int within_one = 0, all = 0;
+  for (const Mesh& m : meshes) {
+    const capture::Mesh mesh = captured(m);
+    for (const VolumeKind kind : {VolumeKind::aabb, VolumeKind::obb, VolumeKind::kdop})
+      for (const std::size_t leaf_size : {1, 4}) {
+        const capture::Tree tree = test::halving_tree(mesh, kind, leaf_size);
+        const profile::Volumes volumes(tree);
+        const profile::TreeIndex index(tree, mesh.triangles.size());
+        const auto sampled = sample_epo(volumes, mesh, index, 20'000, 1),
+                   exact = exact_epo(volumes, mesh, index);
+        REQUIRE(sampled);
+        REQUIRE(exact);
+        CHECK(sampled->error < 0.03 * exact->value);
+        CHECK(std::abs(sampled->value - exact->value) < 3 * sampled->error);
+        ++all;
+        within_one += std::abs(sampled->value - exact->value) < sampled->error;
+      }
+  }
+  CHECK(within_one > all * 0.4);  // expected: 68 %
+}
+
+TEST_CASE("EPO of spheres and rounded rectangles is sampled, and equal for an equal seed") {
+  const capture::Mesh mesh = captured(shapes::torus(16, 8));
+  for (const VolumeKind kind : {VolumeKind::sphere, VolumeKind::rss}) {
+    const capture::Tree tree = test::halving_tree(mesh, kind);
+    profile::TreeOptions options;
+    options.exact = true;
+    const auto first = profile::report_tree(tree, mesh, options).figures.epo;
+    const auto second = profile::report_tree(tree, mesh, options).figures.epo;
+    REQUIRE(first);
+    CHECK(first->samples == options.samples);
+    CHECK(first->by_node == second->by_node);
+    options.seed = 2;
+    CHECK(profile::report_tree(tree, mesh, options).figures.epo->value != first->value);
+  }
+}
+
+TEST_CASE("looseness is 1 for the tightest boxes, and the factor for larger ones") {
+  const capture::Mesh mesh = captured(shapes::bumpy_sphere(2, 4));
+  capture::Tree tree = test::halving_tree(mesh, VolumeKind::obb, 4);
+  auto looseness = profile::report_tree(tree, mesh).figures.looseness;
+  REQUIRE(looseness);
+  CHECK(looseness->median == doctest::Approx(1));
+  CHECK(looseness->largest == doctest::Approx(1));
+  for (int k = 3; k < 12; ++k) tree.volumes[12 * 5 + static_cast<std::size_t>(k)] *= 2;
+  looseness = profile::report_tree(tree, mesh).figures.looseness;
+  CHECK(looseness->largest == doctest::Approx(8));
+  CHECK(looseness->node == 5);
+  CHECK(looseness->median == doctest::Approx(1));
+}
+
+TEST_CASE("siblings that overlap are counted, with the share of the smaller volume") {
+  capture::Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {2, 0, 1}, {0, 2, 2}, {1, 0, 0}, {3, 0, 1}, {1, 2, 2}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  const auto siblings =
+      profile::report_tree(test::halving_tree(mesh, VolumeKind::aabb), mesh).figures.siblings;
+  CHECK(siblings.pairs == 1);
+  CHECK(siblings.overlapping == 1);
+  REQUIRE(siblings.shared);
+  CHECK(*siblings.shared == doctest::Approx(0.5));
+}
+
+TEST_CASE("lrbscope's own trees have no faults") {
+  std::vector<Mesh> meshes = {shapes::tetrahedron(),
+                              shapes::box(),
+                              shapes::quad_box(),
+                              shapes::l_shape(),
+                              shapes::comb(5),
+                              shapes::box_with_void(),
+                              shapes::icosphere(4),
+                              shapes::bumpy_sphere(4, 7),
+                              shapes::uv_sphere(40, 30),
+                              shapes::bowl(40, 12),
+                              shapes::torus(50, 20),
+                              shapes::quad_torus(24, 12),
+                              shapes::open_cylinder(60),
+                              shapes::circle(300),
+                              shapes::gear(40),
+                              shapes::scaled(shapes::torus(20, 10), 1e-9),
+                              shapes::translated(shapes::torus(20, 10), {1e4, 0, 0})};
+  for (Mesh& m : meshes) {
+    const bodies::LoadedBody body = bodies::faces_of_mesh(std::move(m));
+    const profile::OwnTree own = profile::own_tree(body.rep);
+    CAPTURE(own.mesh.name);
+    CHECK(own.mesh.triangles.size() == body.rep.real_simplex_count());
+    const profile::TreeReport report = profile::report_tree(own.tree, own.mesh);
+    CHECK(texts(report, own.tree, own.mesh) == Texts{});
+    // The counts of the engine's own measures.
+    const TreeQuality quality = tree_quality(body.rep.tree());
+    CHECK(report.figures.nodes == quality.nodes);
+    CHECK(report.figures.leaves == quality.leaves);
+    CHECK(report.figures.epo.has_value() == (body.rep.dim() == 3));
+  }
+}
+
+TEST_CASE("a chain of 100,000 nodes is measured without recursion") {
+  constexpr std::uint32_t kLength = 100'000;
+  const capture::Mesh mesh = strip(kLength + 1);
+  capture::Tree tree;
+  tree.first_child = tree.first_triangle = {0};
+  // Nodes 0 to kLength - 1: inner; node i has the leaf kLength + i of triangle i, and the next one.
+  for (std::uint32_t n = 0; n < 2 * kLength + 1; ++n) {
+    const bool is_leaf = n >= kLength;
+    const double from = is_leaf ? n - kLength : n, to = is_leaf ? from + 1 : kLength + 1;
+    for (const double x : {from, 0.0, 0.0, to, 1.0, 0.0}) tree.volumes.push_back(x);
+    if (is_leaf) tree.triangle.push_back(n - kLength);
+    if (!is_leaf) {
+      tree.child.push_back(kLength + n);
+      tree.child.push_back(n + 1 < kLength ? n + 1 : 2 * kLength);
+    }
+    tree.first_child.push_back(static_cast<std::uint32_t>(tree.child.size()));
+    tree.first_triangle.push_back(static_cast<std::uint32_t>(tree.triangle.size()));
+  }
+  const profile::TreeReport report = profile::report_tree(tree, mesh);
+  CHECK(report.faults.total() == 0);
+  CHECK(report.figures.depth == kLength);
+  tree.child.back() = 0;  // the whole chain becomes a cycle
+  const profile::TreeReport broken = profile::report_tree(tree, mesh);
+  REQUIRE(broken.faults.first.size() == 3);
+  CHECK(broken.faults.first[0].kind == TreeFault::no_parent);
+  CHECK(broken.faults.first[1].kind == TreeFault::cycle);
+  CHECK(broken.faults.first[1].count == kLength);
+  CHECK(broken.faults.first[2].kind == TreeFault::triangle_in_no_leaf);
+}
+
+TEST_CASE("a mesh of one triangle, of none, and a tree of no nodes") {
+  const capture::Mesh one = strip(1);
+  for (const VolumeKind kind : kAll) {
+    const capture::Tree tree = test::halving_tree(one, kind);
+    const profile::TreeReport report = profile::report_tree(tree, one);
+    CHECK(report.faults.total() == 0);
+    CHECK(report.figures.nodes == 1);
+    REQUIRE(report.figures.epo);
+    CHECK(report.figures.epo->value == 0);
+    CHECK(report.figures.worst.empty());
+  }
+  capture::Tree root = test::halving_tree(one, VolumeKind::aabb);
+  set_triangles(root, 0, {});
+  const profile::TreeReport empty = profile::report_tree(root, {});
+  CHECK(empty.faults.total() == 0);
+  CHECK_FALSE(empty.figures.epo);
+  capture::Tree nothing;
+  nothing.first_child = nothing.first_triangle = {0};
+  CHECK_THROWS_AS(profile::report_tree(nothing, one), InputError);
+}
+
+TEST_CASE("waste by node, if given, ranks nodes") {
+  const capture::Mesh mesh = strip();
+  const capture::Tree tree = strip_tree(mesh);
+  const std::vector<double> waste = {0, 3, 0, 0, 7, 0, 0};
+  profile::TreeOptions options;
+  options.waste = waste;
+  const auto most = profile::report_tree(tree, mesh, options).figures.most_waste;
+  REQUIRE(most.size() == 2);
+  CHECK(most[0].node == 4);
+  CHECK(most[1].node == 1);
+}
