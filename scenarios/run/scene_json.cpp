@@ -185,14 +185,59 @@ std::vector<SimplexId> compared_simplices(const RecordedRun& p, Side side) {
 }
 
 /// Boxes of nodes: all down to some depth, and below it those on the paths to compared faces.
-json boxes_json(const LrbRep& rep, const SceneFrame& frame, std::size_t most,
-                const std::vector<SimplexId>& compared) {
-  std::vector<TreeBox> boxes = tree_boxes(rep.tree(), most);
-  const std::uint32_t whole = boxes.empty() ? 0 : boxes.back().depth;
-  if (!boxes.empty() && boxes.size() < rep.tree().nodes().size()) {
-    const std::vector<TreeBox> deeper = boxes_on_paths(rep.tree(), whole, compared, most);
-    boxes.insert(boxes.end(), deeper.begin(), deeper.end());
+struct ShownBoxes {
+  std::vector<TreeBox> boxes;
+  std::uint32_t whole = 0;              ///< all boxes down to this depth are there
+  std::vector<std::uint32_t> by_depth;  ///< number of nodes at each depth
+};
+
+ShownBoxes shown_boxes(const ObbTree& tree, std::size_t most, const std::vector<SimplexId>& compared) {
+  ShownBoxes out{tree_boxes(tree, most), 0, nodes_by_depth(tree)};
+  if (out.boxes.empty()) return out;
+  out.whole = out.boxes.back().depth;
+  if (out.boxes.size() < tree.nodes().size()) {
+    const std::vector<TreeBox> deeper = boxes_on_paths(tree, out.whole, compared, most);
+    out.boxes.insert(out.boxes.end(), deeper.begin(), deeper.end());
   }
+  return out;
+}
+
+/// The same of another engine's tree.
+ShownBoxes shown_boxes(const trace::TreeShape& tree, std::size_t most,
+                       const std::vector<SimplexId>& compared) {
+  ShownBoxes out;
+  std::vector<std::uint32_t> parent(tree.size(), kNull), leaf;
+  for (const std::uint32_t n : tree.from_root()) {
+    out.by_depth.resize(tree.depth(n) + std::size_t{1});
+    ++out.by_depth[tree.depth(n)];
+    for (const std::uint32_t child : tree.children(n)) parent[child] = n;
+    for (const SimplexId s : tree.simplices(n)) {
+      if (s >= leaf.size()) leaf.resize(s.value() + 1, kNull);
+      leaf[s.value()] = n;
+    }
+  }
+  std::size_t down_to = 0;  // nodes in the order from the root are in the order of their depths
+  for (std::uint32_t depth = 0; depth < out.by_depth.size() && down_to + out.by_depth[depth] <= most; ++depth)
+    down_to += out.by_depth[depth], out.whole = depth;
+  std::vector<bool> taken(tree.size());
+  const auto take = [&](std::uint32_t n) {
+    taken[n] = true;
+    const trace::ShapeBox& box = tree.box(n);
+    TreeBox& shown = out.boxes.emplace_back(TreeBox{n, tree.depth(n), box.centre, {}});
+    for (int i = 0; i < 3; ++i) shown.half.col(i) = box.half[static_cast<std::size_t>(i)];
+  };
+  for (std::size_t i = 0; i < down_to; ++i) take(tree.from_root()[i]);
+  for (const SimplexId s : compared)
+    for (std::uint32_t n = s < leaf.size() ? leaf[s.value()] : std::uint32_t{kNull}; n != kNull && !taken[n];
+         n = parent[n]) {
+      if (out.boxes.size() >= down_to + most) return out;
+      take(n);
+    }
+  return out;
+}
+
+json boxes_json(const LrbRep& rep, const SceneFrame& frame, const ShownBoxes& shown) {
+  const std::vector<TreeBox>& boxes = shown.boxes;
   const Eigen::Vector3d middle = middle_of(rep);
   std::vector<float> places;  // centre and three half axes each
   for (const TreeBox& box : boxes) {
@@ -202,8 +247,8 @@ json boxes_json(const LrbRep& rep, const SceneFrame& frame, std::size_t most,
   return {{"node", packed_each(boxes, [](const TreeBox& b) { return b.node; })},
           {"depth", packed_each(boxes, [](const TreeBox& b) { return b.depth; })},
           {"places", packed(places)},
-          {"whole", whole},
-          {"atDepth", packed(nodes_by_depth(rep.tree()))}};
+          {"whole", shown.whole},
+          {"atDepth", packed(shown.by_depth)}};
 }
 
 json body_json(const RecordedRun& p, std::size_t i, const SceneFrame& frame, const SceneLimits& limits,
@@ -217,9 +262,13 @@ json body_json(const RecordedRun& p, std::size_t i, const SceneFrame& frame, con
   if (!with_geometry) return out;
   const trace::FaceCounts counts = trace::count_faces(rep, static_cast<Side>(i), p.trace->events);
   out["geometry"] = geometry(rep, frame);
-  // Another engine traverses trees of its own.
-  const bool ours = p.trace->header.engine.empty();
-  out["boxes"] = boxes_json(rep, frame, ours ? limits.boxes : 0, compared_simplices(p, static_cast<Side>(i)));
+  // Another engine traverses trees of its own, which may be unknown.
+  const std::vector<SimplexId> compared = compared_simplices(p, static_cast<Side>(i));
+  const bool ours = p.trace->header.engine.empty(), is_known = p.trees != nullptr && i < p.trees->size();
+  out["boxes"] = boxes_json(rep, frame,
+                            ours       ? shown_boxes(rep.tree(), limits.boxes, compared)
+                            : is_known ? shown_boxes((*p.trees)[i], limits.boxes, compared)
+                                       : ShownBoxes());
   const Eigen::Vector3d middle = middle_of(rep);
   out["middle"] = {middle.x(), middle.y(), middle.z()};
   out["counts"] = {{"tests", packed(counts.tests)},

@@ -707,7 +707,7 @@ class WhyPanel {
         button.dataset.row = k;
         button.setAttribute("aria-pressed", false);
         if (row.faces) cell("the faces\u2019 own");
-        else cell(button);
+        else cell(this.events.engine ? button.textContent : button); // see nodes()
         cell(short(row.gap), true);
         cell(row.axis);
         return line;
@@ -727,7 +727,8 @@ class WhyPanel {
 
   /** Returns the nodes of the highlighted row. */
   nodes() {
-    if (this.row < 0 || !this.now || this.now.kind !== "pair") return [];
+    // The nodes are lrbscope's; with another engine, the view has the boxes of that engine's trees.
+    if (this.events.engine || this.row < 0 || !this.now || this.now.kind !== "pair") return [];
     return this.now.found.rows[this.row].nodes.map((number, side) => ({ side, number }));
   }
 
