@@ -223,8 +223,9 @@ ShownBoxes shown_boxes(const trace::TreeShape& tree, std::size_t most,
   const auto take = [&](std::uint32_t n) {
     taken[n] = true;
     const trace::ShapeBox& box = tree.box(n);
-    TreeBox& shown = out.boxes.emplace_back(TreeBox{n, tree.depth(n), box.centre, {}});
-    for (int i = 0; i < 3; ++i) shown.half.col(i) = box.half[static_cast<std::size_t>(i)];
+    Eigen::Matrix3d half;
+    for (int i = 0; i < 3; ++i) half.col(i) = box.half[static_cast<std::size_t>(i)];
+    out.boxes.push_back({n, tree.depth(n), box.centre, half});
   };
   for (std::size_t i = 0; i < down_to; ++i) take(tree.from_root()[i]);
   for (const SimplexId s : compared)
