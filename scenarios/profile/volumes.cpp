@@ -170,33 +170,48 @@ bool inverted(const capture::Tree& tree, std::uint32_t node) {
   return false;
 }
 
+/// Clips a polygon; `room` is memory to reuse.
+void clip_in(std::vector<Vector3d>& polygon, const HalfSpace& half, std::vector<Vector3d>& room) {
+  const auto above = [&](const Vector3d& p) { return half.normal.dot(p) - half.offset; };
+  const auto is_inside = [&](const Vector3d& p) { return above(p) <= 0; };
+  if (std::all_of(polygon.begin(), polygon.end(), is_inside)) return;
+  room.clear();
+  double of_p = above(polygon[0]);
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector3d& p = polygon[i];
+    const Vector3d& q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    const double of_q = above(q);
+    if (of_p <= 0) room.push_back(p);
+    if ((of_p < 0 && of_q > 0) || (of_p > 0 && of_q < 0)) room.push_back(p + of_p / (of_p - of_q) * (q - p));
+    of_p = of_q;
+  }
+  polygon.swap(room);
+}
+
 /// Returns the solid in the given half-spaces, which lies in a ball.
 Polytope solid(std::span<const HalfSpace> all, const Vector3d& centre, double radius) {
-  constexpr double kRounding = 1e-13, kSameNormal = 1e-12;  // relative
+  constexpr double kRounding = 1e-13;        // relative
+  constexpr double kSameNormal = 1 - 1e-14;  // cosine
   // Rounding errors must not remove the sides of flat solids: the other planes are moved by this much.
   const double slack = kRounding * std::max(radius, centre.norm());
   Polytope out;
+  std::vector<Vector3d> face, room;
   // Each face is a square in its plane, larger than the ball, clipped to the other half-spaces.
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto [normal, offset] = all[i];
     bool is_covered = false;  // by a parallel plane that is tighter, or equal and earlier
-    std::vector<HalfSpace> others;
     for (std::size_t j = 0; j < all.size(); ++j) {
-      if (j == i) continue;
-      if (!all[j].normal.isApprox(normal, kSameNormal))
-        others.push_back({all[j].normal, all[j].offset + slack});
-      else
-        is_covered =
-            is_covered || all[j].offset < offset - slack || (all[j].offset <= offset + slack && j < i);
+      if (j == i || all[j].normal.dot(normal) < kSameNormal) continue;
+      is_covered = is_covered || all[j].offset < offset - slack || (all[j].offset <= offset + slack && j < i);
     }
     if (is_covered) continue;
     const Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
     const Vector3d at = centre + (offset - normal.dot(centre)) * normal;
     const double far = 2 * radius + slack;
-    std::vector<Vector3d> face = {at - far * u - far * v, at + far * u - far * v, at + far * u + far * v,
-                                  at - far * u + far * v};
-    for (const HalfSpace& half : others)
-      if (!face.empty()) clip(face, half);
+    face = {at - far * u - far * v, at + far * u - far * v, at + far * u + far * v, at - far * u + far * v};
+    for (std::size_t j = 0; j < all.size() && !face.empty(); ++j)
+      if (j != i && all[j].normal.dot(normal) < kSameNormal)
+        clip_in(face, {all[j].normal, all[j].offset + slack}, room);
     if (face.empty()) continue;
     const double area = area_of(face);
     out.area += area;
@@ -234,17 +249,8 @@ bool boxes_overlap(const ShapeBox& a, const ShapeBox& b) {
 }  // namespace
 
 void clip(std::vector<Vector3d>& polygon, const HalfSpace& half) {
-  const auto above = [&](const Vector3d& p) { return half.normal.dot(p) - half.offset; };
-  std::vector<Vector3d> kept;
-  kept.reserve(polygon.size() + 1);
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vector3d& p = polygon[i];
-    const Vector3d& q = polygon[(i + 1) % polygon.size()];
-    const double of_p = above(p), of_q = above(q);
-    if (of_p <= 0) kept.push_back(p);
-    if ((of_p < 0 && of_q > 0) || (of_p > 0 && of_q < 0)) kept.push_back(p + of_p / (of_p - of_q) * (q - p));
-  }
-  polygon = std::move(kept);
+  std::vector<Vector3d> room;
+  clip_in(polygon, half, room);
 }
 
 double area_of(const std::vector<Vector3d>& polygon) {

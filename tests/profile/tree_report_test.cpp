@@ -200,7 +200,7 @@ TEST_CASE("a corner outside is found in every kind of volume, whatever the volum
       if (kind == VolumeKind::obb)
         for (int k = 3; k < 12; ++k) x[k] /= 2;
       if (kind == VolumeKind::kdop) x[0] += (x[1] - x[0]) / 2;
-      const profile::TreeReport report = profile::report_tree(broken, mesh);
+      const profile::TreeReport report = profile::report_tree(broken, mesh, {.samples = 10});
       REQUIRE(report.faults.first.size() == 1);
       const profile::FoundFault& f = report.faults.first[0];
       CHECK(f.kind == TreeFault::corner_outside);
