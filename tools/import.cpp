@@ -144,7 +144,7 @@ void write_list(const std::string& folder, const Globals& globals, const capture
                           t.checked ? group_digits(t.right) : "", t.checked ? group_digits(t.missed) : "",
                           t.checked ? group_digits(t.false_pairs) : "",
                           t.checked ? group_digits(t.wrong_verdicts) : ""});
-    doc.link({run.folder + "/index.html", words(t), run.name});
+    doc.link({run.folder + "/index.html", profile::words(t), run.name});
   }
   table.note = "Right, missed and false: pairs of triangles, compared with exact answers.";
   const bool is_wrong = all.missed + all.false_pairs + all.wrong_verdicts > 0;
@@ -208,7 +208,7 @@ int run_import(const ImportOptions& o, const Globals& globals) {
     }
     write_list(folder, globals, c, o.file, runs, left_out);
   }
-  print(c.engine + ": " + words(totals) + "\n" + folder + "/index.html\n");
+  print(c.engine + ": " + profile::words(totals) + "\n" + folder + "/index.html\n");
   return kOk;
 }
 

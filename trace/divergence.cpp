@@ -14,6 +14,18 @@
 
 namespace lrb::trace {
 
+std::string words(const EngineReport& r) {
+  std::string out = std::string(name_of(r.query)) + ", " + std::string(name_of(r.verdict)) + ", " +
+                    std::to_string(r.pairs) + (r.pairs == 1 ? " pair" : " pairs");
+  if (!r.complete) out += ", not all events";
+  const auto add = [&](const std::vector<EngineReport::Mark>& marks, const char* what) {
+    if (!marks.empty()) out += ", " + std::to_string(marks.size()) + " " + what;
+  };
+  add(r.counts, "counts");
+  add(r.phases, "phases");
+  return out;
+}
+
 namespace {
 
 std::string or_none(std::uint32_t value) {
@@ -34,17 +46,6 @@ std::string words(const std::optional<Separation>& s) {
   return s ? "wrappers of " + std::to_string(s->face_count[0]) + " and " + std::to_string(s->face_count[1]) +
                  " faces"
            : "none";
-}
-std::string words(const EngineReport& r) {
-  std::string out = std::string(name_of(r.query)) + ", " + std::string(name_of(r.verdict)) + ", " +
-                    std::to_string(r.pairs) + (r.pairs == 1 ? " pair" : " pairs");
-  if (!r.complete) out += ", not all events";
-  const auto add = [&](const std::vector<EngineReport::Mark>& marks, const char* what) {
-    if (!marks.empty()) out += ", " + std::to_string(marks.size()) + " " + what;
-  };
-  add(r.counts, "counts");
-  add(r.phases, "phases");
-  return out;
 }
 template <class Measured>
 std::string words(const std::optional<Measured>& m) {

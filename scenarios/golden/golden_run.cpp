@@ -10,6 +10,7 @@
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include <lrbscope/core/strings.hpp>
+#include <lrbscope/trace/divergence.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/record_fields.hpp>
 
