@@ -30,6 +30,7 @@ NOT_RUN = [
         "takes minutes; tests/shards runs it in parts, spec and paper tests its experiments",
     ),
     ("", r"^lrbscope xray\b", "needs another engine; xray_tests"),
+    ("", r"\.lrbcap\b", "needs another engine's program; profile_tests"),
     ("docs/meshes.md", r"\b(twin|cow)2?\.(obj|lrb)", "tests/docs/bodies.sh, with what they say"),
     (
         "docs/scenarios.md",
