@@ -77,6 +77,53 @@ void add_engine_answer(report::Document& doc, const RecordedRun& p) {
        group_digits(p.reps[0]->real_face_count()) + " + " + group_digits(p.reps[1]->real_face_count())});
 }
 
+std::vector<report::Chart> engine_charts(const RecordedRun& p) {
+  const std::vector<trace::Step>& steps = p.trace->steps;
+  if (steps.size() < 2) return {};
+  const auto series = [&](const char* name, const auto& value) {
+    report::Series out{name, {}, {}};
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      out.x.push_back(steps[i].index);
+      out.y.push_back(static_cast<double>(value(i)));
+    }
+    return out;
+  };
+  const auto counter = [&](std::uint64_t Counters::*which) {
+    return [&steps, which](std::size_t i) {
+      return std::max<std::uint64_t>(steps[i].result.counters.*which, 1);
+    };
+  };
+  report::Chart tests{"Tests by query",   {"query"},           {"tests", true}, {},
+                      "0 is drawn as 1.", report::Cursor::step};
+  tests.series = {series("volumes", counter(&Counters::box_tests)),
+                  series("triangles", counter(&Counters::face_tests))};
+  report::Chart pairs{"Pairs of triangles by query", {"query"}, {"pairs"}, {}, {}, report::Cursor::step};
+  pairs.series = {series("found by the engine", [&](std::size_t i) { return steps[i].result.pair_count; })};
+  if (is_checked(p)) {
+    const auto add_unless_zero = [&](const char* name, std::uint64_t AnswerScore::*which) {
+      report::Series s = series(name, [&](std::size_t i) { return score_at(p, i).*which; });
+      if (std::any_of(s.y.begin(), s.y.end(), [](double y) { return y > 0; }))
+        pairs.series.push_back(std::move(s));
+    };
+    add_unless_zero("missed", &AnswerScore::missed);
+    add_unless_zero("false", &AnswerScore::false_pairs);
+  }
+  std::vector<report::Chart> out = {std::move(tests), std::move(pairs)};
+  report::Chart times{"Time by query",
+                      {"query"},
+                      {"microseconds", true},
+                      {},
+                      "The engine's own times; they include the recording.",
+                      report::Cursor::step};
+  times.series = {series("time", [&](std::size_t i) {
+    const auto& r = steps[i].result.engine;
+    return r ? std::max(1e-3 * static_cast<double>(r->duration_ns), 1e-3) : 1e-3;
+  })};
+  if (std::any_of(times.series[0].y.begin(), times.series[0].y.end(), [](double y) { return y > 1e-3; }))
+    out.push_back(std::move(times));
+  return out;
+}
+
 report::Table engine_table(const RecordedRun& p) {
   using render::group_digits;
   constexpr std::size_t kMaxRows = 200;

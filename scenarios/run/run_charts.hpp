@@ -35,6 +35,8 @@ std::vector<report::Table> work_tables(const RecordedRun& run);
 
 /// Adds the verdict and the key figures of a run of another engine that reported its answers.
 void add_engine_answer(report::Document& doc, const RecordedRun& recorded);
+/// Returns charts of tests, pairs and times by query; empty for a single query.
+std::vector<report::Chart> engine_charts(const RecordedRun& run);
 /// Returns the table of such a run's queries: the engine's answers beside the exact ones.
 report::Table engine_table(const RecordedRun& run);
 /// Returns a table of the counters that the engine reported; empty if there are none.
