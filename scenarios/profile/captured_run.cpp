@@ -26,9 +26,7 @@ TreePairs tree_pairs(const capture::Capture& capture) {
   TreePairs out;
   std::map<std::array<std::uint32_t, 2>, std::size_t> at;
   for (std::size_t i = 0; i < capture.queries.size(); ++i) {
-    std::array<std::uint32_t, 2> trees = capture.queries[i].trees;
-    // An engine may name the tree of a query with itself once.
-    if (capture.queries[i].kind == capture::QueryKind::self && trees[1] == kNull) trees[1] = trees[0];
+    const std::array<std::uint32_t, 2>& trees = capture.queries[i].trees;
     if (trees[0] == kNull || trees[1] == kNull) {
       ++out.without_tree;
       continue;
