@@ -525,12 +525,19 @@ class Reader {
            text(triangle) + "; use the numbers of the mesh's description");
   }
 
-  /// Checks that a traversal begins at the roots; that of helpers and of a query of one tree with itself
-  /// (which may begin with siblings) need not.
+  /// Checks that a traversal begins at the roots, or without a test of these at children of both; that of
+  /// helpers and of a query of one tree with itself (which may begin with siblings) need not.
   void check_start(const Growing& growing, Growing::Stored& part, const Event& e) const {
     part.rooted = true;
     if (&part != &growing.parts[0] || growing.query.kind == QueryKind::self) return;
     const std::uint32_t nodes[] = {e.a, e.b};
+    const auto is_below_root = [&](std::size_t side) {
+      const std::uint32_t tree = growing.query.trees[side];
+      if (tree == kNull) return true;
+      const auto children = out_.trees[tree].children(0);
+      return std::find(children.begin(), children.end(), nodes[side]) != children.end();
+    };
+    if (is_below_root(0) && is_below_root(1)) return;
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
       const std::uint32_t tree = growing.query.trees[side];
       if (tree != kNull && nodes[side] != 0)
