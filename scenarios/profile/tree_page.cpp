@@ -111,6 +111,49 @@ report::Table node_table(const std::string& title, const std::vector<NodeFigures
   return t;
 }
 
+run::Panel node_panel(const Volumes& volumes, const capture::Mesh& mesh, const TreeIndex& index,
+                      const Subtrees& subtrees, const NodeFigures& figures) {
+  constexpr double kAround = 1.5;  // extent of the picture, relative to the volume
+  const std::uint32_t node = figures.node;
+  const std::vector<HalfSpace> half = volumes.half_spaces(node);
+  const render::Style& style = render::style_of(render::StyleName::screen);
+  render::DrawList list;
+  render::DrawTriangle like;
+  like.edges = 7;
+  like.edge_style = list.edge_style({with_alpha(render::palette::kInk, 110), 0.7F});
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) like.x[k] = mesh.vertices[mesh.triangles[t][k]];
+    const bool own = index.leaf[t] != kNull && subtrees.contains(node, index.leaf[t]);
+    like.colour = own                                         ? style.body(Side::a)
+                  : reaches_into(volumes, node, half, like.x) ? style.body(Side::b)
+                                                              : render::palette::kPaleFront;
+    list.triangles.push_back(like);
+  }
+  const trace::ShapeBox box = volumes.box(node);
+  const auto corner = [&](unsigned i, double scale) {
+    Vector3d p = box.centre;
+    for (unsigned k = 0; k < 3; ++k) p += (i >> k & 1 ? scale : -scale) * box.half[k];
+    return p;
+  };
+  std::vector<Vector3d> shown;
+  for (unsigned i = 0; i < 8; ++i) {
+    shown.push_back(corner(i, kAround));
+    for (unsigned k = 0; k < 3; ++k) {
+      if (i >> k & 1) continue;
+      render::DrawLine line;
+      line.points = {corner(i, 1), corner(i | 1U << k, 1)};
+      line.colour = render::palette::kVermillion;
+      line.width = 2;
+      line.layer = render::Layer::on_top;
+      list.lines.push_back(line);
+    }
+  }
+  return {list, run::fit_points(shown, 3),
+          "node " + std::to_string(volumes.tree().id_of(node)) + ", depth " + std::to_string(figures.depth) +
+              ": " + counted(figures.triangles, "triangle", "triangles"),
+          false};
+}
+
 }  // namespace
 
 std::string_view volume_name(capture::VolumeKind kind) {
@@ -175,52 +218,17 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
          paint("fill", render::kWhite) + "/>\n" + boxes + "</svg>\n";
 }
 
-render::Image node_picture(const capture::Tree& tree, const capture::Mesh& mesh, const TreeIndex& index,
-                           std::uint32_t node) {
-  constexpr double kAround = 1.5;  // extent of the picture, relative to the volume
-  constexpr int kWidth = 480, kHeight = 400;
+render::Image node_sheet(const capture::Tree& tree, const capture::Mesh& mesh, const TreeIndex& index,
+                         std::span<const NodeFigures> nodes) {
   const Volumes volumes(tree);
   const Subtrees subtrees(tree, index, mesh.triangles.size());
-  const std::vector<HalfSpace> half = volumes.half_spaces(node);
-  const render::Style& style = render::style_of(render::StyleName::screen);
-  render::DrawList list;
-  render::DrawTriangle like;
-  like.edges = 7;
-  like.edge_style = list.edge_style({with_alpha(render::palette::kInk, 110), 0.7F});
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    std::array<Vector3d, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[mesh.triangles[t][k]];
-    const bool own = index.leaf[t] != kNull && subtrees.contains(node, index.leaf[t]);
-    like.x = corners;
-    like.colour = own                                          ? style.body(Side::a)
-                  : reaches_into(volumes, node, half, corners) ? style.body(Side::b)
-                                                               : render::palette::kPaleFront;
-    list.triangles.push_back(like);
-  }
-  const trace::ShapeBox box = volumes.box(node);
-  const auto corner = [&](unsigned i, double scale) {
-    Vector3d p = box.centre;
-    for (unsigned k = 0; k < 3; ++k) p += (i >> k & 1 ? scale : -scale) * box.half[k];
-    return p;
-  };
-  std::vector<Vector3d> shown;
-  for (unsigned i = 0; i < 8; ++i) {
-    shown.push_back(corner(i, kAround));
-    for (unsigned k = 0; k < 3; ++k) {
-      if (i >> k & 1) continue;
-      render::DrawLine line;
-      line.points = {corner(i, 1), corner(i | 1U << k, 1)};
-      line.colour = render::palette::kVermillion;
-      line.width = 2;
-      line.layer = render::Layer::on_top;
-      list.lines.push_back(line);
-    }
-  }
+  std::vector<run::Panel> panels;
+  for (const NodeFigures& n : nodes) panels.push_back(node_panel(volumes, mesh, index, subtrees, n));
   render::Look look;
+  constexpr int kWidth = 480, kHeight = 400;  // of a panel
   look.width = kWidth;
   look.height = kHeight;
-  render::Rasterizer rasterizer;
-  return run::draw_panel(rasterizer, {list, run::fit_points(shown, 3), "", false}, look, kWidth, kHeight);
+  return run::draw_sheet(panels, look);
 }
 
 void write_tree_page(const report::Folder& folder, const capture::Tree& tree, const capture::Mesh& mesh,
@@ -246,8 +254,8 @@ void write_tree_page(const report::Folder& folder, const capture::Tree& tree, co
   }
   add_charts(doc, f);
   doc.picture(
-      "nodes.svg", icicle_svg(tree, index, f), "Nodes by depth",
-      "Width: triangles below the node. Colour: its EPO, from dark blue (none) to yellow (the largest).",
+      "nodes.svg", icicle_svg(tree, index, f), "All nodes",
+      "By depth, the root on top. Width: triangles below the node. Colour: its EPO, from dark blue (none) to yellow (the largest).",
       true);
   if (!f.worst.empty()) {
     report::Table table = node_table("Worst nodes by EPO", f.worst, tree, f);
@@ -257,15 +265,15 @@ void write_tree_page(const report::Folder& folder, const capture::Tree& tree, co
     doc.table(table);
   }
   if (!f.most_waste.empty()) doc.table(node_table("Worst nodes by waste", f.most_waste, tree, f));
-  for (std::size_t i = 0; i < std::min(kPictures, f.worst.size()); ++i) {
-    const std::string name = std::to_string(tree.id_of(f.worst[i].node));
+  if (!f.worst.empty())
     doc.picture(
-        "node_" + name + ".png", node_picture(tree, mesh, index, f.worst[i].node), "Node " + name,
-        "Blue: its triangles. Orange: triangles of other nodes that reach into its volume. Red: the " +
+        "worst.png",
+        node_sheet(tree, mesh, index, std::span(f.worst).first(std::min(kPictures, f.worst.size()))),
+        "Worst nodes in the body",
+        "Blue: the node's triangles. Orange: triangles of other nodes that reach into its volume. Red lines: the " +
             std::string(tree.volume == capture::VolumeKind::aabb || tree.volume == capture::VolumeKind::obb
                             ? "volume."
                             : "box around the volume."));
-  }
   doc.write(folder);
 }
 

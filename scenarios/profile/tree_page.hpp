@@ -1,6 +1,7 @@
 #pragma once
 /// A page about a captured tree: figures, charts, an icicle of its nodes, and pictures of the worst ones.
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -18,10 +19,10 @@ std::string_view volume_name(capture::VolumeKind kind);
 /// its share of EPO. SVG, at most 40 depths; nodes narrower than a pixel are left out.
 std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const TreeFigures& figures);
 
-/// Draws a node: its triangles, those of others in its volume, and the box around the volume. Throws
-/// EnvironmentError without off-screen OpenGL.
-render::Image node_picture(const capture::Tree& tree, const capture::Mesh& mesh, const TreeIndex& index,
-                           std::uint32_t node);
+/// Draws nodes side by side: a node's triangles, those of others that reach into its volume, and the box
+/// around the volume. Throws EnvironmentError without off-screen OpenGL.
+render::Image node_sheet(const capture::Tree& tree, const capture::Mesh& mesh, const TreeIndex& index,
+                         std::span<const NodeFigures> nodes);
 
 /// Writes the page. `engine`: name of the engine; `command`: that made the page.
 void write_tree_page(const report::Folder& folder, const capture::Tree& tree, const capture::Mesh& mesh,
