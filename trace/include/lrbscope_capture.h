@@ -1,8 +1,8 @@
 /* lrbscope_capture.h 0.1: records what a collision engine does, for `lrbscope import`.
  *
  * One header in C99 or C++11 that needs only the C library. Copy it, or include the installed one.
- * - Without LRBCAP_ENABLE, every macro below expands to nothing: arguments are not evaluated, and the program
- *   contains no trace of it.
+ * - Without LRBCAP_ENABLE, the macros below do nothing: arguments are not evaluated, and the program contains
+ *   no trace of it.
  * - With LRBCAP_ENABLE, exactly one source file defines LRBCAP_IMPLEMENTATION before it includes this header.
  *   Nothing is recorded unless the environment variable LRBCAP_OUT names a file.
  *
@@ -87,92 +87,75 @@ typedef int (*lrbcap_sink)(void* user, const void* bytes, uint64_t size);
 
 #if defined(_MSC_VER) && !defined(__clang__)
 #define LRBCAP_INLINE static __forceinline
+#define LRBCAP_THREAD_LOCAL __declspec(thread)
+#define LRBCAP_UNLIKELY(x) (x)
 #else
 #define LRBCAP_INLINE static inline __attribute__((always_inline, unused))
+#define LRBCAP_THREAD_LOCAL __thread
+#define LRBCAP_UNLIKELY(x) __builtin_expect(!!(x), 0)
 #endif
 #ifdef __cplusplus
 #define LRBCAP_CAST(type, x) static_cast<type>(x)
+extern "C" {
 #else
 #define LRBCAP_CAST(type, x) ((type)(x))
 #endif
 
-#ifndef LRBCAP_ENABLE
-
-/* sizeof marks variables as used without evaluating them. */
-#define LRBCAP_UNUSED(x) ((void)sizeof((x) ? 1 : 0))
-#define LRBCAP_UNUSED_2(x, y) (LRBCAP_UNUSED(x), LRBCAP_UNUSED(y))
-#define LRBCAP_UNUSED_4(x, y, z, w) (LRBCAP_UNUSED_2(x, y), LRBCAP_UNUSED_2(z, w))
-LRBCAP_INLINE uint32_t lrbcap_none(void) {
+/* Calls of functions without and with a result. Operands of sizeof are checked and count as used, but are not
+ * evaluated. */
+#ifdef LRBCAP_ENABLE
+#define LRBCAP_CALL(call) call
+#define LRBCAP_RESULT(call) call
+#else
+LRBCAP_INLINE uint32_t lrbcap_none(size_t size) {
+  (void)size;
   return 0;
 }
-
-#define LRBCAP_OPEN(engine, path) LRBCAP_UNUSED(engine)
-#define LRBCAP_OPEN_SINK(engine, sink, user) LRBCAP_UNUSED_2(engine, user)
-#define LRBCAP_CLOSE() ((void)0)
-#define LRBCAP_MESH(name, n_vertices, xyz, n_triangles, corners) \
-  (LRBCAP_UNUSED_4(n_vertices, xyz, n_triangles, corners), LRBCAP_UNUSED(name), lrbcap_none())
-#define LRBCAP_TREE(tree) (LRBCAP_UNUSED(tree), lrbcap_none())
-#define LRBCAP_NAME(name) (LRBCAP_UNUSED(name), lrbcap_none())
-#define LRBCAP_BEGIN(kind, tree_a, pose_a, tree_b, pose_b) \
-  (LRBCAP_UNUSED_4(tree_a, pose_a, tree_b, pose_b), LRBCAP_UNUSED(kind), lrbcap_none())
-#define LRBCAP_END(verdict, pairs) LRBCAP_UNUSED_2(verdict, pairs)
-#define LRBCAP_JOIN(query) LRBCAP_UNUSED(query)
-#define LRBCAP_THREAD_END() ((void)0)
-#define LRBCAP_NODE(a, b, met, axis) LRBCAP_UNUSED_4(a, b, met, axis)
-#define LRBCAP_NODES(a, b, tests, met, axis) (LRBCAP_UNUSED_4(a, b, tests, met), LRBCAP_UNUSED(axis))
-#define LRBCAP_PRIM(a, b, met) (LRBCAP_UNUSED_2(a, b), LRBCAP_UNUSED(met))
-#define LRBCAP_COUNT(name, value) LRBCAP_UNUSED_2(name, value)
-#define LRBCAP_PHASE(name) LRBCAP_UNUSED(name)
-
-#else /* LRBCAP_ENABLE */
-
-#ifdef __cplusplus
-extern "C" {
-#endif
-#if defined(_MSC_VER) && !defined(__clang__)
-#define LRBCAP_THREAD_LOCAL __declspec(thread)
-#define LRBCAP_UNLIKELY(x) (x)
-#else
-#define LRBCAP_THREAD_LOCAL __thread
-#define LRBCAP_UNLIKELY(x) __builtin_expect(!!(x), 0)
+#define LRBCAP_CALL(call) ((void)sizeof(call, 0))
+#define LRBCAP_RESULT(call) lrbcap_none(sizeof(call))
 #endif
 
 /* Starts to record to a file: path, or if that is NULL, $LRBCAP_OUT; without both, nothing is recorded. A
- * file that is still open at exit is closed then. With a sink, bytes go to it, and lrbcap_close() must be
- * called. */
-#define LRBCAP_OPEN(engine, path) lrbcap_open(engine, path, NULL, NULL)
-#define LRBCAP_OPEN_SINK(engine, sink, user) lrbcap_open(engine, NULL, sink, user)
-#define LRBCAP_CLOSE() lrbcap_close()
+ * file that is still open at exit is closed then. With a sink, bytes go to it, and LRBCAP_CLOSE must follow.
+ */
+#define LRBCAP_OPEN(engine, path) LRBCAP_CALL(lrbcap_open(engine, path, NULL, NULL))
+#define LRBCAP_OPEN_SINK(engine, sink, user) LRBCAP_CALL(lrbcap_open(engine, NULL, sink, user))
+#define LRBCAP_CLOSE() LRBCAP_CALL(lrbcap_close())
 
 /* Describe a mesh (3 doubles per vertex, 3 indices per triangle), a tree, and the name of a counter or phase.
  * They return a number above 0, or 0 if nothing is recorded. The data may be freed afterwards. */
-#define LRBCAP_MESH(name, n_vertices, xyz, n_triangles, corners) \
-  lrbcap_mesh(name, LRBCAP_CAST(uint32_t, n_vertices), xyz, LRBCAP_CAST(uint32_t, n_triangles), corners)
-#define LRBCAP_TREE(tree) lrbcap_add_tree(tree)
-#define LRBCAP_NAME(name) lrbcap_name(name)
+#define LRBCAP_MESH(name, n_vertices, xyz, n_triangles, corners)          \
+  LRBCAP_RESULT(lrbcap_mesh(name, LRBCAP_CAST(uint32_t, n_vertices), xyz, \
+                            LRBCAP_CAST(uint32_t, n_triangles), corners))
+#define LRBCAP_TREE(tree) LRBCAP_RESULT(lrbcap_add_tree(tree))
+#define LRBCAP_NAME(name) LRBCAP_RESULT(lrbcap_name(name))
 
 /* Begin and end a query. Tree 0: a single triangle or shape. Pose NULL: the identity. BEGIN returns the
- * number of the query for LRBCAP_JOIN, or 0 if it is not recorded. `pairs`: how many the engine found. */
-#define LRBCAP_BEGIN(kind, tree_a, pose_a, tree_b, pose_b) lrbcap_begin(kind, tree_a, pose_a, tree_b, pose_b)
-#define LRBCAP_END(verdict, pairs) lrbcap_end(LRBCAP_CAST(uint32_t, verdict), LRBCAP_CAST(uint64_t, pairs))
-#define LRBCAP_JOIN(query) lrbcap_join(query)
-#define LRBCAP_THREAD_END() lrbcap_thread_end()
+ * number of the query for LRBCAP_JOIN, or 0 if it is not recorded. pairs: how many the engine found. */
+#define LRBCAP_BEGIN(kind, tree_a, pose_a, tree_b, pose_b) \
+  LRBCAP_RESULT(lrbcap_begin(kind, tree_a, pose_a, tree_b, pose_b))
+#define LRBCAP_END(verdict, pairs) \
+  LRBCAP_CALL(lrbcap_end(LRBCAP_CAST(uint32_t, verdict), LRBCAP_CAST(uint64_t, pairs)))
+/* This thread helps with a query that another one began; 0: no longer. */
+#define LRBCAP_JOIN(query) LRBCAP_CALL(lrbcap_join(query))
+#define LRBCAP_THREAD_END() LRBCAP_CALL(lrbcap_thread_end())
 
-/* Tests, in the engine's order. a: of tree A; b: of tree B. NODES: several tests at once, `met` of which
- * found an overlap (wide nodes; at most 255). */
-#define LRBCAP_NODE(a, b, met, axis)                                                                   \
-  lrbcap_push(LRBCAP_KIND_NODES, LRBCAP_CAST(uint32_t, a), LRBCAP_CAST(uint32_t, b), 1, (met) ? 1 : 0, \
-              LRBCAP_CAST(uint8_t, axis))
-#define LRBCAP_NODES(a, b, tests, met, axis)                                         \
-  lrbcap_push(LRBCAP_KIND_NODES, LRBCAP_CAST(uint32_t, a), LRBCAP_CAST(uint32_t, b), \
-              LRBCAP_CAST(uint8_t, tests), LRBCAP_CAST(uint8_t, met), LRBCAP_CAST(uint8_t, axis))
-#define LRBCAP_PRIM(a, b, met)                                                                         \
-  lrbcap_push(LRBCAP_KIND_PRIMS, LRBCAP_CAST(uint32_t, a), LRBCAP_CAST(uint32_t, b), 1, (met) ? 1 : 0, \
-              LRBCAP_NO_AXIS)
-/* A counter of the engine, and the beginning of a phase; `name` is the result of LRBCAP_NAME. */
-#define LRBCAP_COUNT(name, value) \
-  lrbcap_push(LRBCAP_KIND_COUNT, name, LRBCAP_CAST(uint32_t, value), 1, 0, LRBCAP_NO_AXIS)
-#define LRBCAP_PHASE(name) lrbcap_push(LRBCAP_KIND_PHASE, name, 0, 1, 0, LRBCAP_NO_AXIS)
+/* Tests, in the engine's order: a of tree or mesh A, b of B; met: whether they overlap. NODES: several tests
+ * at once (wide nodes; at most 255), `met` of which found an overlap. */
+#define LRBCAP_NODE(a, b, met, axis) LRBCAP_EVENT(LRBCAP_KIND_NODES, a, b, 1, (met) ? 1 : 0, axis)
+#define LRBCAP_NODES(a, b, tests, met, axis) LRBCAP_EVENT(LRBCAP_KIND_NODES, a, b, tests, met, axis)
+#define LRBCAP_PRIM(a, b, met) LRBCAP_EVENT(LRBCAP_KIND_PRIMS, a, b, 1, (met) ? 1 : 0, LRBCAP_NO_AXIS)
+/* A counter of the engine, and the beginning of a phase. name: result of LRBCAP_NAME. */
+#define LRBCAP_COUNT(name, value) LRBCAP_EVENT(LRBCAP_KIND_COUNT, name, value, 1, 0, LRBCAP_NO_AXIS)
+#define LRBCAP_PHASE(name) LRBCAP_EVENT(LRBCAP_KIND_PHASE, name, 0, 1, 0, LRBCAP_NO_AXIS)
+
+/* ---- The rest is not for callers. */
+
+#define LRBCAP_EVENT(kind, a, b, tests, met, axis)                                  \
+  LRBCAP_CALL(lrbcap_push(kind, LRBCAP_CAST(uint32_t, a), LRBCAP_CAST(uint32_t, b), \
+                          LRBCAP_CAST(uint8_t, tests), LRBCAP_CAST(uint8_t, met),   \
+                          LRBCAP_CAST(uint8_t, axis)))
+enum { LRBCAP_KIND_NODES = 0, LRBCAP_KIND_PRIMS = 1, LRBCAP_KIND_COUNT = 2, LRBCAP_KIND_PHASE = 3 };
 
 void lrbcap_open(const char* engine, const char* path, lrbcap_sink sink, void* user);
 void lrbcap_close(void);
@@ -186,8 +169,9 @@ void lrbcap_end(uint32_t verdict, uint64_t pairs);
 void lrbcap_join(uint32_t query);
 void lrbcap_thread_end(void);
 
-/* The rest is not for callers. */
-enum { LRBCAP_KIND_NODES = 0, LRBCAP_KIND_PRIMS = 1, LRBCAP_KIND_COUNT = 2, LRBCAP_KIND_PHASE = 3 };
+#ifndef LRBCAP_ENABLE
+void lrbcap_push(uint8_t kind, uint32_t a, uint32_t b, uint8_t tests, uint8_t met, uint8_t axis);
+#else
 typedef struct lrbcap_event { /* 12 bytes; 3 to 14 in the file */
   uint32_t a, b;
   uint8_t kind, tests, met, axis;
@@ -214,11 +198,12 @@ LRBCAP_INLINE void lrbcap_push(uint8_t kind, uint32_t a, uint32_t b, uint8_t tes
     if (LRBCAP_UNLIKELY(e == buffer->last)) lrbcap_full();
   }
 }
+#endif
 #ifdef __cplusplus
 }
 #endif
 
-#ifdef LRBCAP_IMPLEMENTATION
+#if defined(LRBCAP_ENABLE) && defined(LRBCAP_IMPLEMENTATION)
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -465,7 +450,9 @@ static uint64_t lrbcap_ticks_per_ms(void) {
   return (lrbcap_ticks() - ticks) * 1000u / (ns / 1000u);
 }
 
+static void lrbcap_leave(void);
 static void lrbcap_end_of_file(void) {
+  lrbcap_leave(); /* a query that was not ended */
   if (lrbcap_load(&lrbcap_g.on)) lrbcap_sync("STOP");
   if (lrbcap_g.file && lrbcap_load(&lrbcap_g.on) && fflush(lrbcap_g.file) != 0)
     lrbcap_warn("cannot write; the end of the recording is missing", "capture");
@@ -753,5 +740,4 @@ void lrbcap_thread_end(void) {
 #pragma warning(pop)
 #endif
 #endif /* LRBCAP_IMPLEMENTATION */
-#endif /* LRBCAP_ENABLE */
 #endif /* LRBSCOPE_CAPTURE_H */

@@ -1,0 +1,165 @@
+// fcl A.obj B.obj POSES [ROUNDS]: FCL's collision of two trees of OBBRSS, whose queries lrbscope_capture.h
+// records if LRBCAP_OUT names a file. FCL itself is not changed: a subclass of its traversal reports the
+// tests. POSES: a line of 12 numbers for each pose of B (3x4, row by row). Prints for each pose how many
+// pairs of triangles intersect, and on stderr the time of a query, the least of ROUNDS.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fcl/config.h>
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/detail/traversal/collision_node.h>
+#define LRBCAP_IMPLEMENTATION  // in one source file of a program
+#include <lrbscope_capture.h>
+
+namespace {
+
+using Model = fcl::BVHModel<fcl::OBBRSSd>;
+
+/// FCL's traversal of two trees, which reports its tests.
+struct Traversal final : fcl::detail::MeshCollisionTraversalNodeOBBRSSd {
+  using Base = fcl::detail::MeshCollisionTraversalNodeOBBRSSd;
+
+  bool BVTesting(int a, int b) const override {
+    const bool apart = Base::BVTesting(a, b);
+    LRBCAP_NODE(a, b, !apart, LRBCAP_NO_AXIS);
+    return apart;
+  }
+  void leafTesting(int a, int b) const override {
+    const std::size_t before = result->numContacts();
+    Base::leafTesting(a, b);
+    LRBCAP_PRIM(model1->getBV(a).primitiveId(), model2->getBV(b).primitiveId(),
+                result->numContacts() != before);
+  }
+};
+
+struct Body {
+  std::vector<double> vertices;
+  std::vector<std::uint32_t> triangles;
+  Model model;
+  std::uint32_t tree = 0;  ///< its number in the capture
+};
+
+/// Reads vertices and faces of an OBJ; a polygon becomes a fan.
+void read_obj(Body& body, const std::string& path) {
+  std::ifstream in(path);
+  if (!in) throw std::runtime_error(path + ": cannot open the file");
+  for (std::string line, word; std::getline(in, line);) {
+    std::istringstream words(line);
+    words >> word;
+    if (word == "v") {
+      for (int k = 0; k < 3; ++k) words >> body.vertices.emplace_back();
+    } else if (word == "f") {
+      std::vector<std::uint32_t> corners;
+      while (words >> word) corners.push_back(static_cast<std::uint32_t>(std::stoul(word) - 1));
+      for (std::size_t i = 2; i < corners.size(); ++i)
+        for (const std::uint32_t v : {corners[0], corners[i - 1], corners[i]}) body.triangles.push_back(v);
+    }
+  }
+}
+
+/// Tells the recorder mesh and tree.
+void describe(Body& body, const std::string& name) {
+  std::vector<std::uint32_t> first_child{0}, child, first_prim{0}, prim;
+  std::vector<double> boxes;
+  for (int i = 0; i < body.model.getNumBVs(); ++i) {
+    const auto& node = body.model.getBV(i);
+    if (node.isLeaf()) {
+      prim.push_back(static_cast<std::uint32_t>(node.primitiveId()));
+    } else {
+      child.push_back(static_cast<std::uint32_t>(node.leftChild()));
+      child.push_back(static_cast<std::uint32_t>(node.rightChild()));
+    }
+    first_child.push_back(static_cast<std::uint32_t>(child.size()));
+    first_prim.push_back(static_cast<std::uint32_t>(prim.size()));
+    const auto& box = node.bv.obb;  // FCL tests these; the RSS are for distances
+    for (int k = 0; k < 3; ++k) boxes.push_back(box.To[k]);
+    for (int axis = 0; axis < 3; ++axis)
+      for (int k = 0; k < 3; ++k) boxes.push_back(box.axis(k, axis) * box.extent[axis]);
+  }
+  lrbcap_tree tree = {};
+  tree.mesh = LRBCAP_MESH(name.c_str(), body.vertices.size() / 3, body.vertices.data(),
+                          body.triangles.size() / 3, body.triangles.data());
+  tree.nodes = static_cast<std::uint32_t>(body.model.getNumBVs());
+  tree.volume = LRBCAP_OBB;
+  tree.first_child = first_child.data();
+  tree.child = child.data();
+  tree.first_prim = first_prim.data();
+  tree.prim = prim.data();
+  tree.volumes = boxes.data();
+  body.tree = LRBCAP_TREE(&tree);
+}
+
+void load(Body& body, const std::string& path) {
+  read_obj(body, path);
+  std::vector<fcl::Vector3d> vertices;
+  std::vector<fcl::Triangle> triangles;
+  for (std::size_t i = 0; i + 2 < body.vertices.size(); i += 3)
+    vertices.emplace_back(body.vertices[i], body.vertices[i + 1], body.vertices[i + 2]);
+  for (std::size_t i = 0; i + 2 < body.triangles.size(); i += 3)
+    triangles.emplace_back(body.triangles[i], body.triangles[i + 1], body.triangles[i + 2]);
+  body.model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
+  body.model.addSubModel(vertices, triangles);
+  body.model.endModel();
+  describe(body, path);
+}
+
+/// Returns the number of pairs that intersect, with B at a pose.
+std::size_t query(const Body& a, const Body& b, const std::array<double, 12>& pose) {
+  fcl::Transform3d pose_a = fcl::Transform3d::Identity(), pose_b = pose_a;
+  for (int k = 0; k < 12; ++k) pose_b.matrix()(k / 4, k % 4) = pose[static_cast<std::size_t>(k)];
+  const fcl::CollisionRequestd request(a.triangles.size() * b.triangles.size(), false);
+  fcl::CollisionResultd result;
+  Traversal traversal;
+  fcl::detail::initialize(traversal, std::as_const(a.model), pose_a, std::as_const(b.model), pose_b, request,
+                          result);
+  LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, a.tree, nullptr, b.tree, pose.data());
+  fcl::detail::collide(&traversal);
+  LRBCAP_END(result.numContacts() ? LRBCAP_MEET : LRBCAP_APART, result.numContacts());
+  return result.numContacts();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc != 4 && argc != 5) throw std::runtime_error("usage: fcl A.obj B.obj POSES [ROUNDS]");
+  const int rounds = argc == 5 ? std::atoi(argv[4]) : 1;
+  LRBCAP_OPEN("FCL " FCL_VERSION ", BVHModel<OBBRSS>", nullptr);
+  Body a, b;
+  load(a, argv[1]);
+  load(b, argv[2]);
+  std::vector<std::array<double, 12>> poses;
+  std::ifstream in(argv[3]);
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream numbers(line);
+    std::array<double, 12> pose;
+    for (double& x : pose) numbers >> x;
+    if (numbers) poses.push_back(pose);
+  }
+  std::vector<double> least(poses.size(), 1e30);
+  for (int round = 0; round < rounds; ++round)
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const auto begin = std::chrono::steady_clock::now();
+      const std::size_t pairs = query(a, b, poses[i]);
+      const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+      least[i] = std::min(least[i], took.count());
+      if (round == 0) std::cout << pairs << " pairs\n";
+    }
+  double sum = 0;
+  for (const double us : least) sum += us;
+  std::cerr << sum / static_cast<double>(poses.size()) << " us per query\n";
+  LRBCAP_CLOSE();
+} catch (const std::exception& error) {
+  std::cerr << error.what() << "\n";
+  return 1;
+}

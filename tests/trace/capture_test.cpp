@@ -1,0 +1,652 @@
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <lrbscope/trace/capture.hpp>
+
+#define LRBCAP_ENABLE
+#define LRBCAP_IMPLEMENTATION
+#include <lrbscope_capture.h>
+
+#include <lrbscope/error.hpp>
+
+namespace lrb::capture {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+using Settings = std::map<std::string, std::string>;
+
+int append(void* user, const void* bytes, std::uint64_t size) {
+  auto& out = *static_cast<Bytes*>(user);
+  const auto* from = static_cast<const std::byte*>(bytes);
+  out.insert(out.end(), from, from + size);
+  return 1;
+}
+
+/// Records what `body` tells, with environment variables set.
+Bytes record(const std::function<void()>& body, const Settings& settings = {}) {
+  for (const char* name :
+       {"LRBCAP_OUT", "LRBCAP_QUERIES", "LRBCAP_SLOWER_US", "LRBCAP_EVENTS", "LRBCAP_MAX_MB"})
+    unsetenv(name);
+  for (const auto& [name, value] : settings) setenv(name.c_str(), value.c_str(), 1);
+  Bytes out;
+  LRBCAP_OPEN_SINK("engine 1", append, &out);
+  body();
+  LRBCAP_CLOSE();
+  for (const auto& [name, value] : settings) unsetenv(name.c_str());
+  return out;
+}
+
+Capture read(const Bytes& bytes, std::uint32_t first = 1, std::uint32_t last = kNull) {
+  return parse_capture(bytes, "run.lrbcap", first, last);
+}
+
+std::string refusal(const Bytes& bytes) {
+  try {
+    read(bytes);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+// A mesh of four triangles and two trees of it: 0 has the children 1 and 2, each with two triangles.
+
+constexpr double kXyz[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+constexpr std::uint32_t kCorners[] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+constexpr std::uint32_t kFirstChild[] = {0, 2, 2, 2}, kChild[] = {1, 2};
+constexpr std::uint32_t kFirstPrim[] = {0, 0, 2, 4}, kPrim[] = {0, 1, 2, 3};
+constexpr double kBoxes[] = {0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 1, 0.5, 0, 0, 0.25, 1, 1, 1};
+constexpr float kSpheres[] = {0.5F, 0.5F, 0.5F, 1, 0, 0, 0, 2, 1, 1, 1, 3};
+constexpr std::uint32_t kIds[] = {30, 10, 20};
+constexpr double kPose[] = {0, -1, 0, 4, 1, 0, 0, 5, 0, 0, 1, 6};
+
+lrbcap_tree shape_of_tree(std::uint32_t mesh) {
+  lrbcap_tree tree{};
+  tree.mesh = mesh;
+  tree.nodes = 3;
+  tree.volume = LRBCAP_AABB;
+  tree.first_child = kFirstChild;
+  tree.child = kChild;
+  tree.first_prim = kFirstPrim;
+  tree.prim = kPrim;
+  tree.volumes = kBoxes;
+  return tree;
+}
+std::uint32_t a_mesh() {
+  return LRBCAP_MESH("wedge", 4, kXyz, 4, kCorners);
+}
+std::uint32_t a_tree() {
+  const lrbcap_tree tree = shape_of_tree(a_mesh());
+  return LRBCAP_TREE(&tree);
+}
+/// A tree of spheres in floats, whose nodes have ids.
+std::uint32_t a_tree_with_ids() {
+  lrbcap_tree tree = shape_of_tree(a_mesh());
+  tree.volume = LRBCAP_SPHERE;
+  tree.volumes = nullptr;
+  tree.float_volumes = kSpheres;
+  tree.ids = kIds;
+  return LRBCAP_TREE(&tree);
+}
+
+/// Two trees, a name and a query of six events.
+void a_query() {
+  const std::uint32_t a = a_tree(), b = a_tree_with_ids(), name = LRBCAP_NAME("cache hits");
+  LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, a, nullptr, b, kPose);
+  LRBCAP_PHASE(name);
+  LRBCAP_NODE(0, 30, 7, LRBCAP_NO_AXIS);  // any number but 0 is a hit
+  LRBCAP_NODE(1, 20, 0, 9);
+  LRBCAP_NODES(2, 10, 4, 3, LRBCAP_NO_AXIS);
+  LRBCAP_PRIM(3, 1, 1);
+  LRBCAP_COUNT(name, 4000000000);
+  LRBCAP_END(LRBCAP_MEET, 1);
+}
+
+// Damage. Chunks are named by kind and number, their content by offset.
+
+constexpr std::size_t kFileHeader = 16, kHeader = 24;
+
+std::uint64_t size_of_chunk(const Bytes& bytes, std::size_t at) {
+  std::uint64_t size = 0;
+  std::memcpy(&size, bytes.data() + at + 8, 8);
+  return size;
+}
+/// Returns where each chunk begins, and the end.
+std::vector<std::size_t> chunks_of(const Bytes& bytes) {
+  std::vector<std::size_t> out{kFileHeader};
+  while (out.back() + kHeader <= bytes.size())
+    out.push_back(out.back() + kHeader + size_of_chunk(bytes, out.back()));
+  return out;
+}
+std::size_t find_chunk(const Bytes& bytes, const char* kind, int n = 0) {
+  for (const std::size_t at : chunks_of(bytes))
+    if (at < bytes.size() && std::memcmp(bytes.data() + at, kind, 4) == 0 && n-- == 0) return at;
+  FAIL("no chunk " << kind);
+  return 0;
+}
+template <class Number>
+Bytes with(Bytes bytes, const char* kind, std::size_t offset, Number value, int n = 0) {
+  std::memcpy(bytes.data() + find_chunk(bytes, kind, n) + kHeader + offset, &value, sizeof value);
+  return bytes;
+}
+Bytes without(Bytes bytes, const char* kind, int n = 0) {
+  const std::size_t at = find_chunk(bytes, kind, n), size = kHeader + size_of_chunk(bytes, at);
+  bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+              bytes.begin() + static_cast<std::ptrdiff_t>(at + size));
+  return bytes;
+}
+Bytes twice(Bytes bytes, const char* kind, int n = 0) {
+  const std::size_t at = find_chunk(bytes, kind, n), size = kHeader + size_of_chunk(bytes, at);
+  const Bytes copy(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                   bytes.begin() + static_cast<std::ptrdiff_t>(at + size));
+  bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(at), copy.begin(), copy.end());
+  return bytes;
+}
+/// Inserts a chunk before the last.
+Bytes with_chunk(Bytes bytes, const std::string& kind, std::uint32_t version, const std::string& content) {
+  std::string chunk = kind;
+  const std::uint64_t size = content.size(), ticks = 0;
+  chunk.append(reinterpret_cast<const char*>(&version), 4);
+  chunk.append(reinterpret_cast<const char*>(&size), 8);
+  chunk.append(reinterpret_cast<const char*>(&ticks), 8);
+  chunk += content;
+  const auto* from = reinterpret_cast<const std::byte*>(chunk.data());
+  bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(find_chunk(bytes, "STOP")), from,
+               from + chunk.size());
+  return bytes;
+}
+
+void contains(const std::string& message, const std::vector<std::string>& parts) {
+  CAPTURE(message);
+  CHECK(message.starts_with("run.lrbcap:"));
+  CHECK(message.find('\n') == std::string::npos);
+  for (const std::string& part : parts) {
+    CAPTURE(part);
+    CHECK(message.find(part) != std::string::npos);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a capture reads back what an engine reported") {
+  const Capture c = read(record(a_query));
+  CHECK(c.engine == "engine 1");
+  CHECK(c.names == std::vector<std::string>{"cache hits"});
+  CHECK_FALSE(c.cut_off);
+  REQUIRE(c.meshes.size() == 2);
+  CHECK(c.meshes[1].name == "wedge");
+  REQUIRE(c.meshes[1].vertices.size() == 4);
+  CHECK(c.meshes[1].vertices[3] == Eigen::Vector3d(0, 0, 1));
+  REQUIRE(c.meshes[1].triangles.size() == 4);
+  CHECK(c.meshes[1].triangles[2] == std::array<std::uint32_t, 3>{1, 2, 3});
+
+  REQUIRE(c.trees.size() == 2);
+  const Tree &boxes = c.trees[0], &spheres = c.trees[1];
+  CHECK(boxes.size() == 3);
+  CHECK(boxes.volume == VolumeKind::aabb);
+  CHECK(boxes.volumes == std::vector<double>(std::begin(kBoxes), std::end(kBoxes)));
+  CHECK(boxes.children(0)[1] == 2);
+  CHECK(boxes.triangles(2)[0] == 2);
+  CHECK(boxes.is_leaf(1));
+  CHECK(boxes.id_of(2) == 2);
+  CHECK(spheres.mesh == 1);
+  CHECK(spheres.volume == VolumeKind::sphere);
+  CHECK(spheres.volume_of(2)[3] == 3.0);
+  CHECK(spheres.id_of(0) == 30);
+
+  REQUIRE(c.queries.size() == 1);
+  const Query& q = c.queries[0];
+  CHECK(q.number == 1);
+  CHECK(q.kind == QueryKind::all_pairs);
+  CHECK(q.trees == std::array<std::uint32_t, 2>{0, 1});
+  CHECK(q.poses[0].r.isIdentity(0));
+  CHECK(q.poses[1].r(0, 1) == -1);
+  CHECK(q.poses[1].t == Eigen::Vector3d(4, 5, 6));
+  CHECK(q.ended);
+  CHECK(q.verdict == Verdict::intersecting);
+  CHECK(q.pairs == 1);
+  CHECK(q.events_seen == 6);
+  CHECK(q.complete());
+  CHECK(q.duration_ns >= 0);
+  CHECK(q.events == std::vector<Event>{{0, 0, EventKind::phase, 0, 1, 255},
+                                       {0, 0, EventKind::nodes, 1, 1, 255},
+                                       {1, 2, EventKind::nodes, 0, 1, 9},
+                                       {2, 1, EventKind::nodes, 3, 4, 255},
+                                       {3, 1, EventKind::triangles, 1, 1, 255},
+                                       {0, 4000000000, EventKind::count, 0, 1, 255}});
+}
+
+TEST_CASE("any numbers of any length read back, across buffers") {
+  std::mt19937 random(1);
+  std::vector<Event> told;
+  for (int i = 0; i < 30000; ++i) {
+    const auto a = static_cast<std::uint32_t>(random() >> random() % 32);
+    const auto b = static_cast<std::uint32_t>(random() >> random() % 32);
+    const auto tests = static_cast<std::uint8_t>(1 + random() % 3 * 100);
+    told.push_back({a, b, static_cast<EventKind>(random() % 2),
+                    static_cast<std::uint8_t>(random() % (tests + 1)), tests,
+                    static_cast<std::uint8_t>(random() % 2 ? 255 : random() % 15)});
+    if (told.back().kind == EventKind::triangles)
+      told.back().tests = 1, told.back().met %= 2, told.back().axis = 255;
+  }
+  const Capture c = read(record([&] {
+    LRBCAP_BEGIN(LRBCAP_ANY, 0, nullptr, 0, nullptr);  // shapes without trees
+    for (const Event& e : told)
+      if (e.kind == EventKind::nodes)
+        LRBCAP_NODES(e.a, e.b, e.tests, e.met, e.axis);
+      else
+        LRBCAP_PRIM(e.a, e.b, e.met);
+    LRBCAP_END(LRBCAP_UNTOLD, 0);
+  }));
+  CHECK(c.queries.at(0).events == told);
+  CHECK(c.queries[0].complete());
+  CHECK(c.queries[0].trees == std::array<std::uint32_t, 2>{kNull, kNull});
+  CHECK(c.queries[0].verdict == Verdict::unreported);
+}
+
+TEST_CASE("trees of every volume are read, and a tree may replace another") {
+  const std::vector<double> numbers(3 * 12, 0.5);
+  const double directions[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};
+  const Capture c = read(record([&] {
+    const std::uint32_t mesh = a_mesh();
+    std::uint32_t before = 0;
+    for (const std::uint32_t volume : {LRBCAP_AABB, LRBCAP_SPHERE, LRBCAP_OBB, LRBCAP_RSS, LRBCAP_KDOP}) {
+      lrbcap_tree tree = shape_of_tree(mesh);
+      tree.replaces = before;
+      tree.volume = volume;
+      tree.volumes = numbers.data();
+      tree.directions = volume == LRBCAP_KDOP ? 4 : 0;
+      tree.direction = directions;
+      before = LRBCAP_TREE(&tree);
+    }
+  }));
+  REQUIRE(c.trees.size() == 5);
+  const std::size_t per_node[] = {6, 4, 12, 10, 8};
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    CHECK(c.trees[i].numbers() == per_node[i]);
+    CHECK(c.trees[i].volumes.size() == 3 * per_node[i]);
+    CHECK(c.trees[i].replaces == (i == 0 ? std::uint32_t{kNull} : i - 1));
+  }
+  CHECK(c.trees[4].directions.at(3) == Eigen::Vector3d(1, 1, 1));
+}
+
+TEST_CASE("nothing is recorded, and every call may be made, unless an output is given") {
+  unsetenv("LRBCAP_OUT");
+  LRBCAP_OPEN("engine", nullptr);
+  CHECK(a_tree() == 0);
+  CHECK(LRBCAP_NAME("n") == 0);
+  CHECK(LRBCAP_BEGIN(LRBCAP_ANY, 0, nullptr, 0, nullptr) == 0);
+  LRBCAP_NODE(0, 0, 1, 0);
+  LRBCAP_JOIN(0);
+  LRBCAP_END(LRBCAP_MEET, 1);
+  LRBCAP_END(LRBCAP_MEET, 1);
+  LRBCAP_THREAD_END();
+  LRBCAP_CLOSE();
+  LRBCAP_CLOSE();
+}
+
+TEST_CASE("a capture cut off anywhere is read up to its last whole chunk") {
+  const Bytes whole = record(a_query);
+  const std::vector<std::size_t> chunks = chunks_of(whole);
+  REQUIRE(chunks.back() == whole.size());
+  const std::size_t begin = find_chunk(whole, "QRYB"), events = find_chunk(whole, "EVTS"),
+                    end = find_chunk(whole, "QRYE"), stop = find_chunk(whole, "STOP");
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    CAPTURE(size);
+    const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    if (size < kFileHeader) {
+      contains(refusal(cut), {size == 0 ? "an empty file" : size < 8 ? "found" : "16 bytes"});
+      continue;
+    }
+    const Capture c = read(cut);
+    REQUIRE(c.cut_off);
+    REQUIRE(c.queries.size() == (size >= events ? 1 : 0));
+    if (size < events) continue;
+    CHECK(c.queries[0].events.size() == (size >= end ? 6 : 0));
+    CHECK(c.queries[0].ended == (size >= stop));
+  }
+  CHECK(begin < events);
+}
+
+TEST_CASE("files that are no captures are refused by what they look like") {
+  const auto bytes = [](const std::string& s) {
+    const auto* from = reinterpret_cast<const std::byte*>(s.data());
+    return Bytes(from, from + s.size());
+  };
+  contains(refusal(bytes("v 0 0 0\nv 1 0 0\n")), {"found text: 'v 0 0 0'", "lrbscope_capture.h"});
+  contains(refusal(bytes("{\"traceEvents\": []}")), {"found JSON"});
+  contains(refusal(bytes("\x1f\x8b\x08")), {"gzip"});
+  contains(refusal(bytes("\x7f"
+                         "ELF\x01")),
+           {"other bytes"});
+  CHECK_FALSE(is_capture(bytes("LRBCAP")));
+  const Bytes good = record(a_query);
+  CHECK(is_capture(good));
+  Bytes newer = good, swapped = good, marked = good;
+  newer[8] = std::byte{2};
+  contains(refusal(newer), {"expected version 1", "found 2"});
+  for (int i = 0; i < 4; ++i) swapped[static_cast<std::size_t>(12 + i)] = std::byte(i + 1);
+  contains(refusal(swapped), {"little-endian"});
+  marked[12] = std::byte{9};
+  contains(refusal(marked), {"byte order"});
+  Bytes two = good;
+  two.insert(two.end(), good.begin(), good.end());
+  contains(refusal(two), {"a second capture begins here"});
+}
+
+TEST_CASE("unknown chunks are skipped, newer and damaged ones are refused") {
+  const Bytes good = record(a_query);
+  CHECK(read(with_chunk(good, "XTRA", 7, "what later versions add")).queries.at(0).complete());
+  contains(refusal(with_chunk(good, "MESH", 2, "")), {"(MESH at byte ", "expected version 1, found 2"});
+  contains(refusal(with_chunk(good, "ab\n\x01", 1, "")), {"chunk name", "damaged"});
+  contains(refusal(with_chunk(good, "NAME", 1, "")), {"ends too early"});
+  contains(refusal(with_chunk(good, "SYNC", 1, "123456789")), {"more content"});
+  // Counts that the content does not have.
+  for (const auto& [kind, offset] :
+       {std::pair("MESH", 4), {"MESH", 8}, {"MESH", 12}, {"TREE", 12}, {"EVTS", 16}}) {
+    CAPTURE(kind);
+    CAPTURE(offset);
+    contains(refusal(with(good, kind, static_cast<std::size_t>(offset), 0xfffffffeu)), {kind, "damaged"});
+  }
+}
+
+TEST_CASE("descriptions of meshes and trees are checked") {
+  const Bytes good = record(a_query);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  // MESH: id, vertices, triangles, length of the name, "wedge", coordinates, corners.
+  contains(refusal(twice(good, "MESH")), {"chunk 4 (MESH at byte ", "new id of a mesh", "found 1"});
+  contains(refusal(with(good, "MESH", 21 + 8 * 4, nan)), {"vertex 1: expected finite numbers"});
+  contains(refusal(with(good, "MESH", 21 + 8 * 12 + 4 * 5, 4u)),
+           {"triangle 1: expected a vertex below 4, found 4"});
+  // TREE: 8 words, 4 offsets, 2 children, 4 offsets, 4 triangles, 18 doubles.
+  contains(refusal(twice(good, "TREE")), {"new id of a tree"});
+  contains(refusal(without(good, "MESH")), {"(TREE at byte ", "refers to mesh 1, which was not described"});
+  contains(refusal(with(good, "TREE", 8, 9u)), {"refers to tree 9, which was not described"});
+  contains(refusal(with(good, "TREE", 8, 1u)), {"tree 1 replaces itself"});
+  contains(refusal(with(good, "TREE", 12, 0u)), {"at least one node"});
+  contains(refusal(with(good, "TREE", 16, 6u)), {"bounding volume of kind 1", "found kind 6"});
+  contains(refusal(with(good, "TREE", 24, 4u)), {"unknown options"});
+  contains(refusal(with(good, "TREE", 32, 1u)), {"offsets of child indices: expected 0 first, found 1"});
+  contains(refusal(with(good, "TREE", 36, 3u)), {"offsets of child indices", "found 2 after 3 (node 1)"});
+  contains(refusal(with(good, "TREE", 48, 3u)), {"node 0: expected a child below 3, found 3", "not ids"});
+  contains(refusal(with(good, "TREE", 60, 5u)), {"offsets of triangle indices", "found 2 after 5 (node 1)"});
+  contains(refusal(with(good, "TREE", 88 + 8 * 7, nan)), {"node 1: expected finite numbers of its volume"});
+  contains(refusal(with(good, "TREE", 32, 10u, 1)), {"nodes 0 and 1 have the same id, 10"});
+  contains(refusal(twice(good, "NAME")), {"new id of a name"});
+  // Faults that the tree's report names are read: a child with two parents, a leaf's triangle that is none.
+  CHECK(read(with(good, "TREE", 48, 2u)).trees[0].children(0)[0] == 2);
+  CHECK(read(with(good, "TREE", 72, 77u)).trees[0].triangles(1)[0] == 77);
+}
+
+TEST_CASE("a k-DOP of more directions than its content holds is refused") {
+  const Bytes good = record([] { a_tree(); });
+  contains(refusal(with(with(good, "TREE", 16, 5u), "TREE", 20, 0xffffffffu)), {"more directions"});
+  contains(refusal(with(with(good, "TREE", 16, 5u), "TREE", 20, 0u)), {"found kind 5"});
+}
+
+TEST_CASE("queries are checked") {
+  const Bytes good = record(a_query);
+  // QRYB: 8 reserved, number, kind, trees, 8 reserved, thread, 4 reserved, poses.
+  contains(refusal(twice(good, "QRYB")), {"(QRYB at byte ", "query 1: begins a second time"});
+  contains(refusal(with(good, "QRYB", 8, 0u)), {"number of a query above 0"});
+  contains(refusal(with(good, "QRYB", 12, 6u)), {"query 1: expected a query of kind 1", "found 6"});
+  contains(refusal(with(good, "QRYB", 20, 5u)), {"query 1: refers to tree 5, which was not described"});
+  // QRYE: ticks, number, verdict, pairs, events, 8 reserved.
+  contains(refusal(without(good, "QRYB")), {"(EVTS at byte ", "query 1: the query was not begun"});
+  contains(refusal(with(good, "QRYE", 8, 2u)), {"(QRYE at byte ", "query 2: the query was not begun"});
+  contains(refusal(with(good, "QRYE", 12, 3u)), {"query 1: expected the verdict 0", "found 3"});
+  contains(refusal(twice(good, "QRYE")), {"query 1: ends a second time"});
+  contains(refusal(with(good, "QRYE", 24, std::uint64_t{5})), {"at least the 6 events stored, found 5"});
+}
+
+TEST_CASE("poses must be rigid, row by row") {
+  const Bytes good = record(a_query);
+  const auto with_pose = [&](std::array<double, 12> pose) { return with(good, "QRYB", 40 + 96, pose); };
+  const double c = 0.6, s = 0.8;
+  CHECK(read(with_pose({c, -s, 0, 1e300, s, c, 0, 0, 0, 0, 1, 0})).queries.size() == 1);
+  CHECK(read(with_pose({1 + 4e-7, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0})).queries.size() == 1);
+  contains(
+      refusal(with_pose({1 + 1e-5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0})),
+      {"query 1: pose of B: expected a rotation within 1e-6, found an error of 2e-05", "3x4 row by row"});
+  contains(refusal(with_pose({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0})), {"determinant -1", "mirroring"});
+  contains(refusal(with_pose({c, s, 0, -s, c, 0, 0, 0, 1, 7, 8, 9})),
+           {"this one is rigid if read column by column"});
+  contains(refusal(with_pose({2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0})), {"without scale"});
+  const double inf = std::numeric_limits<double>::infinity();
+  contains(refusal(with_pose({1, 0, 0, inf, 0, 1, 0, 0, 0, 0, 1, 0})), {"finite translation"});
+  contains(refusal(with_pose({inf, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0})), {"expected a rotation"});
+}
+
+TEST_CASE("events are checked") {
+  const auto told = [](const std::function<void()>& events, int kind = LRBCAP_ALL_PAIRS) {
+    return record([&] {
+      const std::uint32_t a = a_tree(), b = a_tree_with_ids();
+      LRBCAP_BEGIN(static_cast<std::uint32_t>(kind), a, nullptr, b, kPose);
+      events();
+      LRBCAP_END(LRBCAP_APART, 0);
+    });
+  };
+  const auto root = [] { LRBCAP_NODE(0, 30, 1, 255); };
+  contains(refusal(told([&] { root(), LRBCAP_NODE(3, 30, 1, 255); })),
+           {"query 1, event 2: expected a node of tree 1 (A), which has 3 nodes, found id 3"});
+  contains(refusal(told([&] { root(), LRBCAP_NODE(1, 2, 1, 255); })),
+           {"event 2", "tree 2 (B)", "found id 2"});
+  contains(refusal(told([&] { LRBCAP_PRIM(0, 4, 1); })),
+           {"event 1: expected a triangle of B below 4, found 4"});
+  contains(refusal(told([&] { LRBCAP_PRIM(0, 1, 1), LRBCAP_NODE(0, 10, 1, 255); })),
+           {"event 2: expected the roots in the first test of nodes, found node 10 of B"});
+  contains(refusal(told([&] { LRBCAP_NODE(2, 30, 1, 255); })), {"event 1", "found node 2 of A"});
+  CHECK(read(told([&] { LRBCAP_NODE(1, 10, 1, 255); }, LRBCAP_SELF)).queries[0].complete());
+  contains(refusal(told([&] { LRBCAP_NODES(0, 30, 2, 3, 255); })), {"event 1", "found 3 of 2"});
+  contains(refusal(told([&] { LRBCAP_NODES(0, 30, 0, 0, 255); })), {"event 1", "at least one test"});
+  contains(refusal(told([&] { LRBCAP_NODE(0, 30, 1, 15); })), {"event 1", "axis", "found 15"});
+  CHECK(read(told([&] { LRBCAP_NODE(0, 30, 0, 32 + 9); })).queries[0].events.at(0).axis == 41);
+  contains(refusal(told([&] { LRBCAP_COUNT(1, 5); })),
+           {"event 1: refers to name 1, which was not described"});
+  // The encoding. EVTS: query, thread, number of the first, count, chunk; events.
+  const Bytes good = told([&] { root(), LRBCAP_PRIM(3, 3, 1); });
+  contains(refusal(with(good, "EVTS", 8, std::uint64_t{1})), {"expected event 0 of thread", "found event 1"});
+  contains(refusal(with(good, "EVTS", 16, 1u)), {"more content"});
+  contains(refusal(with(good, "EVTS", 24, std::uint8_t{0x80})), {"event 1: unknown bits"});
+  contains(refusal(twice(good, "EVTS")), {"expected event 2 of thread"});
+  const Bytes large = told([&] { root(), LRBCAP_NODE(0x7fffffff, 30, 1, 255); });
+  contains(refusal(with(large, "EVTS", 24 + 3 + 1 + 4, std::uint8_t{0x7f})), {"more than 32 bits"});
+}
+
+TEST_CASE("threads record at once, and helpers join a query") {
+  const Bytes bytes = record([] {
+    const std::uint32_t tree = a_tree();
+    std::vector<std::thread> threads;
+    for (std::uint32_t k = 0; k < 4; ++k)
+      threads.emplace_back([=] {
+        for (int q = 0; q < 20; ++q) {
+          LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, tree, nullptr, tree, nullptr);
+          LRBCAP_NODE(0, 0, 1, 255);
+          for (std::uint32_t i = 0; i < 20000; ++i) LRBCAP_PRIM(k, i % 4, i % 2);
+          LRBCAP_END(LRBCAP_MEET, k);
+        }
+        LRBCAP_THREAD_END();
+      });
+    for (std::thread& t : threads) t.join();
+    threads.clear();
+    const std::uint32_t query = LRBCAP_BEGIN(LRBCAP_ANY, tree, nullptr, tree, nullptr);
+    for (std::uint32_t k = 0; k < 3; ++k)
+      threads.emplace_back([=] {
+        for (int again = 0; again < 2; ++again) {  // leaves and joins again
+          LRBCAP_JOIN(query);
+          for (std::uint32_t i = 0; i < 10000; ++i) LRBCAP_PRIM(k, i % 4, 0);
+          LRBCAP_JOIN(0);
+          LRBCAP_PRIM(0, 0, 1);  // in no query
+        }
+        LRBCAP_THREAD_END();
+      });
+    for (std::uint32_t i = 0; i < 5000; ++i) LRBCAP_PRIM(3, i % 4, 1);
+    LRBCAP_JOIN(query);  // no effect: in a query of its own
+    for (std::thread& t : threads) t.join();
+    LRBCAP_END(LRBCAP_MEET, 1);
+  });
+  const Capture c = read(bytes);
+  REQUIRE(c.queries.size() == 81);
+  std::map<std::uint64_t, int> by_thread;
+  for (std::size_t q = 0; q < 80; ++q) {
+    const Query& query = c.queries[q];
+    CHECK(query.number == q + 1);
+    CHECK(query.complete());
+    REQUIRE(query.events.size() == 20001);
+    bool own = true;
+    for (std::size_t i = 1; i < query.events.size(); ++i) own = own && query.events[i].a == query.pairs;
+    CHECK(own);
+    ++by_thread[query.pairs];
+  }
+  CHECK(by_thread == std::map<std::uint64_t, int>{{0, 20}, {1, 20}, {2, 20}, {3, 20}});
+  const Query& joined = c.queries[80];
+  CHECK(joined.complete());
+  CHECK(joined.events.size() == 65000);
+  REQUIRE(joined.parts.size() == 7);
+  CHECK(joined.parts[0].thread == joined.thread);
+  CHECK(joined.parts[0].count == 5000);
+  for (std::size_t i = 1; i < 7; ++i) {
+    CHECK(joined.parts[i].count == 10000);
+    CHECK(joined.parts[i].first == 5000 + (i - 1) * 10000);
+    CHECK(joined.parts[i].thread == joined.parts[(i - 1) / 2 * 2 + 1].thread);
+  }
+}
+
+namespace {
+
+/// Queries of 10, 20, 30 ... tests, each with a counter.
+void queries(int count, std::uint32_t tests = 10) {
+  const std::uint32_t name = LRBCAP_NAME("n");
+  for (std::uint32_t q = 1; q <= static_cast<std::uint32_t>(count); ++q) {
+    LRBCAP_BEGIN(LRBCAP_ANY, 0, nullptr, 0, nullptr);
+    for (std::uint32_t i = 0; i < q * tests; ++i) LRBCAP_PRIM(i, i, 1);
+    LRBCAP_COUNT(name, q);
+    LRBCAP_END(LRBCAP_MEET, q);
+  }
+}
+
+std::vector<std::uint32_t> numbers_of(const Capture& c) {
+  std::vector<std::uint32_t> out;
+  for (const Query& q : c.queries) out.push_back(q.number);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("LRBCAP_QUERIES records some of the queries") {
+  using Numbers = std::vector<std::uint32_t>;
+  const auto recorded = [](const char* range) {
+    const Capture c = read(record([] { queries(6); }, {{"LRBCAP_QUERIES", range}}));
+    for (const Query& q : c.queries) CHECK((q.complete() && q.pairs == q.number));
+    return numbers_of(c);
+  };
+  CHECK(recorded("2-4") == Numbers{2, 3, 4});
+  CHECK(recorded("5-") == Numbers{5, 6});
+  CHECK(recorded("3") == Numbers{3});
+  CHECK(recorded("4-2") == Numbers{});
+  for (const char* wrong : {"-2", "0-3", "a", "2-x", "2 4"}) CHECK(recorded(wrong).size() == 6);
+}
+
+TEST_CASE("a reader can take some of the queries") {
+  const Bytes bytes = record([] { queries(6); });
+  const Capture c = read(bytes, 3, 4);
+  CHECK(numbers_of(c) == std::vector<std::uint32_t>{3, 4});
+  CHECK(c.queries[1].complete());
+  CHECK(c.queries[1].events.size() == 41);
+}
+
+TEST_CASE("LRBCAP_EVENTS=0 keeps queries, counters and the number of events") {
+  const Bytes bytes = record([] { queries(5, 5000); }, {{"LRBCAP_EVENTS", "0"}});
+  CHECK(bytes.size() < 5 * 500);
+  const Capture c = read(bytes);
+  REQUIRE(c.queries.size() == 5);
+  for (const Query& q : c.queries) {
+    CHECK(q.events_seen == q.number * 5000 + 1);
+    REQUIRE(q.events.size() == 1);
+    CHECK(q.events[0] == Event{0, q.number, EventKind::count, 0, 1, 255});
+    CHECK_FALSE(q.complete());
+  }
+}
+
+TEST_CASE("LRBCAP_SLOWER_US keeps the events of slow and of long queries") {
+  const Capture c = read(record(
+      [] {
+        const std::uint32_t name = LRBCAP_NAME("n");
+        for (const int which : {0, 1, 2}) {
+          LRBCAP_BEGIN(LRBCAP_ANY, 0, nullptr, 0, nullptr);
+          for (int i = 0; i < (which == 2 ? 9000 : 3); ++i) LRBCAP_PRIM(0, 0, 0);
+          LRBCAP_COUNT(name, 1);
+          if (which == 1) std::this_thread::sleep_for(std::chrono::milliseconds(700));
+          LRBCAP_END(LRBCAP_APART, 0);
+        }
+      },
+      {{"LRBCAP_SLOWER_US", "500000"}}));
+  REQUIRE(c.queries.size() == 3);
+  CHECK(c.queries[0].events.size() == 1);  // the counter
+  CHECK(c.queries[0].events_seen == 4);
+  CHECK(c.queries[1].complete());
+  CHECK(c.queries[1].duration_ns > 0.6e9);
+  CHECK(c.queries[1].duration_ns < 60e9);
+  CHECK(c.queries[2].events.size() >= 8192);
+}
+
+TEST_CASE("LRBCAP_MAX_MB ends events, then queries, and the capture stays whole") {
+  const Bytes bytes = record([] { queries(2000, 1000); }, {{"LRBCAP_MAX_MB", "1"}});
+  CHECK(bytes.size() > 1125000 - 1000);
+  CHECK(bytes.size() < 1125000 + 1000);
+  const Capture c = read(bytes);
+  CHECK_FALSE(c.cut_off);
+  REQUIRE(c.queries.size() > 300);
+  CHECK(c.queries.size() < 500);
+  CHECK(c.queries[0].complete());
+  CHECK_FALSE(c.queries.back().complete());
+  CHECK(c.queries.back().ended);
+  CHECK(c.queries.back().events.empty());
+  CHECK(c.queries.back().events_seen == c.queries.size() * 1000 + 1);
+}
+
+TEST_CASE("a sink ends the recording, which is then read up to its last whole chunk") {
+  static std::uint64_t room;
+  room = 3000;
+  Bytes out;
+  const auto limited = [](void* user, const void* bytes, std::uint64_t size) {
+    if (size > room) return 0;
+    room -= size;
+    return append(user, bytes, size);
+  };
+  LRBCAP_OPEN_SINK("engine", limited, &out);
+  queries(50);
+  LRBCAP_CLOSE();
+  const Capture c = read(out);
+  CHECK(c.cut_off);
+  CHECK(c.queries.size() >= 3);
+  CHECK(record(a_query).size() > 1000);  // a new recording begins anew
+}
+
+TEST_CASE("a query without an end, or within another, loses only ends") {
+  const Capture c = read(record([] {
+    LRBCAP_BEGIN(LRBCAP_ANY, 0, nullptr, 0, nullptr);
+    LRBCAP_PRIM(1, 1, 0);
+    LRBCAP_BEGIN(LRBCAP_ANY, 0, nullptr, 0, nullptr);
+    LRBCAP_PRIM(2, 2, 0);
+    LRBCAP_END(LRBCAP_APART, 0);
+    LRBCAP_END(LRBCAP_MEET, 9);
+    LRBCAP_BEGIN(LRBCAP_ANY, 0, nullptr, 0, nullptr);
+    LRBCAP_PRIM(3, 3, 0);
+  }));
+  REQUIRE(c.queries.size() == 3);
+  for (const Query& q : c.queries) CHECK(q.events.at(0).a == q.number);
+  CHECK_FALSE(c.queries[0].ended);
+  CHECK(c.queries[1].complete());
+  CHECK_FALSE(c.queries[2].ended);
+}
+
+}  // namespace lrb::capture
