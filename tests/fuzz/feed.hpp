@@ -26,6 +26,8 @@ bool feed_crowd(std::string_view bytes);
 bool feed_experiment(std::string_view bytes);
 bool feed_crowd_trace(std::string_view bytes);
 bool feed_trace(std::string_view bytes);
+/// The first byte, if below 8, limits the queries that are read; the rest is the file.
+bool feed_capture(std::string_view bytes);
 /// The first byte chooses the query: two in four a first contact, one a distance, one a clash; with 64 in the
 /// plane; with 128 of a body and itself. The rest choose bodies, poses, motions and tolerances.
 bool feed_motion(std::string_view bytes);

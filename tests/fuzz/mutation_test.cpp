@@ -106,6 +106,9 @@ TEST_CASE("damaged crowds and experiments are refused or read") {
 TEST_CASE("damaged traces are refused or read") {
   mutate("trace", 250);
 }
+TEST_CASE("damaged captures are refused or read") {
+  mutate("capture", 20000);
+}
 TEST_CASE("queries of any bodies, poses, motions and tolerances end, and keep their promises") {
   mutate("motion", 40);
 }

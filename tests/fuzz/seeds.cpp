@@ -180,6 +180,7 @@ std::vector<Format> formats() {
           {"crowd", feed_crowd, shipped(".crowd.json")},
           {"experiment", feed_experiment, shipped(".experiment.json")},
           {"trace", feed_trace, traces()},
+          {"capture", feed_capture, captures()},
           {"motion", feed_motion, motions()},
           {"crowd_trace", feed_crowd_trace, crowd_traces()}};
 }

@@ -14,4 +14,7 @@ struct Format {
 
 std::vector<Format> formats();
 
+/// Recorded by lrbscope_capture.h.
+std::vector<std::string> captures();
+
 }  // namespace lrb::fuzz
