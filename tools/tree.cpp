@@ -26,7 +26,6 @@ namespace {
 
 using io::number_text;
 using Json = nlohmann::ordered_json;
-using render::counted;
 
 struct TreeCommandOptions {
   bodies::Corners corners = bodies::Corners::joined;
@@ -87,6 +86,11 @@ std::string mesh_name(const Trees& all, const capture::Tree& tree) {
 }
 
 // Text.
+
+/// Returns a number with its noun, in plain digits: the text may be searched.
+std::string counted(std::uint64_t n, const char* one, const char* many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
 
 std::string percent(double share) {
   return number_text(100 * share, 3) + " %";
@@ -298,7 +302,7 @@ void write_pages(const std::string& folder, const Trees& all, const std::vector<
     page(i, folder + "/" + part);
     doc.link({part + "/index.html", mesh_name(all, tree), "tree " + std::to_string(tree.id)});
   }
-  doc.verdict(faults == 0 ? "no faults" : counted(faults, "fault", "faults"), faults == 0)
+  doc.verdict(faults == 0 ? "no faults" : render::counted(faults, "fault", "faults"), faults == 0)
       .command(command)
       .table(table)
       .write(folder);

@@ -228,7 +228,9 @@ render::Image node_sheet(const capture::Tree& tree, const capture::Mesh& mesh, c
   constexpr int kWidth = 480, kHeight = 400;  // of a panel
   look.width = kWidth;
   look.height = kHeight;
-  return run::draw_sheet(panels, look);
+  render::MontageOptions side_by_side;
+  side_by_side.columns = static_cast<int>(panels.size());
+  return run::draw_sheet(panels, look, side_by_side);
 }
 
 void write_tree_page(const report::Folder& folder, const capture::Tree& tree, const capture::Mesh& mesh,

@@ -1,8 +1,9 @@
 #include "scenarios/profile/tree_report.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -170,6 +171,95 @@ TEST_CASE("planted faults are named, with the engine's numbers of nodes") {
     CHECK(faults_of(tree, mesh) ==
           Texts{"node 20 has both children and 1 triangles", "leaf 60 has no triangles"});
   }
+}
+
+TEST_CASE("faults of random graphs of nodes are those found by brute force") {
+  shapes::RandomEngine random(31);
+  const auto below = [&](std::size_t n) {
+    return static_cast<std::uint32_t>(shapes::uniform(random, 0, static_cast<double>(n)));
+  };
+  const capture::Mesh mesh = strip();
+  const std::size_t triangles = mesh.triangles.size();
+  int broken_graphs = 0, broken_volumes = 0;
+  for (int round = 0; round < 4000; ++round) {
+    // Half of them are trees in which parents have lower numbers; the others have random children.
+    const std::uint32_t size = 1 + below(9);
+    const bool is_tree = round % 2 == 0;
+    std::vector<std::vector<std::uint32_t>> children(size), of_leaf(size);
+    for (std::uint32_t n = 1; n < size; ++n)
+      if (is_tree || below(3) > 0) children[is_tree ? below(n) : below(size)].push_back(n);
+    if (!is_tree && below(2) == 0) children[below(size)].push_back(below(size));
+    for (std::uint32_t t = 0; t < triangles + (round % 5 == 0); ++t)
+      if (below(8) > 0) of_leaf[below(size)].push_back(t);
+    capture::Tree tree;
+    tree.first_child = tree.first_triangle = {0};
+    for (std::uint32_t n = 0; n < size; ++n) {
+      tree.child.insert(tree.child.end(), children[n].begin(), children[n].end());
+      tree.triangle.insert(tree.triangle.end(), of_leaf[n].begin(), of_leaf[n].end());
+      tree.first_child.push_back(static_cast<std::uint32_t>(tree.child.size()));
+      tree.first_triangle.push_back(static_cast<std::uint32_t>(tree.triangle.size()));
+      // Mostly large enough; the numbers repeat, so that volumes are often nested.
+      const double low = below(3) > 0 ? 0 : below(4), high = below(3) > 0 ? 5 : below(5);
+      for (const double x : {low, 0.0, 0.0, high, 1.0, 0.0}) tree.volumes.push_back(x);
+    }
+    // Brute force: which node leads to which.
+    std::vector<std::vector<char>> leads(size, std::vector<char>(size, 0));
+    for (std::uint32_t n = 0; n < size; ++n)
+      for (const std::uint32_t c : children[n]) leads[n][c] = 1;
+    for (std::uint32_t k = 0; k < size; ++k)
+      for (std::uint32_t i = 0; i < size; ++i)
+        for (std::uint32_t j = 0; j < size; ++j) leads[i][j] |= leads[i][k] && leads[k][j];
+    std::array<std::uint64_t, profile::kTreeFaults> expected{};
+    const auto count = [&](TreeFault kind) -> std::uint64_t& {
+      return expected[static_cast<std::size_t>(kind)];
+    };
+    std::uint32_t unreached = 0;
+    bool has_cycle = false;
+    std::vector<int> listed(triangles, 0);
+    for (std::uint32_t n = 0; n < size; ++n) {
+      has_cycle |= leads[n][n] != 0;
+      count(TreeFault::no_parent) +=
+          n != 0 && std::none_of(children.begin(), children.end(),
+                                 [&](const auto& c) { return std::find(c.begin(), c.end(), n) != c.end(); });
+      if (n != 0 && !leads[0][n]) {
+        ++unreached;
+        continue;
+      }
+      count(TreeFault::inner_node_with_triangles) += !children[n].empty() && !of_leaf[n].empty();
+      count(TreeFault::leaf_without_triangles) += children[n].empty() && of_leaf[n].empty();
+      for (const std::uint32_t t : of_leaf[n]) {
+        if (t < triangles) ++listed[t];
+        count(TreeFault::nonexistent_triangle) += t >= triangles;
+      }
+      const auto volume = tree.volume_of(n);
+      if (volume[0] > volume[3]) {
+        ++count(TreeFault::empty_volume);
+        continue;
+      }
+      bool outside = false;
+      for (std::uint32_t m = 0; m < size; ++m)
+        for (const std::uint32_t t : of_leaf[m])
+          outside |= (m == n || leads[n][m]) && t < triangles && (t < volume[0] || t + 1 > volume[3]);
+      count(TreeFault::corner_outside) += outside;
+    }
+    for (const int times : listed) count(TreeFault::triangle_in_no_leaf) += times == 0;
+    const profile::TreeReport report = profile::report_tree(tree, mesh, {.samples = 10});
+    const auto& found = report.faults.totals;
+    CHECK(report.figures.unreached == unreached);
+    CHECK((found[static_cast<std::size_t>(TreeFault::cycle)] > 0) == has_cycle);
+    for (const TreeFault kind :
+         {TreeFault::no_parent, TreeFault::nonexistent_triangle, TreeFault::triangle_in_no_leaf,
+          TreeFault::empty_volume, TreeFault::inner_node_with_triangles, TreeFault::leaf_without_triangles})
+      CHECK(found[static_cast<std::size_t>(kind)] == count(kind));
+    if (is_tree) {
+      CHECK(found[static_cast<std::size_t>(TreeFault::two_parents)] == 0);
+      CHECK(found[static_cast<std::size_t>(TreeFault::corner_outside)] == count(TreeFault::corner_outside));
+      broken_volumes += count(TreeFault::corner_outside) > 0;
+    }
+    broken_graphs += has_cycle;
+  }
+  CHECK(broken_graphs > 200);
+  CHECK(broken_volumes > 200);
 }
 
 TEST_CASE("every fault is counted, and the list of each kind is limited") {
