@@ -38,6 +38,7 @@ runner() { # LANGUAGE: prints the file of the test
   case "$1" in
     cpp | cmake) echo tests/package/CMakeLists.txt ;;
     python) echo tests/python/test_docs.py ;;
+    c) echo tests/trace/capture_header.sh ;;
     sh) echo tests/docs/commands.py ;;
     tex) echo tests/docs/figures.sh ;;
     text) echo tests/docs/goldens.sh ;; # output of commands
@@ -48,7 +49,7 @@ for page in README.md docs/*.md; do
   for language in $(sed -n 's/^```\([a-z]\+\)$/\1/p' "$page" | sort -u); do
     test=$(runner "$language") || { complain "$page: no test runs $language blocks"; continue; }
     [ -e "$test" ] || complain "missing test of $language blocks: $test"
-    case "$language" in cpp | cmake | python | text) grep -q "$page" "$test" || complain "$page: $test does not run its $language blocks" ;; esac
+    case "$language" in c | cpp | cmake | python | text) grep -q "$page" "$test" || complain "$page: $test does not run its $language blocks" ;; esac
   done
 done
 
@@ -63,7 +64,7 @@ for page in $pages; do
   done < <(sed -n 's/^<!-- \(examples\/.*\) -->$/\1/p' "$page")
 done
 [ "$shown" -ge 4 ] || complain "docs.sh: found only $shown blocks that show examples"
-for file in examples/*.{cpp,py,sh}; do
+for file in examples/*.{cpp,py,sh} examples/capture/*; do
   grep -qF "](../$file)" docs/*.md || complain "$file: no page in docs/ links to it"
 done
 
