@@ -171,7 +171,7 @@ std::vector<NodeFigures> worst_by(const std::vector<NodeFigures>& nodes, double 
 
 std::optional<Epo> sample_epo(const Volumes& volumes, const capture::Mesh& mesh, const TreeIndex& index,
                               std::uint64_t samples, std::uint64_t seed) {
-  constexpr std::uint64_t kMostTests = 100'000'000, kFewest = 100;
+  constexpr std::uint64_t kMostTests = 30'000'000, kFewest = 100;
   Surface surface(volumes, mesh, index);
   if (!(surface.area > 0)) return {};
   Epo out;

@@ -32,7 +32,7 @@ struct Epo {
 };
 
 /// Estimates EPO from points of the surface, uniform by area. Takes fewer than `samples` points if these
-/// would need more than a hundred million tests. nullopt: the surface has no area.
+/// would need more than thirty million tests. nullopt: the surface has no area.
 std::optional<Epo> sample_epo(const Volumes& volumes, const capture::Mesh& mesh, const TreeIndex& index,
                               std::uint64_t samples, std::uint64_t seed);
 /// Computes EPO by clipping triangles to volumes. nullopt: the surface has no area, or the volumes are
