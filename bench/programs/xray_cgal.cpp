@@ -143,10 +143,10 @@ void run(std::istream& in, const char* file) {
   tree.build();
   const Numbers numbers(tree, b);
   LRBCAP_OPEN("CGAL " CGAL_VERSION_STR ", AABB_tree", file);
-  const std::uint32_t tree_a = capture_flat_tree(a, xray_form::capture_mesh(given[0]));
+  const std::uint32_t tree_a = capture_flat_tree(a, xray_form::capture_mesh(given[0], "A"));
   xray_form::TreeNodes nodes(LRBCAP_AABB);
   numbers.add_to(nodes);
-  const std::uint32_t tree_b = nodes.capture(xray_form::capture_mesh(given[1]));
+  const std::uint32_t tree_b = nodes.capture(xray_form::capture_mesh(given[1], "B"));
   const std::uint32_t volume_tests = LRBCAP_NAME("box tests"), leaf_tests = LRBCAP_NAME("triangle tests");
   const auto poses = xray_form::next<int>(in);
   for (int p = 0; p < poses; ++p) {

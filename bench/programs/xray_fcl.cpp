@@ -74,8 +74,8 @@ void run(std::istream& in, const char* file) {
   read_model(triangles[0], a);
   read_model(triangles[1], b);
   LRBCAP_OPEN("FCL " FCL_VERSION ", BVHModel<OBBRSS>", file);
-  const std::uint32_t tree_a = capture_tree(a, xray_form::capture_mesh(triangles[0]));
-  const std::uint32_t tree_b = capture_tree(b, xray_form::capture_mesh(triangles[1]));
+  const std::uint32_t tree_a = capture_tree(a, xray_form::capture_mesh(triangles[0], "A"));
+  const std::uint32_t tree_b = capture_tree(b, xray_form::capture_mesh(triangles[1], "B"));
   const std::uint32_t volume_tests = LRBCAP_NAME("num_bv_tests"), leaf_tests = LRBCAP_NAME("num_leaf_tests");
   const auto poses = xray_form::next<int>(in);
   for (int i = 0; i < poses; ++i) {

@@ -57,8 +57,8 @@ inline Triangles read_triangles(std::istream& in) {
 }
 
 /// Captures a mesh and returns its number.
-inline std::uint32_t capture_mesh(const Triangles& t) {
-  return LRBCAP_MESH("body", t.vertices.size(), t.vertices.front().data(), t.corners.size(),
+inline std::uint32_t capture_mesh(const Triangles& t, const char* name) {
+  return LRBCAP_MESH(name, t.vertices.size(), t.vertices.front().data(), t.corners.size(),
                      t.corners.front().data());
 }
 

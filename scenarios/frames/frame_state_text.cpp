@@ -340,8 +340,10 @@ std::string FrameState::caption() const {
   const trace::Totals t = totals();
   std::string out = !is_single() ? "Step " + std::to_string(step()) + ", event " : "Event ";
   out += std::to_string(cursor_.position()) + ": " + event_text() + ". ";
-  out += is_single()
-             ? "Wrapper: " + render::group_digits(cursor_.boundary_size(Side::a)) + " faces."
+  out += is_single() ? "Wrapper: " + render::group_digits(cursor_.boundary_size(Side::a)) + " faces."
+         : !trace_.header.engine.empty()
+             ? render::counted(t.node_pairs, "pair of nodes", "pairs of nodes") + ", " +
+                   render::counted(t.face_tests, "face test", "face tests") + "."
              : "Wrappers: " + render::group_digits(boundary_size(Side::a)) + " + " +
                    render::group_digits(boundary_size(Side::b)) + " faces; " +
                    render::counted(t.face_tests, "face test", "face tests") + ", " +

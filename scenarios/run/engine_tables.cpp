@@ -1,6 +1,7 @@
 /// The page of a run of another engine that reported its answers: key figures and a table of queries.
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -192,7 +193,9 @@ report::Table engine_table(const RecordedRun& p) {
     cell(checked, number(score.false_pairs));
     cell(true, group_digits(r.counters.box_tests) + (report.complete ? "" : ", incomplete"));
     cell(true, group_digits(r.counters.face_tests));
-    cell(has_times, render::short_number(1e-3 * static_cast<double>(report.duration_ns)));
+    const double micros = 1e-3 * static_cast<double>(report.duration_ns);
+    cell(has_times, micros < 1000 ? render::short_number(micros)
+                                  : group_digits(static_cast<std::uint64_t>(std::llround(micros))));
     cell(has_threads, std::to_string(report.thread));
   }
   t.note = "A click on a row shows the query.";

@@ -515,7 +515,7 @@ TEST_CASE("import: many pairs of trees get a page that lists their runs") {
   engine.query(0, 1, {0.5, 0.5, 0.5});
   engine.capture.queries[3].trees[0] = kNull;
   write_capture(engine.capture, folder / "run.lrbcap");
-  const Outcome outcome = run(folder, {"import", "run.lrbcap", "-o", "out", "--size", "200x150"});
+  const Outcome outcome = run(folder, {"import", "run.lrbcap", "-o", "out", "--size", "640x480"});
   CAPTURE(outcome.err);
   REQUIRE(outcome.code == 0);
   CHECK(outcome.out.find("Toy 1.0: 3 queries, ") == 0);

@@ -392,7 +392,7 @@ class Panel {
         "cause",
         textButton(`event ${digits(events.id(cause))}`, () => this.selection.goTo(cause)),
       ]);
-    if (this.wrappers)
+    if (this.wrappers && !events.engine)
       rows.push([
         events.passes ? "front" : "wrapper",
         events.passes ? `${digits(this.wrappers.sizes[0])} faces` : sizeWords(this.bodies, this.wrappers.sizes),

@@ -527,7 +527,7 @@ function eventSentence(events, wrappers, i) {
   const meet = outcomeWords(events, i);
   const result = meet ? ` (${meet})` : "";
   const about = `${eventPlace(events, i)}, ${events.kindOf(i).name}: ${eventWords(events, i)}${result}.`;
-  if (!wrappers) return about;
+  if (!wrappers || events.engine) return about;
   if (events.passes) return `${about} Hull: ${digits(wrappers.sizes[0])} faces.`;
   return `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${sizeWords(events.bodies, wrappers.sizes)}.`;
 }
