@@ -31,7 +31,7 @@ json axis_json(const Axis& axis) {
 }
 
 json series_json(const Series& s) {
-  constexpr const char* kLines[] = {"straight", "steps", "dashed", "none"};
+  constexpr const char* kLines[] = {"straight", "steps", "dashed", "none", "bars"};
   json points = json::array();
   for (std::size_t i = 0; i < s.x.size(); ++i) {
     json point = {{"x", s.x[i]}, {"y", s.y[i]}};
@@ -60,6 +60,7 @@ std::string look(const SeriesStyle& style, std::size_t i) {
 }
 
 const char* form(const Series& s) {
+  if (s.style.line == Line::bars) return "boxes";
   if (s.style.line == Line::none || s.x.size() == 1) return "points";
   if (s.style.line == Line::steps) return "steps";
   return s.style.shape == "none" ? "lines" : "linespoints";

@@ -22,8 +22,9 @@ struct Axis {
   std::vector<Tick> ticks = {};  ///< in print; empty: gnuplot's default
 };
 
-/// How the points of a series are joined. `steps`: a value is constant until the next point.
-enum class Line : std::uint8_t { straight, steps, dashed, none };
+/// How the points of a series are joined. `steps`: a value is constant until the next point. `bars`: not at
+/// all; each is a bar on top of those of the series before. (In print, bars start from 0.)
+enum class Line : std::uint8_t { straight, steps, dashed, none, bars };
 
 struct SeriesStyle {
   Line line = Line::straight;

@@ -175,8 +175,10 @@ function makeChart(spec, canvas) {
   const colours = spec.series.map((s, i) => seen(s.colour || style(`--s${i % 7}`)));
   const scatter = spec.series.some((s) => s.line === "none"), shaped = spec.series.some((s) => s.shape && s.shape !== "none");
   const radius = (s) => (s.shape === "none" ? 0 : scatter ? 4 : s.data.length > 80 ? 0 : 2.2);
+  const stacked = spec.series.some((s) => s.line === "bars");
   const datasets = spec.series.map((s, i) => ({
-    label: s.label, data: s.data, borderColor: colours[i], backgroundColor: colours[i], borderWidth: 1.8,
+    ...(s.line === "bars" ? { type: "bar", stack: "bars", grouped: false, barPercentage: 1, categoryPercentage: 0.9 } : {}),
+    label: s.label, data: s.data, borderColor: colours[i], backgroundColor: colours[i], borderWidth: s.line === "bars" ? 0 : 1.8,
     stepped: s.line === "steps" ? "before" : false, showLine: s.line !== "none", borderDash: s.line === "dashed" ? [5, 4] : [],
     pointRadius: radius(s), pointHitRadius: radius(s) || !scatter ? 8 : 0, pointStyle: s.shape === "none" ? "line" : s.shape || "circle", clip: 12,
   }));
@@ -187,7 +189,7 @@ function makeChart(spec, canvas) {
     options: {
       animation: false, parsing: false, normalized: true, maintainAspectRatio: false,
       interaction: { mode: scatter ? "nearest" : "index", intersect: false },
-      scales: { x: axis(spec.x), y: { ...axis(spec.y), bounds: "ticks", beginAtZero: !spec.y.log, ...(bars.length ? { suggestedMax: Math.max(...bars) } : {}) } },
+      scales: { x: { ...axis(spec.x), ...(stacked ? { offset: true } : {}) }, y: { ...axis(spec.y), stacked, bounds: "ticks", beginAtZero: !spec.y.log, ...(bars.length ? { suggestedMax: Math.max(...bars) } : {}) } },
       plugins: {
         legend: {
           display: hasLegend(spec), position: "bottom", maxHeight: room,

@@ -1,0 +1,267 @@
+#include "scenarios/profile/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <lrbscope/render/overlay.hpp>
+
+namespace lrb::profile {
+namespace {
+
+using render::group_digits;
+
+constexpr std::size_t kOwners = 10;
+
+std::uint64_t visits_in(const capture::Capture& capture) {
+  std::uint64_t out = 0;
+  for (const capture::Query& q : capture.queries)
+    out += static_cast<std::uint64_t>(
+        std::count_if(q.events.begin(), q.events.end(),
+                      [](const capture::Event& e) { return e.kind == capture::EventKind::nodes; }));
+  return out;
+}
+
+CheckSums sums_of(const CheckedQuery& q) {
+  CheckSums out;
+  out.queries = 1;
+  ++out.outcomes[static_cast<std::size_t>(q.verdict.outcome)];
+  out.exact_pairs = q.verdict.exact_pairs;
+  out.right = q.verdict.right;
+  out.missed = q.verdict.missed;
+  out.extra = q.verdict.extra;
+  out.undecidable = q.verdict.undecidable;
+  out.prices = q.prices;
+  return out;
+}
+
+/// Adds the lines about a query.
+void report(const QueryVerdict& v, const capture::Query& query, const capture::Capture& capture, Check& out) {
+  const std::string head = "query " + std::to_string(v.number) + ": ";
+  if (v.answer == Judgement::wrong) out.wrong.push_back(head + v.remark);
+  if (v.answer == Judgement::undecidable) out.undecidable.push_back(head + v.remark);
+  if (v.wrong.empty()) return;
+  const auto trees = CapturedBodies::trees_of(query).value();
+  for (const WrongPair& w : v.wrong)
+    (w.undecidable ? out.undecidable : out.wrong)
+        .push_back(head + sentence(w, capture.trees[trees[0]], capture.trees[trees[1]]));
+}
+
+std::string kind_words(capture::QueryKind kind) {
+  switch (kind) {
+    case capture::QueryKind::all_pairs:
+      return "all pairs";
+    case capture::QueryKind::any:
+      return "any";
+    case capture::QueryKind::distance:
+      return "distance";
+    case capture::QueryKind::first_contact:
+      return "first contact";
+    case capture::QueryKind::self:
+      return "self";
+  }
+  return {};
+}
+
+std::string percent(std::uint64_t part, std::uint64_t whole) {
+  if (whole == 0) return "-";
+  const double share = 100 * static_cast<double>(part) / static_cast<double>(whole);
+  return part > 0 && share < 0.5 ? "< 1 %" : std::to_string(std::lround(share)) + " %";
+}
+
+/// Calls row(engine, kind, sums) for each kind of query of each engine.
+template <class Row>
+void for_each_kind(std::span<const Check> checks, const Row& row) {
+  for (const Check& c : checks)
+    for (const auto& [kind, sums] : c.kinds) row(c.engine, kind_words(kind), sums);
+}
+
+report::Table owner_table(std::span<const Check> checks) {
+  report::Table t{"Pairs of nodes with the most waste beneath",
+                  {"engine", "node of A", "node of B", "wasted visits", "queries"}};
+  t.note =
+      "Nothing intersects beneath these pairs. Volumes that fit perfectly would end the descent there. "
+      "Nodes have the engine's numbers.";
+  for (const Check& c : checks)
+    for (std::size_t i = 0; i < c.owners.size(); ++i)
+      t.rows.push_back({c.engine, c.owner_names[i][0], c.owner_names[i][1], group_digits(c.owners[i].visits),
+                        group_digits(c.owners[i].queries)});
+  return t;
+}
+
+report::Table wrong_table(std::span<const Check> checks) {
+  constexpr std::size_t kMostRows = 50;
+  report::Table t{"Wrong and undecidable answers", {"engine", "verdict", "explanation"}};
+  for (const Check& c : checks)
+    for (const auto& [word, lines] : {std::pair{"wrong", &c.wrong}, {"undecidable", &c.undecidable}})
+      for (const std::string& line : *lines)
+        if (t.rows.size() < kMostRows) t.rows.push_back({c.engine, word, line});
+  if (t.rows.size() == kMostRows) t.note = "The first " + std::to_string(kMostRows) + ".";
+  return t;
+}
+
+/// The prices of a bar, from the bottom.
+constexpr std::size_t kBarParts = 5;
+constexpr const char* kBarNames[kBarParts] = {"needed", "proof", "volumes", "order", "not split"};
+
+report::Chart bars(const std::string& title, const std::string& x) {
+  report::Chart out{title, {x}, {"visits"}};
+  for (const char* name : kBarNames) out.series.push_back({name, {}, {}, {report::Line::bars}});
+  return out;
+}
+
+void add_bar(report::Chart& chart, double x, const std::array<std::uint64_t, kBarParts>& parts) {
+  for (std::size_t i = 0; i < kBarParts; ++i) {
+    chart.series[i].x.push_back(x);
+    chart.series[i].y.push_back(static_cast<double>(parts[i]));
+  }
+}
+
+/// Removes series that are 0 throughout.
+report::Chart without_empty(report::Chart chart) {
+  std::erase_if(chart.series, [](const report::Series& s) {
+    return std::all_of(s.y.begin(), s.y.end(), [](double y) { return y == 0; });
+  });
+  return chart;
+}
+
+report::Chart chart_by_query(const Check& c) {
+  constexpr std::size_t kMostBars = 400;
+  report::Chart out = bars("Prices by query, " + c.engine, "query");
+  // Longer captures show every n-th query.
+  const std::size_t every = 1 + c.queries.size() / kMostBars;
+  for (std::size_t i = 0; i < c.queries.size(); i += every) {
+    const Prices& p = c.queries[i].prices;
+    add_bar(out, c.queries[i].verdict.number, {p.needed, p.proof, p.volumes, p.order, p.unsplit});
+  }
+  if (every > 1) out.note = "One of " + std::to_string(every) + " queries.";
+  return without_empty(out);
+}
+
+report::Chart chart_by_depth(const Check& c) {
+  report::Chart out = bars("Prices by depth of the descent, " + c.engine, "pairs of nodes above");
+  out.series.resize(3);
+  out.series[2].label = "wasted: volumes or order";
+  for (std::size_t d = 0; d < c.by_depth.size(); ++d) {
+    const DepthPrices& p = c.by_depth[d];
+    const std::uint64_t parts[] = {p.needed, p.proof, p.wasted};
+    for (std::size_t i = 0; i < 3; ++i) {
+      out.series[i].x.push_back(static_cast<double>(d));
+      out.series[i].y.push_back(static_cast<double>(parts[i]));
+    }
+  }
+  return without_empty(out);
+}
+
+}  // namespace
+
+CheckSums& CheckSums::operator+=(const CheckSums& other) {
+  queries += other.queries;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += other.outcomes[i];
+  exact_pairs += other.exact_pairs;
+  right += other.right;
+  missed += other.missed;
+  extra += other.extra;
+  undecidable += other.undecidable;
+  prices += other.prices;
+  return *this;
+}
+
+CheckSums Check::sum() const {
+  CheckSums out;
+  for (const auto& [kind, sums] : kinds) out += sums;
+  return out;
+}
+
+Check check(const capture::Capture& capture, const CheckSettings& settings,
+            const run::ProgressReport& progress) {
+  Check out;
+  out.engine = capture.engine;
+  out.precision = settings.precision.value_or(precision_of(capture));
+  const bool split = settings.split.value_or(visits_in(capture) <= kMostVisitsToSplit);
+  CapturedBodies bodies(capture);
+  Checker checker(bodies, out.precision);
+  PriceBook book(bodies);
+  for (const capture::Query& query : capture.queries) {
+    const auto trees = CapturedBodies::trees_of(query);
+    const auto walk = trees ? std::make_unique<QueryWalk>(bodies, query, *trees) : nullptr;
+    CheckedQuery checked{checker.check(query, walk.get()), {}};
+    checked.prices = book.add(query, walk.get(), checked.verdict.exact, split);
+    checked.verdict.exact = {};
+    report(checked.verdict, query, capture, out);
+    out.kinds[query.kind] += sums_of(checked);
+    out.queries.push_back(std::move(checked));
+    progress("check", out.queries.size(), capture.queries.size());
+  }
+  out.by_depth = book.by_depth();
+  out.owners = book.worst_owners(kOwners);
+  for (const OwnerWaste& o : out.owners)
+    out.owner_names.push_back({std::to_string(capture.trees[o.trees[0]].id_of(o.nodes[0])),
+                               std::to_string(capture.trees[o.trees[1]].id_of(o.nodes[1]))});
+  return out;
+}
+
+report::Table price_table(std::span<const Check> checks) {
+  report::Table t{"What the visits were good for",
+                  {"engine", "queries", "visits", "needed", "proof", "volumes", "order"}};
+  const bool unsplit =
+      std::any_of(checks.begin(), checks.end(), [](const Check& c) { return c.sum().prices.unsplit > 0; });
+  const bool unattributed = std::any_of(checks.begin(), checks.end(),
+                                        [](const Check& c) { return c.sum().prices.unattributed > 0; });
+  if (unsplit) t.columns.emplace_back("volumes or order");
+  if (unattributed) t.columns.emplace_back("unattributed");
+  for (const char* column : {"volume tests", "triangle tests", "for nothing"}) t.columns.emplace_back(column);
+  for_each_kind(checks, [&](const std::string& engine, const std::string& kind, const CheckSums& sums) {
+    const Prices& p = sums.prices;
+    std::vector<std::string> row{engine, group_digits(sums.queries) + " " + kind, group_digits(p.visits)};
+    for (const std::uint64_t part : {p.needed, p.proof, p.volumes, p.order})
+      row.push_back(percent(part, p.visits));
+    if (unsplit) row.push_back(percent(p.unsplit, p.visits));
+    if (unattributed) row.push_back(percent(p.unattributed, p.visits));
+    row.push_back(group_digits(p.volume_tests));
+    row.push_back(group_digits(p.triangle_tests));
+    row.push_back(percent(p.triangle_tests_for_nothing, p.triangle_tests));
+    t.rows.push_back(std::move(row));
+  });
+  t.note =
+      "Needed: triangles intersect beneath. Proof: the first pair of nodes beneath which none do. Volumes: "
+      "visits beneath such pairs that no order of descent avoids with these volumes. Order: the rest.";
+  return t;
+}
+
+report::Table verdict_table(std::span<const Check> checks) {
+  report::Table t{"Verdicts",
+                  {"engine", "queries", "right", "undecidable", "wrong", "unchecked", "pairs of triangles",
+                   "found", "undecidable pairs", "missed", "false"}};
+  for_each_kind(checks, [&](const std::string& engine, const std::string& kind, const CheckSums& s) {
+    const auto queries = [&](Judgement o) { return group_digits(s.outcomes[static_cast<std::size_t>(o)]); };
+    t.rows.push_back({engine, group_digits(s.queries) + " " + kind, queries(Judgement::right),
+                      queries(Judgement::undecidable), queries(Judgement::wrong),
+                      queries(Judgement::unchecked), group_digits(s.exact_pairs), group_digits(s.right),
+                      group_digits(s.undecidable), group_digits(s.missed), group_digits(s.extra)});
+  });
+  t.note =
+      "Compared with the exact query on the captured meshes. Undecidable: the triangles are closer to contact "
+      "than the error of a test in floating point.";
+  return t;
+}
+
+void add_checks(report::Document& page, std::span<const Check> checks) {
+  for (const Check& c : checks) page.text({"Advice for " + c.engine, advice(c.sum().prices)});
+  for (const Check& c : checks) {
+    const CheckSums sum = c.sum();
+    page.number({"Wrong queries of " + c.engine,
+                 group_digits(sum.outcomes[static_cast<std::size_t>(Judgement::wrong)]),
+                 "of " + group_digits(sum.queries)});
+  }
+  for (const Check& c : checks) {
+    page.chart(chart_by_query(c));
+    page.chart(chart_by_depth(c));
+  }
+  page.table(price_table(checks));
+  page.table(verdict_table(checks));
+  if (const report::Table t = wrong_table(checks); !t.rows.empty()) page.table(t);
+  if (const report::Table t = owner_table(checks); !t.rows.empty()) page.table(t);
+}
+
+}  // namespace lrb::profile

@@ -1,0 +1,71 @@
+#pragma once
+/// A whole capture checked: the verdicts and prices of its queries, added up, as text, tables and charts.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/profile/prices.hpp"
+#include "scenarios/profile/verdicts.hpp"
+#include "scenarios/record/recorded_run.hpp"
+#include "scenarios/report/document.hpp"
+#include <lrbscope/trace/capture.hpp>
+
+namespace lrb::profile {
+
+/// Captures with at most this many visits are split into volumes and order unless CheckSettings::split
+/// decides otherwise: that takes about 1 to 5 microseconds a visit and the same for each pair that it would
+/// save.
+inline constexpr std::uint64_t kMostVisitsToSplit = 2'000'000;
+
+struct CheckSettings {
+  std::optional<Precision> precision;  ///< nullopt: precision_of()
+  std::optional<bool> split;           ///< nullopt: for at most kMostVisitsToSplit visits
+};
+
+struct CheckedQuery {
+  QueryVerdict verdict;  ///< without the list `exact`
+  Prices prices;
+};
+
+/// Sums over queries of one kind.
+struct CheckSums {
+  std::uint64_t queries = 0;
+  std::array<std::uint64_t, kWords<Judgement>.size()> outcomes{};  ///< number of queries, by Judgement
+  std::uint64_t exact_pairs = 0, right = 0, missed = 0, extra = 0, undecidable = 0;  ///< pairs of triangles
+  Prices prices;
+
+  CheckSums& operator+=(const CheckSums& other);
+};
+
+struct Check {
+  std::string engine;
+  Precision precision = Precision::float64;
+  std::vector<CheckedQuery> queries;
+  std::map<capture::QueryKind, CheckSums> kinds;
+  std::vector<DepthPrices> by_depth;
+  std::vector<OwnerWaste> owners;                       ///< the ten worst
+  std::vector<std::array<std::string, 2>> owner_names;  ///< (|owners|) nodes by the engine's numbers
+  std::vector<std::string> wrong;        ///< a line for each wrong pair or answer that was kept
+  std::vector<std::string> undecidable;  ///< the same, for those within the error bound
+
+  CheckSums sum() const;
+  /// Returns true if an answer is wrong beyond the error bound.
+  bool is_wrong() const { return sum().outcomes[static_cast<std::size_t>(Judgement::wrong)] > 0; }
+};
+
+/// Checks all queries of a capture. Throws InputError for meshes and poses that cannot be queried.
+Check check(const capture::Capture& capture, const CheckSettings& settings,
+            const run::ProgressReport& progress = run::kSilent);
+
+/// Returns the prices by engine and kind of query, in percent of the visits.
+report::Table price_table(std::span<const Check> checks);
+/// Returns the verdicts by engine and kind of query.
+report::Table verdict_table(std::span<const Check> checks);
+/// Adds verdicts, prices, advice, and the charts of prices by query and by depth to a page.
+void add_checks(report::Document& page, std::span<const Check> checks);
+
+}  // namespace lrb::profile

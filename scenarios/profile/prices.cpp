@@ -1,0 +1,248 @@
+#include "scenarios/profile/prices.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scenarios/profile/least_visits.hpp"
+#include <lrbscope/render/overlay.hpp>
+
+namespace lrb::profile {
+namespace {
+
+using capture::Event;
+using capture::EventKind;
+using capture::QueryKind;
+
+/// Counts the tests, whatever they are good for.
+void count_tests(const capture::Query& query, Prices& out) {
+  for (const Event& e : query.events) {
+    if (e.kind == EventKind::nodes) ++out.visits, out.volume_tests += e.tests;
+    if (e.kind == EventKind::triangles) ++out.triangle_tests;
+  }
+}
+
+bool is_exact(const QueryWalk& walk, std::span<const TrianglePair> exact, const Event& e) {
+  TrianglePair pair{e.a, e.b};
+  if (walk.query().kind == QueryKind::self && pair.a > pair.b) std::swap(pair.a, pair.b);
+  return std::binary_search(exact.begin(), exact.end(), pair);
+}
+
+/// Returns the intersecting pairs that a query of kind any found; none for other kinds.
+std::vector<TrianglePair> found_early(const QueryWalk& walk, std::span<const TrianglePair> exact) {
+  std::vector<TrianglePair> found;
+  if (walk.query().kind == QueryKind::any)
+    for (const Event& e : walk.query().events)
+      if (e.kind == EventKind::triangles && e.met > 0 && is_exact(walk, exact, e))
+        found.push_back({e.a, e.b});
+  return found;
+}
+
+/// Returns true if a query descended until nothing was left, and its events tell of all that.
+bool is_exhaustive(const capture::Query& query) {
+  return query.complete() && (query.kind == QueryKind::all_pairs ||
+                              (query.kind == QueryKind::any && query.verdict == capture::Verdict::separate));
+}
+
+}  // namespace
+
+Prices& Prices::operator+=(const Prices& other) {
+  visits += other.visits;
+  needed += other.needed;
+  proof += other.proof;
+  volumes += other.volumes;
+  order += other.order;
+  unsplit += other.unsplit;
+  unattributed += other.unattributed;
+  volume_tests += other.volume_tests;
+  triangle_tests += other.triangle_tests;
+  triangle_tests_for_nothing += other.triangle_tests_for_nothing;
+  crowded_tests += other.crowded_tests;
+  for (std::size_t i = 0; i < saved_by_leaves.size(); ++i) saved_by_leaves[i] += other.saved_by_leaves[i];
+  return *this;
+}
+
+Prices PriceBook::add(const capture::Query& query, const QueryWalk* walk, std::span<const TrianglePair> exact,
+                      bool split) {
+  Prices out;
+  count_tests(query, out);
+  const bool has_prices = walk != nullptr && (query.kind == QueryKind::all_pairs ||
+                                              query.kind == QueryKind::any || query.kind == QueryKind::self);
+  if (!has_prices) {
+    out.unattributed = out.visits;
+    return out;
+  }
+  const std::vector<TrianglePair> found = found_early(*walk, exact);
+  const bool one_is_enough = !found.empty();
+  price_visits(*walk, one_is_enough ? std::span<const TrianglePair>(found) : exact, one_is_enough, out);
+  price_leaves(*walk, out);
+  for (const Event& e : query.events)
+    if (e.kind == EventKind::triangles && !is_exact(*walk, exact, e)) {
+      ++out.triangle_tests_for_nothing;
+      const std::uint32_t a = walk->index(0).leaf[e.a], b = walk->index(1).leaf[e.b];
+      if (a == kNull || b == kNull) continue;
+      const std::uint64_t pairs =
+          std::uint64_t{walk->index(0).triangles_below[a]} * walk->index(1).triangles_below[b];
+      out.crowded_tests += pairs > 1;
+    }
+  const std::uint64_t wasted = std::exchange(out.unsplit, 0);
+  if (one_is_enough) {
+    out.order = wasted;
+  } else if (wasted > 0 && split && is_exhaustive(query)) {
+    if (const auto least = least_visits(bodies_, *walk)) {
+      const std::uint64_t certain = out.needed + out.proof;
+      out.volumes = std::min(*least > certain ? *least - certain : 0, wasted);
+      out.order = wasted - out.volumes;
+    } else {
+      out.unsplit = wasted;
+    }
+  } else {
+    out.unsplit = wasted;
+  }
+  return out;
+}
+
+void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair> goals, bool one_is_enough,
+                             Prices& out) {
+  constexpr std::uint32_t kNone = QueryWalk::kNone;
+  const std::vector<Event>& events = walk.query().events;
+  // Needed: the visits above a pair of triangles, from the deepest upward until one that is marked already.
+  std::vector<char> needed(events.size(), 0);
+  for (const TrianglePair& pair : goals)
+    for (std::uint32_t i = walk.deepest_above(pair); i != kNone && !needed[i]; i = walk.parent(i))
+      needed[i] = 1;
+  // Parents come first, so that their owners are known.
+  std::vector<std::uint32_t> owner(events.size(), kNone);  // the pair of proof at or above a visit
+  std::vector<std::uint32_t> depth(events.size(), 0);
+  std::vector<char> attached(events.size(), 0), wasted(events.size(), 0);
+  std::uint64_t known = 0;
+  for (const std::uint32_t i : walk.from_root()) {
+    const Event& e = events[i];
+    const std::uint32_t up = walk.parent(i);
+    attached[i] = up == kNone ? walk.is_start(i) : attached[up];
+    if (!attached[i]) continue;
+    ++known;
+    depth[i] = up == kNone ? 0 : depth[up] + 1;
+    if (depth[i] >= by_depth_.size()) by_depth_.resize(depth[i] + 1);
+    const std::uint32_t first = walk.first_visit(i);
+    const bool repeated = first != i;
+    if (needed[i] && !repeated) {
+      ++out.needed;
+      ++by_depth_[depth[i]].needed;
+      continue;
+    }
+    const bool below_needed = up == kNone || needed[up];
+    owner[i] = below_needed ? first : owner[up];
+    if (below_needed && !repeated && !one_is_enough) {
+      ++out.proof;
+      ++by_depth_[depth[i]].proof;
+      continue;
+    }
+    wasted[i] = 1;
+    ++out.unsplit;
+    ++by_depth_[depth[i]].wasted;
+    const std::uint32_t nodes[] = {e.a, e.b};
+    for (std::size_t side = 0; side < 2; ++side) {
+      std::vector<double>& waste = waste_of_nodes_[walk.trees()[side]];
+      waste.resize(walk.index(side).parent.size());
+      waste[nodes[side]] += 0.5;
+    }
+  }
+  out.unattributed = out.visits - known;
+  // Waste by owner.
+  std::map<std::uint32_t, std::uint64_t> beneath;
+  for (const std::uint32_t i : walk.from_root())
+    if (wasted[i]) ++beneath[owner[i]];
+  for (const auto& [i, visits] : beneath) {
+    OwnerWaste& o = owners_[{walk.trees()[0], walk.trees()[1], events[i].a, events[i].b}];
+    o.trees = walk.trees();
+    o.nodes = {events[i].a, events[i].b};
+    o.visits += visits;
+    ++o.queries;
+  }
+}
+
+/// Estimates what larger leaves would save.
+void PriceBook::price_leaves(const QueryWalk& walk, Prices& out) {
+  constexpr std::uint32_t kNone = QueryWalk::kNone;
+  const std::vector<Event>& events = walk.query().events;
+  // The visits and tests of triangles beneath each visit, from the leaves upward.
+  std::vector<std::uint64_t> beneath(events.size(), 0);
+  for (std::size_t i = 0; i < events.size(); ++i)
+    if (events[i].kind == EventKind::triangles && walk.parent(i) != kNone) ++beneath[walk.parent(i)];
+  const std::vector<std::uint32_t>& order = walk.from_root();
+  for (std::size_t k = order.size(); k-- > 0;)
+    if (const std::uint32_t up = walk.parent(order[k]); up != kNone) beneath[up] += 1 + beneath[order[k]];
+  for (std::size_t s = 0; s < kLargerLeaves.size(); ++s) {
+    const auto would_be_leaves = [&](std::uint32_t i) {
+      return walk.index(0).triangles_below[events[i].a] <= kLargerLeaves[s] &&
+             walk.index(1).triangles_below[events[i].b] <= kLargerLeaves[s];
+    };
+    for (const std::uint32_t i : order) {
+      const std::uint32_t up = walk.parent(i);
+      if (events[i].met == 0 || !would_be_leaves(i) || (up != kNone && would_be_leaves(up))) continue;
+      const std::uint64_t tests = std::uint64_t{walk.index(0).triangles_below[events[i].a]} *
+                                  walk.index(1).triangles_below[events[i].b];
+      out.saved_by_leaves[s] += static_cast<std::int64_t>(beneath[i]) - static_cast<std::int64_t>(tests);
+    }
+  }
+}
+
+std::vector<OwnerWaste> PriceBook::worst_owners(std::size_t most) const {
+  std::vector<OwnerWaste> out;
+  for (const auto& [key, waste] : owners_) out.push_back(waste);
+  std::stable_sort(out.begin(), out.end(),
+                   [](const OwnerWaste& x, const OwnerWaste& y) { return x.visits > y.visits; });
+  if (out.size() > most) out.resize(most);
+  return out;
+}
+
+std::vector<double> PriceBook::waste_by_triangle(std::uint32_t tree) {
+  const TreeIndex& index = bodies_.index(tree);
+  std::vector<double> out(index.leaf.size(), 0);
+  const auto found = waste_of_nodes_.find(tree);
+  if (found == waste_of_nodes_.end()) return out;
+  // The share of each triangle below a node, as a sum from the root.
+  std::vector<double> share(index.parent.size(), 0);
+  for (const std::uint32_t n : index.from_root) {
+    if (index.triangles_below[n] == 0) continue;
+    share[n] = found->second[n] / index.triangles_below[n];
+    if (index.parent[n] != kNull) share[n] += share[index.parent[n]];
+    for (const std::uint32_t t : bodies_.tree(tree).triangles(n))
+      if (t < out.size()) out[t] += share[n];
+  }
+  return out;
+}
+
+std::string advice(const Prices& sum) {
+  const std::uint64_t tests = sum.visits + sum.triangle_tests;
+  if (tests == 0) return "No tests were recorded.";
+  struct Gain {
+    double tests;
+    std::string change;
+  };
+  std::vector<Gain> gains;
+  if (sum.unsplit > sum.volumes + sum.order)
+    gains.push_back({static_cast<double>(sum.unsplit), "tighter volumes or another order of descent"});
+  else
+    gains = {{static_cast<double>(sum.order), "another order of descent"},
+             {static_cast<double>(sum.volumes), "tighter volumes"}};
+  gains.push_back({static_cast<double>(sum.crowded_tests), "smaller leaves"});
+  const auto best = std::max_element(sum.saved_by_leaves.begin(), sum.saved_by_leaves.end());
+  gains.push_back(
+      {static_cast<double>(*best),
+       "leaves of up to " +
+           std::to_string(kLargerLeaves[static_cast<std::size_t>(best - sum.saved_by_leaves.begin())]) +
+           " triangles"});
+  std::stable_sort(gains.begin(), gains.end(),
+                   [](const Gain& x, const Gain& y) { return x.tests > y.tests; });
+  const auto share = [&](const Gain& gain) {
+    const double percent = 100 * gain.tests / static_cast<double>(tests);
+    return std::to_string(std::max(0L, std::lround(percent))) + " %";
+  };
+  return "Most to gain: " + gains[0].change + ", at most " + share(gains[0]) + " of " +
+         render::group_digits(tests) + " tests of volumes and triangles; next: " + gains[1].change +
+         ", at most " + share(gains[1]) + ".";
+}
+
+}  // namespace lrb::profile

@@ -1,0 +1,106 @@
+#pragma once
+/// The price of each visit of a captured query: what it was good for.
+///
+/// A visit is a test of two nodes' volumes (of wide nodes: the comparison of all their children, which counts
+/// once), and has one of these prices:
+/// - needed: two intersecting triangles lie beneath the nodes. Any descent of these trees visits such pairs.
+/// - proof: the first pair beneath a needed one beneath which nothing intersects. Volumes that fit perfectly
+///   would end the descent here. Together with the needed visits it is a proof of the answer.
+/// - volumes: visits beneath a pair of proof that no order of descent avoids with these volumes:
+///   least_visits() less the needed visits and those of proof.
+/// - order: the rest of the visits beneath a pair of proof. Another choice of the node to open, or none at
+/// all
+///   if the visit is a repetition, would have saved them. The choice is that of an oracle: this is a bound.
+/// - unsplit: volumes and order together, where least_visits() was not asked for or has no answer.
+/// - unattributed: the visit does not descend from a start (QueryWalk::is_start()).
+///   All visits of queries of distance and first contact, whose tests have another meaning, and of queries
+///   with a side without a tree.
+///
+/// A query of kind any that found an intersection needs the visits above the pairs that it found, and nothing
+/// else: all other visits are of order. An oracle would go straight to a pair.
+///
+/// Tests of triangles are counted beside the visits: those for nothing are of triangles that do not
+/// intersect.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/profile/query_walk.hpp"
+
+namespace lrb::profile {
+
+/// Sizes of larger leaves that Prices::saved_by_leaves is about.
+inline constexpr std::array<std::uint32_t, 3> kLargerLeaves{2, 4, 8};
+
+struct Prices {
+  std::uint64_t visits = 0;  ///< the sum of the following six
+  std::uint64_t needed = 0, proof = 0, volumes = 0, order = 0, unsplit = 0, unattributed = 0;
+  std::uint64_t volume_tests = 0;  ///< of all visits; more than visits for wide nodes
+  std::uint64_t triangle_tests = 0, triangle_tests_for_nothing = 0;
+  /// Of those for nothing: tests in a pair of leaves with more than one pair of triangles, which smaller
+  /// leaves might save.
+  std::uint64_t crowded_tests = 0;
+  /// An estimate of the visits and tests of triangles that leaves of up to kLargerLeaves triangles would
+  /// save: for each first visited pair of nodes of that size whose volumes overlap, the visits and tests
+  /// beneath it, less the tests of all its pairs of triangles.
+  std::array<std::int64_t, kLargerLeaves.size()> saved_by_leaves{};
+
+  std::uint64_t wasted() const { return volumes + order + unsplit; }
+  Prices& operator+=(const Prices& other);
+  friend bool operator==(const Prices&, const Prices&) = default;
+};
+
+/// The visits of one depth of the descent; 0: the roots.
+struct DepthPrices {
+  std::uint64_t needed = 0, proof = 0, wasted = 0;
+  friend bool operator==(const DepthPrices&, const DepthPrices&) = default;
+};
+
+/// The waste beneath a pair of nodes that is a proof.
+struct OwnerWaste {
+  std::array<std::uint32_t, 2> trees{};  ///< indices in Capture::trees
+  std::array<std::uint32_t, 2> nodes{};  ///< numbers in these trees
+  std::uint64_t visits = 0;              ///< wasted, over all queries
+  std::uint64_t queries = 0;             ///< with waste beneath the pair
+};
+
+/// Prices of queries, added up.
+class PriceBook {
+ public:
+  /// `bodies` must outlive this object.
+  explicit PriceBook(CapturedBodies& bodies) : bodies_(bodies) {}
+
+  /// Prices a query, and adds it to the sums. `walk`: of the query; nullptr for a side without a tree.
+  /// `exact`: the intersecting pairs of triangles, ascending. `split`: search for the least number of visits,
+  /// which takes longer than all the rest.
+  Prices add(const capture::Query& query, const QueryWalk* walk, std::span<const TrianglePair> exact,
+             bool split);
+
+  const std::vector<DepthPrices>& by_depth() const { return by_depth_; }
+  /// Returns the pairs with most waste, the worst first.
+  std::vector<OwnerWaste> worst_owners(std::size_t most) const;
+  /// Returns the waste by triangle of a tree's mesh. Half of each wasted visit goes to either node, and is
+  /// shared evenly by the triangles beneath. The sum over all trees is the number of wasted visits.
+  std::vector<double> waste_by_triangle(std::uint32_t tree);
+
+ private:
+  /// `goals`: the pairs of triangles that the descent has to come to.
+  void price_visits(const QueryWalk& walk, std::span<const TrianglePair> goals, bool one_is_enough,
+                    Prices& out);
+  void price_leaves(const QueryWalk& walk, Prices& out);
+
+  CapturedBodies& bodies_;
+  std::vector<DepthPrices> by_depth_;
+  std::map<std::array<std::uint32_t, 4>, OwnerWaste> owners_;    ///< by trees and nodes
+  std::map<std::uint32_t, std::vector<double>> waste_of_nodes_;  ///< by tree
+};
+
+/// Returns a sentence that says which change would save most of the tests of volumes and triangles, each
+/// counted as one, and at most what share; and which comes next.
+std::string advice(const Prices& sum);
+
+}  // namespace lrb::profile

@@ -1,0 +1,126 @@
+#include "scenarios/profile/query_walk.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "scenarios/profile/captured_run.hpp"
+
+namespace lrb::profile {
+
+CapturedBodies::CapturedBodies(const capture::Capture& capture)
+    : capture_(&capture),
+      bodies_(capture.meshes.size()),
+      indices_(capture.trees.size()),
+      volumes_(capture.trees.size()) {}
+
+const LrbRep* CapturedBodies::body(std::uint32_t mesh) {
+  const capture::Mesh& m = capture_->meshes[mesh];
+  if (m.triangles.empty()) return nullptr;
+  if (!bodies_[mesh]) bodies_[mesh] = std::make_unique<bodies::LoadedBody>(captured_body(m));
+  return &bodies_[mesh]->rep;
+}
+
+const TreeIndex& CapturedBodies::index(std::uint32_t tree) {
+  if (!indices_[tree])
+    indices_[tree] = std::make_unique<TreeIndex>(capture_->trees[tree], mesh_of(tree).triangles.size());
+  return *indices_[tree];
+}
+
+const Volumes& CapturedBodies::volumes(std::uint32_t tree) {
+  if (!volumes_[tree]) volumes_[tree] = std::make_unique<Volumes>(capture_->trees[tree]);
+  return *volumes_[tree];
+}
+
+std::optional<std::array<std::uint32_t, 2>> CapturedBodies::trees_of(const capture::Query& query) {
+  std::array<std::uint32_t, 2> out = query.trees;
+  if (query.kind == capture::QueryKind::self && out[1] == kNull) out[1] = out[0];
+  if (out[0] == kNull || out[1] == kNull) return std::nullopt;
+  return out;
+}
+
+QueryWalk::QueryWalk(CapturedBodies& bodies, const capture::Query& query,
+                     const std::array<std::uint32_t, 2>& trees)
+    : query_(&query), trees_(trees), index_{&bodies.index(trees[0]), &bodies.index(trees[1])} {
+  Descent descent(*index_[0], *index_[1]);
+  visits_ = descent.visits_of(query.events);
+  for (std::uint32_t i = 0; i < query.events.size(); ++i) {
+    const capture::Event& e = query.events[i];
+    if (e.kind != capture::EventKind::nodes) continue;
+    ++visit_count_;
+    wide_ = wide_ || e.tests > 1;
+    first_.insert(e.a, e.b, i);
+    if (depth_of(i) != kNone) order_.push_back(i);
+  }
+  visits_roots_ = visit_of(0, 0) != kNone;
+  // Of repeated visits the first one is the parent.
+  parent_.assign(visits_.size(), kNone);
+  for (std::size_t i = 0; i < visits_.size(); ++i)
+    if (visits_[i].parent != Visit::kNone) parent_[i] = first_visit(visits_[i].parent);
+  link_strays();
+  // A parent's nodes are less deep by at least one level in total.
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](std::uint32_t x, std::uint32_t y) { return depth_of(x) < depth_of(y); });
+}
+
+/// Links visits whose parents come later in the list of events, as those of another thread may.
+void QueryWalk::link_strays() {
+  for (const std::uint32_t i : order_) {
+    if (parent_[i] != kNone || visit_of(0, 0) == i) continue;
+    const capture::Event& e = query_->events[i];
+    const std::uint32_t up_a = index_[0]->parent[e.a], up_b = index_[1]->parent[e.b];
+    const struct {
+      std::uint32_t a, b;
+      NodeStep step;
+    } above[] = {{up_a, e.b, NodeStep::descend_a},
+                 {e.a, up_b, NodeStep::descend_b},
+                 {up_a, up_b, NodeStep::descend_both}};
+    for (const auto& pair : above) {
+      if (pair.a == kNull || pair.b == kNull) continue;
+      const std::uint32_t from = visit_of(pair.a, pair.b);
+      if (from == kNone || visits_[from].step.value_or(pair.step) != pair.step) continue;
+      parent_[i] = from;
+      visits_[from].step = pair.step;
+      visits_[from].children += visits_[from].children < std::numeric_limits<std::uint8_t>::max();
+      break;
+    }
+  }
+}
+
+bool QueryWalk::is_start(std::size_t event) const {
+  const capture::Event& e = query_->events[event];
+  const std::uint32_t a = index_[0]->depth[e.a], b = index_[1]->depth[e.b];
+  return visits_roots_ ? a == 0 && b == 0 : parent_[event] == kNone && a <= 1 && b <= 1;
+}
+
+std::uint32_t QueryWalk::depth_of(std::size_t event) const {
+  const capture::Event& e = query_->events[event];
+  const std::uint32_t a = index_[0]->depth[e.a], b = index_[1]->depth[e.b];
+  return a == kNull || b == kNull ? kNone : a + b;
+}
+
+std::uint32_t QueryWalk::deepest_above(const TrianglePair& pair) const {
+  const std::uint32_t found = deepest_above(pair.a, pair.b);
+  if (query_->kind != capture::QueryKind::self) return found;
+  // A query of one tree may visit the pair in either order.
+  const std::uint32_t turned = deepest_above(pair.b, pair.a);
+  if (found == kNone || turned == kNone) return found == kNone ? turned : found;
+  return depth_of(turned) > depth_of(found) ? turned : found;
+}
+
+std::uint32_t QueryWalk::deepest_above(std::uint32_t a, std::uint32_t b) const {
+  const std::uint32_t leaf_a = index_[0]->leaf[a], leaf_b = index_[1]->leaf[b];
+  if (leaf_a == kNull || leaf_b == kNull) return kNone;
+  if (const std::uint32_t leaves = visit_of(leaf_a, leaf_b); leaves != kNone) return leaves;
+  std::uint32_t best = kNone, best_depth = 0;
+  for (std::uint32_t x = leaf_a; x != kNull; x = index_[0]->parent[x])
+    for (std::uint32_t y = leaf_b; y != kNull; y = index_[1]->parent[y]) {
+      const std::uint32_t visit = visit_of(x, y);
+      if (visit == kNone) continue;
+      const std::uint32_t depth = depth_of(visit);
+      if (best == kNone || depth > best_depth) best = visit, best_depth = depth;
+      break;  // pairs with the same x are less deep
+    }
+  return best;
+}
+
+}  // namespace lrb::profile

@@ -1,0 +1,111 @@
+#pragma once
+/// A captured query with what its analysis needs: the bodies and trees of its capture, and its visits linked
+/// to one another.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/profile/pair_map.hpp"
+#include "scenarios/profile/volumes.hpp"
+#include "scenarios/profile/walk.hpp"
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/trace/capture.hpp>
+
+namespace lrb::profile {
+
+/// Triangles of two meshes by the capture's numbers, or of one: then a < b.
+struct TrianglePair {
+  std::uint32_t a = 0, b = 0;
+  friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
+};
+
+/// The meshes and trees of a capture, prepared on first use. The capture must outlive this object.
+class CapturedBodies {
+ public:
+  explicit CapturedBodies(const capture::Capture& capture);
+
+  const capture::Capture& capture() const { return *capture_; }
+  /// Returns captured_body() of a mesh, whose simplices are the mesh's triangles under their own numbers;
+  /// nullptr if the mesh has no triangles.
+  const LrbRep* body(std::uint32_t mesh);
+  const TreeIndex& index(std::uint32_t tree);
+  const Volumes& volumes(std::uint32_t tree);
+  const capture::Tree& tree(std::uint32_t tree) const { return capture_->trees[tree]; }
+  const capture::Mesh& mesh_of(std::uint32_t tree) const {
+    return capture_->meshes[capture_->trees[tree].mesh];
+  }
+
+  /// Returns the trees of both sides, which are the same for a self query; nullopt if a side has none.
+  static std::optional<std::array<std::uint32_t, 2>> trees_of(const capture::Query& query);
+
+ private:
+  const capture::Capture* capture_;
+  std::vector<std::unique_ptr<bodies::LoadedBody>> bodies_;  ///< by mesh
+  std::vector<std::unique_ptr<TreeIndex>> indices_;
+  std::vector<std::unique_ptr<Volumes>> volumes_;
+};
+
+/// The visits of a query: its tests of nodes, each with the one that led to it.
+class QueryWalk {
+ public:
+  static constexpr std::uint32_t kNone = kNull;
+
+  /// `trees`: as returned by CapturedBodies::trees_of(). The arguments must outlive this object.
+  QueryWalk(CapturedBodies& bodies, const capture::Query& query, const std::array<std::uint32_t, 2>& trees);
+
+  const capture::Query& query() const { return *query_; }
+  const std::array<std::uint32_t, 2>& trees() const { return trees_; }
+  const TreeIndex& index(std::size_t side) const { return *index_[side]; }
+
+  /// Returns the visit, the index of an event, that led to an event; kNone: the first pair, or unknown.
+  /// Parents are first visits.
+  std::uint32_t parent(std::size_t event) const { return parent_[event]; }
+  /// Returns how the engine continued from a visit; nullopt: it did not.
+  std::optional<NodeStep> step(std::size_t event) const { return visits_[event].step; }
+  /// Returns the number of pairs visited from a visit; saturates at 255.
+  std::uint8_t children(std::size_t event) const { return visits_[event].children; }
+  /// Returns the first visit of two nodes, or kNone if there is none.
+  std::uint32_t visit_of(std::uint32_t a, std::uint32_t b) const {
+    const std::uint32_t* const found = first_.find(a, b);
+    return found == nullptr ? kNone : *found;
+  }
+  /// Returns the first visit of the same two nodes: the event itself unless it repeats one.
+  std::uint32_t first_visit(std::size_t event) const {
+    return *first_.find(query_->events[event].a, query_->events[event].b);
+  }
+  /// The visits of nodes that hang under the roots of their trees, parents before children.
+  const std::vector<std::uint32_t>& from_root() const { return order_; }
+  /// Returns the number of visits of nodes.
+  std::uint64_t visits() const { return visit_count_; }
+  /// Returns true if the descent begins with this visit: that of both roots, or if these were not tested, one
+  /// of two nodes that are each a root or its child.
+  bool is_start(std::size_t event) const;
+  /// Returns the deepest visited pair of nodes above two triangles, or kNone if there is none.
+  std::uint32_t deepest_above(const TrianglePair& pair) const;
+  /// Returns true if a test compares more than one pair of volumes: then a visit of two nodes compares the
+  /// volumes of their children, and only pairs whose volumes overlap are visited.
+  bool wide() const { return wide_; }
+
+ private:
+  void link_strays();
+  std::uint32_t deepest_above(std::uint32_t a, std::uint32_t b) const;
+  /// Returns the depths of an event's nodes added up; kNone: one does not hang under its root.
+  std::uint32_t depth_of(std::size_t event) const;
+
+  const capture::Query* query_;
+  std::array<std::uint32_t, 2> trees_;
+  std::array<const TreeIndex*, 2> index_;
+  std::vector<Visit> visits_;
+  std::vector<std::uint32_t> parent_;
+  std::vector<std::uint32_t> order_;
+  PairMap first_;
+  std::uint64_t visit_count_ = 0;
+  bool wide_ = false, visits_roots_ = false;
+};
+
+}  // namespace lrb::profile

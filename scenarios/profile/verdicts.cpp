@@ -1,0 +1,398 @@
+#include "scenarios/profile/verdicts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "engine/exact/pair_distance.hpp"
+#include <lrbscope/core/strings.hpp>
+#include <lrbscope/distance.hpp>
+
+namespace lrb::profile {
+namespace {
+
+using capture::Event;
+using capture::EventKind;
+using capture::Query;
+using capture::QueryKind;
+using capture::Verdict;
+
+double ulp_of(Precision precision) {
+  return precision == Precision::float32 ? double{std::numeric_limits<float>::epsilon()}
+                                         : std::numeric_limits<double>::epsilon();
+}
+
+/// Returns the largest term in the world coordinates of a point.
+double largest_term(const Pose& pose, const Eigen::Vector3d& x) {
+  return (pose.r.cwiseAbs() * x.cwiseAbs() + pose.t.cwiseAbs()).maxCoeff();
+}
+
+Triangle triangle_of(const capture::Mesh& mesh, std::uint32_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
+
+Triangle moved(const Triangle& t, const Pose& pose) {
+  return {pose.apply(t[0]), pose.apply(t[1]), pose.apply(t[2])};
+}
+
+/// Returns the gap of two disjoint triangles, rounded down.
+double gap_of(const Triangle& a, const Triangle& b) {
+  const double* const pa[] = {a[0].data(), a[1].data(), a[2].data()};
+  const double* const pb[] = {b[0].data(), b[1].data(), b[2].data()};
+  return exact::distance_of_simplices(pa, pb, 3).lower;
+}
+
+bool share_a_vertex(const capture::Mesh& mesh, const TrianglePair& pair) {
+  const auto &s = mesh.triangles[pair.a], &t = mesh.triangles[pair.b];
+  return std::any_of(s.begin(), s.end(),
+                     [&](std::uint32_t v) { return std::find(t.begin(), t.end(), v) != t.end(); });
+}
+
+/// The pairs whose test the engine recorded, ascending.
+struct Tested {
+  std::vector<TrianglePair> met;
+  std::vector<TrianglePair> disjoint;  ///< and not met in another test
+};
+
+bool contains(const std::vector<TrianglePair>& ascending, const TrianglePair& pair) {
+  return std::binary_search(ascending.begin(), ascending.end(), pair);
+}
+
+void sort_once(std::vector<TrianglePair>& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
+Tested tested_pairs(const Query& query, const capture::Mesh& mesh_a) {
+  Tested out;
+  for (const Event& e : query.events) {
+    if (e.kind != EventKind::triangles) continue;
+    TrianglePair pair{e.a, e.b};
+    if (query.kind == QueryKind::self) {
+      if (pair.a > pair.b) std::swap(pair.a, pair.b);
+      if (pair.a == pair.b || share_a_vertex(mesh_a, pair)) continue;
+    }
+    (e.met > 0 ? out.met : out.disjoint).push_back(pair);
+  }
+  sort_once(out.met);
+  sort_once(out.disjoint);
+  std::vector<TrianglePair> never;
+  std::set_difference(out.disjoint.begin(), out.disjoint.end(), out.met.begin(), out.met.end(),
+                      std::back_inserter(never));
+  out.disjoint = std::move(never);
+  return out;
+}
+
+void worsen(Judgement& outcome, Judgement by) {
+  outcome = std::max(outcome, by);
+}
+
+}  // namespace
+
+Precision precision_of(const capture::Capture& capture) {
+  for (const capture::Tree& tree : capture.trees)
+    for (const double x : tree.volumes)
+      if (static_cast<double>(static_cast<float>(x)) != x) return Precision::float64;
+  return capture.trees.empty() ? Precision::float64 : Precision::float32;
+}
+
+double error_bound(const Triangle& a, const Pose& pose_a, const Triangle& b, const Pose& pose_b,
+                   Precision precision) {
+  double of_a = 0, of_b = 0;
+  for (const Eigen::Vector3d& x : a) of_a = std::max(of_a, largest_term(pose_a, x));
+  for (const Eigen::Vector3d& x : b) of_b = std::max(of_b, largest_term(pose_b, x));
+  return kTestUlps * ulp_of(precision) * (of_a + of_b);
+}
+
+double overlap_depth(const Triangle& a, const Triangle& b) {
+  // The translation along any axis by the overlap of the projections separates the triangles, so that every
+  // axis gives an upper bound. The shortest one is along a normal of a face of the Minkowski sum of A and -B:
+  // the normal of a triangle, or of the parallelogram of an edge of each. (Cameron, "Enhancing GJK", 1997,
+  // section 4.) The coordinate axes serve where edges are parallel and the sum is flat.
+  double least = std::numeric_limits<double>::infinity();
+  const auto along = [&](const Eigen::Vector3d& direction) {
+    const double length = direction.norm();
+    if (!(length > 0)) return;
+    const Eigen::Vector3d axis = direction / length;
+    double low[2], high[2];
+    for (int side = 0; side < 2; ++side) {
+      const Triangle& t = side == 0 ? a : b;
+      const double x[] = {axis.dot(t[0] - a[0]), axis.dot(t[1] - a[0]), axis.dot(t[2] - a[0])};
+      low[side] = std::min({x[0], x[1], x[2]});
+      high[side] = std::max({x[0], x[1], x[2]});
+    }
+    least = std::min(least, std::max(0.0, std::min(high[0] - low[1], high[1] - low[0])));
+  };
+  Eigen::Vector3d edges[2][3];
+  for (int side = 0; side < 2; ++side) {
+    const Triangle& t = side == 0 ? a : b;
+    for (std::size_t i = 0; i < 3; ++i) edges[side][i] = t[(i + 1) % 3] - t[i];
+    along(edges[side][0].cross(edges[side][1]));
+  }
+  for (const Eigen::Vector3d& e : edges[0])
+    for (const Eigen::Vector3d& f : edges[1]) along(e.cross(f));
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d unit = Eigen::Vector3d::Unit(k);
+    along(unit);
+    for (const auto& of : edges)
+      for (const Eigen::Vector3d& e : of) along(e.cross(unit));
+  }
+  return least;
+}
+
+struct Checker::Posed {
+  const Query& query;
+  std::array<std::uint32_t, 2> trees;
+  std::array<const capture::Mesh*, 2> meshes;
+  std::array<const LrbRep*, 2> bodies;
+  std::array<Pose, 2> poses;
+
+  bool is_self() const { return query.kind == QueryKind::self; }
+};
+
+Checker::Checker(CapturedBodies& bodies, Precision precision) : bodies_(bodies), precision_(precision) {
+  for (const Query& q : bodies.capture().queries)
+    records_triangles_ =
+        records_triangles_ || std::any_of(q.events.begin(), q.events.end(),
+                                          [](const Event& e) { return e.kind == EventKind::triangles; });
+}
+
+QueryVerdict Checker::check(const Query& query, const QueryWalk* walk) {
+  QueryVerdict out;
+  out.number = query.number;
+  out.kind = query.kind;
+  if (walk == nullptr) {
+    out.remark = "a side without a tree: its shape is not known";
+    return out;
+  }
+  if (!query.ended) {
+    out.remark = "the capture was cut off within this query";
+    return out;
+  }
+  const std::array<std::uint32_t, 2>& trees = walk->trees();
+  Posed posed{query, trees, {}, {}, query.poses};
+  for (std::size_t side = 0; side < 2; ++side) {
+    posed.meshes[side] = &bodies_.mesh_of(trees[side]);
+    posed.bodies[side] = bodies_.body(bodies_.tree(trees[side]).mesh);
+  }
+  if (posed.is_self()) posed.poses[1] = posed.poses[0];
+  out.exact = exact_pairs(posed);
+  out.exact_pairs = out.exact.size();
+  if (query.kind == QueryKind::all_pairs || query.kind == QueryKind::any || posed.is_self())
+    check_pairs(posed, *walk, out);
+  check_answer(posed, out);
+  out.outcome = out.answer;
+  if (out.pairs_checked) worsen(out.outcome, Judgement::right);
+  if (out.undecidable > 0) worsen(out.outcome, Judgement::undecidable);
+  if (out.missed + out.extra > 0) worsen(out.outcome, Judgement::wrong);
+  return out;
+}
+
+std::vector<TrianglePair> Checker::exact_pairs(const Posed& posed) {
+  std::vector<TrianglePair> out;
+  if (posed.bodies[0] == nullptr || posed.bodies[1] == nullptr) return out;
+  const CollideResult& result = collide(*posed.bodies[0], posed.poses[0], *posed.bodies[1], posed.poses[1],
+                                        CollideRequest{}, workspace_)
+                                    .value();
+  for (const SimplexPair& pair : result.pairs) {
+    const TrianglePair triangles{pair.a, pair.b};
+    if (posed.is_self() && (triangles.a >= triangles.b || share_a_vertex(*posed.meshes[0], triangles)))
+      continue;
+    out.push_back(triangles);
+  }
+  return out;  // the result's pairs ascend
+}
+
+WrongPair Checker::describe(const Posed& posed, const TrianglePair& pair, bool missed) const {
+  WrongPair out;
+  out.triangles = pair;
+  out.missed = missed;
+  const Triangle a = triangle_of(*posed.meshes[0], pair.a), b = triangle_of(*posed.meshes[1], pair.b);
+  const Triangle world_a = moved(a, posed.poses[0]), world_b = moved(b, posed.poses[1]);
+  out.margin = missed ? overlap_depth(world_a, world_b) : gap_of(world_a, world_b);
+  out.bound = error_bound(a, posed.poses[0], b, posed.poses[1], precision_);
+  out.undecidable = out.margin <= out.bound;
+  return out;
+}
+
+void Checker::blame(const Posed& posed, const QueryWalk& walk, bool tested, WrongPair& wrong) {
+  const TrianglePair& pair = wrong.triangles;
+  if (tested) {
+    wrong.culprit = Culprit::triangle_test;
+    return;
+  }
+  wrong.in_leaf = {walk.index(0).leaf[pair.a] != kNull, walk.index(1).leaf[pair.b] != kNull};
+  if (!wrong.in_leaf[0] || !wrong.in_leaf[1]) {
+    wrong.culprit = Culprit::in_no_leaf;
+    return;
+  }
+  if (!posed.query.complete()) {
+    wrong.culprit = Culprit::unrecorded;
+    return;
+  }
+  const std::uint32_t visit = walk.deepest_above(pair);
+  if (visit == QueryWalk::kNone) {
+    wrong.culprit = Culprit::not_visited;
+    return;
+  }
+  const Event& e = posed.query.events[visit];
+  wrong.nodes = {e.a, e.b};
+  if (e.met > 0) {
+    // Wide nodes: if every pair of children that overlaps was visited, the missing one did not.
+    const bool leaves = walk.index(0).is_leaf(e.a) && walk.index(1).is_leaf(e.b);
+    const bool some_disjoint = e.met < e.tests && (leaves || walk.children(visit) >= e.met);
+    wrong.culprit = some_disjoint ? Culprit::child_volumes : Culprit::traversal;
+    return;
+  }
+  wrong.culprit = e.tests > 1 ? Culprit::child_volumes : Culprit::volumes;
+  wrong.axis = e.axis;
+  // A volume that does not contain its triangle explains the rest.
+  const std::uint32_t triangles[] = {pair.a, pair.b};
+  for (std::size_t side = 0; side < 2; ++side)
+    for (const Eigen::Vector3d& x : triangle_of(*posed.meshes[side], triangles[side]))
+      wrong.outside[side] =
+          std::max(wrong.outside[side], bodies_.volumes(posed.trees[side]).outside(wrong.nodes[side], x));
+}
+
+void Checker::check_pairs(const Posed& posed, const QueryWalk& walk, QueryVerdict& out) {
+  const Query& query = posed.query;
+  if (!records_triangles_) {
+    out.remark = "tests of triangles are not recorded";
+    return;
+  }
+  const Tested tested = tested_pairs(query, *posed.meshes[0]);
+  out.found = tested.met.size();
+  // A query that need not find all pairs misses one only by a wrong test, or by calling the bodies separate.
+  const bool all = query.verdict == Verdict::separate || (query.kind != QueryKind::any && query.complete());
+  out.pairs_checked = all || !tested.met.empty() || !tested.disjoint.empty();
+  if (!out.pairs_checked) out.remark = "events are not recorded";
+  std::vector<WrongPair> wrong;
+  for (const TrianglePair& pair : out.exact) {
+    const bool tested_disjoint = contains(tested.disjoint, pair);
+    if (contains(tested.met, pair)) {
+      ++out.right;
+    } else if (all || tested_disjoint) {
+      wrong.push_back(describe(posed, pair, true));
+      blame(posed, walk, tested_disjoint, wrong.back());
+    }
+  }
+  for (const TrianglePair& pair : tested.met)
+    if (!contains(out.exact, pair)) wrong.push_back(describe(posed, pair, false));
+  for (const WrongPair& w : wrong) ++(w.undecidable ? out.undecidable : w.missed ? out.missed : out.extra);
+  std::stable_partition(wrong.begin(), wrong.end(), [](const WrongPair& w) { return !w.undecidable; });
+  if (wrong.size() > QueryVerdict::kKept) wrong.resize(QueryVerdict::kKept);
+  out.wrong = std::move(wrong);
+}
+
+void Checker::check_answer(const Posed& posed, QueryVerdict& out) {
+  const Query& query = posed.query;
+  if (query.verdict == Verdict::unreported) return;
+  const bool told = query.verdict == Verdict::intersecting, meet = !out.exact.empty();
+  if (query.kind == QueryKind::first_contact && (told || !meet)) return;
+  out.answer = Judgement::right;
+  const auto depth = [&](const TrianglePair& pair) { return describe(posed, pair, true); };
+  const auto undecidable_pairs = [&] {
+    return std::count_if(out.exact.begin(), out.exact.end(),
+                         [&](const TrianglePair& pair) { return depth(pair).undecidable; });
+  };
+  if (told && !meet) {
+    const bool neighbours = posed.is_self() && out.extra == 0;
+    if (neighbours) {
+      out.answer = Judgement::unchecked;  // it may count triangles with a common vertex
+      return;
+    }
+    // The bodies' gap decides, because the pair that the engine took for intersecting may be unrecorded.
+    const bool close = posed.bodies[0] != nullptr && posed.bodies[1] != nullptr && [&] {
+      double terms = 0;
+      for (std::size_t side = 0; side < 2; ++side) {
+        double largest = 0;
+        for (const Eigen::Vector3d& x : posed.meshes[side]->vertices)
+          largest = std::max(largest, largest_term(posed.poses[side], x));
+        terms += largest;
+      }
+      DistanceRequest request;
+      request.within = kTestUlps * ulp_of(precision_) * terms;
+      request.relation = false;
+      return distance(*posed.bodies[0], posed.poses[0], *posed.bodies[1], posed.poses[1], request, workspace_)
+          .value()
+          .within.value_or(false);
+    }();
+    out.answer = close ? Judgement::undecidable : Judgement::wrong;
+    out.remark = "the engine's verdict is intersecting; the bodies are separate";
+    return;
+  }
+  if (!told && meet) {
+    const bool all_undecidable = undecidable_pairs() == static_cast<std::ptrdiff_t>(out.exact.size());
+    out.answer = all_undecidable ? Judgement::undecidable : Judgement::wrong;
+    out.remark = "the engine's verdict is separate; " + std::to_string(out.exact.size()) +
+                 (out.exact.size() == 1 ? " pair of triangles intersects" : " pairs of triangles intersect");
+    return;
+  }
+  // The number of pairs. 0 with an intersection: the engine does not count. A number that agrees with the
+  // tests is as right as these.
+  if (query.kind != QueryKind::all_pairs || query.pairs == 0 || query.pairs == out.exact.size()) return;
+  if (out.pairs_checked && query.complete() && query.pairs == out.found) return;
+  const std::uint64_t exact = out.exact.size();
+  std::uint64_t extra = 0;
+  for (const WrongPair& w : out.wrong) extra += w.undecidable && !w.missed;
+  const bool near = query.pairs < exact
+                        ? exact - query.pairs <= static_cast<std::uint64_t>(undecidable_pairs())
+                        : query.pairs - exact <= extra;
+  out.answer = near ? Judgement::undecidable : Judgement::wrong;
+  out.remark = "the engine counted " + std::to_string(query.pairs) + " pairs of triangles; " +
+               std::to_string(exact) + " intersect";
+}
+
+std::string sentence(const WrongPair& wrong, const capture::Tree& a, const capture::Tree& b) {
+  constexpr int kDigits = 3;
+  const auto number = [](double x) { return io::number_text(x, kDigits); };
+  const std::string pair = std::to_string(wrong.triangles.a) + "," + std::to_string(wrong.triangles.b);
+  std::string out = (wrong.missed ? "missed " : "false ") + pair + ": ";
+  const auto nodes = [&] {
+    return "nodes " + std::to_string(a.id_of(wrong.nodes[0])) + " and " +
+           std::to_string(b.id_of(wrong.nodes[1])) + ", which contain them, ";
+  };
+  switch (wrong.culprit) {
+    case Culprit::none:
+      out += "the triangles are disjoint";
+      break;
+    case Culprit::triangle_test:
+      out += "the triangle test called them disjoint";
+      break;
+    case Culprit::volumes:
+      out += nodes() + "were found disjoint";
+      if (wrong.axis != capture::kNoAxis) out += " along axis " + std::to_string(wrong.axis);
+      for (std::size_t side = 0; side < 2; ++side)
+        if (wrong.outside[side] > wrong.bound)
+          out += std::string("; triangle ") +
+                 std::to_string(side == 0 ? wrong.triangles.a : wrong.triangles.b) +
+                 " sticks out of its node by " + number(wrong.outside[side]);
+      break;
+    case Culprit::child_volumes:
+      out += "the children of " + nodes() + "were found disjoint";
+      break;
+    case Culprit::traversal:
+      out += nodes() + "overlap, but the pair beneath was never visited";
+      break;
+    case Culprit::not_visited:
+      out += "no pair of nodes above them was visited";
+      break;
+    case Culprit::in_no_leaf:
+      out += std::string(wrong.in_leaf[0]   ? "the second"
+                         : wrong.in_leaf[1] ? "the first"
+                                            : "each") +
+             " triangle is in no leaf";
+      break;
+    case Culprit::unrecorded:
+      out += "the events are not complete, so the cause is not known";
+      break;
+  }
+  return out + " (" + (wrong.missed ? "overlap depth " : "gap ") + number(wrong.margin) +
+         (wrong.undecidable ? ", within " : ", beyond ") + "the error bound " + number(wrong.bound) + ")";
+}
+
+}  // namespace lrb::profile

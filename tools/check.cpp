@@ -1,0 +1,221 @@
+#include "scenarios/profile/check.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+
+#include "scenarios/profile/captured.hpp"
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/terminal.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/capture.hpp>
+
+namespace lrb::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct CheckOptions {
+  std::vector<std::string> inputs;
+  std::string queries, folder;
+  std::optional<profile::Precision> precision;
+  bool split = false, json = false;
+};
+
+/// Parses "40-60" or "40". Throws InputError for anything else.
+std::array<std::uint32_t, 2> query_range(const std::string& text) {
+  std::array<std::uint32_t, 2> out{1, kNull};
+  if (text.empty()) return out;
+  const char *at = text.data(), *const end = at + text.size();
+  const auto number = [&](std::uint32_t& n) {
+    const auto [next, error] = std::from_chars(at, end, n);
+    at = next;
+    return error == std::errc();
+  };
+  bool good = number(out[0]);
+  out[1] = out[0];
+  if (good && at != end && *at == '-') ++at, good = number(out[1]);
+  if (!good || at != end || out[0] == 0 || out[1] < out[0])
+    throw InputError("--queries: expected FIRST-LAST, found '" + text + "'; queries are numbered from 1");
+  return out;
+}
+
+/// Returns a capture, read from a file or converted from a recorded run of lrbscope.
+capture::Capture open_capture(const std::string& path, const std::array<std::uint32_t, 2>& range) {
+  const bool is_run = std::filesystem::is_directory(path) || path.ends_with(".json");
+  if (!is_run) return capture::read_capture(path, range[0], range[1]);
+  capture::Capture out = profile::captured(run::open_run(path));
+  std::erase_if(out.queries,
+                [&](const capture::Query& q) { return q.number < range[0] || q.number > range[1]; });
+  return out;
+}
+
+ordered_json json_of(const profile::Prices& p) {
+  return {{"visits", p.visits},
+          {"needed", p.needed},
+          {"proof", p.proof},
+          {"volumes", p.volumes},
+          {"order", p.order},
+          {"unsplit", p.unsplit},
+          {"unattributed", p.unattributed},
+          {"volume_tests", p.volume_tests},
+          {"triangle_tests", p.triangle_tests},
+          {"triangle_tests_for_nothing", p.triangle_tests_for_nothing},
+          {"crowded_tests", p.crowded_tests}};
+}
+
+ordered_json json_of(const profile::WrongPair& w) {
+  ordered_json out{{"a", w.triangles.a},
+                   {"b", w.triangles.b},
+                   {"error", w.missed ? "missed" : "false"},
+                   {"undecidable", w.undecidable},
+                   {w.missed ? "overlap_depth" : "gap", w.margin},
+                   {"error_bound", w.bound}};
+  if (w.missed) out["culprit"] = name_of(w.culprit);
+  if (w.nodes[0] != kNull) out["nodes"] = {w.nodes[0], w.nodes[1]};
+  if (w.axis != capture::kNoAxis) out["axis"] = w.axis;
+  return out;
+}
+
+/// Returns the lines of a capture: one for each query, and one for the sums.
+std::string json_lines(const profile::Check& c) {
+  std::string out;
+  for (const profile::CheckedQuery& q : c.queries) {
+    const profile::QueryVerdict& v = q.verdict;
+    ordered_json wrong = ordered_json::array();
+    for (const profile::WrongPair& w : v.wrong) wrong.push_back(json_of(w));
+    out += one_line({{"engine", c.engine},
+                     {"query", v.number},
+                     {"verdict", name_of(v.outcome)},
+                     {"remark", v.remark},
+                     {"exact_pairs", v.exact_pairs},
+                     {"right", v.right},
+                     {"undecidable", v.undecidable},
+                     {"missed", v.missed},
+                     {"false", v.extra},
+                     {"wrong_pairs", std::move(wrong)},
+                     {"prices", json_of(q.prices)}}) +
+           "\n";
+  }
+  const profile::CheckSums sum = c.sum();
+  ordered_json verdicts;
+  for (const auto& entry : kWords<profile::Judgement>)
+    verdicts[std::string(entry.word)] = sum.outcomes[static_cast<std::size_t>(entry.value)];
+  out += one_line({{"engine", c.engine},
+                   {"queries", sum.queries},
+                   {"precision", name_of(c.precision)},
+                   {"verdicts", std::move(verdicts)},
+                   {"prices", json_of(sum.prices)},
+                   {"advice", profile::advice(sum.prices)}}) +
+         "\n";
+  return out;
+}
+
+/// Returns the number of characters of UTF-8 text.
+std::size_t display_width(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+/// Returns a table in columns: text to the left, numbers to the right.
+std::string columns_of(const report::Table& table) {
+  std::vector<std::vector<std::string>> rows{table.columns};
+  rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+  std::string out;
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      std::size_t width = 0;
+      for (const auto& other : rows) width = std::max(width, display_width(other[i]));
+      const std::string gap(width - display_width(row[i]), ' ');
+      constexpr std::size_t kTexts = 2;  // the engine and the kind of query
+      out += (i == 0 ? "" : "  ") + (i < kTexts ? row[i] + gap : gap + row[i]);
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+/// Returns the first lines of a list, and how many are left out.
+std::string first_lines(const std::vector<std::string>& lines) {
+  constexpr std::size_t kShown = 10;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(lines.size(), kShown); ++i) out += "  " + lines[i] + "\n";
+  if (lines.size() > kShown) out += "  ... and " + std::to_string(lines.size() - kShown) + " more\n";
+  return out;
+}
+
+std::string text_of(const std::vector<profile::Check>& checks) {
+  std::string out;
+  for (const profile::Check& c : checks)
+    for (const auto& [head, lines] :
+         {std::pair{"wrong", &c.wrong}, {"undecidable in floats", &c.undecidable}})
+      if (!lines->empty())
+        out += c.engine + ": " + std::to_string(lines->size()) + " " + head + "\n" + first_lines(*lines);
+  out += columns_of(profile::verdict_table(checks)) + "\n" + columns_of(profile::price_table(checks)) + "\n";
+  for (const profile::Check& c : checks) out += c.engine + ": " + profile::advice(c.sum().prices) + "\n";
+  return out;
+}
+
+void write_page(const std::vector<profile::Check>& checks, const std::string& path, const Globals& globals) {
+  const report::Folder folder(path);
+  report::Document page("Answers and visits of " + std::string(checks.size() == 1 ? "an engine" : "engines"),
+                        "The exact query checks each answer. The price of a visit is what it was good for.");
+  const bool wrong =
+      std::any_of(checks.begin(), checks.end(), [](const profile::Check& c) { return c.is_wrong(); });
+  page.verdict(wrong ? "wrong answers" : "no wrong answers", !wrong).command(globals.command_line);
+  profile::add_checks(page, checks);
+  page.write(folder);
+}
+
+int run_check(const CheckOptions& o, const Globals& globals) {
+  const std::array<std::uint32_t, 2> range = query_range(o.queries);
+  profile::CheckSettings settings{o.precision, std::nullopt};
+  if (o.split) settings.split = true;
+  std::vector<profile::Check> checks;
+  for (const std::string& path : o.inputs) {
+    const capture::Capture capture = open_capture(path, range);
+    if (capture.queries.empty())
+      throw InputError(printable_name(path) + ": expected queries, found none" +
+                       (o.queries.empty() ? "" : " with these numbers") + "; record some, or choose others");
+    checks.push_back(profile::check(capture, settings, progress_report(globals.quiet)));
+  }
+  if (o.json)
+    for (const profile::Check& c : checks) print(json_lines(c));
+  else
+    print(text_of(checks));
+  if (!o.folder.empty()) {
+    write_page(checks, o.folder, globals);
+    if (!o.json) print(o.folder + "/index.html\n");
+  }
+  const bool wrong =
+      std::any_of(checks.begin(), checks.end(), [](const profile::Check& c) { return c.is_wrong(); });
+  return wrong ? kMismatch : kOk;
+}
+
+}  // namespace
+
+Command add_check(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "check", "Check another engine's captured answers, and price its visits of tree nodes");
+  const auto o = std::make_shared<CheckOptions>();
+  app->add_option(
+         "CAPTURE", o->inputs,
+         "Captures, written by lrbscope_capture.h, or runs of lrbscope recorded with --events nodes; "
+         "several are compared")
+      ->required();
+  app->add_option("--queries", o->queries, "Only these queries, by number")->type_name("FIRST-LAST");
+  add_choice<profile::Precision>(*app, "--precision", o->precision,
+                                 "Number format of the engine, which decides how close to contact its tests "
+                                 "may err [float if all volumes are floats, else double]");
+  app->add_flag("--split", o->split,
+                "Split waste into volumes and order even for captures of more than " +
+                    std::to_string(profile::kMostVisitsToSplit) + " visits, which takes long");
+  app->add_flag("--json", o->json, "Print JSON, a line for each query and one for the sums");
+  app->add_option("-o,--output", o->folder, "Also write a page to this folder")->type_name("DIR");
+  return {app, [o, &globals] { return run_check(*o, globals); }};
+}
+
+}  // namespace lrb::cli
