@@ -1,0 +1,174 @@
+/// Whole captures and recorded runs checked, and the command.
+
+#include "scenarios/profile/check.hpp"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/bodies/shapes.hpp"
+#include "scenarios/profile/captured.hpp"
+#include "tests/support/capture_file.hpp"
+#include "tests/support/faulty_engine.hpp"
+#include "tests/support/program.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/recorder.hpp>
+
+namespace lrb::profile {
+
+using namespace lrb::test;
+
+namespace {
+
+/// Records queries of two tori of our own at poses that intersect more or less deeply.
+run::Recording recorded_tori(EventLevel level, Mode mode = Mode::all_pairs, std::uint32_t cap = 1'000'000) {
+  run::Recording out;
+  for (int k = 0; k < 2; ++k)
+    out.bodies.push_back({LrbRep::without_regions(shapes::torus(24, 16), true, false), {}, 0});
+  trace::RecorderSettings settings;
+  settings.level = level;
+  settings.event_cap = cap;
+  settings.request.mode = mode;
+  trace::Recorder recorder(out.bodies[0].rep, out.bodies[1].rep, settings);
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    const Pose pose = Pose::rotation({1, 0.3, 0.2}, 1.3, {0.45 * i, 0.1, 0.2});
+    recorder.begin_step(i, {}, pose);
+    out.results.push_back(
+        collide(out.bodies[0].rep, {}, out.bodies[1].rep, pose, settings.request, recorder));
+    recorder.end_step(out.results.back());
+  }
+  out.trace = recorder.take();
+  out.trees = run::trees_of(out.trace, out.bodies);
+  return out;
+}
+
+/// A capture of two sheets, and of the same with a test that lies.
+struct Captures {
+  FaultyEngine engine;
+  std::uint32_t a, b;
+  Pose pose = Pose::rotation({1, 0.2, 0.1}, 1.1, {0.03, 0.45, -0.4});
+
+  Captures() {
+    std::mt19937_64 random(7);
+    a = engine.grow(engine.add(sheet_mesh(5)), random);
+    b = engine.grow(engine.add(sheet_mesh(4)), random);
+    engine.ask(a, {}, b, pose);
+  }
+  /// Adds a query in which the first intersecting pair of the first is missed. Returns the pair.
+  NumberPair lie() {
+    FaultyQuery how;
+    for (const capture::Event& e : engine.capture.queries[0].events)
+      if (e.kind == capture::EventKind::triangles && e.met > 0 && how.lies.empty()) how.lies = {{e.a, e.b}};
+    engine.ask(a, {}, b, pose, how);
+    return *how.lies.begin();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A capture's sums are those of its queries") {
+  Captures c;
+  const NumberPair lost = c.lie();
+  const Check checked = check(c.engine.capture, {});
+  CHECK(checked.is_wrong());
+  const CheckSums sum = checked.sum();
+  CHECK(sum.queries == 2);
+  CHECK(sum.outcomes[static_cast<std::size_t>(Judgement::right)] == 1);
+  CHECK(sum.outcomes[static_cast<std::size_t>(Judgement::wrong)] == 1);
+  CHECK(sum.missed == 1);
+  CHECK(sum.right == sum.exact_pairs - 1);
+  REQUIRE(checked.wrong.size() == 1);
+  CHECK(checked.wrong[0].find("query 2: missed " + std::to_string(lost[0]) + "," + std::to_string(lost[1]) +
+                              ": the triangle test called them disjoint") == 0);
+  Prices prices;
+  for (const CheckedQuery& q : checked.queries) prices += q.prices;
+  CHECK(prices == sum.prices);
+  CHECK(prices.unsplit == 0);
+  CheckSettings settings;
+  settings.split = false;
+  CHECK(check(c.engine.capture, settings).sum().prices.unsplit == prices.wasted());
+}
+
+TEST_CASE("A recording of lrbscope is a capture whose answers are right and whose visits are the counters'") {
+  for (const Mode mode : {Mode::all_pairs, Mode::any_pair}) {
+    const run::Recording recorded = recorded_tori(EventLevel::nodes, mode);
+    const capture::Capture c = captured(recorded);
+    const Check checked = check(c, {});
+    REQUIRE(checked.queries.size() == 5);
+    std::uint64_t pairs = 0;
+    for (std::size_t i = 0; i < 5; ++i) {
+      CAPTURE(i);
+      const CheckedQuery& q = checked.queries[i];
+      const Counters& counters = recorded.results[i].counters;
+      CHECK(q.verdict.outcome == Judgement::right);
+      CHECK(c.queries[i].complete());
+      CHECK(q.prices.unattributed == 0);
+      CHECK(q.prices.visits >= counters.node_pairs);  // with those that the nodes' own boxes reject
+      CHECK(q.prices.volume_tests == counters.box_tests);
+      CHECK(q.prices.triangle_tests == counters.face_tests);
+      pairs += q.verdict.exact_pairs;
+    }
+    CHECK(pairs > 100);
+    CHECK(checked.sum().prices.needed > 0);
+    CHECK(checked.sum().prices.unsplit == 0);
+  }
+}
+
+TEST_CASE("Recordings without pairs of nodes are refused, and those that were cut off are incomplete") {
+  CHECK_THROWS_WITH_AS(captured(recorded_tori(EventLevel::faces)), doctest::Contains("--events nodes"),
+                       InputError);
+  const capture::Capture cut = captured(recorded_tori(EventLevel::nodes, Mode::all_pairs, 100));
+  CHECK_FALSE(cut.queries.back().complete());
+  CHECK_FALSE(check(cut, {}).is_wrong());
+}
+
+TEST_CASE("lrbscope check prints verdicts, prices and advice, and fails for a wrong answer") {
+  Captures c;
+  const Folder folder;
+  write_capture(c.engine.capture, folder / "right.lrbcap");
+  c.lie();
+  write_capture(c.engine.capture, folder / "wrong.lrbcap");
+  test::Outcome o = test::run(folder, {"check", "right.lrbcap"});
+  CAPTURE(o.err);
+  CHECK(o.code == 0);
+  CHECK(o.out.find("1 all pairs") != std::string::npos);
+  CHECK(o.out.find("Most to gain: ") != std::string::npos);
+  o = test::run(folder, {"check", "wrong.lrbcap", "-o", "page"});
+  CHECK(o.code == 1);
+  CHECK(o.out.find("query 2: missed ") != std::string::npos);
+  const std::string page = slurp(folder / "page/index.html");
+  for (const char* part :
+       {"What the visits were good for", "Prices by query", "Prices by depth of the descent",
+        "Wrong and undecidable answers", "query 2: missed "})
+    CHECK(page.find(part) != std::string::npos);
+  // Only the first query is right.
+  CHECK(test::run(folder, {"check", "wrong.lrbcap", "--queries", "1"}).code == 0);
+  CHECK(test::run(folder, {"check", "wrong.lrbcap", "--queries", "2-2"}).code == 1);
+  check_rejected(folder, {"check", "wrong.lrbcap", "--queries", "3-9"});
+  check_rejected(folder, {"check", "wrong.lrbcap", "--queries", "2-1"});
+  check_rejected(folder, {"check", "absent.lrbcap"});
+}
+
+TEST_CASE("lrbscope check --json prints a line for each query and one for the sums") {
+  Captures c;
+  c.lie();
+  const Folder folder;
+  write_capture(c.engine.capture, folder / "wrong.lrbcap");
+  const test::Outcome o = test::run(folder, {"check", "wrong.lrbcap", "--json"});
+  CHECK(o.code == 1);
+  std::istringstream lines(o.out);
+  std::vector<nlohmann::json> all;
+  for (std::string line; std::getline(lines, line);) all.push_back(nlohmann::json::parse(line));
+  REQUIRE(all.size() == 3);
+  CHECK(all[0]["verdict"] == "right");
+  CHECK(all[1]["verdict"] == "wrong");
+  REQUIRE(all[1]["wrong_pairs"].size() == 1);
+  CHECK(all[1]["wrong_pairs"][0]["culprit"] == "triangle_test");
+  CHECK(all[2]["verdicts"]["wrong"] == 1);
+  const nlohmann::json& p = all[2]["prices"];
+  std::uint64_t sum = 0;
+  for (const char* part : {"needed", "proof", "volumes", "order", "unsplit", "unattributed"})
+    sum += p[part].get<std::uint64_t>();
+  CHECK(sum == p["visits"]);
+}
+
+}  // namespace lrb::profile

@@ -1,0 +1,391 @@
+#include "scenarios/profile/prices.hpp"
+
+#include <memory>
+#include <numeric>
+
+#include <doctest/doctest.h>
+
+#include "scenarios/profile/captured.hpp"
+#include "scenarios/profile/check.hpp"
+#include "scenarios/profile/least_visits.hpp"
+#include "tests/support/faulty_engine.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/trace/recorder.hpp>
+
+namespace lrb::profile {
+
+using namespace lrb::test;
+using capture::QueryKind;
+
+namespace {
+
+std::uint64_t sum_of(const Prices& p) {
+  return p.needed + p.proof + p.volumes + p.order + p.unsplit + p.unattributed;
+}
+
+/// A query priced with all that belongs to it.
+struct Priced {
+  CapturedBodies bodies;
+  QueryWalk walk;
+  PriceBook book;
+  std::vector<TrianglePair> exact;
+  Prices prices;
+
+  explicit Priced(const capture::Capture& c, std::size_t query = 0, bool split = true)
+      : bodies(c),
+        walk(bodies, c.queries[query], CapturedBodies::trees_of(c.queries[query]).value()),
+        book(bodies) {
+    exact = Checker(bodies, Precision::float64).check(c.queries[query], &walk).exact;
+    prices = book.add(c.queries[query], &walk, exact, split);
+  }
+};
+
+/// The numbers of visits of all descents from a pair of nodes, whichever node they open at each pair.
+struct AllDescents {
+  const FaultyEngine& engine;
+  const capture::Query& query;
+  bool wide, both;
+
+  std::set<std::uint64_t> from(std::uint32_t i, std::uint32_t j) const {
+    const capture::Tree &a = engine.capture.trees[query.trees[0]], &b = engine.capture.trees[query.trees[1]];
+    if (!wide && !engine.volumes_overlap(query, i, j)) return {1};
+    std::set<std::uint64_t> out;
+    if (a.is_leaf(i) && b.is_leaf(j)) return {1};
+    for (int opens = 1; opens <= 3; ++opens) {
+      const bool opens_a = (opens & 1) != 0, opens_b = (opens & 2) != 0;
+      if ((opens_a && a.is_leaf(i)) || (opens_b && b.is_leaf(j)) || (opens == 3 && !both)) continue;
+      std::set<std::uint64_t> sums{1};
+      const std::vector<std::uint32_t> only_i{i}, only_j{j};
+      for (const std::uint32_t x : opens_a ? a.children(i) : std::span<const std::uint32_t>(only_i))
+        for (const std::uint32_t y : opens_b ? b.children(j) : std::span<const std::uint32_t>(only_j)) {
+          if (wide && !engine.volumes_overlap(query, x, y)) continue;
+          std::set<std::uint64_t> more;
+          for (const std::uint64_t beneath : from(x, y))
+            for (const std::uint64_t sum : sums) more.insert(sum + beneath);
+          sums = std::move(more);
+        }
+      out.insert(sums.begin(), sums.end());
+    }
+    return out;
+  }
+};
+
+/// Returns true if an intersecting pair lies beneath two nodes.
+bool intersects_beneath(const FaultyEngine& engine, const capture::Query& q, std::uint32_t i,
+                        std::uint32_t j) {
+  const auto triangles = [](const capture::Tree& t, std::uint32_t root) {
+    std::vector<std::uint32_t> out, open{root};
+    while (!open.empty()) {
+      const std::uint32_t n = open.back();
+      open.pop_back();
+      for (const std::uint32_t f : t.triangles(n)) out.push_back(f);
+      for (const std::uint32_t c : t.children(n)) open.push_back(c);
+    }
+    return out;
+  };
+  const capture::Tree &a = engine.capture.trees[q.trees[0]], &b = engine.capture.trees[q.trees[1]];
+  for (const std::uint32_t f : triangles(a, i))
+    for (const std::uint32_t g : triangles(b, j))
+      if (triangles_meet(engine.capture.meshes[a.mesh], f, q.poses[0], engine.capture.meshes[b.mesh], g,
+                         q.poses[1]))
+        return true;
+  return false;
+}
+
+constexpr OpeningOrder kOrders[] = {OpeningOrder::a_first, OpeningOrder::b_first, OpeningOrder::larger,
+                                    OpeningOrder::both};
+
+}  // namespace
+
+TEST_CASE("The prices of random descents are those of their definition, and of a search over all descents") {
+  std::mt19937_64 random(11);
+  int with_order = 0, with_volumes = 0, clipped = 0;
+  for (int round = 0; round < 160; ++round) {
+    CAPTURE(round);
+    FaultyEngine engine;
+    const bool wide = round % 2 == 1;
+    // Trees of up to 15 nodes.
+    const auto grow = [&] {
+      return engine.grow(engine.add(soup_mesh(random, wide ? 9 : 8, 0.3)), random, 1, wide ? 4 : 2);
+    };
+    const std::uint32_t a = grow(), b = grow();
+    REQUIRE(engine.capture.trees[a].size() <= 17);
+    FaultyQuery how;
+    how.wide = wide;
+    how.order = kOrders[(round / 2) % 4];
+    const double apart = 0.5 * static_cast<double>(round % 5) / 4;
+    const capture::Query q =
+        engine.ask(a, Pose::rotation({1, 2, 3}, round), b, Pose::translation({apart, 0, 0}), how);
+    const Priced priced(engine.capture);
+    const Prices& p = priced.prices;
+    CHECK(sum_of(p) == p.visits);
+    CHECK(p.unsplit + p.unattributed == 0);
+    // Needed and proof, by their definition.
+    std::uint64_t visits = 0, needed = 0, proof = 0;
+    for (std::size_t i = 0; i < q.events.size(); ++i) {
+      const capture::Event& e = q.events[i];
+      if (e.kind != capture::EventKind::nodes) continue;
+      ++visits;
+      const std::uint32_t up = priced.walk.parent(i);
+      if (intersects_beneath(engine, q, e.a, e.b))
+        ++needed;
+      else if (up == QueryWalk::kNone || intersects_beneath(engine, q, q.events[up].a, q.events[up].b))
+        ++proof;
+    }
+    CHECK(p.visits == visits);
+    CHECK(p.needed == needed);
+    CHECK(p.proof == proof);
+    // The least number of visits, from a search over all descents.
+    bool opened_both = false;
+    for (const std::uint32_t i : priced.walk.from_root())
+      opened_both = opened_both || priced.walk.step(i) == NodeStep::descend_both;
+    const std::set<std::uint64_t> all =
+        AllDescents{engine, q, wide && priced.walk.wide(), opened_both}.from(0, 0);
+    CHECK(all.count(visits) == 1);
+    Priced again(engine.capture);
+    CHECK(least_visits(again.bodies, again.walk) == *all.begin());
+    CHECK(needed + proof + p.volumes == std::max(*all.begin(), needed + proof));
+    with_order += p.order > 0;
+    with_volumes += p.volumes > 0;
+    clipped += *all.begin() < needed + proof;
+    // The parts add up.
+    DepthPrices depths;
+    for (const DepthPrices& d : priced.book.by_depth())
+      depths.needed += d.needed, depths.proof += d.proof, depths.wasted += d.wasted;
+    CHECK(depths == DepthPrices{needed, proof, p.wasted()});
+    std::uint64_t owned = 0;
+    for (const OwnerWaste& o : priced.book.worst_owners(1000)) owned += o.visits;
+    CHECK(owned == p.wasted());
+    double shared = 0;
+    for (const std::uint32_t tree : {a, b})
+      for (const double x : again.book.waste_by_triangle(tree)) shared += x;
+    CHECK(shared == doctest::Approx(static_cast<double>(p.wasted())));
+  }
+  CHECK(with_order > 20);
+  CHECK(with_volumes > 20);
+}
+
+TEST_CASE("Without a split, waste is one sum") {
+  std::mt19937_64 random(2);
+  FaultyEngine engine;
+  const std::uint32_t a = engine.grow(engine.add(soup_mesh(random, 30)), random);
+  engine.ask(a, {}, a, Pose::translation({0.6, 0.3, 0.1}));
+  const Prices split = Priced(engine.capture).prices, whole = Priced(engine.capture, 0, false).prices;
+  CHECK(split.volumes + split.order > 0);
+  CHECK(whole.unsplit == split.volumes + split.order);
+  CHECK(whole.needed == split.needed);
+  CHECK(sum_of(whole) == whole.visits);
+}
+
+TEST_CASE("Tests of triangles for nothing are counted, in crowded leaves apart") {
+  std::mt19937_64 random(4);
+  FaultyEngine engine;
+  const std::uint32_t mesh = engine.add(soup_mesh(random, 40));
+  for (const std::uint32_t leaf : {1U, 4U}) {
+    const std::uint32_t a = engine.grow(mesh, random, leaf);
+    const capture::Query q = engine.ask(a, {}, a, Pose::translation({0.5, 0.2, 0.1}));
+    const Prices p = Priced(engine.capture, engine.capture.queries.size() - 1).prices;
+    std::uint64_t tests = 0, met = 0;
+    for (const capture::Event& e : q.events)
+      if (e.kind == capture::EventKind::triangles) ++tests, met += e.met;
+    CHECK(p.triangle_tests == tests);
+    CHECK(p.triangle_tests_for_nothing == tests - met);
+    if (leaf == 1) CHECK(p.crowded_tests == 0);
+    if (leaf == 4) CHECK(p.crowded_tests > 0.9 * static_cast<double>(tests - met));
+  }
+}
+
+TEST_CASE("The gain of larger leaves is what a tree with these leaves saves") {
+  // One binary tree, and the same with the nodes of at most 4 triangles as leaves.
+  std::mt19937_64 random(6);
+  FaultyEngine engine;
+  const std::uint32_t mesh = engine.add(soup_mesh(random, 64, 0.2));
+  const std::uint32_t fine = engine.grow(mesh, random, 1);
+  const capture::Tree& t = engine.capture.trees[fine];
+  const TreeIndex index(t, 64);
+  capture::Tree cut = t;
+  cut.first_child = cut.first_triangle = {0};
+  cut.child.clear();
+  cut.triangle.clear();
+  for (std::uint32_t n = 0; n < t.size(); ++n) {
+    if (index.triangles_below[n] > 4)
+      cut.child.insert(cut.child.end(), t.children(n).begin(), t.children(n).end());
+    else
+      for (std::uint32_t f = 0; f < 64; ++f)
+        for (std::uint32_t up = index.leaf[f]; up != kNull; up = index.parent[up])
+          if (up == n) cut.triangle.push_back(f);
+    cut.first_child.push_back(static_cast<std::uint32_t>(cut.child.size()));
+    cut.first_triangle.push_back(static_cast<std::uint32_t>(cut.triangle.size()));
+  }
+  engine.capture.trees.push_back(cut);
+  // Against a single triangle, all descents open the same nodes.
+  const std::uint32_t one = engine.grow(
+      engine.add(triangle_mesh({Eigen::Vector3d(0, 0, 0.5), {1, 0, 0.4}, {0.4, 1, 0.6}})), random);
+  engine.ask(fine, {}, one, {});
+  engine.ask(fine + 1, {}, one, {});
+  const Prices before = Priced(engine.capture, 0).prices, after = Priced(engine.capture, 1).prices;
+  const auto tests = [](const Prices& p) { return static_cast<std::int64_t>(p.visits + p.triangle_tests); };
+  CHECK(before.saved_by_leaves[1] == tests(before) - tests(after));
+  CHECK(before.saved_by_leaves[1] != 0);
+  CHECK(after.saved_by_leaves[1] == 0);
+}
+
+TEST_CASE("A query of kind any needs the path to its pair, and all else is order") {
+  std::mt19937_64 random(8);
+  FaultyEngine engine;
+  const std::uint32_t a = engine.grow(engine.add(soup_mesh(random, 30)), random);
+  FaultyQuery how;
+  how.kind = QueryKind::any;
+  engine.ask(a, {}, a, Pose::translation({0.4, 0.2, 0.1}), how);
+  const Priced found(engine.capture);
+  REQUIRE(engine.capture.queries[0].verdict == capture::Verdict::intersecting);
+  std::uint64_t path = 0;
+  for (std::uint32_t i = found.walk.parent(engine.capture.queries[0].events.size() - 1);
+       i != QueryWalk::kNone; i = found.walk.parent(i))
+    ++path;
+  CHECK(found.prices.needed == path);
+  CHECK(found.prices.proof + found.prices.volumes + found.prices.unsplit == 0);
+  CHECK(found.prices.order == found.prices.visits - path);
+  CHECK(found.prices.order > 0);
+  // Separate bodies: as if all pairs had been asked for.
+  engine.ask(a, {}, a, Pose::translation({0.9, 0.9, 0.9}), how);
+  engine.ask(a, {}, a, Pose::translation({0.9, 0.9, 0.9}));
+  REQUIRE(engine.capture.queries[1].verdict == capture::Verdict::separate);
+  CHECK(Priced(engine.capture, 1).prices == Priced(engine.capture, 2).prices);
+}
+
+TEST_CASE("Visits beside the descent are unattributed, and repeated ones are order") {
+  std::mt19937_64 random(9);
+  FaultyEngine engine;
+  const std::uint32_t a = engine.grow(engine.add(soup_mesh(random, 20)), random);
+  engine.ask(a, {}, a, Pose::translation({0.4, 0.2, 0.1}));
+  const Prices before = Priced(engine.capture).prices;
+  capture::Query& q = engine.capture.queries[0];
+  const std::vector<capture::Event> events = q.events;
+  // The first event comes last: visits of another thread.
+  std::rotate(q.events.begin(), q.events.begin() + 1, q.events.end());
+  CHECK(Priced(engine.capture).prices == before);
+  // All events twice.
+  q.events = events;
+  q.events.insert(q.events.end(), events.begin(), events.end());
+  FaultyEngine::close(q);
+  const Prices twice = Priced(engine.capture).prices;
+  CHECK(twice.needed == before.needed);
+  CHECK(twice.proof == before.proof);
+  CHECK(twice.volumes == before.volumes);
+  CHECK(twice.order == before.order + before.visits);
+  // Without the visit of the roots, the descent begins with their children.
+  q.events.assign(events.begin() + 1, events.end());
+  FaultyEngine::close(q);
+  const Prices below = Priced(engine.capture).prices;
+  CHECK(below.unattributed == 0);
+  CHECK(below.needed == before.needed - 1);
+  // Without these, the rest hangs in the air.
+  const TreeIndex index(engine.capture.trees[a], 20);
+  std::uint64_t left = 0;
+  std::erase_if(q.events, [&](const capture::Event& e) {
+    return e.kind == capture::EventKind::nodes && index.depth[e.a] + index.depth[e.b] <= 2;
+  });
+  for (const capture::Event& e : q.events) left += e.kind == capture::EventKind::nodes;
+  FaultyEngine::close(q);
+  const Prices lost = Priced(engine.capture).prices;
+  CHECK(left > 10);
+  CHECK(lost.unattributed == left);
+  CHECK(sum_of(lost) == lost.visits);
+}
+
+TEST_CASE("Broken trees, other kinds of queries and sides without a tree are priced without a crash") {
+  std::mt19937_64 random(10);
+  FaultyEngine engine;
+  const std::uint32_t a = engine.grow(engine.add(soup_mesh(random, 20)), random, 2);
+  engine.ask(a, {}, a, Pose::translation({0.4, 0.2, 0.1}));
+  const capture::Capture sound = engine.capture;
+  for (int round = 0; round < 300; ++round) {
+    CAPTURE(round);
+    capture::Capture c = sound;
+    capture::Tree& t = c.trees[0];
+    // Children and triangles at random: cycles, nodes without parents or with two, triangles in no leaf.
+    for (int k = 0; k < 1 + round % 5; ++k) {
+      t.child[random() % t.child.size()] = static_cast<std::uint32_t>(random() % t.size());
+      t.triangle[random() % t.triangle.size()] = static_cast<std::uint32_t>(random() % 25);
+    }
+    const Check checked = check(c, {});
+    const Prices p = checked.sum().prices;
+    CHECK(sum_of(p) == p.visits);
+    CHECK(p.visits == Priced(sound).prices.visits);
+  }
+  for (const QueryKind kind : {QueryKind::distance, QueryKind::first_contact}) {
+    capture::Capture c = sound;
+    c.queries[0].kind = kind;
+    const Prices p = check(c, {}).sum().prices;
+    CHECK(p.unattributed == p.visits);
+  }
+  capture::Capture c = sound;
+  c.queries[0].trees[1] = kNull;
+  std::erase_if(c.queries[0].events,
+                [](const capture::Event& e) { return e.kind == capture::EventKind::nodes; });
+  CHECK(check(c, {}).sum().prices.visits == 0);
+}
+
+TEST_CASE("The descent of a self query is priced, but not split") {
+  std::mt19937_64 random(12);
+  FaultyEngine engine;
+  const std::uint32_t a = engine.grow(engine.add(soup_mesh(random, 30)), random);
+  FaultyQuery how;
+  how.kind = QueryKind::self;
+  engine.ask(a, {}, a, {}, how);
+  const Prices p = Priced(engine.capture).prices;
+  CHECK(p.needed > 0);
+  CHECK(p.volumes + p.order == 0);
+  CHECK(sum_of(p) == p.visits);
+}
+
+TEST_CASE("Trees too deep to search are not split") {
+  FaultyEngine engine;
+  std::mt19937_64 random(1);
+  const std::uint32_t sheet = engine.add(sheet_mesh(60));
+  // A chain: each node has a leaf and the next node.
+  capture::Tree chain;
+  chain.mesh = sheet;
+  chain.first_child = chain.first_triangle = {0};
+  const std::uint32_t n = 7200;
+  for (std::uint32_t i = 0; i + 1 < n; ++i) {
+    for (const bool leaf : {false, true}) {
+      if (!leaf && i + 2 < n) chain.child.insert(chain.child.end(), {2 * i + 1, 2 * i + 2});
+      if (leaf || i + 2 == n) chain.triangle.push_back(i);
+      chain.first_child.push_back(static_cast<std::uint32_t>(chain.child.size()));
+      chain.first_triangle.push_back(static_cast<std::uint32_t>(chain.triangle.size()));
+      chain.volumes.insert(chain.volumes.end(), {0, 0, 0, 1, 1, 0});
+    }
+  }
+  engine.capture.trees.push_back(chain);
+  const std::uint32_t one =
+      engine.grow(engine.add(triangle_mesh({Eigen::Vector3d(2, 0, 0), {3, 0, 0}, {2, 1, 0}})), random);
+  capture::Query& q = engine.ask(0, {}, one, {});
+  // It goes down a little.
+  q.events = {{.a = 0, .b = 0, .met = 1}, {.a = 1, .b = 0}, {.a = 2, .b = 0}};
+  FaultyEngine::close(q);
+  CHECK(Priced(engine.capture).prices.unsplit == 2);
+}
+
+TEST_CASE("The advice names the change with most to gain, and the next") {
+  Prices p;
+  p.visits = 800;
+  p.needed = 100, p.proof = 100, p.volumes = 200, p.order = 400;
+  p.triangle_tests = 200;
+  CHECK(advice(p) == "Most to gain: another order of descent, at most 40 % of " + render::group_digits(1000) +
+                         " tests of volumes and triangles; next: tighter volumes, at most 20 %.");
+  p.crowded_tests = 190;
+  p.order = 0, p.volumes = 600;
+  CHECK(advice(p).find("Most to gain: tighter volumes, at most 60 %") == 0);
+  CHECK(advice(p).find("next: smaller leaves, at most 19 %") != std::string::npos);
+  p.saved_by_leaves = {100, 700, 300};
+  CHECK(advice(p).find("Most to gain: leaves of up to 4 triangles, at most 70 %") == 0);
+  p.saved_by_leaves = {};
+  p.volumes = 0, p.unsplit = 600;
+  CHECK(advice(p).find("Most to gain: tighter volumes or another order of descent, at most 60 %") == 0);
+  CHECK(advice({}) == "No tests were recorded.");
+}
+
+}  // namespace lrb::profile

@@ -1,0 +1,398 @@
+#include "scenarios/profile/verdicts.hpp"
+
+#include <limits>
+#include <memory>
+
+#include <Eigen/Geometry>
+#include <doctest/doctest.h>
+
+#include "tests/support/faulty_engine.hpp"
+#include <lrbscope/error.hpp>
+
+namespace lrb::profile {
+
+using namespace lrb::test;
+using capture::QueryKind;
+
+namespace {
+
+QueryVerdict verdict_of(const capture::Capture& c, std::size_t query = 0,
+                        Precision precision = Precision::float64) {
+  CapturedBodies bodies(c);
+  Checker checker(bodies, precision);
+  const auto trees = CapturedBodies::trees_of(c.queries[query]);
+  std::unique_ptr<QueryWalk> walk;
+  if (trees) walk = std::make_unique<QueryWalk>(bodies, c.queries[query], *trees);
+  return checker.check(c.queries[query], walk.get());
+}
+
+std::string first_sentence(const capture::Capture& c, const QueryVerdict& v) {
+  const auto& trees = c.queries[v.number - 1].trees;
+  return sentence(v.wrong.at(0), c.trees[trees[0]], c.trees[trees[1]]);
+}
+
+Pose tilted(const Eigen::Vector3d& t = {0.05, 0.07, 0.02}) {
+  return Pose::rotation({0.3, 0.5, 0.8}, 0.7, t);
+}
+
+/// Two sheets that cross.
+struct Sheets {
+  FaultyEngine engine;
+  std::uint32_t a = 0, b = 0;
+  Pose pose = Pose::rotation({1, 0.2, 0.1}, 1.1, {0.03, 0.45, -0.4});
+
+  explicit Sheets(std::uint32_t leaf = 1) {
+    std::mt19937_64 random(7);
+    a = engine.grow(engine.add(sheet_mesh(5)), random, leaf);
+    b = engine.grow(engine.add(sheet_mesh(4)), random, leaf);
+  }
+  capture::Query& ask(const FaultyQuery& how = {}) { return engine.ask(a, {}, b, pose, how); }
+};
+
+}  // namespace
+
+TEST_CASE(
+    "The exact pairs of captured meshes are those of all tests of two triangles, also for degenerate ones") {
+  std::mt19937_64 random(1);
+  std::uint64_t pairs = 0;
+  for (int round = 0; round < 20; ++round) {
+    FaultyEngine engine;
+    const std::uint32_t a = engine.grow(engine.add(soup_mesh(random, 30)), random, 3);
+    const std::uint32_t b = engine.grow(engine.add(soup_mesh(random, 25)), random, 2);
+    const capture::Query& q = engine.ask(a, tilted(), b, Pose::translation({0.1, 0, 0}));
+    std::vector<TrianglePair> expected;
+    for (std::uint32_t f = 0; f < 30; ++f)
+      for (std::uint32_t g = 0; g < 25; ++g)
+        if (triangles_meet(engine.capture.meshes[0], f, q.poses[0], engine.capture.meshes[1], g, q.poses[1]))
+          expected.push_back({f, g});
+    const QueryVerdict v = verdict_of(engine.capture);
+    CHECK(v.exact == expected);
+    CHECK(v.outcome == Judgement::right);
+    CHECK(v.right == expected.size());
+    pairs += v.right;
+  }
+  CHECK(pairs > 100);
+}
+
+TEST_CASE("A box that was shrunk is blamed, with its node, axis and how far the triangle sticks out") {
+  Sheets s;
+  const QueryVerdict sound = verdict_of((s.ask(), s.engine.capture));
+  REQUIRE(sound.outcome == Judgement::right);
+  REQUIRE(sound.exact.size() > 5);
+  // The leaf of a triangle that intersects.
+  const std::uint32_t f = sound.exact[sound.exact.size() / 2].a;
+  const std::uint32_t leaf = TreeIndex(s.engine.capture.trees[s.a], 50).leaf[f];
+  auto& volumes = s.engine.capture.trees[s.a].volumes;
+  volumes[6 * leaf + 2] += 100, volumes[6 * leaf + 5] += 100;  // far away
+  s.engine.capture.queries.clear();
+  s.ask();
+  const QueryVerdict v = verdict_of(s.engine.capture);
+  CHECK(v.outcome == Judgement::wrong);
+  CHECK(v.answer == Judgement::right);  // other pairs make the verdict right
+  CHECK(v.missed ==
+        static_cast<std::uint64_t>(std::count_if(sound.exact.begin(), sound.exact.end(),
+                                                 [&](const TrianglePair& p) { return p.a == f; })));
+  for (const WrongPair& w : v.wrong) {
+    CHECK(w.triangles.a == f);
+    CHECK(w.culprit == Culprit::volumes);
+    CHECK(w.nodes[0] == leaf);
+    CHECK(w.outside[0] == doctest::Approx(100));
+    CHECK(w.outside[1] == 0);
+    CHECK(w.margin > w.bound);
+  }
+  CHECK(first_sentence(s.engine.capture, v)
+            .find("triangle " + std::to_string(f) + " sticks out of its node by 100") != std::string::npos);
+}
+
+TEST_CASE("A test of triangles that lies is blamed, in both directions") {
+  Sheets s;
+  const std::vector<TrianglePair> exact = verdict_of((s.ask(), s.engine.capture)).exact;
+  std::set<NumberPair> disjoint;
+  for (const capture::Event& e : s.engine.capture.queries[0].events)
+    if (e.kind == capture::EventKind::triangles && e.met == 0) disjoint.insert({e.a, e.b});
+  REQUIRE(!disjoint.empty());
+  FaultyQuery how;
+  how.lies = {{exact[0].a, exact[0].b}, *disjoint.begin()};
+  s.ask(how);
+  const QueryVerdict v = verdict_of(s.engine.capture, 1);
+  CHECK(v.outcome == Judgement::wrong);
+  CHECK(v.missed == 1);
+  CHECK(v.extra == 1);
+  REQUIRE(v.wrong.size() == 2);
+  CHECK(v.wrong[0].missed);
+  CHECK(v.wrong[0].culprit == Culprit::triangle_test);
+  CHECK(v.wrong[0].triangles == exact[0]);
+  CHECK_FALSE(v.wrong[1].missed);
+  CHECK(v.wrong[1].triangles == TrianglePair{(*disjoint.begin())[0], (*disjoint.begin())[1]});
+  CHECK(v.wrong[1].margin > 0);
+}
+
+TEST_CASE("A traversal that forgets a pair of children is blamed at that pair, of wide nodes, too") {
+  for (const bool wide : {false, true}) {
+    CAPTURE(wide);
+    Sheets s;
+    FaultyQuery how;
+    how.wide = wide;
+    how.order = wide ? OpeningOrder::both : OpeningOrder::larger;
+    const std::vector<capture::Event> events = s.ask(how).events;
+    // The pair whose forgotten child costs most.
+    int blamed = 0;
+    for (const capture::Event& e : events) {
+      if (e.kind != capture::EventKind::nodes || e.met == 0) continue;
+      if (s.engine.capture.trees[s.a].is_leaf(e.a) && s.engine.capture.trees[s.b].is_leaf(e.b)) continue;
+      how.forgetful = NumberPair{e.a, e.b};
+      s.engine.capture.queries.clear();
+      s.ask(how);
+      const QueryVerdict v = verdict_of(s.engine.capture);
+      for (const WrongPair& w : v.wrong) {
+        CHECK(w.culprit == Culprit::traversal);
+        CHECK(w.nodes == *how.forgetful);
+        ++blamed;
+      }
+    }
+    CHECK(blamed > 20);
+  }
+}
+
+TEST_CASE("The children of wide nodes are blamed if their boxes were found disjoint") {
+  Sheets s;
+  const TrianglePair lost = verdict_of((s.ask(), s.engine.capture)).exact[3];
+  const TreeIndex index(s.engine.capture.trees[s.a], 50);
+  const std::uint32_t leaf = index.leaf[lost.a];
+  auto& volumes = s.engine.capture.trees[s.a].volumes;
+  volumes[6 * leaf + 2] += 100, volumes[6 * leaf + 5] += 100;
+  FaultyQuery how;
+  how.wide = true;
+  how.order = OpeningOrder::both;
+  s.ask(how);
+  const QueryVerdict v = verdict_of(s.engine.capture, 1);
+  REQUIRE(v.missed > 0);
+  for (const WrongPair& w : v.wrong) {
+    CHECK(w.culprit == Culprit::child_volumes);
+    CHECK(w.nodes[0] == index.parent[leaf]);
+  }
+}
+
+TEST_CASE("A triangle in no leaf is blamed") {
+  Sheets s(2);
+  const TrianglePair lost = verdict_of((s.ask(), s.engine.capture)).exact[2];
+  auto& triangles = s.engine.capture.trees[s.b].triangle;
+  // Another triangle takes its place, so that one is in two leaves and one in none.
+  std::replace(triangles.begin(), triangles.end(), lost.b, lost.b == 0 ? 1U : 0U);
+  s.ask();
+  const QueryVerdict v = verdict_of(s.engine.capture, 1);
+  REQUIRE(v.missed > 0);
+  for (const WrongPair& w : v.wrong) {
+    CHECK(w.culprit == Culprit::in_no_leaf);
+    CHECK(w.in_leaf == std::array{true, false});
+    CHECK(w.triangles.b == lost.b);
+  }
+}
+
+TEST_CASE("The depth of two triangles is the shortest translation that separates them") {
+  const Triangle flat{Eigen::Vector3d(0, 0, 0), {4, 0, 0}, {0, 4, 0}};
+  const Triangle pierces{Eigen::Vector3d(1, 1, -0.25), {1, 1, 3}, {1.5, 1.2, 3}};
+  CHECK(overlap_depth(flat, pierces) == doctest::Approx(0.25));
+  CHECK(overlap_depth(pierces, flat) == doctest::Approx(0.25));
+  // In one plane, and degenerate ones: a motion out of the plane separates them.
+  CHECK(overlap_depth(flat, {Eigen::Vector3d(1, 1, 0), {2, 1, 0}, {1, 2, 0}}) == 0);
+  CHECK(overlap_depth({flat[0], flat[1], flat[0]}, {flat[0], flat[1], flat[1]}) == doctest::Approx(0));
+  CHECK(overlap_depth(flat, {Eigen::Vector3d(1, 1, 0), {1, 1, 0}, {1, 1, 0}}) == doctest::Approx(0));
+  // No direction of many separates random ones by less.
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  const auto vector = [&] { return Eigen::Vector3d(normal(random), normal(random), normal(random)); };
+  int compared = 0;
+  for (int round = 0; round < 300; ++round) {
+    const Triangle a{vector(), vector(), vector()}, b{vector(), vector(), vector()};
+    const double depth = overlap_depth(a, b);
+    if (depth == 0) continue;
+    ++compared;
+    double least = 1e300;
+    for (int k = 0; k < 3000; ++k) {
+      const Eigen::Vector3d axis = vector().normalized();
+      const auto ends = [&](const Triangle& t) {
+        return std::minmax({axis.dot(t[0]), axis.dot(t[1]), axis.dot(t[2])});
+      };
+      const auto [low_a, high_a] = ends(a);
+      const auto [low_b, high_b] = ends(b);
+      least = std::min(least, std::min(high_a - low_b, high_b - low_a));
+    }
+    CHECK(depth <= least + 1e-12);
+    CHECK(least < depth + 0.3);  // close to it, so that the comparison means something
+  }
+  CHECK(compared > 50);
+}
+
+TEST_CASE("Errors about triangles within the error of a float or double are undecidable, others are wrong") {
+  // A triangle whose lowest corner is `height` above, or below, the middle of another.
+  const auto touching = [](double height, bool told) {
+    FaultyEngine engine;
+    std::mt19937_64 random(1);
+    const std::uint32_t a =
+        engine.grow(engine.add(triangle_mesh({Eigen::Vector3d(0, 0, 1), {4, 0, 1}, {0, 4, 1}})), random);
+    const std::uint32_t b = engine.grow(
+        engine.add(triangle_mesh({Eigen::Vector3d(1, 1, 1 + height), {1, 1, 3}, {1.5, 1.2, 3}})), random);
+    capture::Query& q = engine.ask(a, {}, b, {});
+    q.events = {{.a = 0, .b = 0, .met = 1},
+                {.a = 0, .b = 0, .kind = capture::EventKind::triangles, .met = told}};
+    q.verdict = told ? capture::Verdict::intersecting : capture::Verdict::separate;
+    q.pairs = told;
+    FaultyEngine::close(q);
+    return engine.capture;
+  };
+  const double ulp = std::numeric_limits<double>::epsilon(),
+               float_ulp = std::numeric_limits<float>::epsilon();
+  for (const double height : {ulp, -ulp, 4 * ulp, -4 * ulp}) {
+    const QueryVerdict v = verdict_of(touching(height, height > 0));
+    CHECK(v.outcome == Judgement::undecidable);
+    CHECK(v.answer == Judgement::undecidable);
+    CHECK(v.undecidable == 1);
+    CHECK(v.missed + v.extra == 0);
+    REQUIRE(v.wrong.size() == 1);
+    CHECK(v.wrong[0].margin == doctest::Approx(std::abs(height)));
+    CHECK(v.wrong[0].missed == (height < 0));
+  }
+  for (const double height : {float_ulp, -float_ulp}) {
+    CHECK(verdict_of(touching(height, height > 0), 0, Precision::float32).outcome == Judgement::undecidable);
+    CHECK(verdict_of(touching(height, height > 0), 0, Precision::float64).outcome == Judgement::wrong);
+  }
+  CHECK(verdict_of(touching(1e-3, true), 0, Precision::float32).outcome == Judgement::wrong);
+  CHECK(verdict_of(touching(1e-3, false), 0, Precision::float32).outcome == Judgement::right);
+}
+
+TEST_CASE("The number format is that of the volumes") {
+  Sheets s;
+  CHECK(precision_of(s.engine.capture) == Precision::float64);  // 1/5
+  for (capture::Tree& t : s.engine.capture.trees)
+    for (double& x : t.volumes) x = static_cast<float>(x);
+  CHECK(precision_of(s.engine.capture) == Precision::float32);
+}
+
+TEST_CASE("A query of kind any is checked by its verdict and its tests, not by the pairs that it left out") {
+  Sheets s;
+  FaultyQuery how;
+  how.kind = QueryKind::any;
+  const capture::Query q = s.ask(how);
+  REQUIRE(q.verdict == capture::Verdict::intersecting);
+  QueryVerdict v = verdict_of(s.engine.capture);
+  CHECK(v.outcome == Judgement::right);
+  CHECK(v.exact_pairs > 5);
+  CHECK(v.right == 1);
+  // The same tests with the opposite verdict: then all pairs are missed.
+  s.engine.capture.queries[0].verdict = capture::Verdict::separate;
+  v = verdict_of(s.engine.capture);
+  CHECK(v.answer == Judgement::wrong);
+  CHECK(v.missed == v.exact_pairs - 1);
+  // A lie on the way does not change the verdict, but is found.
+  for (const capture::Event& e : q.events)
+    if (e.kind == capture::EventKind::triangles && e.met > 0) how.lies.insert({e.a, e.b});
+  s.ask(how);
+  v = verdict_of(s.engine.capture, 1);
+  CHECK(v.answer == Judgement::right);
+  CHECK(v.missed == 1);
+  CHECK(v.wrong[0].culprit == Culprit::triangle_test);
+}
+
+TEST_CASE("Without events the verdict and the number of pairs are checked") {
+  Sheets s;
+  capture::Query& q = s.ask();
+  const std::uint64_t pairs = q.pairs;
+  s.ask();  // another one has events
+  capture::Query& cut = s.engine.capture.queries[0];
+  cut.events.clear();
+  cut.parts.clear();
+  CHECK(verdict_of(s.engine.capture).outcome == Judgement::right);
+  CHECK_FALSE(verdict_of(s.engine.capture).pairs_checked);
+  cut.pairs = pairs - 1;
+  CHECK(verdict_of(s.engine.capture).answer == Judgement::wrong);
+  CHECK(verdict_of(s.engine.capture).remark == "the engine counted " + std::to_string(pairs - 1) +
+                                                   " pairs of triangles; " + std::to_string(pairs) +
+                                                   " intersect");
+  cut.pairs = 0;  // it does not count
+  CHECK(verdict_of(s.engine.capture).outcome == Judgement::right);
+  cut.verdict = capture::Verdict::separate;
+  const QueryVerdict v = verdict_of(s.engine.capture);
+  CHECK(v.answer == Judgement::wrong);
+  REQUIRE(v.missed == pairs);
+  CHECK(v.wrong[0].culprit == Culprit::unrecorded);
+  cut.verdict = capture::Verdict::unreported;
+  CHECK(verdict_of(s.engine.capture).outcome == Judgement::unchecked);
+}
+
+TEST_CASE("Of distance queries the verdict is checked, of first contacts the poses at the beginning") {
+  Sheets s;
+  capture::Query& q = s.ask();
+  for (const auto& [kind, verdict, outcome] :
+       {std::tuple{QueryKind::distance, capture::Verdict::intersecting, Judgement::right},
+        {QueryKind::distance, capture::Verdict::separate, Judgement::wrong},
+        {QueryKind::first_contact, capture::Verdict::intersecting, Judgement::unchecked},
+        {QueryKind::first_contact, capture::Verdict::separate, Judgement::wrong}}) {
+    q.kind = kind;
+    q.verdict = verdict;
+    const QueryVerdict v = verdict_of(s.engine.capture);
+    CHECK(v.outcome == outcome);
+    CHECK_FALSE(v.pairs_checked);
+  }
+  q.kind = QueryKind::distance;
+  q.verdict = capture::Verdict::intersecting;
+  q.poses[1].t.z() += 10;
+  CHECK(verdict_of(s.engine.capture).outcome == Judgement::wrong);
+}
+
+TEST_CASE("A self query is checked for triangles without a common vertex") {
+  FaultyEngine engine;
+  std::mt19937_64 random(5);
+  capture::Mesh mesh = sheet_mesh(3);
+  // A triangle across the sheet, connected to none.
+  for (const Eigen::Vector3d& v : {Eigen::Vector3d(0.5, 0.4, -1), {0.5, 0.4, 1}, {0.9, 0.7, 1}})
+    mesh.vertices.push_back(v);
+  mesh.triangles.push_back({16, 17, 18});
+  const std::uint32_t a = engine.grow(engine.add(mesh), random);
+  FaultyQuery how;
+  how.kind = QueryKind::self;
+  engine.ask(a, tilted(), a, tilted(), how);
+  const QueryVerdict v = verdict_of(engine.capture);
+  CHECK(v.outcome == Judgement::right);
+  CHECK(v.exact_pairs > 0);
+  for (const TrianglePair& p : v.exact) CHECK(p.b == 18);
+  // Only one of both trees is named; and a lie about the triangle across.
+  how.lies = {{v.exact[0].a, 18}, {18, v.exact[0].a}};
+  engine.ask(a, {}, a, {}, how).trees[1] = kNull;
+  const QueryVerdict lied = verdict_of(engine.capture, 1);
+  CHECK(lied.missed == 1);
+  CHECK(lied.wrong[0].triangles == v.exact[0]);
+}
+
+TEST_CASE("Queries against a single shape, without triangles or that were cut off are not checked") {
+  Sheets s;
+  capture::Query& q = s.ask();
+  q.trees[1] = kNull;
+  CHECK(verdict_of(s.engine.capture).outcome == Judgement::unchecked);
+  q.trees[1] = s.b;
+  q.ended = false;
+  CHECK(verdict_of(s.engine.capture).outcome == Judgement::unchecked);
+  // A mesh without triangles intersects nothing.
+  q.ended = true;
+  s.engine.capture.meshes.push_back({"empty", {}, {}});
+  capture::Tree none;
+  none.mesh = 2;
+  none.first_child = none.first_triangle = {0, 0};
+  none.volumes.assign(6, 0);
+  s.engine.capture.trees.push_back(none);
+  q.trees[1] = 2;
+  q.events = {{.a = 0, .b = 0, .met = 0}};
+  q.verdict = capture::Verdict::separate;
+  q.pairs = 0;
+  FaultyEngine::close(q);
+  CHECK(verdict_of(s.engine.capture).outcome == Judgement::right);
+}
+
+TEST_CASE("A vertex that is not finite is refused by name") {
+  Sheets s;
+  s.ask();
+  s.engine.capture.meshes[0].vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_WITH_AS(verdict_of(s.engine.capture), doctest::Contains("sheet: "), InputError);
+}
+
+}  // namespace lrb::profile
