@@ -43,6 +43,7 @@ if(HOW STREQUAL "shared")
 else()
   run(${CMAKE_COMMAND} --install "${BUILD}" --prefix "${prefix}")
   run("${prefix}/bin/lrbscope" --version)
+  run(cc -std=c99 -fsyntax-only -x c "${prefix}/include/lrbscope_capture.h")
   set(more -DLRB_WITH_PROGRAM=ON)
 endif()
 
