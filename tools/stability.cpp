@@ -24,7 +24,7 @@ using namespace lrb::stability;
 struct StabilityOptions {
   std::string folder;
   std::vector<std::string> families, methods;
-  std::optional<int> dial;
+  std::optional<int> difficulty;
   std::optional<std::uint64_t> only;
   std::uint64_t cases = 100, seed = 1;
   unsigned jobs = 2;
@@ -51,7 +51,7 @@ std::vector<SimplexPair> without(const std::vector<SimplexPair>& a, const std::v
 std::string describe(const Replay& r, Quantity quantity, bool pairs) {
   std::ostringstream out;
   const stability::Record& record = r.record;
-  out << record.family << ", difficulty " << record.dial << ", case " << record.case_index << ", "
+  out << record.family << ", difficulty " << record.difficulty << ", case " << record.case_index << ", "
       << record.method << ": " << name_of(record.outcome);
   if (!record.message.empty()) out << " (" << record.message << ")";
   out << "\n";
@@ -77,15 +77,15 @@ std::string describe(const Replay& r, Quantity quantity, bool pairs) {
 
 int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
                const std::vector<FamilyRow>& families) {
-  if (families.size() != 1 || !o.dial)
-    throw InputError("--only: expected exactly one --family and one --dial with it");
+  if (families.size() != 1 || !o.difficulty)
+    throw InputError("--only: expected exactly one --family and one --difficulty with it");
   bool all_right = true;
   for (const workers::WorkerMethod& m : methods) {
     if (!m.column.present) {
       print(m.column.name + ": absent. " + m.column.remark + "\n");
       continue;
     }
-    const Replay r = replay(m, families[0].name, *o.dial, *o.only, o.seed, o.timeout, o.quantity);
+    const Replay r = replay(m, families[0].name, *o.difficulty, *o.only, o.seed, o.timeout, o.quantity);
     print(describe(r, o.quantity, o.pairs));
     all_right = all_right && (r.record.outcome == stability::Outcome::right ||
                               r.record.outcome == stability::Outcome::rejected);
@@ -102,7 +102,7 @@ Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod
   for (const FamilyRow& f : families) experiment.families.push_back(f.name);
   experiment.cases = o.cases;
   experiment.seed = o.seed;
-  experiment.dial = o.dial;
+  experiment.difficulty = o.difficulty;
   experiment.jobs = o.jobs;
   experiment.timeout = o.timeout;
   Progress bar("stability", 0, globals.quiet);
@@ -125,10 +125,10 @@ Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod
 std::string command_of(const stability::Record& r, Quantity quantity) {
   if (quantity != Quantity::pairs)
     return "lrbscope stability --quantity " + std::string(name_of(quantity)) + " --family " + r.family +
-           " --method " + r.method + " --dial " + std::to_string(r.dial) + " --only " +
+           " --method " + r.method + " --difficulty " + std::to_string(r.difficulty) + " --only " +
            std::to_string(r.case_index) + " --seed " + std::to_string(r.seed);
-  return "lrbscope stability --family " + r.family + " --method " + r.method + " --dial " +
-         std::to_string(r.dial) + " --only " + std::to_string(r.case_index) + " --seed " +
+  return "lrbscope stability --family " + r.family + " --method " + r.method + " --difficulty " +
+         std::to_string(r.difficulty) + " --only " + std::to_string(r.case_index) + " --seed " +
          std::to_string(r.seed) + " --pairs";
 }
 
@@ -143,7 +143,7 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
         const auto method = std::find_if(methods.begin(), methods.end(), [&](const workers::WorkerMethod& m) {
           return m.column.name == r.method;
         });
-        Replay again = replay(*method, r.family, r.dial, r.case_index, r.seed, o.timeout, o.quantity);
+        Replay again = replay(*method, r.family, r.difficulty, r.case_index, r.seed, o.timeout, o.quantity);
         return AnsweredPairs{std::move(again.expected), std::move(again.answered)};
       },
       [&](std::size_t done, std::size_t total) {
@@ -218,8 +218,8 @@ Command add_stability(CLI::App& root, const Globals& globals) {
   add_quantity_option(*app, o->quantity);
   app->add_option("--family", o->families, "Only these families")->type_name("NAME");
   app->add_option("--method", o->methods, "Only these methods")->type_name("NAME");
-  app->add_option("--dial", o->dial, "Only this difficulty, from 0 (benign) to 10 (degenerate)")
-      ->check(CLI::Range(0, kDialSettings - 1))
+  app->add_option("--difficulty", o->difficulty, "Only this difficulty, from 0 (benign) to 10 (degenerate)")
+      ->check(CLI::Range(0, kDifficulties - 1))
       ->type_name("K");
   app->add_option("--cases", o->cases, "Number of cases per family and difficulty [100]")
       ->check(CLI::Range(1, 1000000))

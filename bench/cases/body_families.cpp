@@ -148,20 +148,20 @@ void move_exactly(RandomEngine& random, Case& c) {
   move_both(c, by);
 }
 
-Case make_lattice(RandomEngine& random, double dial) {
+Case make_lattice(RandomEngine& random, double difficulty) {
   static const std::vector<Body> kBodies = {body(menger()), body(koch_cube()), body(lattice())};
   Case c{kBodies[random() % 3], kBodies[random() % 3], {}, {}, {}, {}};
-  const double steps[] = {1, 0.5, 1.0 / 3, slack(dial)};
+  const double steps[] = {1, 0.5, 1.0 / 3, slack(difficulty)};
   const double step = steps[random() % 4];
   c.pose_b = {grid_turn(random), step * pick_point(random, {-4, -4, -4}, {4, 4, 4})};
   c.pose_b.t += c.pose_b.r.cwiseMin(0).rowwise().sum() * -3;  // back over A
-  loosen(random, c, slack(dial));
+  loosen(random, c, slack(difficulty));
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   if (pick(random, 0, 3) == 0) c.pose_b.r = shapes::random_rotation(random);
   return c;
 }
 
-Case make_dented(RandomEngine& random, double dial) {
+Case make_dented(RandomEngine& random, double difficulty) {
   static const std::vector<Body> kBodies = {
       std::make_shared<LrbRep>(shapes::dented_box()),
       std::make_shared<LrbRep>(build_lrb(shapes::bumpy_sphere(1, 3, 0.4))),
@@ -172,7 +172,7 @@ Case make_dented(RandomEngine& random, double dial) {
   Case c{kBodies[random() % kBodies.size()], kBodies[random() % kBodies.size()], {}, {}, {}, {}};
   c.pose_b = random() % 2 ? any_pose(random, 2)
                           : Pose{grid_turn(random), pick_point(random, {-3, -3, 1}, {3, 3, 1})};
-  loosen(random, c, slack(dial));
+  loosen(random, c, slack(difficulty));
   return c;
 }
 
@@ -251,8 +251,8 @@ Case containment_of_kind(int kind, RandomEngine& random, double near) {
   }
 }
 
-Case make_containment(RandomEngine& random, double dial) {
-  const double near = 1 - steady::pow10(-1 - 13 * dial);
+Case make_containment(RandomEngine& random, double difficulty) {
+  const double near = 1 - steady::pow10(-1 - 13 * difficulty);
   const int kind = pick(random, 0, 5);
   Case c = containment_of_kind(kind, random, near);
   if (random() % 2) move_both(c, near < 0.999 ? any_pose(random, 5) : Pose{grid_turn(random), {1, -2, 3}});
@@ -264,18 +264,18 @@ Case make_containment(RandomEngine& random, double dial) {
   return c;
 }
 
-Case make_voxels(RandomEngine& random, double dial) {
-  const int most = 2 + static_cast<int>(2 * dial);
+Case make_voxels(RandomEngine& random, double difficulty) {
+  const int most = 2 + static_cast<int>(2 * difficulty);
   const Cells a(random, most, most, uniform(random, 0.2, 1)), b(random, most, most, uniform(random, 0.2, 1));
   Case c{body(a.mesh(random() % 2)), body(b.mesh(random() % 2)), {}, {}, {}, {}};
   c.pose_b.t = grid_shift(random, most, false);
-  c.pose_b.t += slack(dial) * shapes::random_direction(random);
+  c.pose_b.t += slack(difficulty) * shapes::random_direction(random);
   c.interiors_overlap = share_a_cell(a, b, c.pose_b.t);
-  if (random() % 2 && slack(dial) == 0) move_exactly(random, c);
+  if (random() % 2 && slack(difficulty) == 0) move_exactly(random, c);
   return c;
 }
 
-Case make_plane(RandomEngine& random, double dial) {
+Case make_plane(RandomEngine& random, double difficulty) {
   static const std::vector<Body> kBodies = {body(shapes::star(5)),
                                             body(shapes::gear(6)),
                                             body(shapes::comb_2d(3)),
@@ -285,12 +285,12 @@ Case make_plane(RandomEngine& random, double dial) {
                                             std::make_shared<LrbRep>(shapes::stairs_2d())};
   Case c{kBodies[random() % kBodies.size()], kBodies[random() % kBodies.size()], {}, {}, {}, {}};
   if (random() % 2) {
-    const int most = 2 + static_cast<int>(4 * dial);
+    const int most = 2 + static_cast<int>(4 * difficulty);
     const Cells a(random, most, 1, uniform(random, 0.2, 1)), b(random, most, 1, uniform(random, 0.2, 1));
     c.a = body(a.outline());
     c.b = body(b.outline());
     c.pose_b.t = grid_shift(random, most, true);
-    c.pose_b.t += slack(dial) * shapes::random_direction(random);
+    c.pose_b.t += slack(difficulty) * shapes::random_direction(random);
     c.pose_b.t.z() = 0;
     c.interiors_overlap = share_a_cell(a, b, c.pose_b.t);
     return c;
@@ -304,13 +304,13 @@ Case make_plane(RandomEngine& random, double dial) {
     if (random() % 2) c.pose_b = Pose::translation(c.pose_b.t);
   }
   if (random() % 2) c.pose_b.t.x() = nudged(c.pose_b.t.x(), pick(random, -1, 1));
-  loosen(random, c, slack(dial));
+  loosen(random, c, slack(difficulty));
   return c;
 }
 
-Case make_dirty(RandomEngine& random, double dial) {
+Case make_dirty(RandomEngine& random, double difficulty) {
   const auto spoil = [&](Mesh m) {
-    const double share = 0.3 * dial;
+    const double share = 0.3 * difficulty;
     Mesh out;
     out.vertices = m.vertices;
     for (FaceId f = 0; f < m.face_count(); ++f) {
@@ -331,7 +331,7 @@ Case make_dirty(RandomEngine& random, double dial) {
                          spoil(crossing)};
   Case c{body(meshes[random() % 5], true), body(meshes[random() % 5], true), {}, any_pose(random, 2), {}, {}};
   if (random() % 2) c.pose_b = {grid_turn(random), pick_point(random, {-2, -1, 0}, {2, 1, 0})};
-  loosen(random, c, slack(dial));
+  loosen(random, c, slack(difficulty));
   return c;
 }
 
@@ -345,14 +345,14 @@ std::vector<Family> body_families() {
        "on the grid", false, 160, slack_value},
       {"containment", "inside, in a cavity, in the wall around one, nested shells, enclosed components",
        make_containment, "0.1 of the room left", "1e-14 of the room left", false, 170,
-       [](double dial) { return rounded_value(steady::pow10(-1 - 13 * dial)); }},
+       [](double difficulty) { return rounded_value(steady::pow10(-1 - 13 * difficulty)); }},
       {"voxels", "random cells of one grid: interiors overlap exactly if a cell is shared", make_voxels,
        "0.1 off the grid", "on the grid, or on half of it", false, 180, slack_value},
       {"plane", "2D bodies, random cells of one grid among them", make_plane, "0.1 off",
        "edges on edges, corners on corners", false, 190, slack_value},
       {"dirty", "open, duplicated, zero-area, flipped and crossing faces", make_dirty,
        "clean except for crossings, 0.1 off", "a third of the faces bad", false, 200,
-       [](double dial) { return rounded_value(30 * dial) + " %"; }},
+       [](double difficulty) { return rounded_value(30 * difficulty) + " %"; }},
   };
 }
 

@@ -97,7 +97,7 @@ Mesh cone(int n, double height) {
   return shapes::revolve({{0, 0}, {1, height}, {0, height}}, n);
 }
 
-Case make_touch(RandomEngine& random, double dial) {
+Case make_touch(RandomEngine& random, double difficulty) {
   Case c{any_body(random), any_body(random), {}, any_pose(random), {}, {}};
   if (pick(random, 0, 3) == 0) c.pose_a = any_pose(random);
   const Vector3d away = shapes::random_direction(random);
@@ -108,7 +108,7 @@ Case make_touch(RandomEngine& random, double dial) {
   if (!in_contact(c)) c.pose_b.t += onto;  // vertex on vertex
   const Vector3d start = c.pose_b.t;
   double near = 0, far = 12;  // no body is wider
-  const int steps = static_cast<int>(6 + 54 * dial);
+  const int steps = static_cast<int>(6 + 54 * difficulty);
   for (int i = 0; i < steps; ++i) {
     const double middle = 0.5 * (near + far);
     c.pose_b.t = start + middle * away;
@@ -119,7 +119,7 @@ Case make_touch(RandomEngine& random, double dial) {
   return c;
 }
 
-Case make_shared(RandomEngine& random, double dial) {
+Case make_shared(RandomEngine& random, double difficulty) {
   Case c;
   c.a = any_body(random);
   std::array<Vector3d, 3> t = any_triangle(random, *c.a);
@@ -132,35 +132,35 @@ Case make_shared(RandomEngine& random, double dial) {
   const int shared = pick(random, 1, 3);
   std::array<Vector3d, 4> p = {t[0], off(), off(), off()};
   for (int i = 0; i < shared; ++i) p[i] = t[i];
-  for (int i = 0; i < shared; ++i) p[i] += slack(dial) * shapes::random_direction(random);
+  for (int i = 0; i < shared; ++i) p[i] += slack(difficulty) * shapes::random_direction(random);
   c.b = body(tetrahedron(p));
   if (random() % 2) c.pose_a = c.pose_b = any_pose(random);
   return c;
 }
 
-Case make_coplanar(RandomEngine& random, double dial) {
+Case make_coplanar(RandomEngine& random, double difficulty) {
   static const std::vector<Body> kFlat = {body(shapes::box()), body(shapes::l_shape()), body(shapes::comb(3)),
                                           body(shapes::quad_box()), body(shapes::tetrahedron(2))};
   Case c{kFlat[random() % kFlat.size()], kFlat[random() % 4], {}, {}, {}, {}};
   const int turn = pick(random, 0, 2);
-  const double angle = turn == 0   ? slack(dial)
+  const double angle = turn == 0   ? slack(difficulty)
                        : turn == 1 ? uniform(random, 0, 6.3)
                                    : pick(random, 0, 3) * std::numbers::pi / 2;
   c.pose_b = Pose::rotation({0, 0, 1}, angle);
   if (turn == 2) c.pose_b.r = c.pose_b.r.array().round();
   if (pick(random, 0, 2) == 0)
-    c.pose_b.r = Pose::rotation({1, uniform(random), 0}, slack(dial)).r * c.pose_b.r;
+    c.pose_b.r = Pose::rotation({1, uniform(random), 0}, slack(difficulty)).r * c.pose_b.r;
   const double step = random() % 2 ? 0.5 : 1.0 / 3;
   c.pose_b.t = {step * pick(random, -3, 3), step * pick(random, -3, 3),
                 static_cast<double>(pick(random, -1, 1))};
   c.pose_b.t.z() = nudged(c.pose_b.t.z(), pick(random, -1, 1));
   if (pick(random, 0, 2) == 0) c.pose_b.t.x() = nudged(c.pose_b.t.x(), pick(random, -1, 1));
-  loosen(random, c, slack(dial));
+  loosen(random, c, slack(difficulty));
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   return c;
 }
 
-Case make_identical(RandomEngine& random, double dial) {
+Case make_identical(RandomEngine& random, double difficulty) {
   Case c;
   c.a = c.b = any_body(random);
   c.pose_a = any_pose(random);
@@ -178,13 +178,13 @@ Case make_identical(RandomEngine& random, double dial) {
     const int k = pick(random, 0, 2);
     c.pose_b.t[k] = nudged(c.pose_b.t[k], pick(random, -2, 2));
   }
-  loosen(random, c, slack(dial));
+  loosen(random, c, slack(difficulty));
   return c;
 }
 
-Case make_hub(RandomEngine& random, double dial) {
+Case make_hub(RandomEngine& random, double difficulty) {
   // Tip on tip (kind 0) n^2 pairs intersect, so the maximum of 100 faces is rare.
-  const int n = 3 + static_cast<int>((random() % 8 ? 21 : 97) * dial);
+  const int n = 3 + static_cast<int>((random() % 8 ? 21 : 97) * difficulty);
   static const Body kPoly = body(screw(64, 1, 0));
   Case c{body(cone(n, 1)), body(cone(pick(random, 3, n), 1)), {}, {}, {}, {}};
   const int kind = pick(random, 0, 3);
@@ -197,11 +197,11 @@ Case make_hub(RandomEngine& random, double dial) {
   if (kind == 3) c.pose_b.t = {0, 0, static_cast<double>(pick(random, -2, 2)) / 2};
   const int k = pick(random, 0, 2);
   if (random() % 2) c.pose_b.t[k] = nudged(c.pose_b.t[k], pick(random, -1, 1));
-  loosen(random, c, slack(dial));
+  loosen(random, c, slack(difficulty));
   return c;
 }
 
-Case make_interlock(RandomEngine& random, double dial) {
+Case make_interlock(RandomEngine& random, double difficulty) {
   static const Body kComb = body(shapes::comb(4, 3)), kScrew = body(screw(5, 6, 2)),
                     kNut = body(nut(5, 6, 2));
   static const Body kLink =
@@ -223,13 +223,13 @@ Case make_interlock(RandomEngine& random, double dial) {
     const double height = random() % 2 ? 0 : uniform(random, -1, 1);
     c.pose_b = Pose::rotation({0, 0, 1}, random() % 4 ? height : 0, {0, 0, height});
   }
-  loosen(random, c, slack(dial));
+  loosen(random, c, slack(difficulty));
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   return c;
 }
 
-Case make_quadratic(RandomEngine& random, double dial) {
-  const int n = 2 + static_cast<int>(4 * dial);
+Case make_quadratic(RandomEngine& random, double difficulty) {
+  const int n = 2 + static_cast<int>(4 * difficulty);
   std::vector<Mesh> across, along;
   for (int i = 0; i < n; ++i) {
     across.push_back(shapes::box({i + 0.25, 0, 0}, {i + 0.5, static_cast<double>(n), 1}));
@@ -238,7 +238,7 @@ Case make_quadratic(RandomEngine& random, double dial) {
   Case c{body(shapes::several(across)), body(shapes::several(along)), {}, {}, {}, {}};
   c.pose_b.t = {0, 0, random() % 2 ? 0 : uniform(random, -1, 1)};
   if (random() % 2) c.pose_b.r = Pose::rotation({1, 0, 0}, uniform(random, 0, 0.3)).r;
-  loosen(random, c, slack(dial));
+  loosen(random, c, slack(difficulty));
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   return c;
 }
@@ -249,7 +249,7 @@ std::vector<Family> contact_families() {
   return {
       {"touch", "random bodies stopped within an ulp of contact", make_touch, "0.2 from first contact",
        "an ulp from first contact", false, 10,
-       [](double dial) { return rounded_value(12 * steady::exp2(-static_cast<int>(6 + 54 * dial))); }},
+       [](double difficulty) { return rounded_value(12 * steady::exp2(-static_cast<int>(6 + 54 * difficulty))); }},
       {"shared", "a face, edge or vertex in common, exactly or nearly", make_shared, "0.1 off",
        "in common exactly", false, 20, slack_value},
       {"coplanar", "face on face: shifted, rotated in the plane, tilted", make_coplanar,

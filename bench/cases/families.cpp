@@ -24,8 +24,8 @@ const Family* find_family(const std::string& name) {
   return nullptr;
 }
 
-double dial_value(int setting) {
-  return static_cast<double>(setting) / (kDialSettings - 1);
+double scaled_difficulty(int setting) {
+  return static_cast<double>(setting) / (kDifficulties - 1);
 }
 
 RandomEngine case_random(const Family& family, std::uint64_t seed, std::uint64_t index) {
@@ -36,12 +36,12 @@ RandomEngine case_random(const Family& family, std::uint64_t seed, std::uint64_t
   return RandomEngine(h.value());
 }
 
-Case make_case(const Family& family, std::uint64_t seed, int dial, std::uint64_t index) {
-  if (dial < 0 || dial >= kDialSettings)
-    throw InputError("difficulty " + std::to_string(dial) + ": expected 0 (benign) to " +
-                     std::to_string(kDialSettings - 1) + " (degenerate)");
+Case make_case(const Family& family, std::uint64_t seed, int difficulty, std::uint64_t index) {
+  if (difficulty < 0 || difficulty >= kDifficulties)
+    throw InputError("difficulty " + std::to_string(difficulty) + ": expected 0 (benign) to " +
+                     std::to_string(kDifficulties - 1) + " (degenerate)");
   RandomEngine random = case_random(family, seed, index);
-  return family.make(random, dial_value(dial));
+  return family.make(random, scaled_difficulty(difficulty));
 }
 
 Body body(const Mesh& mesh, bool self_intersecting) {
@@ -72,8 +72,8 @@ void move_both(Case& c, const Pose& by) {
   for (Pose* p : {&c.pose_a, &c.pose_b}) *p = Pose{by.r * p->r, by.r * p->t + by.t};
 }
 
-double slack(double dial) {
-  return dial >= 1 ? 0 : 0.1 * steady::pow10(-15 * dial / 0.9);
+double slack(double difficulty) {
+  return difficulty >= 1 ? 0 : 0.1 * steady::pow10(-15 * difficulty / 0.9);
 }
 
 std::string rounded_value(double value) {
@@ -85,8 +85,8 @@ std::string rounded_value(double value) {
   return out.substr(0, e + 1) + std::to_string(std::stoi(out.substr(e + 1)));
 }
 
-std::string slack_value(double dial) {
-  return rounded_value(slack(dial));
+std::string slack_value(double difficulty) {
+  return rounded_value(slack(difficulty));
 }
 
 void loosen(RandomEngine& random, Case& c, double by) {
@@ -130,11 +130,11 @@ Eigen::Matrix3d grid_turn(RandomEngine& random, bool reflections) {
 
 namespace {
 
-Case make_swapped(RandomEngine& random, double dial) {
+Case make_swapped(RandomEngine& random, double difficulty) {
   const std::span<const Family> families = all_families();
   while (true) {  // until it is one of the others
     const Family& f = families[random() % families.size()];
-    if (!f.both_ways) return f.make(random, dial);
+    if (!f.both_ways) return f.make(random, difficulty);
   }
 }
 

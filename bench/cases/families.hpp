@@ -32,13 +32,13 @@ struct Case {
 struct Family {
   const char* name;  ///< name of its row in the table
   const char* what;
-  Case (*make)(RandomEngine& random, double dial);
+  Case (*make)(RandomEngine& random, double difficulty);
   const char* benign = "";      ///< meaning of difficulty 0: "1e-1 apart"
   const char* degenerate = "";  ///< meaning of difficulty 1: "exactly in contact"
   bool both_ways = false;       ///< tests whether the answer to (B, A) is the transpose of (A, B)'s
   int rank = 1000;              ///< order of families in tables: by rank, then by file
   /// Returns the physical value of a difficulty as a short text such as "1e-6"; null: it has no single value.
-  std::string (*value)(double dial) = nullptr;
+  std::string (*value)(double difficulty) = nullptr;
 };
 inline int rank_of(const Family& f) {
   return f.rank;
@@ -52,9 +52,9 @@ std::vector<Family> registered_families();
 std::span<const Family> all_families();
 const Family* find_family(const std::string& name);
 
-/// The number of difficulties of a family, evenly spaced from benign (0) to degenerate (kDialSettings - 1).
-inline constexpr int kDialSettings = 11;
-double dial_value(int setting);  ///< 0 .. 1
+/// The number of difficulties of a family, evenly spaced from benign (0) to degenerate (kDifficulties - 1).
+inline constexpr int kDifficulties = 11;
+double scaled_difficulty(int setting);  ///< 0 .. 1
 
 /// Returns the random engine of a case. It does not depend on the difficulty: a case is the same at all
 /// difficulties, except for the quantities that the difficulty changes.
@@ -62,7 +62,7 @@ RandomEngine case_random(const Family& family, std::uint64_t seed, std::uint64_t
 
 /// Makes case `index` of the family at a difficulty, the same on every machine. Throws InputError if the
 /// difficulty is out of range.
-Case make_case(const Family& family, std::uint64_t seed, int dial, std::uint64_t index);
+Case make_case(const Family& family, std::uint64_t seed, int difficulty, std::uint64_t index);
 
 // Helpers shared by the files of families.
 Body body(const Mesh& mesh,
@@ -74,8 +74,8 @@ Pose any_pose(RandomEngine& random, double distance = 3);  ///< random rotation 
 void move_both(Case& c, const Pose& by);
 /// Returns the distance of a case from its family's degenerate configuration: 0.1 at difficulty 0, 1e-16 at
 /// 0.9, 0 at 1. In the bodies' unit; bodies are a few units wide.
-double slack(double dial);
-std::string slack_value(double dial);     ///< as a short text
+double slack(double difficulty);
+std::string slack_value(double difficulty);     ///< as a short text
 std::string rounded_value(double value);  ///< one digit and an exponent: "0.1", "2e-3", "6e4"
 /// Moves B by `by` in a random direction and rotates it by up to `by` radians. For 0 nothing moves, but the
 /// same number of random numbers is drawn.

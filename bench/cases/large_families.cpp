@@ -82,9 +82,9 @@ Mesh cone(int n) {
   return shapes::revolve({{0, 0}, {1, 1}, {0, 1}}, n);
 }
 
-Case make_kiss(RandomEngine& random, double dial) {
+Case make_kiss(RandomEngine& random, double difficulty) {
   static const std::vector<Body> cubes = {body(shapes::box()), body(shapes::quad_box())};
-  const double gap = steady::exp2(-std::round(4 + 48 * dial));  // at difficulty 1 an ulp of 1
+  const double gap = steady::exp2(-std::round(4 + 48 * difficulty));  // at difficulty 1 an ulp of 1
   Case c{cubes[random() % 2], cubes[random() % 2], {}, {}, {}, {}};
   const int axes = pick(random, 1, 3);  // in contact along: a face, an edge, a vertex
   bool apart = false, touch = false;
@@ -93,7 +93,7 @@ Case make_kiss(RandomEngine& random, double dial) {
       c.pose_b.t[k] = (2 * pick(random, -4, 3) + 1) / 8.0;  // no coplanar sides
       continue;
     }
-    const int gaps = uniform(random) < dial ? pick(random, -1, 1) : random() % 2 ? 1 : -1;
+    const int gaps = uniform(random) < difficulty ? pick(random, -1, 1) : random() % 2 ? 1 : -1;
     c.pose_b.t[k] = 1 + gaps * gap;
     apart |= gaps > 0;
     touch |= gaps == 0;
@@ -102,7 +102,7 @@ Case make_kiss(RandomEngine& random, double dial) {
   if (!apart && touch) c.relation = Relation::touching;
   c.interiors_overlap = !apart && !touch;
   // All operations are exact: a permutation of the axes, a change of signs, a power of two.
-  const double size = steady::exp2(std::round(40 * dial * uniform(random, -1, 1)));
+  const double size = steady::exp2(std::round(40 * difficulty * uniform(random, -1, 1)));
   const Pose by{size * grid_turn(random, true), Vector3d::Zero()};
   if (random() % 2) move_both(c, by);
   if (random() % 2) {
@@ -112,8 +112,8 @@ Case make_kiss(RandomEngine& random, double dial) {
   return c;
 }
 
-Case make_nested(RandomEngine& random, double dial) {
-  const int walls = 2 + static_cast<int>(30 * dial);
+Case make_nested(RandomEngine& random, double difficulty) {
+  const int walls = 2 + static_cast<int>(30 * difficulty);
   std::vector<Mesh> shells;
   for (int i = 0; i < walls; ++i) {  // from outside in: every second one faces inward
     const double reach = walls - i;
@@ -121,7 +121,7 @@ Case make_nested(RandomEngine& random, double dial) {
                                     : shapes::quad_box({-reach, -reach, -reach}, {reach, reach, reach});
     shells.push_back(i % 2 ? shapes::turned_inside_out(shell) : shell);
   }
-  const double near = 1 - steady::pow10(-1 - 13 * dial);  // share of the available space that is used
+  const double near = 1 - steady::pow10(-1 - 13 * difficulty);  // share of the available space that is used
   const double reach = 0.5 * near;
   const int layer = pick(random, 0, walls);  // 0: outside all of them
   const double middle = walls - layer + 0.5;
@@ -147,7 +147,7 @@ Case make_nested(RandomEngine& random, double dial) {
   return c;
 }
 
-Case make_polygon(RandomEngine& random, double dial) {
+Case make_polygon(RandomEngine& random, double difficulty) {
   // 8 to 4096 corners; and the same number in a comb, whose ends are not convex.
   static const std::vector<Body> kRound = [] {
     std::vector<Body> list;
@@ -161,9 +161,9 @@ Case make_polygon(RandomEngine& random, double dial) {
   }();
   // The largest takes a hundred times as long as the others, so it is rare.
   const std::size_t largest = random() % 16 == 0 ? 3 : 2;
-  const auto& bodies = uniform(random) < 0.5 * dial ? kComb : kRound;
-  Case c{bodies[std::min(largest, static_cast<std::size_t>(4 * dial))], any_body(random), {}, {}, {}, {}};
-  const int kind = uniform(random) < dial ? pick(random, 0, 2) : 3;
+  const auto& bodies = uniform(random) < 0.5 * difficulty ? kComb : kRound;
+  Case c{bodies[std::min(largest, static_cast<std::size_t>(4 * difficulty))], any_body(random), {}, {}, {}, {}};
+  const int kind = uniform(random) < difficulty ? pick(random, 0, 2) : 3;
   if (kind == 0) {  // one many-cornered end on another: the answer is quadratic
     c.a = bodies[random() % 64 == 0];
     c.b = bodies[random() % 64 == 0];
@@ -184,7 +184,7 @@ Case make_polygon(RandomEngine& random, double dial) {
   return c;
 }
 
-Case make_fractal(RandomEngine& random, double dial) {
+Case make_fractal(RandomEngine& random, double difficulty) {
   static const Body kSponge = body(menger(2)), kHub = body(cone(400));
   static const std::vector<Body> dented = {body(dented_cube(1)), body(dented_cube(2)), body(menger(1))};
   static const std::vector<Body> probes = {body(shapes::scaled(shapes::box(), 1.0 / 9)),
@@ -192,7 +192,7 @@ Case make_fractal(RandomEngine& random, double dial) {
                                            body(shapes::scaled(shapes::icosphere(0), 0.1))};
   Case c{kSponge, probes[random() % 3], {}, {}, {}, {}};
   const int kind = pick(random, 0, 15);
-  const double fine = steady::pow10(-17 * dial);
+  const double fine = steady::pow10(-17 * difficulty);
   if (kind < 8) {  // a plug for a hole of the sponge, of a dented cube
     if (kind % 2) c.a = dented[random() % 3];
     const double cell = 1.0 / (kind % 2 ? 7 : 9);
@@ -223,10 +223,10 @@ std::vector<Family> large_families() {
   return {
       {"kiss", "cubes that share a face, an edge, a vertex; the same a gap apart, a gap inside", make_kiss,
        "gap 1/16", "gap 1 ulp", false, 210,
-       [](double dial) { return rounded_value(steady::exp2(-std::round(4 + 48 * dial))); }},
+       [](double difficulty) { return rounded_value(steady::exp2(-std::round(4 + 48 * difficulty))); }},
       {"nested", "nested shells, solid by parity, with components in and between the walls", make_nested,
        "2 walls, 0.1 of the room left", "32 walls, 1e-14 of the room left", false, 220,
-       [](double dial) { return rounded_value(steady::pow10(-1 - 13 * dial)); }},
+       [](double difficulty) { return rounded_value(steady::pow10(-1 - 13 * difficulty)); }},
       {"polygon", "faces with thousands of corners, convex and not", make_polygon, "8 corners, anywhere",
        "4096 corners, end to end", false, 230},
       {"fractal", "sponges, dented cubes and hubs of hundreds of faces against plugs that fit", make_fractal,

@@ -44,8 +44,8 @@ Vector3d random_sign_vector(RandomEngine& random, double size) {
   return v;
 }
 
-Case make_sliver(RandomEngine& random, double dial) {
-  const double thin = steady::pow10(-8 * dial);
+Case make_sliver(RandomEngine& random, double difficulty) {
+  const double thin = steady::pow10(-8 * difficulty);
   const auto shape = [&] {
     const int kind = pick(random, 0, 2);
     return kind == 0 ? Vector3d(1, 1, thin) : kind == 1 ? Vector3d(1, thin, thin) : Vector3d(1, thin, 1);
@@ -65,8 +65,8 @@ Case make_sliver(RandomEngine& random, double dial) {
 }
 
 /// Boxes flat against each other, side by side, crossing or rotated, all by the scale of their thickness.
-Case make_thin(RandomEngine& random, double dial) {
-  const double thin = steady::pow10(-1 - 11 * dial);
+Case make_thin(RandomEngine& random, double difficulty) {
+  const double thin = steady::pow10(-1 - 11 * difficulty);
   const LrbRep cube = *body(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
   const Body sheet = stretched(cube, {1, 1, thin}), rod = stretched(cube, {1, thin, thin});
   const auto shape = [&] { return pick(random, 0, 1) == 0 ? sheet : rod; };
@@ -90,7 +90,7 @@ Case make_thin(RandomEngine& random, double dial) {
   return c;
 }
 
-Case make_zero_area(RandomEngine& random, double dial) {
+Case make_zero_area(RandomEngine& random, double difficulty) {
   const auto collapsed = [&](const LrbRep& rep) {
     Mesh m = mesh_of(rep);
     for (int times = pick(random, 1, 4); times > 0; --times) {
@@ -100,7 +100,7 @@ Case make_zero_area(RandomEngine& random, double dial) {
       const Vector3d next = m.vertices[corners[(k + 1) % corners.size()]],
                      last = m.vertices[corners[(k + 2) % corners.size()]];
       const Vector3d onto = random() % 2 ? next : Vector3d((next + last) / 2);  // a point or a segment
-      v = onto + slack(dial) * (v - onto);
+      v = onto + slack(difficulty) * (v - onto);
     }
     return body(m, true);
   };
@@ -110,13 +110,13 @@ Case make_zero_area(RandomEngine& random, double dial) {
   // A vertex of one close to a vertex of the other.
   const Vector3d x = c.pose_a.apply(c.a->vertices()[random() % c.a->vertices().size()]);
   const Vector3d y = c.pose_b.r * c.b->vertices()[random() % c.b->vertices().size()];
-  c.pose_b.t = x - y + slack(dial) * shapes::random_direction(random);
+  c.pose_b.t = x - y + slack(difficulty) * shapes::random_direction(random);
   if (random() % 2) c.pose_b.t += 0.3 * shapes::random_direction(random);
   return c;
 }
 
-Case make_far(RandomEngine& random, double dial) {
-  const double offset = steady::pow10(16 * dial);
+Case make_far(RandomEngine& random, double difficulty) {
+  const double offset = steady::pow10(16 * difficulty);
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   const double size = random() % 2 ? 4 : 1;  // at 1e16 an ulp is 2: small faces collapse
   c.a = stretched(*c.a, Vector3d::Constant(size));
@@ -143,29 +143,29 @@ Case make_far(RandomEngine& random, double dial) {
   return c;
 }
 
-Case make_scale(RandomEngine& random, double dial) {
-  const double exponent = 120 * dial * (random() % 2 ? 1 : -1);
+Case make_scale(RandomEngine& random, double difficulty) {
+  const double exponent = 120 * difficulty * (random() % 2 ? 1 : -1);
   const double by = random() % 2 ? steady::pow10(exponent) : steady::exp2(std::floor(exponent * 3.3));
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   c.pose_b = random() % 2 ? any_pose(random, 1.5) : Pose{grid_turn(random), random_sign_vector(random, 0.5)};
-  loosen(random, c, std::max(1e-12, 0.1 * (1 - dial)));
+  loosen(random, c, std::max(1e-12, 0.1 * (1 - difficulty)));
   c.a = stretched(*c.a, Vector3d::Constant(by));
   c.b = stretched(*c.b, Vector3d::Constant(by));
   c.pose_b.t *= by;
   return c;
 }
 
-Case make_extreme(RandomEngine& random, double dial) {
+Case make_extreme(RandomEngine& random, double difficulty) {
   static constexpr double kSizes[] = {8,     1e-30,  1e30,  1e-90,  1e90,  1e-150, 1e150,  1e-200,
                                       1e200, 1e-290, 1e290, 1e-305, 1e305, 1e-308, 1e307,  1e-310,
                                       4e307, 1e-315, 8e307, 1e-319, 5e307, 4e-322, 1.6e308};
   static constexpr int kLast = static_cast<int>(std::size(kSizes)) - 1, kWindow = 6;
-  const int most = static_cast<int>(kLast * dial);
+  const int most = static_cast<int>(kLast * difficulty);
   const auto size = [&] { return kSizes[pick(random, std::max(0, most - kWindow), most)]; };
   const double by = size(), by_b = pick(random, 0, 3) ? by : size();
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   c.pose_b = random() % 2 ? any_pose(random, 1) : Pose{grid_turn(random), random_sign_vector(random, 0.5)};
-  loosen(random, c, slack(dial));
+  loosen(random, c, slack(difficulty));
   // The bodies are up to 7 wide; they are divided first, so that the meshes themselves stay finite.
   c.a = stretched(*stretched(*c.a, Vector3d::Constant(0.125)), Vector3d::Constant(by));
   c.b = stretched(*stretched(*c.b, Vector3d::Constant(0.125)), Vector3d::Constant(by_b));
@@ -174,8 +174,8 @@ Case make_extreme(RandomEngine& random, double dial) {
   return c;
 }
 
-Case make_ratio(RandomEngine& random, double dial) {
-  const double by = steady::pow10(-(random() % 3 ? 12 : 60) * dial);
+Case make_ratio(RandomEngine& random, double difficulty) {
+  const double by = steady::pow10(-(random() % 3 ? 12 : 60) * difficulty);
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   c.b = stretched(*c.b, Vector3d::Constant(by));
   VertexId v[3] = {};
@@ -192,9 +192,9 @@ Case make_ratio(RandomEngine& random, double dial) {
   return c;
 }
 
-Case make_matrix(RandomEngine& random, double dial) {
+Case make_matrix(RandomEngine& random, double difficulty) {
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
-  const double strength = steady::pow10(6 * dial - 3);
+  const double strength = steady::pow10(6 * difficulty - 3);
   const auto matrix = [&]() -> Eigen::Matrix3d {
     const Eigen::Matrix3d r = shapes::random_rotation(random);
     const int kind = pick(random, 0, 5);
@@ -202,7 +202,7 @@ Case make_matrix(RandomEngine& random, double dial) {
     if (kind == 1) return r * Vector3d(1, 1 + strength, 1 / (1 + strength)).asDiagonal() * r.transpose();
     if (kind == 2) return r + strength * Eigen::Matrix3d::Identity() * uniform(random);
     if (kind == 3) return r * Vector3d(1, 1, -1).asDiagonal();
-    if (kind == 4) return r * Vector3d(1, 1, dial > 0.5 ? 0 : strength).asDiagonal();  // flattened
+    if (kind == 4) return r * Vector3d(1, 1, difficulty > 0.5 ? 0 : strength).asDiagonal();  // flattened
     return r / (1 + strength);
   };
   c.pose_a.r = matrix();
@@ -219,23 +219,23 @@ Case make_matrix(RandomEngine& random, double dial) {
 std::vector<Family> scale_families() {
   return {
       {"sliver", "needles and sheets", make_sliver, "aspect 1", "aspect 1e8", false, 80,
-       [](double dial) { return rounded_value(steady::pow10(8 * dial)); }},
+       [](double difficulty) { return rounded_value(steady::pow10(8 * difficulty)); }},
       {"thin", "sheets and rods: flat on each other, side by side, crossing, rotated", make_thin,
        "thickness 0.1", "thickness 1e-12", false, 85,
-       [](double dial) { return rounded_value(steady::pow10(-1 - 11 * dial)); }},
+       [](double difficulty) { return rounded_value(steady::pow10(-1 - 11 * difficulty)); }},
       {"zero-area", "faces that collapse to segments and points", make_zero_area, "corners 0.1 from collapse",
        "no area at all", false, 90, slack_value},
       {"far", "far from the origin of the world or of the bodies", make_far, "1 from the origin",
        "1e16 from the origin", false, 100,
-       [](double dial) { return rounded_value(steady::pow10(16 * dial)); }},
+       [](double difficulty) { return rounded_value(steady::pow10(16 * difficulty)); }},
       {"scale", "tiny and huge", make_scale, "size 1", "size 1e-120 or 1e120", false, 110,
-       [](double dial) { return rounded_value(steady::pow10(120 * dial)); }},
+       [](double difficulty) { return rounded_value(steady::pow10(120 * difficulty)); }},
       {"extreme", "tiny and huge up to the limits of double, and beyond", make_extreme, "size 1",
        "size 4e-322 or 1.6e308", false, 120},
       {"ratio", "bodies of different sizes", make_ratio, "equal sizes", "sizes 1e12 or 1e60 apart", false,
-       130, [](double dial) { return rounded_value(steady::pow10(12 * dial)); }},
+       130, [](double difficulty) { return rounded_value(steady::pow10(12 * difficulty)); }},
       {"matrix", "poses that scale, shear, reflect or flatten", make_matrix, "by 1e-3", "by 1e3, or flat",
-       false, 140, [](double dial) { return rounded_value(steady::pow10(6 * dial - 3)); }},
+       false, 140, [](double difficulty) { return rounded_value(steady::pow10(6 * difficulty - 3)); }},
   };
 }
 

@@ -35,7 +35,7 @@ stability::Record record_of(const CaseQueue& asked, std::uint64_t number) {
   stability::Record record;
   record.family = asked.family;
   record.method = asked.method;
-  record.dial = static_cast<int>(number / asked.cases);
+  record.difficulty = static_cast<int>(number / asked.cases);
   record.case_index = number % asked.cases;
   record.seed = asked.seed;
   return record;

@@ -15,17 +15,17 @@ namespace {
 /// Returns a key that orders records by severity of their failure.
 auto badness(const Record& r) {
   const int kind = r.outcome == Outcome::crashed ? 2 : r.outcome == Outcome::timed_out ? 1 : 0;
-  return std::tuple(kind, r.missed + r.extra, -r.dial);
+  return std::tuple(kind, r.missed + r.extra, -r.difficulty);
 }
 
 void count(Cell& cell, const Record& r) {
-  ++cell.cases[r.dial];
+  ++cell.cases[r.difficulty];
   if (r.outcome == Outcome::right) return;
   auto& counted = r.outcome == Outcome::wrong      ? cell.wrong
                   : r.outcome == Outcome::rejected ? cell.rejected
                   : r.outcome == Outcome::crashed  ? cell.crashed
                                                    : cell.timed_out;
-  ++counted[r.dial];
+  ++counted[r.difficulty];
   if (r.outcome == Outcome::rejected) return;
   if (!cell.worst || badness(r) > badness(*cell.worst)) cell.worst = r;
 }
@@ -51,7 +51,7 @@ Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRo
   return grid;
 }
 
-std::uint64_t Cell::sum(const std::array<std::uint64_t, cases::kDialSettings>& counts) {
+std::uint64_t Cell::sum(const std::array<std::uint64_t, cases::kDifficulties>& counts) {
   std::uint64_t n = 0;
   for (const std::uint64_t c : counts) n += c;
   return n;
@@ -84,8 +84,8 @@ std::vector<FamilyRow> family_rows() {
   std::vector<FamilyRow> rows;
   for (const cases::Family& f : cases::all_families()) {
     rows.push_back({f.name, f.what, f.benign, f.degenerate});
-    for (int d = 0; f.value != nullptr && d < kDialSettings; ++d)
-      rows.back().values.push_back(f.value(cases::dial_value(d)));
+    for (int d = 0; f.value != nullptr && d < kDifficulties; ++d)
+      rows.back().values.push_back(f.value(cases::scaled_difficulty(d)));
   }
   return rows;
 }
@@ -98,7 +98,7 @@ template <>
 inline constexpr auto kFields<stability::Record> =
     std::tuple{field("family", &stability::Record::family),
                field("method", &stability::Record::method),
-               field("dial", &stability::Record::dial),
+               field("dial", &stability::Record::difficulty),
                field("case", &stability::Record::case_index),
                field("seed", &stability::Record::seed),
                field("outcome", &stability::Record::outcome),
@@ -125,9 +125,9 @@ ordered_json to_json(const Record& r) {
 Record record_from(const json& value) {
   try {
     const auto r = io::record_from_json<Record>(value);
-    if (r.dial < 0 || r.dial >= kDialSettings)
-      throw InputError("dial " + std::to_string(r.dial) + ": expected 0 to " +
-                       std::to_string(kDialSettings - 1));
+    if (r.difficulty < 0 || r.difficulty >= kDifficulties)
+      throw InputError("difficulty " + std::to_string(r.difficulty) + ": expected 0 to " +
+                       std::to_string(kDifficulties - 1));
     return r;
   } catch (const InputError& e) {
     throw InputError(std::string("not a record of lrbscope stability: ") + e.what());
@@ -161,7 +161,7 @@ namespace {
 
 /// Returns the lowest difficulty with a failure, or -1.
 int first_failure(const Cell& c) {
-  for (int d = 0; d < kDialSettings; ++d)
+  for (int d = 0; d < kDifficulties; ++d)
     if (c.wrong[d] + c.crashed[d] + c.timed_out[d] > 0) return d;
   return -1;
 }
@@ -175,7 +175,7 @@ std::string cell_text(const workers::MethodColumn& method, const Cell& c) {
   return text;
 }
 
-using Counts = std::array<std::uint64_t, kDialSettings>;
+using Counts = std::array<std::uint64_t, kDifficulties>;
 
 std::string total(const Grid& grid, std::size_t method, Counts Cell::*counts) {
   std::uint64_t n = 0;
@@ -219,7 +219,7 @@ std::string table(const Grid& grid) {
       line += std::string(2 + width[i] - row[i].size(), ' ') + row[i];
     out << line.substr(0, line.find_last_not_of(' ') + 1) << "\n";
   }
-  out << "\nIn each cell: failures/cases answered, @ the lowest difficulty (0 benign, " << kDialSettings - 1
+  out << "\nIn each cell: failures/cases answered, @ the lowest difficulty (0 benign, " << kDifficulties - 1
       << " degenerate) with a failure.\n";
   for (const workers::MethodColumn& m : grid.methods)
     out << "  " << m.name << ": " << m.title << ". " << m.remark << "\n";

@@ -22,7 +22,7 @@
 
 namespace lrb::stability {
 
-using cases::kDialSettings;
+using cases::kDifficulties;
 using methods::Quantity;
 
 /// The outcome of one case for one method.
@@ -44,12 +44,12 @@ constexpr auto words_of(Outcome) {
 struct FamilyRow {
   std::string name, what;
   std::string benign, degenerate;        ///< meaning of difficulties 0 and 10: "gap 1e-1", "gap 1 ulp"
-  std::vector<std::string> values = {};  ///< (kDialSettings) parameter of each difficulty, "1e-6"; or empty
+  std::vector<std::string> values = {};  ///< (kDifficulties) parameter of each difficulty, "1e-6"; or empty
 };
 
 struct Record {
   std::string family, method;
-  int dial = 0;  ///< difficulty, 0 .. kDialSettings - 1
+  int difficulty = 0;  ///< difficulty, 0 .. kDifficulties - 1
   std::uint64_t case_index = 0, seed = 0;
   Outcome outcome = Outcome::right;
   std::uint64_t expected = 0;  ///< number of intersecting pairs, by exact brute force
@@ -61,10 +61,10 @@ struct Record {
 
 /// The results of one method on one family.
 struct Cell {
-  std::array<std::uint64_t, kDialSettings> cases{}, wrong{}, rejected{}, crashed{}, timed_out{};
+  std::array<std::uint64_t, kDifficulties> cases{}, wrong{}, rejected{}, crashed{}, timed_out{};
   std::optional<Record> worst;  ///< a failure of the lowest difficulty
 
-  static std::uint64_t sum(const std::array<std::uint64_t, kDialSettings>& counts);
+  static std::uint64_t sum(const std::array<std::uint64_t, kDifficulties>& counts);
   /// Returns the number of failures. Rejections do not count as failures.
   std::uint64_t failures() const { return sum(wrong) + sum(crashed) + sum(timed_out); }
   /// Returns the number of cases that were not rejected.
@@ -133,7 +133,7 @@ inline constexpr std::array<const char*, 5> kLevelNames = {"none fails", "under 
 
 inline CellSummary summarise(const Cell& cell) {
   CellSummary s;
-  for (int d = 0; d < kDialSettings; ++d) {
+  for (int d = 0; d < kDifficulties; ++d) {
     const auto i = static_cast<std::size_t>(d);
     s.cases += cell.cases[i];
     s.wrong += cell.wrong[i];
@@ -150,7 +150,7 @@ inline Cell sum_of_column(const Grid& grid, std::size_t method) {
   Cell sum;
   for (std::size_t f = 0; f < grid.families.size(); ++f) {
     const Cell& c = grid.at(f, method);
-    for (std::size_t i = 0; i < kDialSettings; ++i) {
+    for (std::size_t i = 0; i < kDifficulties; ++i) {
       sum.cases[i] += c.cases[i];
       sum.wrong[i] += c.wrong[i];
       sum.rejected[i] += c.rejected[i];

@@ -58,7 +58,7 @@ Record blank_record(const std::string& family, const std::string& method, std::u
   Record r;
   r.family = family;
   r.method = method;
-  r.dial = static_cast<int>(k / cases);
+  r.difficulty = static_cast<int>(k / cases);
   r.case_index = k % cases;
   r.seed = seed;
   return r;
@@ -94,8 +94,8 @@ class Experiment {
   Experiment(const ExperimentOptions& options, const ProgressFunction& progress)
       : o_(options), progress_(progress) {
     std::erase_if(o_.methods, [](const workers::WorkerMethod& m) { return !m.column.present; });
-    begin_ = o_.dial ? static_cast<std::uint64_t>(*o_.dial) * o_.cases : 0;
-    end_ = o_.dial ? begin_ + o_.cases : cases::kDialSettings * o_.cases;
+    begin_ = o_.difficulty ? static_cast<std::uint64_t>(*o_.difficulty) * o_.cases : 0;
+    end_ = o_.difficulty ? begin_ + o_.cases : cases::kDifficulties * o_.cases;
     total_ = o_.families.size() * (o_.methods.size() + 1) * (end_ - begin_);
   }
 
@@ -233,9 +233,9 @@ std::vector<Record> run_experiment(const ExperimentOptions& options, const Progr
   return Experiment(options, progress).run();
 }
 
-Replay replay(const workers::WorkerMethod& method, const std::string& family, int dial,
+Replay replay(const workers::WorkerMethod& method, const std::string& family, int difficulty,
               std::uint64_t case_index, std::uint64_t seed, double timeout, Quantity quantity) {
-  const std::uint64_t cases = case_index + 1, k = static_cast<std::uint64_t>(dial) * cases + case_index;
+  const std::uint64_t cases = case_index + 1, k = static_cast<std::uint64_t>(difficulty) * cases + case_index;
   Replay result;
   const auto run = [&](workers::Job::Task task) {
     task.begin = k;

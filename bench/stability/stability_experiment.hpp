@@ -23,7 +23,7 @@ struct ExperimentOptions {
   std::vector<workers::WorkerMethod> methods;  ///< absent ones are skipped
   std::uint64_t cases = 1;                     ///< per difficulty
   std::uint64_t seed = 1;
-  std::optional<int> dial;  ///< only this difficulty; nullopt: all
+  std::optional<int> difficulty;  ///< only this difficulty; nullopt: all
   unsigned jobs = 2;        ///< number of concurrent workers
   double timeout = 5;       ///< time limit per case in seconds, after which a method counts as hanging
 };
@@ -43,7 +43,7 @@ struct Replay {
   std::optional<std::vector<SimplexPair>> answered;  ///< nullopt: no answer, or one without a list of pairs
 };
 
-Replay replay(const workers::WorkerMethod& method, const std::string& family, int dial,
+Replay replay(const workers::WorkerMethod& method, const std::string& family, int difficulty,
               std::uint64_t case_index, std::uint64_t seed, double timeout,
               Quantity quantity = Quantity::pairs);
 

@@ -85,8 +85,8 @@ std::vector<std::string> title_lines(const workers::MethodColumn& method) {
 void add_bars(Sheet& sheet, const Cell& cell, double x, double y) {
   constexpr double kFrom = 0.07, kTo = 0.93, kLow = 0.1, kHigh = 0.5, kLeast = 0.05;
   sheet.rect(x + kFrom - 0.02, y + kLow - 0.03, x + kTo + 0.02, y + kHigh + 0.03, render::kWhite);
-  const double step = (kTo - kFrom) / kDialSettings;
-  for (std::size_t i = 0; i < kDialSettings; ++i) {
+  const double step = (kTo - kFrom) / kDifficulties;
+  for (std::size_t i = 0; i < kDifficulties; ++i) {
     if (cell.cases[i] == 0) continue;
     const double left = x + kFrom + step * (static_cast<double>(i) + 0.1), right = left + 0.8 * step;
     sheet.rect(left, y + kLow - 0.012, right, y + kLow, render::palette::kRule);
@@ -172,12 +172,12 @@ void add_legend(Sheet& sheet, double y, double columns, const std::string& absen
 /// are below the axis.
 report::Chart profile(const Grid& grid, std::size_t family) {
   const FamilyRow& row = grid.families[family];
-  report::Axis dial{"", false, -0.6, kDialSettings - 0.4};
-  if (!row.benign.empty() || !row.degenerate.empty()) dial.label = row.benign + " \u2192 " + row.degenerate;
+  report::Axis difficulty{"", false, -0.6, kDifficulties - 0.4};
+  if (!row.benign.empty() || !row.degenerate.empty()) difficulty.label = row.benign + " \u2192 " + row.degenerate;
   constexpr std::size_t kEvery = 3;
-  for (std::size_t i = 0; i < kDialSettings; i += kEvery)
-    dial.ticks.push_back({static_cast<double>(i), row.values.empty() ? "" : row.values[i]});
-  report::Chart chart{row.name, dial, {"failures, %", false, -3, 103}};
+  for (std::size_t i = 0; i < kDifficulties; i += kEvery)
+    difficulty.ticks.push_back({static_cast<double>(i), row.values.empty() ? "" : row.values[i]});
+  report::Chart chart{row.name, difficulty, {"failures, %", false, -3, 103}};
   for (std::size_t m = 0; m < grid.methods.size(); ++m) {
     if (!grid.methods[m].present) continue;
     const Cell& cell = grid.at(family, m);
@@ -185,7 +185,7 @@ report::Chart profile(const Grid& grid, std::size_t family) {
     // Points are shifted sideways so that lines do not hide each other.
     constexpr double kApart = 0.07;
     const double shift = kApart * (static_cast<double>(m) - static_cast<double>(grid.methods.size() - 1) / 2);
-    for (std::size_t i = 0; i < kDialSettings; ++i) {
+    for (std::size_t i = 0; i < kDifficulties; ++i) {
       if (cell.cases[i] == 0) continue;
       const double failed = static_cast<double>(cell.wrong[i] + cell.crashed[i] + cell.timed_out[i]);
       s.x.push_back(static_cast<double>(i) + shift);

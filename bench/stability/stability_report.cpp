@@ -15,9 +15,9 @@ namespace lrb::stability {
 namespace {
 
 /// Returns a difficulty, with its parameter if known: "7 of 0 to 10 (4e-13)".
-std::string setting_words(const FamilyRow& family, int dial) {
-  std::string out = std::to_string(dial) + " of 0 to " + std::to_string(kDialSettings - 1);
-  if (!family.values.empty()) out += " (" + family.values[static_cast<std::size_t>(dial)] + ")";
+std::string setting_words(const FamilyRow& family, int difficulty) {
+  std::string out = std::to_string(difficulty) + " of 0 to " + std::to_string(kDifficulties - 1);
+  if (!family.values.empty()) out += " (" + family.values[static_cast<std::size_t>(difficulty)] + ")";
   return out;
 }
 
@@ -44,7 +44,7 @@ report::GridCell page_cell(const Cell& cell, const FamilyRow& family, const std:
   const auto mark = [](std::uint64_t n) { return n > 0 ? render::group_digits(n) : std::string(); };
   out.marks = {"", mark(s.crashed), mark(s.timed_out), mark(s.rejected)};
   out.label = where + ": " + sentence(s, family);
-  for (std::size_t i = 0; i < kDialSettings; ++i) {
+  for (std::size_t i = 0; i < kDifficulties; ++i) {
     if (cell.cases[i] == 0) {
       out.bars.push_back({-1, 0, 0, 0});
       continue;
@@ -93,7 +93,7 @@ report::GridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, c
     d.facts.emplace_back("Right", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
     if (answered) d.facts.emplace_back("Answered", r.relation);
   }
-  d.facts.emplace_back("Difficulty", setting_words(family, r.dial));
+  d.facts.emplace_back("Difficulty", setting_words(family, r.difficulty));
   d.facts.emplace_back("Case, seed", render::group_digits(r.case_index) + ", " + std::to_string(r.seed));
   if (answered) d.facts.emplace_back("Query", render::short_number(r.microseconds) + " \u00b5s");
   d.note = "This family, this method: " + sentence(s, family) + ".";
@@ -206,7 +206,7 @@ report::Document stability_page(const Grid& whole, const std::string& folder, co
                              : "Where methods fail: " + io::in_words(name_of(grid.quantity)));
   doc.each(pairs ? texts() : texts_of_numbers(grid.quantity), &report::Document::text)
       .number({"Families", render::group_digits(grid.families.size()),
-               std::to_string(kDialSettings) + " difficulties each"})
+               std::to_string(kDifficulties) + " difficulties each"})
       .number(
           {"Methods", render::group_digits(grid.methods.size()),
            absent == 0 ? "all that are known" : render::group_digits(absent) + " more not installed here"})

@@ -25,8 +25,8 @@ using namespace lrb;
 
 namespace {
 
-constexpr int kDials = 11;        // of each class, from benign to degenerate
-constexpr int kCasesPerDial = 8;  // of each class
+constexpr int kDifficulties = 11;        // of each class, from benign to degenerate
+constexpr int kCasesPerDifficulty = 8;  // of each class
 constexpr int kPosesPerPair = 3;  // of two generated bodies
 
 void print(const std::string& what, std::uint64_t hash) {
@@ -126,9 +126,9 @@ std::vector<cases::Case> cases_of(const std::vector<cases::Body>& bodies) {
 std::vector<cases::Case> cases_of(const cases::Family& family) {
   cases::RandomEngine random(1);
   std::vector<cases::Case> cases;
-  for (int dial = 0; dial < kDials; ++dial)
-    for (int i = 0; i < kCasesPerDial; ++i)
-      cases.push_back(family.make(random, static_cast<double>(dial) / (kDials - 1)));
+  for (int difficulty = 0; difficulty < kDifficulties; ++difficulty)
+    for (int i = 0; i < kCasesPerDifficulty; ++i)
+      cases.push_back(family.make(random, static_cast<double>(difficulty) / (kDifficulties - 1)));
   return cases;
 }
 

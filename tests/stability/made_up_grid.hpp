@@ -26,7 +26,7 @@ inline Grid made_up_grid() {
     for (std::size_t m = 0; m < g.methods.size(); ++m) {
       Cell c;
       if (g.methods[m].present)
-        for (std::size_t d = 0; d < cases::kDialSettings; ++d) {
+        for (std::size_t d = 0; d < cases::kDifficulties; ++d) {
           c.cases[d] = 30;
           const bool begun = d + m > 6 + f % 5;
           if (m == 0) {
@@ -38,12 +38,12 @@ inline Grid made_up_grid() {
           if (m == 4 && f % 7 == 3 && d > 8) c.timed_out[d] = 3;
           if (m == 5 && f % 5 == 1 && d > 6) c.rejected[d] = 3;
         }
-      for (std::size_t d = 0; d < cases::kDialSettings && !c.worst; ++d) {
+      for (std::size_t d = 0; d < cases::kDifficulties && !c.worst; ++d) {
         if (c.wrong[d] + c.crashed[d] + c.timed_out[d] + c.rejected[d] == 0) continue;
         Record r;
         r.family = g.families[f].name;
         r.method = g.methods[m].name;
-        r.dial = static_cast<int>(d);
+        r.difficulty = static_cast<int>(d);
         r.case_index = d;
         r.seed = 1;
         r.expected = 12;

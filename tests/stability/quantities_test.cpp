@@ -98,11 +98,11 @@ TEST_CASE("our numbers are right from benign to degenerate") {
   int right = 0;
   for (const Quantity quantity : {Quantity::distance, Quantity::first_contact, Quantity::depth})
     for (const char* name : {"kiss", "sliver", "thin", "far", "scale"})
-      for (const int dial : {0, 6, 10}) {
+      for (const int difficulty : {0, 6, 10}) {
         CAPTURE(name);
-        CAPTURE(dial);
+        CAPTURE(difficulty);
         CAPTURE(name_of(quantity));
-        const cases::Case c = cases::make_case(*cases::find_family(name), 3, dial, 0);
+        const cases::Case c = cases::make_case(*cases::find_family(name), 3, difficulty, 0);
         Record r;
         ask_number(ours(quantity), c, true_number(quantity, c), r);
         CAPTURE(r.relation);
@@ -115,9 +115,9 @@ TEST_CASE("our numbers are right from benign to degenerate") {
 
 // However short a span of time is, more pairs may stay near than the search looks for at first.
 TEST_CASE("a needle that passes many triangles is decided") {
-  for (const int dial : {2, 5, 10}) {
-    CAPTURE(dial);
-    const cases::Case c = cases::make_case(*cases::find_family("sliver"), 1, dial, 1);
+  for (const int difficulty : {2, 5, 10}) {
+    CAPTURE(difficulty);
+    const cases::Case c = cases::make_case(*cases::find_family("sliver"), 1, difficulty, 1);
     Record r;
     ask_number(ours(Quantity::first_contact), c, true_number(Quantity::first_contact, c), r);
     CHECK(r.outcome == Outcome::right);
@@ -135,7 +135,7 @@ TEST_CASE("lrbscope stability --quantity: table, records, a case again, a quanti
   CHECK(test::slurp(folder / "out/stability-distance/index.html")
             .find("The distance between the surfaces of two bodies") != std::string::npos);
   std::vector<std::string> again = kiss;
-  again.insert(again.end(), {"--dial", "3", "--only", "0"});
+  again.insert(again.end(), {"--difficulty", "3", "--only", "0"});
   o = test::run(folder, again);
   CHECK(o.code == 0);
   CHECK(o.out.find("kiss, difficulty 3, case 0, ours: right\n  distance: ") == 0);

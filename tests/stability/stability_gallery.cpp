@@ -39,29 +39,29 @@ int main(int argc, char** argv) {
   ReportOptions options;
   options.pictures.resize(grid.cells.size());
   options.command = [](const Record& r) {
-    return "lrbscope stability --family " + r.family + " --method " + r.method + " --dial " +
-           std::to_string(r.dial) + " --case " + std::to_string(r.case_index) + " --seed " +
+    return "lrbscope stability --family " + r.family + " --method " + r.method + " --difficulty " +
+           std::to_string(r.difficulty) + " --case " + std::to_string(r.case_index) + " --seed " +
            std::to_string(r.seed);
   };
   std::size_t f = 0;
   std::vector<render::Panel> sheet;
   for (const cases::Family& family : cases::all_families()) {
-    for (const int dial : {2, 10}) {
-      const cases::Case c = cases::make_case(family, 1, dial, 3);
-      const std::string file = "worst/" + std::string(family.name) + "-" + std::to_string(dial) + ".png";
+    for (const int difficulty : {2, 10}) {
+      const cases::Case c = cases::make_case(family, 1, difficulty, 3);
+      const std::string file = "worst/" + std::string(family.name) + "-" + std::to_string(difficulty) + ".png";
       try {
         const BruteForceResult right = brute_force(*c.a, c.pose_a, *c.b, c.pose_b);
         draw_worst_case(
             c, right.pairs, spoilt(right.pairs, c),
             {std::string(family.name) + " \u00d7 made up",
              "wrong on purpose",
-             {{"dial", std::to_string(dial) + " of 10"}, {"relation", to_string(right.relation)}}},
+             {{"difficulty", std::to_string(difficulty) + " of 10"}, {"relation", to_string(right.relation)}}},
             folder + "/" + file, rasterizer);
-        if (dial == 10) sheet.push_back({render::read_png(folder + "/" + file).image, ""});
+        if (difficulty == 10) sheet.push_back({render::read_png(folder + "/" + file).image, ""});
         for (std::size_t m = 0; m < grid.methods.size(); ++m)
           options.pictures[f * grid.methods.size() + m] = file;
       } catch (const std::exception& e) {
-        std::printf("%s %d: %s\n", family.name, dial, e.what());
+        std::printf("%s %d: %s\n", family.name, difficulty, e.what());
       }
     }
     if (++f % 6 == 0 || f == grid.families.size()) {

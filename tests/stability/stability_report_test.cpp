@@ -148,7 +148,7 @@ TEST_CASE("dials have their physical values on page and charts") {
   };
   REQUIRE(family("shared") != grid.families.end());
   const std::vector<std::string>& off = family("shared")->values;
-  REQUIRE(off.size() == cases::kDialSettings);
+  REQUIRE(off.size() == cases::kDifficulties);
   CHECK(off[0] == "0.1");  // as slack() has it
   CHECK(off[3] == "1e-6");
   CHECK(off[9] == "1e-16");
@@ -186,7 +186,7 @@ TEST_CASE("the page has every cell, every mark and every worst case") {
     if (grid.methods[m].present) {
       const CellSummary s = summarise(sum_of_column(grid, m));
       CHECK(html.find("all families \u00d7 ") != std::string::npos);
-      CHECK(s.cases == families * cases::kDialSettings * 30);
+      CHECK(s.cases == families * cases::kDifficulties * 30);
     }
 }
 
@@ -338,7 +338,7 @@ TEST_CASE("every cell that failed gets a picture, and the old ones go") {
   std::size_t asked = 0;
   const std::vector<std::string> pictures = draw_worst_cases(grid, folder, [&](const Record& r) {
     ++asked;
-    const cases::Case c = cases::make_case(*cases::find_family(r.family), r.seed, r.dial, r.case_index);
+    const cases::Case c = cases::make_case(*cases::find_family(r.family), r.seed, r.difficulty, r.case_index);
     return AnsweredPairs{brute_force(*c.a, c.pose_a, *c.b, c.pose_b).pairs, Pairs{}};
   });
   REQUIRE(pictures.size() == grid.cells.size());
@@ -356,9 +356,9 @@ TEST_CASE("every cell that failed gets a picture, and the old ones go") {
 TEST_CASE("every family's cases can be drawn at both ends of the dial") {
   render::Rasterizer rasterizer;
   for (const cases::Family& family : cases::all_families())
-    for (const int dial : {0, cases::kDialSettings - 1}) {
+    for (const int difficulty : {0, cases::kDifficulties - 1}) {
       CAPTURE(family.name);
-      const cases::Case c = cases::make_case(family, 5, dial, 0);
+      const cases::Case c = cases::make_case(family, 5, difficulty, 0);
       std::vector<SimplexPair> pairs;
       bool drawable = true;
       try {
@@ -381,14 +381,14 @@ TEST_CASE("every family's cases can be drawn at both ends of the dial") {
 
 TEST_CASE("a case is the same every time, and follows seed, index and dial") {
   const cases::Family& family = *cases::find_family("sliver");
-  const auto hash = [&](std::uint64_t seed, int dial, std::uint64_t index) {
-    const cases::Case c = cases::make_case(family, seed, dial, index);
+  const auto hash = [&](std::uint64_t seed, int difficulty, std::uint64_t index) {
+    const cases::Case c = cases::make_case(family, seed, difficulty, index);
     return std::pair(c.a->hash() ^ c.b->hash(), c.pose_b.t.x());
   };
   CHECK(hash(1, 4, 7) == hash(1, 4, 7));
   CHECK(hash(1, 4, 7) != hash(2, 4, 7));
   CHECK(hash(1, 4, 7) != hash(1, 4, 8));
   CHECK(hash(1, 4, 7) != hash(1, 5, 7));
-  CHECK_THROWS_AS(cases::make_case(family, 1, cases::kDialSettings, 0), InputError);
+  CHECK_THROWS_AS(cases::make_case(family, 1, cases::kDifficulties, 0), InputError);
   CHECK_THROWS_AS(cases::make_case(family, 1, -1, 0), InputError);
 }

@@ -53,7 +53,7 @@ std::vector<Record> ask(const std::vector<std::string>& methods, std::uint64_t c
   o.families = {"shared", "identical"};
   for (const std::string& name : methods) o.methods.push_back(method(name));
   o.cases = cases;
-  o.dial = 10;
+  o.difficulty = 10;
   o.jobs = jobs;
   o.timeout = timeout;
   return run_experiment(o, {});
@@ -63,7 +63,7 @@ Record some_record() {
   Record r;
   r.family = "touch";
   r.method = "fcl";
-  r.dial = 7;
+  r.difficulty = 7;
   r.case_index = 12;
   r.seed = 18446744073709551615u;
   r.outcome = Outcome::wrong;
@@ -119,7 +119,7 @@ TEST_CASE("a method that hangs on three cases in a row is not asked the others o
 TEST_CASE("every case has its record, in order, whatever died and however many ran at a time") {
   const Workers workers;
   const auto key = [](const Record& r) {
-    return r.family + " " + r.method + " " + std::to_string(r.dial) + " " + std::to_string(r.case_index) +
+    return r.family + " " + r.method + " " + std::to_string(r.difficulty) + " " + std::to_string(r.case_index) +
            " " + std::string(name_of(r.outcome)) + " " + std::to_string(r.missed);
   };
   std::vector<std::string> expected;
@@ -217,9 +217,9 @@ TEST_CASE("counting") {
   std::vector<FamilyRow> families(1);
   families[0].name = "touch";
   std::vector<Record> records;
-  const auto add = [&](int dial, Outcome o, std::uint64_t missed) {
+  const auto add = [&](int difficulty, Outcome o, std::uint64_t missed) {
     Record r = some_record();
-    r.dial = dial;
+    r.difficulty = difficulty;
     r.outcome = o;
     r.missed = missed;
     r.extra = 0;
@@ -322,7 +322,7 @@ TEST_CASE("judging a method by itself, with the bodies exchanged") {
   CHECK(r.outcome == Outcome::right);
 }
 
-// If the benign end were not benign the grid could not say where along the dial a method starts to fail.
+// If the benign end were not benign the grid could not say where along the difficulty a method starts to fail.
 TEST_CASE("the textbook's method is right at the benign end of every dial, and not at the other") {
   StabilityRunner plain(methods::find_method(methods::registered_methods(), "plain"));
   int failing = 0, failed = 0;
@@ -330,10 +330,10 @@ TEST_CASE("the textbook's method is right at the benign end of every dial, and n
     CAPTURE(f.name);
     CHECK(std::string(f.benign) != "");
     CHECK(std::string(f.degenerate) != "");
-    const auto failures = [&](int dial) {
+    const auto failures = [&](int difficulty) {
       int n = 0;
       for (std::uint64_t i = 0; i < 8; ++i) {
-        const cases::Case c = cases::make_case(f, 1, dial, i);
+        const cases::Case c = cases::make_case(f, 1, difficulty, i);
         Record r;
         plain.ask(f, c, expected_answer(c), r);
         n += r.outcome == Outcome::wrong;
@@ -373,7 +373,7 @@ TEST_CASE("lrbscope stability: table, records, exit code") {
   CHECK(o.out.find("out/stability/records.jsonl\n") != std::string::npos);
   CHECK(read_records(folder / "out/stability/records.jsonl").size() == 44);
 
-  o = run(folder, {"stability", "--family", "identical", "--method", "fake-miss", "--dial", "10", "--only",
+  o = run(folder, {"stability", "--family", "identical", "--method", "fake-miss", "--difficulty", "10", "--only",
                    "0", "--pairs"});
   CHECK(o.code == 1);
   CHECK(o.out.find("identical, difficulty 10, case 0, fake-miss: wrong") == 0);
@@ -386,8 +386,8 @@ TEST_CASE("lrbscope stability: arguments that are wrong") {
   const Folder folder;
   const std::vector<std::vector<std::string>> wrong = {{"--family", "tuch"},
                                                        {"--method", "odd"},
-                                                       {"--dial", "11"},
-                                                       {"--dial", "-1"},
+                                                       {"--difficulty", "11"},
+                                                       {"--difficulty", "-1"},
                                                        {"--cases", "0"},
                                                        {"--cases", "many"},
                                                        {"--jobs", "0"},
@@ -395,7 +395,7 @@ TEST_CASE("lrbscope stability: arguments that are wrong") {
                                                        {"--seed", "-1"},
                                                        {"--only", "3"},
                                                        {"--only", "3", "--family", "touch"},
-                                                       {"--only", "3", "--dial", "1"},
+                                                       {"--only", "3", "--difficulty", "1"},
                                                        {"--only", "x"},
                                                        {"extra"}};
   for (const std::vector<std::string>& arguments : wrong) {

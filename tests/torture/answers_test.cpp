@@ -1,5 +1,5 @@
 // What must hold of answers for any case of any family. RapidCheck draws the cases and, where one fails,
-// looks for the most benign setting of the dial that fails too. ctest fixes its seed; by hand each run draws
+// looks for the most benign setting of the difficulty that fails too. ctest fixes its seed; by hand each run draws
 // others (RC_PARAMS="seed=... max_success=...").
 #include <algorithm>
 #include <filesystem>
@@ -28,9 +28,9 @@ constexpr std::uint32_t kMaxSimplices = 300;  // the builder is asked often
 cases::Case any_case() {
   const auto families = cases::all_families();
   const cases::Family& family = families[*rc::gen::inRange<std::size_t>(0, families.size()).as("family")];
-  const int dial = *rc::gen::inRange(0, cases::kDialSettings).as("dial");
+  const int difficulty = *rc::gen::inRange(0, cases::kDifficulties).as("difficulty");
   const auto index = *rc::gen::inRange<std::uint64_t>(0, 1000000).as("index");
-  cases::Case c = cases::make_case(family, 1, dial, index);
+  cases::Case c = cases::make_case(family, 1, difficulty, index);
   RC_TAG(std::string(family.name));
   RC_PRE(c.a->real_simplex_count() <= 4 * kMaxSimplices && c.b->real_simplex_count() <= 4 * kMaxSimplices);
   for (const auto& [rep, pose] : {std::pair{c.a, c.pose_a}, std::pair{c.b, c.pose_b}})

@@ -60,7 +60,7 @@ void Models::load(const std::filesystem::path& folder) {
   });
 }
 
-cases::Case Models::make(RandomEngine& random, double dial) const {
+cases::Case Models::make(RandomEngine& random, double difficulty) const {
   // The largest model costs ten times the others: seldom.
   const auto model = [&] {
     const std::size_t most = random() % 8 ? std::max<std::size_t>(1, bodies_.size() - 1) : bodies_.size();
@@ -75,14 +75,14 @@ cases::Case Models::make(RandomEngine& random, double dial) const {
   const Vector3d away = shapes::random_direction(random);
   const int kind = cases::pick(random, 0, 7);
   if (kind == 0) return c;  // as it comes: mostly deep
-  stop_at_contact(c, away, size, static_cast<int>(8 + 48 * dial), random() % 2 != 0);
-  const double little = size * std::pow(10, -2 - 12 * dial) * uniform(random);
+  stop_at_contact(c, away, size, static_cast<int>(8 + 48 * difficulty), random() % 2 != 0);
+  const double little = size * std::pow(10, -2 - 12 * difficulty) * uniform(random);
   if (kind == 1) c.pose_b.t += little * away;
   if (kind == 2) c.pose_b.t -= little * away;
   // Not as far as where the answer becomes quadratic, as faces become points.
   if (kind == 3)
     cases::move_both(
-        c, {shapes::random_rotation(random), std::pow(10, 9 * dial) * shapes::random_direction(random)});
+        c, {shapes::random_rotation(random), std::pow(10, 9 * difficulty) * shapes::random_direction(random)});
   return c;
 }
 

@@ -18,7 +18,7 @@ class Models {
 
   /// Two models, or a model and a small generated body, moved together or apart until they all but touch; or
   /// from there a little in or out, or far in; or one inside the other.
-  cases::Case make(cases::RandomEngine& random, double dial) const;
+  cases::Case make(cases::RandomEngine& random, double difficulty) const;
 
  private:
   std::vector<cases::Body> bodies_;  ///< ascending in size

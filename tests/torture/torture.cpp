@@ -1,4 +1,4 @@
-// The torture suite: every family at every setting of its dial, against brute force and independent oracles.
+// The torture suite: every family at every setting of its difficulty, against brute force and independent oracles.
 //
 // Each batch of poses runs in a process of its own, so that a crash or a hang is counted and the rest goes
 // on. A difference is printed with the command that shows it alone. A million poses near contact:
@@ -80,8 +80,8 @@ struct Class {
     return slow ? (o.poses + 3) / 4 : o.poses;
   }
 
-  cases::Case make(RandomEngine& random, double dial) const {
-    return models ? models->make(random, dial) : family.make(random, dial);
+  cases::Case make(RandomEngine& random, double difficulty) const {
+    return models ? models->make(random, difficulty) : family.make(random, difficulty);
   }
 };
 
@@ -89,10 +89,10 @@ constexpr cases::Family kModels = {"models", "real models against each other and
                                    nullptr};
 
 Tally one_pose(const Class& c, std::uint64_t index, const Options& o, std::string& trouble) {
-  // As make_case() at setting index % kDialSettings; what is left of the random numbers drives the checks.
+  // As make_case() at setting index % kDifficulties; what is left of the random numbers drives the checks.
   RandomEngine random = cases::case_random(c.family, o.seed, index);
-  const double dial = cases::dial_value(static_cast<int>(index % cases::kDialSettings));
-  cases::Case made = c.make(random, dial);
+  const double difficulty = cases::scaled_difficulty(static_cast<int>(index % cases::kDifficulties));
+  cases::Case made = c.make(random, difficulty);
   Tally t;
   if (random() % o.effort.regions_every == 0)
     t.with_regions += give_regions(made, random, o.effort.regions_most_simplices) > 0;
