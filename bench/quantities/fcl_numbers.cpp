@@ -113,13 +113,13 @@ std::vector<NumberMethod> fcl_number_methods() {
                              obbrss = {"FCL, OBBRSS", "#a3132f", "triangle"};
   const std::vector<double> tolerances = {0.1, 0.01, 1e-3, 0};
   return {
-      with_knob(fcl_method("fcl-rss", "distance, RSS", "distance() of two BVHModel<RSS>.", Quantity::distance,
+      with_parameter(fcl_method("fcl-rss", "distance, RSS", "distance() of two BVHModel<RSS>.", Quantity::distance,
                            fcl_distance<fcl::RSSd>, rss),
                 "tolerance", tolerances),
-      with_knob(fcl_method("fcl-obbrss", "distance, OBBRSS", "distance() of two BVHModel<OBBRSS>.",
+      with_parameter(fcl_method("fcl-obbrss", "distance, OBBRSS", "distance() of two BVHModel<OBBRSS>.",
                            Quantity::distance, fcl_distance<fcl::OBBRSSd>, obbrss),
                 "tolerance", tolerances),
-      with_knob(
+      with_parameter(
           fcl_sweep(
               "fcl-naive", "continuousCollide, naive",
               "Its default solver: the first of N equally spaced times at which the bodies collide; N is 1000 "

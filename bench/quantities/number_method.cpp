@@ -25,8 +25,8 @@ bool is_special(Quantity quantity, double least, double most) {
 
 }  // namespace
 
-NumberMethod with_knob(NumberMethod m, const char* knob, std::vector<double> settings) {
-  m.info.knob = knob;
+NumberMethod with_parameter(NumberMethod m, const char* parameter, std::vector<double> settings) {
+  m.info.parameter = parameter;
   m.info.settings = std::move(settings);
   return m;
 }

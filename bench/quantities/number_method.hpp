@@ -28,8 +28,8 @@ struct NumberMethod {
   std::function<NumberAnswer(const Asked&, Setting)> ask;
 };
 
-/// Returns a method with a parameter named `knob`, and its settings from coarse to fine.
-NumberMethod with_knob(NumberMethod m, const char* knob, std::vector<double> settings);
+/// Returns a method with a parameter named `parameter`, and its settings from coarse to fine.
+NumberMethod with_parameter(NumberMethod m, const char* parameter, std::vector<double> settings);
 
 /// Returns lrbscope's methods, including exact queries at equally spaced times, and those of the engines
 /// found at build time.

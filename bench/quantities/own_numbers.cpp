@@ -122,17 +122,17 @@ NumberMethod sampled_method(int n) {
 }  // namespace
 
 std::vector<NumberMethod> own_number_methods() {
-  return {with_knob(ours(Quantity::distance, "lrbscope, distance", our_distance), "tolerance",
+  return {with_parameter(ours(Quantity::distance, "lrbscope, distance", our_distance), "tolerance",
                     {0.1, 0.01, 1e-3, 1e-6, 0}),
-          with_knob(less("ours-budget", "lrbscope, distance in N steps",
+          with_parameter(less("ours-budget", "lrbscope, distance in N steps",
                          "The interval after N steps (pairs of nodes expanded).",
                          {"lrbscope, within a budget", "#56b4e9", "rect"}, distance_in_steps),
                     "steps", {3, 10, 30, 100, 300}),
-          with_knob(less("ours-within", "lrbscope, within 5 % of the diagonal?",
+          with_parameter(less("ours-within", "lrbscope, within 5 % of the diagonal?",
                          "A proven yes or no; the interval is the bound known by then.",
                          {"lrbscope, yes or no: within a distance?", "#0072b2", "rectRounded"}, within),
                     "within", {0.05}),
-          with_knob(ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact), "tolerance",
+          with_parameter(ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact), "tolerance",
                     {1e-6, 1e-9, 1e-12}),
           ours(Quantity::depth, "lrbscope, clash", our_depth),
           sampled_method(10),

@@ -207,7 +207,7 @@ std::vector<MethodEntry> spheres_methods() {
   info.pairs = false;
   info.traits.set(Trait::hard_cases, false);
   info.traits.set(Trait::approximate);
-  info.knob = "level";
+  info.parameter = "level";
   info.settings = {2, 4, 6, 8, 10, 12};
   return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Spheres>(); }}};
 }

@@ -162,7 +162,7 @@ MethodEntry octree() {
   info.pairs = false;
   info.traits.set(Trait::hard_cases, false);
   info.traits.set(Trait::approximate);
-  info.knob = "cells";
+  info.parameter = "cells";
   info.settings = {16, 32, 64, 128};
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Octree>(); }};
 }

@@ -246,7 +246,7 @@ MethodEntry ours_tolerance() {
                "thicker than the tolerance are not refined. Setting: tolerance relative to A's diagonal.",
                15);
   coarse(info);
-  info.knob = "tolerance";
+  info.parameter = "tolerance";
   info.settings = {0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001};
   info.style = {"lrbscope, to a tolerance", "#0072b2", "rectRot"};
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(Content::tolerance); }};
@@ -259,7 +259,7 @@ MethodEntry ours_budget() {
                "Setting: number of face tests. Never reports intersecting bodies as separate.",
                16);
   coarse(info);
-  info.knob = "tests";
+  info.parameter = "tests";
   info.settings = {16, 32, 64, 128, 256, 1024};
   info.style = {"lrbscope, within a budget", "#56b4e9", "rect"};
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(Content::tests); }};

@@ -14,7 +14,7 @@ inline constexpr auto kFields<methods::MethodInfo> = std::tuple{
     field("name", &methods::MethodInfo::name),     field("title", &methods::MethodInfo::title),
     field("remark", &methods::MethodInfo::remark), field("present", &methods::MethodInfo::present),
     field("pairs", &methods::MethodInfo::pairs),   field("says", &methods::MethodInfo::says),
-    field("knob", &methods::MethodInfo::knob),     field("settings", &methods::MethodInfo::settings),
+    field("parameter", &methods::MethodInfo::parameter),     field("settings", &methods::MethodInfo::settings),
     field("style", &methods::MethodInfo::style),   field("role", &methods::MethodInfo::role),
     field("rank", &methods::MethodInfo::rank)};
 
