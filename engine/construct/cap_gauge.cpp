@@ -129,12 +129,12 @@ void CapGauge::settle(CapSurface& cap, const CapSurface::Star& star, int w) {
   for (std::size_t i = 0; i < covered_.size(); ++i) {
     const int face = star.rim[sector(flat_covered_[i], centre)].face;
     cover_[covered_[i]] = face;
-    raise_extra(cap, face, covered_[i]);
+    raise_excess(cap, face, covered_[i]);
   }
 }
 
 /// Raises a face's excess deviation to the value shown by a vertex under it.
-void CapGauge::raise_extra(CapSurface& cap, int face, int covered) const {
+void CapGauge::raise_excess(CapSurface& cap, int face, int covered) const {
   // The deviation shown by p: its height below the face, plus its own deviation.
   const auto& f = cap.faces()[face];
   const Vector3d& p = cap.x(covered);
@@ -144,9 +144,9 @@ void CapGauge::raise_extra(CapSurface& cap, int face, int covered) const {
   for (int i = 0; i < 3; ++i) by_corners += foot.weight[i] * cap.off(f.v[i]);
   const double over = height + cap.off(covered);
   // Already covered by the interpolated corners and the excess.
-  if (over <= by_corners + f.extra) return;
+  if (over <= by_corners + f.excess_deviation) return;
   const double off = std::min(over, floor_.off(p + f.plane.n * height));
-  if (off - by_corners > f.extra) cap.set_extra(face, off - by_corners);
+  if (off - by_corners > f.excess_deviation) cap.set_excess_deviation(face, off - by_corners);
 }
 
 bool CapGauge::measure_again(CapSurface& cap) const {
@@ -156,7 +156,7 @@ bool CapGauge::measure_again(CapSurface& cap) const {
   for (int f = 0; f < static_cast<int>(cap.faces().size()); ++f) {
     const auto& face = cap.faces()[f];
     if (!face.alive || face.kept >= 0) continue;
-    double extra = 0;
+    double excess_deviation = 0;
     for (const auto& at : kAt) {
       Vector3d q = Vector3d::Zero();
       double by_corners = 0;
@@ -167,9 +167,9 @@ bool CapGauge::measure_again(CapSurface& cap) const {
       const double off = floor_.off(q);
       // Written so that NaN is rejected.
       if (!(off <= most_)) return false;
-      extra = std::max(extra, off - by_corners);
+      excess_deviation = std::max(excess_deviation, off - by_corners);
     }
-    cap.set_extra(f, extra);
+    cap.set_excess_deviation(f, excess_deviation);
   }
   return true;
 }
@@ -195,7 +195,7 @@ void PatchFloor::load(const HullMesh& hull, const Patch& patch, double most) {
     for (int i = 0; i < 3; ++i) {
       const HullMesh::Point& p = hull.point(hull[s].v[i]);
       t.x[i] = p.x;
-      off[i] = p.off + hull[s].extra;
+      off[i] = p.off + hull[s].excess_deviation;
     }
     t.off = off[0];
     t.off_b = off[1] - off[0];

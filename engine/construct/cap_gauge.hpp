@@ -16,7 +16,7 @@ namespace lrb::construct {
 // The deviation of points over a patch from the body.
 
 /// A patch's triangles with their own known deviation from the body (HullMesh::Point::off,
-/// HullMesh::Triangle::extra). The deviation of a point is at most its distance from a triangle plus the
+/// HullMesh::Triangle::excess_deviation). The deviation of a point is at most its distance from a triangle plus the
 /// triangle's deviation at the nearest point.
 ///
 /// These estimates guide the builder; the bounds of lids are proven afterwards (region_thickness()).
@@ -39,7 +39,7 @@ class PatchFloor {
     double weight;                 ///< these weights at the centroid; negative for a degenerate triangle
     std::array<double, 3> height;  ///< of the corners above the opposite edges
     double radius;                 ///< of a ball about the centroid
-    double off, off_b, off_c;      ///< deviation at corner a, `extra` included, and the increase to b and c
+    double off, off_b, off_c;      ///< deviation at corner a, `excess_deviation` included, and the increase to b and c
     double least;                  ///< minimum over the corners
   };
   /// Contains all points that a triangle can prove to be within the limit.
@@ -93,7 +93,7 @@ class CapGauge {
   bool flatten(const CapSurface& cap, const CapSurface::Star& star);
   Flat flat(const Eigen::Vector3d& q) const { return {q.dot(along_x_), q.dot(along_y_)}; }
   std::size_t sector(const Flat& q, const Flat& centre) const;
-  void raise_extra(CapSurface& cap, int face, int covered) const;
+  void raise_excess(CapSurface& cap, int face, int covered) const;
 
   PatchFloor floor_;
   double most_ = 0;

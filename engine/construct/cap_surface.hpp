@@ -28,7 +28,7 @@ class CapSurface {
     Plane plane;
     int kept;  ///< index into Patch::slots if this is still that triangle, else -1
     bool alive;
-    double extra;         ///< see HullMesh::Triangle
+    double excess_deviation;         ///< see HullMesh::Triangle
     std::uint32_t since;  ///< version of the surface at which it was created
     /// The version at which the collapse of the edge v[i], v[i + 1] was rejected; 0: never.
     std::array<std::uint32_t, 3> rejected;
@@ -63,7 +63,7 @@ class CapSurface {
   /// Returns the deviation of a vertex from the body; see HullMesh::Point.
   double off(int v) const { return points_[v].off; }
   void set_off(int v, double off) { points_[v].off = off; }
-  void set_extra(int f, double extra) { faces_[f].extra = extra; }
+  void set_excess_deviation(int f, double excess_deviation) { faces_[f].excess_deviation = excess_deviation; }
   /// Returns the front's vertex of an old vertex.
   HullMesh::Corner corner(int v) const { return corners_[v]; }
 

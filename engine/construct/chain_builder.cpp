@@ -271,7 +271,7 @@ class ChainBuilder {
     if (cap.apex) corners = {a, hull_.add_point(*cap.apex, cap.apex_off), b};
     if (cap.apex) complex_.add_vertex(*cap.apex);
     std::vector<Slot> added = add_segments(chain, corners, region);
-    for (std::size_t i = 0; i < added.size(); ++i) hull_.set_extra(added[i], cap.extra[i]);
+    for (std::size_t i = 0; i < added.size(); ++i) hull_.set_excess_deviation(added[i], cap.excess_deviation[i]);
     if (options_.probe) options_.probe->region(region);
     return added;
   }

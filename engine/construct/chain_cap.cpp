@@ -89,25 +89,25 @@ double off_by_chain(const HullLoops& hull, const std::vector<Slot>& chain, const
     // Deviation at the foot: interpolated between the ends, plus the segment's own excess.
     const SimplexPoint near = nearest_on_segment(q, hull.start(s), hull.end(s));
     least = std::min(least, std::sqrt(near.distance_sq) + near.weight[0] * hull.off(hull[s].a) +
-                                near.weight[1] * hull.off(hull[s].b) + hull[s].extra);
+                                near.weight[1] * hull.off(hull[s].b) + hull[s].excess_deviation);
   }
   return least;
 }
 
 /// Measures the excess deviation of a segment over a chain at sample points; the deviation of its ends is
 /// known. Returns false if a point deviates by more than `most`.
-bool extra_of_segment(const HullLoops& hull, const std::vector<Slot>& chain, const Vector3& a, double off_a,
-                      const Vector3& b, double off_b, double most, double& extra) {
+bool excess_of_segment(const HullLoops& hull, const std::vector<Slot>& chain, const Vector3& a, double off_a,
+                      const Vector3& b, double off_b, double most, double& excess_deviation) {
   // Seven sample points. The maximum between samples is not bounded: this estimate only guides the builder.
   constexpr int kParts = 8;
-  extra = 0;
+  excess_deviation = 0;
   for (int i = 1; i < kParts; ++i) {
     const double t = static_cast<double>(i) / kParts;
     const double off = off_by_chain(hull, chain, a + t * (b - a));
     // Written so that NaN is rejected.
     if (!(off <= most)) return false;
     // Store only the excess over linear interpolation, because the ends have their own deviations.
-    extra = std::max(extra, off - (1 - t) * off_a - t * off_b);
+    excess_deviation = std::max(excess_deviation, off - (1 - t) * off_a - t * off_b);
   }
   return true;
 }
@@ -184,23 +184,23 @@ bool measure_cap(const HullLoops& hull, ChainCap& cap, double most) {
   const VertexId first = hull[chain.front()].a, last = hull[chain.back()].b;
   // The chord: one segment between two vertices of known deviation.
   if (!cap.apex)
-    return extra_of_segment(hull, chain, hull.x(first), hull.off(first), hull.x(last), hull.off(last), most,
-                            cap.extra[0]);
+    return excess_of_segment(hull, chain, hull.x(first), hull.off(first), hull.x(last), hull.off(last), most,
+                            cap.excess_deviation[0]);
   // The apex first, because its deviation is used for both segments.
   cap.apex_off = off_by_chain(hull, chain, *cap.apex);
   return cap.apex_off <= most &&
-         extra_of_segment(hull, chain, hull.x(first), hull.off(first), *cap.apex, cap.apex_off, most,
-                          cap.extra[0]) &&
-         extra_of_segment(hull, chain, *cap.apex, cap.apex_off, hull.x(last), hull.off(last), most,
-                          cap.extra[1]);
+         excess_of_segment(hull, chain, hull.x(first), hull.off(first), *cap.apex, cap.apex_off, most,
+                          cap.excess_deviation[0]) &&
+         excess_of_segment(hull, chain, *cap.apex, cap.apex_off, hull.x(last), hull.off(last), most,
+                          cap.excess_deviation[1]);
 }
 
 double off_of(const HullLoops& hull, const ChainCap& cap) {
   const std::vector<Slot> chain = chain_of(hull, cap.first, cap.length);
   // On each segment: the larger deviation of its ends, plus its excess.
   const double first = hull.off(hull[chain.front()].a), last = hull.off(hull[chain.back()].b);
-  if (!cap.apex) return std::max(first, last) + cap.extra[0];
-  return std::max(std::max(first, cap.apex_off) + cap.extra[0], std::max(cap.apex_off, last) + cap.extra[1]);
+  if (!cap.apex) return std::max(first, last) + cap.excess_deviation[0];
+  return std::max(std::max(first, cap.apex_off) + cap.excess_deviation[0], std::max(cap.apex_off, last) + cap.excess_deviation[1]);
 }
 
 CapVerdict judge_chain_cap(const HullLoops& hull, const AabbTree& tree, const ChainCap& cap,

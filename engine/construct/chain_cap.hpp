@@ -29,7 +29,7 @@ class HullLoops {
     Slot next = kNull, prev = kNull;
     FaceId face = kNull;  ///< the face of the complex; kNull: the slot is empty
     std::uint32_t component = kNull;
-    double extra = 0;  ///< excess of its deviation from the body over that at its ends; mesh units
+    double excess_deviation = 0;  ///< excess of its deviation from the body over that at its ends; mesh units
   };
 
   /// Builds the loops of a 2D mesh, which must be closed, with one incoming and one outgoing segment at every
@@ -50,7 +50,7 @@ class HullLoops {
   double off(VertexId v) const { return off_[v]; }
 
   VertexId add_point(const Eigen::Vector3d& x, double off = 0);
-  void set_extra(Slot s, double extra) { segments_[s].extra = extra; }
+  void set_excess_deviation(Slot s, double excess_deviation) { segments_[s].excess_deviation = excess_deviation; }
   void set_component(Slot s, std::uint32_t component) { segments_[s].component = component; }
   /// Empties slots without closing the gap: place() must follow.
   void remove(std::span<const Slot> slots);
@@ -81,7 +81,7 @@ struct ChainCap {
   std::optional<Eigen::Vector3d> apex;  ///< nullopt if the cap is the chord
   double area = 0;                      ///< area between chain and cap; unit squared
   /// Set by measure_cap(): deviation of the apex, and excess deviation of each segment over its ends.
-  double apex_off = 0, extra[2] = {0, 0};
+  double apex_off = 0, excess_deviation[2] = {0, 0};
 
   std::uint32_t segments() const { return apex ? 2 : 1; }
 };

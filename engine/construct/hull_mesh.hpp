@@ -26,7 +26,7 @@ class HullMesh {
     FaceId face = kNull;          ///< the face of the complex; kNull: the slot is empty
     std::uint32_t component = 0;  ///< component of the mesh's surface
     /// Excess of the triangle's deviation from the body over that at its corners; an estimate, mesh units.
-    double extra = 0;
+    double excess_deviation = 0;
   };
 
   /// A vertex's position and its number in the complex.

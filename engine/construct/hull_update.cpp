@@ -98,7 +98,7 @@ Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap
       stays[f.kept] = true;
     } else {
       sheet.added.push_back({corners[f.v[0]], corners[f.v[1]], corners[f.v[2]]});
-      sheet.added_extra.push_back(f.extra);
+      sheet.added_excess.push_back(f.excess_deviation);
     }
   }
   for (std::size_t i = 0; i < patch.slots.size(); ++i)
@@ -149,7 +149,7 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
     }
     t.face = complex.add_pseudo_face(ids, RegionId(first_region + sheet.pieces.of_added[i]), kOutside);
     t.component = component;
-    if (!sheet.added_extra.empty()) t.extra = sheet.added_extra[i];
+    if (!sheet.added_excess.empty()) t.excess_deviation = sheet.added_excess[i];
   }
   // Step 5: replace the covered triangles by the new ones.
   hull.remove(removed);

@@ -64,7 +64,7 @@ struct Sheet {
   std::vector<PointTriangle> added;     ///< corners are vertices of the front
   std::vector<Eigen::Vector3d> new_points;
   /// (|new_points|), (|added|) their deviation from the body, see HullMesh; empty if not measured.
-  std::vector<double> new_off, added_extra;
+  std::vector<double> new_off, added_excess;
   RegionPieces pieces;
   /// (|added|) the triangle across each edge: another added one or, at the boundary, the neighbour of a
   /// removed one.

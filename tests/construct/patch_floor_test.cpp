@@ -37,7 +37,7 @@ struct Floor {
   double off_by(HullMesh::Slot s, const Vector3& q) const {
     const auto& t = hull[s];
     const SimplexPoint near = nearest_on_triangle(q, hull.x(t.v[0]), hull.x(t.v[1]), hull.x(t.v[2]));
-    double off = std::sqrt(near.distance_sq) + t.extra;
+    double off = std::sqrt(near.distance_sq) + t.excess_deviation;
     for (int i = 0; i < 3; ++i) off += near.weight[i] * hull.point(t.v[i]).off;
     return off;
   }
