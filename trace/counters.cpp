@@ -310,7 +310,7 @@ void take_cap(PassSummary& p, const Event& e, const Event* tried_before) {
   }
   const payload::Cap cap = e.cap();
   ++p.caps[static_cast<std::size_t>(cap.verdict)];
-  if (cap.verdict != CapVerdict::stands) return;
+  if (cap.verdict != CapVerdict::accepted) return;
   p.lids += cap.faces;
   p.covered += cap.covered;
   if (std::isfinite(cap.off)) p.off = std::max(p.off, cap.off);

@@ -179,7 +179,7 @@ class ChainBuilder {
       const CapVerdict verdict =
           chain.empty() ? CapVerdict::overlaps : judge_chain_cap(hull_, tree, p.cap, boxes_);
       report_cap(p, verdict, goal.off);
-      if (verdict != CapVerdict::stands) continue;
+      if (verdict != CapVerdict::accepted) continue;
       for (const Slot s : replace(p.cap, chain)) {
         // New segments are not covered again in this pass, so that a region and the one above it differ in
         // layer.
@@ -210,7 +210,7 @@ class ChainBuilder {
         // A single segment cannot be simplified.
         if (length < 2) continue;
         const Proposal p = propose(s, length, goal);
-        if (p.verdict == CapVerdict::stands) proposals.push_back(p);
+        if (p.verdict == CapVerdict::accepted) proposals.push_back(p);
         // For the probe: of all lengths that failed, the reason that comes first in CapVerdict.
         if (!rejected || p.verdict < rejected->verdict) rejected = p;
       }
@@ -222,10 +222,10 @@ class ChainBuilder {
     return proposals;
   }
 
-  /// Finds a cap over a chain. Its verdict is `stands` if it is worth it, whether or not it intersects the
+  /// Finds a cap over a chain. Its verdict is `accepted` if it is worth it, whether or not it intersects the
   /// front.
   Proposal propose(Slot first, std::uint32_t length, const CapGoal& goal) const {
-    CapVerdict why = CapVerdict::stands;
+    CapVerdict why = CapVerdict::accepted;
     // The geometry, without regard to the rest of the front.
     auto cap = find_cap(hull_, first, length, bounds_, kCapVolumeLimit, why);
     const VertexId start = hull_[first].a;
@@ -236,7 +236,7 @@ class ChainBuilder {
     // Fitting: the deviation must be within this pass's limit.
     if (goal.off > 0 && !measure_cap(hull_, *cap, goal.off)) return {0, *cap, CapVerdict::too_thick, start};
     // The price of a saved segment.
-    return {cap->area / (length - cap->segments()), *cap, CapVerdict::stands, start};
+    return {cap->area / (length - cap->segments()), *cap, CapVerdict::accepted, start};
   }
 
   /// Reports a proposal. `max_deviation`: maximum deviation of the cap, or 0 if it was not measured.
@@ -244,7 +244,7 @@ class ChainBuilder {
     if (!options_.probe) return;
     const ChainCap& cap = p.cap;
     // Rejected caps have no deviation to report.
-    const bool measured = verdict == CapVerdict::stands && max_deviation > 0;
+    const bool measured = verdict == CapVerdict::accepted && max_deviation > 0;
     options_.probe->patch({p.start, cap.length, cap.length - 1});
     options_.probe->cap({cap.segments(), cap.length, verdict, false,
                          measured ? std::min(max_deviation, off_of(hull_, cap)) : -1});
@@ -307,15 +307,15 @@ class ChainBuilder {
     std::uint32_t covered = 0;
     for (const ChainCap& cap : caps) covered += cap.length;
     report_whole_cap(static_cast<std::uint32_t>(caps.size()), covered, verdict);
-    const bool stands = verdict == CapVerdict::stands;
-    if (stands)
+    const bool accepted = verdict == CapVerdict::accepted;
+    if (accepted)
       for (const ChainCap& cap : caps) replace(cap, chain_of(hull_, cap.first, cap.length));
     passes_.report_end({.hull_faces = hull_.segment_count()});
-    if (stands) end_pass();
-    return stands;
+    if (accepted) end_pass();
+    return accepted;
   }
 
-  /// Finds the sides of the convex hull that are not the outline's own. Returns `stands` if all can be
+  /// Finds the sides of the convex hull that are not the outline's own. Returns `accepted` if all can be
   /// accepted.
   CapVerdict find_bridge(std::vector<ChainCap>& caps) const {
     const std::vector<Slot> slots = outer_slots();
@@ -346,9 +346,9 @@ class ChainBuilder {
       // The caps cannot intersect each other, as sides of one convex hull, so each is tested alone.
       caps.push_back(cap);
       const CapVerdict verdict = judge_chain_cap(hull_, tree, cap, boxes_);
-      if (verdict != CapVerdict::stands) return verdict;
+      if (verdict != CapVerdict::accepted) return verdict;
     }
-    return caps.empty() ? CapVerdict::too_many_faces : CapVerdict::stands;
+    return caps.empty() ? CapVerdict::too_many_faces : CapVerdict::accepted;
   }
 
   /// Reports a cap over all outer outlines, and the number of segments that it covers.
@@ -376,12 +376,12 @@ class ChainBuilder {
     // The wrapper becomes the outer boundary of one last region around all outer outlines.
     const CapVerdict verdict = find_closing();
     report_whole_cap(polygon_size(), outer, verdict);
-    const bool stands = verdict == CapVerdict::stands;
-    if (stands) enclose(hull_, home_, outline_mesh(polygon_), passes_.layer(), complex_);
+    const bool accepted = verdict == CapVerdict::accepted;
+    if (accepted) enclose(hull_, home_, outline_mesh(polygon_), passes_.layer(), complex_);
     passes_.report_regions(complex_, before);
-    passes_.report_end({.hull_faces = stands ? polygon_size() : outer});
-    if (stands) end_pass();
-    return stands;
+    passes_.report_end({.hull_faces = accepted ? polygon_size() : outer});
+    if (accepted) end_pass();
+    return accepted;
   }
 
   CapVerdict find_closing() {
@@ -395,7 +395,7 @@ class ChainBuilder {
     if (polygon_.empty() || !holds_all()) polygon_ = enclosing_polygon(points, max_outer_, kPolytopeDistance);
     if (polygon_.empty()) return CapVerdict::too_far_out;
     // The final confirmation is exact.
-    return holds_all() ? CapVerdict::stands : CapVerdict::leaves_out;
+    return holds_all() ? CapVerdict::accepted : CapVerdict::leaves_out;
   }
 
   std::uint32_t polygon_size() const { return static_cast<std::uint32_t>(polygon_.size()); }

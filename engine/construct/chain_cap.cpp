@@ -227,19 +227,19 @@ CapVerdict judge_chain_cap(const HullLoops& hull, const AabbTree& tree, const Ch
   Eigen::AlignedBox3d box = added.front().box;
   box.extend(added.back().box);
   for (const Slot s : chain) box.extend(box_of(hull, s));  // another component may be in between
-  CapVerdict verdict = CapVerdict::stands;
+  CapVerdict verdict = CapVerdict::accepted;
   tree.for_each_in(box, [&](Slot s) {
-    if (verdict != CapVerdict::stands || !hull.alive(s)) return;
+    if (verdict != CapVerdict::accepted || !hull.alive(s)) return;
     const CheckedSegment other = checked(hull, s);
     // The chain itself is included: the cap may intersect it only in its two end points.
     for (const CheckedSegment& t : added)
-      if (!t.clear_of(other)) verdict = CapVerdict::meets_hull;
+      if (!t.clear_of(other)) verdict = CapVerdict::meets_front;
     const std::uint32_t component = hull[s].component;
     // Step 4: a component that is entirely within the box and does not intersect the cap may be enclosed. One
     // vertex decides.
-    if (verdict == CapVerdict::stands && component != hull[front].component &&
+    if (verdict == CapVerdict::accepted && component != hull[front].component &&
         box.contains(boxes[component]) && region_holds(hull, chain, added, hull.start(s)))
-      verdict = CapVerdict::holds_component;
+      verdict = CapVerdict::encloses_component;
   });
   return verdict;
 }

@@ -103,7 +103,7 @@ bool measure_cap(const HullLoops& hull, ChainCap& cap, double most);
 /// Returns the maximum deviation of the cap, at its ends or in between, as measured by measure_cap().
 double off_of(const HullLoops& hull, const ChainCap& cap);
 
-/// Returns CapVerdict::stands if, exactly, the cap intersects the front and the chain only in the chain's
+/// Returns CapVerdict::accepted if, exactly, the cap intersects the front and the chain only in the chain's
 /// ends, leaves these ends between the chain and its neighbours on the outer side, and does not enclose
 /// another component; otherwise returns the obstacle. `boxes` (components).
 CapVerdict judge_chain_cap(const HullLoops& hull, const AabbTree& tree, const ChainCap& cap,

@@ -80,9 +80,9 @@ CapVerdict judge(const HullMesh& hull, const std::vector<PointTriangle>& added) 
       const auto& v = hull[s].v;
       clear = clear && checked[i].clear_of({hull.point(v[0]), hull.point(v[1]), hull.point(v[2])});
     });
-    if (!clear) return CapVerdict::meets_hull;
+    if (!clear) return CapVerdict::meets_front;
   }
-  return CapVerdict::stands;
+  return CapVerdict::accepted;
 }
 
 /// The faces of the convex hull that are not in the front, and the front's triangles that they cover.
@@ -156,7 +156,7 @@ CapVerdict bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std
     probe->cap({static_cast<std::uint32_t>(bridge.added.size()),
                 static_cast<std::uint32_t>(bridge.removed.size()), verdict, false, -1});
   }
-  if (verdict != CapVerdict::stands) return verdict;
+  if (verdict != CapVerdict::accepted) return verdict;
   // Step 4: relabel first, so that lids and retained triangles share a component.
   const std::uint32_t component = hull[slots[0]].component;
   for (const Slot s : slots) hull.set_component(s, component);

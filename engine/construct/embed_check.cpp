@@ -105,9 +105,9 @@ CapVerdict EmbedCheck::judge_cap(const Patch& patch, const CapSurface& cap) {
   // For a body of one component, the box of the new triangles suffices.
   gather_hull(patch, cap, box);
   const CapVerdict verdict = judge_added(of_patch);
-  if (verdict != CapVerdict::stands || component_boxes_.size() < 2) return verdict;
+  if (verdict != CapVerdict::accepted || component_boxes_.size() < 2) return verdict;
   // Step 5, only if there are several components.
-  return encloses_component(patch, cap, box) ? CapVerdict::holds_component : CapVerdict::stands;
+  return encloses_component(patch, cap, box) ? CapVerdict::encloses_component : CapVerdict::accepted;
 }
 
 CapVerdict EmbedCheck::judge_fan(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
@@ -192,8 +192,8 @@ bool EmbedCheck::added_meet_each_other() const {
 CapVerdict EmbedCheck::judge_added(std::size_t of_patch) const {
   for (const CheckedTriangle& t : added_)
     for (std::size_t i = 0; i < obstacles_.size(); ++i)
-      if (!t.clear_of(obstacles_[i])) return i < of_patch ? CapVerdict::meets_patch : CapVerdict::meets_hull;
-  return CapVerdict::stands;
+      if (!t.clear_of(obstacles_[i])) return i < of_patch ? CapVerdict::meets_patch : CapVerdict::meets_front;
+  return CapVerdict::accepted;
 }
 
 /// If one neighbour is outside, so is the patch's entire component, which is connected and intersects the

@@ -47,7 +47,7 @@ class EmbedCheck {
   /// never encloses another.
   void set_component_boxes(std::vector<Eigen::AlignedBox3d> boxes) { component_boxes_ = std::move(boxes); }
 
-  /// Returns CapVerdict::stands if the cap's new triangles intersect neither the front outside the patch nor
+  /// Returns CapVerdict::accepted if the cap's new triangles intersect neither the front outside the patch nor
   /// the patch nor each other, and the entire front outside the patch is outside the region between patch and
   /// cap; otherwise returns the obstacle.
   CapVerdict judge_cap(const Patch& patch, const CapSurface& cap);

@@ -251,9 +251,9 @@ class PatchBuilder {
 
   bool bridge() {
     passes_.report_begin(BuildStage::bridge, hull_.triangle_count());
-    const bool stands = bridge_pockets();
+    const bool accepted = bridge_pockets();
     passes_.report_end({.hull_faces = hull_.triangle_count()});
-    if (!stands) return false;
+    if (!accepted) return false;
     // Bridging replaced large parts of the front.
     tree_.reset();
     end_pass();
@@ -267,7 +267,7 @@ class PatchBuilder {
     std::vector<bool> joined(hull_.component_count());
     for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = home_[c] == kNull;
     plan_polytope();
-    return bridge_concavities(hull_, complex_, joined, passes_.layer(), options_.probe) == CapVerdict::stands;
+    return bridge_concavities(hull_, complex_, joined, passes_.layer(), options_.probe) == CapVerdict::accepted;
   }
 
   /// Reports a cap of `faces` faces over the entire outer front to the probe. Returns true if the cap was
@@ -280,7 +280,7 @@ class PatchBuilder {
       options_.probe->patch({hull_.point(hull_[first].v[0]).id, outer, 0});
       options_.probe->cap({faces, outer, verdict, false, -1});
     }
-    return verdict == CapVerdict::stands;
+    return verdict == CapVerdict::accepted;
   }
 
   void fill() {
@@ -312,12 +312,12 @@ class PatchBuilder {
     const std::uint32_t outer = outer_size(), before = complex_.region_count();
     passes_.report_begin(BuildStage::close, outer);
     const CapVerdict verdict = find_closing();
-    const bool stands = report_whole_cap(polytope_size(), verdict);
-    if (stands) enclose(hull_, home_, polytope_, passes_.layer(), complex_);
+    const bool accepted = report_whole_cap(polytope_size(), verdict);
+    if (accepted) enclose(hull_, home_, polytope_, passes_.layer(), complex_);
     passes_.report_regions(complex_, before);
-    passes_.report_end({.hull_faces = stands ? polytope_size() : outer});
-    if (stands) end_pass();
-    return stands;
+    passes_.report_end({.hull_faces = accepted ? polytope_size() : outer});
+    if (accepted) end_pass();
+    return accepted;
   }
 
   CapVerdict find_closing() {
@@ -331,7 +331,7 @@ class PatchBuilder {
     if (!holds_all())
       polytope_ = enclosing_polytope(points, options_.max_outer_faces, kPolytopeDistance, workers_);
     if (polytope_.face_count() == 0) return CapVerdict::too_far_out;
-    return holds_all() ? CapVerdict::stands : CapVerdict::leaves_out;
+    return holds_all() ? CapVerdict::accepted : CapVerdict::leaves_out;
   }
 
   void end_pass() { passes_.end_pass(complex_, hull_.triangle_count()); }

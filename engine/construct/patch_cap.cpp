@@ -53,7 +53,7 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
         std::push_heap(queue_.begin(), queue_.end());
         continue;
       }
-      if (confirm(*now) == CapVerdict::stands)
+      if (confirm(*now) == CapVerdict::accepted)
         collapse(*now);
       else if (!limits_.check)  // the check's verdict may change by events far away
         cap_.reject(star_);
@@ -252,7 +252,7 @@ double PatchCap::shape_of_fan(const Vector3& w) const {
   return worst * (2 * std::sqrt(3.0));
 }
 
-/// Returns CapVerdict::stands if the collapse is accepted, otherwise the reason of the rejection.
+/// Returns CapVerdict::accepted if the collapse is accepted, otherwise the reason of the rejection.
 CapVerdict PatchCap::confirm(const Candidate& c) const {
   // Sample points first: cheaper than the exact tests.
   if (limits_.gauge && !limits_.gauge->is_near(cap_, star_, c.w)) return CapVerdict::too_thick;
@@ -264,7 +264,7 @@ CapVerdict PatchCap::confirm(const Candidate& c) const {
     if (exact::PlaneSide(cap_.x(v[0]).data(), cap_.x(v[1]).data(), cap_.x(v[2]).data()).side(c.w.data()) <= 0)
       return CapVerdict::no_place;
   }
-  if (!limits_.check) return CapVerdict::stands;
+  if (!limits_.check) return CapVerdict::accepted;
   return limits_.check->judge_fan(*patch_, cap_, star_, {c.w, cap_.is_ring(c.v) ? cap_.id(c.v) : kNull});
 }
 
@@ -286,7 +286,7 @@ CapVerdict PatchCap::what_holds_back() {
     });
   }
   const auto most = [&](std::initializer_list<CapVerdict> of) {
-    CapVerdict best = CapVerdict::stands;
+    CapVerdict best = CapVerdict::accepted;
     std::uint32_t count = 0;
     for (const CapVerdict v : of)
       if (edges[static_cast<std::size_t>(v)] > count) best = v, count = edges[static_cast<std::size_t>(v)];
@@ -294,10 +294,10 @@ CapVerdict PatchCap::what_holds_back() {
   };
   using enum CapVerdict;
   const CapVerdict limit =
-      most({too_thick, too_much_volume, too_thin, meets_hull, meets_patch, meets_itself, turns_inward});
-  if (limit != stands) return limit;
+      most({too_thick, too_much_volume, too_thin, meets_front, meets_patch, meets_itself, turns_inward});
+  if (limit != accepted) return limit;
   const CapVerdict geometry = most({no_place, no_surface});
-  return geometry != stands ? geometry : too_many_faces;
+  return geometry != accepted ? geometry : too_many_faces;
 }
 
 }  // namespace lrb::construct

@@ -77,7 +77,7 @@ class PatchCap {
   CapSurface::Star star_;
   std::vector<CapSurface::Star::Rim> rim_;  ///< a copy of the star's
   std::vector<HalfSpace> half_spaces_;
-  CapVerdict why_ = CapVerdict::stands;  ///< why measure_star() returned nullopt
+  CapVerdict why_ = CapVerdict::accepted;  ///< why measure_star() returned nullopt
 };
 
 }  // namespace lrb::construct

@@ -149,13 +149,13 @@ void PatchPass::find_cap(Job& job, const CapGoal& goal, Bench& bench) const {
   // more.
   for (const bool careful : {false, true}) {
     CapVerdict verdict = simplify(job.patch, goal, bench, careful);
-    const bool is_simple = verdict == CapVerdict::stands;
+    const bool is_simple = verdict == CapVerdict::accepted;
     if (is_simple) verdict = bench.check.judge_cap(job.patch, bench.cap);
     const auto added = static_cast<std::uint32_t>(bench.cap.new_faces());
     const auto kept = static_cast<std::uint32_t>(bench.cap.alive_faces()) - added;
     const auto covered = static_cast<std::uint32_t>(job.patch.slots.size()) - kept;
     job.tried[job.tries++] = {added, covered, verdict, careful, -1};
-    job.has_cap = verdict == CapVerdict::stands;
+    job.has_cap = verdict == CapVerdict::accepted;
     if (job.has_cap || !is_simple) break;
   }
   if (probe_ && job.has_cap && goal.off > 0)
@@ -185,7 +185,7 @@ CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& b
   if (cap.new_faces() > goal.worth * removed || removed == 0)
     return probe_ ? bench.collapse.what_holds_back() : CapVerdict::too_many_faces;
   if (limits.gauge && hull_.has_polygons() && !bench.gauge.measure_again(cap)) return CapVerdict::too_thick;
-  return CapVerdict::stands;
+  return CapVerdict::accepted;
 }
 
 /// Returns the measured maximum deviation of the cap's new triangles from the body: an estimate.

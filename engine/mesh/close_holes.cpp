@@ -193,10 +193,10 @@ class HoleCloser {
     const std::vector<Meetings> meetings = find_meetings(trial, owner, attempts.size());
     // Pass 3: greedy choice. A candidate conflicts only with faces of the mesh, with itself, and with
     // candidates accepted before it.
-    std::vector<bool> stands(attempts.size(), false);
+    std::vector<bool> accepted(attempts.size(), false);
     for (std::size_t i = 0; i < attempts.size(); ++i) {
       const auto in_way = std::find_if(meetings[i].lids.begin(), meetings[i].lids.end(),
-                                       [&](std::size_t k) { return stands[k]; });
+                                       [&](std::size_t k) { return accepted[k]; });
       Hole& hole = out_.holes[attempts[i].holes[0]];
       if (meetings[i].face) {
         hole.state = HoleState::meets_surface;
@@ -211,10 +211,10 @@ class HoleCloser {
       } else {
         // The inner edges were checked again above, because an earlier candidate of this round may have added
         // one.
-        stands[i] = true;
+        accepted[i] = true;
         keep(attempts[i]);
       }
-      attempts[i].way = stands[i] ? attempts[i].ways.size() : attempts[i].way + 1;
+      attempts[i].way = accepted[i] ? attempts[i].ways.size() : attempts[i].way + 1;
     }
   }
 

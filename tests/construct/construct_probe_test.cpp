@@ -131,7 +131,7 @@ std::size_t check_story(const std::vector<Told>& reported, const LrbRep& rep, st
       case Told::Kind::cap:
         last = t.cap;
         if (last.off >= 0) CHECK(last.off <= pass.max_deviation);
-        if (last.verdict != CapVerdict::stands) break;
+        if (last.verdict != CapVerdict::accepted) break;
         lids += last.faces;
         if (pass.stage == BuildStage::close)
           hull = last.faces;
@@ -139,7 +139,7 @@ std::size_t check_story(const std::vector<Told>& reported, const LrbRep& rep, st
           hull = hull + last.faces - last.covered;
         break;
       case Told::Kind::region:
-        CHECK(last.verdict == CapVerdict::stands);
+        CHECK(last.verdict == CapVerdict::accepted);
         CHECK(t.number == regions++);
         REQUIRE(t.number < rep.region_count());
         CHECK(rep.layer(RegionId(t.number)) == pass.layer);
@@ -202,7 +202,7 @@ TEST_CASE("what is told adds up to the body, which is the same without; 1, 2 and
   CHECK(merged > 0);
   using enum CapVerdict;
   for (const CapVerdict v :
-       {stands, too_thick, too_much_volume, too_many_faces, no_place, meets_hull, overlaps, several_outlines})
+       {accepted, too_thick, too_much_volume, too_many_faces, no_place, meets_front, overlaps, several_outlines})
     CHECK_MESSAGE(verdicts[static_cast<std::size_t>(v)] > 0, name_of(v));
 }
 
@@ -220,7 +220,7 @@ TEST_CASE("a thin gap refuses caps because they meet the hull, and faces that cr
   Listener gap;
   const Mesh nested = several({icosphere(4), turned_inside_out(icosphere(4, 1.003)), icosphere(3, 1.5)});
   build_reported(nested, gap);
-  CHECK(count(gap.reported, CapVerdict::meets_hull) > 0);
+  CHECK(count(gap.reported, CapVerdict::meets_front) > 0);
 
   Listener crossing;
   build_reported(several({bumpy_sphere(3, 5), translated(bumpy_sphere(3, 6), {0.9, 0.1, 0.2})}), crossing);

@@ -180,9 +180,9 @@ TEST_CASE("summaries say why caps were refused, and nothing of refinements") {
 TEST_CASE("refusals in words, most frequent first") {
   std::array<std::uint32_t, kWords<CapVerdict>.size()> caps{};
   CHECK(rejection_text(caps) == "");
-  caps[static_cast<std::size_t>(CapVerdict::stands)] = 7;
+  caps[static_cast<std::size_t>(CapVerdict::accepted)] = 7;
   caps[static_cast<std::size_t>(CapVerdict::too_thick)] = 3;
-  caps[static_cast<std::size_t>(CapVerdict::meets_hull)] = 9;
+  caps[static_cast<std::size_t>(CapVerdict::meets_front)] = 9;
   CHECK(rejection_text(caps) == "9 met the hull, 3 too thick");
 }
 

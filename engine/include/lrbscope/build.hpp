@@ -42,11 +42,11 @@ constexpr auto words_of(BuildStage) {
                                               {BuildStage::known, "known regions"}});
 }
 
-/// The result for a cap: accepted (`stands`), or the reason why it was rejected. The words can follow a
+/// The result for a cap: accepted, or the reason for its rejection. The name can follow a
 /// number: "9 met the hull". For a chain in 2D, lengths are tried from a segment on, and the reported verdict
 /// is the first one in this order among all of them.
 enum class CapVerdict : std::uint8_t {
-  stands,
+  accepted,
   too_thick,         ///< with fewer faces its deviation would exceed the limit of the pass
   too_much_volume,   ///< with fewer faces it would enclose more volume than a collapse may add
   too_thin,          ///< with fewer faces some would be needles
@@ -57,8 +57,8 @@ enum class CapVerdict : std::uint8_t {
   turns_inward,      ///< at its boundary it would turn to the inside of the front
   meets_itself,      ///< its faces intersect beyond shared corners and edges
   meets_patch,       ///< it intersects the patch that it covers
-  meets_hull,        ///< it intersects another part of the front
-  holds_component,   ///< another component may be beneath it
+  meets_front,        ///< it intersects another part of the front
+  encloses_component,   ///< another component may be beneath it
   overlaps,          ///< it overlaps another cap of the pass or the patch of one
   several_outlines,  ///< bridging in 2D: there is more than one outline
   too_crowded,       ///< bridging: the front has very large polygons or fans
@@ -67,7 +67,7 @@ enum class CapVerdict : std::uint8_t {
   leaves_out,        ///< closing: the wrapper does not contain the entire front
 };
 constexpr auto words_of(CapVerdict) {
-  return std::to_array<EnumWord<CapVerdict>>({{CapVerdict::stands, "stands"},
+  return std::to_array<EnumWord<CapVerdict>>({{CapVerdict::accepted, "stands"},
                                               {CapVerdict::too_thick, "too thick"},
                                               {CapVerdict::too_much_volume, "too much volume"},
                                               {CapVerdict::too_thin, "too thin faces"},
@@ -78,8 +78,8 @@ constexpr auto words_of(CapVerdict) {
                                               {CapVerdict::turns_inward, "turned inward"},
                                               {CapVerdict::meets_itself, "met itself"},
                                               {CapVerdict::meets_patch, "met what it covers"},
-                                              {CapVerdict::meets_hull, "met the hull"},
-                                              {CapVerdict::holds_component, "held another component"},
+                                              {CapVerdict::meets_front, "met the hull"},
+                                              {CapVerdict::encloses_component, "held another component"},
                                               {CapVerdict::overlaps, "overlapped another cap"},
                                               {CapVerdict::several_outlines, "several outlines"},
                                               {CapVerdict::too_crowded, "too crowded"},
@@ -120,7 +120,7 @@ struct GrownPatch {
 struct TriedCap {
   std::uint32_t faces = 0;    ///< number of new faces
   std::uint32_t covered = 0;  ///< number of faces of the front that it covers
-  CapVerdict verdict = CapVerdict::stands;
+  CapVerdict verdict = CapVerdict::accepted;
   bool careful = false;  ///< made with a proof for each collapse, after an attempt without them failed at the
                          ///< end
   /// Measured deviation from the body, an estimate, mesh units; negative: not measured.
