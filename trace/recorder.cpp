@@ -96,17 +96,17 @@ Trace ConstructRecorder::take(const LrbRep& rep, const Pose& pose) {
 
   // Regions are known only now: replay them outward from the mesh to add face counts.
   const LrbRep* reps[] = {&rep};
-  Replay hull(reps, header.request.wrapper, true);
+  Replay front(reps, header.request.wrapper, true);
   for (Event& e : trace_.events) {
     if (e.kind == EventKind::region) {
       payload::WrapperChange change = e.wrapper_change();
       change.faces = static_cast<std::uint32_t>(rep.floor(change.region).size());
       e = Event::of(change, EventKind::region, e.cause);
     }
-    if (hull.apply(e, trace_.events) || e.kind == EventKind::pass_end)
-      e.set_wrapper_faces(hull.boundary_size(Side::a));
+    if (front.apply(e, trace_.events) || e.kind == EventKind::pass_end)
+      e.set_wrapper_faces(front.boundary_size(Side::a));
     if (e.kind == EventKind::closed)
-      e = Event::of(payload::Closed{rep.region_count(), hull.boundary_size(Side::a)});
+      e = Event::of(payload::Closed{rep.region_count(), front.boundary_size(Side::a)});
   }
   Trace out = std::move(trace_);
   *this = ConstructRecorder(settings_);

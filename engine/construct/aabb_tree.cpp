@@ -11,16 +11,16 @@ namespace lrb::construct {
 
 namespace {
 
-std::vector<Eigen::AlignedBox3d> boxes_of(const HullMesh& hull) {
-  std::vector<Eigen::AlignedBox3d> boxes(hull.slot_count());
-  for (HullMesh::Slot s = 0; s < hull.slot_count(); ++s)
-    if (hull.alive(s)) boxes[s] = box_of(hull, s);
+std::vector<Eigen::AlignedBox3d> boxes_of(const FrontMesh& front) {
+  std::vector<Eigen::AlignedBox3d> boxes(front.slot_count());
+  for (FrontMesh::Slot s = 0; s < front.slot_count(); ++s)
+    if (front.alive(s)) boxes[s] = box_of(front, s);
   return boxes;
 }
 
 }  // namespace
 
-AabbTree::AabbTree(const HullMesh& hull) : AabbTree(hull.alive_slots(), boxes_of(hull)) {}
+AabbTree::AabbTree(const FrontMesh& front) : AabbTree(front.alive_slots(), boxes_of(front)) {}
 
 AabbTree::AabbTree(std::vector<Slot> slots, std::span<const Box> boxes)
     : slots_(std::move(slots)), centres_(boxes.size()), place_(boxes.size(), kNull) {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/construct/hull_mesh.hpp"
+#include "engine/construct/front_mesh.hpp"
 
 namespace lrb::construct {
 
@@ -16,21 +16,21 @@ namespace lrb::construct {
 /// reuse.
 class AabbTree {
  public:
-  using Slot = HullMesh::Slot;
+  using Slot = FrontMesh::Slot;
   using Box = Eigen::AlignedBox3d;
 
-  explicit AabbTree(const HullMesh& hull);
+  explicit AabbTree(const FrontMesh& front);
   /// Builds a tree over any slots. `boxes` (slot count): only those of the slots are read.
   AabbTree(std::vector<Slot> slots, std::span<const Box> boxes);
 
   /// Returns true if the tree covers all of the front's slots, and most of the slots it was built over are
   /// still in use.
-  bool fits(const HullMesh& hull) const {
-    return place_.size() == hull.slot_count() && 2 * std::size_t{hull.triangle_count()} > slots_.size();
+  bool fits(const FrontMesh& front) const {
+    return place_.size() == front.slot_count() && 2 * std::size_t{front.triangle_count()} > slots_.size();
   }
 
   /// Grows the boxes above a slot that has a new triangle. Not called for slots that become empty: their
-  /// boxes stay, and the caller must check HullMesh::alive().
+  /// boxes stay, and the caller must check FrontMesh::alive().
   void update(Slot s, const Box& box);
 
   /// Calls visit(slot) for every slot whose box intersects `box` (closed).
@@ -82,10 +82,10 @@ class AabbTree {
   std::vector<Node> nodes_;
 };
 
-inline Eigen::AlignedBox3d box_of(const HullMesh& hull, HullMesh::Slot s) {
-  Eigen::AlignedBox3d box(hull.x(hull[s].v[0]));
-  box.extend(hull.x(hull[s].v[1]));
-  box.extend(hull.x(hull[s].v[2]));
+inline Eigen::AlignedBox3d box_of(const FrontMesh& front, FrontMesh::Slot s) {
+  Eigen::AlignedBox3d box(front.x(front[s].v[0]));
+  box.extend(front.x(front[s].v[1]));
+  box.extend(front.x(front[s].v[2]));
   return box;
 }
 

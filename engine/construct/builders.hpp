@@ -48,20 +48,20 @@ inline constexpr double kFitBudget = 0.74;
 inline constexpr double kFitTotal = 1.1, kFitCorrection = 2;
 
 /// Returns sqrt(front faces / real faces), by which prices are divided.
-inline double fitting_root(std::size_t hull_faces, std::size_t real_faces) {
-  return std::sqrt(static_cast<double>(hull_faces) / static_cast<double>(real_faces));
+inline double fitting_root(std::size_t front_faces, std::size_t real_faces) {
+  return std::sqrt(static_cast<double>(front_faces) / static_cast<double>(real_faces));
 }
 
 /// Returns the factor for the price of caps on a front, given the number of pseudo faces so far.
-inline double fitting_correction(std::size_t hull_faces, std::size_t real_faces, std::size_t pseudo_faces) {
-  const double planned = kFitTotal * (1 - fitting_root(hull_faces, real_faces));
+inline double fitting_correction(std::size_t front_faces, std::size_t real_faces, std::size_t pseudo_faces) {
+  const double planned = kFitTotal * (1 - fitting_root(front_faces, real_faces));
   const double left = planned - static_cast<double>(pseudo_faces) / static_cast<double>(real_faces);
   return 1 + kFitCorrection * std::max(0.0, left);
 }
 
-/// Returns the maximum ratio of faces (CapGoal::worth) of a fitting cap on a front of `hull_faces` faces.
-inline double fitting_worth(std::size_t hull_faces, std::size_t real_faces, double correction = 1) {
-  const double ratio = kFitBudget / fitting_root(hull_faces, real_faces) * correction;
+/// Returns the maximum ratio of faces (CapGoal::worth) of a fitting cap on a front of `front_faces` faces.
+inline double fitting_worth(std::size_t front_faces, std::size_t real_faces, double correction = 1) {
+  const double ratio = kFitBudget / fitting_root(front_faces, real_faces) * correction;
   return std::min(kLastCapWorth, ratio / (1 + ratio));
 }
 
@@ -69,7 +69,7 @@ inline double fitting_worth(std::size_t hull_faces, std::size_t real_faces, doub
 /// front is about the simplest one possible at its deviation. `size`: the body's largest side. Calls
 /// pass(front faces, off) while faces() returns more than `least`.
 template <class Faces, class Pass>
-void fit_hulls(double size, std::uint32_t least, Faces faces, Pass pass) {
+void fit_fronts(double size, std::uint32_t least, Faces faces, Pass pass) {
   for (double off = kFirstOff * size; off < kLastOff * size; off *= kOffStep) {
     for (int i = 0; i < kPassesForOff; ++i) {
       const std::uint32_t before = faces();
@@ -89,7 +89,7 @@ void fit_hulls(double size, std::uint32_t least, Faces faces, Pass pass) {
 //    front is then embedded again and encloses the old one, so that all faces of the complex intersect only
 //    in shared vertices and edges.
 // 4. The space between becomes a region, with the patch as its floor and the cap as its lids
-//    (hull_update.hpp). The caps are part of the front of the next pass.
+//    (front_update.hpp). The caps are part of the front of the next pass.
 //
 // When passes gain too little, each component of the front is simplified as a whole, and finally one wrapper
 // of few faces is put around all of them (closing.hpp).

@@ -15,8 +15,8 @@ namespace lrb::construct {
 
 using Eigen::Vector3d;
 
-void CapGauge::load(const HullMesh& hull, const Patch& patch, const CapSurface& cap, double most) {
-  floor_.load(hull, patch, most);
+void CapGauge::load(const FrontMesh& front, const Patch& patch, const CapSurface& cap, double most) {
+  floor_.load(front, patch, most);
   most_ = most;
   // Initially each face of the cap is a triangle of the floor.
   under_.resize(cap.faces().size());
@@ -183,19 +183,19 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-void PatchFloor::load(const HullMesh& hull, const Patch& patch, double most) {
+void PatchFloor::load(const FrontMesh& front, const Patch& patch, double most) {
   triangles_.clear();
   balls_.clear();
   most_ = most;
-  for (const HullMesh::Slot s : patch.slots) {
+  for (const FrontMesh::Slot s : patch.slots) {
     Triangle t;
     std::array<double, 3> off;
     double radius_sq = 0;
     // Deviation at the corners, including the excess of the triangle.
     for (int i = 0; i < 3; ++i) {
-      const HullMesh::Point& p = hull.point(hull[s].v[i]);
+      const FrontMesh::Point& p = front.point(front[s].v[i]);
       t.x[i] = p.x;
-      off[i] = p.off + hull[s].excess_deviation;
+      off[i] = p.off + front[s].excess_deviation;
     }
     t.off = off[0];
     t.off_b = off[1] - off[0];

@@ -15,15 +15,15 @@ namespace lrb::construct {
 
 // The deviation of points over a patch from the body.
 
-/// A patch's triangles with their own known deviation from the body (HullMesh::Point::off,
-/// HullMesh::Triangle::excess_deviation). The deviation of a point is at most its distance from a triangle plus the
+/// A patch's triangles with their own known deviation from the body (FrontMesh::Point::off,
+/// FrontMesh::Triangle::excess_deviation). The deviation of a point is at most its distance from a triangle plus the
 /// triangle's deviation at the nearest point.
 ///
 /// These estimates guide the builder; the bounds of lids are proven afterwards (region_thickness()).
 class PatchFloor {
  public:
   /// `most`: the limit of is_within(); mesh units.
-  void load(const HullMesh& hull, const Patch& patch, double most);
+  void load(const FrontMesh& front, const Patch& patch, double most);
 
   /// Returns the deviation of q according to the triangles of the patch.
   double off(const Eigen::Vector3d& q) const;
@@ -67,7 +67,7 @@ class PatchFloor {
 class CapGauge {
  public:
   /// Starts with a cap that is the patch itself. `most`: maximum deviation from the body, mesh units.
-  void load(const HullMesh& hull, const Patch& patch, const CapSurface& cap, double most);
+  void load(const FrontMesh& front, const Patch& patch, const CapSurface& cap, double most);
 
   /// Returns true if the fan from w over the star's rim is within the limit at w and above the patch's
   /// vertices that it covers.

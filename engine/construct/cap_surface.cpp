@@ -11,24 +11,24 @@
 
 namespace lrb::construct {
 
-void CapSurface::load(const HullMesh& hull, const Patch& patch, VertexId first_id) {
+void CapSurface::load(const FrontMesh& front, const Patch& patch, VertexId first_id) {
   next_id_ = first_id;
-  load_points(hull, patch);
-  load_faces(hull, patch);
-  load_surroundings(hull, patch);
+  load_points(front, patch);
+  load_faces(front, patch);
+  load_surroundings(front, patch);
 }
 
-void CapSurface::load_points(const HullMesh& hull, const Patch& patch) {
+void CapSurface::load_points(const FrontMesh& front, const Patch& patch) {
   // The maps are never cleared: an entry is valid only if the local element refers back to it. Loading
   // therefore takes time proportional to the patch, not to the front.
-  if (local_point_.size() < hull.point_count()) local_point_.resize(hull.point_count(), -1);
+  if (local_point_.size() < front.point_count()) local_point_.resize(front.point_count(), -1);
   points_.clear();
   corners_.clear();
   // Ring vertices first, in order: is_ring() is a comparison, and ring edge k starts at vertex k.
   for (const auto* list : {&patch.ring, &patch.interior}) {
-    for (const HullMesh::Corner v : *list) {
+    for (const FrontMesh::Corner v : *list) {
       local_point_[v] = vertex_count();
-      points_.push_back(hull.point(v));
+      points_.push_back(front.point(v));
       corners_.push_back(v);
     }
   }
@@ -39,8 +39,8 @@ void CapSurface::load_points(const HullMesh& hull, const Patch& patch) {
   marker_ = 0;
 }
 
-void CapSurface::load_faces(const HullMesh& hull, const Patch& patch) {
-  if (local_face_.size() < hull.slot_count()) local_face_.resize(hull.slot_count(), -1);
+void CapSurface::load_faces(const FrontMesh& front, const Patch& patch) {
+  if (local_face_.size() < front.slot_count()) local_face_.resize(front.slot_count(), -1);
   for (std::size_t i = 0; i < patch.slots.size(); ++i) local_face_[patch.slots[i]] = static_cast<int>(i);
   faces_.resize(patch.slots.size());
   ring_face_.assign(patch.ring.size(), -1);
@@ -48,7 +48,7 @@ void CapSurface::load_faces(const HullMesh& hull, const Patch& patch) {
   version_ = 1;
   patch_area_ = 0;
   for (int f = 0; f < alive_; ++f) {
-    const auto& t = hull[patch.slots[f]];
+    const auto& t = front[patch.slots[f]];
     Face& face = faces_[f];
     for (int i = 0; i < 3; ++i) {
       face.v[i] = local_point_[t.v[i]];
@@ -75,21 +75,21 @@ void CapSurface::load_faces(const HullMesh& hull, const Patch& patch) {
   }
 }
 
-void CapSurface::load_surroundings(const HullMesh& hull, const Patch& patch) {
+void CapSurface::load_surroundings(const FrontMesh& front, const Patch& patch) {
   beyond_.resize(patch.ring.size());
   chords_.assign(patch.ring.size() * patch.ring.size(), false);
   // Local number of a ring vertex, or -1.
-  const auto local = [&](HullMesh::Corner c) {
+  const auto local = [&](FrontMesh::Corner c) {
     const int v = local_point_[c];
     return v >= 0 && v < ring_size_ && corners_[v] == c ? v : -1;
   };
   for (int k = 0; k < ring_size_; ++k) {
-    const HullMesh::Slot s = patch.outside[k];
+    const FrontMesh::Slot s = patch.outside[k];
     const int next = (k + 1) % ring_size_;
-    const int i = hull.index_of(s, patch.ring[next]);  // opposite to the direction of the ring
+    const int i = front.index_of(s, patch.ring[next]);  // opposite to the direction of the ring
     // The outer neighbour's third vertex and plane: they limit the positions of vertices near the ring.
-    beyond_[k].tip = hull.x(hull[s].v[(i + 2) % 3]);
-    const Eigen::Vector3d &a = hull.x(hull[s].v[0]), &b = hull.x(hull[s].v[1]), &c = hull.x(hull[s].v[2]);
+    beyond_[k].tip = front.x(front[s].v[(i + 2) % 3]);
+    const Eigen::Vector3d &a = front.x(front[s].v[0]), &b = front.x(front[s].v[1]), &c = front.x(front[s].v[2]);
     const Eigen::Vector3d normal = (b - a).cross(c - a);
     // A degenerate triangle has no plane: its normal is zero.
     const double length = normal.norm();
@@ -97,9 +97,9 @@ void CapSurface::load_surroundings(const HullMesh& hull, const Patch& patch) {
     beyond_[k].plane.d = beyond_[k].plane.n.dot(a);
     beyond_[k].plane.area = length / 2;
     // Record the edges from this vertex to others of the ring that are neither ring edges nor in the patch.
-    hull.for_each_around(patch.ring[k], [&](HullMesh::Slot t, int j) {
+    front.for_each_around(patch.ring[k], [&](FrontMesh::Slot t, int j) {
       if (local_face(patch, t) >= 0) return;
-      const int other = local(hull[t].v[(j + 1) % 3]);
+      const int other = local(front[t].v[(j + 1) % 3]);
       if (other < 0 || other == next || (other + 1) % ring_size_ == k) return;
       chords_[k * ring_size_ + other] = chords_[other * ring_size_ + k] = true;
     });
@@ -285,8 +285,8 @@ void CapSurface::set_across(int code, int a, int b, int f) {
 
 // Ensures that a cap covers each polygon of the mesh entirely or not at all.
 
-bool CapSurface::keep_polygons_whole(const HullMesh& hull, const Patch& patch) {
-  if (!hull.has_polygons()) return true;
+bool CapSurface::keep_polygons_whole(const FrontMesh& front, const Patch& patch) {
+  if (!front.has_polygons()) return true;
   // Mark the patch's triangles that are retained in the cap.
   std::vector<bool> stays(patch.slots.size(), false);
   for (const Face& f : faces_)
@@ -294,8 +294,8 @@ bool CapSurface::keep_polygons_whole(const HullMesh& hull, const Patch& patch) {
   // A retained triangle of a polygon with another triangle that was covered.
   const auto is_partial = [&](const Face& f) {
     if (!f.alive || f.kept < 0) return false;
-    const auto unit = hull.unit(patch.slots[f.kept]);
-    for (HullMesh::Slot s = unit.first; s < unit.last; ++s)
+    const auto unit = front.unit(patch.slots[f.kept]);
+    for (FrontMesh::Slot s = unit.first; s < unit.last; ++s)
       if (!stays[local_face(patch, s)]) return true;
     return false;
   };

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "engine/construct/hull_mesh.hpp"
+#include "engine/construct/front_mesh.hpp"
 #include "engine/construct/patch_grow.hpp"
 
 namespace lrb::construct {
@@ -28,7 +28,7 @@ class CapSurface {
     Plane plane;
     int kept;  ///< index into Patch::slots if this is still that triangle, else -1
     bool alive;
-    double excess_deviation;         ///< see HullMesh::Triangle
+    double excess_deviation;         ///< see FrontMesh::Triangle
     std::uint32_t since;  ///< version of the surface at which it was created
     /// The version at which the collapse of the edge v[i], v[i + 1] was rejected; 0: never.
     std::array<std::uint32_t, 3> rejected;
@@ -50,7 +50,7 @@ class CapSurface {
   };
 
   /// Loads a patch. `first_id`: number of the first new vertex in the complex.
-  void load(const HullMesh& hull, const Patch& patch, VertexId first_id);
+  void load(const FrontMesh& front, const Patch& patch, VertexId first_id);
 
   int ring_size() const { return ring_size_; }
   int first_new() const { return first_new_; }
@@ -60,12 +60,12 @@ class CapSurface {
   const Eigen::Vector3d& x(int v) const { return points_[v].x; }
   /// Returns a vertex's number in the complex; for a new vertex, its number if all new vertices remain.
   VertexId id(int v) const { return points_[v].id; }
-  /// Returns the deviation of a vertex from the body; see HullMesh::Point.
+  /// Returns the deviation of a vertex from the body; see FrontMesh::Point.
   double off(int v) const { return points_[v].off; }
   void set_off(int v, double off) { points_[v].off = off; }
   void set_excess_deviation(int f, double excess_deviation) { faces_[f].excess_deviation = excess_deviation; }
   /// Returns the front's vertex of an old vertex.
-  HullMesh::Corner corner(int v) const { return corners_[v]; }
+  FrontMesh::Corner corner(int v) const { return corners_[v]; }
 
   const std::vector<Face>& faces() const { return faces_; }
   int alive_faces() const { return alive_; }
@@ -75,7 +75,7 @@ class CapSurface {
   const Eigen::Vector3d& tip_beyond(int k) const { return beyond_[k].tip; }
   double patch_area() const { return patch_area_; }
   /// Returns the index of a triangle of the front in the patch, or -1.
-  int local_face(const Patch& patch, HullMesh::Slot s) const {
+  int local_face(const Patch& patch, FrontMesh::Slot s) const {
     const int f = local_face_[s];
     return f >= 0 && static_cast<std::size_t>(f) < patch.slots.size() && patch.slots[f] == s ? f : -1;
   }
@@ -107,7 +107,7 @@ class CapSurface {
   /// Ensures that the triangles of each polygon of the mesh are all retained or all covered, because a
   /// polygon is one face of the complex. Covers those retained without the others, by flipping edges outward.
   /// Returns false if that is impossible.
-  bool keep_polygons_whole(const HullMesh& hull, const Patch& patch);
+  bool keep_polygons_whole(const FrontMesh& front, const Patch& patch);
 
   /// Moves an interior vertex.
   void move(int v, const Eigen::Vector3d& x);
@@ -144,9 +144,9 @@ class CapSurface {
     return t[0] == v ? 0 : t[1] == v ? 1 : 2;
   }
   Plane plane_of(int a, int b, int c) const;
-  void load_points(const HullMesh& hull, const Patch& patch);
-  void load_faces(const HullMesh& hull, const Patch& patch);
-  void load_surroundings(const HullMesh& hull, const Patch& patch);
+  void load_points(const FrontMesh& front, const Patch& patch);
+  void load_faces(const FrontMesh& front, const Patch& patch);
+  void load_surroundings(const FrontMesh& front, const Patch& patch);
   bool chord_outside(int a, int b) const { return chords_[a * ring_size_ + b]; }
   int count_marked_neighbours_of_ring(int r) const;
   void add_to_rim(Star& star, const Star::Rim& rim) const;
@@ -155,8 +155,8 @@ class CapSurface {
   bool are_neighbours(int a, int b) const;
   bool flip_outward(int f, int i);
 
-  std::vector<HullMesh::Point> points_;
-  std::vector<HullMesh::Corner> corners_;  ///< (old vertices)
+  std::vector<FrontMesh::Point> points_;
+  std::vector<FrontMesh::Corner> corners_;  ///< (old vertices)
   /// (|points|) any face at the vertex; for a ring vertex the face at its ring edge; -1: unused.
   std::vector<int> face_of_;
   std::vector<Face> faces_;

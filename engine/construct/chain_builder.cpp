@@ -26,7 +26,7 @@
 namespace lrb::construct {
 namespace {
 
-using Slot = HullLoops::Slot;
+using Slot = FrontLoops::Slot;
 using Vector3 = Eigen::Vector3d;
 using Box = Eigen::AlignedBox3d;
 
@@ -35,14 +35,14 @@ class ChainBuilder {
   ChainBuilder(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options)
       : options_(options),
         max_outer_(std::min(options.max_outer_faces, kMaxOuter)),
-        hull_(mesh),
+        front_(mesh),
         complex_(mesh),
         frozen_(mesh.face_count(), false),
-        boxes_(hull_.component_count()),
+        boxes_(front_.component_count()),
         passes_(options) {
     // Segments that intersect others are never covered: embedding can be proven only for the others.
     for (const FaceId f : meeting) frozen_[f] = true;
-    for (Slot s = 0; s < hull_.slot_count(); ++s) boxes_[hull_[s].component].extend(box_of(hull_, s));
+    for (Slot s = 0; s < front_.slot_count(); ++s) boxes_[front_[s].component].extend(box_of(front_, s));
     find_nesting(mesh);
   }
 
@@ -64,10 +64,10 @@ class ChainBuilder {
   }
 
  private:
-  bool is_outer(Slot s) const { return home_[hull_[s].component] == kNull; }
+  bool is_outer(Slot s) const { return home_[front_[s].component] == kNull; }
 
   std::vector<Slot> outer_slots() const {
-    std::vector<Slot> slots = hull_.alive_slots();
+    std::vector<Slot> slots = front_.alive_slots();
     std::erase_if(slots, [&](Slot s) { return !is_outer(s); });
     return slots;
   }
@@ -76,16 +76,16 @@ class ChainBuilder {
 
   std::vector<Vector3> outer_points() const {
     std::vector<Vector3> points;
-    for (const Slot s : outer_slots()) points.push_back(hull_.start(s));
+    for (const Slot s : outer_slots()) points.push_back(front_.start(s));
     return points;
   }
 
   /// Finds the hole in front of each component: the component itself if it is a hole, kNull for the outside.
   void find_nesting(const Mesh& mesh) {
-    const std::uint32_t count = hull_.component_count();
+    const std::uint32_t count = front_.component_count();
     // Step 1: holes are the components with negative area. A hole is its own home.
     std::vector<std::vector<FaceId>> faces(count);
-    for (Slot s = 0; s < hull_.slot_count(); ++s) faces[hull_[s].component].push_back(hull_[s].face);
+    for (Slot s = 0; s < front_.slot_count(); ++s) faces[front_[s].component].push_back(front_[s].face);
     home_.assign(count, kNull);
     for (std::uint32_t c = 0; c < count; ++c)
       if (volume_sign(mesh, faces[c]) < 0) home_[c] = c;
@@ -124,7 +124,7 @@ class ChainBuilder {
       // The inward normal of a side. The front keeps a small distance, so that rounding cannot move it
       // outside.
       const Vector3 n = Vector3(a.y() - b.y(), b.x() - a.x(), 0).normalized();
-      bounds_.push_back({n, n.dot(a) + kHullDistance * box.sizes().maxCoeff()});
+      bounds_.push_back({n, n.dot(a) + kFrontDistance * box.sizes().maxCoeff()});
     }
   }
 
@@ -132,8 +132,8 @@ class ChainBuilder {
     // The deviations of the schedule are relative to the largest side of the body's box.
     Box box;
     for (const Box& b : boxes_) box.extend(b);
-    fit_hulls(
-        box.sizes().maxCoeff(), kFitDownTo, [&] { return hull_.segment_count(); },
+    fit_fronts(
+        box.sizes().maxCoeff(), kFitDownTo, [&] { return front_.segment_count(); },
         [&](std::uint32_t before, double off) {
           pass(BuildStage::fit, {fitting_worth(before, frozen_.size()), off});
         });
@@ -141,12 +141,12 @@ class ChainBuilder {
 
   void simplify(double worth) {
     for (;;) {
-      const std::uint32_t before = hull_.segment_count();
+      const std::uint32_t before = front_.segment_count();
       // Few enough segments.
       if (before <= max_outer_) return;
       pass(BuildStage::simplify, {worth});
       // Diminishing returns.
-      if (hull_.segment_count() > kMinGain * before) return;
+      if (front_.segment_count() > kMinGain * before) return;
     }
   }
 
@@ -160,16 +160,16 @@ class ChainBuilder {
   /// Applies the caps that add least area for each saved segment, on chains that do not overlap.
   void pass(BuildStage stage, const CapGoal& goal) {
     // Step 1: an AABB tree over the front, updated with the caps of this pass.
-    const std::vector<Slot> slots = hull_.alive_slots();
-    std::vector<Box> slot_boxes(hull_.slot_count());
-    for (const Slot s : slots) slot_boxes[s] = box_of(hull_, s);
+    const std::vector<Slot> slots = front_.alive_slots();
+    std::vector<Box> slot_boxes(front_.slot_count());
+    for (const Slot s : slots) slot_boxes[s] = box_of(front_, s);
     AabbTree tree(slots, slot_boxes);
-    passes_.report_begin(stage, hull_.segment_count(), goal.off);
+    passes_.report_begin(stage, front_.segment_count(), goal.off);
     PassEnd end;
     // Step 2: exclude frozen segments, and below all segments that this pass has covered or made.
-    std::vector<bool> taken(hull_.slot_count(), false);
+    std::vector<bool> taken(front_.slot_count(), false);
     for (const Slot s : slots) {
-      taken[s] = hull_[s].face < frozen_.size() && frozen_[hull_[s].face];
+      taken[s] = front_[s].face < frozen_.size() && frozen_[front_[s].face];
       end.barred += taken[s];
     }
     // Step 3: greedy selection. An earlier cap may have taken part of the chain, or may be in the way now.
@@ -177,19 +177,19 @@ class ChainBuilder {
       const auto chain = chain_of_untaken(p.cap, taken);
       // Prove against the current front, not the front at the time of the proposal.
       const CapVerdict verdict =
-          chain.empty() ? CapVerdict::overlaps : judge_chain_cap(hull_, tree, p.cap, boxes_);
+          chain.empty() ? CapVerdict::overlaps : judge_chain_cap(front_, tree, p.cap, boxes_);
       report_cap(p, verdict, goal.off);
       if (verdict != CapVerdict::accepted) continue;
       for (const Slot s : replace(p.cap, chain)) {
         // New segments are not covered again in this pass, so that a region and the one above it differ in
         // layer.
         taken[s] = true;
-        tree.update(s, box_of(hull_, s));
+        tree.update(s, box_of(front_, s));
       }
       // Also the slots that are empty now.
       for (const Slot s : chain) taken[s] = true;
     }
-    end.hull_faces = hull_.segment_count();
+    end.front_faces = front_.segment_count();
     passes_.report_end(end);
     end_pass();
   }
@@ -206,7 +206,7 @@ class ChainBuilder {
       std::uint32_t length = 1;
       std::optional<Proposal> rejected;
       const std::size_t before = proposals.size();
-      for (Slot t = s; length <= longest && !taken[t] && hull_[t].next != s; t = hull_[t].next, ++length) {
+      for (Slot t = s; length <= longest && !taken[t] && front_[t].next != s; t = front_[t].next, ++length) {
         // A single segment cannot be simplified.
         if (length < 2) continue;
         const Proposal p = propose(s, length, goal);
@@ -227,14 +227,14 @@ class ChainBuilder {
   Proposal propose(Slot first, std::uint32_t length, const CapGoal& goal) const {
     CapVerdict why = CapVerdict::accepted;
     // The geometry, without regard to the rest of the front.
-    auto cap = find_cap(hull_, first, length, bounds_, kCapVolumeLimit, why);
-    const VertexId start = hull_[first].a;
+    auto cap = find_cap(front_, first, length, bounds_, kCapVolumeLimit, why);
+    const VertexId start = front_[first].a;
     if (!cap) return {0, ChainCap{first, length, std::nullopt, 0, 0, {0, 0}}, why, start};
     // It must save segments, and enough of them to be worth a region.
     if (cap->segments() >= length || cap->segments() > goal.worth * length)
       return {0, *cap, CapVerdict::too_many_faces, start};
     // Fitting: the deviation must be within this pass's limit.
-    if (goal.off > 0 && !measure_cap(hull_, *cap, goal.off)) return {0, *cap, CapVerdict::too_thick, start};
+    if (goal.off > 0 && !measure_cap(front_, *cap, goal.off)) return {0, *cap, CapVerdict::too_thick, start};
     // The price of a saved segment.
     return {cap->area / (length - cap->segments()), *cap, CapVerdict::accepted, start};
   }
@@ -247,13 +247,13 @@ class ChainBuilder {
     const bool measured = verdict == CapVerdict::accepted && max_deviation > 0;
     options_.probe->patch({p.start, cap.length, cap.length - 1});
     options_.probe->cap({cap.segments(), cap.length, verdict, false,
-                         measured ? std::min(max_deviation, off_of(hull_, cap)) : -1});
+                         measured ? std::min(max_deviation, off_of(front_, cap)) : -1});
   }
 
   /// Returns the cap's chain if all of it still exists and is free, otherwise an empty chain.
   std::vector<Slot> chain_of_untaken(const ChainCap& cap, const std::vector<bool>& taken) const {
     std::vector<Slot> chain;
-    for (Slot s = cap.first; chain.size() < cap.length; s = hull_[s].next) {
+    for (Slot s = cap.first; chain.size() < cap.length; s = front_[s].next) {
       // The links of taken slots may have changed, but the first taken one ends the traversal.
       if (taken[s]) return {};
       chain.push_back(s);
@@ -264,14 +264,14 @@ class ChainBuilder {
   std::vector<Slot> replace(const ChainCap& cap, const std::vector<Slot>& chain) {
     // The chain becomes the floor of the new region, which is on its outer side now.
     const RegionId region = complex_.add_region(passes_.layer());
-    for (const Slot s : chain) complex_.set_outer_cell(hull_[s].face, region);
+    for (const Slot s : chain) complex_.set_outer_cell(front_[s].face, region);
     // The cap's polyline, with or without an apex. Front and complex number their vertices alike.
-    const VertexId a = hull_[chain.front()].a, b = hull_[chain.back()].b;
+    const VertexId a = front_[chain.front()].a, b = front_[chain.back()].b;
     std::vector<VertexId> corners = {a, b};
-    if (cap.apex) corners = {a, hull_.add_point(*cap.apex, cap.apex_off), b};
+    if (cap.apex) corners = {a, front_.add_point(*cap.apex, cap.apex_off), b};
     if (cap.apex) complex_.add_vertex(*cap.apex);
     std::vector<Slot> added = add_segments(chain, corners, region);
-    for (std::size_t i = 0; i < added.size(); ++i) hull_.set_excess_deviation(added[i], cap.excess_deviation[i]);
+    for (std::size_t i = 0; i < added.size(); ++i) front_.set_excess_deviation(added[i], cap.excess_deviation[i]);
     if (options_.probe) options_.probe->region(region);
     return added;
   }
@@ -280,28 +280,28 @@ class ChainBuilder {
   std::vector<Slot> add_segments(const std::vector<Slot>& chain, const std::vector<VertexId>& corners,
                                  RegionId region) {
     // Read the neighbours before the chain's slots are emptied.
-    const Slot before = hull_[chain.front()].prev, after = hull_[chain.back()].next;
-    const std::uint32_t component = hull_[chain.front()].component;
-    hull_.remove(chain);
+    const Slot before = front_[chain.front()].prev, after = front_[chain.back()].next;
+    const std::uint32_t component = front_[chain.front()].component;
+    front_.remove(chain);
     std::vector<Slot> added;
     Slot last = before;
     for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
       // The new segments reuse the chain's first slots: a cap has fewer segments than its chain.
       const VertexId ends[2] = {corners[i], corners[i + 1]};
-      hull_.place(chain[i], ends[0], ends[1], complex_.add_pseudo_face(ends, region, kOutside), component);
-      hull_.join(last, chain[i]);
+      front_.place(chain[i], ends[0], ends[1], complex_.add_pseudo_face(ends, region, kOutside), component);
+      front_.join(last, chain[i]);
       last = chain[i];
       added.push_back(last);
     }
     // Close the loop.
-    hull_.join(last, after);
+    front_.join(last, after);
     return added;
   }
 
   /// Makes regions of the pockets between a single outline and its convex hull.
   bool bridge() {
     // Find all pockets first: bridging is accepted or rejected as a whole.
-    passes_.report_begin(BuildStage::bridge, hull_.segment_count());
+    passes_.report_begin(BuildStage::bridge, front_.segment_count());
     std::vector<ChainCap> caps;
     const CapVerdict verdict = find_bridge(caps);
     std::uint32_t covered = 0;
@@ -309,8 +309,8 @@ class ChainBuilder {
     report_whole_cap(static_cast<std::uint32_t>(caps.size()), covered, verdict);
     const bool accepted = verdict == CapVerdict::accepted;
     if (accepted)
-      for (const ChainCap& cap : caps) replace(cap, chain_of(hull_, cap.first, cap.length));
-    passes_.report_end({.hull_faces = hull_.segment_count()});
+      for (const ChainCap& cap : caps) replace(cap, chain_of(front_, cap.first, cap.length));
+    passes_.report_end({.front_faces = front_.segment_count()});
     if (accepted) end_pass();
     return accepted;
   }
@@ -321,11 +321,11 @@ class ChainBuilder {
     const std::vector<Slot> slots = outer_slots();
     // Pockets between several outlines would connect them, which is not supported in 2D.
     for (const Slot s : slots)
-      if (hull_[s].component != hull_[slots[0]].component) return CapVerdict::several_outlines;
+      if (front_[s].component != front_[slots[0]].component) return CapVerdict::several_outlines;
     // Vertices are numbered along the outline, so that a hull side from i to j covers the chain between them.
-    const std::vector<Slot> outline = chain_of(hull_, slots[0], static_cast<std::uint32_t>(slots.size()));
+    const std::vector<Slot> outline = chain_of(front_, slots[0], static_cast<std::uint32_t>(slots.size()));
     std::vector<Vector3> points;
-    for (const Slot s : outline) points.push_back(hull_.start(s));
+    for (const Slot s : outline) points.push_back(front_.start(s));
     std::vector<std::uint32_t> corners = convex_outline(points);
     if (corners.size() < 3) return CapVerdict::flat;
     // Along a simple polygon, the hull's vertices occur in order.
@@ -333,9 +333,9 @@ class ChainBuilder {
     if (!std::is_sorted(corners.begin(), corners.end()))
       return CapVerdict::flat;  // the outline crosses itself
     // An AABB tree over all components for the exact tests.
-    std::vector<Box> slot_boxes(hull_.slot_count());
-    for (const Slot s : hull_.alive_slots()) slot_boxes[s] = box_of(hull_, s);
-    const AabbTree tree(hull_.alive_slots(), slot_boxes);
+    std::vector<Box> slot_boxes(front_.slot_count());
+    for (const Slot s : front_.alive_slots()) slot_boxes[s] = box_of(front_, s);
+    const AabbTree tree(front_.alive_slots(), slot_boxes);
     for (std::size_t i = 0; i < corners.size(); ++i) {
       // The last side wraps around to the first corner.
       const std::uint32_t next =
@@ -345,7 +345,7 @@ class ChainBuilder {
       if (cap.length < 2) continue;
       // The caps cannot intersect each other, as sides of one convex hull, so each is tested alone.
       caps.push_back(cap);
-      const CapVerdict verdict = judge_chain_cap(hull_, tree, cap, boxes_);
+      const CapVerdict verdict = judge_chain_cap(front_, tree, cap, boxes_);
       if (verdict != CapVerdict::accepted) return verdict;
     }
     return caps.empty() ? CapVerdict::too_many_faces : CapVerdict::accepted;
@@ -355,18 +355,18 @@ class ChainBuilder {
   void report_whole_cap(std::uint32_t segments, std::uint32_t covered, CapVerdict verdict) const {
     if (!options_.probe) return;
     const std::vector<Slot> slots = outer_slots();
-    options_.probe->patch({hull_[slots.front()].a, static_cast<std::uint32_t>(slots.size()), 0});
+    options_.probe->patch({front_[slots.front()].a, static_cast<std::uint32_t>(slots.size()), 0});
     options_.probe->cap({segments, covered, verdict, false, -1});
   }
 
   void fill() {
-    const std::uint32_t before = complex_.region_count(), faces = hull_.segment_count();
+    const std::uint32_t before = complex_.region_count(), faces = front_.segment_count();
     // The remainder of each hole is one region with a floor but no lid.
-    fill_voids(hull_, home_, passes_.layer(), complex_);
+    fill_voids(front_, home_, passes_.layer(), complex_);
     if (complex_.region_count() == before) return;
     passes_.report_begin(BuildStage::fill, faces);
     passes_.report_regions(complex_, before);
-    passes_.report_end({.hull_faces = outer_size()});
+    passes_.report_end({.front_faces = outer_size()});
   }
 
   /// Puts the outermost wrapper around the front. Returns false if no wrapper is found.
@@ -377,9 +377,9 @@ class ChainBuilder {
     const CapVerdict verdict = find_closing();
     report_whole_cap(polygon_size(), outer, verdict);
     const bool accepted = verdict == CapVerdict::accepted;
-    if (accepted) enclose(hull_, home_, outline_mesh(polygon_), passes_.layer(), complex_);
+    if (accepted) enclose(front_, home_, outline_mesh(polygon_), passes_.layer(), complex_);
     passes_.report_regions(complex_, before);
-    passes_.report_end({.hull_faces = accepted ? polygon_size() : outer});
+    passes_.report_end({.front_faces = accepted ? polygon_size() : outer});
     if (accepted) end_pass();
     return accepted;
   }
@@ -410,7 +410,7 @@ class ChainBuilder {
     return mesh;
   }
 
-  void end_pass() { passes_.end_pass(complex_, hull_.segment_count()); }
+  void end_pass() { passes_.end_pass(complex_, front_.segment_count()); }
 
   static constexpr std::uint32_t kMaxOuter = 8;  ///< maximum number of segments of the outermost wrapper
   /// Fitting ends when the front has no more segments than this.
@@ -420,7 +420,7 @@ class ChainBuilder {
 
   const BuildOptions& options_;
   const std::uint32_t max_outer_;
-  HullLoops hull_;
+  FrontLoops front_;
   ComplexBuilder complex_;
   std::vector<bool> frozen_;         ///< (|real faces|) true for faces that intersect others
   std::vector<Box> boxes_;           ///< (components)

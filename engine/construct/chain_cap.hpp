@@ -16,11 +16,11 @@
 
 namespace lrb::construct {
 
-// The front of the 2D builder: the counterpart of hull_mesh.hpp in one dimension less.
+// The front of the 2D builder: the counterpart of front_mesh.hpp in one dimension less.
 
 /// Closed loops of segments with the solid on their left. Segments are stored in numbered slots; an empty
 /// slot is reused when a chain is replaced by its cap. Vertices are numbered as in the complex.
-class HullLoops {
+class FrontLoops {
  public:
   using Slot = std::uint32_t;
 
@@ -34,7 +34,7 @@ class HullLoops {
 
   /// Builds the loops of a 2D mesh, which must be closed, with one incoming and one outgoing segment at every
   /// vertex.
-  explicit HullLoops(const Mesh& mesh);
+  explicit FrontLoops(const Mesh& mesh);
 
   Slot slot_count() const { return static_cast<Slot>(segments_.size()); }
   std::uint32_t segment_count() const { return alive_; }
@@ -68,15 +68,15 @@ class HullLoops {
   std::uint32_t alive_ = 0, components_ = 0;
 };
 
-inline Eigen::AlignedBox3d box_of(const HullLoops& hull, HullLoops::Slot s) {
-  Eigen::AlignedBox3d box(hull.start(s));
-  box.extend(hull.end(s));
+inline Eigen::AlignedBox3d box_of(const FrontLoops& front, FrontLoops::Slot s) {
+  Eigen::AlignedBox3d box(front.start(s));
+  box.extend(front.end(s));
   return box;
 }
 
 /// A cap over a chain of `length` segments that begins with `first`.
 struct ChainCap {
-  HullLoops::Slot first = kNull;
+  FrontLoops::Slot first = kNull;
   std::uint32_t length = 0;
   std::optional<Eigen::Vector3d> apex;  ///< nullopt if the cap is the chord
   double area = 0;                      ///< area between chain and cap; unit squared
@@ -87,26 +87,26 @@ struct ChainCap {
 };
 
 /// Returns the slots of the chain, in order.
-std::vector<HullLoops::Slot> chain_of(const HullLoops& hull, HullLoops::Slot first, std::uint32_t length);
+std::vector<FrontLoops::Slot> chain_of(const FrontLoops& front, FrontLoops::Slot first, std::uint32_t length);
 
 /// Returns the chord as a cap if the chain's inner vertices are strictly behind it, otherwise two segments
 /// whose apex is in front of the chain's lines (and of its neighbours' lines if the outline is concave at its
 /// ends) and within `bounds`. Returns nullopt, and sets `why`, if there is no such apex, or if the cap would
 /// add more than `area_limit` times the square of the chain's length.
-std::optional<ChainCap> find_cap(const HullLoops& hull, HullLoops::Slot first, std::uint32_t length,
+std::optional<ChainCap> find_cap(const FrontLoops& front, FrontLoops::Slot first, std::uint32_t length,
                                  std::span<const HalfSpace> bounds, double area_limit, CapVerdict& why);
 
 /// Estimates the deviation of the cap from the body at a few points of each segment, from the known deviation
 /// of the chain. Returns false if it exceeds `most`.
-bool measure_cap(const HullLoops& hull, ChainCap& cap, double most);
+bool measure_cap(const FrontLoops& front, ChainCap& cap, double most);
 
 /// Returns the maximum deviation of the cap, at its ends or in between, as measured by measure_cap().
-double off_of(const HullLoops& hull, const ChainCap& cap);
+double off_of(const FrontLoops& front, const ChainCap& cap);
 
 /// Returns CapVerdict::accepted if, exactly, the cap intersects the front and the chain only in the chain's
 /// ends, leaves these ends between the chain and its neighbours on the outer side, and does not enclose
 /// another component; otherwise returns the obstacle. `boxes` (components).
-CapVerdict judge_chain_cap(const HullLoops& hull, const AabbTree& tree, const ChainCap& cap,
+CapVerdict judge_chain_cap(const FrontLoops& front, const AabbTree& tree, const ChainCap& cap,
                            std::span<const Eigen::AlignedBox3d> boxes);
 
 }  // namespace lrb::construct

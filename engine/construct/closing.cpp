@@ -20,7 +20,7 @@
 #include "engine/construct/convex_hull.hpp"
 #include "engine/construct/embed_check.hpp"
 #include "engine/construct/half_spaces.hpp"
-#include "engine/construct/hull_update.hpp"
+#include "engine/construct/front_update.hpp"
 #include "engine/construct/patch_cap.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/predicates.hpp"
@@ -37,18 +37,18 @@ namespace lrb::construct {
 
 namespace {
 
-using Slot = HullMesh::Slot;
-using Corner = HullMesh::Corner;
+using Slot = FrontMesh::Slot;
+using Corner = FrontMesh::Corner;
 
 /// Returns the triangles of the convex hull of the slots' vertices; corners are vertices of the front.
-std::vector<PointTriangle> convex_hull_of(const HullMesh& hull, const std::vector<Slot>& slots) {
+std::vector<PointTriangle> convex_hull_of(const FrontMesh& front, const std::vector<Slot>& slots) {
   // Each vertex once, in ascending order: the result depends only on the set of slots.
   std::vector<Corner> corners;
-  for (const Slot s : slots) corners.insert(corners.end(), hull[s].v.begin(), hull[s].v.end());
+  for (const Slot s : slots) corners.insert(corners.end(), front[s].v.begin(), front[s].v.end());
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   std::vector<Eigen::Vector3d> points;
-  for (const Corner c : corners) points.push_back(hull.x(c));
+  for (const Corner c : corners) points.push_back(front.x(c));
   std::vector<PointTriangle> triangles = convex_hull(points);
   // Map point indices back to vertices of the front.
   for (PointTriangle& t : triangles)
@@ -62,12 +62,12 @@ PointTriangle smallest_first(const PointTriangle& t) {
   return {t[i], t[(i + 1) % 3], t[(i + 2) % 3]};
 }
 
-CapVerdict judge(const HullMesh& hull, const std::vector<PointTriangle>& added) {
+CapVerdict judge(const FrontMesh& front, const std::vector<PointTriangle>& added) {
   // A new tree: all of its slots are alive.
-  const AabbTree tree(hull);
+  const AabbTree tree(front);
   std::vector<CheckedTriangle> checked;
   for (const PointTriangle& t : added)
-    checked.emplace_back(hull.point(t[0]), hull.point(t[1]), hull.point(t[2]));
+    checked.emplace_back(front.point(t[0]), front.point(t[1]), front.point(t[2]));
   for (std::size_t i = 0; i < checked.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)
       // Triangles of a convex hull can overlap only because of coplanar vertices, or vertices with equal
@@ -77,8 +77,8 @@ CapVerdict judge(const HullMesh& hull, const std::vector<PointTriangle>& added) 
     // vertices and edges.
     bool clear = true;
     tree.for_each_in(checked[i].box, [&](Slot s) {
-      const auto& v = hull[s].v;
-      clear = clear && checked[i].clear_of({hull.point(v[0]), hull.point(v[1]), hull.point(v[2])});
+      const auto& v = front[s].v;
+      clear = clear && checked[i].clear_of({front.point(v[0]), front.point(v[1]), front.point(v[2])});
     });
     if (!clear) return CapVerdict::meets_front;
   }
@@ -92,11 +92,11 @@ struct Bridge {
 };
 
 /// Finds them. `convex`: all faces of the convex hull, ascending. Triangles in both are retained.
-Bridge find_bridge(const HullMesh& hull, const std::vector<Slot>& slots, std::vector<PointTriangle> convex) {
+Bridge find_bridge(const FrontMesh& front, const std::vector<Slot>& slots, std::vector<PointTriangle> convex) {
   Bridge bridge;
   std::vector<PointTriangle> kept;
   for (const Slot s : slots) {
-    const PointTriangle t = smallest_first(hull[s].v);
+    const PointTriangle t = smallest_first(front[s].v);
     // A triangle of the front that is on the convex hull already: no pocket beneath it.
     if (std::binary_search(convex.begin(), convex.end(), t))
       kept.push_back(t);
@@ -113,17 +113,17 @@ Bridge find_bridge(const HullMesh& hull, const std::vector<Slot>& slots, std::ve
 
 /// Returns true if the bridge covers some triangles of a polygon, but not all. In the complex a polygon is
 /// one face, with one cell in front of it.
-bool splits_polygon(const HullMesh& hull, const Bridge& bridge) {
+bool splits_polygon(const FrontMesh& front, const Bridge& bridge) {
   // Each polygon with a covered triangle must have all of its triangles covered.
-  std::vector<bool> removed(hull.slot_count(), false);
+  std::vector<bool> removed(front.slot_count(), false);
   for (const Slot s : bridge.removed) removed[s] = true;
   return std::any_of(bridge.removed.begin(), bridge.removed.end(), [&](Slot s) {
-    const auto [first, last] = hull.unit(s);
+    const auto [first, last] = front.unit(s);
     return !std::all_of(removed.begin() + first, removed.begin() + last, [](bool r) { return r; });
   });
 }
 
-CapVerdict judge(const HullMesh& hull, const std::vector<Slot>& slots, std::size_t convex_faces,
+CapVerdict judge(const FrontMesh& front, const std::vector<Slot>& slots, std::size_t convex_faces,
                  const Bridge& bridge) {
   // The vertices are coplanar.
   if (convex_faces == 0) return CapVerdict::flat;
@@ -131,36 +131,36 @@ CapVerdict judge(const HullMesh& hull, const std::vector<Slot>& slots, std::size
   const bool worth = static_cast<double>(convex_faces) <= kLastCapWorth * static_cast<double>(slots.size());
   if (!worth || bridge.removed.empty()) return CapVerdict::too_many_faces;
   // A polygon that is not planar can have one triangle on the convex hull and another below it.
-  if (splits_polygon(hull, bridge)) return CapVerdict::splits_polygon;
+  if (splits_polygon(front, bridge)) return CapVerdict::splits_polygon;
   // The expensive exact tests come last.
-  return judge(hull, bridge.added);
+  return judge(front, bridge.added);
 }
 
 }  // namespace
 
-CapVerdict bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std::vector<bool>& joined,
+CapVerdict bridge_concavities(FrontMesh& front, ComplexBuilder& complex, const std::vector<bool>& joined,
                               std::uint16_t layer, ConstructProbe* probe) {
   // Step 1: the convex hull of the chosen components.
-  std::vector<Slot> slots = hull.alive_slots();
-  std::erase_if(slots, [&](Slot s) { return !joined[hull[s].component]; });
-  std::vector<PointTriangle> convex = convex_hull_of(hull, slots);
+  std::vector<Slot> slots = front.alive_slots();
+  std::erase_if(slots, [&](Slot s) { return !joined[front[s].component]; });
+  std::vector<PointTriangle> convex = convex_hull_of(front, slots);
   // Step 2: sort the canonical triangles, so that membership is a binary search.
   for (PointTriangle& t : convex) t = smallest_first(t);
   std::sort(convex.begin(), convex.end());
   const std::size_t convex_faces = convex.size();
-  const Bridge bridge = find_bridge(hull, slots, std::move(convex));
+  const Bridge bridge = find_bridge(front, slots, std::move(convex));
   // Step 3.
-  const CapVerdict verdict = judge(hull, slots, convex_faces, bridge);
+  const CapVerdict verdict = judge(front, slots, convex_faces, bridge);
   if (probe) {
-    probe->patch({hull.point(hull[slots[0]].v[0]).id, static_cast<std::uint32_t>(slots.size()), 0});
+    probe->patch({front.point(front[slots[0]].v[0]).id, static_cast<std::uint32_t>(slots.size()), 0});
     probe->cap({static_cast<std::uint32_t>(bridge.added.size()),
                 static_cast<std::uint32_t>(bridge.removed.size()), verdict, false, -1});
   }
   if (verdict != CapVerdict::accepted) return verdict;
   // Step 4: relabel first, so that lids and retained triangles share a component.
-  const std::uint32_t component = hull[slots[0]].component;
-  for (const Slot s : slots) hull.set_component(s, component);
-  cover(hull, complex, make_sheet(hull, bridge.removed, bridge.added), layer, component, probe);
+  const std::uint32_t component = front[slots[0]].component;
+  for (const Slot s : slots) front.set_component(s, component);
+  cover(front, complex, make_sheet(front, bridge.removed, bridge.added), layer, component, probe);
   return verdict;
 }
 
@@ -183,11 +183,11 @@ constexpr int kRounds = 3, kLastRounds = 20;
 /// One step of simplification, starting from a convex surface. `points` must stay inside.
 class PolytopeStep {
  public:
-  PolytopeStep(const Mesh& convex, const std::vector<Vector3>& points) : points_(points), hull_(convex) {
+  PolytopeStep(const Mesh& convex, const std::vector<Vector3>& points) : points_(points), front_(convex) {
     // The entire closed surface is one patch: it has no ring, and every vertex is interior.
-    all_.slots = hull_.alive_slots();
-    for (HullMesh::Corner v = 0; v < hull_.point_count(); ++v) all_.interior.push_back(v);
-    surface_.load(hull_, all_, 0);
+    all_.slots = front_.alive_slots();
+    for (FrontMesh::Corner v = 0; v < front_.point_count(); ++v) all_.interior.push_back(v);
+    surface_.load(front_, all_, 0);
     Eigen::AlignedBox3d box;
     for (const Vector3& p : points) box.extend(p);
     size_sq_ = box.sizes().squaredNorm();
@@ -316,7 +316,7 @@ class PolytopeStep {
   static constexpr double kMinGain = 1e-3;  ///< least gain for another round, relative to the volume
 
   const std::vector<Vector3>& points_;
-  HullMesh hull_;
+  FrontMesh front_;
   Patch all_;
   CapSurface surface_;
   double size_sq_;  ///< squared size of the points' box

@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include "engine/construct/complex_builder.hpp"
-#include "engine/construct/hull_mesh.hpp"
+#include "engine/construct/front_mesh.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/parallel.hpp>
@@ -21,7 +21,7 @@ namespace lrb::construct {
 /// regions of this layer, and the components become one. `joined` (components): the components to cover.
 /// Changes nothing, and returns the reason, if the front would not become simpler, or if faces of the convex
 /// hull would intersect others (coplanar vertices). Reports the cap and its regions to `probe`, if not null.
-CapVerdict bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std::vector<bool>& joined,
+CapVerdict bridge_concavities(FrontMesh& front, ComplexBuilder& complex, const std::vector<bool>& joined,
                               std::uint16_t layer, ConstructProbe* probe);
 
 /// Returns a convex polytope of at most max(max_faces, 12) triangles around the points, or an empty mesh if

@@ -44,30 +44,30 @@ class ComplexBuilder {
   LrbData d_;
 };
 
-// The regions that a builder makes of entire fronts when caps no longer simplify them, for HullMesh and
-// HullLoops alike. `home`: (components) the void in front of a component, which is the component itself if it
+// The regions that a builder makes of entire fronts when caps no longer simplify them, for FrontMesh and
+// FrontLoops alike. `home`: (components) the void in front of a component, which is the component itself if it
 // bounds a void; kNull for the outside.
 
 /// Makes the remainder of each void one region, which has only a floor.
-template <class Hull>
-void fill_voids(const Hull& hull, std::span<const std::uint32_t> home, std::uint16_t layer,
+template <class Front>
+void fill_voids(const Front& front, std::span<const std::uint32_t> home, std::uint16_t layer,
                 ComplexBuilder& complex) {
   std::vector<RegionId> core(home.size(), kNull);
   for (std::uint32_t c = 0; c < core.size(); ++c)
     if (home[c] == c) core[c] = complex.add_region(layer);
-  for (const typename Hull::Slot s : hull.alive_slots()) {
-    const std::uint32_t in = home[hull[s].component];
-    if (in != kNull) complex.set_outer_cell(hull[s].face, core[in]);
+  for (const typename Front::Slot s : front.alive_slots()) {
+    const std::uint32_t in = home[front[s].component];
+    if (in != kNull) complex.set_outer_cell(front[s].face, core[in]);
   }
 }
 
 /// Makes `wrapper` the outermost wrapper: the space between it and the outer fronts is one region.
-template <class Hull>
-void enclose(const Hull& hull, std::span<const std::uint32_t> home, const Mesh& wrapper, std::uint16_t layer,
+template <class Front>
+void enclose(const Front& front, std::span<const std::uint32_t> home, const Mesh& wrapper, std::uint16_t layer,
              ComplexBuilder& complex) {
   const RegionId region = complex.add_region(layer);
-  for (const typename Hull::Slot s : hull.alive_slots())
-    if (home[hull[s].component] == kNull) complex.set_outer_cell(hull[s].face, region);
+  for (const typename Front::Slot s : front.alive_slots())
+    if (home[front[s].component] == kNull) complex.set_outer_cell(front[s].face, region);
   std::vector<VertexId> ids;
   for (const Eigen::Vector3d& v : wrapper.vertices) ids.push_back(complex.add_vertex(v));
   std::vector<VertexId> corners;
@@ -87,8 +87,8 @@ class PassCounter {
   std::uint16_t layer() const { return static_cast<std::uint16_t>(pass_); }
 
   /// Reports the start of a pass.
-  void report_begin(BuildStage stage, std::uint32_t hull_faces, double max_deviation = 0) const {
-    if (options_.probe) options_.probe->pass({stage, pass_, hull_faces, max_deviation});
+  void report_begin(BuildStage stage, std::uint32_t front_faces, double max_deviation = 0) const {
+    if (options_.probe) options_.probe->pass({stage, pass_, front_faces, max_deviation});
   }
   /// Reports its end.
   void report_end(const PassEnd& end) const {
@@ -101,11 +101,11 @@ class PassCounter {
   }
 
   /// Counts the pass, and reports it with the number of faces in the front.
-  void end_pass(const ComplexBuilder& complex, std::uint32_t hull_faces) {
+  void end_pass(const ComplexBuilder& complex, std::uint32_t front_faces) {
     if (complex.region_count() == regions_) return;
     regions_ = complex.region_count();
     ++pass_;
-    if (options_.progress) options_.progress(pass_, hull_faces);
+    if (options_.progress) options_.progress(pass_, front_faces);
   }
 
  private:

@@ -24,7 +24,7 @@ namespace {
 using Box = Eigen::AlignedBox3d;
 using Vector3 = Eigen::Vector3d;
 
-HullMesh::Point point_of(const CapSurface& cap, int v) {
+FrontMesh::Point point_of(const CapSurface& cap, int v) {
   return {cap.x(v), cap.id(v)};
 }
 
@@ -48,7 +48,7 @@ bool turns_outward(const Vector3& a, const Vector3& b, const Vector3& p, const V
 
 }  // namespace
 
-CheckedTriangle::CheckedTriangle(const HullMesh::Point& a, const HullMesh::Point& b, const HullMesh::Point& c)
+CheckedTriangle::CheckedTriangle(const FrontMesh::Point& a, const FrontMesh::Point& b, const FrontMesh::Point& c)
     : x{a.x.data(), b.x.data(), c.x.data()}, id{a.id, b.id, c.id}, box(a.x) {
   box.extend(b.x);
   box.extend(c.x);
@@ -86,7 +86,7 @@ CapVerdict EmbedCheck::judge_cap(const Patch& patch, const CapSurface& cap) {
   obstacles_.clear();
   Box box;
   // The checked triangles refer to these points, which therefore must not be reallocated: reserve first.
-  std::vector<HullMesh::Point> points;
+  std::vector<FrontMesh::Point> points;
   points.reserve(cap.vertex_count());
   for (int v = 0; v < cap.vertex_count(); ++v) points.push_back(point_of(cap, v));
   for (const auto& f : cap.faces()) {
@@ -103,7 +103,7 @@ CapVerdict EmbedCheck::judge_cap(const Patch& patch, const CapSurface& cap) {
   if (component_boxes_.size() > 1)  // another component may be under the cap
     for (const CheckedTriangle& t : obstacles_) box.extend(t.box);
   // For a body of one component, the box of the new triangles suffices.
-  gather_hull(patch, cap, box);
+  gather_front(patch, cap, box);
   const CapVerdict verdict = judge_added(of_patch);
   if (verdict != CapVerdict::accepted || component_boxes_.size() < 2) return verdict;
   // Step 5, only if there are several components.
@@ -111,14 +111,14 @@ CapVerdict EmbedCheck::judge_cap(const Patch& patch, const CapSurface& cap) {
 }
 
 CapVerdict EmbedCheck::judge_fan(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
-                                 const HullMesh::Point& w) {
+                                 const FrontMesh::Point& w) {
   if (!rim_turns_outward(cap, star, w.x)) return CapVerdict::turns_inward;
   added_.clear();
   obstacles_.clear();
   Box box;
   // The same steps for a single collapse; the cap's own new faces are obstacles as well. Enclosed components
   // are not searched: judge_cap() does that once, for the finished cap.
-  std::vector<HullMesh::Point> points;
+  std::vector<FrontMesh::Point> points;
   points.reserve(cap.vertex_count());
   for (int v = 0; v < cap.vertex_count(); ++v) points.push_back(point_of(cap, v));
   // The fan from w over the star's rim.
@@ -132,20 +132,20 @@ CapVerdict EmbedCheck::judge_fan(const Patch& patch, const CapSurface& cap, cons
   if (added_meet_each_other()) return CapVerdict::meets_itself;
   add_patch(patch);
   const std::size_t of_patch = obstacles_.size();
-  gather_hull(patch, cap, box);
+  gather_front(patch, cap, box);
   return judge_added(of_patch);
 }
 
 void EmbedCheck::add_patch(const Patch& patch) {
-  for (const HullMesh::Slot s : patch.slots) {
-    const auto& t = hull_[s].v;
-    obstacles_.emplace_back(hull_.point(t[0]), hull_.point(t[1]), hull_.point(t[2]));
+  for (const FrontMesh::Slot s : patch.slots) {
+    const auto& t = front_[s].v;
+    obstacles_.emplace_back(front_.point(t[0]), front_.point(t[1]), front_.point(t[2]));
   }
 }
 
 /// Gathers only triangles that the new triangles may intersect: the box of a cap over a large part of a
 /// component contains everything nested in it.
-void EmbedCheck::gather_hull(const Patch& patch, const CapSurface& cap, const Box& box) {
+void EmbedCheck::gather_front(const Patch& patch, const CapSurface& cap, const Box& box) {
   // Record the region of space that the verdict depends on: later changes outside it cannot invalidate the
   // proof.
   seen_.extend(box);
@@ -156,11 +156,11 @@ void EmbedCheck::gather_hull(const Patch& patch, const CapSurface& cap, const Bo
     return std::any_of(reach_.begin(), reach_.end(),
                        [&](const TriangleReach& t) { return t.may_meet(other); });
   };
-  tree_.for_each_near(box, near, [&](HullMesh::Slot s) {
+  tree_.for_each_near(box, near, [&](FrontMesh::Slot s) {
     // The tree retains empty slots; the patch's own triangles are in the list already.
-    if (!hull_.alive(s) || cap.local_face(patch, s) >= 0) return;
-    const auto& t = hull_[s];
-    obstacles_.emplace_back(hull_.point(t.v[0]), hull_.point(t.v[1]), hull_.point(t.v[2]));
+    if (!front_.alive(s) || cap.local_face(patch, s) >= 0) return;
+    const auto& t = front_[s];
+    obstacles_.emplace_back(front_.point(t.v[0]), front_.point(t.v[1]), front_.point(t.v[2]));
   });
 }
 
@@ -168,11 +168,11 @@ void EmbedCheck::gather_hull(const Patch& patch, const CapSurface& cap, const Bo
 void EmbedCheck::gather_strangers(const Patch& patch, const Box& box) {
   strangers_.clear();
   ++stamp_;
-  met_.resize(hull_.component_count(), 0);
-  const std::uint32_t own = hull_[patch.slots[0]].component;
-  tree_.for_each_in(box, [&](HullMesh::Slot s) {
-    if (!hull_.alive(s)) return;
-    const std::uint32_t component = hull_[s].component;
+  met_.resize(front_.component_count(), 0);
+  const std::uint32_t own = front_[patch.slots[0]].component;
+  tree_.for_each_in(box, [&](FrontMesh::Slot s) {
+    if (!front_.alive(s)) return;
+    const std::uint32_t component = front_[s].component;
     // One triangle per component suffices: it represents the entire component.
     if (component == own || met_[component] == stamp_) return;
     met_[component] = stamp_;
@@ -204,15 +204,15 @@ bool EmbedCheck::ring_turns_outward(const Patch& patch, const CapSurface& cap) c
     const auto& face = cap.faces()[cap.face_at_ring(k)];
     // Nothing changes at this ring edge.
     if (face.kept >= 0) continue;
-    const HullMesh::Corner a = patch.ring[k], b = patch.ring[(k + 1) % size];
+    const FrontMesh::Corner a = patch.ring[k], b = patch.ring[(k + 1) % size];
     // In the outer triangle the ring edge runs from b to a.
     const auto third = [&](const auto& t, auto first) {
       return t.v[0] == first ? t.v[2] : t.v[1] == first ? t.v[0] : t.v[1];
     };
-    const HullMesh::Slot beyond = patch.outside[k];
+    const FrontMesh::Slot beyond = patch.outside[k];
     // The patch's own triangle at the edge.
-    const auto& old = hull_[hull_[beyond].across[hull_.index_of(beyond, b)]];
-    if (!turns_outward(hull_.x(a), hull_.x(b), hull_.x(third(old, a)), cap.x(third(face, k)),
+    const auto& old = front_[front_[beyond].across[front_.index_of(beyond, b)]];
+    if (!turns_outward(front_.x(a), front_.x(b), front_.x(third(old, a)), cap.x(third(face, k)),
                        cap.tip_beyond(k)))
       return false;
   }
@@ -239,7 +239,7 @@ bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, c
   // Step 1: the candidates; usually there are no candidates.
   gather_strangers(patch, box);
   Mesh region;
-  for (const HullMesh::Slot stranger : strangers_) {
+  for (const FrontMesh::Slot stranger : strangers_) {
     // Step 2, once: the boundary of the region, that is cap and patch. Its orientation does not affect the
     // parity of ray crossings, and triangles in both cancel.
     if (region.vertices.empty()) {
@@ -251,11 +251,11 @@ bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, c
         region.add_face(corners);
       }
       // The patch is indexed separately: point location needs no connectivity.
-      for (const HullMesh::Slot s : patch.slots) {
+      for (const FrontMesh::Slot s : patch.slots) {
         VertexId corners[3];
         for (int i = 0; i < 3; ++i) {
           corners[i] = static_cast<VertexId>(region.vertices.size());
-          region.vertices.push_back(hull_.x(hull_[s].v[i]));
+          region.vertices.push_back(front_.x(front_[s].v[i]));
         }
         region.add_face(corners);
       }
@@ -264,8 +264,8 @@ bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, c
     for (FaceId f = 0; f < faces.size(); ++f) faces[f] = f;
     // Step 3: the component does not cross the boundary, so one vertex that is not on the boundary decides.
     bool decided = false;
-    for (const HullMesh::Corner c : hull_[stranger].v) {
-      const PointSide where = point_side(region, faces, hull_.x(c));
+    for (const FrontMesh::Corner c : front_[stranger].v) {
+      const PointSide where = point_side(region, faces, front_.x(c));
       if (where == PointSide::on_surface) continue;
       if (where == PointSide::inside) return true;
       decided = true;

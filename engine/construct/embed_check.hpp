@@ -11,7 +11,7 @@
 
 #include "engine/construct/aabb_tree.hpp"
 #include "engine/construct/cap_surface.hpp"
-#include "engine/construct/hull_mesh.hpp"
+#include "engine/construct/front_mesh.hpp"
 #include <lrbscope/build.hpp>
 
 namespace lrb::construct {
@@ -22,7 +22,7 @@ struct CheckedTriangle {
   std::array<VertexId, 3> id;
   Eigen::AlignedBox3d box;
 
-  CheckedTriangle(const HullMesh::Point& a, const HullMesh::Point& b, const HullMesh::Point& c);
+  CheckedTriangle(const FrontMesh::Point& a, const FrontMesh::Point& b, const FrontMesh::Point& c);
   /// Returns true if the two triangles intersect only in shared vertices and edges.
   bool clear_of(const CheckedTriangle& other) const;
 };
@@ -42,7 +42,7 @@ class TriangleReach {
 
 class EmbedCheck {
  public:
-  EmbedCheck(const HullMesh& hull, const AabbTree& tree) : hull_(hull), tree_(tree) {}
+  EmbedCheck(const FrontMesh& front, const AabbTree& tree) : front_(front), tree_(tree) {}
   /// Sets the boxes of the components (in the front's numbering), so that a cap over a patch of one component
   /// never encloses another.
   void set_component_boxes(std::vector<Eigen::AlignedBox3d> boxes) { component_boxes_ = std::move(boxes); }
@@ -53,7 +53,7 @@ class EmbedCheck {
   CapVerdict judge_cap(const Patch& patch, const CapSurface& cap);
   /// Checks a fan from w that is to replace a star of the cap. Returns as judge_cap().
   CapVerdict judge_fan(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
-                       const HullMesh::Point& w);
+                       const FrontMesh::Point& w);
 
   /// Returns a box around all space that the checks have read, apart from triangles that share a vertex with
   /// the patch.
@@ -61,7 +61,7 @@ class EmbedCheck {
   void forget_seen() { seen_.setEmpty(); }
 
  private:
-  void gather_hull(const Patch& patch, const CapSurface& cap, const Eigen::AlignedBox3d& box);
+  void gather_front(const Patch& patch, const CapSurface& cap, const Eigen::AlignedBox3d& box);
   void gather_strangers(const Patch& patch, const Eigen::AlignedBox3d& box);
   void add_patch(const Patch& patch);
   bool added_meet_each_other() const;
@@ -70,13 +70,13 @@ class EmbedCheck {
   bool rim_turns_outward(const CapSurface& cap, const CapSurface::Star& star, const Eigen::Vector3d& w) const;
   bool encloses_component(const Patch& patch, const CapSurface& cap, const Eigen::AlignedBox3d& box);
 
-  const HullMesh& hull_;
+  const FrontMesh& front_;
   const AabbTree& tree_;
   std::vector<Eigen::AlignedBox3d> component_boxes_;
   Eigen::AlignedBox3d seen_;
   std::vector<CheckedTriangle> obstacles_, added_;
   std::vector<TriangleReach> reach_;       ///< of `added_`
-  std::vector<HullMesh::Slot> strangers_;  ///< gathered triangles of other components, one of each
+  std::vector<FrontMesh::Slot> strangers_;  ///< gathered triangles of other components, one of each
   std::vector<std::uint32_t> met_;         ///< (components) == stamp_: found while gathering
   std::uint32_t stamp_ = 0;
 };

@@ -16,7 +16,7 @@
 #include "engine/construct/closing.hpp"
 #include "engine/construct/complex_builder.hpp"
 #include "engine/construct/half_spaces.hpp"
-#include "engine/construct/hull_mesh.hpp"
+#include "engine/construct/front_mesh.hpp"
 #include "engine/construct/patch_pass.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/mesh/nesting.hpp"
@@ -29,8 +29,8 @@ namespace lrb::construct {
 
 namespace {
 
-using Slot = HullMesh::Slot;
-using Corner = HullMesh::Corner;
+using Slot = FrontMesh::Slot;
+using Corner = FrontMesh::Corner;
 
 // Nesting of a body's components: voids have negative volume (exact); an exact ray decides which components
 // contain each other; a solid component belongs to the innermost void that contains it.
@@ -40,13 +40,13 @@ struct Component {
   Eigen::AlignedBox3d box;
 };
 
-std::vector<Component> components_of(const HullMesh& hull) {
-  std::vector<Component> out(hull.component_count());
-  for (Slot s = 0; s < hull.slot_count(); ++s) {
+std::vector<Component> components_of(const FrontMesh& front) {
+  std::vector<Component> out(front.component_count());
+  for (Slot s = 0; s < front.slot_count(); ++s) {
     // The triangles of a polygon are consecutive, so comparing with the last face removes duplicates.
-    Component& c = out[hull[s].component];
-    if (c.faces.empty() || c.faces.back() != hull[s].face) c.faces.push_back(hull[s].face);
-    c.box.extend(box_of(hull, s));
+    Component& c = out[front[s].component];
+    if (c.faces.empty() || c.faces.back() != front[s].face) c.faces.push_back(front[s].face);
+    c.box.extend(box_of(front, s));
   }
   return out;
 }
@@ -76,14 +76,14 @@ std::vector<std::vector<std::uint32_t>> find_holders(const Mesh& mesh,
 }
 
 /// Returns the void in front of each component of the mesh's surface: (components) itself for a void, kNull
-/// for the outside. `hull`: still the mesh's own surface. Exact, except that a component that crosses a
+/// for the outside. `front`: still the mesh's own surface. Exact, except that a component that crosses a
 /// void's wall is located by one of its vertices.
-std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const HullMesh& hull) {
-  const std::uint32_t count = hull.component_count();
+std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const FrontMesh& front) {
+  const std::uint32_t count = front.component_count();
   std::vector<std::uint32_t> home(count, kNull);
   // The usual case: nothing can be nested.
   if (count == 1) return home;
-  const std::vector<Component> components = components_of(hull);
+  const std::vector<Component> components = components_of(front);
   // Exact sign of the volume: a component that faces inward bounds a void.
   std::vector<bool> is_void(count);
   for (std::uint32_t c = 0; c < count; ++c) is_void[c] = volume_sign(mesh, components[c].faces) < 0;
@@ -111,49 +111,49 @@ std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const HullMesh& hull) 
 
 /// Returns the faces that are inside another component, of a mesh whose components cross. `meeting`: the
 /// faces that intersect others in more than shared vertices and edges, ascending; they are not among those
-/// returned. `hull`: the mesh itself.
+/// returned. `front`: the mesh itself.
 ///
 /// A cap over such faces would be inside the other component, where no front stops it, and could pass through
 /// the faces under that component's caps.
-std::vector<FaceId> find_buried(const Mesh& mesh, const HullMesh& hull, const std::vector<FaceId>& meeting) {
+std::vector<FaceId> find_buried(const Mesh& mesh, const FrontMesh& front, const std::vector<FaceId>& meeting) {
   // Nothing can be buried in a body that does not cross itself, or that has a single component.
-  if (meeting.empty() || hull.component_count() == 1) return {};
-  const auto meets = [&](Slot s) { return std::binary_search(meeting.begin(), meeting.end(), hull[s].face); };
+  if (meeting.empty() || front.component_count() == 1) return {};
+  const auto meets = [&](Slot s) { return std::binary_search(meeting.begin(), meeting.end(), front[s].face); };
   std::vector<std::uint32_t> component_of(mesh.face_count(), kNull);
-  DisjointSets sheets(hull.slot_count());  // connected over edges; no sheet crosses a surface
-  for (Slot s = 0; s < hull.slot_count(); ++s) {
+  DisjointSets sheets(front.slot_count());  // connected over edges; no sheet crosses a surface
+  for (Slot s = 0; s < front.slot_count(); ++s) {
     // Step 1. Intersecting triangles are the borders of sheets.
-    component_of[hull[s].face] = hull[s].component;
+    component_of[front[s].face] = front[s].component;
     if (meets(s)) continue;
-    for (const Slot t : hull[s].across)
+    for (const Slot t : front[s].across)
       if (!meets(t)) sheets.join(s, t);
   }
   const SideFinder finder(mesh, std::move(component_of));
   std::vector<int> signs;  // +1 for components that are solid, -1 for voids
-  for (const Component& c : components_of(hull)) signs.push_back(volume_sign(mesh, c.faces) < 0 ? -1 : 1);
+  for (const Component& c : components_of(front)) signs.push_back(volume_sign(mesh, c.faces) < 0 ? -1 : 1);
   enum class SheetKind : std::uint8_t { unknown, free, buried };
   // Step 2. The space in front of a face is in a solid if more solids than voids contain it. Undecided if the
   // first vertex is on another component's surface.
   const auto look_at = [&](Slot s) {
     // In front of a void's wall, the component itself counts as a void.
-    int solids = signs[hull[s].component] < 0 ? -1 : 0;
-    for (const SideFinder::Side& side : finder.sides(hull.x(hull[s].v[0]))) {
-      if (side.surface == hull[s].component) continue;
+    int solids = signs[front[s].component] < 0 ? -1 : 0;
+    for (const SideFinder::Side& side : finder.sides(front.x(front[s].v[0]))) {
+      if (side.surface == front[s].component) continue;
       if (side.side == PointSide::on_surface) return SheetKind::unknown;
       solids += signs[side.surface];
     }
     return solids > 0 ? SheetKind::buried : SheetKind::free;
   };
-  std::vector<SheetKind> known(hull.slot_count(), SheetKind::unknown);  // at a sheet's leader
+  std::vector<SheetKind> known(front.slot_count(), SheetKind::unknown);  // at a sheet's leader
   // A sheet with an undecided vertex is tried again from its next triangle: at worst one query for each
   // triangle.
-  for (Slot s = 0; s < hull.slot_count(); ++s)
+  for (Slot s = 0; s < front.slot_count(); ++s)
     if (SheetKind& sheet = known[sheets.leader(s)]; !meets(s) && sheet == SheetKind::unknown)
       sheet = look_at(s);
   // Step 3. Undecided sheets count as buried: covering them could not be proven safe.
   std::vector<FaceId> buried;
-  for (Slot s = 0; s < hull.slot_count(); ++s)
-    if (!meets(s) && known[sheets.leader(s)] != SheetKind::free) buried.push_back(hull[s].face);
+  for (Slot s = 0; s < front.slot_count(); ++s)
+    if (!meets(s) && known[sheets.leader(s)] != SheetKind::free) buried.push_back(front[s].face);
   return buried;
 }
 
@@ -162,19 +162,19 @@ class PatchBuilder {
   PatchBuilder(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options)
       : options_(options),
         workers_(options.threads),
-        hull_(mesh),
+        front_(mesh),
         complex_(mesh),
-        home_(find_nesting(mesh, hull_)),
-        bounds_(mesh.vertices, kHullSwell),
+        home_(find_nesting(mesh, front_)),
+        bounds_(mesh.vertices, kFrontSwell),
         random_(options.seed),
         frozen_(mesh.face_count(), false),
-        component_boxes_(hull_.component_count()),
+        component_boxes_(front_.component_count()),
         passes_(options) {
     // Faces that intersect others, or are buried in other components, are never covered.
     for (const FaceId f : meeting) frozen_[f] = true;
-    for (const FaceId f : find_buried(mesh, hull_, meeting)) frozen_[f] = true;
-    for (Slot s = 0; s < hull_.slot_count(); ++s)
-      component_boxes_[hull_[s].component].extend(box_of(hull_, s));
+    for (const FaceId f : find_buried(mesh, front_, meeting)) frozen_[f] = true;
+    for (Slot s = 0; s < front_.slot_count(); ++s)
+      component_boxes_[front_[s].component].extend(box_of(front_, s));
   }
 
   LrbData run() {
@@ -191,11 +191,11 @@ class PatchBuilder {
   }
 
  private:
-  bool is_outer(Slot s) const { return home_[hull_[s].component] == kNull; }
+  bool is_outer(Slot s) const { return home_[front_[s].component] == kNull; }
 
   std::uint32_t outer_size() const {
     std::uint32_t count = 0;
-    for (Slot s = 0; s < hull_.slot_count(); ++s) count += hull_.alive(s) && is_outer(s);
+    for (Slot s = 0; s < front_.slot_count(); ++s) count += front_.alive(s) && is_outer(s);
     return count;
   }
 
@@ -203,16 +203,16 @@ class PatchBuilder {
 
   std::vector<Eigen::Vector3d> outer_points() const {
     std::vector<Eigen::Vector3d> points;
-    for (Corner v = 0; v < hull_.point_count(); ++v)
-      if (hull_.degree(v) > 0 && is_outer(hull_.any_slot(v))) points.push_back(hull_.x(v));
+    for (Corner v = 0; v < front_.point_count(); ++v)
+      if (front_.degree(v) > 0 && is_outer(front_.any_slot(v))) points.push_back(front_.x(v));
     return points;
   }
 
   void fit() {
     Eigen::AlignedBox3d box;
-    for (Corner v = 0; v < hull_.point_count(); ++v) box.extend(hull_.x(v));
-    fit_hulls(
-        box.sizes().maxCoeff(), kFitDownTo, [&] { return hull_.triangle_count(); },
+    for (Corner v = 0; v < front_.point_count(); ++v) box.extend(front_.x(v));
+    fit_fronts(
+        box.sizes().maxCoeff(), kFitDownTo, [&] { return front_.triangle_count(); },
         [&](std::uint32_t before, double off) {
           const std::size_t real = frozen_.size();
           // Higher prices are accepted while fewer pseudo faces were used than planned.
@@ -224,15 +224,15 @@ class PatchBuilder {
   /// Makes passes until they gain too little. `worth`: see CapGoal.
   void simplify(double worth) {
     for (;;) {
-      const std::uint32_t before = hull_.triangle_count();
+      const std::uint32_t before = front_.triangle_count();
       if (before <= options_.max_outer_faces) return;
       pass(BuildStage::simplify, {worth});
-      if (hull_.triangle_count() > kMinGain * before) return;
+      if (front_.triangle_count() > kMinGain * before) return;
     }
   }
 
   void pass(BuildStage stage, const CapGoal& goal) {
-    const std::uint32_t triangles = hull_.triangle_count();
+    const std::uint32_t triangles = front_.triangle_count();
     // From now on the front stays inside the planned wrapper.
     if (triangles <= kPolytopeFrom) plan_polytope();
     // On a small front patches are small, so that there are still several.
@@ -240,19 +240,19 @@ class PatchBuilder {
         goal.off > 0 ? kFitPatch * options_.patch_interior / 4 : options_.patch_interior;
     const std::uint32_t interior = std::max(kMinInterior, std::min(most, triangles / kMinPatches));
     // Rebuild the tree only when it has degraded; otherwise it was refitted.
-    if (!tree_ || !tree_->fits(hull_)) tree_.emplace(hull_);
+    if (!tree_ || !tree_->fits(front_)) tree_.emplace(front_);
     passes_.report_begin(stage, triangles, goal.off);
-    PatchPass pass(hull_, *tree_, complex_, bounds_, frozen_, component_boxes_, workers_, options_.probe);
+    PatchPass pass(front_, *tree_, complex_, bounds_, frozen_, component_boxes_, workers_, options_.probe);
     PassEnd end = pass.run({interior, std::max(4 * interior, kMinTriangles)}, goal, passes_.layer(), random_);
-    end.hull_faces = hull_.triangle_count();
+    end.front_faces = front_.triangle_count();
     passes_.report_end(end);
     end_pass();
   }
 
   bool bridge() {
-    passes_.report_begin(BuildStage::bridge, hull_.triangle_count());
+    passes_.report_begin(BuildStage::bridge, front_.triangle_count());
     const bool accepted = bridge_pockets();
-    passes_.report_end({.hull_faces = hull_.triangle_count()});
+    passes_.report_end({.front_faces = front_.triangle_count()});
     if (!accepted) return false;
     // Bridging replaced large parts of the front.
     tree_.reset();
@@ -262,12 +262,12 @@ class PatchBuilder {
 
   bool bridge_pockets() {
     // The convex hull of n points in one plane takes O(n^2) steps.
-    for (Slot s = 0; s < hull_.slot_count(); ++s)
-      if (hull_.alive(s) && hull_.is_crowded(s)) return report_whole_cap(0, CapVerdict::too_crowded);
-    std::vector<bool> joined(hull_.component_count());
+    for (Slot s = 0; s < front_.slot_count(); ++s)
+      if (front_.alive(s) && front_.is_crowded(s)) return report_whole_cap(0, CapVerdict::too_crowded);
+    std::vector<bool> joined(front_.component_count());
     for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = home_[c] == kNull;
     plan_polytope();
-    return bridge_concavities(hull_, complex_, joined, passes_.layer(), options_.probe) == CapVerdict::accepted;
+    return bridge_concavities(front_, complex_, joined, passes_.layer(), options_.probe) == CapVerdict::accepted;
   }
 
   /// Reports a cap of `faces` faces over the entire outer front to the probe. Returns true if the cap was
@@ -275,21 +275,21 @@ class PatchBuilder {
   bool report_whole_cap(std::uint32_t faces, CapVerdict verdict) const {
     if (options_.probe) {
       Slot first = 0;
-      while (!hull_.alive(first) || !is_outer(first)) ++first;
+      while (!front_.alive(first) || !is_outer(first)) ++first;
       const std::uint32_t outer = outer_size();
-      options_.probe->patch({hull_.point(hull_[first].v[0]).id, outer, 0});
+      options_.probe->patch({front_.point(front_[first].v[0]).id, outer, 0});
       options_.probe->cap({faces, outer, verdict, false, -1});
     }
     return verdict == CapVerdict::accepted;
   }
 
   void fill() {
-    const std::uint32_t before = complex_.region_count(), faces = hull_.triangle_count();
-    fill_voids(hull_, home_, passes_.layer(), complex_);
+    const std::uint32_t before = complex_.region_count(), faces = front_.triangle_count();
+    fill_voids(front_, home_, passes_.layer(), complex_);
     if (complex_.region_count() == before) return;
     passes_.report_begin(BuildStage::fill, faces);
     passes_.report_regions(complex_, before);
-    passes_.report_end({.hull_faces = outer_size()});
+    passes_.report_end({.front_faces = outer_size()});
   }
 
   /// Plans the outermost wrapper; from now on all fronts stay inside it.
@@ -298,7 +298,7 @@ class PatchBuilder {
     polytope_ = enclosing_polytope(outer_points(), options_.max_outer_faces, kPolytopeDistance, workers_);
     if (polytope_.face_count() == 0) return;
     // The front keeps a margin from the wrapper, so that the exact confirmation in find_closing() succeeds.
-    bounds_ = BodyBounds(polytope_, kHullDistance * size_of(polytope_));
+    bounds_ = BodyBounds(polytope_, kFrontDistance * size_of(polytope_));
   }
 
   static double size_of(const Mesh& mesh) {
@@ -313,9 +313,9 @@ class PatchBuilder {
     passes_.report_begin(BuildStage::close, outer);
     const CapVerdict verdict = find_closing();
     const bool accepted = report_whole_cap(polytope_size(), verdict);
-    if (accepted) enclose(hull_, home_, polytope_, passes_.layer(), complex_);
+    if (accepted) enclose(front_, home_, polytope_, passes_.layer(), complex_);
     passes_.report_regions(complex_, before);
-    passes_.report_end({.hull_faces = accepted ? polytope_size() : outer});
+    passes_.report_end({.front_faces = accepted ? polytope_size() : outer});
     if (accepted) end_pass();
     return accepted;
   }
@@ -334,7 +334,7 @@ class PatchBuilder {
     return holds_all() ? CapVerdict::accepted : CapVerdict::leaves_out;
   }
 
-  void end_pass() { passes_.end_pass(complex_, hull_.triangle_count()); }
+  void end_pass() { passes_.end_pass(complex_, front_.triangle_count()); }
 
   /// Fitting ends when the front has no more triangles than this.
   static constexpr std::uint32_t kFitDownTo = 200;
@@ -355,7 +355,7 @@ class PatchBuilder {
 
   const BuildOptions& options_;
   Workers workers_;
-  HullMesh hull_;
+  FrontMesh front_;
   std::optional<AabbTree> tree_;
   ComplexBuilder complex_;
   const std::vector<std::uint32_t> home_;  ///< (components) see find_nesting()

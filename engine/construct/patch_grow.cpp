@@ -5,23 +5,23 @@
 namespace lrb::construct {
 namespace {
 
-using Slot = HullMesh::Slot;
-using Corner = HullMesh::Corner;
+using Slot = FrontMesh::Slot;
+using Corner = FrontMesh::Corner;
 
 /// Number of new triangles added to the cost of a candidate at one reach from the seed: keeps patches round.
 constexpr double kDistancePenalty = 1.0;
 
 }  // namespace
 
-PatchGrower::PatchGrower(const HullMesh& hull, const GrowLimits& limits)
-    : hull_(hull),
+PatchGrower::PatchGrower(const FrontMesh& front, const GrowLimits& limits)
+    : front_(front),
       limits_(limits),
-      taken_(hull.slot_count(), false),
-      slot_stamp_(hull.slot_count(), 0),
-      point_stamp_(hull.point_count(), 0),
-      inside_(hull.point_count(), 0),
-      rejected_(hull.point_count(), 0),
-      batch_stamp_(hull.point_count(), 0) {}
+      taken_(front.slot_count(), false),
+      slot_stamp_(front.slot_count(), 0),
+      point_stamp_(front.point_count(), 0),
+      inside_(front.point_count(), 0),
+      rejected_(front.point_count(), 0),
+      batch_stamp_(front.point_count(), 0) {}
 
 void PatchGrower::begin_batch() {
   ++batch_;
@@ -43,7 +43,7 @@ bool PatchGrower::is_in_batch(Corner v) const {
 
 void PatchGrower::look_for_batch() {
   for (const Slot s : added_)
-    for (const Corner v : hull_[s].v) met_batch_ = met_batch_ || is_in_batch(v);
+    for (const Corner v : front_[s].v) met_batch_ = met_batch_ || is_in_batch(v);
 }
 
 bool PatchGrower::grow(Corner seed, Patch& patch) {
@@ -58,7 +58,7 @@ bool PatchGrower::grow(Corner seed, Patch& patch) {
   met_batch_ = is_in_batch(seed);
   if (!add_star(seed, patch)) return false;
   double reach_sq = 0;
-  for (const Corner v : rim_) reach_sq = std::max(reach_sq, (hull_.x(v) - hull_.x(seed)).squaredNorm());
+  for (const Corner v : rim_) reach_sq = std::max(reach_sq, (front_.x(v) - front_.x(seed)).squaredNorm());
   // A star that does not fit now is not tried again for this patch.
   while (patch.interior.size() < limits_.interior) {
     const Corner v = best_candidate(seed, reach_sq, patch);
@@ -90,7 +90,7 @@ bool PatchGrower::add_star(Corner v, Patch& patch) {
   patch.slots.insert(patch.slots.end(), added_.begin(), added_.end());
   // A vertex with all of its triangles in the patch has become interior.
   std::erase_if(rim_, [&](Corner u) {
-    if (inside_[u] < hull_.degree(u)) return false;
+    if (inside_[u] < front_.degree(u)) return false;
     patch.interior.push_back(u);
     return true;
   });
@@ -102,9 +102,9 @@ bool PatchGrower::add_star(Corner v, Patch& patch) {
 bool PatchGrower::mark_star(Corner v) {
   added_.clear();
   bool free = true;
-  hull_.for_each_around(v, [&](Slot s, int) {
+  front_.for_each_around(v, [&](Slot s, int) {
     if (!free || in_patch(s)) return;
-    const auto unit = hull_.unit(s);
+    const auto unit = front_.unit(s);
     for (Slot t = unit.first; t < unit.last && free; ++t) {
       free = !taken_[t];  // taken triangles stay taken
       slot_stamp_[t] = stamp_;
@@ -123,7 +123,7 @@ void PatchGrower::unmark_star() {
 std::size_t PatchGrower::add_corners() {
   const std::size_t before = rim_.size();
   for (const Slot s : added_) {
-    for (const Corner u : hull_[s].v) {
+    for (const Corner u : front_[s].v) {
       if (point_stamp_[u] != stamp_) {
         point_stamp_[u] = stamp_;
         inside_[u] = 0;
@@ -137,7 +137,7 @@ std::size_t PatchGrower::add_corners() {
 
 void PatchGrower::take_back_corners(std::size_t new_points) {
   for (const Slot s : added_)
-    for (const Corner u : hull_[s].v) --inside_[u];
+    for (const Corner u : front_[s].v) --inside_[u];
   for (; new_points > 0; --new_points) {
     point_stamp_[rim_.back()] = 0;
     rim_.pop_back();
@@ -148,7 +148,7 @@ void PatchGrower::take_back_corners(std::size_t new_points) {
 std::int64_t PatchGrower::euler_change(std::size_t new_points) const {
   std::size_t among_new = 0, to_old = 0;  // an edge among the new triangles counts twice, from both sides
   for (const Slot s : added_) {
-    for (const Slot t : hull_[s].across) {
+    for (const Slot t : front_[s].across) {
       if (!in_patch(t)) continue;
       const bool is_new = std::find(added_.begin(), added_.end(), t) != added_.end();
       ++(is_new ? among_new : to_old);
@@ -166,9 +166,9 @@ Corner PatchGrower::best_candidate(Corner seed, double reach_sq, const Patch& pa
     if (rejected_[v] == stamp_) continue;
     // The fewest new triangles first; the distance penalty keeps the patch round. Ties go to the lower
     // vertex.
-    const std::uint32_t missing = hull_.degree(v) - inside_[v];
+    const std::uint32_t missing = front_.degree(v) - inside_[v];
     if (patch.slots.size() + missing > limits_.triangles) continue;
-    const double score = missing + kDistancePenalty * ((hull_.x(v) - hull_.x(seed)).squaredNorm() / reach_sq);
+    const double score = missing + kDistancePenalty * ((front_.x(v) - front_.x(seed)).squaredNorm() / reach_sq);
     if (best == kNull || score < least || (score == least && v < best)) {
       best = v;
       least = score;
@@ -183,19 +183,19 @@ void PatchGrower::find_ring(Patch& patch) const {
   int i = 0;
   for (const Slot t : patch.slots)
     for (int j = 0; j < 3 && s == kNull; ++j)
-      if (!in_patch(hull_[t].across[j])) s = t, i = j;
+      if (!in_patch(front_[t].across[j])) s = t, i = j;
   if (s == kNull) return;
-  const Corner first = hull_[s].v[i];
+  const Corner first = front_[s].v[i];
   do {
-    patch.ring.push_back(hull_[s].v[i]);
-    patch.outside.push_back(hull_[s].across[i]);
-    const Corner end = hull_[s].v[(i + 1) % 3];
+    patch.ring.push_back(front_[s].v[i]);
+    patch.outside.push_back(front_[s].across[i]);
+    const Corner end = front_[s].v[(i + 1) % 3];
     i = (i + 1) % 3;
-    while (in_patch(hull_[s].across[i])) {
-      s = hull_[s].across[i];
-      i = hull_.index_of(s, end);
+    while (in_patch(front_[s].across[i])) {
+      s = front_[s].across[i];
+      i = front_.index_of(s, end);
     }
-  } while (hull_[s].v[i] != first);
+  } while (front_[s].v[i] != first);
 }
 
 }  // namespace lrb::construct

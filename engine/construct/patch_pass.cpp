@@ -15,8 +15,8 @@
 namespace lrb::construct {
 namespace {
 
-using Slot = HullMesh::Slot;
-using Corner = HullMesh::Corner;
+using Slot = FrontMesh::Slot;
+using Corner = FrontMesh::Corner;
 
 /// Patches per batch and thread. Batches rarely get longer before two of their patches touch.
 constexpr std::size_t kBatchPerThread = 32;
@@ -33,23 +33,23 @@ constexpr std::size_t kTries = 32, kMinCaps = 24;
 
 }  // namespace
 
-PatchPass::PatchPass(HullMesh& hull, AabbTree& tree, ComplexBuilder& complex, const BodyBounds& bounds,
+PatchPass::PatchPass(FrontMesh& front, AabbTree& tree, ComplexBuilder& complex, const BodyBounds& bounds,
                      const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes,
                      Workers& workers, ConstructProbe* probe)
-    : hull_(hull), complex_(complex), frozen_(frozen), workers_(workers), tree_(tree), probe_(probe) {
+    : front_(front), complex_(complex), frozen_(frozen), workers_(workers), tree_(tree), probe_(probe) {
   // Scratch memory per worker. One worker needs no batches.
   for (unsigned w = 0; w < workers.count(); ++w)
-    benches_.push_back(std::make_unique<Bench>(hull, tree_, bounds, component_boxes));
+    benches_.push_back(std::make_unique<Bench>(front, tree_, bounds, component_boxes));
   jobs_.resize(workers.count() == 1 ? 1 : kBatchPerThread * workers.count());
 }
 
 /// Excludes the faces that no patch may contain. Returns their number.
 std::uint32_t PatchPass::bar_faces(PatchGrower& grower) const {
   std::uint32_t barred = 0;
-  for (Slot s = 0; s < hull_.slot_count(); ++s) {
-    if (!hull_.alive(s)) continue;
-    const bool frozen = hull_[s].face < frozen_.size() && frozen_[hull_[s].face];
-    if (!frozen && !hull_.is_crowded(s)) continue;
+  for (Slot s = 0; s < front_.slot_count(); ++s) {
+    if (!front_.alive(s)) continue;
+    const bool frozen = front_[s].face < frozen_.size() && frozen_[front_[s].face];
+    if (!frozen && !front_.is_crowded(s)) continue;
     grower.take(s);
     ++barred;
   }
@@ -59,10 +59,10 @@ std::uint32_t PatchPass::bar_faces(PatchGrower& grower) const {
 /// Returns the used vertices at which a cap may be found, in random order, and counts those that wait.
 std::vector<Corner> PatchPass::find_seeds(double off, Random& random, std::uint32_t& waiting) const {
   std::vector<Corner> seeds;
-  for (Corner v = 0; v < hull_.point_count(); ++v) {
-    if (hull_.degree(v) == 0) continue;
+  for (Corner v = 0; v < front_.point_count(); ++v) {
+    if (front_.degree(v) == 0) continue;
     // A vertex waits until the limit reaches the value at which a cap may exist there.
-    if (off == 0 || hull_.point(v).patience <= off)
+    if (off == 0 || front_.point(v).patience <= off)
       seeds.push_back(v);
     else
       ++waiting;
@@ -73,9 +73,9 @@ std::vector<Corner> PatchPass::find_seeds(double off, Random& random, std::uint3
 
 PassEnd PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t layer, Random& random) {
   PassEnd end;
-  PatchGrower grower(hull_, limits);
+  PatchGrower grower(front_, limits);
   end.barred = bar_faces(grower);
-  tried_.assign(hull_.point_count(), false);
+  tried_.assign(front_.point_count(), false);
   seeds_ = find_seeds(goal.off, random, end.waiting);
   next_seed_ = 0;
   no_patch_ = 0;
@@ -98,7 +98,7 @@ PassEnd PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint1
       ++tried;
       found += job.has_cap;
       if (!job.has_cap)
-        for (const Corner v : job.patch.interior) hull_.set_patience(v, job.next_off);
+        for (const Corner v : job.patch.interior) front_.set_patience(v, job.next_off);
       // Fitting only: too few caps are accepted at this deviation.
       if (tried >= kTries && kMinCaps * found < tried) {
         end.given_up = true;
@@ -115,7 +115,7 @@ void PatchPass::grow_batch(PatchGrower& grower) {
   batch_ = 0;
   for (; next_seed_ < seeds_.size() && batch_ < jobs_.size(); ++next_seed_) {
     const Corner seed = seeds_[next_seed_];
-    if (tried_[seed] || hull_.degree(seed) == 0) continue;
+    if (tried_[seed] || front_.degree(seed) == 0) continue;
     Patch& patch = jobs_[batch_].patch;
     const bool grown = grower.grow(seed, patch);
     // Its growth depends on an earlier patch of the batch: it starts the next batch.
@@ -137,7 +137,7 @@ void PatchPass::make_cap(Job& job, const CapGoal& goal, Bench& bench) const {
   find_cap(job, goal, bench);
   if (goal.off > 0 && !job.has_cap) job.next_off = goal.off * patience(job.patch, bench.cap, goal.worth);
   job.seen = bench.check.seen();
-  if (job.has_cap) job.sheet = make_sheet(hull_, job.patch, bench.cap);
+  if (job.has_cap) job.sheet = make_sheet(front_, job.patch, bench.cap);
 }
 
 /// Finds a cap, at first with a single proof for the finished cap. If that fails because of an intersection,
@@ -166,25 +166,25 @@ void PatchPass::find_cap(Job& job, const CapGoal& goal, Bench& bench) const {
 /// each collapse if `careful`, otherwise not at all.
 CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& bench, bool careful) const {
   CapSurface& cap = bench.cap;
-  cap.load(hull_, patch, static_cast<VertexId>(complex_.vertices().size()));
+  cap.load(front_, patch, static_cast<VertexId>(complex_.vertices().size()));
   const double area = cap.patch_area();
   // The volume limit scales with area^1.5, so it is independent of the body's size.
   PatchCap::Limits limits;
   limits.volume = kCapVolumeLimit * area * std::sqrt(area);
   limits.check = careful ? &bench.check : nullptr;
   if (goal.off > 0) {
-    bench.gauge.load(hull_, patch, cap, goal.off);
+    bench.gauge.load(front_, patch, cap, goal.off);
     limits.gauge = &bench.gauge;
     limits.depth = kFittingDepth;
   }
   bench.collapse.simplify(patch, limits);
-  if (!cap.keep_polygons_whole(hull_, patch)) return CapVerdict::splits_polygon;
+  if (!cap.keep_polygons_whole(front_, patch)) return CapVerdict::splits_polygon;
   // Only triangles that were replaced count in the ratio.
   const int kept = cap.alive_faces() - cap.new_faces();
   const int removed = static_cast<int>(patch.slots.size()) - kept;
   if (cap.new_faces() > goal.worth * removed || removed == 0)
     return probe_ ? bench.collapse.what_holds_back() : CapVerdict::too_many_faces;
-  if (limits.gauge && hull_.has_polygons() && !bench.gauge.measure_again(cap)) return CapVerdict::too_thick;
+  if (limits.gauge && front_.has_polygons() && !bench.gauge.measure_again(cap)) return CapVerdict::too_thick;
   return CapVerdict::accepted;
 }
 
@@ -200,7 +200,7 @@ double PatchPass::off_of(const CapSurface& cap) {
 
 void PatchPass::notify(const Job& job) const {
   const Patch& patch = job.patch;
-  probe_->patch({hull_.point(patch.interior.front()).id, static_cast<std::uint32_t>(patch.slots.size()),
+  probe_->patch({front_.point(patch.interior.front()).id, static_cast<std::uint32_t>(patch.slots.size()),
                  static_cast<std::uint32_t>(patch.interior.size())});
   for (std::size_t i = 0; i < job.tries; ++i) probe_->cap(job.tried[i]);
 }
@@ -216,11 +216,11 @@ double PatchPass::patience(const Patch& patch, const CapSurface& cap, double wor
 void PatchPass::put_on(const Job& job, std::uint16_t layer, PatchGrower& grower) {
   // The box of all triangles that vanish or appear: later proofs of the batch that read from it are repeated.
   Eigen::AlignedBox3d changed;
-  for (const Slot s : job.patch.slots) changed.extend(box_of(hull_, s));
-  const std::uint32_t component = hull_[job.patch.slots[0]].component;
-  for (const Slot s : cover(hull_, complex_, job.sheet, layer, component, probe_)) {
+  for (const Slot s : job.patch.slots) changed.extend(box_of(front_, s));
+  const std::uint32_t component = front_[job.patch.slots[0]].component;
+  for (const Slot s : cover(front_, complex_, job.sheet, layer, component, probe_)) {
     grower.take(s);
-    const Eigen::AlignedBox3d box = box_of(hull_, s);
+    const Eigen::AlignedBox3d box = box_of(front_, s);
     tree_.update(s, box);
     changed.extend(box);
   }

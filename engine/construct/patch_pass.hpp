@@ -13,8 +13,8 @@
 #include "engine/construct/complex_builder.hpp"
 #include "engine/construct/embed_check.hpp"
 #include "engine/construct/half_spaces.hpp"
-#include "engine/construct/hull_mesh.hpp"
-#include "engine/construct/hull_update.hpp"
+#include "engine/construct/front_mesh.hpp"
+#include "engine/construct/front_update.hpp"
 #include "engine/construct/patch_cap.hpp"
 #include "engine/construct/patch_grow.hpp"
 #include <lrbscope/build.hpp>
@@ -36,7 +36,7 @@ class PatchPass {
   /// `frozen` (|real faces|): faces that must not be covered. `component_boxes`: boxes of the front's
   /// components, or of parts of them that determine where the component is. `tree`: over the front; kept up
   /// to date. `probe`: null, or notified of patches, caps and regions.
-  PatchPass(HullMesh& hull, AabbTree& tree, ComplexBuilder& complex, const BodyBounds& bounds,
+  PatchPass(FrontMesh& front, AabbTree& tree, ComplexBuilder& complex, const BodyBounds& bounds,
             const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes,
             Workers& workers, ConstructProbe* probe);
 
@@ -47,9 +47,9 @@ class PatchPass {
  private:
   /// The buffers that one worker needs to make caps.
   struct Bench {
-    Bench(const HullMesh& hull, const AabbTree& tree, const BodyBounds& bounds,
+    Bench(const FrontMesh& front, const AabbTree& tree, const BodyBounds& bounds,
           const std::vector<Eigen::AlignedBox3d>& component_boxes)
-        : check(hull, tree), collapse(cap, bounds) {
+        : check(front, tree), collapse(cap, bounds) {
       check.set_component_boxes(component_boxes);
     }
     CapSurface cap;
@@ -74,19 +74,19 @@ class PatchPass {
   CapVerdict simplify(const Patch& patch, const CapGoal& goal, Bench& bench, bool careful) const;
   static double off_of(const CapSurface& cap);
   std::uint32_t bar_faces(PatchGrower& grower) const;
-  std::vector<HullMesh::Corner> find_seeds(double off, Random& random, std::uint32_t& waiting) const;
+  std::vector<FrontMesh::Corner> find_seeds(double off, Random& random, std::uint32_t& waiting) const;
   void notify(const Job& job) const;
   static double patience(const Patch& patch, const CapSurface& cap, double worth);
   void put_on(const Job& job, std::uint16_t layer, PatchGrower& grower);
 
-  HullMesh& hull_;
+  FrontMesh& front_;
   ComplexBuilder& complex_;
   const std::vector<bool>& frozen_;
   Workers& workers_;
   AabbTree& tree_;
   ConstructProbe* probe_;
   std::vector<std::unique_ptr<Bench>> benches_;  ///< one for each worker
-  std::vector<HullMesh::Corner> seeds_;
+  std::vector<FrontMesh::Corner> seeds_;
   std::size_t next_seed_ = 0;
   std::vector<bool> tried_;  ///< (points at the start)
   std::vector<Job> jobs_;

@@ -199,7 +199,7 @@ inline constexpr double kCapWorth = 0.45;
 inline constexpr double kLastCapWorth = 0.8;
 /// Early fronts of large bodies stay inside the body's 26-DOP, offset outward by this fraction of the body's
 /// width. Larger: fronts grow, and with them the outermost wrapper, which is planned around one of them.
-inline constexpr double kHullSwell = 0.01;
+inline constexpr double kFrontSwell = 0.01;
 /// Distance of the outermost wrapper from the front that it is planned around, relative to the body's largest
 /// extent. Larger: a looser wrapper (measured on six bodies: 1.1-1.2 times the convex hull's volume at 0.003,
 /// 1.2-1.4 at 0.01). Smaller: later fronts have no room to grow where they touch it.
@@ -207,7 +207,7 @@ inline constexpr double kPolytopeDistance = 0.005;
 /// Distance of later fronts from the outermost wrapper, relative to its largest extent. Smaller: the
 /// verification that the wrapper contains them fails due to rounding, and another wrapper is added around
 /// them.
-inline constexpr double kHullDistance = 1e-6;
+inline constexpr double kFrontDistance = 1e-6;
 
 /// Maximum difference of volumes that should be equal, relative to the outermost wrapper's volume: the
 /// rounding of sums over up to millions of faces. Used only by validate(), in addition to exact checks.

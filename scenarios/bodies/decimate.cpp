@@ -8,7 +8,7 @@
 
 #include "engine/construct/aabb_tree.hpp"
 #include "engine/construct/embed_check.hpp"
-#include "engine/construct/hull_mesh.hpp"
+#include "engine/construct/front_mesh.hpp"
 #include "scenarios/bodies/resolutions.hpp"
 
 namespace lrb::resolutions {
@@ -77,9 +77,9 @@ using Vector3 = Eigen::Vector3d;
 using construct::AabbTree;
 using construct::CheckedTriangle;
 using construct::EmbedCheck;
-using construct::HullMesh;
-using Slot = HullMesh::Slot;
-using Corner = HullMesh::Corner;
+using construct::FrontMesh;
+using Slot = FrontMesh::Slot;
+using Corner = FrontMesh::Corner;
 
 /// Weight of the pull of a new vertex towards its edge's midpoint, which also makes long edges expensive,
 /// relative to the distance from the surrounding planes. Larger values give more even triangles and rounder
@@ -101,32 +101,32 @@ double shape(const Vector3& a, const Vector3& b, const Vector3& c) {
 class Decimator {
  public:
   explicit Decimator(const Mesh& mesh)
-      : hull_(mesh), name_(mesh.name), next_id_(static_cast<VertexId>(mesh.vertices.size())) {
+      : surface_(mesh), name_(mesh.name), next_id_(static_cast<VertexId>(mesh.vertices.size())) {
     Eigen::AlignedBox3d box;
     for (const Vector3& x : mesh.vertices) box.extend(x);
     origin_ = box.center();  // near the surface, where quadrics are precise
-    quadrics_.resize(hull_.point_count());
-    for (Slot s = 0; s < hull_.slot_count(); ++s) {
-      const auto& v = hull_[s].v;
-      const Vector3 n = (hull_.x(v[1]) - hull_.x(v[0])).cross(hull_.x(v[2]) - hull_.x(v[0])) / 2;
-      const Quadric q(n, hull_.x(v[0]) - origin_);
+    quadrics_.resize(surface_.point_count());
+    for (Slot s = 0; s < surface_.slot_count(); ++s) {
+      const auto& v = surface_[s].v;
+      const Vector3 n = (surface_.x(v[1]) - surface_.x(v[0])).cross(surface_.x(v[2]) - surface_.x(v[0])) / 2;
+      const Quadric q(n, surface_.x(v[0]) - origin_);
       for (const Corner c : v) quadrics_[c] += q;
     }
     plant();
   }
 
   void run(std::uint32_t target) {
-    while (hull_.triangle_count() > target) {
+    while (surface_.triangle_count() > target) {
       if (queue_.empty()) propose_all();
-      const std::uint32_t before = hull_.triangle_count();
-      while (!queue_.empty() && hull_.triangle_count() > target) {
+      const std::uint32_t before = surface_.triangle_count();
+      while (!queue_.empty() && surface_.triangle_count() > target) {
         std::pop_heap(queue_.begin(), queue_.end());
         const Collapse c = queue_.back();
         queue_.pop_back();
-        if (hull_.degree(c.u) > 0 && hull_.degree(c.v) > 0) try_collapse(c);
-        if (2 * hull_.triangle_count() < planted_) plant();
+        if (surface_.degree(c.u) > 0 && surface_.degree(c.v) > 0) try_collapse(c);
+        if (2 * surface_.triangle_count() < planted_) plant();
       }
-      if (hull_.triangle_count() == before) return;  // all remaining collapses are rejected
+      if (surface_.triangle_count() == before) return;  // all remaining collapses are rejected
     }
   }
 
@@ -134,10 +134,10 @@ class Decimator {
     Mesh out;
     out.name = name_;
     std::vector<VertexId> number(next_id_, kNull);
-    for (const Slot s : hull_.alive_slots()) {
+    for (const Slot s : surface_.alive_slots()) {
       VertexId corners[3];
       for (int i = 0; i < 3; ++i) {
-        const HullMesh::Point& p = hull_.point(hull_[s].v[i]);
+        const FrontMesh::Point& p = surface_.point(surface_[s].v[i]);
         if (number[p.id] == kNull) {
           number[p.id] = static_cast<VertexId>(out.vertices.size());
           out.vertices.push_back(p.x);
@@ -167,13 +167,13 @@ class Decimator {
   };
 
   void plant() {
-    tree_.emplace(hull_);
-    planted_ = hull_.triangle_count();
+    tree_.emplace(surface_);
+    planted_ = surface_.triangle_count();
   }
 
   Vector3 place(Corner u, Corner v, double& cost) const {
     const Quadric q = quadrics_[u] + quadrics_[v];
-    const Vector3 a = hull_.x(u) - origin_, b = hull_.x(v) - origin_, middle = (a + b) / 2;
+    const Vector3 a = surface_.x(u) - origin_, b = surface_.x(v) - origin_, middle = (a + b) / 2;
     const double pull = kEvenness * q.weight();
     const Vector3 w = q.lowest(middle, pull);
     cost = q.at(w) + pull * ((w - middle).squaredNorm() + (b - a).squaredNorm());
@@ -189,9 +189,9 @@ class Decimator {
   }
 
   void propose_all() {
-    for (const Slot s : hull_.alive_slots())
+    for (const Slot s : surface_.alive_slots())
       for (int i = 0; i < 3; ++i)
-        if (hull_[s].v[i] < hull_[s].v[(i + 1) % 3]) propose(hull_[s].v[i], hull_[s].v[(i + 1) % 3]);
+        if (surface_[s].v[i] < surface_[s].v[(i + 1) % 3]) propose(surface_[s].v[i], surface_[s].v[(i + 1) % 3]);
   }
 
   bool in_star(Slot s) const { return std::find(star_.begin(), star_.end(), s) != star_.end(); }
@@ -200,16 +200,16 @@ class Decimator {
   /// must be one simple loop (the link condition) with more than two edges.
   bool find_star(Corner u, Corner v) {
     star_.clear();
-    hull_.for_each_around(u, [&](Slot s, int) { star_.push_back(s); });
-    hull_.for_each_around(v, [&](Slot s, int) {
-      const auto& t = hull_[s].v;
+    surface_.for_each_around(u, [&](Slot s, int) { star_.push_back(s); });
+    surface_.for_each_around(v, [&](Slot s, int) {
+      const auto& t = surface_[s].v;
       if (t[0] != u && t[1] != u && t[2] != u) star_.push_back(s);
     });
     rim_.clear();
     for (const Slot s : star_)
       for (int i = 0; i < 3; ++i)
-        if (!in_star(hull_[s].across[i]))
-          rim_.push_back({hull_[s].v[i], hull_[s].v[(i + 1) % 3], s, hull_[s].across[i]});
+        if (!in_star(surface_[s].across[i]))
+          rim_.push_back({surface_[s].v[i], surface_[s].v[(i + 1) % 3], s, surface_[s].across[i]});
     if (rim_.size() != star_.size() - 2 || rim_.size() < 3) return false;
     for (std::size_t i = 0; i < rim_.size(); ++i) {
       if (rim_[i].from == u || rim_[i].from == v) return false;
@@ -223,12 +223,12 @@ class Decimator {
     double worst_old = 1, worst_new = 1;
     for (const Slot s : star_)
       worst_old =
-          std::min(worst_old, shape(hull_.x(hull_[s].v[0]), hull_.x(hull_[s].v[1]), hull_.x(hull_[s].v[2])));
+          std::min(worst_old, shape(surface_.x(surface_[s].v[0]), surface_.x(surface_[s].v[1]), surface_.x(surface_[s].v[2])));
     for (const RimEdge& r : rim_) {
-      const Vector3 &a = hull_.x(r.from), &b = hull_.x(r.to);
-      const auto& t = hull_[r.inside].v;
+      const Vector3 &a = surface_.x(r.from), &b = surface_.x(r.to);
+      const auto& t = surface_[r.inside].v;
       const Vector3 now = (b - a).cross(w - a);
-      const Vector3 before = (hull_.x(t[1]) - hull_.x(t[0])).cross(hull_.x(t[2]) - hull_.x(t[0]));
+      const Vector3 before = (surface_.x(t[1]) - surface_.x(t[0])).cross(surface_.x(t[2]) - surface_.x(t[0]));
       if (!(now.dot(before) > kMinCosine * now.norm() * before.norm())) return false;
       worst_new = std::min(worst_new, shape(a, b, w));
     }
@@ -236,17 +236,17 @@ class Decimator {
   }
 
   /// Proves exactly that the new fan intersects the surface only in shared vertices and edges.
-  bool is_clear(const HullMesh::Point& w) {
+  bool is_clear(const FrontMesh::Point& w) {
     fan_.clear();
-    for (const RimEdge& r : rim_) fan_.emplace_back(hull_.point(r.from), hull_.point(r.to), w);
+    for (const RimEdge& r : rim_) fan_.emplace_back(surface_.point(r.from), surface_.point(r.to), w);
     for (std::size_t i = 0; i < fan_.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j)
         if (!fan_[i].clear_of(fan_[j])) return false;
       bool clear = true;
       tree_->for_each_in(fan_[i].box, [&](Slot s) {
-        if (!clear || !hull_.alive(s) || in_star(s)) return;
-        const auto& t = hull_[s].v;
-        clear = fan_[i].clear_of({hull_.point(t[0]), hull_.point(t[1]), hull_.point(t[2])});
+        if (!clear || !surface_.alive(s) || in_star(s)) return;
+        const auto& t = surface_[s].v;
+        clear = fan_[i].clear_of({surface_.point(t[0]), surface_.point(t[1]), surface_.point(t[2])});
       });
       if (!clear) return false;
     }
@@ -256,10 +256,10 @@ class Decimator {
   void try_collapse(const Collapse& c) {
     if (!find_star(c.u, c.v)) return;
     double cost = 0;
-    const HullMesh::Point w{place(c.u, c.v, cost), next_id_};
+    const FrontMesh::Point w{place(c.u, c.v, cost), next_id_};
     if (!looks_good(w.x) || !is_clear(w)) return;
     ++next_id_;
-    const Corner added = hull_.add_point(w.x, w.id);
+    const Corner added = surface_.add_point(w.x, w.id);
     quadrics_.push_back(quadrics_[c.u] + quadrics_[c.v]);
     fill_hole(added);
     for (const RimEdge& r : rim_) propose(r.from, added);
@@ -267,29 +267,29 @@ class Decimator {
 
   /// Replaces the star by the fan, which takes over its first slots.
   void fill_hole(Corner w) {
-    const std::uint32_t component = hull_[star_[0]].component;
+    const std::uint32_t component = surface_[star_[0]].component;
     const auto slot_from = [&](Corner v) {
       for (std::size_t i = 0; i < rim_.size(); ++i)
         if (rim_[i].from == v) return star_[i];
       return NoId::kValue;
     };
-    std::vector<HullMesh::Triangle> fan(rim_.size());
+    std::vector<FrontMesh::Triangle> fan(rim_.size());
     for (std::size_t i = 0; i < rim_.size(); ++i) {
       const RimEdge& r = rim_[i];
       fan[i] = {{r.from, r.to, w}, {r.across, slot_from(r.to), kNull}, 0, component};
-      hull_.link(r.across, r.to, star_[i]);
+      surface_.link(r.across, r.to, star_[i]);
     }
     for (std::size_t i = 0; i < rim_.size(); ++i)
       for (std::size_t j = 0; j < rim_.size(); ++j)
         if (fan[i].across[1] == star_[j]) fan[j].across[2] = star_[i];
-    hull_.remove(star_);
+    surface_.remove(star_);
     for (std::size_t i = 0; i < rim_.size(); ++i) {
-      hull_.add(star_[i], fan[i]);
-      tree_->update(star_[i], box_of(hull_, star_[i]));
+      surface_.add(star_[i], fan[i]);
+      tree_->update(star_[i], box_of(surface_, star_[i]));
     }
   }
 
-  HullMesh hull_;
+  FrontMesh surface_;
   std::string name_;
   VertexId next_id_;
   Vector3 origin_;

@@ -31,9 +31,9 @@ struct Told {
     const std::array<double, 18> all = {static_cast<double>(kind),
                                         static_cast<double>(start.stage),
                                         double(start.layer),
-                                        double(start.hull_faces),
+                                        double(start.front_faces),
                                         start.max_deviation,
-                                        double(end.hull_faces),
+                                        double(end.front_faces),
                                         double(end.barred),
                                         double(end.no_patch),
                                         double(end.waiting),
@@ -109,7 +109,7 @@ std::size_t segments_or_triangles(const Mesh& mesh) {
 /// Follows what is told of one body, and checks that each part follows from what came before.
 /// Returns the number of pieces that were merged.
 std::size_t check_story(const std::vector<Told>& reported, const LrbRep& rep, std::size_t mesh_faces) {
-  std::uint32_t regions = 0, hull = static_cast<std::uint32_t>(mesh_faces), lids = 0;
+  std::uint32_t regions = 0, front = static_cast<std::uint32_t>(mesh_faces), lids = 0;
   bool open = false;
   PassStart pass;
   TriedCap last;
@@ -120,7 +120,7 @@ std::size_t check_story(const std::vector<Told>& reported, const LrbRep& rep, st
         CHECK_FALSE(open);
         open = true;
         pass = t.start;
-        CHECK(pass.hull_faces == hull);
+        CHECK(pass.front_faces == front);
         last = {};
         break;
       case Told::Kind::patch:
@@ -134,9 +134,9 @@ std::size_t check_story(const std::vector<Told>& reported, const LrbRep& rep, st
         if (last.verdict != CapVerdict::accepted) break;
         lids += last.faces;
         if (pass.stage == BuildStage::close)
-          hull = last.faces;
+          front = last.faces;
         else
-          hull = hull + last.faces - last.covered;
+          front = front + last.faces - last.covered;
         break;
       case Told::Kind::region:
         CHECK(last.verdict == CapVerdict::accepted);
@@ -151,12 +151,12 @@ std::size_t check_story(const std::vector<Told>& reported, const LrbRep& rep, st
       case Told::Kind::end_pass:
         CHECK(open);
         open = false;
-        if (pass.stage == BuildStage::fill) hull = t.end.hull_faces;  // walls of voids are no longer hull
-        CHECK(t.end.hull_faces == hull);
+        if (pass.stage == BuildStage::fill) front = t.end.front_faces;  // walls of voids are no longer hull
+        CHECK(t.end.front_faces == front);
         break;
       case Told::Kind::closed:
         CHECK(&t == &reported.back());
-        CHECK(t.number == hull);
+        CHECK(t.number == front);
         CHECK(t.number == rep.outermost_faces().size());
         break;
     }

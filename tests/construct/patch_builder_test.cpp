@@ -202,9 +202,9 @@ TEST_CASE("size and place do not matter") {
 TEST_CASE("progress is told after each pass") {
   std::vector<std::uint32_t> faces;
   BuildOptions options;
-  options.progress = [&](std::uint32_t pass, std::uint32_t hull_faces) {
+  options.progress = [&](std::uint32_t pass, std::uint32_t front_faces) {
     CHECK(pass == faces.size() + 1);
-    faces.push_back(hull_faces);
+    faces.push_back(front_faces);
   };
   const LrbRep rep = build_lrb(icosphere(3), options);
   CHECK(faces.size() == rep.layer_count());

@@ -92,13 +92,13 @@ constexpr auto words_of(CapVerdict) {
 struct PassStart {
   BuildStage stage = BuildStage::fit;
   std::uint32_t layer = 0;       ///< layer of the regions that it makes
-  std::uint32_t hull_faces = 0;  ///< number of triangles (2D: segments) of the front
+  std::uint32_t front_faces = 0;  ///< number of triangles (2D: segments) of the front
   double max_deviation = 0;      ///< maximum deviation of caps from the body, mesh units; 0: unlimited
 };
 
 /// State at the end of a pass.
 struct PassEnd {
-  std::uint32_t hull_faces = 0;
+  std::uint32_t front_faces = 0;
   /// Number of faces excluded from patches: they intersect others, are inside another component, or belong to
   /// a very large polygon or fan.
   std::uint32_t barred = 0;
@@ -161,7 +161,7 @@ struct BuildOptions {
   std::uint64_t seed = 1;  ///< seed for the order in which patches grow
   unsigned threads = 1;    ///< 0: number of hardware threads. The result does not depend on it
   /// Called after each pass with its number and the number of faces of the front. May be empty.
-  std::function<void(std::uint32_t pass, std::uint32_t hull_faces)> progress;
+  std::function<void(std::uint32_t pass, std::uint32_t front_faces)> progress;
   ConstructProbe* probe = nullptr;  ///< observer of the build, may be null. Must outlive the build
 };
 

@@ -15,7 +15,7 @@ namespace lrb::construct {
 /// A closed triangle surface with adjacency. Triangles are stored in numbered slots; an empty slot is reused
 /// when a patch is replaced by its cap. Every vertex has exactly one fan of triangles: a vertex of the mesh
 /// with several fans occurs once for each fan.
-class HullMesh {
+class FrontMesh {
  public:
   using Slot = std::uint32_t;    ///< index of a triangle
   using Corner = std::uint32_t;  ///< index of a vertex of the front
@@ -40,7 +40,7 @@ class HullMesh {
   /// Builds the surface of a mesh, which must be closed, oriented, and manifold except for vertices with
   /// several fans. Polygons are triangulated; the triangles of one polygon are in consecutive slots and have
   /// the same face.
-  explicit HullMesh(const Mesh& mesh);
+  explicit FrontMesh(const Mesh& mesh);
 
   Slot slot_count() const { return static_cast<Slot>(triangles_.size()); }
   std::uint32_t triangle_count() const { return alive_; }

@@ -1,7 +1,7 @@
 // Applies a cap to the front. make_sheet() computes the regions under the cap and the neighbours across each
 // of its edges, without changing anything; cover() then updates complex and front.
 
-#include "engine/construct/hull_update.hpp"
+#include "engine/construct/front_update.hpp"
 
 #include <algorithm>
 
@@ -13,16 +13,16 @@
 namespace lrb::construct {
 namespace {
 
-using Slot = HullMesh::Slot;
-using Corner = HullMesh::Corner;
+using Slot = FrontMesh::Slot;
+using Corner = FrontMesh::Corner;
 
 /// Computes the regions of a cap and the neighbours across its edges.
-void work_out(const HullMesh& hull, Sheet& sheet) {
+void work_out(const FrontMesh& front, Sheet& sheet) {
   // Step 1: renumber the vertices of both surfaces to 0 .. n - 1 for the local algorithms.
   std::sort(sheet.removed.begin(), sheet.removed.end());
   std::vector<Corner> corners;
   for (const Slot slot : sheet.removed)
-    corners.insert(corners.end(), hull[slot].v.begin(), hull[slot].v.end());
+    corners.insert(corners.end(), front[slot].v.begin(), front[slot].v.end());
   for (const PointTriangle& t : sheet.added) corners.insert(corners.end(), t.begin(), t.end());
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
@@ -30,7 +30,7 @@ void work_out(const HullMesh& hull, Sheet& sheet) {
   points.reserve(corners.size());
   for (const Corner c : corners)
     // New vertices do not exist in the front yet.
-    points.push_back(c < Sheet::kNewPoint ? hull.x(c) : sheet.new_points[c - Sheet::kNewPoint]);
+    points.push_back(c < Sheet::kNewPoint ? front.x(c) : sheet.new_points[c - Sheet::kNewPoint]);
   const auto local = [&](const PointTriangle& t) {
     PointTriangle out;
     for (int i = 0; i < 3; ++i)
@@ -42,8 +42,8 @@ void work_out(const HullMesh& hull, Sheet& sheet) {
   std::vector<PointTriangle> old, added;
   std::vector<std::uint32_t> old_face;
   for (const Slot slot : sheet.removed) {
-    old.push_back(local(hull[slot].v));
-    old_face.push_back(hull[slot].face);
+    old.push_back(local(front[slot].v));
+    old_face.push_back(front[slot].face);
   }
   for (const PointTriangle& t : sheet.added) added.push_back(local(t));
   sheet.pieces = split_region(old, old_face, added, points);
@@ -68,15 +68,15 @@ void notify(ConstructProbe& probe, std::uint32_t first_region, const RegionPiece
 
 }  // namespace
 
-Sheet make_sheet(const HullMesh& hull, std::span<const Slot> removed, std::span<const PointTriangle> added) {
+Sheet make_sheet(const FrontMesh& front, std::span<const Slot> removed, std::span<const PointTriangle> added) {
   Sheet sheet;
   sheet.removed.assign(removed.begin(), removed.end());
   sheet.added.assign(added.begin(), added.end());
-  work_out(hull, sheet);
+  work_out(front, sheet);
   return sheet;
 }
 
-Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap) {
+Sheet make_sheet(const FrontMesh& front, const Patch& patch, const CapSurface& cap) {
   Sheet sheet;
   // Collapses leave unused vertices: number only the used ones, in order.
   std::vector<Corner> corners(cap.vertex_count(), kNull);
@@ -103,38 +103,38 @@ Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap
   }
   for (std::size_t i = 0; i < patch.slots.size(); ++i)
     (stays[i] ? sheet.kept : sheet.removed).push_back(patch.slots[i]);
-  work_out(hull, sheet);
+  work_out(front, sheet);
   return sheet;
 }
 
-std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sheet, std::uint16_t layer,
+std::vector<Slot> cover(FrontMesh& front, ComplexBuilder& complex, const Sheet& sheet, std::uint16_t layer,
                         std::uint32_t component, ConstructProbe* probe) {
   // Step 1: assign the final numbers of vertices and regions.
-  const Corner first_new = hull.point_count();
+  const Corner first_new = front.point_count();
   for (std::size_t i = 0; i < sheet.new_points.size(); ++i)
-    hull.add_point(sheet.new_points[i], complex.add_vertex(sheet.new_points[i]),
+    front.add_point(sheet.new_points[i], complex.add_vertex(sheet.new_points[i]),
                    sheet.new_off.empty() ? 0 : sheet.new_off[i]);
   const std::vector<Slot>& removed = sheet.removed;
   const std::uint32_t first_region = complex.region_count();
   for (std::uint32_t p = 0; p < sheet.pieces.count; ++p) complex.add_region(layer);
   // Step 2: the covered faces become the floors of the regions.
   for (std::size_t i = 0; i < removed.size(); ++i)
-    complex.set_outer_cell(hull[removed[i]].face, RegionId(first_region + sheet.pieces.of_old[i]));
+    complex.set_outer_cell(front[removed[i]].face, RegionId(first_region + sheet.pieces.of_old[i]));
 
   // Step 3: new triangles reuse the slots of the covered ones, then append.
   std::vector<Slot> slots;
   for (std::size_t i = 0; i < sheet.added.size(); ++i)
     slots.push_back(i < removed.size() ? removed[i]
-                                       : hull.slot_count() + static_cast<Slot>(i - removed.size()));
+                                       : front.slot_count() + static_cast<Slot>(i - removed.size()));
   // Step 4: prepare the triangles while the covered ones still exist, because their neighbours are read.
-  std::vector<HullMesh::Triangle> triangles(sheet.added.size());
+  std::vector<FrontMesh::Triangle> triangles(sheet.added.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    HullMesh::Triangle& t = triangles[i];
+    FrontMesh::Triangle& t = triangles[i];
     VertexId ids[3];
     for (int k = 0; k < 3; ++k) {
       const Corner c = sheet.added[i][k];
       t.v[k] = c < Sheet::kNewPoint ? c : first_new + (c - Sheet::kNewPoint);
-      ids[k] = hull.point(t.v[k]).id;
+      ids[k] = front.point(t.v[k]).id;
     }
     for (int k = 0; k < 3; ++k) {
       const Sheet::Beyond& beyond = sheet.beyond[i][k];
@@ -142,9 +142,9 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
         t.across[k] = slots[beyond.added];
       } else {
         const Slot old = removed[beyond.removed];
-        t.across[k] = hull[old].across[hull.index_of(old, t.v[k])];
+        t.across[k] = front[old].across[front.index_of(old, t.v[k])];
         // The outer neighbour refers back to the new triangle.
-        hull.link(t.across[k], t.v[(k + 1) % 3], slots[i]);
+        front.link(t.across[k], t.v[(k + 1) % 3], slots[i]);
       }
     }
     t.face = complex.add_pseudo_face(ids, RegionId(first_region + sheet.pieces.of_added[i]), kOutside);
@@ -152,8 +152,8 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
     if (!sheet.added_excess.empty()) t.excess_deviation = sheet.added_excess[i];
   }
   // Step 5: replace the covered triangles by the new ones.
-  hull.remove(removed);
-  for (std::size_t i = 0; i < slots.size(); ++i) hull.add(slots[i], triangles[i]);
+  front.remove(removed);
+  for (std::size_t i = 0; i < slots.size(); ++i) front.add(slots[i], triangles[i]);
   if (probe) notify(*probe, first_region, sheet.pieces);
   return slots;
 }

@@ -1,7 +1,7 @@
 // The front as a triangle mesh with face adjacency. From a closed mesh: split polygons into triangles, pair
 // opposite edges, give each fan of triangles its own vertex, label the connected components.
 
-#include "engine/construct/hull_mesh.hpp"
+#include "engine/construct/front_mesh.hpp"
 
 #include <algorithm>
 
@@ -30,7 +30,7 @@ void triangulate(const Mesh& mesh, std::span<const VertexId> corners,
 
 }  // namespace
 
-HullMesh::HullMesh(const Mesh& mesh) : real_faces_(static_cast<std::uint32_t>(mesh.face_count())) {
+FrontMesh::FrontMesh(const Mesh& mesh) : real_faces_(static_cast<std::uint32_t>(mesh.face_count())) {
   for (VertexId v = 0; v < mesh.vertices.size(); ++v) points_.push_back({mesh.vertices[v], v});
   add_faces(mesh);
   find_neighbours();
@@ -38,7 +38,7 @@ HullMesh::HullMesh(const Mesh& mesh) : real_faces_(static_cast<std::uint32_t>(me
   find_components();
 }
 
-void HullMesh::add_faces(const Mesh& mesh) {
+void FrontMesh::add_faces(const Mesh& mesh) {
   // A pure triangle mesh needs no table of polygons.
   const bool polygons = mesh.face_vertices.size() != 3 * mesh.face_count();
   std::vector<std::array<VertexId, 3>> parts;
@@ -56,7 +56,7 @@ void HullMesh::add_faces(const Mesh& mesh) {
   alive_ = slot_count();
 }
 
-void HullMesh::find_neighbours() {
+void FrontMesh::find_neighbours() {
   // Counting sort of the directed edges by their start vertices. The counts are shifted by two entries, so
   // that filling the buckets leaves offsets[v] and offsets[v + 1] as the ends of bucket v.
   std::vector<std::uint32_t> offsets(points_.size() + 2, 0);
@@ -99,7 +99,7 @@ void HullMesh::find_neighbours() {
   }
 }
 
-void HullMesh::split_fans() {
+void FrontMesh::split_fans() {
   slot_of_.assign(points_.size(), kNull);
   degree_.assign(points_.size(), 0);
   // Each corner of each triangle is visited once: linear time.
@@ -128,7 +128,7 @@ void HullMesh::split_fans() {
   }
 }
 
-void HullMesh::find_components() {
+void FrontMesh::find_components() {
   // Flood fill over edges with an explicit stack: the recursion depth could equal the number of triangles.
   std::vector<Slot> stack;
   for (Slot first = 0; first < slot_count(); ++first) {
@@ -148,14 +148,14 @@ void HullMesh::find_components() {
   }
 }
 
-HullMesh::Corner HullMesh::add_point(const Eigen::Vector3d& x, VertexId id, double off) {
+FrontMesh::Corner FrontMesh::add_point(const Eigen::Vector3d& x, VertexId id, double off) {
   points_.push_back({x, id, off});
   slot_of_.push_back(kNull);
   degree_.push_back(0);
   return point_count() - 1;
 }
 
-void HullMesh::remove(std::span<const Slot> slots) {
+void FrontMesh::remove(std::span<const Slot> slots) {
   for (const Slot s : slots) {
     // A vertex without triangles is no longer in use.
     for (const Corner v : triangles_[s].v)
@@ -165,7 +165,7 @@ void HullMesh::remove(std::span<const Slot> slots) {
   alive_ -= static_cast<std::uint32_t>(slots.size());
 }
 
-void HullMesh::add(Slot s, const Triangle& t) {
+void FrontMesh::add(Slot s, const Triangle& t) {
   if (s == slot_count()) triangles_.emplace_back();
   triangles_[s] = t;
   for (const Corner v : t.v) {
@@ -175,7 +175,7 @@ void HullMesh::add(Slot s, const Triangle& t) {
   ++alive_;
 }
 
-std::vector<HullMesh::Slot> HullMesh::alive_slots() const {
+std::vector<FrontMesh::Slot> FrontMesh::alive_slots() const {
   std::vector<Slot> slots;
   slots.reserve(alive_);
   for (Slot s = 0; s < slot_count(); ++s)
@@ -183,7 +183,7 @@ std::vector<HullMesh::Slot> HullMesh::alive_slots() const {
   return slots;
 }
 
-double HullMesh::volume_sixfold(std::span<const Slot> slots) const {
+double FrontMesh::volume_sixfold(std::span<const Slot> slots) const {
   if (slots.empty()) return 0;
   // Divergence theorem, relative to a vertex to limit cancellation.
   const Eigen::Vector3d origin = x(triangles_[slots[0]].v[0]);

@@ -11,7 +11,7 @@
 
 #include "engine/construct/cap_surface.hpp"
 #include "engine/construct/complex_builder.hpp"
-#include "engine/construct/hull_mesh.hpp"
+#include "engine/construct/front_mesh.hpp"
 #include <lrbscope/build.hpp>
 
 namespace lrb::construct {
@@ -57,13 +57,13 @@ class EdgeIndex {
 /// caps are applied, if they share no vertex with the triangles that this one covers.
 struct Sheet {
   /// Corners from this number on are the cap's new points, in order.
-  static constexpr HullMesh::Corner kNewPoint = 1u << 31;
+  static constexpr FrontMesh::Corner kNewPoint = 1u << 31;
 
-  std::vector<HullMesh::Slot> removed;  ///< ascending, so that the triangles of one polygon are adjacent
-  std::vector<HullMesh::Slot> kept;     ///< for a patch: the triangles that its cap retains
+  std::vector<FrontMesh::Slot> removed;  ///< ascending, so that the triangles of one polygon are adjacent
+  std::vector<FrontMesh::Slot> kept;     ///< for a patch: the triangles that its cap retains
   std::vector<PointTriangle> added;     ///< corners are vertices of the front
   std::vector<Eigen::Vector3d> new_points;
-  /// (|new_points|), (|added|) their deviation from the body, see HullMesh; empty if not measured.
+  /// (|new_points|), (|added|) their deviation from the body, see FrontMesh; empty if not measured.
   std::vector<double> new_off, added_excess;
   RegionPieces pieces;
   /// (|added|) the triangle across each edge: another added one or, at the boundary, the neighbour of a
@@ -75,16 +75,16 @@ struct Sheet {
 };
 
 /// Returns the data of a cap `added` over the triangles `removed`, which must have the same boundary.
-Sheet make_sheet(const HullMesh& hull, std::span<const HullMesh::Slot> removed,
+Sheet make_sheet(const FrontMesh& front, std::span<const FrontMesh::Slot> removed,
                  std::span<const PointTriangle> added);
 
 /// Returns the data of a patch's finished cap. Triangles that the cap retains stay in the front.
-Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap);
+Sheet make_sheet(const FrontMesh& front, const Patch& patch, const CapSurface& cap);
 
 /// Replaces the removed triangles of the front by the added ones. These become pseudo faces of `component`,
 /// with regions of this layer behind them and, for now, the outside in front; the faces that they cover get
 /// these regions in front. Returns the new slots. Reports the regions to `probe`, if not null.
-std::vector<HullMesh::Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sheet,
+std::vector<FrontMesh::Slot> cover(FrontMesh& front, ComplexBuilder& complex, const Sheet& sheet,
                                   std::uint16_t layer, std::uint32_t component, ConstructProbe* probe);
 
 }  // namespace lrb::construct
