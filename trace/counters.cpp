@@ -296,7 +296,7 @@ PassSummary begin_pass(EventId id, const Event& e, std::uint32_t faces) {
   const payload::Pass pass = e.pass();
   p.stage = pass.stage;
   p.layer = pass.layer;
-  p.barred = pass.barred;
+  p.excluded = pass.excluded;
   p.max_deviation = pass.max_deviation;
   p.faces_before = p.faces_after = faces;
   return p;

@@ -71,7 +71,7 @@ void ConstructRecorder::end_pass(const PassEnd& end) {
   if (id == kNull) return;
   // The number of excluded faces is known only at the end of a pass.
   payload::Pass pass = trace_.events[pass_].pass();
-  pass.barred = end.barred;
+  pass.excluded = end.excluded;
   trace_.events[pass_] = Event::of(pass);
 }
 

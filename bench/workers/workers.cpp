@@ -18,7 +18,7 @@
 namespace lrb::workers {
 namespace {
 
-constexpr int kPatience = 3;  // number of consecutive time-outs after which a method is abandoned
+constexpr int kMaxTimeouts = 3;  // number of consecutive time-outs after which a method is abandoned
 constexpr int kBadInput = 2;  // an exit code that does not count as a crash
 
 std::string how_it_ended(int status) {
@@ -78,9 +78,9 @@ void Job::expire() {
 void Job::go_on(const WorkerFailure& mishap) {
   task_.on_mishap(next_++, mishap);
   hung_ = mishap.timed_out ? hung_ + 1 : 0;
-  if (hung_ == kPatience)
+  if (hung_ == kMaxTimeouts)
     while (next_ < task_.end)
-      task_.on_mishap(next_++, {true, "skipped: " + mishap.message + " for " + std::to_string(kPatience) +
+      task_.on_mishap(next_++, {true, "skipped: " + mishap.message + " for " + std::to_string(kMaxTimeouts) +
                                           " cases in a row"});
   start();
 }

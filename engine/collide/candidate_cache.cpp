@@ -40,7 +40,7 @@ constexpr double kForgetSlowly = 0.99;
 constexpr double kWorthWatching = 5e-7;
 /// Making a cache is given up after this many times the time of a query from scratch. Most caches that pay
 /// are made within twice that time.
-constexpr double kPatience = 3;
+constexpr double kTimeoutFactor = 3;
 /// A cache covers a motion of at most kLongestMotion of B's radius, because a longer one would contain many
 /// pairs of both bodies. No cache is made if that leaves fewer than kWorthTrying steps.
 constexpr double kLongestMotion = 1.0 / 16, kWorthTrying = 4;
@@ -125,8 +125,8 @@ std::optional<CachePolicy::Plan> CachePolicy::next(bool is_steady, double step, 
   return {};
 }
 
-double CachePolicy::patience() const {
-  return kPatience * scratch_time_;
+double CachePolicy::time_limit() const {
+  return kTimeoutFactor * scratch_time_;
 }
 
 double CachePolicy::cost() const {

@@ -48,7 +48,7 @@ class CachePolicy {
   static constexpr double kFirstSteps = 8;
 
   /// Returns the time limit for making a cache, in seconds.
-  double patience() const;
+  double time_limit() const;
 
   // Report the time of an entire query in seconds: one from scratch, one that made a cache, one answered from
   // it.

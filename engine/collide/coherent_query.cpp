@@ -350,8 +350,8 @@ bool CoherentQuery::Work::find_candidates(TreeKernel& k, Probe& probe) {
     for (std::uint32_t i = 0; i < k.out_size; ++i) cache_.add({k.out[i].a, k.out[i].b});
     if (cache_.pairs().size() > request_.pair_limit())
       return false;  // the query itself counts only pairs that intersect
-    // A cache that takes this long is unlikely to pay (kPatience).
-    if (use_ == CacheUse::as_it_pays && seconds_since(began) > policy_.patience()) return false;
+    // A cache that takes this long is unlikely to pay (kTimeoutFactor).
+    if (use_ == CacheUse::as_it_pays && seconds_since(began) > policy_.time_limit()) return false;
   }
   return true;
 }

@@ -170,7 +170,7 @@ class ChainBuilder {
     std::vector<bool> taken(front_.slot_count(), false);
     for (const Slot s : slots) {
       taken[s] = front_[s].face < frozen_.size() && frozen_[front_[s].face];
-      end.barred += taken[s];
+      end.excluded += taken[s];
     }
     // Step 3: greedy selection. An earlier cap may have taken part of the chain, or may be in the way now.
     for (const Proposal& p : find_proposals(slots, taken, goal)) {

@@ -34,7 +34,7 @@ class FrontMesh {
     Eigen::Vector3d x;
     VertexId id;
     double off = 0;  ///< deviation from the body: 0 for the mesh's own vertices, else an estimate; mesh units
-    double patience = 0;  ///< limit CapGoal::off from which a cap is tried here again
+    double retry_deviation = 0;  ///< limit CapGoal::off from which a cap is tried here again
   };
 
   /// Builds the surface of a mesh, which must be closed, oriented, and manifold except for vertices with
@@ -96,7 +96,7 @@ class FrontMesh {
   bool has_polygons() const { return !unit_first_.empty(); }
 
   Corner add_point(const Eigen::Vector3d& x, VertexId id, double off = 0);
-  void set_patience(Corner v, double off) { points_[v].patience = off; }
+  void set_retry_deviation(Corner v, double off) { points_[v].retry_deviation = off; }
 
   /// Removes triangles without closing the gap: add() must follow.
   void remove(std::span<const Slot> slots);

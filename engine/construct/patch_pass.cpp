@@ -26,7 +26,7 @@ constexpr double kFittingDepth = 10;
 
 /// Where no cap was found, the next attempt is made at a deviation limit larger by at least this factor.
 /// Smaller: more time, mostly without effect.
-constexpr double kPatience = 1.2;
+constexpr double kMinRetryFactor = 1.2;
 /// A pass of fitting caps ends when, after at least kTries patches, fewer than one in kMinCaps got a cap:
 /// the deviation limit is too small for most of the front.
 constexpr std::size_t kTries = 32, kMinCaps = 24;
@@ -45,15 +45,15 @@ PatchPass::PatchPass(FrontMesh& front, AabbTree& tree, ComplexBuilder& complex, 
 
 /// Excludes the faces that no patch may contain. Returns their number.
 std::uint32_t PatchPass::bar_faces(PatchGrower& grower) const {
-  std::uint32_t barred = 0;
+  std::uint32_t excluded = 0;
   for (Slot s = 0; s < front_.slot_count(); ++s) {
     if (!front_.alive(s)) continue;
     const bool frozen = front_[s].face < frozen_.size() && frozen_[front_[s].face];
     if (!frozen && !front_.is_crowded(s)) continue;
     grower.take(s);
-    ++barred;
+    ++excluded;
   }
-  return barred;
+  return excluded;
 }
 
 /// Returns the used vertices at which a cap may be found, in random order, and counts those that wait.
@@ -62,7 +62,7 @@ std::vector<Corner> PatchPass::find_seeds(double off, Random& random, std::uint3
   for (Corner v = 0; v < front_.point_count(); ++v) {
     if (front_.degree(v) == 0) continue;
     // A vertex waits until the limit reaches the value at which a cap may exist there.
-    if (off == 0 || front_.point(v).patience <= off)
+    if (off == 0 || front_.point(v).retry_deviation <= off)
       seeds.push_back(v);
     else
       ++waiting;
@@ -74,7 +74,7 @@ std::vector<Corner> PatchPass::find_seeds(double off, Random& random, std::uint3
 PassEnd PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t layer, Random& random) {
   PassEnd end;
   PatchGrower grower(front_, limits);
-  end.barred = bar_faces(grower);
+  end.excluded = bar_faces(grower);
   tried_.assign(front_.point_count(), false);
   seeds_ = find_seeds(goal.off, random, end.waiting);
   next_seed_ = 0;
@@ -98,7 +98,7 @@ PassEnd PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint1
       ++tried;
       found += job.has_cap;
       if (!job.has_cap)
-        for (const Corner v : job.patch.interior) front_.set_patience(v, job.next_off);
+        for (const Corner v : job.patch.interior) front_.set_retry_deviation(v, job.next_off);
       // Fitting only: too few caps are accepted at this deviation.
       if (tried >= kTries && kMinCaps * found < tried) {
         end.given_up = true;
@@ -135,7 +135,7 @@ void PatchPass::make_cap(Job& job, const CapGoal& goal, Bench& bench) const {
   // Record what the proof reads, to detect conflicts within the batch.
   bench.check.forget_seen();
   find_cap(job, goal, bench);
-  if (goal.off > 0 && !job.has_cap) job.next_off = goal.off * patience(job.patch, bench.cap, goal.worth);
+  if (goal.off > 0 && !job.has_cap) job.next_off = goal.off * retry_factor(job.patch, bench.cap, goal.worth);
   job.seen = bench.check.seen();
   if (job.has_cap) job.sheet = make_sheet(front_, job.patch, bench.cap);
 }
@@ -209,8 +209,8 @@ void PatchPass::notify(const Job& job) const {
 /// number of faces needed is about inversely proportional to the deviation, so the factor is the ratio of the
 /// rejected cap's faces to the number that would be worth it. (An attempt at each limit takes a third more
 /// time for the same fronts.)
-double PatchPass::patience(const Patch& patch, const CapSurface& cap, double worth) {
-  return std::max(kPatience, cap.alive_faces() / (worth * static_cast<double>(patch.slots.size())));
+double PatchPass::retry_factor(const Patch& patch, const CapSurface& cap, double worth) {
+  return std::max(kMinRetryFactor, cap.alive_faces() / (worth * static_cast<double>(patch.slots.size())));
 }
 
 void PatchPass::put_on(const Job& job, std::uint16_t layer, PatchGrower& grower) {

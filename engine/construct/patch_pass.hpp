@@ -76,7 +76,7 @@ class PatchPass {
   std::uint32_t bar_faces(PatchGrower& grower) const;
   std::vector<FrontMesh::Corner> find_seeds(double off, Random& random, std::uint32_t& waiting) const;
   void notify(const Job& job) const;
-  static double patience(const Patch& patch, const CapSurface& cap, double worth);
+  static double retry_factor(const Patch& patch, const CapSurface& cap, double worth);
   void put_on(const Job& job, std::uint16_t layer, PatchGrower& grower);
 
   FrontMesh& front_;

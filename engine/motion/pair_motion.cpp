@@ -250,7 +250,7 @@ constexpr double kStraight = 1;
 /// Largest deviation from rotations for which bodies are swept by the kernel for rotations.
 constexpr double kNearlyRigid = 0x1p-6;
 constexpr std::size_t kBuffer = 192;
-constexpr std::uint64_t kPatience = 64;  // node pairs for each pair of simplices that is allowed
+constexpr std::uint64_t kNodePairsPerResult = 64;  // node pairs for each pair of simplices that is allowed
 
 Matrix3d cross_matrix(const Vector3d& w) {
   Matrix3d m;
@@ -316,7 +316,7 @@ bool find_swept_pairs(QueryContext& ctx, const MovingBody& a, const MovingBody& 
                           4 * (a.rounding() + b.rounding()) + kWorldRounding * sweep.length;
   aim_at(sweep, rounding, query_unit(a.rep().tree(), b.rep().tree()), k);
   // A list beyond the limit is useless: bound the traversal as well.
-  if (most != kNoLimit) k.max_node_pairs = kPatience * most;
+  if (most != kNoLimit) k.max_node_pairs = kNodePairsPerResult * most;
   pairs.clear();
   while (!is_done(k)) {
     // Empty the kernel's buffer; give up once there are too many pairs or node pairs.

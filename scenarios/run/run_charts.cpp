@@ -82,11 +82,11 @@ report::Table pass_table(const Passes& passes) {
   if (const std::uint64_t retried = sum(&trace::PassSummary::retried); retried > 0)
     t.note += " " + render::counted(retried, "cap", "caps") +
               " intersected something at first and were rebuilt with a check of each collapse.";
-  std::uint32_t barred = 0;
-  for (const trace::PassSummary& p : passes) barred = std::max(barred, p.barred);
-  if (barred > 0)
+  std::uint32_t excluded = 0;
+  for (const trace::PassSummary& p : passes) excluded = std::max(excluded, p.excluded);
+  if (excluded > 0)
     t.note +=
-        " " + render::counted(barred, "face was", "faces were") +
+        " " + render::counted(excluded, "face was", "faces were") +
         " left to the outermost wrapper alone: they intersect others, lie within another component, or belong to a "
         "very large polygon or fan.";
   return t;

@@ -34,7 +34,7 @@ struct Told {
                                         double(start.front_faces),
                                         start.max_deviation,
                                         double(end.front_faces),
-                                        double(end.barred),
+                                        double(end.excluded),
                                         double(end.no_patch),
                                         double(end.waiting),
                                         double(end.given_up),
@@ -224,9 +224,9 @@ TEST_CASE("a thin gap refuses caps because they meet the hull, and faces that cr
 
   Listener crossing;
   build_reported(several({bumpy_sphere(3, 5), translated(bumpy_sphere(3, 6), {0.9, 0.1, 0.2})}), crossing);
-  std::uint32_t barred = 0;
-  for (const Told& t : crossing.reported) barred = std::max(barred, t.end.barred);
-  CHECK(barred > 0);
+  std::uint32_t excluded = 0;
+  for (const Told& t : crossing.reported) excluded = std::max(excluded, t.end.excluded);
+  CHECK(excluded > 0);
 }
 
 TEST_CASE("what a probe throws ends the build") {

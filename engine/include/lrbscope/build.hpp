@@ -101,7 +101,7 @@ struct PassEnd {
   std::uint32_t front_faces = 0;
   /// Number of faces excluded from patches: they intersect others, are inside another component, or belong to
   /// a very large polygon or fan.
-  std::uint32_t barred = 0;
+  std::uint32_t excluded = 0;
   /// Number of vertices at which no patch could be grown, most of them next to other patches.
   std::uint32_t no_patch = 0;
   std::uint32_t waiting = 0;  ///< vertices that are skipped until caps may have a larger deviation

@@ -113,7 +113,7 @@ struct PassSummary {
                               ///< with checks per collapse
   std::array<std::uint32_t, kWords<CapVerdict>.size()> caps{};  ///< patches by the verdict on their last cap
   std::uint32_t lids = 0, covered = 0;                  ///< faces of accepted caps, and faces under them
-  std::uint32_t barred = 0, no_patch = 0, waiting = 0;  ///< see PassEnd
+  std::uint32_t excluded = 0, no_patch = 0, waiting = 0;  ///< see PassEnd
   bool given_up = false;                                ///< see PassEnd
 
   std::uint32_t accepted() const { return caps[0]; }

@@ -208,7 +208,7 @@ struct PhaseEnd {
 struct Pass {
   BuildStage stage{};
   std::uint32_t layer = 0;
-  std::uint32_t barred = 0;  ///< as PassEnd::barred
+  std::uint32_t excluded = 0;  ///< as PassEnd::excluded
   float max_deviation = 0;   ///< as PassStart::max_deviation
 };
 struct Patch {
@@ -312,7 +312,7 @@ struct Event {
   }
   static Event of(const payload::Pass& p) {
     return {.a = p.layer,
-            .b = p.barred,
+            .b = p.excluded,
             .boundary = std::bit_cast<std::uint32_t>(p.max_deviation),
             .kind = EventKind::pass,
             .detail = static_cast<std::uint8_t>(p.stage)};
