@@ -170,8 +170,8 @@ void find_numbers(DataSet& set) {
                        "); leave these bodies out, or use another --seed");
     set.questions[k].number = {value.at("least").get<double>(), value.at("most").get<double>()};
   };
-  task.on_mishap = [&](std::uint64_t k, const workers::WorkerFailure& mishap) {
-    throw EnvironmentError(set.what + ", question " + std::to_string(k) + ": " + mishap.message);
+  task.on_failure = [&](std::uint64_t k, const workers::WorkerFailure& failure) {
+    throw EnvironmentError(set.what + ", question " + std::to_string(k) + ": " + failure.message);
   };
   workers::run_to_end(workers::Job(std::move(task)));
 }

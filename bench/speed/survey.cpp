@@ -70,15 +70,15 @@ class Survey {
       keep(record_from(nlohmann::json::parse(line)), line);
       notify(set.name + ", " + name);
     };
-    task.on_mishap = [&](std::uint64_t k, const workers::WorkerFailure& mishap) {
+    task.on_failure = [&](std::uint64_t k, const workers::WorkerFailure& failure) {
       Record r;
       r.set = set.name;
       r.method = c.method.column.name;
       r.setting = c.setting;
       r.question = k;
       r.pose_class = set.questions[k].pose_class;
-      r.outcome = mishap.timed_out ? Outcome::timed_out : Outcome::crashed;
-      r.message = mishap.message;
+      r.outcome = failure.timed_out ? Outcome::timed_out : Outcome::crashed;
+      r.message = failure.message;
       const std::string line = to_json(r).dump();
       keep(std::move(r), line);
       notify(set.name + ", " + name);

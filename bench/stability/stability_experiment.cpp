@@ -64,9 +64,9 @@ Record blank_record(const std::string& family, const std::string& method, std::u
   return r;
 }
 
-Record record_of_mishap(Record r, const workers::WorkerFailure& mishap) {
-  r.outcome = mishap.timed_out ? Outcome::timed_out : Outcome::crashed;
-  r.message = mishap.message;
+Record record_of_failure(Record r, const workers::WorkerFailure& failure) {
+  r.outcome = failure.timed_out ? Outcome::timed_out : Outcome::crashed;
+  r.message = failure.message;
   return r;
 }
 
@@ -148,10 +148,10 @@ class Experiment {
       family.expected_pairs.push_back(expected_from(line).pairs.size());
       notify(family.name + ", exact brute force");
     };
-    task.on_mishap = [this, &family](std::uint64_t k, const workers::WorkerFailure& mishap) {
+    task.on_failure = [this, &family](std::uint64_t k, const workers::WorkerFailure& failure) {
       throw EnvironmentError("exact brute force, family " + family.name + ", difficulty " +
                              std::to_string(k / o_.cases) + ", case " + std::to_string(k % o_.cases) + ": " +
-                             mishap.message + "; please report it");
+                             failure.message + "; please report it");
     };
     running_.push_back(
         {std::make_unique<workers::Job>(std::move(task)), [&family] { family.expected_done = true; }});
@@ -169,10 +169,10 @@ class Experiment {
     task.on_line = [this, &family, m](std::uint64_t, const std::string& line) {
       keep(family, m, record_from(nlohmann::json::parse(line)));
     };
-    task.on_mishap = [this, &family, m](std::uint64_t k, const workers::WorkerFailure& mishap) {
+    task.on_failure = [this, &family, m](std::uint64_t k, const workers::WorkerFailure& failure) {
       Record r = blank_record(family.name, o_.methods[m].column.name, k, o_.cases, o_.seed);
       r.expected = family.expected_pairs[k - begin_];
-      keep(family, m, record_of_mishap(r, mishap));
+      keep(family, m, record_of_failure(r, failure));
     };
     running_.push_back({std::make_unique<workers::Job>(std::move(task)), [this, &family] {
                           ++family.methods_done;
@@ -250,7 +250,7 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
     result.expected = expected_from(line).pairs;
     right.append(std::string(k, '\n') + line + "\n");
   };
-  expected.on_mishap = [&](std::uint64_t, const workers::WorkerFailure& m) {
+  expected.on_failure = [&](std::uint64_t, const workers::WorkerFailure& m) {
     throw EnvironmentError("exact brute force: " + m.message + "; please report it");
   };
   run(std::move(expected));
@@ -266,10 +266,10 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
     if (value.contains("answered_pairs"))
       result.answered = workers::PairsJson::read(value.at("answered_pairs"));
   };
-  asked.on_mishap = [&](std::uint64_t, const workers::WorkerFailure& m) {
+  asked.on_failure = [&](std::uint64_t, const workers::WorkerFailure& m) {
     Record r = blank_record(family, method.column.name, k, cases, seed);
     r.expected = result.expected.size();
-    result.record = record_of_mishap(r, m);
+    result.record = record_of_failure(r, m);
   };
   run(std::move(asked));
   return result;

@@ -75,12 +75,12 @@ void Job::expire() {
   go_on({true, text});
 }
 
-void Job::go_on(const WorkerFailure& mishap) {
-  task_.on_mishap(next_++, mishap);
-  hung_ = mishap.timed_out ? hung_ + 1 : 0;
+void Job::go_on(const WorkerFailure& failure) {
+  task_.on_failure(next_++, failure);
+  hung_ = failure.timed_out ? hung_ + 1 : 0;
   if (hung_ == kMaxTimeouts)
     while (next_ < task_.end)
-      task_.on_mishap(next_++, {true, "skipped: " + mishap.message + " for " + std::to_string(kMaxTimeouts) +
+      task_.on_failure(next_++, {true, "skipped: " + failure.message + " for " + std::to_string(kMaxTimeouts) +
                                           " cases in a row"});
   start();
 }

@@ -33,7 +33,7 @@ class Job {
     Clock::duration limit{};           ///< per case
     /// Called in order for each case, with its line or the failure in its place.
     std::function<void(std::uint64_t k, const std::string& line)> on_line;
-    std::function<void(std::uint64_t k, const WorkerFailure& mishap)> on_mishap;
+    std::function<void(std::uint64_t k, const WorkerFailure& failure)> on_failure;
   };
 
   explicit Job(Task task) : task_(std::move(task)), next_(task_.begin) { start(); }
@@ -48,7 +48,7 @@ class Job {
 
  private:
   void start();
-  void go_on(const WorkerFailure& mishap);
+  void go_on(const WorkerFailure& failure);
 
   Task task_;
   std::uint64_t next_;  ///< case of the next line
