@@ -107,7 +107,7 @@ class CornerSets {
   std::vector<FaceId> order_;
 };
 
-void sort_offenders(MeshFinding& finding, std::size_t most) {
+void sort_elements(MeshFinding& finding, std::size_t most) {
   std::sort(finding.first.begin(), finding.first.end());
   finding.first.resize(std::min(finding.first.size(), most));
 }
@@ -124,11 +124,11 @@ void note(MeshReport& report, MeshFault fault, std::uint32_t first, std::uint32_
   const std::size_t most = report.kept;
   if (kept.size() >= most && !(element < kept[most - 1])) return;
   kept.push_back(element);
-  if (kept.size() == most || kept.size() == 2 * most) sort_offenders(finding, most);
+  if (kept.size() == most || kept.size() == 2 * most) sort_elements(finding, most);
 }
 
-void sort_offenders(MeshReport& report) {
-  for (MeshFinding& finding : report.findings) sort_offenders(finding, report.kept);
+void sort_elements(MeshReport& report) {
+  for (MeshFinding& finding : report.findings) sort_elements(finding, report.kept);
 }
 
 std::vector<FaceUse> check_faces(const Mesh& mesh, MeshReport& report) {

@@ -36,7 +36,7 @@ void CheckedMesh::find_self_intersections() {
     note(found_.report, MeshFault::self_intersection, f, g);
     meets[f] = meets[g] = true;
   });
-  sort_offenders(found_.report);
+  sort_elements(found_.report);
   found_.report.self_intersections_checked = true;
   meeting_.emplace();
   for (FaceId f = 0; f < meets.size(); ++f)
@@ -150,7 +150,7 @@ MeshFindings examine(const Mesh& mesh, std::size_t kept) {
   const auto& open = found.topology.component_open;
   report.open_components = static_cast<std::uint32_t>(std::count(open.begin(), open.end(), true));
   report.sheets = static_cast<std::uint32_t>(std::count(found.sheet.begin(), found.sheet.end(), true));
-  sort_offenders(report);
+  sort_elements(report);
   return found;
 }
 
@@ -159,7 +159,7 @@ MeshReport check_mesh(const Mesh& mesh, bool self_intersections) {
   if (self_intersections) {
     find_self_intersections(
         mesh, found.use, [&](FaceId f, FaceId g) { note(found.report, MeshFault::self_intersection, f, g); });
-    sort_offenders(found.report);
+    sort_elements(found.report);
     found.report.self_intersections_checked = true;
   }
   return std::move(found.report);
@@ -190,7 +190,7 @@ constexpr std::array<FaultText, kMeshFaultCount> kFaults = {{
 }};
 
 /// The kinds of elements that the two numbers of a finding refer to.
-enum class Offender : std::uint8_t {
+enum class ElementKind : std::uint8_t {
   none,
   vertex,
   face,
@@ -202,71 +202,71 @@ enum class Offender : std::uint8_t {
 };
 
 struct Help {
-  Offender offender;
+  ElementKind kind;
   std::string_view advice;
 };
 
 Help help_for(MeshFault fault) {
   switch (fault) {
     case MeshFault::no_faces:
-      return {Offender::none, "export the mesh with its faces"};
+      return {ElementKind::none, "export the mesh with its faces"};
     case MeshFault::non_finite_vertex:
-      return {Offender::vertex, "replace it by a finite number"};
+      return {ElementKind::vertex, "replace it by a finite number"};
     case MeshFault::index_out_of_range:
-      return {Offender::face_and_vertex, "correct the index or add the vertex"};
+      return {ElementKind::face_and_vertex, "correct the index or add the vertex"};
     case MeshFault::repeated_corner:
-      return {Offender::face_and_vertex, "remove the corner or the face"};
+      return {ElementKind::face_and_vertex, "remove the corner or the face"};
     case MeshFault::zero_area_face:
-      return {Offender::face, "collapse or remove it"};
+      return {ElementKind::face, "collapse or remove it"};
     case MeshFault::non_planar_face:
-      return {Offender::face,
+      return {ElementKind::face,
               "it is read as a fan of triangles from its first corner; triangulate it to choose others"};
     case MeshFault::non_convex_face:
-      return {Offender::face, "triangulate it"};
+      return {ElementKind::face, "triangulate it"};
     case MeshFault::duplicate_face:
-      return {Offender::two_faces, "remove one of them"};
+      return {ElementKind::two_faces, "remove one of them"};
     case MeshFault::open_edge:
-      return {Offender::edge, "close the hole (lrbscope close)"};
+      return {ElementKind::edge, "close the hole (lrbscope close)"};
     case MeshFault::non_manifold_edge:
-      return {Offender::edge, "separate the parts or remove inner faces"};
+      return {ElementKind::edge, "separate the parts or remove inner faces"};
     case MeshFault::flipped_face:
-      return {Offender::two_faces, "reverse one of them: list its corners in the opposite order"};
+      return {ElementKind::two_faces, "reverse one of them: list its corners in the opposite order"};
     case MeshFault::non_manifold_vertex:
-      return {Offender::vertex, "duplicate the vertex, one copy per fan"};
+      return {ElementKind::vertex, "duplicate the vertex, one copy per fan"};
     case MeshFault::inside_out:
-      return {Offender::component, "it can be flipped without loss"};
+      return {ElementKind::component, "it can be flipped without loss"};
     case MeshFault::self_intersection:
-      return {Offender::two_faces, "inside and outside are then decided by parity"};
+      return {ElementKind::two_faces, "inside and outside are then decided by parity"};
     case MeshFault::duplicate_vertex:
-      return {Offender::two_vertices, "merge them if the surface should be connected there"};
+      return {ElementKind::two_vertices, "merge them if the surface should be connected there"};
     default:
-      return {Offender::vertex, "it can be removed without loss"};
+      return {ElementKind::vertex, "it can be removed without loss"};
   }
 }
 
-std::string shown(Offender kind, const std::array<std::uint32_t, 2>& element) {
+std::string shown(ElementKind kind, const std::array<std::uint32_t, 2>& element) {
   const std::string first = std::to_string(element[0]), second = std::to_string(element[1]);
   switch (kind) {
-    case Offender::face_and_vertex:
+    case ElementKind::face_and_vertex:
       return first + " (vertex " + second + ")";
-    case Offender::two_faces:
-    case Offender::two_vertices:
+    case ElementKind::two_faces:
+    case ElementKind::two_vertices:
       return first + " and " + second;
-    case Offender::edge:
+    case ElementKind::edge:
       return element[1] == kNull ? first : first + "-" + second;
     default:
       return first;
   }
 }
 
-std::string_view noun(Offender kind, int dim) {
+std::string_view noun(ElementKind kind, int dim) {
   switch (kind) {
-    case Offender::vertex:
-    case Offender::two_vertices:
+    case ElementKind::vertex:
+    case ElementKind::two_vertices:
       return "vertex";
-    case Offender::edge:
+    case ElementKind::edge:
       return dim == 2 ? "vertex" : "edge (by its vertices)";
-    case Offender::component:
+    case ElementKind::component:
       return "component (by its first face)";
     default:
       return dim == 2 ? "segment" : "face";
@@ -323,12 +323,12 @@ std::string line_for(const Mesh& mesh, MeshFault fault, const MeshReport& report
   std::string line = mesh.name.empty() ? "mesh" : mesh.name;
   line.append(": ").append(text_of(fault, mesh.dim));
   // Number of findings, then the first affected elements in file order.
-  if (help.offender != Offender::none) {
+  if (help.kind != ElementKind::none) {
     line.append(" (").append(std::to_string(finding.count)).append(finding.count == 1 ? " time" : " times");
-    line.append("): ").append(noun(help.offender, mesh.dim)).append(" ");
+    line.append("): ").append(noun(help.kind, mesh.dim)).append(" ");
     const std::size_t some = std::min(finding.first.size(), MeshFinding::kShown);
     for (std::size_t i = 0; i < some; ++i)
-      line.append(i == 0 ? "" : ", ").append(shown(help.offender, finding.first[i]));
+      line.append(i == 0 ? "" : ", ").append(shown(help.kind, finding.first[i]));
     if (finding.count > some) line.append(", ...");
     line.append(", counted from 0 in file order");
   }

@@ -110,7 +110,7 @@ std::optional<Image> picture_of(const FaultyMesh& given, const Look& requested) 
   Overlay overlay;
   overlay.title = std::filesystem::path(given.mesh.name).filename().string() + "  ·  " +
                   counted(kinds.size(), "finding", "findings");
-  overlay.event = "Offenders by their numbers, counted from 0 in file order";
+  overlay.event = "Labels: numbers of the affected elements, counted from 0 in file order";
   overlay.key = findings::legend(given.report, mesh.dim, look.style);
   overlay.style = look.style;
   const auto scale = static_cast<float>(look.scale());

@@ -14,7 +14,7 @@ namespace lrb::test {
 using namespace shapes;
 namespace {
 
-using Offenders = std::vector<std::array<std::uint32_t, 2>>;
+using Elements = std::vector<std::array<std::uint32_t, 2>>;
 
 Mesh mesh_of(std::vector<Eigen::Vector3d> vertices, const std::vector<std::vector<VertexId>>& faces,
              int dim = 3) {
@@ -111,14 +111,14 @@ TEST_CASE("coordinates that are not finite, indices out of range") {
   m.vertices[2].y() = std::numeric_limits<double>::quiet_NaN();
   MeshReport report = check_mesh(m);
   check_faults(report, {{MeshFault::non_finite_vertex, 1}});
-  CHECK(report[MeshFault::non_finite_vertex].first == Offenders{{2, kNull}});
+  CHECK(report[MeshFault::non_finite_vertex].first == Elements{{2, kNull}});
   CHECK_FALSE(report.queryable());
 
   m = tetrahedron();
   m.face_vertices[4] = 4;  // of face 1: its three edges lose a face
   report = check_mesh(m);
   check_faults(report, {{MeshFault::index_out_of_range, 1}, {MeshFault::open_edge, 3}});
-  CHECK(report[MeshFault::index_out_of_range].first == Offenders{{1, 4}});
+  CHECK(report[MeshFault::index_out_of_range].first == Elements{{1, 4}});
   CHECK_FALSE(report.closed);
   CHECK_FALSE(report.queryable());
 }
@@ -128,7 +128,7 @@ TEST_CASE("repeated corners and faces without area") {
   m.add_face(std::array<VertexId, 3>{1, 1, 2});  // no boundary: the body stays closed
   MeshReport report = check_mesh(m);
   check_faults(report, {{MeshFault::repeated_corner, 1}, {MeshFault::zero_area_face, 1}});
-  CHECK(report[MeshFault::repeated_corner].first == Offenders{{4, 1}});
+  CHECK(report[MeshFault::repeated_corner].first == Elements{{4, 1}});
   CHECK(report.closed);
   CHECK_FALSE(report.buildable());
   CHECK(report.queryable());
@@ -200,7 +200,7 @@ TEST_CASE("duplicate faces, whatever their first corner and orientation") {
   m.add_face(std::array<VertexId, 3>{3, 1, 0});
   m.add_face(std::array<VertexId, 3>{0, 3, 1});
   const MeshReport report = check_mesh(m, false);
-  CHECK(report[MeshFault::duplicate_face].first == Offenders{{1, 4}, {1, 5}});
+  CHECK(report[MeshFault::duplicate_face].first == Elements{{1, 4}, {1, 5}});
   CHECK(report[MeshFault::non_manifold_edge].count == 3);
   CHECK_FALSE(report.buildable());
 }
@@ -245,7 +245,7 @@ TEST_CASE("two cubes that share an edge, or a vertex") {
                                {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {2, 4}, {4, 5}, {5, 6}, {6, 2}}, 2);
   report = check_mesh(squares);
   check_faults(report, {{MeshFault::non_manifold_edge, 1}});
-  CHECK(report[MeshFault::non_manifold_edge].first == Offenders{{2, kNull}});
+  CHECK(report[MeshFault::non_manifold_edge].first == Elements{{2, kNull}});
 }
 
 TEST_CASE("faces turned against their neighbours") {

@@ -123,7 +123,7 @@ void check_vertices(const Mesh& mesh, MeshReport& report);
 void note(MeshReport& report, MeshFault fault, std::uint32_t first, std::uint32_t second = kNull);
 
 /// Sorts the recorded elements. Must be called after the last note().
-void sort_offenders(MeshReport& report);
+void sort_elements(MeshReport& report);
 
 // Adjacency of faces, and the properties derived from it: components, closedness, genus.
 
