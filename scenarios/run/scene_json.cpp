@@ -56,7 +56,7 @@ nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame) {
   }
   if (steps.empty()) return nullptr;
   return {{"step", report::packed(steps)},
-          {"wayOut", report::packed(separation_vectors)},
+          {"separationVector", report::packed(separation_vectors)},
           {"ends", report::packed(ends)},
           {"words", std::move(words)}};
 }
@@ -97,7 +97,7 @@ json colours() {
             {"lid", palette::kLidPale},
             {"ground", palette::kGroundPale},
             {"noValue", palette::kNoValuePale}}},
-          {"wayOut", css(kSeparationColour)},
+          {"separationVector", css(kSeparationColour)},
           {"scale", std::move(scale)},
           {"categories", std::move(categories)}};
 }

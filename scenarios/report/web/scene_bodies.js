@@ -39,7 +39,7 @@ class Colours {
     this.bodies = json.bodies.map(rgb);
     this.scale = json.scale.map(rgb);
     this.categories = json.categories.map(rgb);
-    for (const name of ["contact", "refining", "underTest", "selected", "ink", "wrong", "wayOut"]) this[name] = rgb(json[name]);
+    for (const name of ["contact", "refining", "underTest", "selected", "ink", "wrong", "separationVector"]) this[name] = rgb(json[name]);
     this.stops = json.scale;
     this.edgeInk = rgb(json.edgeInk);
     this.shares = json.shares; // interpolation weights: of edges towards edgeInk, of pale faces towards white
@@ -627,7 +627,7 @@ class BodyView {
       glass = { faces: [], shifts: [] },
       ends = [];
     for (const r of regions) {
-      const shift = share > 0 ? this.wayOut(r, share) : [0, 0, 0];
+      const shift = share > 0 ? this.explodeShift(r, share) : [0, 0, 0];
       for (const [list, faces] of [
         [open ? glass : solid, this.body.lids(r)],
         [solid, this.body.floor(r)],
@@ -654,7 +654,7 @@ class BodyView {
     this.group.add(...this.pieces.map((p) => p.mesh), this.pieceEdges);
   }
 
-  wayOut(region, share) {
+  explodeShift(region, share) {
     const middle = this.middleOf([...this.body.lids(region), ...this.body.floor(region)]);
     const out = middle.map((x, i) => x - this.middle[i]),
       length = Math.hypot(...out);

@@ -100,7 +100,7 @@ class WhyMarks {
     this.clear();
     if (!key) return;
     if (why.now.kind === "pair") this.addPair(why.now.found);
-    else this.addParting(why.now.found);
+    else this.addSeparation(why.now.found);
   }
 
   addPair({ meet, points }) {
@@ -119,7 +119,7 @@ class WhyMarks {
     );
   }
 
-  addParting({ plane, boxes }) {
+  addSeparation({ plane, boxes }) {
     const { colours } = this.view;
     if (boxes) {
       const places = unpack(boxes.places);
@@ -203,13 +203,13 @@ class MeasuredMarks {
   /** `measured`: as the page has it; null: not requested. */
   constructor(view, measured) {
     Object.assign(this, { view, group: new THREE.Group(), shown: null });
-    this.ofStep = new Map(); // by number: {wayOut, from, to, words}
+    this.ofStep = new Map(); // by number: {separationVector, from, to, words}
     if (measured) {
       const ends = unpack(measured.ends),
-        wayOut = unpack(measured.wayOut),
+        separationVector = unpack(measured.separationVector),
         at = (i) => new THREE.Vector3(...ends.subarray(i, i + 3));
       unpack(measured.step).forEach((step, i) =>
-        this.ofStep.set(step, { wayOut: wayOut[i] === 1, from: at(6 * i), to: at(6 * i + 3), words: measured.words[i] }),
+        this.ofStep.set(step, { separationVector: separationVector[i] === 1, from: at(6 * i), to: at(6 * i + 3), words: measured.words[i] }),
       );
     }
     view.stage.add(this.group);
@@ -223,12 +223,12 @@ class MeasuredMarks {
     this.shown = now;
     for (const object of this.group.children.slice()) discard(this.group, object);
     if (now) {
-      const colour = now.wayOut ? colours.wayOut : colours.ink;
-      this.addLines(now.wayOut ? arrowOf(now.from, now.to, events.dim) : [now.from, now.to], colour);
+      const colour = now.separationVector ? colours.separationVector : colours.ink;
+      this.addLines(now.separationVector ? arrowOf(now.from, now.to, events.dim) : [now.from, now.to], colour);
     }
-    const wayOut = [colours.wayOut, "B leaves A this way"],
+    const separationVector = [colours.separationVector, "B leaves A this way"],
       gap = [colours.ink, "between the nearest points of the bodies", WHITE];
-    legend.also(now ? [now.wayOut ? wayOut : gap] : [], "measured");
+    legend.also(now ? [now.separationVector ? separationVector : gap] : [], "measured");
   }
 
   /** A pale line under each, so that they are visible on bodies of any colour. */

@@ -536,17 +536,17 @@ class WhyPanel {
     const { events, selection, explanations } = this,
       step = events.stepNumber(selection.event),
       simplices = this.asked(),
-      parting = simplices ? null : explanations.step(step);
+      separation = simplices ? null : explanations.step(step);
     this.row = -1;
-    const found = simplices ? explanations.pair(step, simplices) : parting;
+    const found = simplices ? explanations.pair(step, simplices) : separation;
     this.now = found && {
       kind: simplices ? "pair" : "step",
       key: `${step} ${simplices || ""}`,
       found,
     };
-    byId("why").hidden = !simplices && !parting;
+    byId("why").hidden = !simplices && !separation;
     if (simplices) this.showPair(simplices, found);
-    else if (parting) this.showStep(parting);
+    else if (separation) this.showStep(separation);
     this.command = explanations.commandFor(events.stepNumber(selection.event), simplices);
     byId("why-command").textContent = this.command;
     byId("why-ask").hidden = !this.command;
