@@ -21,7 +21,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "bench/programs/asked_cases.hpp"
+#include "bench/programs/case_queue.hpp"
 #include "bench/rivals/method.hpp"
 #include "bench/speed/bench_runner.hpp"
 #include "bench/stability/outcome_grid.hpp"
@@ -35,7 +35,7 @@ namespace {
 using nlohmann::ordered_json;
 
 struct WorkerOptions {
-  CaseQueue asked;
+  CaseQueue queue;
   bool pairs = false;
   std::string questions;
   std::optional<double> setting;
@@ -45,20 +45,20 @@ void list_methods(const std::vector<methods::MethodEntry>& entries, Lines& out) 
   for (const methods::MethodEntry& e : entries) out.say(dump(workers::to_json(e.info)));
 }
 
-void say_expected(const CaseQueue& asked, Lines& out) {
-  const cases::Family& family = family_of(asked);
-  for (std::uint64_t k = asked.begin; k < asked.end; ++k)
-    out.say(stability::to_line(stability::expected_answer(make(family, asked, k))));
+void say_expected(const CaseQueue& queue, Lines& out) {
+  const cases::Family& family = family_of(queue);
+  for (std::uint64_t k = queue.begin; k < queue.end; ++k)
+    out.say(stability::to_line(stability::expected_answer(make(family, queue, k))));
 }
 
 void say_records(const WorkerOptions& o, const methods::MethodEntry& entry, Lines& out) {
-  const cases::Family& family = family_of(o.asked);
+  const cases::Family& family = family_of(o.queue);
   stability::StabilityRunner runner(entry);
-  KnownAnswers known(o.asked);
-  for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k) {
-    const cases::Case c = make(family, o.asked, k);
+  KnownAnswers known(o.queue);
+  for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k) {
+    const cases::Case c = make(family, o.queue, k);
     const std::optional<stability::RightAnswer> read = known.next();
-    stability::Record record = record_of(o.asked, k);
+    stability::Record record = record_of(o.queue, k);
     runner.ask(family, c, read ? *read : stability::expected_answer(c), record);
     ordered_json value = stability::to_json(record);
     if (o.pairs && runner.pairs()) value["answered_pairs"] = workers::PairsJson::write(*runner.pairs());
@@ -67,13 +67,13 @@ void say_records(const WorkerOptions& o, const methods::MethodEntry& entry, Line
 }
 
 void work(const WorkerOptions& o, const std::vector<methods::MethodEntry>& entries, Lines& out) {
-  if (o.asked.list) return list_methods(entries, out);
-  if (o.asked.method.empty()) return say_expected(o.asked, out);
-  const methods::MethodEntry& entry = methods::find_method(entries, o.asked.method);
+  if (o.queue.list) return list_methods(entries, out);
+  if (o.queue.method.empty()) return say_expected(o.queue, out);
+  const methods::MethodEntry& entry = methods::find_method(entries, o.queue.method);
   if (o.questions.empty()) return say_records(o, entry, out);
   const bench::DataSet set = bench::read_data_set(o.questions);
   bench::BenchRunner runner(entry, o.setting, set, o.pairs);
-  for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k) out.say(dump(to_json(runner.ask(k))));
+  for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k) out.say(dump(to_json(runner.ask(k))));
 }
 
 int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries) {
@@ -81,7 +81,7 @@ int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries
     for (methods::MethodEntry& fake : fake_methods(entries)) entries.push_back(std::move(fake));
   WorkerOptions o;
   CLI::App app("Runs cases on collision engines, for lrbscope stability; see bench/programs/methods.cpp.");
-  add_options(app, o.asked);
+  add_options(app, o.queue);
   app.add_flag("--pairs", o.pairs);
   app.add_option("--questions", o.questions);
   app.add_option("--setting", o.setting);

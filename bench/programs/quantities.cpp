@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "bench/programs/asked_cases.hpp"
+#include "bench/programs/case_queue.hpp"
 #include "bench/quantities/number_method.hpp"
 #include "bench/rivals/triangles.hpp"
 #include "bench/speed/bench_runner.hpp"
@@ -18,7 +18,7 @@ namespace lrb::worker_programs {
 namespace {
 
 using bench::DataSet, bench::Question;
-using stability::Asked, stability::NumberAnswer, stability::NumberMethod;
+using stability::NumberQuery, stability::NumberAnswer, stability::NumberMethod;
 
 const Question& question_of(const DataSet& set, std::uint64_t k) {
   if (k >= set.questions.size())
@@ -27,7 +27,7 @@ const Question& question_of(const DataSet& set, std::uint64_t k) {
   return set.questions[k];
 }
 
-Asked asked_of(const DataSet& set, const Question& q) {
+NumberQuery query_of(const DataSet& set, const Question& q) {
   const auto placed = [&](std::size_t body, const Pose& pose) {
     return methods::at_pose(load_lrb(set.folder + "/" + set.bodies.at(body).file), pose);
   };
@@ -51,9 +51,9 @@ bench::Record bench_record(const NumberMethod& method, std::optional<double> set
   r.question = question;
   r.pose_class = q.pose_class;
   workers::note_failures(r, [&] {
-    const Asked asked = asked_of(set, q);
+    const NumberQuery query = query_of(set, q);
     bench::QueryTimes times;
-    const NumberAnswer answer = bench::ask_again_and_again([&] { return method.ask(asked, setting); }, times);
+    const NumberAnswer answer = bench::ask_again_and_again([&] { return method.ask(query, setting); }, times);
     r.all.cold_us = times.cold_us;
     r.all.hot_us = times.hot_us;
     r.all.lower = answer.lower;
@@ -70,7 +70,7 @@ nlohmann::ordered_json known_number(const NumberMethod& method, const DataSet& s
   const Question& q = question_of(set, question);
   try {
     const NumberAnswer answer = method.ask(
-        asked_of(set, q), settings.empty() ? std::nullopt : std::optional<double>(settings.back()));
+        query_of(set, q), settings.empty() ? std::nullopt : std::optional<double>(settings.back()));
     return {{"least", answer.lower}, {"most", answer.upper}};
   } catch (const InputError& e) {
     return {{"refusal", e.what()}};
@@ -80,7 +80,7 @@ nlohmann::ordered_json known_number(const NumberMethod& method, const DataSet& s
 using namespace lrb::stability;
 
 struct Options {
-  CaseQueue asked;
+  CaseQueue queue;
   std::string quantity = "distance", questions;
   std::optional<double> setting;
 };
@@ -98,13 +98,13 @@ NumberMethod method_of(Quantity quantity, const std::string& name) {
 }
 
 void say_records(const Options& o, Lines& out) {
-  const cases::Family& family = family_of(o.asked);
-  const NumberMethod method = method_of(quantity_of(o), o.asked.method);
-  KnownAnswers known(o.asked);
-  for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k) {
-    const cases::Case c = make(family, o.asked, k);
+  const cases::Family& family = family_of(o.queue);
+  const NumberMethod method = method_of(quantity_of(o), o.queue.method);
+  KnownAnswers known(o.queue);
+  for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k) {
+    const cases::Case c = make(family, o.queue, k);
     const std::optional<stability::RightAnswer> read = known.next();
-    Record record = record_of(o.asked, k);
+    Record record = record_of(o.queue, k);
     ask_number(method, c, read ? *read : true_number(method.quantity, c), record);
     out.say(dump(to_json(record)));
   }
@@ -113,30 +113,30 @@ void say_records(const Options& o, Lines& out) {
 /// Answers a data set's queries; without a method, with lrbscope at its finest setting.
 void answer_questions(const Options& o, Lines& out) {
   const bench::DataSet set = bench::read_data_set(o.questions);
-  const bool judges = o.asked.method.empty();
-  const NumberMethod method = method_of(set.quantity, judges ? "ours" : o.asked.method);
-  for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k)
+  const bool judges = o.queue.method.empty();
+  const NumberMethod method = method_of(set.quantity, judges ? "ours" : o.queue.method);
+  for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k)
     out.say(dump(judges ? known_number(method, set, k) : to_json(bench_record(method, o.setting, set, k))));
 }
 
 void work(const Options& o, Lines& out) {
   if (!o.questions.empty()) return answer_questions(o, out);
-  if (o.asked.list) {
+  if (o.queue.list) {
     for (const NumberMethod& m : number_methods())
       if (m.quantity == quantity_of(o)) out.say(dump(workers::to_json(m.info)));
-  } else if (!o.asked.method.empty()) {
+  } else if (!o.queue.method.empty()) {
     say_records(o, out);
   } else {
-    const cases::Family& family = family_of(o.asked);
-    for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k)
-      out.say(to_line(true_number(quantity_of(o), make(family, o.asked, k))));
+    const cases::Family& family = family_of(o.queue);
+    for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k)
+      out.say(to_line(true_number(quantity_of(o), make(family, o.queue, k))));
   }
 }
 
 int run(int argc, char** argv) {
   Options o;
   CLI::App app("Runs cases on methods that return a number, for lrbscope stability.");
-  add_options(app, o.asked);
+  add_options(app, o.queue);
   app.add_option("--quantity", o.quantity);
   app.add_option("--questions", o.questions);
   app.add_option("--setting", o.setting);

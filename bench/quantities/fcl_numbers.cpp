@@ -41,7 +41,7 @@ fcl::Transform3d moved(const Eigen::Vector3d& by) {
 /// FCL rejects a pair only if it is within both the absolute and the relative error. The relative error is at
 /// most 1.
 template <class Volume>
-NumberAnswer fcl_distance(const Asked& q, Setting tolerance) {
+NumberAnswer fcl_distance(const NumberQuery& q, Setting tolerance) {
   const auto a = model_of<Volume>(q.a), b = model_of<Volume>(q.b);
   fcl::DistanceRequestd request;
   request.abs_err = tolerance.value_or(0) * q.size;
@@ -56,7 +56,7 @@ NumberAnswer fcl_distance(const Asked& q, Setting tolerance) {
 /// B is FCL's first body, because its conservative advancement ignores a second body that approaches. The
 /// polynomial solver uses vertices without their poses, so B's vertices are those at the start of the motion.
 template <class Volume>
-NumberAnswer fcl_first_contact(const Asked& q, fcl::CCDSolverType solver, std::size_t iterations) {
+NumberAnswer fcl_first_contact(const NumberQuery& q, fcl::CCDSolverType solver, std::size_t iterations) {
   const bool in_place = solver == fcl::CCDC_POLYNOMIAL_SOLVER;
   const Eigen::Vector3d none(0, 0, 0), begin = in_place ? q.from : none;
   const auto a = model_of<Volume>(q.a), b = model_of<Volume>(q.b, begin);
@@ -71,7 +71,7 @@ NumberAnswer fcl_first_contact(const Asked& q, fcl::CCDSolverType solver, std::s
   return {t, t, watch.microseconds()};
 }
 
-NumberAnswer fcl_depth(const Asked& q, Setting) {
+NumberAnswer fcl_depth(const NumberQuery& q, Setting) {
   const auto a = model_of<fcl::OBBRSSd>(q.a), b = model_of<fcl::OBBRSSd>(q.b);
   const fcl::CollisionRequestd request(std::size_t{1} << 20, true);
   fcl::CollisionResultd result;
@@ -84,7 +84,7 @@ NumberAnswer fcl_depth(const Asked& q, Setting) {
 }
 
 NumberMethod fcl_method(const char* name, const char* what, const char* remark, Quantity quantity,
-                        std::function<NumberAnswer(const Asked&, Setting)> ask, methods::MethodStyle style) {
+                        std::function<NumberAnswer(const NumberQuery&, Setting)> ask, methods::MethodStyle style) {
   NumberMethod m;
   m.info.name = name;
   m.info.title = std::string("FCL " FCL_VERSION ", ") + what;
@@ -99,7 +99,7 @@ NumberMethod fcl_sweep(const char* name, const char* what, const char* remark, f
                        std::size_t iterations, methods::MethodStyle style) {
   return fcl_method(
       name, what, remark, Quantity::first_contact,
-      [=](const Asked& q, Setting steps) {
+      [=](const NumberQuery& q, Setting steps) {
         return fcl_first_contact<fcl::OBBRSSd>(q, solver,
                                                steps ? static_cast<std::size_t>(*steps) : iterations);
       },

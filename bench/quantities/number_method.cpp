@@ -58,7 +58,7 @@ void ask_number(const NumberMethod& method, const cases::Case& c, const RightAns
                 Record& record) {
   workers::note_failures(record, [&] {
     if (!expected.rejection.empty()) throw InputError("skipped: " + expected.rejection);
-    const Asked question = asked(c);
+    const NumberQuery question = query_of(c);
     const NumberAnswer answer = method.ask(question, std::nullopt);
     record.microseconds = answer.microseconds;
     judge_number(record, method, answer, expected, question.size);

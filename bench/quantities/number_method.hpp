@@ -25,7 +25,7 @@ struct NumberMethod {
   Quantity quantity = Quantity::distance;
   bool proves = false;  ///< its interval must contain the number
   /// Throws InputError if it has no answer, which counts as a rejection.
-  std::function<NumberAnswer(const Asked&, Setting)> ask;
+  std::function<NumberAnswer(const NumberQuery&, Setting)> ask;
 };
 
 /// Returns a method with a parameter named `parameter`, and its settings from coarse to fine.

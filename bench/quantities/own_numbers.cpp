@@ -13,11 +13,11 @@ namespace {
 
 using methods::Stopwatch;
 
-Motion motion_of(const Asked& q) {
+Motion motion_of(const NumberQuery& q) {
   return Motion::linear(Pose::translation(q.from), q.to);
 }
 
-NumberAnswer answer_of(const Asked& q, DistanceRequest request) {
+NumberAnswer answer_of(const NumberQuery& q, DistanceRequest request) {
   request.relation = false;
   const Stopwatch watch;
   const DistanceResult r = distance(q.a, Pose{}, q.b, Pose{}, request);
@@ -26,25 +26,25 @@ NumberAnswer answer_of(const Asked& q, DistanceRequest request) {
   return {r.lower, std::min(r.upper, std::numeric_limits<double>::max()), us};
 }
 
-NumberAnswer our_distance(const Asked& q, Setting tolerance) {
+NumberAnswer our_distance(const NumberQuery& q, Setting tolerance) {
   DistanceRequest request;
   request.tolerance = tolerance.value_or(0) * q.size;
   return answer_of(q, request);
 }
 
-NumberAnswer distance_in_steps(const Asked& q, Setting steps) {
+NumberAnswer distance_in_steps(const NumberQuery& q, Setting steps) {
   DistanceRequest request;
   request.max_steps = static_cast<std::uint64_t>(steps.value_or(100));
   return answer_of(q, request);
 }
 
-NumberAnswer within(const Asked& q, Setting share) {
+NumberAnswer within(const NumberQuery& q, Setting share) {
   DistanceRequest request;
   request.within = share.value_or(0.05) * q.size;
   return answer_of(q, request);
 }
 
-NumberAnswer our_first_contact(const Asked& q, Setting tolerance) {
+NumberAnswer our_first_contact(const NumberQuery& q, Setting tolerance) {
   FirstContactRequest request;
   request.relation = false;
   if (tolerance) request.tolerance = *tolerance;
@@ -57,7 +57,7 @@ NumberAnswer our_first_contact(const Asked& q, Setting tolerance) {
   return {r.t0, r.t1, us};
 }
 
-NumberAnswer our_depth(const Asked& q, Setting) {
+NumberAnswer our_depth(const NumberQuery& q, Setting) {
   ClashRequest request;
   request.volume = false;
   const Stopwatch watch;
@@ -68,7 +68,7 @@ NumberAnswer our_depth(const Asked& q, Setting) {
 }
 
 /// Runs the exact query at n + 1 equally spaced times.
-NumberAnswer sampled(const Asked& q, int n) {
+NumberAnswer sampled(const NumberQuery& q, int n) {
   const Motion motion = motion_of(q);
   CollideRequest any;
   any.mode = Mode::any_pair;
@@ -80,7 +80,7 @@ NumberAnswer sampled(const Asked& q, int n) {
   return {kNever, kNever, watch.microseconds()};
 }
 
-NumberMethod ours(Quantity quantity, const char* title, NumberAnswer (*ask)(const Asked&, Setting)) {
+NumberMethod ours(Quantity quantity, const char* title, NumberAnswer (*ask)(const NumberQuery&, Setting)) {
   NumberMethod m;
   m.info.name = "ours";
   m.info.title = title;
@@ -95,7 +95,7 @@ NumberMethod ours(Quantity quantity, const char* title, NumberAnswer (*ask)(cons
 
 /// Returns a method of lrbscope that computes less than the narrowest interval. For charts only.
 NumberMethod less(const char* name, const char* title, const char* remark, methods::MethodStyle style,
-                  NumberAnswer (*ask)(const Asked&, Setting)) {
+                  NumberAnswer (*ask)(const NumberQuery&, Setting)) {
   NumberMethod m = ours(Quantity::distance, title, ask);
   m.info.name = name;
   m.info.remark = remark;
@@ -115,7 +115,7 @@ NumberMethod sampled_method(int n) {
   m.info.traits.set(methods::Trait::hard_cases, n > kTooFewForHardCases);
   m.info.style = {"exact query at 10, 100, 1000 times", "#6b6b6b", "crossRot"};
   m.quantity = Quantity::first_contact;
-  m.ask = [n](const Asked& q, Setting) { return sampled(q, n); };
+  m.ask = [n](const NumberQuery& q, Setting) { return sampled(q, n); };
   return m;
 }
 

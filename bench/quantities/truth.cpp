@@ -29,7 +29,7 @@ Vector3d rounded(const Vector3d& x) {
 
 }  // namespace
 
-std::string why_not_asked(Quantity quantity, const cases::Case& c) {
+std::string why_unsupported(Quantity quantity, const cases::Case& c) {
   if (c.a->dim() == 2) return "2D bodies";
   const std::uint32_t most = quantity == Quantity::depth ? kMaxFacesForDepth : kMaxFaces;
   for (const auto& [rep, pose] : {std::pair{c.a, c.pose_a}, std::pair{c.b, c.pose_b}}) {
@@ -43,8 +43,8 @@ std::string why_not_asked(Quantity quantity, const cases::Case& c) {
   return "";
 }
 
-Asked asked(const cases::Case& c) {
-  Asked out{methods::at_pose(*c.a, c.pose_a), methods::at_pose(*c.b, c.pose_b)};
+NumberQuery query_of(const cases::Case& c) {
+  NumberQuery out{methods::at_pose(*c.a, c.pose_a), methods::at_pose(*c.b, c.pose_b)};
   const Eigen::AlignedBox3d box_a = shapes::box_of(out.a), box_b = shapes::box_of(out.b);
   out.size = std::max(box_a.diagonal().norm(), box_b.diagonal().norm());
   // Not quite between the centres, because the oracle does not support faces that slide along each other.
@@ -121,7 +121,7 @@ oracle::Corners corners_of(const LrbRep& rep, std::size_t t) {
 }
 
 /// Returns the squared distance. Pairs are processed in ascending order of the distance of their boxes.
-Rational distance_sq(const Asked& q) {
+Rational distance_sq(const NumberQuery& q) {
   const Triangles a(q.a), b(q.b);
   std::vector<RankedPair> pairs;
   for (std::size_t i = 0; i < a.boxes.size(); ++i)
@@ -156,7 +156,7 @@ double box_time(const AlignedBox3d& a, const AlignedBox3d& b, const Vector3d& fr
   return begin > end ? kNever : begin;
 }
 
-std::optional<Rational> first_time(const Asked& q) {
+std::optional<Rational> first_time(const NumberQuery& q) {
   const Triangles a(q.a), b(q.b);
   const RationalPoint from = rational(q.from), to = rational(q.to), way = oracle::minus(to, from);
   std::vector<RankedPair> pairs;
@@ -209,7 +209,7 @@ Rational separation_vector_squared(const Triangles& a, const Triangles& b, const
 }
 
 /// Returns the squared depth of two convex bodies, or nullopt if one is not convex.
-std::optional<Rational> depth_sq(const Asked& q) {
+std::optional<Rational> depth_sq(const NumberQuery& q) {
   const Triangles a(q.a), b(q.b);
   const ConvexParts of_a(a), of_b(b);
   if (!of_a.convex || !of_b.convex) return std::nullopt;
@@ -236,9 +236,9 @@ std::optional<Rational> depth_sq(const Asked& q) {
 
 RightAnswer true_number(Quantity quantity, const cases::Case& c) {
   RightAnswer e;
-  e.rejection = why_not_asked(quantity, c);
+  e.rejection = why_unsupported(quantity, c);
   if (!e.rejection.empty()) return e;
-  const Asked q = asked(c);
+  const NumberQuery q = query_of(c);
   if (quantity == Quantity::distance) {
     const bool meet = !brute_force(q.a, Pose{}, q.b, Pose{}).pairs.empty();
     set_root(e, meet ? Rational(0) : distance_sq(q));

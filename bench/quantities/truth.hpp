@@ -16,7 +16,7 @@ namespace lrb::stability {
 
 using methods::Quantity;
 
-struct Asked {
+struct NumberQuery {
   LrbRep a, b;
   /// Translation of B at t = 0 and t = 1. Exactly zero at t = 3/4; methods may round.
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
@@ -25,11 +25,11 @@ struct Asked {
 
 /// Returns why a quantity is not queried for a case: 2D bodies, coordinates that are not doubles, too many
 /// faces for rational arithmetic. Empty if it is queried.
-std::string why_not_asked(Quantity quantity, const cases::Case& c);
+std::string why_unsupported(Quantity quantity, const cases::Case& c);
 
 /// Returns the query. B approaches from its side of A, starting at a distance at which the bodies are
 /// separate.
-Asked asked(const cases::Case& c);
+NumberQuery query_of(const cases::Case& c);
 
 using methods::kNever;
 

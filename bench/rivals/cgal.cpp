@@ -51,7 +51,7 @@ std::vector<Point> points_of(const Triangles& t) {
 
 /// Runs CGAL, and turns a violated precondition into a rejection.
 template <class Run>
-auto asked(const Run& run) {
+auto run_cgal(const Run& run) {
   try {
     return run();
   } catch (const CGAL::Failure_exception& e) {
@@ -87,7 +87,7 @@ class Rigid : public Method {
     namespace pmp = CGAL::Polygon_mesh_processing;
     if (!pmp::is_polygon_soup_a_polygon_mesh(faces))
       throw InputError("not manifold, or not oriented: CGAL's Surface_mesh cannot represent it");
-    return asked([&] {
+    return run_cgal([&] {
       auto mesh = std::make_unique<SurfaceMesh>();
       pmp::polygon_soup_to_polygon_mesh(points_of(t), faces, *mesh);
       return std::make_unique<MeshBody>(set_, std::move(mesh));
@@ -98,7 +98,7 @@ class Rigid : public Method {
                      Mode) override {
     const std::size_t id_a = static_cast<const MeshBody&>(a).id;
     const std::array<std::size_t, 1> id_b = {static_cast<const MeshBody&>(b).id};
-    return asked([&] {
+    return run_cgal([&] {
       const Stopwatch watch;
       set_->detection.set_transformation(id_a, transform(pose_a));
       set_->detection.set_transformation(id_b[0], transform(pose_b));
@@ -127,7 +127,7 @@ class Pairs : public Method {
     const std::vector<Point> points = points_of(t);
     auto body = std::make_unique<TreeBody>();
     for (const auto& c : t.triangles) body->triangles.emplace_back(points[c[0]], points[c[1]], points[c[2]]);
-    asked([&] {
+    run_cgal([&] {
       body->tree.insert(body->triangles.cbegin(), body->triangles.cend());
       body->tree.build();
       return 0;
@@ -140,7 +140,7 @@ class Pairs : public Method {
                      Mode mode) override {
     const auto& body_a = static_cast<const TreeBody&>(a);
     const auto& body_b = static_cast<const TreeBody&>(b);
-    return asked([&] {
+    return run_cgal([&] {
       const Stopwatch watch;
       const auto relative = transform(pose_b).inverse() * transform(pose_a);
       MethodAnswer answer;

@@ -167,8 +167,8 @@ std::string means_of(const PeerTable& t) {
     for (const auto& [mode, apart] : {std::pair{Mode::all_pairs, false}, std::pair{Mode::first_pair, false},
                                       std::pair{Mode::all_pairs, true}})
       for (const bool cold : {false, true}) {
-        const Mode asked = apart && !m.pairs ? Mode::first_pair : mode;
-        const double mean = mean_ratio(t, m.name, asked, apart, cold);
+        const Mode compared = apart && !m.pairs ? Mode::first_pair : mode;
+        const double mean = mean_ratio(t, m.name, compared, apart, cold);
         out += padded(mean > 0 ? text("%.2f", mean) : "-", kNumber);
       }
     std::uint64_t missed = 0, extra = 0;

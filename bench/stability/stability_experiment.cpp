@@ -254,24 +254,24 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
     throw EnvironmentError("exact brute force: " + m.message + "; please report it");
   };
   run(std::move(expected));
-  workers::Job::Task asked;
-  asked.command = command_of(method.program, quantity, family, cases, seed);
-  asked.command.insert(asked.command.end(),
+  workers::Job::Task task;
+  task.command = command_of(method.program, quantity, family, cases, seed);
+  task.command.insert(task.command.end(),
                        {"--method", method.column.name, "--expected", kGivenFile, "--pairs"});
-  asked.given = right.descriptor();
-  asked.limit = seconds(timeout);
-  asked.on_line = [&](std::uint64_t, const std::string& line) {
+  task.given = right.descriptor();
+  task.limit = seconds(timeout);
+  task.on_line = [&](std::uint64_t, const std::string& line) {
     const auto value = nlohmann::json::parse(line);
     result.record = record_from(value);
     if (value.contains("answered_pairs"))
       result.answered = workers::PairsJson::read(value.at("answered_pairs"));
   };
-  asked.on_failure = [&](std::uint64_t, const workers::WorkerFailure& m) {
+  task.on_failure = [&](std::uint64_t, const workers::WorkerFailure& m) {
     Record r = blank_record(family, method.column.name, k, cases, seed);
     r.expected = result.expected.size();
     result.record = record_of_failure(r, m);
   };
-  run(std::move(asked));
+  run(std::move(task));
   return result;
 }
 

@@ -232,7 +232,7 @@ std::optional<DepthFinder::Common> DepthFinder::common_sets(const Vector3d& shif
 void DepthFinder::notify(double least) {
   if (adapter_ == nullptr) return;
   const double upper = least < kInfinity ? bodies_.frame.length_to_world(least) : kInfinity;
-  adapter_->notify(separation_search_.asked() + grown_, reported_lower_, upper);
+  adapter_->notify(separation_search_.query_count() + grown_, reported_lower_, upper);
 }
 
 /// Expands the Minkowski difference and reports its bounds: lower bounds from sets inside the bodies, upper
@@ -377,7 +377,7 @@ DepthFinder::Depth DepthFinder::depth() {
   }
   // The answer's bounds, even if the unproven ones reported before were narrower.
   if (adapter_ != nullptr)
-    adapter_->settle(separation_search_.asked() + grown_, out.length.lower, out.length.upper);
+    adapter_->settle(separation_search_.query_count() + grown_, out.length.lower, out.length.upper);
   return out;
 }
 

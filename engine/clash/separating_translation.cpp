@@ -34,7 +34,7 @@ bool SeparationSearch::is_separated(const Vector3d& n, double s) {
   const Moved m = moved(n, s);
   // Coordinates could overflow. NaN is rejected as well.
   if (!m.pose.t.allFinite() || !(reach_ + m.by.cwiseAbs().maxCoeff() < kLargestMoved)) return false;
-  ++asked_;
+  ++query_count_;
   // One intersecting pair is enough to reject a translation.
   CollideRequest request;
   request.mode = Mode::any_pair;
@@ -52,7 +52,7 @@ bool SeparationSearch::is_proved(const Moved& m, double more) {
   if (!m.pose.t.allFinite() || !(reach_ + m.by.cwiseAbs().maxCoeff() < kLargestMoved)) return false;
   // 0x1p-51 is 4 u, from the derivation above; `more` is the caller's own error.
   const double rounding = 0x1p-51 * (reach_ + m.by.norm()) + more + kWorldUnderflow;
-  ++asked_;
+  ++query_count_;
   DistanceRequest request;
   // The distance query decides whether the bodies are farther apart than the rounding.
   request.within = rounding;

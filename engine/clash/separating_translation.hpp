@@ -33,7 +33,7 @@ class SeparationSearch {
   /// separation.
   double least_separation(const Vector3d& n, double most, int samples);
   /// Returns the number of queries.
-  std::uint64_t asked() const { return asked_; }
+  std::uint64_t query_count() const { return query_count_; }
 
  private:
   struct Moved {
@@ -47,7 +47,7 @@ class SeparationSearch {
   const Pose &pose_a_, &pose_b_;
   const UnitFrame& frame_;
   double reach_ = 0;         ///< the largest world coordinate of B
-  std::uint64_t asked_ = 0;  ///< number of queries
+  std::uint64_t query_count_ = 0;  ///< number of queries
   QueryContext query_;
   DistanceContext distance_;
 };

@@ -42,10 +42,10 @@ Eigen::Vector3d NearestPairs::way() const {
 
 double NearestPairs::dropped_from() const {
   // Pairs that would improve the upper bound by less than the allowed width need not be found.
-  const double asked =
+  const double useful =
       upper() - std::max({request_.tolerance, upper() * request_.relative_tolerance, allowed_});
-  // Without an upper bound, `asked` is NaN or infinite: then no pair may be dropped by it.
-  const double least = asked >= 0 ? std::min(asked, upper()) : 0;
+  // Without an upper bound, `useful` is NaN or infinite: then no pair may be dropped by it.
+  const double least = useful >= 0 ? std::min(useful, upper()) : 0;
   const double by_upper = upper() < kInfinity ? least : kInfinity;
   // The next double, so that a pair at exactly `within` is kept.
   return request_.within ? std::min(by_upper, std::nextafter(*request_.within, kInfinity)) : by_upper;
@@ -108,8 +108,8 @@ bool NearestPairs::measure(SimplexId a, SimplexId b, double lower) {
 
 bool NearestPairs::surfaces_meet() {
   // At most one exact query for each distance query.
-  if (asked_) return meet_;
-  asked_ = true;
+  if (is_known_) return meet_;
+  is_known_ = true;
   // One intersecting pair is enough.
   CollideRequest any;
   any.mode = Mode::any_pair;
@@ -123,7 +123,7 @@ bool NearestPairs::surfaces_meet() {
 bool NearestPairs::pair_meets(const std::array<SimplexId, 2>& pair) {
   const exact::Meet meet = test_simplices(ctx_, pair[0], pair[1]);
   if (meet == exact::Meet::disjoint) return false;
-  asked_ = true;
+  is_known_ = true;
   take_contact(pair[0], pair[1], meet);
   return true;
 }

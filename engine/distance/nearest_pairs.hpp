@@ -53,7 +53,7 @@ class NearestPairs {
   bool pair_meets(const std::array<SimplexId, 2>& pair);
   /// Returns true if the surfaces intersect. Exact; computed at the first call.
   bool surfaces_meet();
-  bool known_apart() const { return asked_ && !meet_; }
+  bool known_apart() const { return is_known_ && !meet_; }
   bool known_to_meet() const { return meet_; }
 
   /// Completes the answer. `rest`: a lower bound on the distances of unmeasured pairs. finished: the
@@ -79,7 +79,7 @@ class NearestPairs {
   double size_ = 0, allowed_ = 0;
   SimplexId best_simplex_[2] = {kNull, kNull};
   PairBounds best_;  ///< of the pair with the least upper bound
-  bool spares_ = false, asked_ = false, meet_ = false;
+  bool spares_ = false, is_known_ = false, meet_ = false;
   Relation met_ = Relation::touching;
   DistanceCounters counters_;
 };

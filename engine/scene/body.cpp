@@ -134,8 +134,8 @@ MadeBody make_body_of_faces(CheckedMesh mesh, bool turn, unsigned threads) {
     notes.push_back(note_without_regions(mesh, turn));
   else if (turn)
     turned = turn_outward(mesh, notes);
-  constexpr bool kNotAsked = false;  // self-intersection matters only for regions
-  return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, kNotAsked, threads),
+  constexpr bool kSelfIntersecting = false;  // self-intersection matters only for regions
+  return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, kSelfIntersecting, threads),
           std::move(notes), 0, turned};
 }
 

@@ -359,11 +359,11 @@ std::optional<SceneDistance> Scene::Held::nearest(const Parties& parties, const 
   if (!best.result) return best;
   // Step 2: only pairs whose gap is within that bound can be closer. They are in ascending order of gap.
   const std::vector<Near> near = find_near(parties, distance_of(*best.result, apart));
-  for (std::size_t asked = 0; asked < near.size(); asked += kAtATime) {
+  for (std::size_t begin = 0; begin < near.size(); begin += kAtATime) {
     const double upper = distance_of(*best.result, apart);
     // The gap is a lower bound on the distance: no further pair can be closer.
-    if (upper == 0 || near[asked].gap > upper) break;
-    const auto some = std::span(near).subspan(asked, std::min(kAtATime, near.size() - asked));
+    if (upper == 0 || near[begin].gap > upper) break;
+    const auto some = std::span(near).subspan(begin, std::min(kAtATime, near.size() - begin));
     // Step 3: exact distances of the next batch, which may lower the bound.
     measure(parties, some, request);
     for (std::size_t i = 0; i < some.size(); ++i) {

@@ -338,9 +338,9 @@ class Batch {
 
 }  // namespace
 
-unsigned threads_of(std::size_t asked) {
+unsigned threads_of(std::size_t requested) {
   if (getpid() != loaded_by) return 1;
-  if (asked > 0) return static_cast<unsigned>(asked);
+  if (requested > 0) return static_cast<unsigned>(requested);
   const unsigned all = std::thread::hardware_concurrency();
   return all > 0 ? all : 1;
 }

@@ -53,9 +53,9 @@ py::list regions_of(const Answer& answer);
 /// Returns the number of threads for an argument: 0 is the hardware's number, but 1 in a process forked from
 /// the one that loaded the module. Threads do not survive a fork, and a program that forks uses processes for
 /// all cores.
-unsigned threads_of(std::size_t asked);
+unsigned threads_of(std::size_t requested);
 
-/// Calls work(i, worker) for i = 0 .. n - 1 on threads_of(asked) threads without the GIL, which the caller
+/// Calls work(i, worker) for i = 0 .. n - 1 on threads_of(requested) threads without the GIL, which the caller
 /// must hold. Checks for signals meanwhile: after Ctrl-C, calls that have not started are skipped and
 /// KeyboardInterrupt is raised.
 void run_batch(std::size_t n, unsigned threads,

@@ -54,7 +54,7 @@ namespace {
 /// The Python class Scene. Its broad phase runs on the calling thread, so that it survives a fork; queries
 /// run on the threads of run_batch().
 struct SceneHandle {
-  explicit SceneHandle(std::size_t asked_threads) : threads(asked_threads), scene(1) {}
+  explicit SceneHandle(std::size_t requested_threads) : threads(requested_threads), scene(1) {}
 
   std::size_t threads;
   lrb::Scene scene;

@@ -37,9 +37,9 @@ class FileSink final : public trace::ByteSink {
 
 void add_numbers(report::Document& doc, const spec::Crowd& crowd, const CrowdRun& run) {
   const std::uint64_t n = run.motion.body_count(), all = n * (n - 1) / 2;
-  std::uint64_t asked = 0, met = 0, faces = 0, tests = 0;
+  std::uint64_t queried = 0, met = 0, faces = 0, tests = 0;
   for (const CrowdStep& s : run.steps) {
-    asked += s.queries.size();
+    queried += s.queries.size();
     met += static_cast<std::uint64_t>(
         std::count_if(s.queries.begin(), s.queries.end(), [](const CrowdQuery& q) { return q.meets(); }));
     tests += sum(s).face_tests;
@@ -55,7 +55,7 @@ void add_numbers(report::Document& doc, const spec::Crowd& crowd, const CrowdRun
               "of " + render::counted(crowd.kinds.size(), "kind", "kinds") + ", " +
                   render::group_digits(faces) + " real faces"})
       .number({"Time steps", render::group_digits(run.steps.size())})
-      .number({"Overlapping boxes", a_step(asked),
+      .number({"Overlapping boxes", a_step(queried),
                "of " + render::group_digits(all) + " pairs of bodies, a step"})
       .number({"Intersecting bodies", a_step(met), "pairs a step"})
       .number({"Face tests", a_step(tests), "exact, a step"});

@@ -23,12 +23,12 @@ using report::packed;
 using Numbers = std::vector<std::uint32_t>;
 
 /// A pair of faces that an event compares. `step`: index into the trace's steps.
-struct Asked {
+struct ComparedPair {
   std::uint32_t step;
   SimplexPair pair;
   bool meets;
 
-  bool same_pair(const Asked& o) const { return step == o.step && pair == o.pair; }
+  bool same_pair(const ComparedPair& o) const { return step == o.step && pair == o.pair; }
 };
 
 bool is_answered(const RecordedRun& p) {
@@ -38,8 +38,8 @@ bool is_answered(const RecordedRun& p) {
 
 /// Returns the distinct pairs of real faces that events compare, and those with a wrong result of another
 /// engine, by step.
-std::vector<Asked> pairs_of(const RecordedRun& p, const Explained& what) {
-  std::vector<Asked> out;
+std::vector<ComparedPair> pairs_of(const RecordedRun& p, const Explained& what) {
+  std::vector<ComparedPair> out;
   std::size_t step = 0;
   for (const trace::EventId id : what.events) {
     const trace::Event& e = p.trace->events[id];
@@ -53,27 +53,27 @@ std::vector<Asked> pairs_of(const RecordedRun& p, const Explained& what) {
   if (p.wrong != nullptr && !p.wrong->empty())
     for (const std::uint32_t s : what.steps)
       for (const WrongPair& w : (*p.wrong)[s]) out.push_back({s, w.pair, w.missed});
-  std::sort(out.begin(), out.end(), [](const Asked& x, const Asked& y) {
+  std::sort(out.begin(), out.end(), [](const ComparedPair& x, const ComparedPair& y) {
     if (!x.same_pair(y)) return x.step != y.step ? x.step < y.step : x.pair < y.pair;
     return x.meets > y.meets;
   });
   out.erase(
-      std::unique(out.begin(), out.end(), [](const Asked& x, const Asked& y) { return x.same_pair(y); }),
+      std::unique(out.begin(), out.end(), [](const ComparedPair& x, const ComparedPair& y) { return x.same_pair(y); }),
       out.end());
   return out;
 }
 
 /// Keeps at most `most` pairs; intersecting pairs come first.
-void choose(std::vector<Asked>& pairs, std::size_t most) {
+void choose(std::vector<ComparedPair>& pairs, std::size_t most) {
   if (pairs.size() <= most) return;
-  std::stable_partition(pairs.begin(), pairs.end(), [](const Asked& x) { return x.meets; });
+  std::stable_partition(pairs.begin(), pairs.end(), [](const ComparedPair& x) { return x.meets; });
   const auto meeting = static_cast<std::size_t>(
-      std::count_if(pairs.begin(), pairs.end(), [](const Asked& x) { return x.meets; }));
-  std::vector<Asked> out;
+      std::count_if(pairs.begin(), pairs.end(), [](const ComparedPair& x) { return x.meets; }));
+  std::vector<ComparedPair> out;
   for (const std::size_t i : evenly(meeting, most)) out.push_back(pairs[i]);
   for (const std::size_t i : evenly(pairs.size() - meeting, most - out.size()))
     out.push_back(pairs[meeting + i]);
-  std::stable_sort(out.begin(), out.end(), [](const Asked& x, const Asked& y) { return x.step < y.step; });
+  std::stable_sort(out.begin(), out.end(), [](const ComparedPair& x, const ComparedPair& y) { return x.step < y.step; });
   pairs = std::move(out);
 }
 
@@ -227,18 +227,18 @@ json steps_json(const RecordedRun& p, const Explained& what, const SceneFrame& f
 json explanations_json(const RecordedRun& p, const Explained& what, const SceneFrame& frame,
                        const std::string& command, const ExplainLimits& limits) {
   if (!is_answered(p)) return nullptr;
-  std::vector<Asked> pairs = pairs_of(p, what);
+  std::vector<ComparedPair> pairs = pairs_of(p, what);
   const std::size_t all = pairs.size();
   choose(pairs, limits.pairs);
   PairExplainer explainer(*p.reps[0], *p.reps[1]);
   PairColumns columns(frame);
   std::uint32_t placed = kNull;
-  for (const Asked& asked : pairs) {
-    const trace::Step& step = p.trace->steps[asked.step];
-    if (placed != asked.step) explainer.place(step.pose_a, step.pose_b);
-    placed = asked.step;
-    const auto here = std::lower_bound(what.steps.begin(), what.steps.end(), asked.step);
-    columns.add(static_cast<std::uint32_t>(here - what.steps.begin()), explainer.explain(asked.pair));
+  for (const ComparedPair& compared : pairs) {
+    const trace::Step& step = p.trace->steps[compared.step];
+    if (placed != compared.step) explainer.place(step.pose_a, step.pose_b);
+    placed = compared.step;
+    const auto here = std::lower_bound(what.steps.begin(), what.steps.end(), compared.step);
+    columns.add(static_cast<std::uint32_t>(here - what.steps.begin()), explainer.explain(compared.pair));
   }
   json by = json::array(), meets = json::array(), axes = json::array();
   for (const auto& entry : kWords<DecidedBy>) by.push_back(words(entry.value));

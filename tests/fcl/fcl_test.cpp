@@ -49,7 +49,7 @@ std::vector<SimplexPair> pairs_of(const ::fcl::CollisionResult<S>& result) {
 
 /// How often FCL gave the answer that brute force gives.
 struct Agreement {
-  int asked = 0, same_pairs = 0, same_verdict = 0;
+  int checked = 0, same_pairs = 0, same_verdict = 0;
 };
 
 /// Asks FCL and this engine for two meshes at random poses; brute force says who is right.
@@ -70,7 +70,7 @@ Agreement ask_both(const Mesh& mesh_a, const Mesh& mesh_b, int poses, std::uint6
     CHECK(lrb::fcl::collide(a.get(), home, b.get(), place, all, ours) == truth.pairs.size());
     CHECK(pairs_of(ours) == truth.pairs);
     ::fcl::collide(a.get(), home, b.get(), place, all, theirs);
-    ++agreement.asked;
+    ++agreement.checked;
     agreement.same_pairs += pairs_of(theirs) == truth.pairs;
     agreement.same_verdict += theirs.isCollision() == !truth.pairs.empty();
 
@@ -87,9 +87,9 @@ TEST_CASE_TEMPLATE("collide() of meshes gives all pairs and no others, and mostl
                    ::fcl::OBBd, ::fcl::RSSd, ::fcl::OBBRSSd, ::fcl::kIOSd, ::fcl::KDOP<double, 18>,
                    ::fcl::OBBRSSf) {
   const Agreement round = ask_both<BV>(shapes::bumpy_sphere(2, 4), shapes::torus(20, 10), 40, 1);
-  MESSAGE("FCL gives all pairs of ", round.same_pairs, " of ", round.asked, " poses, and the verdict of ",
+  MESSAGE("FCL gives all pairs of ", round.same_pairs, " of ", round.checked, " poses, and the verdict of ",
           round.same_verdict);
-  CHECK(round.same_verdict >= round.asked - 2);
+  CHECK(round.same_verdict >= round.checked - 2);
 }
 
 TEST_CASE("faces that touch: this engine is right, FCL need not be") {

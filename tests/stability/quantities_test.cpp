@@ -65,7 +65,7 @@ TEST_CASE("true numbers of two boxes") {
 TEST_CASE("B meets A at the time at which an exact query finds it") {
   const cases::Case c = boxes({0.25, 0.5, 0.875});
   const RightAnswer e = true_number(Quantity::first_contact, c);
-  const Asked q = asked(c);
+  const NumberQuery q = query_of(c);
   const double gap = q.from.z() + 0.875 - 1, way = q.from.z() - q.to.z();  // from above, face on face
   const double by_x = q.from.x() + 0.25 - 1, by_y = q.from.y() + 0.5 - 1;
   REQUIRE(gap > 0);

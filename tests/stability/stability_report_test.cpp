@@ -335,9 +335,9 @@ TEST_CASE("every cell that failed gets a picture, and the old ones go") {
   for (std::size_t i = 0; i < grid.cells.size(); ++i)
     if (i / grid.methods.size() > 2) grid.cells[i].worst.reset();  // few are enough
   grid.cells[1].worst->family = "none of ours";
-  std::size_t asked = 0;
+  std::size_t checked = 0;
   const std::vector<std::string> pictures = draw_worst_cases(grid, folder, [&](const Record& r) {
-    ++asked;
+    ++checked;
     const cases::Case c = cases::make_case(*cases::find_family(r.family), r.seed, r.difficulty, r.case_index);
     return AnsweredPairs{brute_force(*c.a, c.pose_a, *c.b, c.pose_b).pairs, Pairs{}};
   });
@@ -349,7 +349,7 @@ TEST_CASE("every cell that failed gets a picture, and the old ones go") {
     drawn += pictures[i].empty() ? 0 : 1;
   }
   CHECK(drawn > 5);
-  CHECK(asked == drawn);
+  CHECK(checked == drawn);
   CHECK_FALSE(std::filesystem::exists(folder + "/worst/of-an-earlier-run.png"));
 }
 

@@ -167,18 +167,18 @@ Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, SimplexId sim
   return box;
 }
 
-struct Asked {
+struct Checked {
   int dropped = 0, disjoint = 0, cross = 0;
 };
 
 /// What the kernel is certain of is what the rational oracle says.
 void check_certain(const Scene& s, std::span<const Candidate> found, RandomEngine& random, int most,
-                   Asked& asked) {
+                   Checked& checked) {
   for (int i = 0; i < most && !found.empty(); ++i) {
     const Candidate& c = found[random() % found.size()];
     if (c.certainty != Certainty::cross && c.certainty != Certainty::disjoint) continue;
     const bool cross = c.certainty == Certainty::cross;
-    ++(cross ? asked.cross : asked.disjoint);
+    ++(cross ? checked.cross : checked.disjoint);
     REQUIRE(oracle_meet(s, c.a, c.b) == (cross ? 2 : 0));
   }
 }
@@ -199,7 +199,7 @@ std::vector<Candidate> candidates_of(const Scene& s, TreeKernel& k, void (*run)(
 /// Pairs that boxes or planes have dropped do not meet, says the rational oracle, and what is certain of the
 /// others is true. `found`: all that were not dropped.
 void check_outcome(const Scene& s, std::span<const Candidate> found, RandomEngine& random, int most,
-                   Asked& asked) {
+                   Checked& checked) {
   std::set<std::pair<SimplexId, SimplexId>> kept;
   for (const Candidate& c : found) kept.insert({c.a, c.b});
   for (int i = 0, compared = 0; i < 20 * most && compared < most; ++i) {
@@ -208,23 +208,23 @@ void check_outcome(const Scene& s, std::span<const Candidate> found, RandomEngin
     if (kept.contains({sa, sb}) || !world_box(*s.a, s.pose_a, sa).intersects(world_box(*s.b, s.pose_b, sb)))
       continue;
     ++compared;
-    ++asked.dropped;
+    ++checked.dropped;
     REQUIRE(oracle_meet(s, sa, sb) == 0);
   }
-  check_certain(s, found, random, 5 * most, asked);
+  check_certain(s, found, random, 5 * most, checked);
 }
 
 /// Checks that more than `boxes` pairs were compared, and more than the share `culled` of them culled: else
 /// nothing was tested.
-void check_extent(const Share& share, const Asked& asked, std::uint64_t boxes, double culled) {
+void check_extent(const Share& share, const Checked& checked, std::uint64_t boxes, double culled) {
   CHECK(share.boxes > boxes);
   CHECK(static_cast<double>(share.culled) > culled * static_cast<double>(share.boxes));
-  CHECK(asked.dropped > 100);
-  CHECK(asked.disjoint > 100);
-  CHECK(asked.cross > 100);
-  MESSAGE(share.boxes << " pairs of boxes on an axis, " << share.culled << " culled; " << asked.dropped
-                      << " dropped pairs asked again, " << asked.disjoint << " called disjoint, "
-                      << asked.cross << " called crossing");
+  CHECK(checked.dropped > 100);
+  CHECK(checked.disjoint > 100);
+  CHECK(checked.cross > 100);
+  MESSAGE(share.boxes << " pairs of boxes on an axis, " << share.culled << " culled; " << checked.dropped
+                      << " dropped pairs asked again, " << checked.disjoint << " called disjoint, "
+                      << checked.cross << " called crossing");
 }
 
 }  // namespace

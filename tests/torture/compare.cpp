@@ -205,8 +205,8 @@ class Comparison {
   void ask_oracles() {
     const auto xa = world_points(*c_.a, c_.pose_a), xb = world_points(*c_.b, c_.pose_b);
     const std::size_t tries = 8 * effort_.oracle_pairs;
-    std::size_t asked = 0;
-    for (std::size_t i = 0; i < tries && asked < effort_.oracle_pairs; ++i) {
+    std::size_t checked = 0;
+    for (std::size_t i = 0; i < tries && checked < effort_.oracle_pairs; ++i) {
       SimplexPair p{static_cast<SimplexId>(random_() % c_.a->real_simplex_count()),
                     static_cast<SimplexId>(random_() % c_.b->real_simplex_count())};
       if (i % 2 == 0 && !brute_.pairs.empty()) p = brute_.pairs[random_() % brute_.pairs.size()];
@@ -214,7 +214,7 @@ class Comparison {
       corners(*c_.a, xa, p.a, ca);
       corners(*c_.b, xb, p.b, cb);
       if (boxes_disjoint(ca, cb)) continue;
-      ++asked;
+      ++checked;
       ask_oracle(p, ca, cb);
     }
   }

@@ -213,12 +213,12 @@ std::uint64_t lids_crossed(const Wrapper& w, const Simplices& real) {
 }
 
 std::uint64_t vertices_outside(const Wrapper& w) {
-  std::vector<bool> asked(w.rep().vertices().size(), false);
+  std::vector<bool> checked(w.rep().vertices().size(), false);
   std::uint64_t outside = 0;
   for (FaceId f = 0; f < w.rep().real_face_count(); ++f)
     for (const VertexId v : w.rep().face(f)) {
-      if (asked[v]) continue;
-      asked[v] = true;
+      if (checked[v]) continue;
+      checked[v] = true;
       outside += !holds(w, w.rep().vertices()[v]);
     }
   return outside;

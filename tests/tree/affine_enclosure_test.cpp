@@ -102,12 +102,12 @@ void check_on(const AffineScene& scene, Side side, Share& share) {
   }
 }
 
-/// What is dropped or called certain, asked again of the rational oracle.
-void check_verdicts(AffineScene scene, RandomEngine& random, Asked& asked) {
+/// What is dropped or called certain, checked again with the rational oracle.
+void check_verdicts(AffineScene scene, RandomEngine& random, Checked& checked) {
   const Scene& s = scene.bodies;
   TreeKernel& k = scene.k;
   k.affine = &scene.terms;
-  check_outcome(s, candidates_of(s, k, run_affine_kernel_under_test), random, 20, asked);
+  check_outcome(s, candidates_of(s, k, run_affine_kernel_under_test), random, 20, checked);
 }
 
 using test::closed;
@@ -124,7 +124,7 @@ TEST_CASE("whatever boxes leave out under affine maps is apart in exact arithmet
   RandomEngine random(17);
   const double sizes[] = {1, 1, 1e-150, 1e150, 1e-12};
   Share total;
-  Asked asked;
+  Checked checked;
   for (int i = 0; i < 5 * test::kMapKinds; ++i) {
     CAPTURE(i);
     const double size_a = sizes[i % 5], size_b = sizes[i / 2 % 5], world = i % 3 ? 1 : sizes[i % 4];
@@ -151,7 +151,7 @@ TEST_CASE("whatever boxes leave out under affine maps is apart in exact arithmet
     REQUIRE(share.too_small == 0);
     REQUIRE(share.wrong == 0);
     total += share;
-    check_verdicts(s, random, asked);
+    check_verdicts(s, random, checked);
   }
-  check_extent(total, asked, 500'000, 0.1);
+  check_extent(total, checked, 500'000, 0.1);
 }

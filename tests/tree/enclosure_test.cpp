@@ -103,9 +103,9 @@ Share check_nodes(const Scene& s) {
 }
 
 /// Pairs that boxes or planes have dropped do not meet, says the rational oracle.
-void check_dropped(const Scene& s, RandomEngine& random, int most, Asked& asked) {
+void check_dropped(const Scene& s, RandomEngine& random, int most, Checked& checked) {
   TreeKernel k = set_up_kernel(*s.a, s.pose_a, *s.b, s.pose_b);
-  check_outcome(s, candidates_of(s, k, run_tree_kernel_for_enclosure), random, most, asked);
+  check_outcome(s, candidates_of(s, k, run_tree_kernel_for_enclosure), random, most, checked);
 }
 
 using test::closed;
@@ -136,7 +136,7 @@ TEST_CASE("whatever boxes leave out is apart in exact arithmetic: random and adv
   RandomEngine random(31);
   const double kSizes[] = {1, 1, 1e-12, 1e12, 1e-60, 1e100, 1e-308};
   Share total;
-  Asked asked;
+  Checked checked;
   for (int i = 0; i < 56; ++i) {
     CAPTURE(i);
     const double size = kSizes[i % 7];
@@ -153,7 +153,7 @@ TEST_CASE("whatever boxes leave out is apart in exact arithmetic: random and adv
     REQUIRE(share.too_small == 0);
     REQUIRE(share.wrong == 0);
     total += share;
-    check_dropped(s, random, 20, asked);
+    check_dropped(s, random, 20, checked);
   }
-  check_extent(total, asked, 1'000'000, 0.05);
+  check_extent(total, checked, 1'000'000, 0.05);
 }

@@ -146,7 +146,7 @@ class KnownBodies {
 
   struct Entry {
     std::shared_ptr<const Body> body;
-    std::uint64_t asked = 0;  ///< time of last use
+    std::uint64_t last_use = 0;  ///< time of last use
   };
 
   template <class S>
@@ -166,7 +166,7 @@ class KnownBodies {
     const std::lock_guard lock(mutex_);
     const auto found = entries_.find(address);
     if (found == entries_.end()) return nullptr;
-    found->second.asked = ++clock_;
+    found->second.last_use = ++clock_;
     return found->second.body;
   }
 
@@ -175,7 +175,7 @@ class KnownBodies {
     entries_[address] = {std::move(body), ++clock_};
     if (entries_.size() <= kMax) return;
     entries_.erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& x, const auto& y) {
-      return x.second.asked < y.second.asked;
+      return x.second.last_use < y.second.last_use;
     }));
   }
 

@@ -35,6 +35,6 @@ for (const section of document.querySelectorAll(".comparison")) {
     const mode = { s: "side", w: "swipe", d: "difference" }[e.key];
     if (mode && !e.ctrlKey && !e.metaKey && !e.altKey) look(mode);
   });
-  const asked = new URLSearchParams(location.search).get("compare"); // ?compare=swipe opens all in that mode
-  if (asked && buttons.some((b) => b.dataset.mode === asked)) look(asked);
+  const requested = new URLSearchParams(location.search).get("compare"); // ?compare=swipe opens all in that mode
+  if (requested && buttons.some((b) => b.dataset.mode === requested)) look(requested);
 }

@@ -75,8 +75,8 @@ function startPlayer() {
     e.preventDefault();
     keys[e.key](e);
   });
-  const asked = parseInt(location.hash.slice(1), 10);
-  show(asked > 0 ? asked - 1 : 0);
+  const requested = parseInt(location.hash.slice(1), 10);
+  show(requested > 0 ? requested - 1 : 0);
 }
 
 // ---- the charts

@@ -229,8 +229,8 @@ function startScene() {
   followPage(events, selection);
   listenToKeys(keysOf(timeline, table, selection, controls));
   const first = scene.firstContact >= 0 ? scene.firstContact : 0,
-    asked = /^#e(\d+)$/.exec(location.hash);
-  selection.goTo(events.at(asked ? Number(asked[1]) : first));
+    requested = /^#e(\d+)$/.exec(location.hash);
+  selection.goTo(events.at(requested ? Number(requested[1]) : first));
   if (view) view.frameAll(view.camera.from);
   if (controls && events.passes) controls.colourBy("region");
   if (view && new URLSearchParams(location.search).has("alone")) new Together(view, selection, events);

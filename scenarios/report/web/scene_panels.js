@@ -521,7 +521,7 @@ class WhyPanel {
   }
 
   /** Returns the two simplices to be explained; null: none. */
-  asked() {
+  requested() {
     const { events, selection } = this,
       chosen = selection.chosen;
     if (chosen.every((s) => s !== NONE)) return chosen;
@@ -535,7 +535,7 @@ class WhyPanel {
   show() {
     const { events, selection, explanations } = this,
       step = events.stepNumber(selection.event),
-      simplices = this.asked(),
+      simplices = this.requested(),
       separation = simplices ? null : explanations.step(step);
     this.row = -1;
     const found = simplices ? explanations.pair(step, simplices) : separation;

@@ -75,11 +75,11 @@ TEST_CASE("panels of one body: from the outermost wrapper to the body, in equal 
     CAPTURE(i);
     CHECK(std::log(static_cast<double>(faces[i]) / faces[i - 1]) == doctest::Approx(whole / 5).epsilon(0.35));
   }
-  const std::vector<std::uint32_t> asked =
+  const std::vector<std::uint32_t> requested =
       faces_after(s, choose(s.run, {Choice::By::faces, {9, 40, 1000}}).events);
-  REQUIRE(asked.size() == 3);
-  CHECK(std::abs(static_cast<int>(asked[1]) - 40) <= 3);
-  CHECK(asked[2] == faces.back());
+  REQUIRE(requested.size() == 3);
+  CHECK(std::abs(static_cast<int>(requested[1]) - 40) <= 3);
+  CHECK(requested[2] == faces.back());
   const auto layers = choose(s.run, {Choice::By::layers, {}}).events;
   CHECK(layers.size() == s.recording.trace.header.bodies[0].layers + 1);
   CHECK(layers.back() + 1 == s.recording.trace.events.size());
@@ -123,10 +123,10 @@ TEST_CASE("panels of two bodies: time steps, the first contact among them") {
   for (const trace::EventId e : choose(s.run, {}).events)
     found |= s.recording.trace.steps[s.recording.trace.step_of(e)].index == first;
   CHECK(found);
-  const auto asked = choose(s.run, {Choice::By::steps, {2, 0}}).events;
-  REQUIRE(asked.size() == 2);
-  CHECK(s.recording.trace.step_of(asked[0]) == 0);
-  CHECK(s.recording.trace.step_of(asked[1]) == 2);
+  const auto requested = choose(s.run, {Choice::By::steps, {2, 0}}).events;
+  REQUIRE(requested.size() == 2);
+  CHECK(s.recording.trace.step_of(requested[0]) == 0);
+  CHECK(s.recording.trace.step_of(requested[1]) == 2);
   CHECK_THROWS_AS(choose(s.run, {Choice::By::steps, {100'000}}), InputError);
   CHECK_THROWS_AS(choose(s.run, {Choice::By::events, {100'000'000}}), InputError);
   CHECK_THROWS_AS(choose(s.run, {Choice::By::layers, {}}), InputError);

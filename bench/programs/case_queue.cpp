@@ -1,4 +1,4 @@
-#include "bench/programs/asked_cases.hpp"
+#include "bench/programs/case_queue.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -10,43 +10,43 @@
 
 namespace lrb::worker_programs {
 
-void add_options(CLI::App& app, CaseQueue& asked) {
-  app.add_flag("--list", asked.list);
-  app.add_option("--family", asked.family);
-  app.add_option("--method", asked.method);
-  app.add_option("--seed", asked.seed);
-  app.add_option("--cases", asked.cases)->check(CLI::PositiveNumber);
-  app.add_option("--begin", asked.begin);
-  app.add_option("--end", asked.end);
-  app.add_option("--expected", asked.expected);
+void add_options(CLI::App& app, CaseQueue& queue) {
+  app.add_flag("--list", queue.list);
+  app.add_option("--family", queue.family);
+  app.add_option("--method", queue.method);
+  app.add_option("--seed", queue.seed);
+  app.add_option("--cases", queue.cases)->check(CLI::PositiveNumber);
+  app.add_option("--begin", queue.begin);
+  app.add_option("--end", queue.end);
+  app.add_option("--expected", queue.expected);
 }
 
-const cases::Family& family_of(const CaseQueue& asked) {
-  const cases::Family* family = cases::find_family(asked.family);
-  if (family == nullptr) throw InputError("unknown family '" + asked.family + "'");
+const cases::Family& family_of(const CaseQueue& queue) {
+  const cases::Family* family = cases::find_family(queue.family);
+  if (family == nullptr) throw InputError("unknown family '" + queue.family + "'");
   return *family;
 }
 
-cases::Case make(const cases::Family& family, const CaseQueue& asked, std::uint64_t number) {
-  return cases::make_case(family, asked.seed, static_cast<int>(number / asked.cases), number % asked.cases);
+cases::Case make(const cases::Family& family, const CaseQueue& queue, std::uint64_t number) {
+  return cases::make_case(family, queue.seed, static_cast<int>(number / queue.cases), number % queue.cases);
 }
 
-stability::Record record_of(const CaseQueue& asked, std::uint64_t number) {
+stability::Record record_of(const CaseQueue& queue, std::uint64_t number) {
   stability::Record record;
-  record.family = asked.family;
-  record.method = asked.method;
-  record.difficulty = static_cast<int>(number / asked.cases);
-  record.case_index = number % asked.cases;
-  record.seed = asked.seed;
+  record.family = queue.family;
+  record.method = queue.method;
+  record.difficulty = static_cast<int>(number / queue.cases);
+  record.case_index = number % queue.cases;
+  record.seed = queue.seed;
   return record;
 }
 
-KnownAnswers::KnownAnswers(const CaseQueue& asked) {
-  if (asked.expected.empty()) return;
-  in_.open(asked.expected);
+KnownAnswers::KnownAnswers(const CaseQueue& queue) {
+  if (queue.expected.empty()) return;
+  in_.open(queue.expected);
   std::string line;
-  for (std::uint64_t k = 0; k < asked.begin; ++k) std::getline(in_, line);
-  if (!in_) throw InputError(asked.expected + ": has too few lines");
+  for (std::uint64_t k = 0; k < queue.begin; ++k) std::getline(in_, line);
+  if (!in_) throw InputError(queue.expected + ": has too few lines");
 }
 
 std::optional<stability::RightAnswer> KnownAnswers::next() {

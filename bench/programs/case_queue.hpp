@@ -45,19 +45,19 @@ struct CaseQueue {
   std::uint64_t seed = 1, cases = 1, begin = 0, end = 0;
 };
 
-void add_options(CLI::App& app, CaseQueue& asked);
+void add_options(CLI::App& app, CaseQueue& queue);
 
 /// Throws InputError if the family is unknown.
-const cases::Family& family_of(const CaseQueue& asked);
-cases::Case make(const cases::Family& family, const CaseQueue& asked, std::uint64_t number);
+const cases::Family& family_of(const CaseQueue& queue);
+cases::Case make(const cases::Family& family, const CaseQueue& queue, std::uint64_t number);
 /// Returns the record of a case, before it is answered.
-stability::Record record_of(const CaseQueue& asked, std::uint64_t number);
+stability::Record record_of(const CaseQueue& queue, std::uint64_t number);
 
 /// Correct answers from a file, starting at the first requested case.
 class KnownAnswers {
  public:
   /// Throws InputError if a file is given and ends before that case.
-  explicit KnownAnswers(const CaseQueue& asked);
+  explicit KnownAnswers(const CaseQueue& queue);
   /// Returns the next answer, or nullopt without a file or at its end.
   std::optional<stability::RightAnswer> next();
 
