@@ -70,7 +70,7 @@ void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& pi
           ""))
       ->type_name("FILE");
   if (with_history)
-    app.add_flag("--course", options.history, "Add the convergence history: [work, lower, upper]");
+    app.add_flag("--convergence", options.history, "Add the convergence history: [work, lower, upper]");
 }
 
 }  // namespace lrb::cli

@@ -147,7 +147,7 @@ Command add_sweep(CLI::App& root, const Globals& globals) {
   app->add_flag("--features", o->features, "Add the features (vertex, edge or face) in first contact");
   app->add_flag("--history", o->request.history,
                 "Add the intervals of t that were examined, with the result of each");
-  app->add_flag("--course", o->draw.history,
+  app->add_flag("--convergence", o->draw.history,
                 "Add the convergence history: [work, t0, t1, lower and upper bound of the distance at t0]");
   add_draw_options(*app, o->draw, "Draw the bodies at first contact, with ghosts of B along its motion",
                    false);

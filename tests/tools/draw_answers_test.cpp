@@ -68,15 +68,15 @@ TEST_CASE("draw: of the size that was asked for, and no picture of another") {
 
 TEST_CASE("course: how bounds tightened, in the line") {
   const TwoCubes c;
-  const auto gaps = c.ask("distance", {"--course"});
+  const auto gaps = c.ask("distance", {"--convergence"});
   REQUIRE(gaps.size() == 4);
   const Json& last = gaps[0]["course"].back();
   CHECK(last[1] == gaps[0]["lower"]);
   CHECK(last[2] == gaps[0]["upper"]);
-  const auto clashes = c.ask("clash", {"--course"});
+  const auto clashes = c.ask("clash", {"--convergence"});
   CHECK(clashes[1]["course"].back()[1] == clashes[1]["depth"][0]);
   CHECK(clashes[1]["course"].back()[2] == clashes[1]["depth"][1]);
-  const auto met = c.ask("sweep", {"--course"});
+  const auto met = c.ask("sweep", {"--convergence"});
   CHECK(met[0]["course"].front()[3].get<double>() == doctest::Approx(2).epsilon(0.01));
   CHECK(met[0]["course"].back()[2] == met[0]["t1"]);
 }
