@@ -58,7 +58,7 @@ struct Support {
     plus = std::max(plus, across + slope_depth);
     minus = std::max(minus, -across + slope_depth);
   }
-  double middle() const { return 0.5 * (plus - minus); }
+  double midpoint() const { return 0.5 * (plus - minus); }
   double half() const { return 0.5 * (plus + minus); }
 };
 
@@ -125,7 +125,7 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
   camera.up = options.view.up;
   camera.orthographic = options.orthographic;
   camera.fov_y = options.fov_y;
-  Vector3d eye{x.middle(), y.middle(), 0};
+  Vector3d eye{x.midpoint(), y.midpoint(), 0};
   if (options.orthographic) {
     camera.half_height =
         std::max({y.half() / inner_y, x.half() / inner_x * height / width, kFlattest * size});
@@ -137,7 +137,7 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
     camera.half_height = 0.5 * size;
   }
   camera.eye = origin + axes.transpose() * eye;
-  camera.target = origin + axes.transpose() * Vector3d(eye.x(), eye.y(), z.middle());
+  camera.target = origin + axes.transpose() * Vector3d(eye.x(), eye.y(), z.midpoint());
   return camera;
 }
 

@@ -76,10 +76,10 @@ class Sorter {
     (hi - lo).maxCoeff(&axis);
     std::vector<double> at;
     for (const EyePolygon& p : polygons) at.push_back(centre(p)[axis]);
-    const auto middle = at.begin() + static_cast<std::ptrdiff_t>(at.size() / 2);
+    const auto median = at.begin() + static_cast<std::ptrdiff_t>(at.size() / 2);
     // The median centre along the longest axis.
-    std::nth_element(at.begin(), middle, at.end());
-    plane = {Vector3d::Unit(axis), *middle};
+    std::nth_element(at.begin(), median, at.end());
+    plane = {Vector3d::Unit(axis), *median};
     const Count n = count(polygons, plane);
     return static_cast<double>(std::max(n.front, n.back) + n.cut) <=
            kWorthIt * static_cast<double>(polygons.size());

@@ -388,7 +388,7 @@ CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind,
   const std::vector<FaceId> at = faces_at(mesh, parts);
   const bool doubtful = kind == MeshFault::flipped_face || kind == MeshFault::duplicate_face;
   CloseUp out;
-  Vector3d n = Vector3d::Zero(), middle = Vector3d::Zero();
+  Vector3d n = Vector3d::Zero(), centroid = Vector3d::Zero();
   std::set<VertexId> own(parts.vertices.begin(), parts.vertices.end());
   for (const FaceId f : at) {
     const Vector3d m = normal(mesh, f);
@@ -404,7 +404,7 @@ CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind,
       if (std::any_of(c.begin(), c.end(), [&](VertexId v) { return own.contains(v); }))
         around.insert(c.begin(), c.end());
     }
-  for (const VertexId v : own) middle += mesh.vertices[v] / static_cast<double>(own.size());
+  for (const VertexId v : own) centroid += mesh.vertices[v] / static_cast<double>(own.size());
   for (const VertexId v : around) out.points.push_back(mesh.vertices[v]);
   if (kind == MeshFault::unused_vertex) {
     const std::vector<Vector3d> all = whole(mesh, {});
@@ -414,8 +414,8 @@ CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind,
   if (kind == MeshFault::inside_out || kind == MeshFault::unused_vertex) return out;
   // Step 3: look from outside, at an angle.
   if (!at.empty() && is_inside_out(mesh, report, at[0])) n = -n;
-  if (doubtful && n.dot(middle) < 0) n = -n;
-  if (!(n.norm() > 0)) n = middle;
+  if (doubtful && n.dot(centroid) < 0) n = -n;
+  if (!(n.norm() > 0)) n = centroid;
   if (!(n.norm() > 0)) return out;
   out.view = tilted(n);
   return out;

@@ -281,7 +281,7 @@ std::vector<Eigen::Vector3d> body_points(const LrbRep& rep, const Pose& pose) {
 namespace {
 
 /// Returns the mean of the faces' corners, posed.
-Eigen::Vector3d middle(const LrbRep& rep, const Pose& pose, std::span<const FaceId> faces) {
+Eigen::Vector3d centroid(const LrbRep& rep, const Pose& pose, std::span<const FaceId> faces) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   std::size_t count = 0;
   for (const FaceId f : faces) {
@@ -297,8 +297,8 @@ Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, RegionId r, do
   constexpr double kLayerStep = 0.12;  // 3D: extra displacement per layer, as a share of the body's radius
   // Regions move away from the centre of the outermost wrapper. Extra distance per layer separates nested
   // regions.
-  const Eigen::Vector3d centre = middle(rep, pose, rep.outermost_faces());
-  const Eigen::Vector3d out = middle(rep, pose, rep.collector(r)) - centre;
+  const Eigen::Vector3d centre = centroid(rep, pose, rep.outermost_faces());
+  const Eigen::Vector3d out = centroid(rep, pose, rep.collector(r)) - centre;
   if (rep.dim() == 2) return explode * out;
   double radius = 0;
   for (const FaceId f : rep.outermost_faces())

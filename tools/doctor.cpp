@@ -41,8 +41,8 @@ std::string draw_something() {
   options.width = options.height = 64;
   const render::Image image =
       render::Rasterizer().draw(list, render::Camera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}}, options);
-  const render::Rgba middle = image.at(32, 32);
-  if (middle != render::Rgba{200, 40, 40})
+  const render::Rgba centre = image.at(32, 32);
+  if (centre != render::Rgba{200, 40, 40})
     throw EnvironmentError(
         "rendering test failed: a red triangle was drawn in another colour, so this Mesa build is broken");
   return "a test triangle was drawn correctly";

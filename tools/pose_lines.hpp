@@ -40,9 +40,9 @@ double median_us(std::uint32_t repeat, const Ask& ask) {
     ask();
     us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
   }
-  const std::size_t middle = us.size() / 2;
-  std::nth_element(us.begin(), us.begin() + static_cast<std::ptrdiff_t>(middle), us.end());
-  return us[middle];
+  const std::size_t median = us.size() / 2;
+  std::nth_element(us.begin(), us.begin() + static_cast<std::ptrdiff_t>(median), us.end());
+  return us[median];
 }
 
 /// The poses of a command, and the location of each in its file.

@@ -110,9 +110,9 @@ Case make_touch(RandomEngine& random, double difficulty) {
   double near = 0, far = 12;  // no body is wider
   const int steps = static_cast<int>(6 + 54 * difficulty);
   for (int i = 0; i < steps; ++i) {
-    const double middle = 0.5 * (near + far);
-    c.pose_b.t = start + middle * away;
-    (in_contact(c) ? near : far) = middle;
+    const double midpoint = 0.5 * (near + far);
+    c.pose_b.t = start + midpoint * away;
+    (in_contact(c) ? near : far) = midpoint;
   }
   // Vertex on vertex at the initial position belongs to another family.
   c.pose_b.t = start + (random() % 2 && near > 0 ? near : far) * away;
@@ -169,9 +169,9 @@ Case make_identical(RandomEngine& random, double difficulty) {
   c.pose_b = c.pose_a;
   if (kind == 1) {  // about the centre of the unit cube
     const Eigen::Matrix3d r = grid_turn(random);
-    const Vector3d middle(0.5, 0.5, 0.5);
+    const Vector3d centre(0.5, 0.5, 0.5);
     c.pose_a = Pose{};
-    c.pose_b = {r, middle - r * middle};
+    c.pose_b = {r, centre - r * centre};
   }
   if (kind == 2) c.pose_b.r = c.pose_a.r * grid_turn(random);
   if (pick(random, 0, 2) == 0) {

@@ -124,7 +124,7 @@ Case make_nested(RandomEngine& random, double difficulty) {
   const double near = 1 - steady::pow10(-1 - 13 * difficulty);  // share of the available space that is used
   const double reach = 0.5 * near;
   const int layer = pick(random, 0, walls);  // 0: outside all of them
-  const double middle = walls - layer + 0.5;
+  const double position = walls - layer + 0.5;
   const auto piece = [&](double at) {
     return shapes::translated(shapes::box({-reach, -reach, -reach}, {reach, reach, reach}), {at, 0, 0});
   };
@@ -132,7 +132,7 @@ Case make_nested(RandomEngine& random, double difficulty) {
   Case c{body(shapes::several(shells)), {}, {}, {}, {}, {}};
   // Other pieces are outside: it is enough if one is enclosed.
   const int pieces = pick(random, 1, 3);
-  std::vector<Mesh> all = {piece(middle)};
+  std::vector<Mesh> all = {piece(position)};
   for (int i = 1; i < pieces; ++i) all.push_back(piece(-walls - 2.0 * i));
   c.b = body(shapes::several(all));
   c.relation = in_solid ? Relation::b_inside_a : Relation::separate;

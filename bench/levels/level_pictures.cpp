@@ -33,9 +33,9 @@ void cut_triangle(LidPiece triangle, double longest, std::vector<LidPiece>& out)
       out.push_back(t);
       continue;
     }
-    const Vector3d a = t.x[k], b = t.x[(k + 1) % 3], c = t.x[(k + 2) % 3], middle = (a + b) / 2;
-    left.push_back({{a, middle, c}, 0});
-    left.push_back({{middle, b, c}, 0});
+    const Vector3d a = t.x[k], b = t.x[(k + 1) % 3], c = t.x[(k + 2) % 3], midpoint = (a + b) / 2;
+    left.push_back({{a, midpoint, c}, 0});
+    left.push_back({{midpoint, b, c}, 0});
   }
 }
 

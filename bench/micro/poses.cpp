@@ -62,16 +62,16 @@ std::vector<Pose> path_from(const Subject& subject, const Pose& start, double le
   Workspace workspace;
   CollideRequest any;
   any.mode = Mode::any_pair;
-  const Eigen::Vector3d middle = shapes::box_of(subject.body).center();
+  const Eigen::Vector3d centre = shapes::box_of(subject.body).center();
   std::vector<Pose> path = {start};
   Eigen::Vector3d direction = shapes::random_direction(random), axis = shapes::random_direction(random);
   for (int tries = 0; static_cast<int>(path.size()) < steps && tries < 100 * steps; ++tries) {
     const Pose& last = path.back();
     Pose next;
     next.r = Pose::rotation(axis, length).r * last.r;  // half of the step: a radius is half a diagonal
-    next.t = last.apply(middle) - next.r * middle + 0.5 * length * subject.diagonal * direction;
+    next.t = last.apply(centre) - next.r * centre + 0.5 * length * subject.diagonal * direction;
     const bool leaves =
-        (next.apply(middle) - start.apply(middle)).norm() > std::max(kRoom, 2 * length) * subject.diagonal;
+        (next.apply(centre) - start.apply(centre)).norm() > std::max(kRoom, 2 * length) * subject.diagonal;
     if (leaves ||
         (separate && !collide(subject.body, {}, subject.body, next, any, workspace)->pairs.empty())) {
       direction = shapes::random_direction(random);

@@ -101,13 +101,13 @@ struct SphereBody : MethodBody {
     const auto index = static_cast<std::uint32_t>(spheres.size());
     spheres.push_back(round(begin, end));
     if (end - begin == 1) return index;
-    Eigen::AlignedBox3d middles;
-    for (Iterator i = begin; i != end; ++i) middles.extend(middle(*i));
+    Eigen::AlignedBox3d centroids;
+    for (Iterator i = begin; i != end; ++i) centroids.extend(centroid(*i));
     Eigen::Index axis = 0;
-    middles.sizes().maxCoeff(&axis);
+    centroids.sizes().maxCoeff(&axis);
     const Iterator half = begin + (end - begin) / 2;
     std::nth_element(begin, half, end, [&](std::uint32_t i, std::uint32_t j) {
-      const double a = middle(i)[axis], b = middle(j)[axis];
+      const double a = centroid(i)[axis], b = centroid(j)[axis];
       return a != b ? a < b : i < j;
     });
     const std::uint32_t left = build(begin, half), right = build(half, end);
@@ -127,7 +127,7 @@ struct SphereBody : MethodBody {
         s.radius = std::max(s.radius, (shape.vertices[v] - s.centre).norm());
     return s;
   }
-  Eigen::Vector3d middle(std::uint32_t i) const {
+  Eigen::Vector3d centroid(std::uint32_t i) const {
     const auto& c = shape.triangles[i];
     return (shape.vertices[c[0]] + shape.vertices[c[1]] + shape.vertices[c[2]]) / 3;
   }

@@ -38,14 +38,14 @@ Approach Approaches::next(double depth) {
     Approach out;
     out.pose.r = shapes::random_rotation(random_);
     out.direction = shapes::random_direction(random_);
-    const Eigen::Vector3d middle = shapes::box_of(a_).center() - out.pose.r * shapes::box_of(b_).center();
+    const Eigen::Vector3d centre = shapes::box_of(a_).center() - out.pose.r * shapes::box_of(b_).center();
     const auto meets_at = [&](double s) {
-      out.pose.t = middle + s * out.direction;
+      out.pose.t = centre + s * out.direction;
       return meets(out.pose);
     };
     const auto at = first_meeting(2 * diagonal_, 0, 0.004 * diagonal_, meets_at);
     if (!at) continue;
-    out.pose.t = middle + (*at - depth * diagonal_) * out.direction;
+    out.pose.t = centre + (*at - depth * diagonal_) * out.direction;
     return out;
   }
 }

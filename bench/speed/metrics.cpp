@@ -50,7 +50,7 @@ double angle_share(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) / kHalfTurn;
 }
 
-Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3d>& points) {
+Eigen::Vector3d centroid_of(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d sum(0, 0, 0);
   for (const Eigen::Vector3d& p : points) sum += p;
   return points.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(points.size()));
@@ -100,7 +100,7 @@ Region RegionMaker::of_pairs(const std::vector<SimplexPair>& pairs) {
     if (r.length + r.area > largest) out.normal = r.normal;
     largest = std::max(largest, r.length + r.area);
   }
-  out.centroid = middle_of(out.points);
+  out.centroid = centroid_of(out.points);
   out.points = thinned(out.points);
   return out;
 }
@@ -126,7 +126,7 @@ double BodyDistance::off(const std::vector<Eigen::Vector3d>& points) {
 Region of_points(const std::vector<Eigen::Vector3d>& points) {
   Region out;
   out.points = thinned(points);
-  out.centroid = middle_of(points);
+  out.centroid = centroid_of(points);
   return out;
 }
 

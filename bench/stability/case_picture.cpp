@@ -261,7 +261,7 @@ PictureFrame::PictureFrame(const Eigen::AlignedBox3d& box) {
   const double largest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
   if (largest > 0x1p1000) before_ = 0x1p-2;
   const Eigen::Vector3d low = box.min() * before_, high = box.max() * before_;
-  middle_ = low / 2 + high / 2;
+  centre_ = low / 2 + high / 2;
   radius_ = (high - low).maxCoeff() / 2;
   // Bodies that have collapsed to a point are drawn as a point, so any size is valid.
   if (!(radius_ > 0)) radius_ = std::max(largest * before_, std::numeric_limits<double>::min());
@@ -276,7 +276,7 @@ Piece PictureFrame::cut(const Piece& world, double reach) const {
   for (const Eigen::Vector3d& p : world.corners) {
     WidePoint& q = wide.corners.emplace_back();
     for (int k = 0; k < 3; ++k)
-      q[static_cast<std::size_t>(k)] = (Wide(p[k]) * before_ - Wide(middle_[k])) / Wide(radius_);
+      q[static_cast<std::size_t>(k)] = (Wide(p[k]) * before_ - Wide(centre_[k])) / Wide(radius_);
   }
   for (std::size_t axis = 0; axis < 3 && !wide.corners.empty(); ++axis)
     for (const int sign : {-1, 1}) wide = clip(wide, axis, sign, reach);

@@ -53,14 +53,14 @@ class PictureFrame {
   /// Maps a point. Differences are taken first, which is exact near the centre, even far from the world's
   /// origin.
   Eigen::Vector3d operator()(const Eigen::Vector3d& world) const {
-    return (world * before_ - middle_) / radius_;
+    return (world * before_ - centre_) / radius_;
   }
   /// Returns the part of a piece in [-reach, reach]^3, or no corners if it is empty. A piece may be 1e60
   /// times larger than the cube, so it is clipped with 100 digits.
   Piece cut(const Piece& world, double reach) const;
 
  private:
-  Eigen::Vector3d middle_;
+  Eigen::Vector3d centre_;
   double before_ = 1;  ///< scale that keeps differences of the largest doubles finite
   double radius_ = 1;
 };

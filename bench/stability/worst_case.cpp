@@ -33,7 +33,7 @@ constexpr double kReach = 6;
 // ---- Regions of interest
 
 /// Halves first: sums of the largest doubles overflow.
-Eigen::Vector3d middle_of(const Eigen::AlignedBox3d& box) {
+Eigen::Vector3d centre_of(const Eigen::AlignedBox3d& box) {
   return box.min() / 2 + box.max() / 2;
 }
 
@@ -43,9 +43,9 @@ Eigen::AlignedBox3d place_of(const CasePicture& s, const SimplexPair& p) {
   const Eigen::AlignedBox3d a = s.bodies[0].box(p.a), b = s.bodies[1].box(p.b);
   const Eigen::AlignedBox3d& smaller = diagonal(a) < diagonal(b) ? a : b;
   const Eigen::AlignedBox3d common = a.intersection(b);
-  const Eigen::Vector3d middle = middle_of(common.isEmpty() ? smaller : common);
+  const Eigen::Vector3d centre = centre_of(common.isEmpty() ? smaller : common);
   const double half = diagonal(smaller) / 4;
-  Eigen::AlignedBox3d out(middle - Eigen::Vector3d::Constant(half), middle + Eigen::Vector3d::Constant(half));
+  Eigen::AlignedBox3d out(centre - Eigen::Vector3d::Constant(half), centre + Eigen::Vector3d::Constant(half));
   return common.isEmpty() ? out.merged(smaller) : out.merged(common);
 }
 
@@ -164,9 +164,9 @@ void frame_place(render::Image& image, const render::Camera& camera,
     if (const auto p = projection.to_pixel(c)) box.extend(*p);
   if (box.isEmpty()) return;
   constexpr double kLeast = 11;  // half a side, pixels
-  const Eigen::Vector2d middle = box.center();
+  const Eigen::Vector2d centre = box.center();
   const Eigen::Vector2d half = (box.sizes() / 2).cwiseMax(kLeast);
-  const render::PixelRect r{static_cast<int>(middle.x() - half.x()), static_cast<int>(middle.y() - half.y()),
+  const render::PixelRect r{static_cast<int>(centre.x() - half.x()), static_cast<int>(centre.y() - half.y()),
                             static_cast<int>(2 * half.x()), static_cast<int>(2 * half.y())};
   image.stroke({r.x - 1, r.y - 1, r.width + 2, r.height + 2}, render::kWhite, 4);
   image.stroke(r, render::palette::kInk, 2);

@@ -50,11 +50,11 @@ class Planes {
     // No plane separates a corner that is behind all of them, however small the parts.
     if (depth == kMaxSplits || is_entered(x)) return false;
     // Four parts at the midpoints of the edges: each may be separated by a different plane.
-    const Corners middle = {0.5 * (x[0] + x[1]), 0.5 * (x[1] + x[2]), 0.5 * (x[2] + x[0])};
-    return part_split({x[0], middle[0], middle[2]}, depth + 1) &&
-           part_split({middle[0], x[1], middle[1]}, depth + 1) &&
-           part_split({middle[2], middle[1], x[2]}, depth + 1) &&
-           part_split({middle[0], middle[1], middle[2]}, depth + 1);
+    const Corners midpoint = {0.5 * (x[0] + x[1]), 0.5 * (x[1] + x[2]), 0.5 * (x[2] + x[0])};
+    return part_split({x[0], midpoint[0], midpoint[2]}, depth + 1) &&
+           part_split({midpoint[0], x[1], midpoint[1]}, depth + 1) &&
+           part_split({midpoint[2], midpoint[1], x[2]}, depth + 1) &&
+           part_split({midpoint[0], midpoint[1], midpoint[2]}, depth + 1);
   }
 
  private:

@@ -38,12 +38,12 @@ OverlapProof::OverlapProof(const SurfaceDistance& a, const SurfaceDistance& b, I
     : a_(a), b_(b), is_inside_(std::move(is_inside)) {}
 
 /// Adds a cube, unless all its translations are longer than requested.
-void OverlapProof::push(const Vector3d& middle, double half, const Common& near) {
+void OverlapProof::push(const Vector3d& centre, double half, const Common& near) {
   // Distance of 0 from the cube, rounded down.
-  const double least = (middle.array().abs() - half).max(0).matrix().norm() * kRoundedDown;
+  const double least = (centre.array().abs() - half).max(0).matrix().norm() * kRoundedDown;
   if (least >= most_) return;
   // Push to a binary min-heap by that distance.
-  cubes_.push_back({least, middle, half, near});
+  cubes_.push_back({least, centre, half, near});
   std::push_heap(cubes_.begin(), cubes_.end(), is_later<Cube>);
 }
 
@@ -114,7 +114,7 @@ std::vector<OverlapProof::Common> OverlapProof::seeds(const Cube& cube) const {
   std::array<std::pair<double, const Common*>, kSeeds> nearest;
   nearest.fill({kUnitReach * kUnitReach, nullptr});
   for (const Common& known : found_) {
-    const double far = (cube.middle - known.shift).squaredNorm();
+    const double far = (cube.centre - known.shift).squaredNorm();
     if (!(far < nearest.back().first)) continue;
     std::size_t at = kSeeds - 1;
     for (; at > 0 && far < nearest[at - 1].first; --at) nearest[at] = nearest[at - 1];
@@ -134,13 +134,13 @@ std::vector<OverlapProof::Common> OverlapProof::seeds(const Cube& cube) const {
 
 /// Searches from a seed for a point with the clearance needed.
 bool OverlapProof::find_room(const Cube& cube, double needed, const Common& seed, Common& best) {
-  const Vector3d moved = cube.middle - seed.shift;
+  const Vector3d moved = cube.centre - seed.shift;
   bool found = false;
   Common start;
   // From the seed's translation to the cube's, the point moves by half, stays with A, or follows B.
   for (const double share : {0.5, 0.0, 1.0}) {
     Common at;
-    if (!look(seed.x + share * moved, cube.middle, seed, at)) continue;
+    if (!look(seed.x + share * moved, cube.centre, seed, at)) continue;
     if (!found || has_more(at, start)) start = at;
     found = true;
     // Good enough to climb from.
@@ -189,7 +189,7 @@ unsigned OverlapProof::grow(unsigned max_points) {
     // Eight cubes of half the size.
     for (unsigned i = 0; i < 8; ++i) {
       const double half = cube.half / 2;
-      push(cube.middle + Vector3d(i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half), half,
+      push(cube.centre + Vector3d(i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half), half,
            near);
     }
   }

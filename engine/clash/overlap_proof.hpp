@@ -35,7 +35,7 @@ class OverlapProof {
   double lower() const { return lower_; }
   /// Returns a translation near the shortest one that is not proven, which may separate the bodies, or 0 if
   /// no cube is left.
-  Vector3d doubtful() const { return cubes_.empty() ? Vector3d(Vector3d::Zero()) : cubes_.front().middle; }
+  Vector3d doubtful() const { return cubes_.empty() ? Vector3d(Vector3d::Zero()) : cubes_.front().centre; }
 
  private:
   /// A point of both bodies, for a translation.
@@ -46,11 +46,11 @@ class OverlapProof {
   };
   struct Cube {
     double least;  ///< lower bound on the length of its translations
-    Vector3d middle;
+    Vector3d centre;
     double half;
     Common near;  ///< of a nearby translation
   };
-  void push(const Vector3d& middle, double half, const Common& near);
+  void push(const Vector3d& centre, double half, const Common& near);
   bool look(const Vector3d& x, const Vector3d& v, const Common& near, Common& out);
   bool is_in(Side side, const Vector3d& x, double radius, const Vector3d& known, double known_radius);
   std::vector<Common> seeds(const Cube& cube) const;

@@ -99,10 +99,10 @@ double SeparationSearch::least_separation(const Vector3d& n, double most, int sa
   }
   // Bisection between the last colliding and the first separating sample.
   while (apart - met > kSeparationMargin) {
-    const double middle = 0.5 * (met + apart);
+    const double midpoint = 0.5 * (met + apart);
     // No double lies between the two.
-    if (!(middle > met && middle < apart)) break;
-    (is_separated(n, middle) ? apart : met) = middle;
+    if (!(midpoint > met && midpoint < apart)) break;
+    (is_separated(n, midpoint) ? apart : met) = midpoint;
   }
   return apart;
 }

@@ -31,33 +31,33 @@ constexpr double kBoxRounding = 1 - 0x1p-48;
 
 SurfaceDistance::SurfaceDistance(const UnitBody& body) : body_(body), order_(body.triangles.size()) {
   std::iota(order_.begin(), order_.end(), 0u);
-  std::vector<Vector3d> middles;
-  middles.reserve(order_.size());
+  std::vector<Vector3d> centroids;
+  centroids.reserve(order_.size());
   // Three times the centroids, which suffices for comparison.
   for (const auto& t : body.triangles)
-    middles.push_back(body.points[t[0]] + body.points[t[1]] + body.points[t[2]]);
+    centroids.push_back(body.points[t[0]] + body.points[t[1]] + body.points[t[2]]);
   nodes_.reserve(order_.size());
-  build(0, static_cast<std::uint32_t>(order_.size()), middles);
+  build(0, static_cast<std::uint32_t>(order_.size()), centroids);
 }
 
 std::uint32_t SurfaceDistance::build(std::uint32_t begin, std::uint32_t end,
-                                     const std::vector<Vector3d>& middles) {
+                                     const std::vector<Vector3d>& centroids) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   nodes_.push_back({Eigen::AlignedBox3d(), begin, end});
   // Box of the triangles, and box of the centroids.
-  Eigen::AlignedBox3d of_middles;
+  Eigen::AlignedBox3d box_of_centroids;
   for (std::uint32_t i = begin; i < end; ++i) {
     for (const std::uint32_t v : body_.triangles[order_[i]]) nodes_[index].box.extend(body_.points[v]);
-    of_middles.extend(middles[order_[i]]);
+    box_of_centroids.extend(centroids[order_[i]]);
   }
   if (end - begin <= kLeafTriangles) return index;
   // Median split along the longest axis of the centroids: the depth is about log2 of the number of triangles.
   Eigen::Index axis = 0;
-  of_middles.sizes().maxCoeff(&axis);
+  box_of_centroids.sizes().maxCoeff(&axis);
   const std::uint32_t half = begin + (end - begin) / 2;
   std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end,
-                   [&](std::uint32_t i, std::uint32_t j) { return middles[i][axis] < middles[j][axis]; });
-  const std::uint32_t left = build(begin, half, middles), right = build(half, end, middles);
+                   [&](std::uint32_t i, std::uint32_t j) { return centroids[i][axis] < centroids[j][axis]; });
+  const std::uint32_t left = build(begin, half, centroids), right = build(half, end, centroids);
   nodes_[index].left = left;
   nodes_[index].right = right;
   return index;

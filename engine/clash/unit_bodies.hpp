@@ -56,7 +56,7 @@ class SurfaceDistance {
     std::uint32_t begin, end;           ///< triangles, in `order_`
     std::uint32_t left = 0, right = 0;  ///< 0: a leaf
   };
-  std::uint32_t build(std::uint32_t begin, std::uint32_t end, const std::vector<Vector3d>& middles);
+  std::uint32_t build(std::uint32_t begin, std::uint32_t end, const std::vector<Vector3d>& centroids);
   double bound(std::uint32_t triangle, const Vector3d& x) const;
 
   const UnitBody& body_;

@@ -192,7 +192,7 @@ void aim_at(const Sweep& sweep, double rounding, double unit, TreeKernel& k) {
   // All possible displacements of B from the straight sweep: its width, rounding, and the defect of the
   // rotation.
   const double margin =
-      sweep.width + rounding + kGapDefects * sweep.middle.defect * (sweep.length + sweep.width + rounding);
+      sweep.width + rounding + kGapDefects * sweep.mid_pose.defect * (sweep.length + sweep.width + rounding);
   k.margin = static_cast<float>(margin / unit) * kFloatUp;
   k.sweep_turn = static_cast<float>(sweep.turn) * kFloatUp;
   for (int i = 0; i < 3; ++i) {

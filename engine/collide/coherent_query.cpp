@@ -308,7 +308,7 @@ bool CoherentQuery::Work::make_cache(const CachePolicy::Plan& plan, Probe& probe
   const double rounding = 4 * motion_.rounding();
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
   // Traverse on A's axes: A at the identity, B at the middle of the sweep.
-  TreeKernel k = start_rigid_kernel(context_, Pose{}, {sweep_.middle.m, sweep_.middle.t}, kAtATime);
+  TreeKernel k = start_rigid_kernel(context_, Pose{}, {sweep_.mid_pose.m, sweep_.mid_pose.t}, kAtATime);
   aim_at(sweep_, rounding, query_unit(a_.tree(), b_.tree()), k);
   // Reject NaN as well, which infinite widths without a defect yield: the kernel would ignore such a margin.
   if (!(k.margin < std::numeric_limits<float>::infinity())) return false;

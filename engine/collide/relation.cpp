@@ -122,8 +122,8 @@ class RayWalk {
   bool is_beside_oriented(const TreeNode& n, const Frame& f) const {
     Vector3d centre = f.origin, half[3];
     for (int i = 0; i < 3; ++i) {
-      const double scale = n.scale[i], middle = n.base[i] + scale * 0.5 * kQuantizedMost;
-      centre += f.axes.col(i) * middle;
+      const double scale = n.scale[i], midpoint = n.base[i] + scale * 0.5 * kQuantizedMost;
+      centre += f.axes.col(i) * midpoint;
       half[i] = f.axes.col(i) * (scale * 0.5 * kQuantizedMost);
     }
     const Vector3d way = p_ - centre;

@@ -49,7 +49,7 @@ RelativePose::RelativePose(const Matrix3d& m_, const Vector3d& t_)
 RelativeMotion::RelativeMotion(const LrbRep& a, const LrbRep& b) : a_(&a), b_(&b) {
   // The root's bounding sphere contains all of B.
   const TreeNode& root = b.tree().nodes()[0];
-  middle_ = Vector3d(root.origin[0], root.origin[1], root.origin[2]) * b.tree().unit();
+  centre_ = Vector3d(root.origin[0], root.origin[1], root.origin[2]) * b.tree().unit();
   radius_ = static_cast<double>(root.radius) * b.tree().unit();
 }
 
@@ -73,7 +73,7 @@ bool RelativeMotion::see(const Pose& pose_a, const Pose& pose_b) {
 /// Returns a bound on |dm x + dt| for points x of B, where |dm| <= turn.
 double RelativeMotion::farthest(const Matrix3d& dm, const Vector3d& dt, double turn) const {
   // The displacement of B's centre, and the effect of the rotation over B's radius.
-  return ((dm * middle_ + dt).stableNorm() + turn * radius_) * (1 + kWorldRounding) + rounding_;
+  return ((dm * centre_ + dt).stableNorm() + turn * radius_) * (1 + kWorldRounding) + rounding_;
 }
 
 double RelativeMotion::motion(const RelativePose& from, const RelativePose& to) const {
@@ -90,10 +90,10 @@ double RelativeMotion::step() const {
 Sweep RelativeMotion::sweep_of(int steps) const {
   const RelativePose way = motion_between(last_, now_);
   Sweep s;
-  // Repeat the last step: `steps` times to the middle, and as often again to the end.
+  // Repeat the last step: `steps` times to the mid_pose, and as often again to the end.
   RelativePose end = now_;
   for (int i = 0; i < steps; ++i) end = after(way, end);
-  s.middle = end;
+  s.mid_pose = end;
   for (int i = 0; i < steps; ++i) end = after(way, end);
   // Half the chord from now to the end, extended by kBeyondEnd steps at either end.
   const double longer = 1 + kBeyondEnd / steps;
@@ -137,18 +137,18 @@ Sweep RelativeMotion::ahead(double steps) const {
 
 Sweep RelativeMotion::about(double width) const {
   Sweep here;
-  here.middle = now_;
+  here.mid_pose = now_;
   here.width = width;
   return here;
 }
 
 SweepPoint RelativeMotion::along(const Sweep& s) const {
   // A fixed pose has no direction: only the distance from it counts.
-  if (s.length == 0) return {0, motion(s.middle, now_)};
-  const Matrix3d m = now_.m - s.middle.m;
-  const Vector3d t = now_.t - s.middle.t;
+  if (s.length == 0) return {0, motion(s.mid_pose, now_)};
+  const Matrix3d m = now_.m - s.mid_pose.m;
+  const Vector3d t = now_.t - s.mid_pose.t;
   // Least squares over B's points, approximated by a ball.
-  const Vector3d way = (s.dm * middle_ + s.dt) / s.length, gone = (m * middle_ + t) / s.length;
+  const Vector3d way = (s.dm * centre_ + s.dt) / s.length, gone = (m * centre_ + t) / s.length;
   const double spread = radius_ / s.length * (radius_ / s.length) / 2;
   const double nearest = (gone.dot(way) + spread * m.cwiseProduct(s.dm).sum()) /
                          (way.squaredNorm() + spread * s.dm.squaredNorm());

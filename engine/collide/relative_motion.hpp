@@ -30,7 +30,7 @@ struct RelativePose {
 /// A straight part of the relative motion: B at the middle pose, displaced by s (dm x + dt) on A's axes for
 /// -1 <= s <= 1, and all positions within `width` of that.
 struct Sweep {
-  RelativePose middle;
+  RelativePose mid_pose;
   Eigen::Matrix3d dm = Eigen::Matrix3d::Zero();
   Eigen::Vector3d dt = Eigen::Vector3d::Zero();
   double turn = 0;    ///< upper bound on |dm|
@@ -83,7 +83,7 @@ class RelativeMotion {
   Sweep sweep_of(int steps) const;
 
   const LrbRep *a_ = nullptr, *b_ = nullptr;
-  Eigen::Vector3d middle_{0, 0, 0};  ///< centre of B
+  Eigen::Vector3d centre_{0, 0, 0};  ///< centre of B
   double radius_ = 0;                ///< radius of B about it
   int seen_ = 0;                     ///< number of successive poses recorded, at most three
   RelativePose now_, last_, earlier_;

@@ -69,14 +69,14 @@ class SlabSearch {
  private:
   static Vector3d edge(const Corners& c, int k) { return c[(k + 1) % 3] - c[k]; }
   static Vector3d normal(const Corners& c) { return edge(c, 0).cross(edge(c, 1)); }
-  Vector3d middles() const { return (b_[0] + b_[1] + b_[2]) - (a_[0] + a_[1] + a_[2]); }
+  Vector3d between_centroids() const { return (b_[0] + b_[1] + b_[2]) - (a_[0] + a_[1] + a_[2]); }
 
   /// Returns a direction to try: 0 the line between the centroids, 1-2 normals, 3-11 edge x edge, 12-17 the
   /// edge normals in each plane, 18-20 the axes.
   Vector3d in_space(int i) const {
     // Face normals and edge x edge are complete for disjoint triangles in general position; the others are
     // for coplanar and degenerate ones.
-    if (i == 0) return middles();
+    if (i == 0) return between_centroids();
     if (i < 3) return normal(i == 1 ? a_ : b_);
     if (i < 12) return edge(a_, (i - 3) / 3).cross(edge(b_, (i - 3) % 3));
     if (i < 15) return normal(a_).cross(edge(a_, i - 12));
@@ -84,7 +84,7 @@ class SlabSearch {
     return Vector3d::Unit(i - 18);
   }
   Vector3d in_plane(int i) const {
-    if (i == 0) return middles();
+    if (i == 0) return between_centroids();
     if (i > 4) return Vector3d::Unit(i - 5);
     // 1 and 2: normal to each segment; 3 and 4: along it, for collinear segments.
     const Vector3d e = edge(i % 2 != 0 ? a_ : b_, 0);

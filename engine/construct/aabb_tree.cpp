@@ -61,17 +61,17 @@ std::uint32_t AabbTree::build(std::uint32_t first, std::uint32_t last, std::uint
   for (std::uint32_t i = first; i < last; ++i) spread.extend(centres_[slots_[i]]);
   int axis = 0;
   spread.sizes().maxCoeff(&axis);
-  const std::uint32_t middle = first + (last - first) / 2;
+  const std::uint32_t median = first + (last - first) / 2;
   // Equal halves bound the depth by log2 n. Ties are broken by slot, so that the tree is deterministic.
-  std::nth_element(slots_.begin() + first, slots_.begin() + middle, slots_.begin() + last,
+  std::nth_element(slots_.begin() + first, slots_.begin() + median, slots_.begin() + last,
                    [&](Slot s, Slot t) {
                      const double a = centres_[s][axis], b = centres_[t][axis];
                      return a != b ? a < b : s < t;
                    });
   // Preorder: the left child follows its parent. The vector may be reallocated, so refer to the node by
   // index.
-  build(first, middle, index);
-  const std::uint32_t right = build(middle, last, index);
+  build(first, median, index);
+  const std::uint32_t right = build(median, last, index);
   nodes_[index].right = right;
   return index;
 }

@@ -201,14 +201,14 @@ void PatchFloor::load(const FrontMesh& front, const Patch& patch, double most) {
     t.off_b = off[1] - off[0];
     t.off_c = off[2] - off[0];
     t.least = *std::min_element(off.begin(), off.end());
-    t.middle = (t.x[0] + t.x[1] + t.x[2]) / 3;
-    for (const Vector3d& x : t.x) radius_sq = std::max(radius_sq, (x - t.middle).squaredNorm());
+    t.centroid = (t.x[0] + t.x[1] + t.x[2]) / 3;
+    for (const Vector3d& x : t.x) radius_sq = std::max(radius_sq, (x - t.centroid).squaredNorm());
     t.radius = std::sqrt(radius_sq);
     set_weights(t);
     triangles_.push_back(t);
     // Points outside this ball cannot be within the limit by this triangle.
     const double left = most - t.least, reach = left + t.radius;
-    balls_.push_back({t.middle, left < 0 ? -1 : reach * reach});
+    balls_.push_back({t.centroid, left < 0 ? -1 : reach * reach});
   }
 }
 
@@ -232,11 +232,11 @@ void PatchFloor::set_weights(Triangle& t) {
 
 /// Returns the deviation of q according to the triangle, or possibly infinity if it exceeds `most`.
 double PatchFloor::off_by(const Triangle& t, const Vector3d& q, double most) {
-  const Vector3d from_middle = q - t.middle;
-  const double left = most - t.least, up = std::abs(t.normal.dot(from_middle));
+  const Vector3d from_centroid = q - t.centroid;
+  const double left = most - t.least, up = std::abs(t.normal.dot(from_centroid));
   // The distance is at least the distance from the plane.
   if (up > left) return kFar;
-  const double b = t.to_b.dot(from_middle) + t.weight, c = t.to_c.dot(from_middle) + t.weight;
+  const double b = t.to_b.dot(from_centroid) + t.weight, c = t.to_c.dot(from_centroid) + t.weight;
   // The foot is in the triangle: the distance is the height.
   if (b >= 0 && c >= 0 && b + c <= 1) return up + t.off + b * t.off_b + c * t.off_c;
   // The distance within the plane is at least the distance from each edge's line that the foot is beyond.
@@ -252,7 +252,7 @@ double PatchFloor::off(const Vector3d& q) const {
   for (const Triangle& t : triangles_) {
     const double left = best - t.least, reach = left + t.radius;
     // Branch and bound over the triangles with the best value so far.
-    if (left <= 0 || (q - t.middle).squaredNorm() >= reach * reach) continue;
+    if (left <= 0 || (q - t.centroid).squaredNorm() >= reach * reach) continue;
     best = std::min(best, off_by(t, q, best));
   }
   return best;

@@ -34,7 +34,7 @@ class PatchFloor {
  private:
   struct Triangle {
     std::array<Eigen::Vector3d, 3> x;
-    Eigen::Vector3d normal, middle;
+    Eigen::Vector3d normal, centroid;
     Eigen::Vector3d to_b, to_c;    ///< gradients of the weights of corners b and c in the triangle's plane
     double weight;                 ///< these weights at the centroid; negative for a degenerate triangle
     std::array<double, 3> height;  ///< of the corners above the opposite edges
@@ -44,9 +44,9 @@ class PatchFloor {
   };
   /// Contains all points that a triangle can prove to be within the limit.
   struct Ball {
-    Eigen::Vector3d middle;
+    Eigen::Vector3d centre;
     double radius_sq;  ///< negative: empty
-    bool holds(const Eigen::Vector3d& q) const { return (q - middle).squaredNorm() <= radius_sq; }
+    bool holds(const Eigen::Vector3d& q) const { return (q - centre).squaredNorm() <= radius_sq; }
   };
 
   static void set_weights(Triangle& t);

@@ -299,12 +299,12 @@ WorldWalk::WorldWalk(QueryContext& ctx, NearestPairs& found) : found_(found), ax
   // The unit is a power of two above all coordinates: scaling is exact, and squares cannot overflow.
   exponent_ = exponent_above(std::max(size_of(ctx.body[0]), size_of(ctx.body[1])));
   // The axes are still the world's at this point, so this returns the position of a body's root in the world.
-  const auto middle_of = [&](const QueryBody& body) -> Vector3d {
+  const auto centre_of = [&](const QueryBody& body) -> Vector3d {
     const Body b = body_of(body, exponent_);
     const double* at = b.tree->nodes()[0].origin;
     return b.map * Vector3d(at[0], at[1], at[2]) + b.origin;
   };
-  axes_ = axes_along(middle_of(ctx.body[1]) - middle_of(ctx.body[0]));
+  axes_ = axes_along(centre_of(ctx.body[1]) - centre_of(ctx.body[0]));
   // Both maps again, to the axes just chosen.
   for (int side = 0; side < 2; ++side) body_[side] = body_of(ctx.body[side], exponent_);
   waiting_.push_back({0, 0, 0});

@@ -75,11 +75,11 @@ double nearer_by(const LrbRep& a, const LrbRep& b, const PosePair& from, const P
   const TreeNode& root = b.tree().nodes()[0];
   const double unit = b.tree().unit();
   // c, and d: the displacement of B's origin relative to A.
-  const Eigen::Vector3d middle = Eigen::Vector3d(root.origin[0], root.origin[1], root.origin[2]) * unit;
+  const Eigen::Vector3d centre = Eigen::Vector3d(root.origin[0], root.origin[1], root.origin[2]) * unit;
   const Eigen::Vector3d shift = (to.b.t - to.a.t) - turn * (from.b.t - from.a.t);
   const double turned = turn_bound(d, defect_b);
   // Displacement of the centre, plus the largest displacement by the rotation at distance r.
-  const double moved = (d * middle + shift).norm() + turned * static_cast<double>(root.radius) * unit;
+  const double moved = (d * centre + shift).norm() + turned * static_cast<double>(root.radius) * unit;
   // The term in x, with |x| at most sqrt(3) times the largest coordinate.
   const double of_a = 2 * defect_a * std::sqrt(3.0) * a.tree().extent();
   // The stretch of |Q w|; `reach` bounds |w|.

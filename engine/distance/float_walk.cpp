@@ -24,13 +24,13 @@ Eigen::Vector3d direction_of(const DistanceContext& context, const NearestPairs&
   const Eigen::Vector3d way = context.query.body[0].world.pose().r.transpose() * found.way();
   if (way.squaredNorm() > 0) return way.normalized();
   // Otherwise the direction between the origins of the roots.
-  Eigen::Vector3d middles;
+  Eigen::Vector3d between_centres;
   for (int i = 0; i < 3; ++i) {
     const double *a = tree.nodes_a[0].origin, *b = tree.nodes_b[0].origin;
     const double at_b = tree.m[0][i] * b[0] + tree.m[1][i] * b[1] + tree.m[2][i] * b[2];
-    middles[i] = at_b * tree.ratio_b + tree.t[i] - a[i] * tree.ratio_a;
+    between_centres[i] = at_b * tree.ratio_b + tree.t[i] - a[i] * tree.ratio_a;
   }
-  return middles.squaredNorm() > 0 ? Eigen::Vector3d(middles.normalized()) : middles;
+  return between_centres.squaredNorm() > 0 ? Eigen::Vector3d(between_centres.normalized()) : between_centres;
 }
 
 }  // namespace

@@ -108,11 +108,11 @@ Expansion<2 * N> scale(const Expansion<N>& e, double b) {
   two_product(e[0], b, q, low);
   r.append(low);
   for (int i = 1; i < e.size; ++i) {
-    double high, middle;
+    double high, mid;
     two_product(e[i], b, high, low);
-    two_sum(q, low, middle, low);
+    two_sum(q, low, mid, low);
     r.append(low);
-    fast_two_sum(high, middle, q, low);
+    fast_two_sum(high, mid, q, low);
     r.append(low);
   }
   r.append(q);

@@ -163,10 +163,10 @@ struct Layer {
 std::vector<Layer> layers_between(const std::vector<Cut>& cuts, const Rational& left, const Rational& right) {
   std::vector<Layer> layers;
   // No two cuts cross inside the slab, so their order at its centre is their order everywhere in it.
-  const Rational middle = (left + right) / 2;
+  const Rational midpoint = (left + right) / 2;
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     if (!cuts[i].is_vertical() && cuts[i].from.x <= left && cuts[i].to.x >= right) {
-      layers.push_back({cuts[i].y_at(middle), i});
+      layers.push_back({cuts[i].y_at(midpoint), i});
     }
   }
   // Coincident cuts have the same ordinate, and the one of lowest index is kept.
@@ -180,7 +180,7 @@ std::vector<Layer> layers_between(const std::vector<Cut>& cuts, const Rational& 
 /// A trapezoid of a slab, between two cuts. The gaps of one cell are linked to the first of them.
 struct Gap {
   std::size_t below, above;
-  Planar middle;
+  Planar midpoint;
   std::size_t link;
 };
 
@@ -234,10 +234,10 @@ class Slabs {
   }
 
   /// Returns one point of each cell.
-  std::vector<Planar> middles() const {
+  std::vector<Planar> midpoints() const {
     std::vector<Planar> r;
     for (std::size_t i = 0; i < gaps_.size(); ++i) {
-      if (gaps_[i].link == i) r.push_back(gaps_[i].middle);
+      if (gaps_[i].link == i) r.push_back(gaps_[i].midpoint);
     }
     return r;
   }
@@ -252,8 +252,8 @@ class Slabs {
     // Consecutive cuts bound a gap. Its centre is on no cut, because the gap is convex and has an interior.
     const std::vector<Layer> layers = layers_between(cuts_, left, right);
     for (std::size_t i = 0; i + 1 < layers.size(); ++i) {
-      const Planar middle{(left + right) / 2, (layers[i].y + layers[i + 1].y) / 2};
-      gaps_.push_back({layers[i].cut, layers[i + 1].cut, middle, gaps_.size()});
+      const Planar midpoint{(left + right) / 2, (layers[i].y + layers[i + 1].y) / 2};
+      gaps_.push_back({layers[i].cut, layers[i + 1].cut, midpoint, gaps_.size()});
     }
   }
 
@@ -272,18 +272,18 @@ class Slabs {
     return r;
   }
 
-  /// Unites gaps across x, where the slab of the gaps [left, middle) borders on the slab of [middle, end):
+  /// Unites gaps across x, where the slab of the gaps [left, boundary) borders on the slab of [boundary, end):
   /// gaps that open to each other belong to one cell. Both lists are in ascending order, so one merge finds
   /// all such pairs.
-  void join_neighbours(std::size_t left, std::size_t middle, const Rational& x) {
-    const std::vector<Opening> l = openings(left, middle, x), r = openings(middle, gaps_.size(), x);
+  void join_neighbours(std::size_t left, std::size_t boundary, const Rational& x) {
+    const std::vector<Opening> l = openings(left, boundary, x), r = openings(boundary, gaps_.size(), x);
     const std::vector<const Cut*> walls = walls_at(x);
     // Merge of two sorted lists of intervals on the line at x: linear in the number of gaps.
     for (std::size_t i = 0, j = 0; i < l.size() && j < r.size();) {
       const Rational &low = std::max(l[i].low, r[j].low), &high = std::min(l[i].high, r[j].high);
       // The openings overlap in more than a point, and no vertical cut closes the overlap: one cell.
       if (low < high && !walled_off(walls, low, high)) {
-        const std::size_t a = first_of(left + i), b = first_of(middle + j);
+        const std::size_t a = first_of(left + i), b = first_of(boundary + j);
         gaps_[std::max(a, b)].link = std::min(a, b);
       }
       // Advance past the opening that ends first: it cannot overlap any later opening of the other side.
@@ -347,7 +347,7 @@ std::optional<CutFace> CutFace::make(const double* const tri[3],
   if (!parts->slabs->whole()) return std::nullopt;
   parts->cells = parts->slabs->cells();
   CutFace face;
-  for (const Planar& p : parts->slabs->middles()) face.samples_.push_back(parts->triangle.lift(p));
+  for (const Planar& p : parts->slabs->midpoints()) face.samples_.push_back(parts->triangle.lift(p));
   face.parts_ = parts;
   return face;
 }
@@ -425,9 +425,9 @@ std::optional<std::vector<RationalPoint>> sample_cells(const double* const tri[3
     if (triangle.cuts().size() > limit + 3) return std::nullopt;  // 3: its own edges
   }
   const Slabs slabs(triangle.cuts(), kGapsPerCell * limit);
-  const std::vector<Planar> middles = slabs.middles();
-  if (!slabs.whole() || middles.size() > limit) return std::nullopt;
-  for (const Planar& p : middles) samples.push_back(triangle.lift(p));
+  const std::vector<Planar> midpoints = slabs.midpoints();
+  if (!slabs.whole() || midpoints.size() > limit) return std::nullopt;
+  for (const Planar& p : midpoints) samples.push_back(triangle.lift(p));
   return samples;
 }
 

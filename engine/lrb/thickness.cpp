@@ -302,20 +302,20 @@ class RegionMeter {
     piece.face = s, piece.off = off, piece.most = most;
   }
 
-  Vector3d middle_of(const Piece& piece) const {
-    Vector3d middle = piece.x[0] + piece.x[1];
-    if (corners_ == 3) middle += piece.x[2];
-    return middle / corners_;
+  Vector3d centroid_of(const Piece& piece) const {
+    Vector3d centroid = piece.x[0] + piece.x[1];
+    if (corners_ == 3) centroid += piece.x[2];
+    return centroid / corners_;
   }
 
   /// Searches for a better face for a piece. Returns true if the piece is within the limit then.
   bool is_settled(Piece& piece) {
     if (piece.most > limit()) {
       // The face near the centroid often bounds the entire piece better.
-      const Vector3d middle = middle_of(piece);
-      NearFace near = nearest_.walk(middle, piece.face, neighbours_);
+      const Vector3d centroid = centroid_of(piece);
+      NearFace near = nearest_.walk(centroid, piece.face, neighbours_);
       // The walk may end in a local minimum: another part of the surface may be closer.
-      if (near.distance > found_) near = nearest_.find(middle, near);
+      if (near.distance > found_) near = nearest_.find(centroid, near);
       // The centroid is a point of the lid, so its distance raises the lower bound.
       found_ = std::max(found_, near.distance);
       try_face(piece, near.simplex);

@@ -91,15 +91,15 @@ class Search {
 
   void bounds(const TreeNode& n, std::array<double, kTreeWidth>& out) const {
     // The terms shared by all children, and all rounding errors.
-    double middle = t_ + slack_ + kKernelRounding * d_.cwiseAbs().sum() * n.radius;
+    double centre = t_ + slack_ + kKernelRounding * d_.cwiseAbs().sum() * n.radius;
     double g[3];
     for (int i = 0; i < 3; ++i) {
       g[i] = n.frame[i][0] * d_[0] + n.frame[i][1] * d_[1] + n.frame[i][2] * d_[2];
-      middle += d_[i] * n.origin[i] + g[i] * n.base[i];
+      centre += d_[i] * n.origin[i] + g[i] * n.base[i];
       g[i] *= n.scale[i];
     }
     for (std::uint32_t k = 0; k < n.count; ++k) {
-      out[k] = middle;
+      out[k] = centre;
       // The corner of the child's box that is furthest along the direction.
       for (int i = 0; i < 3; ++i) out[k] += g[i] * (g[i] > 0 ? n.hi[i][k] : n.lo[i][k]);
     }

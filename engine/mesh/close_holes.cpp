@@ -138,7 +138,7 @@ class HoleCloser {
     if (!out_.holes[i].loop.planar) a.ways.push_back(hole_fill::least_area(mesh_, rims_[i], allowed()));
     a.ways.push_back(hole_fill::cut_corners(mesh_, rims_[i], *views_[i], allowed()));
     // A triangle needs no extra vertex.
-    if (rims_[i].size() > 3) a.ways.push_back(hole_fill::fan_about_middle(mesh_, rims_[i]));
+    if (rims_[i].size() > 3) a.ways.push_back(hole_fill::fan_about_centroid(mesh_, rims_[i]));
     return a;
   }
 
@@ -162,7 +162,7 @@ class HoleCloser {
     for (const auto& t : lid.triangles)
       for (std::size_t i = 0; i < 3; ++i) {
         const Edge e = edge_of(t[i], t[(i + 1) % 3]);
-        if (e[1] != hole_fill::kMiddle && !once.insert(e).second) twice.insert(e);
+        if (e[1] != hole_fill::kCentroid && !once.insert(e).second) twice.insert(e);
       }
     return twice;
   }
@@ -253,11 +253,11 @@ class HoleCloser {
   }
 
   static void add(const HoleFill& lid, Mesh& mesh) {
-    const auto middle = static_cast<VertexId>(mesh.vertices.size());
-    // The centre of a fan becomes a new vertex, which replaces kMiddle.
-    if (lid.middle) mesh.vertices.push_back(*lid.middle);
+    const auto centroid = static_cast<VertexId>(mesh.vertices.size());
+    // The centre of a fan becomes a new vertex, which replaces kCentroid.
+    if (lid.centroid) mesh.vertices.push_back(*lid.centroid);
     for (std::array<VertexId, 3> t : lid.triangles) {
-      std::replace(t.begin(), t.end(), hole_fill::kMiddle, middle);
+      std::replace(t.begin(), t.end(), hole_fill::kCentroid, centroid);
       mesh.add_face(t);
     }
   }

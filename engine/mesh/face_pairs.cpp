@@ -37,11 +37,11 @@ std::size_t halve(std::vector<Item>& items, std::size_t first, std::size_t last,
   // Divide before subtracting, to avoid overflow.
   (spread.max() / 2 - spread.min() / 2).maxCoeff(&axis);
   // Median split: the depth is logarithmic for any distribution.
-  const std::size_t middle = first + (last - first) / 2;
+  const std::size_t median = first + (last - first) / 2;
   const auto at = [&](std::size_t i) { return items.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(first), at(middle), at(last),
+  std::nth_element(at(first), at(median), at(last),
                    [&](const Item& a, const Item& b) { return centre(a)[axis] < centre(b)[axis]; });
-  return middle;
+  return median;
 }
 
 }  // namespace
@@ -145,9 +145,9 @@ std::uint32_t FacePairs::build_units(std::vector<Unit>& units, std::size_t first
     for (std::size_t i = first; i < last; ++i) order_.push_back(units[i].face);
   } else {
     // The left child is built first and thus follows its parent; only the right one needs an index.
-    const std::size_t middle = halve(units, first, last, [](const Unit& u) { return u.centre; });
-    build_units(units, first, middle);
-    const std::uint32_t right = build_units(units, middle, last);
+    const std::size_t median = halve(units, first, last, [](const Unit& u) { return u.centre; });
+    build_units(units, first, median);
+    const std::uint32_t right = build_units(units, median, last);
     nodes_[index].right = right;
   }
   close_node(index);
@@ -164,9 +164,9 @@ std::uint32_t FacePairs::build_hub(std::vector<FaceId>& faces, std::size_t first
   if (is_leaf) {
     for (std::size_t i = first; i < last; ++i) order_.push_back(faces[i]);
   } else {
-    const std::size_t middle = halve(faces, first, last, [&](FaceId f) { return centre_of(f); });
-    build_hub(faces, first, middle);
-    const std::uint32_t right = build_hub(faces, middle, last);
+    const std::size_t median = halve(faces, first, last, [&](FaceId f) { return centre_of(f); });
+    build_hub(faces, first, median);
+    const std::uint32_t right = build_hub(faces, median, last);
     nodes_[index].right = right;
   }
   close_node(index);

@@ -102,16 +102,16 @@ class BoxTree {
     if (last - first <= kLeafSize) return index;
     int axis = 0;
     box.sizes().maxCoeff(&axis);
-    const std::uint32_t middle = first + (last - first) / 2;
-    std::nth_element(items_.begin() + first, items_.begin() + middle, items_.begin() + last,
+    const std::uint32_t median = first + (last - first) / 2;
+    std::nth_element(items_.begin() + first, items_.begin() + median, items_.begin() + last,
                      [&](std::uint32_t i, std::uint32_t j) {
                        // Divide before adding, to avoid overflow.
                        const double a = boxes_[i].min()[axis] / 2 + boxes_[i].max()[axis] / 2;
                        const double b = boxes_[j].min()[axis] / 2 + boxes_[j].max()[axis] / 2;
                        return a != b ? a < b : i < j;
                      });
-    build(first, middle);
-    nodes_[index].right = build(middle, last);
+    build(first, median);
+    nodes_[index].right = build(median, last);
     return index;
   }
 

@@ -121,12 +121,12 @@ UnitCube::UnitCube(const Eigen::AlignedBox3d& box) {
   first_ = Scale::by(-exponent_of(largest));
   const Eigen::Vector3d low = first_(box.min()), high = first_(box.max());
   // Then centre them and scale again, so that the box fills the cube.
-  middle_ = 0.5 * (low + high);
-  last_ = Scale::by(-exponent_of((high - middle_).cwiseMax(middle_ - low).maxCoeff()));
+  centre_ = 0.5 * (low + high);
+  last_ = Scale::by(-exponent_of((high - centre_).cwiseMax(centre_ - low).maxCoeff()));
 }
 
 Eigen::Vector3d UnitCube::operator()(const Eigen::Vector3d& x) const {
-  return last_(first_(x) - middle_);
+  return last_(first_(x) - centre_);
 }
 
 OrientedBox OrientedBox::about(std::span<const Eigen::Vector3d> points) {
@@ -193,13 +193,13 @@ std::uint32_t TriangleTree::build(const Mesh& mesh, const UnitCube& cube, std::u
   const auto place = [&](const Triangle& t) {
     return along.dot(cube(mesh.vertices[t[0]]) + cube(mesh.vertices[t[1]]) + cube(mesh.vertices[t[2]]));
   };
-  const std::uint32_t middle = first + (last - first) / 2;
+  const std::uint32_t median = first + (last - first) / 2;
   const auto at = [&](std::uint32_t i) { return triangles_.begin() + static_cast<std::ptrdiff_t>(i); };
   // Median split: the tree is balanced.
-  std::nth_element(at(first), at(middle), at(last),
+  std::nth_element(at(first), at(median), at(last),
                    [&](const Triangle& s, const Triangle& t) { return place(s) < place(t); });
-  build(mesh, cube, first, middle, leaf_size);
-  const std::uint32_t right = build(mesh, cube, middle, last, leaf_size);
+  build(mesh, cube, first, median, leaf_size);
+  const std::uint32_t right = build(mesh, cube, median, last, leaf_size);
   nodes_[index].right = right;
   return index;
 }

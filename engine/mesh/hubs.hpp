@@ -60,7 +60,7 @@ class UnitCube {
     Eigen::Vector3d operator()(const Eigen::Vector3d& x) const { return (x * half) * rest; }
   };
 
-  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   Scale first_, last_;  ///< before and after the subtraction of the centre
 };
 

@@ -1,7 +1,7 @@
 // Triangulations of a polygon in 3D, in a projection along one axis:
 // 1. cut_corners(): ear clipping (Meisters 1975), best-shaped ear first, with exact orientation tests.
 // 2. least_area(): minimum-area triangulation by dynamic programming (Klincsek 1980), O(n^3).
-// 3. fan_about_middle(): a fan around the centroid of the vertices.
+// 3. fan_about_centroid(): a fan around the centroid of the vertices.
 // 4. bridge_holes(): merges holes into the outer polygon along the shortest visible bridges, for ear
 //    clipping.
 #include "engine/mesh/lid_triangles.hpp"
@@ -240,14 +240,14 @@ std::optional<HoleFill> least_area(const Mesh& mesh, std::span<const VertexId> r
   return lid;
 }
 
-HoleFill fan_about_middle(const Mesh& mesh, std::span<const VertexId> rim) {
+HoleFill fan_about_centroid(const Mesh& mesh, std::span<const VertexId> rim) {
   HoleFill lid;
-  Vector3d middle = Vector3d::Zero();
+  Vector3d centroid = Vector3d::Zero();
   // Divide before adding, to avoid overflow.
-  for (const VertexId v : rim) middle += mesh.vertices[v] / static_cast<double>(rim.size());
-  lid.middle = middle;
+  for (const VertexId v : rim) centroid += mesh.vertices[v] / static_cast<double>(rim.size());
+  lid.centroid = centroid;
   for (std::size_t i = 0; i < rim.size(); ++i)
-    lid.triangles.push_back({rim[i], rim[(i + 1) % rim.size()], kMiddle});
+    lid.triangles.push_back({rim[i], rim[(i + 1) % rim.size()], kCentroid});
   return lid;
 }
 

@@ -12,12 +12,12 @@
 namespace lrb::hole_fill {
 
 /// Placeholder for the new vertex at the centre of a fan.
-inline constexpr VertexId kMiddle(kNull.kValue - 1);
+inline constexpr VertexId kCentroid(kNull.kValue - 1);
 
 /// A hole fill.
 struct HoleFill {
   std::vector<std::array<VertexId, 3>> triangles;
-  std::optional<Eigen::Vector3d> middle;  ///< position of kMiddle
+  std::optional<Eigen::Vector3d> centroid;  ///< position of kCentroid
 };
 
 /// Returns true if a triangulation may contain this edge as a diagonal.
@@ -43,7 +43,7 @@ std::optional<HoleFill> least_area(const Mesh& mesh, std::span<const VertexId> r
 inline constexpr std::size_t kMaxForLeastArea = 256;  ///< the time is cubic
 
 /// Returns the fan around the centroid of the loop's vertices.
-HoleFill fan_about_middle(const Mesh& mesh, std::span<const VertexId> rim);
+HoleFill fan_about_centroid(const Mesh& mesh, std::span<const VertexId> rim);
 
 /// Merges a polygon and coplanar holes in it (of opposite orientation) into one polygon with a bridge to each
 /// hole and back. Returns nullopt if a hole has no bridge that intersects no edge.

@@ -64,13 +64,13 @@ std::uint32_t SideFinder::build(std::uint32_t first, std::uint32_t last) {
   const Eigen::AlignedBox3d& box = nodes_[index].box;
   int axis = 0;
   (box.max() / 2 - box.min() / 2).maxCoeff(&axis);
-  const std::uint32_t middle = first + (last - first) / 2;
+  const std::uint32_t median = first + (last - first) / 2;
   const auto centre = [&](FaceId f) { return boxes_[f].min()[axis] / 2 + boxes_[f].max()[axis] / 2; };
   const auto at = [&](std::uint32_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(first), at(middle), at(last),
+  std::nth_element(at(first), at(median), at(last),
                    [&](FaceId f, FaceId g) { return centre(f) < centre(g); });
-  build(first, middle);
-  const std::uint32_t right = build(middle, last);
+  build(first, median);
+  const std::uint32_t right = build(median, last);
   nodes_[index].right = right;
   return index;
 }

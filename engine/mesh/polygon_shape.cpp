@@ -175,7 +175,7 @@ class Chords {
   /// sides without inner corners or run through the interior. Requires that the chord from i to j is such a
   /// chord. Then there is one: beyond the end of the first side and before the start of the last one, or next
   /// to i, or next to j.
-  std::size_t middle(std::size_t i, std::size_t j) const {
+  std::size_t near_median(std::size_t i, std::size_t j) const {
     // Binary searches in the ascending numbers: the end of the side that starts at i, and the start of the
     // side that ends at j.
     const auto begin = side_.begin() + static_cast<std::ptrdiff_t>(i),
@@ -203,13 +203,13 @@ void triangulate_by_halves(const Mesh& mesh, std::span<const VertexId> corners,
   const Chords chords(mesh, p.ring);
   // The polygon is divided in two. Each part is divided by the triangle on its chord whose apex is the median
   // of its boundary. All triangles have area, because their corners are not on one side.
-  const std::size_t half = chords.middle(0, n);
+  const std::size_t half = chords.near_median(0, n);
   std::vector<std::array<std::size_t, 2>> todo = {{0, half}, {half, n}};
   while (!todo.empty()) {
     const auto [i, j] = todo.back();
     todo.pop_back();
     if (j == i + 1) continue;
-    const std::size_t k = chords.middle(i, j);
+    const std::size_t k = chords.near_median(i, j);
     triangles.push_back({p.ring[i], p.ring[k], p.ring[j % n]});
     todo.push_back({i, k});
     todo.push_back({k, j});

@@ -318,11 +318,11 @@ TimeSpan FirstContactSearch::shortened(TimeSpan span, double too_short) {
   // Invariant: `doubtful` is too short, span.end is long enough.
   double doubtful = std::min(span.begin + too_short, span.end);
   while (span.end - doubtful > std::max(tolerance_, kNarrow * (span.end - span.begin)) && !is_over()) {
-    const double middle = doubtful + (span.end - doubtful) / 2;
-    if (!(middle > doubtful && middle < span.end)) break;
+    const double midpoint = doubtful + (span.end - doubtful) / 2;
+    if (!(midpoint > doubtful && midpoint < span.end)) break;
     // goes_on_from() uses the pairs found last.
-    if (is_swept_ && !find_pairs({span.begin, middle}, kMaxStuckPairs)) break;
-    (goes_on_from({span.begin, middle}) ? span.end : doubtful) = middle;
+    if (is_swept_ && !find_pairs({span.begin, midpoint}, kMaxStuckPairs)) break;
+    (goes_on_from({span.begin, midpoint}) ? span.end : doubtful) = midpoint;
   }
   return span;
 }
@@ -365,14 +365,14 @@ void FirstContactSearch::contact_at_last(TimeSpan span, SimplexPair pair) {
   notify(span.begin, span.end);
   // Contact need not be monotone in t, so the start of the interval remains t0.
   while (span.end - none > tolerance_ / 2 && !is_spent()) {
-    const double middle = none + (span.end - none) / 2;
-    if (!(middle > none && middle < span.end)) break;
-    if (const auto earlier = meets_at(middle)) {
-      span.end = middle;
+    const double midpoint = none + (span.end - none) / 2;
+    if (!(midpoint > none && midpoint < span.end)) break;
+    if (const auto earlier = meets_at(midpoint)) {
+      span.end = midpoint;
       pair = *earlier;
       notify(span.begin, span.end);
     } else {
-      none = middle;
+      none = midpoint;
     }
   }
   contact_in(span, pair);

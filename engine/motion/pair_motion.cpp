@@ -149,7 +149,7 @@ double PairMotion::separated_for(const Vector3d& n) const {
   return least > 0 ? least : 0;  // NaN: 0
 }
 
-Vector3d PairMotion::middle(int side) const {
+Vector3d PairMotion::centroid(int side) const {
   Vector3d sum(0, 0, 0);
   for (int k = 0; k < n_; ++k) sum += corner_[side][k].x;
   return sum / n_;
@@ -266,7 +266,7 @@ Sweep sweep_of(const MovingBody& a, const PieceState& at_a, const MovingBody& b,
   Sweep sweep;
   const Matrix3d to_a = at_a.pose.r.transpose();
   // B seen from A at the middle of the interval; both travels are combined into one relative travel.
-  sweep.middle = {to_a * at_b.pose.r, to_a * (at_b.pose.t - at_a.pose.t)};
+  sweep.mid_pose = {to_a * at_b.pose.r, to_a * (at_b.pose.t - at_a.pose.t)};
   const Vector3d travel = b.travel() - a.travel();
   sweep.dt = half * (to_a * travel);
   // A's rotation displaces contacts in any direction: it widens the sweep.
@@ -301,16 +301,16 @@ bool suits_sweeps(const MovingBody& a, const MovingBody& b) {
 
 bool find_swept_pairs(QueryContext& ctx, const MovingBody& a, const MovingBody& b, TimeSpan span,
                       std::uint64_t most, std::vector<SimplexPair>& pairs) {
-  const double middle = span.begin + (span.end - span.begin) / 2;
+  const double midpoint = span.begin + (span.end - span.begin) / 2;
   // The larger half, rounded up, so that both ends of the interval are covered.
-  const double half = std::max(span.end - middle, middle - span.begin) * kWorldUp;
-  const PieceState at_a = a.at(middle), at_b = b.at(middle);
-  // Set up the kernel at the poses of the middle, then widen it to the sweep.
+  const double half = std::max(span.end - midpoint, midpoint - span.begin) * kWorldUp;
+  const PieceState at_a = a.at(midpoint), at_b = b.at(midpoint);
+  // Set up the kernel at the poses of the midpoint, then widen it to the sweep.
   ctx.body[0].begin(a.rep(), at_a.pose, WrapperMode::regularised);
   ctx.body[1].begin(b.rep(), at_b.pose, WrapperMode::regularised);
   TreeKernel k = start_rigid_kernel(ctx, at_a.pose, at_b.pose, kBuffer);
   const Sweep sweep = sweep_of(a, at_a, b, at_b, half);
-  // Covers the errors of the bodies' positions in doubles, at the middle and at t.
+  // Covers the errors of the bodies' positions in doubles, at the midpoint and at t.
   const double rounding = wrapper_margin(at_a.pose, a.rep().tree(), at_b.pose, b.rep().tree()) +
                           2 * rotation_defect(at_a.pose.r) * a.rep().tree().extent() +
                           4 * (a.rounding() + b.rounding()) + kWorldRounding * sweep.length;

@@ -39,7 +39,7 @@ class PairMotion {
   double separated_for(const Eigen::Vector3d& n) const;
   PairBounds bounds() const;
   /// Returns the approximate vector from the first simplex to the second.
-  Eigen::Vector3d ahead() const { return middle(1) - middle(0); }
+  Eigen::Vector3d ahead() const { return centroid(1) - centroid(0); }
   /// Returns the speed at which the closest points approach each other along the unit direction n.
   double approach_speed(const PairBounds& at, const Eigen::Vector3d& n) const;
 
@@ -49,7 +49,7 @@ class PairMotion {
   bool has_passed(const PairMotion& before, const Eigen::Vector3d& n, double time) const;
 
  private:
-  Eigen::Vector3d middle(int side) const;
+  Eigen::Vector3d centroid(int side) const;
 
   struct Corner {
     Eigen::Vector3d x{0, 0, 0}, v{0, 0, 0};  ///< world units
@@ -76,7 +76,7 @@ bool suits_sweeps(const MovingBody& a, const MovingBody& b);
 /// Finds a list of pairs that contains all pairs that intersect at any t of the interval, which must be in
 /// one piece of both motions; valid both for the exact motions and for their doubles. The two trees are
 /// traversed once, with B swept through the interval. At t, B is displaced from its position at the middle by
-/// (t - middle) times its points' velocities there, with a deviation of at most (t - middle)^2 / 2 times
+/// (t - midpoint) times its points' velocities there, with a deviation of at most (t - midpoint)^2 / 2 times
 /// their accelerations. A's rotation is allowed for in every direction. Returns false if there are more than
 /// `most` pairs, or if finding them takes too long (never if `most` is kNoLimit).
 bool find_swept_pairs(QueryContext& ctx, const MovingBody& a, const MovingBody& b, TimeSpan span,

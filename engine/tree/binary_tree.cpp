@@ -53,10 +53,10 @@ class BinaryBuilder {
       return;
     }
     // A large range: reorder the simplices around the cut, then build both halves, possibly in parallel.
-    const std::uint32_t middle = split(begin, end);
-    const auto [left, right] = fork(self, begin, middle, end, 0);
-    workers_.both([&, left = left] { build(left, begin, middle); },
-                  [&, right = right] { build(right, middle, end); });
+    const std::uint32_t boundary = split(begin, end);
+    const auto [left, right] = fork(self, begin, boundary, end, 0);
+    workers_.both([&, left = left] { build(left, begin, boundary); },
+                  [&, right = right] { build(right, boundary, end); });
   }
 
   /// Builds a part of the subtree that `cuts` divides. cost: of its root; first: begin of the range of
@@ -69,18 +69,18 @@ class BinaryBuilder {
     }
     // The halves' costs were computed to choose the cut, and are stored in the children.
     const FittedCuts::Halves halves = cuts.cut(begin - first, end - first);
-    const std::uint32_t middle = first + halves.middle;
-    const auto [left, right] = fork(self, begin, middle, end, cost);
-    build_fitted(left, begin, middle, halves.left_cost, cuts, first);
-    build_fitted(right, middle, end, halves.right_cost, cuts, first);
+    const std::uint32_t boundary = first + halves.boundary;
+    const auto [left, right] = fork(self, begin, boundary, end, cost);
+    build_fitted(left, begin, boundary, halves.left_cost, cuts, first);
+    build_fitted(right, boundary, end, halves.right_cost, cuts, first);
   }
 
-  /// Creates an inner node. Its subtrees contain the simplices before `middle` and the rest. cost: 0 if
+  /// Creates an inner node. Its subtrees contain the simplices before `boundary` and the rest. cost: 0 if
   /// measure() is to compute it. Returns the roots of the subtrees.
-  std::pair<std::uint32_t, std::uint32_t> fork(std::uint32_t self, std::uint32_t begin, std::uint32_t middle,
+  std::pair<std::uint32_t, std::uint32_t> fork(std::uint32_t self, std::uint32_t begin, std::uint32_t boundary,
                                                std::uint32_t end, double cost) {
     // Preorder: the left subtree follows its parent, and its size follows from the number of its leaves.
-    const std::uint32_t left = self + 1, right = left + nodes_for(middle - begin);
+    const std::uint32_t left = self + 1, right = left + nodes_for(boundary - begin);
     nodes_[self] = {begin, end, left, right, {}, {}, cost};
     return {left, right};
   }

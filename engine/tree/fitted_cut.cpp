@@ -146,7 +146,7 @@ FittedCuts::Halves FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
   }
   // Step 4.
   part(best);
-  halves.middle = begin + best.left;
+  halves.boundary = begin + best.left;
   return halves;
 }
 

@@ -164,7 +164,7 @@ class FittedCuts {
   FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplices, CutEffort effort);
 
   struct Halves {
-    std::uint32_t middle;  ///< index of the cut: a multiple of kTreeWidth after the beginning of the range
+    std::uint32_t boundary;  ///< index of the cut: a multiple of kTreeWidth after the beginning of the range
     double left_cost, right_cost;  ///< box_cost() of the tight boxes
   };
   /// Cuts an existing range of more than kTreeWidth simplices into two ranges.

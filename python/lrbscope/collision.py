@@ -159,14 +159,14 @@ def _face_normal(body: Body, pose: _Floats, face: int) -> _Floats:
 def contacts_of(result: Result, body: Body, pose: _Floats) -> Iterator[tuple[int, _Floats, _Floats, float]]:
     """Yield (index of the pair, point, normal, depth) for each pair of a result with contacts. body, pose: A."""
     points, pair_of_point = result.points
-    middles = np.zeros((len(result.pairs), 3))
-    np.add.at(middles, pair_of_point, points)
-    middles /= np.maximum(np.bincount(pair_of_point, minlength=len(middles)), 1)[:, None]
+    centroids = np.zeros((len(result.pairs), 3))
+    np.add.at(centroids, pair_of_point, points)
+    centroids /= np.maximum(np.bincount(pair_of_point, minlength=len(centroids)), 1)[:, None]
     faces = result.face_pairs
     for region in result.regions:
         normal, depth = region.normal, region.depth_estimate
         for i in region.pairs:
-            yield int(i), middles[i], normal if normal.any() else _face_normal(body, pose, faces[i, 0]), depth
+            yield int(i), centroids[i], normal if normal.any() else _face_normal(body, pose, faces[i, 0]), depth
 
 
 def _contact_data(names: _Names, result: Result, body: Body, pose: _Floats) -> _Contacts:

@@ -195,8 +195,8 @@ class CollisionGeometry:
     @property
     def aabb_center(self) -> _Floats:
         """(3,) float: the centre of the geometry's bounding box."""
-        middle: _Floats = self._body().box().mean(axis=0)
-        return middle
+        centre: _Floats = self._body().box().mean(axis=0)
+        return centre
 
     def _surface(self) -> _Surface:
         """Return vertices and faces."""

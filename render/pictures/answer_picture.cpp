@@ -88,7 +88,7 @@ struct AnswerPicture {
     line.dash = 6;
     line.layer = Layer::on_top;
     scene.list.lines.push_back(line);
-    scene.key.push_back({Mark::dashed, palette::kFaint, "way of B's middle"});
+    scene.key.push_back({Mark::dashed, palette::kFaint, "path of B's centre"});
   }
 
   void show(const MarkedSegment& segment) {
@@ -239,8 +239,8 @@ ViewDirection onto_both(const std::vector<Vector3d>& a, const std::vector<Vector
 /// length.
 void add_plane(DrawList& list, const std::array<Vector3d, 2>& nearest, double side) {
   const Vector3d normal = (nearest[1] - nearest[0]).normalized(), u = normal.unitOrthogonal() * (side / 2);
-  const Vector3d v = normal.cross(u), middle = (nearest[0] + nearest[1]) / 2;
-  add_sheet(list, {middle + u + v, middle - u + v, middle - u - v, middle + u - v});
+  const Vector3d v = normal.cross(u), midpoint = (nearest[0] + nearest[1]) / 2;
+  add_sheet(list, {midpoint + u + v, midpoint - u + v, midpoint - u - v, midpoint + u - v});
 }
 
 }  // namespace

@@ -160,10 +160,10 @@ std::optional<MarkedSegment> separation_vector_of(const std::optional<ProvedInte
                                                   std::span<const ContactRegion> contacts) {
   if (!depth || !std::isfinite(depth->upper) || translation.isZero(0)) return std::nullopt;
   const std::vector<Vector3d> points = render::contact_points(contacts);
-  const Vector3d middle =
+  const Vector3d midpoint =
       points.empty() ? box_of(bodies.a, bodies.pose_a).intersection(box_of(bodies.b, bodies.pose_b)).center()
                      : render::bounds(points).center();
-  return MarkedSegment{middle - translation / 2, middle + translation / 2,
+  return MarkedSegment{midpoint - translation / 2, midpoint + translation / 2,
                        interval_words(depth->lower, depth->upper)};
 }
 
@@ -190,14 +190,14 @@ void add_separation_vector(render::Scene& scene, const MarkedSegment& way, int d
 namespace {
 
 /// Returns a square around the projection of a point onto the plane n.x = at.
-Square square(const Vector3d& n, double at, Vector3d middle, double half, int dim) {
-  middle += n * (at - n.dot(middle));
+Square square(const Vector3d& n, double at, Vector3d centre, double half, int dim) {
+  centre += n * (at - n.dot(centre));
   if (dim == 2) {
     const Vector3d u = half * Vector3d(-n.y(), n.x(), 0);
-    return {middle + u, middle - u, middle - u, middle + u};
+    return {centre + u, centre - u, centre - u, centre + u};
   }
   const Vector3d u = half * n.unitOrthogonal(), v = n.cross(u);
-  return {middle + u, middle + v, middle - u, middle - v};
+  return {centre + u, centre + v, centre - u, centre - v};
 }
 
 }  // namespace

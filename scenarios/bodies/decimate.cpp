@@ -173,10 +173,10 @@ class Decimator {
 
   Vector3 place(Corner u, Corner v, double& cost) const {
     const Quadric q = quadrics_[u] + quadrics_[v];
-    const Vector3 a = surface_.x(u) - origin_, b = surface_.x(v) - origin_, middle = (a + b) / 2;
+    const Vector3 a = surface_.x(u) - origin_, b = surface_.x(v) - origin_, midpoint = (a + b) / 2;
     const double pull = kEvenness * q.weight();
-    const Vector3 w = q.lowest(middle, pull);
-    cost = q.at(w) + pull * ((w - middle).squaredNorm() + (b - a).squaredNorm());
+    const Vector3 w = q.lowest(midpoint, pull);
+    cost = q.at(w) + pull * ((w - midpoint).squaredNorm() + (b - a).squaredNorm());
     return w + origin_;
   }
 

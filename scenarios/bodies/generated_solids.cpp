@@ -85,8 +85,8 @@ std::vector<Eigen::Vector2d> with_bays(const std::vector<Eigen::Vector2d>& outli
     out.push_back(a);
     out.push_back(a + along * random.in(0.30, 0.38));
     // In separate statements, because compilers evaluate operands in different orders.
-    const double reach = random.in(0.7, 1.0), middle = random.in(0.44, 0.56);
-    out.push_back(a + along * middle + inward * depth * reach);
+    const double reach = random.in(0.7, 1.0), mid_share = random.in(0.44, 0.56);
+    out.push_back(a + along * mid_share + inward * depth * reach);
     out.push_back(a + along * random.in(0.62, 0.70));
   }
   return out;

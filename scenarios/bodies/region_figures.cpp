@@ -93,16 +93,16 @@ Eigen::Vector3d principal_sizes(const LrbRep& rep) {
     for (const VertexId v : rep.face(f)) points.push_back(rep.vertices()[v]);
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& x : points) box.extend(x);
-  const Eigen::Vector3d middle = box.center();
+  const Eigen::Vector3d centre = box.center();
   const double unit = std::max(box.sizes().maxCoeff(), std::numeric_limits<double>::min());
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& x : points) {
-    const Eigen::Vector3d d = (x - middle) / unit;
+    const Eigen::Vector3d d = (x - centre) / unit;
     spread += d * d.transpose();
   }
   const Eigen::Matrix3d axes = eigenvectors_of_symmetric(spread);
   Eigen::AlignedBox3d turned;
-  for (const Eigen::Vector3d& x : points) turned.extend(axes.transpose() * ((x - middle) / unit));
+  for (const Eigen::Vector3d& x : points) turned.extend(axes.transpose() * ((x - centre) / unit));
   Eigen::Vector3d sizes = turned.sizes() * unit;
   std::sort(sizes.begin(), sizes.end());
   return sizes;

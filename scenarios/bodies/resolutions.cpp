@@ -42,7 +42,7 @@ Mesh subdivide(const Mesh& mesh) {
   const auto old_count = static_cast<std::uint32_t>(mesh.vertices.size());
   std::vector<Eigen::Vector3d> sum(old_count, Eigen::Vector3d::Zero());  // of the neighbours
   std::vector<std::uint32_t> degree(old_count, 0);
-  std::vector<VertexId> middle(edges.size());  // by half-edge index
+  std::vector<VertexId> midpoint(edges.size());  // by half-edge index
   std::vector<Eigen::Vector3d> added;
   for (std::size_t i = 0; i < edges.size(); i += 2) {
     const HalfEdge &e = edges[i], &other = edges[i + 1];
@@ -51,7 +51,7 @@ Mesh subdivide(const Mesh& mesh) {
     sum[e.high] += a;
     ++degree[e.low];
     ++degree[e.high];
-    middle[e.place] = middle[other.place] = VertexId(old_count + added.size());
+    midpoint[e.place] = midpoint[other.place] = VertexId(old_count + added.size());
     added.push_back((3 * (a + b) + mesh.vertices[e.tip] + mesh.vertices[other.tip]) / 8);
   }
   out.vertices.reserve(old_count + added.size());
@@ -65,7 +65,7 @@ Mesh subdivide(const Mesh& mesh) {
   out.face_vertices.reserve(12 * mesh.face_count());
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     const auto v = mesh.face(f);
-    const VertexId* m = &middle[3 * f];  // on the edges v0 v1, v1 v2, v2 v0
+    const VertexId* m = &midpoint[3 * f];  // on the edges v0 v1, v1 v2, v2 v0
     for (const auto& t : std::array<std::array<VertexId, 3>, 4>{
              {{v[0], m[0], m[2]}, {v[1], m[1], m[0]}, {v[2], m[2], m[1]}, {m[0], m[1], m[2]}}})
       out.add_face(t);

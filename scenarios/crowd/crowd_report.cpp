@@ -187,9 +187,9 @@ std::string crowd_speed(const CrowdRun& run) {
     queries.push_back(static_cast<double>(s.queries_ns) / 1000);
   }
   const auto median = [](std::vector<double>& x) {
-    const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
-    std::nth_element(x.begin(), middle, x.end());
-    return render::short_number(*middle) + " us";
+    const auto median = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
+    std::nth_element(x.begin(), median, x.end());
+    return render::short_number(*median) + " us";
   };
   return "a step takes (medians): broad phase " + median(broad_phases) + ", queries " + median(queries) +
          ", on " + std::to_string(run.threads) + (run.threads == 1 ? " thread" : " threads");

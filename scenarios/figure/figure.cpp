@@ -233,18 +233,18 @@ class FigureJob {
   void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
                   const PanelPlace& place, double scale) {
     const double pixel = render::kPointsPerInch / dpi_, margin = options().margin,
-                 middle = 0.5 * kViewSide * scale;
+                 centre = 0.5 * kViewSide * scale;
     const Vector2d low =
         place.seen_from * scale - Vector2d(margin, margin);  // of the box, in the view, points
     const Eigen::Vector2i size = (place.box.sizes() / pixel).array().round().cast<int>();
     // The central part of the view that contains the box, with a margin of one pixel on each side.
     const Vector2d reach =
-        (low.array() - middle).abs().max((low + place.box.sizes()).array() - middle) + 2 * pixel;
+        (low.array() - centre).abs().max((low + place.box.sizes()).array() - centre) + 2 * pixel;
     const Eigen::Vector2i drawn = (2 * reach / pixel).array().ceil().cast<int>();
     const Vector2d paper = drawn.cast<double>() * pixel;
-    const render::Camera camera = middle_part(whole, paper.y() / scale);
+    const render::Camera camera = central_part(whole, paper.y() / scale);
     const Eigen::Vector2i from =
-        ((low - Vector2d(middle, middle) + 0.5 * paper) / pixel).array().round().cast<int>();
+        ((low - Vector2d(centre, centre) + 0.5 * paper) / pixel).array().round().cast<int>();
 
     render::RasterOptions raster;
     raster.width = drawn.x(), raster.height = drawn.y();

@@ -202,9 +202,9 @@ double place_legend(const std::vector<render::LegendItem>& legend, const LayoutO
       used += gap + widths[end];
     double x = 0.5 * (o.width - used);
     for (std::size_t i = first; i < end; ++i) {
-      const double middle = top + 0.5 * row, half = 0.36 * em;
-      out.legend.push_back({AlignedBox2d(Vector2d(x, middle - half), Vector2d(x + marks[i], middle + half)),
-                            {x + marks[i] + 0.4 * em, middle}});
+      const double centre = top + 0.5 * row, half = 0.36 * em;
+      out.legend.push_back({AlignedBox2d(Vector2d(x, centre - half), Vector2d(x + marks[i], centre + half)),
+                            {x + marks[i] + 0.4 * em, centre}});
       x += widths[i] + gap;
     }
     top += row;

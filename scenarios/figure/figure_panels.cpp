@@ -188,7 +188,7 @@ Eigen::AlignedBox2d seen_box(const render::DrawList& list, const render::Camera&
   return empty ? square : box;
 }
 
-render::Camera middle_part(const render::Camera& camera, double height) {
+render::Camera central_part(const render::Camera& camera, double height) {
   render::Camera out = camera;
   out.half_height *= height / kViewSide;
   out.fov_y = 2 * std::atan(std::tan(0.5 * camera.fov_y) * height / kViewSide);

@@ -46,6 +46,6 @@ Eigen::AlignedBox2d seen_box(const render::DrawList& list, const render::Camera&
 
 /// Returns the camera that shows the centre of the square, `height` units of it, at the same scale in a
 /// picture of that height.
-render::Camera middle_part(const render::Camera& camera, double height);
+render::Camera central_part(const render::Camera& camera, double height);
 
 }  // namespace lrb::figure

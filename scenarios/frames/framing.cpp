@@ -56,8 +56,8 @@ std::vector<Vector3d> shown_points(const LrbRep& rep, const std::vector<RegionId
       for (const Vector3d& x : region_corners(rep, r)) out.push_back(x);
     if (!spec.ghost_rest || out.empty()) return out;
     constexpr double kAround = 0.5;  // of the regions' size, on each side
-    const Vector3d middle = render::bounds(out).center();
-    for (Vector3d& x : out) x = middle + (1 + kAround) * (x - middle);
+    const Vector3d centre = render::bounds(out).center();
+    for (Vector3d& x : out) x = centre + (1 + kAround) * (x - centre);
     return out;
   }
   out = render::body_points(rep, Pose{});

@@ -104,7 +104,7 @@ json colours() {
 
 // ---- where things are
 
-Eigen::Vector3d middle_of(const LrbRep& rep) {
+Eigen::Vector3d centre_of(const LrbRep& rep) {
   return rep.vertices().empty() ? Eigen::Vector3d(0, 0, 0)
                                 : Eigen::Vector3d(render::bounds(render::body_points(rep, {})).center());
 }
@@ -123,7 +123,7 @@ SceneFrame scene_frame(const RecordedRun& p) {
     for (const Eigen::Vector3d& v : p.reps[i]->vertices()) placed.extend(pose_in(first, i).apply(v));
     if (!placed.isEmpty()) size = std::max(size, placed.diagonal().norm());
   }
-  frame.origin = first.pose_a.apply(middle_of(*p.reps[0]));
+  frame.origin = first.pose_a.apply(centre_of(*p.reps[0]));
   if (size > 0 && std::isfinite(size)) frame.unit = std::exp2(std::floor(std::log2(size)));
   return frame;
 }
@@ -132,10 +132,10 @@ SceneFrame scene_frame(const RecordedRun& p) {
 /// relative to the body's centre.
 std::vector<float> poses_of(const RecordedRun& p, std::size_t body, const Numbers& steps,
                             const SceneFrame& frame) {
-  const Eigen::Vector3d middle = middle_of(*p.reps[body]);
+  const Eigen::Vector3d centre = centre_of(*p.reps[body]);
   std::vector<float> out;
   const auto add = [&](const Pose& pose) {
-    const Eigen::Vector3d at = (pose.apply(middle) - frame.origin) / frame.unit;
+    const Eigen::Vector3d at = (pose.apply(centre) - frame.origin) / frame.unit;
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) out.push_back(static_cast<float>(pose.r(row, column)));
       out.push_back(static_cast<float>(at[row]));
@@ -152,9 +152,9 @@ std::vector<float> poses_of(const RecordedRun& p, std::size_t body, const Number
 // ---- bodies
 
 json geometry(const LrbRep& rep, const SceneFrame& frame) {
-  const Eigen::Vector3d middle = middle_of(rep);
+  const Eigen::Vector3d centre = centre_of(rep);
   std::vector<float> vertices;
-  for (const Eigen::Vector3d& v : rep.vertices()) frame.add_vector(vertices, v - middle);
+  for (const Eigen::Vector3d& v : rep.vertices()) frame.add_vector(vertices, v - centre);
   Numbers sizes, inner, outer, parents, layers;
   const auto region_or_null = [](CellId c) { return is_region(c) ? c.value() : std::uint32_t{kNull}; };
   for (FaceId f = 0; f < rep.face_count(); ++f) {
@@ -239,10 +239,10 @@ ShownBoxes shown_boxes(const trace::TreeShape& tree, std::size_t most,
 
 json boxes_json(const LrbRep& rep, const SceneFrame& frame, const ShownBoxes& shown) {
   const std::vector<TreeBox>& boxes = shown.boxes;
-  const Eigen::Vector3d middle = middle_of(rep);
+  const Eigen::Vector3d centre = centre_of(rep);
   std::vector<float> places;  // centre and three half axes each
   for (const TreeBox& box : boxes) {
-    frame.add_vector(places, box.centre - middle);
+    frame.add_vector(places, box.centre - centre);
     for (int i = 0; i < 3; ++i) frame.add_vector(places, box.half.col(i));
   }
   return {{"node", packed_each(boxes, [](const TreeBox& b) { return b.node; })},
@@ -270,8 +270,8 @@ json body_json(const RecordedRun& p, std::size_t i, const SceneFrame& frame, con
                             ours       ? shown_boxes(rep.tree(), limits.boxes, compared)
                             : is_known ? shown_boxes((*p.trees)[i], limits.boxes, compared)
                                        : ShownBoxes());
-  const Eigen::Vector3d middle = middle_of(rep);
-  out["middle"] = {middle.x(), middle.y(), middle.z()};
+  const Eigen::Vector3d centre = centre_of(rep);
+  out["centre"] = {centre.x(), centre.y(), centre.z()};
   out["counts"] = {{"tests", packed(counts.tests)},
                    {"hits", packed(counts.hits)},
                    {"contacts", packed(counts.contacts)},

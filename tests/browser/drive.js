@@ -571,8 +571,8 @@
     check(view.views.every((v) => v.real.mesh.geometry.boundingSphere.radius > 0), "their segments are drawn");
     const body = events.bodies[0],
       [p, q] = body.face(0),
-      middle = [0, 1, 2].map((i) => (body.vertices[3 * p + i] + body.vertices[3 * q + i]) / 2),
-      at = view.views[0].toWorld(middle).project(camera.camera),
+      midpoint = [0, 1, 2].map((i) => (body.vertices[3 * p + i] + body.vertices[3 * q + i]) / 2),
+      at = view.views[0].toWorld(midpoint).project(camera.camera),
       box = byId("view-canvas").getBoundingClientRect();
     const hit = view.picker.under(
       box.left + ((1 + at.x) / 2) * box.width,

@@ -67,9 +67,9 @@ Mesh finer(const Mesh& mesh) {
   Mesh out;
   out.dim = 3;
   out.vertices = mesh.vertices;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, VertexId> middles;
-  const auto middle = [&](VertexId v, VertexId w) {
-    const auto [it, is_new] = middles.try_emplace(std::minmax(v.value(), w.value()), kNull);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, VertexId> midpoints;
+  const auto midpoint = [&](VertexId v, VertexId w) {
+    const auto [it, is_new] = midpoints.try_emplace(std::minmax(v.value(), w.value()), kNull);
     if (is_new) {
       it->second = VertexId(out.vertices.size());
       out.vertices.push_back(0.5 * (mesh.vertices[v] + mesh.vertices[w]));
@@ -79,7 +79,7 @@ Mesh finer(const Mesh& mesh) {
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     const auto v = mesh.face(f);
     REQUIRE(v.size() == 3);
-    const VertexId m[3] = {middle(v[0], v[1]), middle(v[1], v[2]), middle(v[2], v[0])};
+    const VertexId m[3] = {midpoint(v[0], v[1]), midpoint(v[1], v[2]), midpoint(v[2], v[0])};
     out.add_face(std::array<VertexId, 3>{v[0], m[0], m[2]});
     out.add_face(std::array<VertexId, 3>{v[1], m[1], m[0]});
     out.add_face(std::array<VertexId, 3>{v[2], m[2], m[1]});

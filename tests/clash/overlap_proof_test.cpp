@@ -86,9 +86,9 @@ TEST_CASE("all translations shorter than what is proved leave an overlap, and li
   for (const auto& pair : pairs) {
     Pair seen(pair.a, pair.b, pair.pose_b);
     const SurfaceDistance a(seen.bodies.body[0]), b(seen.bodies.body[1]);
-    const Vector3d middle =
+    const Vector3d centre =
         0.5 * (seen.bodies.frame.to_unit(pair.pose_b.t) + seen.bodies.frame.to_unit({0, 0, 0}));
-    const Vector3d common = pair.depth == 0.25 ? seen.bodies.frame.to_unit({0.87, 0.6, 0.7}) : middle;
+    const Vector3d common = pair.depth == 0.25 ? seen.bodies.frame.to_unit({0.87, 0.6, 0.7}) : centre;
     OverlapProof proof(a, b, seen.inside());
     const double most = 1.05 * std::ldexp(pair.depth, -seen.bodies.frame.exponent);
     REQUIRE(proof.begin({common, Vector3d(0.9, 0.9, 0.9)}, most));

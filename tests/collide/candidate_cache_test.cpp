@@ -22,10 +22,10 @@ LrbRep soup(RandomEngine& random, int count, double size) {
   Mesh m;
   for (int i = 0; i < count; ++i) {
     const double radius = shapes::uniform(random, 0, 1);
-    const Eigen::Vector3d middle = radius * shapes::random_direction(random);
+    const Eigen::Vector3d centre = radius * shapes::random_direction(random);
     for (int k = 0; k < 3; ++k) {
       m.face_vertices.push_back(static_cast<VertexId>(m.vertices.size()));
-      m.vertices.push_back(middle + size * shapes::random_direction(random));
+      m.vertices.push_back(centre + size * shapes::random_direction(random));
     }
     m.face_offsets.push_back(static_cast<std::uint32_t>(m.face_vertices.size()));
   }
@@ -50,7 +50,7 @@ Sweep random_stretch(RandomEngine& random, double length, double width) {
   const Eigen::Matrix3d r = shapes::random_rotation(random);
   const double apart = shapes::uniform(random, 0, 0.5);
   const Eigen::Vector3d t = apart * shapes::random_direction(random);
-  s.middle = {r, t};
+  s.mid_pose = {r, t};
   s.width = width;
   if (length == 0) return s;
   const double turn = shapes::uniform(random, 0, 1);
@@ -70,7 +70,7 @@ Pose pose_in(RandomEngine& random, const Sweep& s, const SweepPoint& where) {
   if (random() % 2 == 0) dm.setZero();  // then all points are off by as much
   const Eigen::Vector3d dt = shapes::random_direction(random);
   const double scale = where.off * (1 - 1e-9) / size_of(dm, dt);
-  return {s.middle.m + where.at * s.dm + scale * dm, s.middle.t + where.at * s.dt + scale * dt};
+  return {s.mid_pose.m + where.at * s.dm + scale * dm, s.mid_pose.t + where.at * s.dt + scale * dt};
 }
 
 struct CandidateTally {
@@ -80,11 +80,11 @@ struct CandidateTally {
 void compare(RandomEngine& random, const LrbRep& a, const LrbRep& b, const Sweep& stretch,
              CandidateTally& tally) {
   const double rounding =
-      4 * wrapper_margin(Pose{}, a.tree(), {stretch.middle.m, stretch.middle.t}, b.tree());
+      4 * wrapper_margin(Pose{}, a.tree(), {stretch.mid_pose.m, stretch.mid_pose.t}, b.tree());
   QueryContext context;
   context.body[0].begin(a, Pose{}, CollideRequest{}.wrapper);
   context.body[1].begin(b, Pose{}, CollideRequest{}.wrapper);
-  TreeKernel k = start_rigid_kernel(context, Pose{}, {stretch.middle.m, stretch.middle.t}, 1 << 16);
+  TreeKernel k = start_rigid_kernel(context, Pose{}, {stretch.mid_pose.m, stretch.mid_pose.t}, 1 << 16);
   aim_at(stretch, rounding, query_unit(a.tree(), b.tree()), k);
   run_tree_kernel(k);
   REQUIRE(is_done(k));
@@ -149,9 +149,9 @@ TEST_CASE("what is chosen at two poses may miss what meets between them") {
     const LrbRep a = soup(random, 1, 0.1), b = soup(random, 1, 0.1);
     Sweep stretch = random_stretch(random, 0.5, 1e-3);
     // B through A's triangle
-    stretch.middle.t = a.vertices()[0] - stretch.middle.m * b.vertices()[1];
+    stretch.mid_pose.t = a.vertices()[0] - stretch.mid_pose.m * b.vertices()[1];
     QueryContext context;
-    TreeKernel k = set_up_kernel(a, Pose{}, b, {stretch.middle.m, stretch.middle.t});
+    TreeKernel k = set_up_kernel(a, Pose{}, b, {stretch.mid_pose.m, stretch.mid_pose.t});
     aim_at(stretch, 1e-12, query_unit(a.tree(), b.tree()), k);
     CandidateCache near;
     near.clear();

@@ -22,7 +22,7 @@ Eigen::Vector3d on_a(const Pose& a, const Pose& b, const Eigen::Vector3d& x) {
 }
 
 Eigen::Vector3d in_stretch(const Sweep& s, double at, const Eigen::Vector3d& x) {
-  return s.middle.m * x + s.middle.t + at * (s.dm * x + s.dt);
+  return s.mid_pose.m * x + s.mid_pose.t + at * (s.dm * x + s.dt);
 }
 
 struct Walk {

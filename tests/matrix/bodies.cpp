@@ -51,7 +51,7 @@ Mesh lone(const Vector3d& third) {
   return test::with_face({}, {{0, 0, 0}, {1, 0, 0}, third}, {VertexId(0), VertexId(1), VertexId(2)});
 }
 
-/// A cube with a vertex in the middle of an edge of its first face: that face is two, and what is left
+/// A cube with a vertex in the centre of an edge of its first face: that face is two, and what is left
 /// between them and the neighbour is a face without area.
 Mesh with_flat_face() {
   const Mesh cube = shapes::box();
@@ -173,19 +173,19 @@ Step step_at(const LrbRep& a, const LrbRep& b, const Pose& pose) {
   return step;
 }
 
-/// Where B stands: apart, in A's surface, and in its middle; against itself also in its own place.
+/// Where B stands: apart, in A's surface, and in its centre; against itself also in its own place.
 std::vector<Pose> poses_of(const Kind& a, const LrbRep& rep, bool itself) {
   const Eigen::AlignedBox3d box = box_of(rep);
   const bool flat = a.mesh.dim == 2;
-  const Vector3d size = box.diagonal(), middle = box.center();
+  const Vector3d size = box.diagonal(), centre = box.center();
   const Vector3d off = Vector3d(1.7, 0.1, flat ? 0 : 0.05) * size.norm();
   Vector3d on_face = Vector3d::Zero();
   for (const VertexId v : rep.face(FaceId(0)))
     on_face += rep.vertices()[v] / static_cast<double>(rep.face(FaceId(0)).size());
   const Pose turn = Pose::rotation(flat ? Vector3d::UnitZ() : Vector3d(1, 2, 3), 0.7);
-  if (!itself) return {Pose::translation(middle + off), {turn.r, on_face}, Pose::translation(middle)};
+  if (!itself) return {Pose::translation(centre + off), {turn.r, on_face}, Pose::translation(centre)};
   const Vector3d aside = Vector3d(0.16, 0.09, flat ? 0 : 0.02) * size.norm();
-  return {Pose{}, {turn.r, middle - turn.r * middle + aside}, Pose::translation(off)};
+  return {Pose{}, {turn.r, centre - turn.r * centre + aside}, Pose::translation(off)};
 }
 
 Cell make_cell(const std::vector<Kind>& kinds, std::size_t a, std::size_t b) {

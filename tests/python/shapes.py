@@ -37,18 +37,18 @@ def ball_arrays(splits=2, radius=1.0):
     faces = [(x, y, z) for x in (0, 1) for y in (2, 3) for z in (4, 5)]
     faces = [(a, b, c) if (a + b + c) % 2 == 0 else (a, c, b) for a, b, c in faces]
     for _ in range(splits):
-        middles, split = {}, []
+        midpoints, split = {}, []
 
-        def middle(a, b):
+        def midpoint(a, b):
             key = (min(a, b), max(a, b))
-            if key not in middles:
+            if key not in midpoints:
                 m = np.add(vertices[a], vertices[b])
-                middles[key] = len(vertices)
+                midpoints[key] = len(vertices)
                 vertices.append(tuple(m / np.linalg.norm(m)))
-            return middles[key]
+            return midpoints[key]
 
         for a, b, c in faces:
-            ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+            ab, bc, ca = midpoint(a, b), midpoint(b, c), midpoint(c, a)
             split += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
         faces = split
     return np.array(vertices) * radius, np.array(faces)

@@ -36,13 +36,13 @@ inline LrbRep dented(const Mesh& convex, int levels, double depth = 0.35) {
       const auto region = static_cast<RegionId>(d.region_layer.size());
       d.region_layer.push_back(static_cast<std::uint16_t>(levels - 1 - level));
       const auto x = [&](std::size_t i) -> const Eigen::Vector3d& { return d.vertices[lid.corners[i]]; };
-      Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-      for (const VertexId v : lid.corners) middle += d.vertices[v] / static_cast<double>(lid.corners.size());
+      Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+      for (const VertexId v : lid.corners) centroid += d.vertices[v] / static_cast<double>(lid.corners.size());
       const Eigen::Vector3d along = x(1) - x(0);
       const Eigen::Vector3d outward = convex.dim == 2 ? Eigen::Vector3d(along.y(), -along.x(), 0).normalized()
                                                       : along.cross(x(2) - x(0)).normalized();
       const auto apex = static_cast<VertexId>(d.vertices.size());
-      d.vertices.push_back(middle - depth * along.norm() * outward);
+      d.vertices.push_back(centroid - depth * along.norm() * outward);
       const std::size_t sides = convex.dim == 2 ? 1 : lid.corners.size();
       for (std::size_t i = 0; i < sides; ++i) {
         const VertexId a = lid.corners[i], b = lid.corners[(i + 1) % lid.corners.size()];

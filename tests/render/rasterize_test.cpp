@@ -330,12 +330,12 @@ TEST_CASE("ids name the face seen at each pixel") {
   const render::IdImage ids = rasterizer().ids(list, camera, 300, 200);
   int facing = 0, found = 0;
   for (const render::DrawTriangle& f : list.triangles) {
-    const Vector3d middle = (f.x[0] + f.x[1] + f.x[2]) / 3;
+    const Vector3d centroid = (f.x[0] + f.x[1] + f.x[2]) / 3;
     const double cosine =
-        (f.x[1] - f.x[0]).cross(f.x[2] - f.x[0]).normalized().dot(projection.towards_viewer(middle));
+        (f.x[1] - f.x[0]).cross(f.x[2] - f.x[0]).normalized().dot(projection.towards_viewer(centroid));
     if (cosine < 0.5) continue;
     ++facing;
-    const Eigen::Vector2d at = *projection.to_pixel(middle);
+    const Eigen::Vector2d at = *projection.to_pixel(centroid);
     found += ids.at(static_cast<int>(at.x()), static_cast<int>(at.y())) == f.id;
   }
   CHECK(facing > 200);

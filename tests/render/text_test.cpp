@@ -65,8 +65,8 @@ TEST_CASE("widths add up, alignment moves") {
     style.align = align;
     font.draw(image, "alignment", 150, 5, style);
     const render::PixelRect box = ink(image);
-    const int middle = box.x + box.width / 2, half = font.measure("alignment", style).width / 2;
-    CHECK(std::abs(middle - (align == render::Align::left     ? 150 + half
+    const int centre = box.x + box.width / 2, half = font.measure("alignment", style).width / 2;
+    CHECK(std::abs(centre - (align == render::Align::left     ? 150 + half
                              : align == render::Align::centre ? 150
                                                               : 150 - half)) <= 3);
   }

@@ -33,9 +33,9 @@ void stop_at_contact(cases::Case& c, const Vector3d& away, double reach, int ste
   double near = 0, far = reach;
   if (!in_contact(c)) near = -reach;  // through and out on the other side
   for (int i = 0; i < steps; ++i) {
-    const double middle = 0.5 * (near + far);
-    c.pose_b.t = start + middle * away;
-    (in_contact(c) ? near : far) = middle;
+    const double midpoint = 0.5 * (near + far);
+    c.pose_b.t = start + midpoint * away;
+    (in_contact(c) ? near : far) = midpoint;
   }
   c.pose_b.t = start + (inside ? near : far) * away;
 }

@@ -80,7 +80,7 @@ struct FirstCut {
 
   FirstCut(const Triangles& triangles, CutEffort effort) : soup(triangles.soup()) {
     FittedCuts cuts(soup, soup.order, effort);
-    left = cuts.cut(0, static_cast<std::uint32_t>(soup.order.size())).middle;
+    left = cuts.cut(0, static_cast<std::uint32_t>(soup.order.size())).boundary;
     order = cuts.order();
   }
 
@@ -110,22 +110,22 @@ Triangles bent_strip(RandomEngine& random, int count, double crowding, double th
   for (int i = 0; i < count; ++i) {
     const double x = 0.9 * std::pow(1.0 * i / count, crowding),
                  size = shapes::uniform(random, 0.1, 1) * thickness;
-    const Vector3d middle = turn * Vector3d(x, x * x, shapes::uniform(random, 0, 0.1));
+    const Vector3d centre = turn * Vector3d(x, x * x, shapes::uniform(random, 0, 0.1));
     Vector3d corner[3];
-    for (Vector3d& c : corner) c = middle + size * shapes::random_direction(random);
+    for (Vector3d& c : corner) c = centre + size * shapes::random_direction(random);
     triangles.add(corner[0], corner[1], corner[2]);
   }
   return triangles;
 }
 
 /// Adds triangles on a disc.
-void add_disc(Triangles& triangles, int count, const Vector3d& middle, const Vector3d& normal,
+void add_disc(Triangles& triangles, int count, const Vector3d& centre, const Vector3d& normal,
               double radius) {
   const Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
   for (int i = 0; i < count; ++i) {  // a spiral of points that are about as far from each other
     const double r = radius * std::sqrt((i + 0.5) / count),
                  angle = std::numbers::pi * (3 - std::sqrt(5.0)) * i;
-    const Vector3d at = middle + r * (std::cos(angle) * u + std::sin(angle) * v);
+    const Vector3d at = centre + r * (std::cos(angle) * u + std::sin(angle) * v);
     triangles.add(at, at + 0.1 * radius * u, at + 0.1 * radius * v);
   }
 }
@@ -154,22 +154,22 @@ TEST_CASE("of all cuts across the coordinate axes that one is found whose halves
       };
       const std::vector<std::uint32_t> before = listed(cuts.order());
       const FittedCuts::Halves halves = cuts.cut(begin, end);
-      const std::uint32_t middle = halves.middle;
+      const std::uint32_t boundary = halves.boundary;
       const std::vector<std::uint32_t> after = listed(cuts.order());
       CAPTURE(count);
       CAPTURE(begin);
       CAPTURE(end);
-      REQUIRE((middle - begin) % kTreeWidth == 0);
-      REQUIRE(middle > begin);
-      REQUIRE(middle < end);
+      REQUIRE((boundary - begin) % kTreeWidth == 0);
+      REQUIRE(boundary > begin);
+      REQUIRE(boundary < end);
       REQUIRE(same_set(before, after));
-      CHECK(cost(soup, after, middle - begin) == doctest::Approx(min_cost(soup, before)).epsilon(1e-5));
-      const auto of_left = std::span(after).first(middle - begin),
-                 of_right = std::span(after).subspan(middle - begin);
+      CHECK(cost(soup, after, boundary - begin) == doctest::Approx(min_cost(soup, before)).epsilon(1e-5));
+      const auto of_left = std::span(after).first(boundary - begin),
+                 of_right = std::span(after).subspan(boundary - begin);
       CHECK(halves.left_cost == doctest::Approx(fitted_cost(soup, of_left)).epsilon(1e-5));
       CHECK(halves.right_cost == doctest::Approx(fitted_cost(soup, of_right)).epsilon(1e-5));
-      ranges.push_back({begin, middle});
-      ranges.push_back({middle, end});
+      ranges.push_back({begin, boundary});
+      ranges.push_back({boundary, end});
     }
     CHECK(same_set(cuts.order(), soup.order));
   }
@@ -251,13 +251,13 @@ TEST_CASE("what is cut does not depend on the order in which simplices are given
     int ranges = 0;
     const auto cut_down = [&](const auto& again, std::uint32_t begin, std::uint32_t end) -> void {
       if (end - begin <= kTreeWidth) return;
-      const std::uint32_t middle = cuts.cut(begin, end).middle;
+      const std::uint32_t boundary = cuts.cut(begin, end).boundary;
       const std::vector<std::uint32_t> order = cuts.order();
       const auto range = std::span(order).subspan(begin, end - begin);
-      ratio += std::log(cost(soup, range, middle - begin) / min_cost(soup, {range.begin(), range.end()}));
+      ratio += std::log(cost(soup, range, boundary - begin) / min_cost(soup, {range.begin(), range.end()}));
       ++ranges;
-      again(again, begin, middle);
-      again(again, middle, end);
+      again(again, begin, boundary);
+      again(again, boundary, end);
     };
     cut_down(cut_down, 0, static_cast<std::uint32_t>(some.size()));
     orders[round] = cuts.order();

@@ -1,4 +1,4 @@
-// Where the kernel's float arithmetic is strained: small triangles far from the middle of their block, on
+// Where the kernel's float arithmetic is strained: small triangles far from the centre of their block, on
 // large ones of the other body. Their planes are known badly, and the large triangles' corners are far away.
 #include <cmath>
 
@@ -53,10 +53,10 @@ LargeAndSmall small_on_large(RandomEngine& random, double size, double offset) {
     large.push_back(t);
   }
   for (int i = 0; i < 24; ++i) {
-    const Eigen::Vector3d middle = on(large[random() % large.size()], random);
+    const Eigen::Vector3d centre = on(large[random() % large.size()], random);
     Triangle t;
     for (auto& x : t) {
-      const Eigen::Vector3d world = pose_large.apply(middle + size * in_ball(random));
+      const Eigen::Vector3d world = pose_large.apply(centre + size * in_ball(random));
       x = pose_small.r.transpose() * (world - pose_small.t);
     }
     small.push_back(t);

@@ -196,7 +196,7 @@ inline Workspace& workspace() {
 }
 
 /// Returns the centroid of the corners of two triangles' intersection.
-inline Eigen::Vector3d middle_of(const PairContactRecord& contact) {
+inline Eigen::Vector3d centroid_of(const PairContactRecord& contact) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < contact.corner_count; ++i) sum += contact.corners[i].x / contact.corner_count;
   return sum;
@@ -219,7 +219,7 @@ void add_contacts(const CollideResult& found, const ::fcl::CollisionGeometry<S>*
     }
     const ContactRegion* const region = region_of[i];
     const Eigen::Vector3d normal = region ? region->normal : Eigen::Vector3d(0, 0, 0);
-    result.addContact(::fcl::Contact<S>(o1, o2, b1, b2, middle_of(found.contacts[i]).template cast<S>(),
+    result.addContact(::fcl::Contact<S>(o1, o2, b1, b2, centroid_of(found.contacts[i]).template cast<S>(),
                                         normal.template cast<S>(),
                                         static_cast<S>(region ? region->depth_estimate : 0)));
   }

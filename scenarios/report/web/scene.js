@@ -161,14 +161,14 @@ class TraceReader {
   /** Returns the poses of each body at all steps in the page's frame, as scene_json.cpp does. */
   poses() {
     const { origin, unit, bodies } = this.scene;
-    return bodies.map(({ middle }, side) =>
+    return bodies.map(({ centre }, side) =>
       Float32Array.from(
         this.metadata.steps.flatMap((step) => {
           const p = side === 0 ? step.pose_a : step.pose_b;
           return p.map((x, i) => {
             if (i % 4 !== 3) return x;
             const row = p.slice(i - 3, i);
-            return (row.reduce((sum, r, k) => sum + r * middle[k], x) - origin[(i - 3) / 4]) / unit;
+            return (row.reduce((sum, r, k) => sum + r * centre[k], x) - origin[(i - 3) / 4]) / unit;
           });
         }),
       ),

@@ -498,13 +498,13 @@ class BodyView {
     this.body.outer.forEach((cell, face) => {
       if (cell === NONE) outermost.push(face);
     });
-    this.middle = this.middleOf(outermost);
+    this.centroid = this.centroidOf(outermost);
     this.extremes = this.reached = this.farthest((visit) => this.eachCorner(outermost, visit));
     this.radius = 0;
     this.eachCorner(outermost, (x, y, z) => {
       this.radius = Math.max(
         this.radius,
-        Math.hypot(x - this.middle[0], y - this.middle[1], z - this.middle[2]),
+        Math.hypot(x - this.centroid[0], y - this.centroid[1], z - this.centroid[2]),
       );
     });
   }
@@ -514,7 +514,7 @@ class BodyView {
     const ways = [];
     for (const x of [-1, 0, 1])
       for (const y of [-1, 0, 1]) for (const z of [-1, 0, 1]) if (x || y || z) ways.push([x, y, z]);
-    const best = ways.map(() => [-Infinity, this.middle]);
+    const best = ways.map(() => [-Infinity, this.centroid]);
     each((x, y, z) =>
       ways.forEach((w, i) => {
         const way = w[0] * x + w[1] * y + w[2] * z;
@@ -533,7 +533,7 @@ class BodyView {
       for (let i = offsets[f]; i < offsets[f + 1]; i++)
         visit(vertices[3 * corners[i]], vertices[3 * corners[i] + 1], vertices[3 * corners[i] + 2]);
   }
-  middleOf(faces) {
+  centroidOf(faces) {
     const sum = [0, 0, 0];
     let count = 0;
     this.eachCorner(faces, (x, y, z) => {
@@ -655,8 +655,8 @@ class BodyView {
   }
 
   explodeShift(region, share) {
-    const middle = this.middleOf([...this.body.lids(region), ...this.body.floor(region)]);
-    const out = middle.map((x, i) => x - this.middle[i]),
+    const centroid = this.centroidOf([...this.body.lids(region), ...this.body.floor(region)]);
+    const out = centroid.map((x, i) => x - this.centroid[i]),
       length = Math.hypot(...out);
     if (length === 0) return out;
     const way = length + LAYER_STEP * this.radius * (1 + this.body.layer[region]);

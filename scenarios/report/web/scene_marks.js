@@ -193,8 +193,8 @@ function squareBetween(p, q, half) {
       .cross(n)
       .setLength(half),
     v = n.clone().cross(u),
-    middle = a.add(b).multiplyScalar(0.5);
-  return [u, v, u.clone().negate(), v.clone().negate()].map((way) => middle.clone().add(way).toArray());
+    midpoint = a.add(b).multiplyScalar(0.5);
+  return [u, v, u.clone().negate(), v.clone().negate()].map((way) => midpoint.clone().add(way).toArray());
 }
 
 // ---- in the view: the distance of the bodies in the current step, or the separation vector where they
@@ -244,7 +244,7 @@ class MeasuredMarks {
     }
   }
 
-  /** Writes the length over the middle of the segment, or under it if there is no space. */
+  /** Writes the length over the midpoint of the segment, or under it if there is no space. */
   write() {
     const label = byId("measured"),
       { shown, view } = this;

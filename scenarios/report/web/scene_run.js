@@ -29,9 +29,9 @@ function lastAtMost(ascending, value) {
   let low = 0,
     high = ascending.length;
   while (low < high) {
-    const middle = (low + high) >> 1;
-    if (ascending[middle] <= value) low = middle + 1;
-    else high = middle;
+    const midpoint = (low + high) >> 1;
+    if (ascending[midpoint] <= value) low = midpoint + 1;
+    else high = midpoint;
   }
   return low - 1;
 }

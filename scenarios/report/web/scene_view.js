@@ -122,12 +122,12 @@ class SceneCamera {
       most.far = Math.min(most.far, z);
     }
     const depth = Math.max((most.right + most.left) / 2 / slopeX, (most.top + most.bottom) / 2 / slopeY),
-      middle = (most.near + most.far) / 2;
+      midpoint = (most.near + most.far) / 2;
     const centre = right
       .clone()
       .multiplyScalar((most.right - most.left) / 2)
       .addScaledVector(up, (most.top - most.bottom) / 2);
-    this.controls.target.copy(centre).addScaledVector(out, middle);
+    this.controls.target.copy(centre).addScaledVector(out, midpoint);
     this.camera.position.copy(centre).addScaledVector(out, Math.max(depth, most.near + 1e-6));
     this.flat.zoom = 1 / (this.distance * Math.tan(FIELD / 2));
     this.controls.update();
