@@ -196,7 +196,7 @@ std::uintmax_t bytes_in(const std::string& folder) {
   return bytes;
 }
 
-std::string levels_words(const golden::GoldenSpec& spec) {
+std::string levels_text(const golden::GoldenSpec& spec) {
   std::string out;
   for (const EnumWord<golden::Level>& w : kWords<golden::Level>)
     if (spec.compares(w.value)) out.append(out.empty() ? "" : ", ").append(w.word);
@@ -213,12 +213,12 @@ int run_list(const GoldenOptions& o) {
     if (o.json)
       print(one_line({{"golden", name},
                       {"scenario", spec.scenario},
-                      {"compare", levels_words(spec)},
+                      {"compare", levels_text(spec)},
                       {"size", {spec.width, spec.height}},
                       {"frames", spec.frames},
                       {"bytes", bytes}}));
     else
-      print(name + ": " + spec.scenario + "; compares " + levels_words(spec) + "; up to " +
+      print(name + ": " + spec.scenario + "; compares " + levels_text(spec) + "; up to " +
             std::to_string(spec.frames) + " pictures of " + std::to_string(spec.width) + "x" +
             std::to_string(spec.height) + "; " + std::to_string((bytes + 1023) / 1024) + " KiB\n");
   }

@@ -32,40 +32,40 @@ std::string or_none(std::uint32_t value) {
   return value == kNull ? "none" : std::to_string(value);
 }
 
-std::string words(std::uint64_t value) {
+std::string to_text(std::uint64_t value) {
   return std::to_string(value);
 }
-std::string words(double value) {
+std::string to_text(double value) {
   std::array<char, 32> digits{};
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
-std::string words(const std::string& text) {
+std::string to_text(const std::string& text) {
   return text.empty() ? "lrbscope" : text;
 }
-std::string words(const std::optional<Separation>& s) {
+std::string to_text(const std::optional<Separation>& s) {
   return s ? "wrappers of " + std::to_string(s->face_count[0]) + " and " + std::to_string(s->face_count[1]) +
                  " faces"
            : "none";
 }
 template <class Measured>
-std::string words(const std::optional<Measured>& m) {
-  return m ? words(*m) : "none";
+std::string to_text(const std::optional<Measured>& m) {
+  return m ? to_text(*m) : "none";
 }
-std::string words(const std::vector<std::uint32_t>& values) {
+std::string to_text(const std::vector<std::uint32_t>& values) {
   std::string out = "[";
   for (const std::uint32_t value : values)
     out.append(out.size() > 1 ? ", " : "").append(std::to_string(value));
   return out + "]";
 }
-std::string words(bool value) {
+std::string to_text(bool value) {
   return value ? "true" : "false";
 }
 template <class Enum>
-requires std::is_enum_v<Enum> std::string words(Enum value) {
+requires std::is_enum_v<Enum> std::string to_text(Enum value) {
   return std::string(name_of(value));
 }
 
-std::string words(const Pose& pose) {
+std::string to_text(const Pose& pose) {
   std::string out = "(";
   std::array<char, 32> digits{};
   for (int row = 0; row < 3; ++row)
@@ -89,7 +89,7 @@ class Comparison {
   }
   template <class T>
   void same(const std::string& what, const T& expected, const T& actual) {
-    if (!found_ && expected != actual) found(what, words(expected), words(actual));
+    if (!found_ && expected != actual) found(what, to_text(expected), to_text(actual));
   }
   void same_or_none(const std::string& what, std::uint32_t expected, std::uint32_t actual) {
     if (!found_ && expected != actual) found(what, or_none(expected), or_none(actual));
@@ -217,8 +217,8 @@ void compare_steps(Comparison& c, const Trace& x, const Trace& y) {
     c.at(std::nullopt, i);
     c.same("index of the step", std::uint64_t{p.index}, std::uint64_t{q.index});
     // Poses are inputs: if they differ, different events are a consequence.
-    if (!equal(p.pose_a, q.pose_a)) c.found("pose of A", words(p.pose_a), words(q.pose_a));
-    if (!equal(p.pose_b, q.pose_b)) c.found("pose of B", words(p.pose_b), words(q.pose_b));
+    if (!equal(p.pose_a, q.pose_a)) c.found("pose of A", to_text(p.pose_a), to_text(q.pose_a));
+    if (!equal(p.pose_b, q.pose_b)) c.found("pose of B", to_text(p.pose_b), to_text(q.pose_b));
     if (!c.differs()) compare_step_events(c, x, y, i);
     // Events come before results, because they usually explain them.
     c.at(std::nullopt, i);
@@ -239,19 +239,19 @@ std::string describe(const Event& e) {
   };
   const bool is_phase = e.kind == EventKind::begin || e.kind == EventKind::end;
   if (!a.empty())
-    add(a, e.kind == EventKind::result ? words(static_cast<Relation>(e.a))
-           : is_phase                  ? words(e.phase())
+    add(a, e.kind == EventKind::result ? to_text(static_cast<Relation>(e.a))
+           : is_phase                  ? to_text(e.phase())
                                        : std::to_string(e.a));
-  if (e.kind == EventKind::refine || e.kind == EventKind::coarsen) out += " of " + words(e.side);
+  if (e.kind == EventKind::refine || e.kind == EventKind::coarsen) out += " of " + to_text(e.side);
   if (!b.empty()) add(b, std::to_string(e.b));
-  if (e.kind == EventKind::face_test || e.kind == EventKind::contact) add("meet", words(e.meet));
+  if (e.kind == EventKind::face_test || e.kind == EventKind::contact) add("meet", to_text(e.meet));
   if (e.kind == EventKind::node_pair)
-    add("step", words(e.node_end().step)), add("box tests", std::to_string(e.work().box_tests)),
+    add("step", to_text(e.node_end().step)), add("box tests", std::to_string(e.work().box_tests)),
         add("boxes that meet", std::to_string(e.work().met));
   else if (e.kind == EventKind::pass)
-    add("stage", words(e.stage()));
+    add("stage", to_text(e.stage()));
   else if (e.kind == EventKind::cap)
-    add("verdict", words(e.verdict()));
+    add("verdict", to_text(e.verdict()));
   else if (e.boundary != kNull)
     add("wrapper faces", std::to_string(e.boundary));
   if (e.cause != kNull) add("cause", std::to_string(e.cause));

@@ -25,7 +25,7 @@ std::string digits(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-std::string interval_words(double lower, double upper, std::size_t looks) {
+std::string interval_text(double lower, double upper, std::size_t looks) {
   return "[" + digits(lower) + ", " + digits(upper) + "] in " + std::to_string(looks) + " steps";
 }
 
@@ -54,19 +54,19 @@ MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactB
   return {result.outcome, result.t0, result.t1, std::nullopt, std::nullopt, std::move(history)};
 }
 
-std::string words(const MeasuredDistance& m) {
-  return interval_words(m.lower, m.upper, m.history.size());
+std::string to_text(const MeasuredDistance& m) {
+  return interval_text(m.lower, m.upper, m.history.size());
 }
 
-std::string words(const MeasuredClash& m) {
+std::string to_text(const MeasuredClash& m) {
   std::string out(name_of(m.kind));
   if (m.reason != ClashReason::none) out += ": " + std::string(name_of(m.reason));
-  if (m.depth) out += ", depth " + interval_words((*m.depth)[0], (*m.depth)[1], m.history.size());
+  if (m.depth) out += ", depth " + interval_text((*m.depth)[0], (*m.depth)[1], m.history.size());
   return out;
 }
 
-std::string words(const MeasuredApproach& m) {
-  std::string out = std::string(name_of(m.outcome)) + " " + interval_words(m.t0, m.t1, m.history.size());
+std::string to_text(const MeasuredApproach& m) {
+  std::string out = std::string(name_of(m.outcome)) + " " + interval_text(m.t0, m.t1, m.history.size());
   if (m.step) out += ", step " + digits((*m.step)[1]);
   return out;
 }

@@ -101,7 +101,7 @@ class Numbers {
 };
 
 /// Works like CGAL's Listing_primitive_traits for triangle i of A, and reports each test.
-struct Told {
+struct Reporter {
   const Tree& tree;
   const Numbers& numbers;
   const Triangles& triangles;
@@ -156,7 +156,7 @@ void run(std::istream& in, const char* file) {
     std::size_t box_count = 0, leaf_count = 0, pairs = 0;
     LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, tree_a, pose_a.data(), tree_b, pose_b.data());
     for (std::size_t i = 0; i < a.size(); ++i) {
-      Told reported{tree, numbers, b, i};
+      Reporter reported{tree, numbers, b, i};
       tree.traversal(a[i].transform(relative), reported);
       box_count += reported.box_tests;
       leaf_count += reported.leaf_tests;

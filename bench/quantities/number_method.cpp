@@ -12,7 +12,7 @@ namespace {
 constexpr double kMaxOffOfSize = 1e-6, kMaxOffOfMotion = 1e-3;
 constexpr int kDigits = 9;
 
-std::string words(Quantity quantity, double lower, double upper) {
+std::string to_text(Quantity quantity, double lower, double upper) {
   if (quantity == Quantity::first_contact && lower >= kNever) return "never";
   const std::string first = io::number_text(lower, kDigits), last = io::number_text(upper, kDigits);
   return first == last ? first : first + " to " + last;
@@ -41,8 +41,8 @@ void judge_number(Record& record, const NumberMethod& method, const NumberAnswer
                   const RightAnswer& expected, double size) {
   const double least = expected.least.value(), most = expected.most.value();
   const bool is_time = method.quantity == Quantity::first_contact;
-  record.relation = words(method.quantity, answer.lower, answer.upper);
-  record.expected_relation = words(method.quantity, least, most);
+  record.relation = to_text(method.quantity, answer.lower, answer.upper);
+  record.expected_relation = to_text(method.quantity, least, most);
   const bool special = is_special(method.quantity, least, most);
   bool right = is_special(method.quantity, answer.lower, answer.upper) == special;
   if (method.proves) {

@@ -15,7 +15,7 @@ constexpr const char* kHowToRead =
     "Down is faster, left is more accurate; the left end is no error. The Pareto frontier joins the points that no other beats "
     "in both. The tooltip of a point has all of its numbers; a click leads to the panel's scene, with trace and pictures.";
 
-ChartWords of_pairs() {
+ChartText of_pairs() {
   return {
       "Speed against accuracy",
       "Every method at every setting of its parameter, on the same bodies and poses: median time of a query, and deviation of "
@@ -35,11 +35,11 @@ ChartWords of_pairs() {
 }
 
 /// Purpose, definition of the error, and proof for one quantity.
-struct NumberWords {
+struct NumberText {
   const char *name, *purpose, *error, *judged, *proved;
 };
 
-NumberWords words_of_number(Quantity quantity) {
+NumberText text_of_number(Quantity quantity) {
   if (quantity == Quantity::first_contact)
     return {
         "time of first contact",
@@ -66,8 +66,8 @@ NumberWords words_of_number(Quantity quantity) {
       "lrbscope reports an interval that contains the distance, at every tolerance and within every budget."};
 }
 
-ChartWords of_number(Quantity quantity) {
-  const NumberWords n = words_of_number(quantity);
+ChartText of_number(Quantity quantity) {
+  const NumberText n = text_of_number(quantity);
   return {
       std::string("Speed versus accuracy: ") + n.name,
       n.purpose,
@@ -93,7 +93,7 @@ std::vector<const Point*> panel(const std::vector<Point>& points, const std::str
   return out;
 }
 
-ChartWords chart_words(Quantity quantity) {
+ChartText chart_text(Quantity quantity) {
   return quantity == Quantity::pairs ? of_pairs() : of_number(quantity);
 }
 
@@ -205,7 +205,7 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
                        const std::function<std::string(const Point&)>& scene_of) {
   const double slowest = slowest_of(points, set.name);
   const std::vector<const Point*> here = panel(points, set.name, c);
-  const ChartWords words = chart_words(set.quantity);
+  const ChartText words = chart_text(set.quantity);
   report::Chart chart{set.name + ", " + title(c),
                       error_axis(set.quantity, words.error),
                       {"median, \u00b5s", true, 0.05, 6 * slowest}};
@@ -322,7 +322,7 @@ std::vector<report::Chart> accuracy_charts(const std::vector<DataSet>& sets, con
 report::Document accuracy_page(Quantity quantity, const std::vector<Point>& points,
                                const std::vector<methods::MethodInfo>& methods,
                                const std::vector<report::Chart>& charts) {
-  const ChartWords words = chart_words(quantity);
+  const ChartText words = chart_text(quantity);
   report::Document doc(words.title, words.purpose);
   doc.each(words.texts, &report::Document::text).each(charts, &report::Document::chart);
   return doc.table(table_of_metrics(points)).table(table_of_methods(methods)).table(table_of_points(points));

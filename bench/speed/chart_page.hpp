@@ -30,13 +30,13 @@ std::vector<const Point*> panel(const std::vector<Point>& points, const std::str
 
 // The texts of charts of speed against accuracy, by the queried quantity.
 
-struct ChartWords {
+struct ChartText {
   std::string title, purpose;
   std::string error;   ///< for the axis
   std::string proved;  ///< in the key: the meaning of a cross
   std::vector<report::Text> texts;
 };
 
-ChartWords chart_words(Quantity quantity);
+ChartText chart_text(Quantity quantity);
 
 }  // namespace lrb::bench

@@ -70,7 +70,7 @@ Grid present_part(const Grid& grid) {
   return out;
 }
 
-std::string absent_words(const Grid& grid) {
+std::string absent_text(const Grid& grid) {
   std::string names;
   std::size_t absent = 0;
   for (const workers::MethodColumn& m : grid.methods)

@@ -91,7 +91,7 @@ Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRo
 /// Returns the grid without the methods that are absent from this build.
 Grid present_part(const Grid& grid);
 /// Returns a sentence that names the absent methods, or an empty string if none is absent.
-std::string absent_words(const Grid& grid);
+std::string absent_text(const Grid& grid);
 
 /// Returns the families of all_families(), in their order.
 std::vector<FamilyRow> family_rows();

@@ -222,7 +222,7 @@ report::Gnuplot grid_chart(const Grid& whole) {
   for (std::size_t f = 0; f < grid.families.size(); ++f)
     add_row_head(sheet, grid.families[f], -1 - static_cast<double>(f));
   sheet.text(-0.08, -rows + 0.5, Sheet::bold, "all families");
-  add_legend(sheet, -rows - 0.35, columns, absent_words(whole));
+  add_legend(sheet, -rows - 0.35, columns, absent_text(whole));
 
   chart.script =
       "unset border\nunset tics\nunset key\nset style fill solid 1 noborder\n"

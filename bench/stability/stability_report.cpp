@@ -15,7 +15,7 @@ namespace lrb::stability {
 namespace {
 
 /// Returns a difficulty, with its parameter if known: "7 of 0 to 10 (4e-13)".
-std::string setting_words(const FamilyRow& family, int difficulty) {
+std::string setting_text(const FamilyRow& family, int difficulty) {
   std::string out = std::to_string(difficulty) + " of 0 to " + std::to_string(kDifficulties - 1);
   if (!family.values.empty()) out += " (" + family.values[static_cast<std::size_t>(difficulty)] + ")";
   return out;
@@ -31,7 +31,7 @@ std::string sentence(const CellSummary& s, const FamilyRow& family) {
   add(s.crashed, "by a crash");
   add(s.timed_out, "by a time-out");
   add(s.rejected, "refused");
-  if (s.first_failing >= 0) out += "; first at difficulty " + setting_words(family, s.first_failing);
+  if (s.first_failing >= 0) out += "; first at difficulty " + setting_text(family, s.first_failing);
   return out;
 }
 
@@ -65,7 +65,7 @@ std::string plain(const std::string& text) {
   return out;
 }
 
-std::string words(Outcome o) {
+std::string to_text(Outcome o) {
   return io::in_words(name_of(o));
 }
 
@@ -80,7 +80,7 @@ report::GridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, c
   if (cell < options.pictures.size()) d.file = options.pictures[cell];
   const CellSummary s = summarise(grid.at(f, m));
   const bool answered = r.outcome == Outcome::right || r.outcome == Outcome::wrong;
-  d.facts = {{"Outcome", words(r.outcome)}};
+  d.facts = {{"Outcome", to_text(r.outcome)}};
   if (grid.quantity == Quantity::pairs) {
     d.facts.emplace_back("Intersecting pairs", render::group_digits(r.expected));
     if (answered) {
@@ -93,7 +93,7 @@ report::GridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, c
     d.facts.emplace_back("Right", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
     if (answered) d.facts.emplace_back("Answered", r.relation);
   }
-  d.facts.emplace_back("Difficulty", setting_words(family, r.difficulty));
+  d.facts.emplace_back("Difficulty", setting_text(family, r.difficulty));
   d.facts.emplace_back("Case, seed", render::group_digits(r.case_index) + ", " + std::to_string(r.seed));
   if (answered) d.facts.emplace_back("Query", render::short_number(r.microseconds) + " \u00b5s");
   d.note = "This family, this method: " + sentence(s, family) + ".";
@@ -182,7 +182,7 @@ void check(const Grid& grid) {
 }  // namespace
 
 std::string answer_text(const Record& r) {
-  std::string out = words(r.outcome);
+  std::string out = to_text(r.outcome);
   if (r.missed + r.extra > 0)
     out += ": " + render::group_digits(r.missed) + " missed, " + render::group_digits(r.extra) + " in excess";
   else if (r.outcome == Outcome::wrong && r.relation != r.expected_relation)
@@ -213,7 +213,7 @@ report::Document stability_page(const Grid& whole, const std::string& folder, co
       .number({"Answers judged", render::group_digits(answers), "one per case and method"})
       .number({"Running time", render::short_number(grid.seconds) + " s"});
   report::Grid shown = page_grid(grid, options);
-  shown.missing = absent_words(whole);
+  shown.missing = absent_text(whole);
   return doc.grid(shown, folder).command(grid.command).each(options.links, &report::Document::link);
 }
 

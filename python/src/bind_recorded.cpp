@@ -91,7 +91,7 @@ py::object steps_of(const Recorded& r) {
 }
 
 template <class Enum>
-py::list words() {
+py::list names() {
   py::list out;
   for (const auto& entry : kWords<Enum>) out.append(py::str(std::string(entry.word)));
   return out;
@@ -174,7 +174,7 @@ void bind_trace(py::module_& m) {
       "meet, detail (uint8);\n"
       "`kind` indexes `kinds` and determines the meaning of a and b (docs/scenarios.md). Shares"
       " the trace's memory.");
-  c.attr("kinds") = words<EventKind>();
+  c.attr("kinds") = names<EventKind>();
   c.def_property_readonly(
       "steps", &steps_of,
       "(s,) records of index, relation, pairs, first_event, events, face_tests, refinements.");

@@ -186,7 +186,7 @@ Image picture_of(const ClashResult& result, const PosedBodies& bodies, const Loo
   request.contacts = true;
   const CollideResult found = collide(bodies.a, bodies.pose_a, bodies.b, bodies.pose_b, request);
   AnswerPicture p(bodies, found.regions);
-  p.overlay.title = kind_words(result.kind, result.reason) + "  ·  " + p.overlay.title;
+  p.overlay.title = kind_text(result.kind, result.reason) + "  ·  " + p.overlay.title;
   p.overlay.event_colour = kSeparationColour;
   if (const auto vector = separation_vector_of(result.depth, result.translation, bodies, found.regions)) {
     Pose apart = bodies.pose_b;
@@ -201,13 +201,13 @@ Image picture_of(const ClashResult& result, const PosedBodies& bodies, const Loo
     p.scene.key.push_back({Mark::translucent, palette::body(Side::b), "B after separation"});
   } else {
     p.overlay.event = result.distance.upper > 0
-                          ? interval_words(result.distance.lower, result.distance.upper) + " apart"
+                          ? interval_text(result.distance.lower, result.distance.upper) + " apart"
                           : "nothing has to move";
   }
   if (result.depth) p.add_interval("depth", result.depth->lower, result.depth->upper);
   if (result.volume && result.volume->upper > 0)
     p.overlay.counters.push_back(
-        {"volume shared", interval_words(result.volume->lower, result.volume->upper)});
+        {"volume shared", interval_text(result.volume->lower, result.volume->upper)});
   return p.draw(look);
 }
 

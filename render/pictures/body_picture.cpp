@@ -222,7 +222,7 @@ std::string words_of_one(const LrbRep& rep, RegionId r, const std::string& owner
 
 }  // namespace
 
-std::string region_words(const LrbRep& rep, std::span<const RegionId> regions, const std::string& owner) {
+std::string region_text(const LrbRep& rep, std::span<const RegionId> regions, const std::string& owner) {
   if (regions.size() == 1) return words_of_one(rep, regions[0], owner);
   std::size_t lids = 0, floor = 0;
   std::set<std::uint32_t> layers, numbers;

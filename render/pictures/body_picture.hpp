@@ -33,6 +33,6 @@ Eigen::Vector3d outlook(const LrbRep& rep, RegionId r);
 
 /// Describes regions: a single one by its layer, lids, floor, parent and neighbours, several by their
 /// numbers. `owner`: text after a region's number, such as " of A".
-std::string region_words(const LrbRep& rep, std::span<const RegionId> regions, const std::string& owner);
+std::string region_text(const LrbRep& rep, std::span<const RegionId> regions, const std::string& owner);
 
 }  // namespace lrb::run

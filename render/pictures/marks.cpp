@@ -117,12 +117,12 @@ void add_barbs(render::DrawList& list, const MarkedSegment& way, const Vector3d&
 
 }  // namespace
 
-std::string interval_words(double lower, double upper) {
+std::string interval_text(double lower, double upper) {
   const std::string low = render::short_number(lower), high = render::short_number(upper);
   return low == high ? high : low + " to " + high;
 }
 
-std::string kind_words(ClashKind kind) {
+std::string kind_text(ClashKind kind) {
   switch (kind) {
     case ClashKind::a_inside_b:
       return "A inside B";
@@ -145,14 +145,14 @@ std::string kind_words(ClashKind kind) {
   }
 }
 
-std::string kind_words(ClashKind kind, ClashReason reason) {
-  return kind_words(kind) + (reason == ClashReason::none ? "" : ": ") + std::string(name_of(reason));
+std::string kind_text(ClashKind kind, ClashReason reason) {
+  return kind_text(kind) + (reason == ClashReason::none ? "" : ": ") + std::string(name_of(reason));
 }
 
 std::optional<MarkedSegment> gap_of(const ProvedInterval& distance, const Vector3d& point_a,
                                     const Vector3d& point_b) {
   if (!(distance.lower > 0) || !std::isfinite(distance.upper)) return std::nullopt;
-  return MarkedSegment{point_a, point_b, interval_words(distance.lower, distance.upper)};
+  return MarkedSegment{point_a, point_b, interval_text(distance.lower, distance.upper)};
 }
 
 std::optional<MarkedSegment> separation_vector_of(const std::optional<ProvedInterval>& depth,
@@ -164,7 +164,7 @@ std::optional<MarkedSegment> separation_vector_of(const std::optional<ProvedInte
       points.empty() ? box_of(bodies.a, bodies.pose_a).intersection(box_of(bodies.b, bodies.pose_b)).center()
                      : render::bounds(points).center();
   return MarkedSegment{midpoint - translation / 2, midpoint + translation / 2,
-                       interval_words(depth->lower, depth->upper)};
+                       interval_text(depth->lower, depth->upper)};
 }
 
 void add_gap(render::Scene& scene, const MarkedSegment& gap, const render::Style& style) {

@@ -84,11 +84,11 @@ std::optional<Square> separating_square(const WalkExplanation& walk, const Posed
 void add_sheet(render::DrawList& list, const std::vector<Eigen::Vector3d>& corners);
 
 /// Returns an interval as text: "0.25", or "0.2 to 0.3" if its ends differ in four digits.
-std::string interval_words(double lower, double upper);
+std::string interval_text(double lower, double upper);
 /// Returns the kind of contact as text: "A inside B", "touching in faces".
-std::string kind_words(ClashKind kind);
+std::string kind_text(ClashKind kind);
 /// Appends the reason if the kind is undecided: "undecided: A intersects itself".
-std::string kind_words(ClashKind kind, ClashReason reason);
+std::string kind_text(ClashKind kind, ClashReason reason);
 
 // Outlines that are visible through all faces.
 

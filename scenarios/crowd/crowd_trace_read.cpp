@@ -12,7 +12,7 @@
 namespace lrb::crowd {
 namespace {
 
-std::string words(const CrowdTrace::Answer* a) {
+std::string to_text(const CrowdTrace::Answer* a) {
   return a == nullptr ? "no query"
                       : std::string(to_string(a->relation)) + " in " + std::to_string(a->pairs) +
                             " pairs, fingerprint " + trace::to_hex(a->fingerprint);
@@ -31,7 +31,7 @@ void compare(const CrowdTrace& trace, const CrowdRun& run, std::size_t step) {
     if (x != nullptr && y != nullptr && x->bodies != y->bodies) (x->bodies < y->bodies ? y : x) = nullptr;
     const BodyPair bodies = x != nullptr ? x->bodies : y->bodies;
     throw InputError(trace.file + ": step " + std::to_string(step) + ", " + run.names[bodies.i] + " and " +
-                     run.names[bodies.j] + ": expected " + words(x) + " as recorded, found " + words(y) +
+                     run.names[bodies.j] + ": expected " + to_text(x) + " as recorded, found " + to_text(y) +
                      "; the trace is damaged; record it again");
   }
 }

@@ -23,10 +23,10 @@ using Eigen::Vector2d;
 using View = render::FrameSpec::View;
 
 /// Returns a caption without its redundant parts.
-std::string shortened(std::string words) {
+std::string shortened(std::string text) {
   const std::string none = ": 0 intersecting pairs of faces";
-  if (words.ends_with(none)) words.resize(words.size() - none.size());
-  return words;
+  if (text.ends_with(none)) text.resize(text.size() - none.size());
+  return text;
 }
 
 /// Returns the frames' spec with widths in points: a thin line, of width 1, gets the figure's line width.
@@ -52,9 +52,9 @@ class FigureJob {
   Figure draw(const run::ProgressReport& progress) {
     survey();
     Figure out;
-    out.panels = words_.size();
+    out.panels = captions_.size();
     out.left_out = chosen_.left_out;
-    out.caption = run::caption_of(recorded_, words_);
+    out.caption = run::caption_of(recorded_, captions_);
     layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
                       figure_.legend ? bar_ : std::nullopt, figure_.caption ? out.caption : "", options());
     const auto paint = [&](render::Canvas& canvas) { paint_all(canvas, progress); };
@@ -158,8 +158,8 @@ class FigureJob {
         run::merge_key(key_, shown.key);
         if (shown.scale) bar_ = shown.scale;
         block.seen.push_back(seen_box(shown.list, camera(view, i)));
-        const std::string words = shortened(state_.short_caption());
-        words_.push_back(view.title.empty() ? words : view.title + ", " + words);
+        const std::string text = shortened(state_.short_caption());
+        captions_.push_back(view.title.empty() ? text : view.title + ", " + text);
         shown_moments.push_back(i);
       }
       if (block.seen.empty()) continue;
@@ -177,13 +177,13 @@ class FigureJob {
   }
 
   void letter() {
-    const bool letters = words_.size() > 1;
+    const bool letters = captions_.size() > 1;
     if (!letters && !figure_.titles) return;
     std::size_t panel = 0;
     for (Block& block : blocks_)
       for (std::size_t i = 0; i < block.seen.size(); ++i, ++panel)
         block.texts.push_back((letters ? render::panel_letter(panel) : "") +
-                              (letters && figure_.titles ? " " : "") + (figure_.titles ? words_[panel] : ""));
+                              (letters && figure_.titles ? " " : "") + (figure_.titles ? captions_[panel] : ""));
   }
 
   void paint_all(render::Canvas& canvas, const run::ProgressReport& progress) {
@@ -192,7 +192,7 @@ class FigureJob {
       const BlockLayout& block = layout_.blocks[v];
       const View& view = *views_[v].view;
       for (std::size_t i = 0; i < block.panels.size(); ++i, ++panel) {
-        progress("draw", panel, words_.size());
+        progress("draw", panel, captions_.size());
         const PanelPlace& place = block.panels[i];
         const std::size_t moment = views_[v].moments[i];
         const render::Scene shown = scene(view, moment);
@@ -279,7 +279,7 @@ class FigureJob {
   };
   std::vector<ViewPanels> views_;   ///< the views with content, and their events
   std::vector<Block> blocks_;       ///< one for each of views_
-  std::vector<std::string> words_;  ///< (panels) description of each
+  std::vector<std::string> captions_;  ///< (panels) description of each
   std::vector<render::LegendItem> key_;
   std::optional<render::ScaleBar> bar_;
   FigureLayout layout_;

@@ -29,12 +29,12 @@ double parse_length(const std::string& text, const std::string& option, double l
                      "\"");
   const double length = value * points;
   if (!(length >= least && length <= most))
-    throw InputError(option + ": expected a length from " + length_words(least) + " to " +
-                     length_words(most) + ", found \"" + text + "\"");
+    throw InputError(option + ": expected a length from " + length_text(least) + " to " +
+                     length_text(most) + ", found \"" + text + "\"");
   return length;
 }
 
-std::string length_words(double points) {
+std::string length_text(double points) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g mm", points / kPointsPerMm);
   return text;
@@ -150,7 +150,7 @@ Arranged arrange(const Block& block, const LayoutOptions& options) {
     BlockLayouter layouter(block, options, options.columns);
     if (layouter.panel_width() < kMinPanel)
       throw InputError("--columns " + std::to_string(options.columns) + ": leaves panels of less than " +
-                       length_words(kMinPanel) + " in a figure of " + length_words(options.width) +
+                       length_text(kMinPanel) + " in a figure of " + length_text(options.width) +
                        ": ask for fewer, or a larger --width");
     return layouter.arrange();
   }
@@ -192,7 +192,7 @@ double place_legend(const std::vector<render::LegendItem>& legend, const LayoutO
     widths.push_back(marks.back() + 0.4 * em + render::text_width(item.text, out.text_height));
     if (widths.back() > room)
       throw InputError("the legend's entry \"" + item.text + "\" is wider than the figure of " +
-                       length_words(o.width) +
+                       length_text(o.width) +
                        ": ask for a smaller --font-size, a larger --width, or --no-legend");
   }
   const double gap = 1.2 * em;

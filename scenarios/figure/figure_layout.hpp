@@ -69,7 +69,7 @@ inline constexpr double kPointsPerMm = 72 / 25.4;
 double parse_length(const std::string& text, const std::string& option, double least, double most);
 
 /// Returns a length in points as text: "85 mm".
-std::string length_words(double points);
+std::string length_text(double points);
 
 /// Paints legend and colour bar at their positions in the layout; both must be those that it was made for.
 void paint_key(render::Canvas& canvas, const FigureLayout& layout,

@@ -24,13 +24,13 @@ std::string error_bound_text(double bound);
 
 /// Returns the results of a pass: "pass 3: 47 regions, 1 064 to 340 faces, 12 caps rejected: 9 too many
 /// faces, 3 too thick".
-std::string pass_words(const trace::PassSummary& pass);
+std::string pass_text(const trace::PassSummary& pass);
 
 /// Returns the stage of a pass: "fitting, max. deviation 0.002".
-std::string stage_words(const trace::PassSummary& pass);
+std::string stage_text(const trace::PassSummary& pass);
 
 /// Returns the text of a construction event.
-std::string built_words(const trace::Event& e);
+std::string built_text(const trace::Event& e);
 
 class FrameState {
  public:

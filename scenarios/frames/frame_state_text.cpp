@@ -13,7 +13,7 @@
 namespace lrb::run {
 namespace {
 
-std::string relation_words(Relation r) {
+std::string text_of(Relation r) {
   switch (r) {
     case Relation::a_inside_b:
       return "A inside B";
@@ -26,7 +26,7 @@ std::string relation_words(Relation r) {
 
 }  // namespace
 
-std::string pass_words(const trace::PassSummary& pass) {
+std::string pass_text(const trace::PassSummary& pass) {
   std::string out = "pass " + std::to_string(pass.number()) + ": " +
                     render::counted(pass.regions, "region", "regions") + ", " +
                     render::group_digits(pass.faces_before) + " to " +
@@ -37,7 +37,7 @@ std::string pass_words(const trace::PassSummary& pass) {
   return out;
 }
 
-std::string stage_words(const trace::PassSummary& pass) {
+std::string stage_text(const trace::PassSummary& pass) {
   std::string out(name_of(pass.stage));
   if (pass.max_deviation > 0) out += ", max. deviation " + render::short_number(pass.max_deviation);
   return out;
@@ -45,7 +45,7 @@ std::string stage_words(const trace::PassSummary& pass) {
 
 namespace {
 
-std::string cap_words(const trace::Event& e) {
+std::string cap_text(const trace::Event& e) {
   const trace::payload::Cap cap = e.cap();
   const std::string size = cap.covered == 0 ? "no cap, because no vertex could be removed"
                                             : "cap of " + render::counted(cap.faces, "face", "faces") +
@@ -57,7 +57,7 @@ std::string cap_words(const trace::Event& e) {
 
 }  // namespace
 
-std::string built_words(const trace::Event& e) {
+std::string built_text(const trace::Event& e) {
   switch (e.kind) {
     case EventKind::pass:
       return "pass " + std::to_string(e.pass().layer + 1) + " begins: " + std::string(name_of(e.stage()));
@@ -65,7 +65,7 @@ std::string built_words(const trace::Event& e) {
       return "patch of " + render::counted(e.patch().faces, "face", "faces") + " grown from vertex " +
              std::to_string(e.patch().vertex);
     case EventKind::cap:
-      return cap_words(e);
+      return cap_text(e);
     case EventKind::region:
       return "region " + std::to_string(e.region()) +
              " created: " + render::counted(e.wrapper_change().faces, "face", "faces") + " covered";
@@ -89,7 +89,7 @@ std::string FrameState::isolated_text() const {
   for (std::size_t i = 0; i < run_.reps.size(); ++i) {
     if (spec_.isolate[i].empty()) continue;
     const std::string owner = is_single() ? "" : i == 0 ? " of A" : " of B";
-    out += (out.empty() ? "" : "; ") + region_words(*run_.reps[i], spec_.isolate[i], owner);
+    out += (out.empty() ? "" : "; ") + region_text(*run_.reps[i], spec_.isolate[i], owner);
   }
   return out;
 }
@@ -141,7 +141,7 @@ std::string FrameState::construction_text() const {
   const trace::Event& e = cursor_.event();
   if (e.kind == EventKind::step)
     return "the body, " + render::counted(run_.reps[0]->real_face_count(), "face", "faces");
-  return e.kind == EventKind::pass_end ? pass_words(*now_.pass) : built_words(e);
+  return e.kind == EventKind::pass_end ? pass_text(*now_.pass) : built_text(e);
 }
 
 std::string FrameState::first_wrappers_text() const {
@@ -196,7 +196,7 @@ std::string FrameState::measured_text() const {
   std::string out;
   if (now_.gap) out = "distance " + now_.gap->text;
   if (now_.answer->clash && now_.answer->clash->kind != ClashKind::apart)
-    out += (out.empty() ? "" : ", ") + kind_words(now_.answer->clash->kind, now_.answer->clash->reason);
+    out += (out.empty() ? "" : ", ") + kind_text(now_.answer->clash->kind, now_.answer->clash->reason);
   if (now_.separation_vector) out += ", depth " + now_.separation_vector->text;
   return out;
 }
@@ -231,7 +231,7 @@ std::string FrameState::relation_text() const {
     if (!words.empty()) return "separated " + words;
   }
   const bool open = !run_.reps[0]->closed() || !run_.reps[1]->closed();
-  return (r.relation == Relation::undefined && open ? open_text() : relation_words(r.relation)) + ": " +
+  return (r.relation == Relation::undefined && open ? open_text() : text_of(r.relation)) + ": " +
          render::counted(r.pair_count, "intersecting pair of faces", "intersecting pairs of faces");
 }
 
@@ -290,7 +290,7 @@ void FrameState::add_construction(render::Overlay& o) const {
     if (p.last <= cursor_.position()) made += p.regions;
   if (const trace::PassSummary* pass = now_.pass) {
     if (pass->last > cursor_.position()) made += now_.built.size();
-    o.title += "  ·  " + stage_words(*pass);
+    o.title += "  ·  " + stage_text(*pass);
   }
   o.counters = {
       {"front", render::counted(cursor_.boundary_size(Side::a), "face", "faces")},

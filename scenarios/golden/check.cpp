@@ -22,7 +22,7 @@
 namespace lrb::golden {
 namespace {
 
-std::string rep_words(const trace::BodyInfo& body) {
+std::string rep_text(const trace::BodyInfo& body) {
   return render::group_digits(body.regions) + " regions in " + std::to_string(body.layers) + " layers, " +
          render::group_digits(body.outer_faces) + " outermost faces";
 }
@@ -32,7 +32,7 @@ std::string body_cause(const Golden& golden, const GoldenRun& run, std::size_t i
   const trace::BodyInfo &expected = golden.trace.header.bodies[i],
                         &found = run.recording.trace.header.bodies[i];
   const std::string who = "body " + std::string(name_of(static_cast<Side>(i))) + " (" + found.name + "): ";
-  const std::string built = rep_words(expected) + " -> " + rep_words(found);
+  const std::string built = rep_text(expected) + " -> " + rep_text(found);
   if (i >= golden.facts.meshes.size())
     return who + "its mesh or its LRB-rep changed: " + built +
            " (this golden does not record which; approve it again to record it)";
@@ -102,7 +102,7 @@ std::size_t find_after(Events events, std::size_t from, const trace::Event& acti
 }
 
 /// Returns "; the step has 53 contacts instead of 54", or "".
-std::string contacts_words(Events expected, Events actual) {
+std::string contacts_text(Events expected, Events actual) {
   const std::uint64_t x = trace::count_events(expected).contacts, y = trace::count_events(actual).contacts;
   return x == y ? ""
                 : "; the step has " + std::to_string(y) + (y == 1 ? " contact" : " contacts") +
@@ -125,7 +125,7 @@ std::string diagnose(const trace::Trace& expected, const trace::Trace& actual,
   const std::size_t i = event - expected.steps[*divergence.step].first_event;
   const bool in_x = i < x.size(), in_y = i < y.size();
   if (!in_x && !in_y) return {};
-  const std::string contacts = contacts_words(x, y);
+  const std::string contacts = contacts_text(x, y);
   if (!in_y) return several("lost", x.size() - i, event, x[i]) + contacts;
   if (!in_x) return several("added", y.size() - i, event, y[i]) + contacts;
   if (x[i].kind == y[i].kind && x[i].side == y[i].side && x[i].a == y[i].a && x[i].b == y[i].b)
@@ -144,7 +144,7 @@ std::string diagnose(const trace::Trace& expected, const trace::Trace& actual,
 
 namespace {
 
-std::string size_words(const render::Image& image) {
+std::string size_text(const render::Image& image) {
   return std::to_string(image.width()) + "x" + std::to_string(image.height());
 }
 
@@ -195,7 +195,7 @@ std::vector<std::string> parts_of(const std::string& words) {
 
 /// Returns the first part in which the descriptions of two cameras differ, and the number of further
 /// differing parts.
-std::string moved_words(const std::string& expected, const std::string& actual) {
+std::string moved_text(const std::string& expected, const std::string& actual) {
   const std::vector<std::string> x = parts_of(expected), y = parts_of(actual);
   if (x.size() != y.size()) return "the camera changed: the number of views differs";
   std::size_t first = x.size(), more = 0;
@@ -213,8 +213,8 @@ std::string explain(const render::DecodedPng& expected, const run::PaintedFrame&
   std::string out;
   const std::string event = text_of(expected, "lrbscope:event"), found = std::to_string(actual.event);
   if (!event.empty() && event != found) out += "drawn after event " + found + " instead of " + event + "; ";
-  const std::string camera = text_of(expected, kCameraText), now = camera_words(actual.cameras);
-  if (!camera.empty() && camera != now) return out + moved_words(camera, now);
+  const std::string camera = text_of(expected, kCameraText), now = camera_text(actual.cameras);
+  if (!camera.empty() && camera != now) return out + moved_text(camera, now);
   if (!camera.empty()) out += "the camera is the same; ";
   return out + commonest_change(expected.image, actual.image);
 }
@@ -256,7 +256,7 @@ ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::Pa
     best.text = equal ? "the images are identical"
                 : d.same_size
                     ? d.text(tolerance)
-                    : "expected " + size_words(expected) + " pixels, found " + size_words(actual.image);
+                    : "expected " + size_text(expected) + " pixels, found " + size_text(actual.image);
     if (equal) return best;
   }
   if (!best.passed && least.same_size) {

@@ -189,7 +189,7 @@ void add_image(GoldenResult& result, const Golden& golden, const GoldenRun& run,
 }
 
 /// Returns "3 of 3 equal", "2 of 3 differ".
-std::string images_words(const GoldenResult& result) {
+std::string images_text(const GoldenResult& result) {
   const GoldenVerdict& verdict = result.verdict;
   if (!verdict.rejection.empty()) return "not tested";
   if (!result.spec.compares(Level::pictures)) return "not compared";
@@ -203,7 +203,7 @@ std::string images_words(const GoldenResult& result) {
   return of + " equal" + (near > 0 ? ", " + std::to_string(near) + " of them within tolerance" : "");
 }
 
-std::string answers_words(const GoldenResult& r) {
+std::string answers_text(const GoldenResult& r) {
   if (!r.verdict.rejection.empty()) return "not tested";
   if (!r.spec.compares(Level::answers)) return "not compared";
   if (!r.verdict.answers_differ) return render::counted(r.steps, "step", "steps") + ": equal";
@@ -213,7 +213,7 @@ std::string answers_words(const GoldenResult& r) {
   return "differ in " + std::to_string(steps.size()) + " of " + render::counted(r.steps, "step", "steps");
 }
 
-std::string events_words(const GoldenResult& r) {
+std::string events_text(const GoldenResult& r) {
   if (!r.verdict.rejection.empty()) return r.verdict.rejection;
   if (!r.spec.compares(Level::events)) return "not compared";
   return r.verdict.divergence ? r.verdict.divergence->message()
@@ -311,8 +311,8 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
     images += v.images.size();
     for (const ImageVerdict& image : v.images) images_failed += image.passed ? 0 : 1;
     events += r.events;
-    scenarios.rows.push_back({r.name, v.passed() ? "passed" : "FAILED", answers_words(r), events_words(r),
-                              images_words(r), io::fixed_text(r.seconds, 1)});
+    scenarios.rows.push_back({r.name, v.passed() ? "passed" : "FAILED", answers_text(r), events_text(r),
+                              images_text(r), io::fixed_text(r.seconds, 1)});
   }
   report::Document doc(
       kTitle,
@@ -338,13 +338,13 @@ std::string result_text(const GoldenResult& r) {
   if (!v.rejection.empty())
     return "FAIL  " + r.name + ": " + v.rejection + "\n      approve it after fixing that: " + r.approve +
            "\n";
-  std::string head = v.answers_differ ? "answers " + answers_words(r)
+  std::string head = v.answers_differ ? "answers " + answers_text(r)
                      : v.divergence   ? "events or counters differ"
                      : r.spec.compares(Level::events)
                          ? render::counted(r.events, "event", "events") + " equal"
-                         : "answers of " + answers_words(r);
+                         : "answers of " + answers_text(r);
   std::string out =
-      (v.passed() ? "ok    " : "FAIL  ") + r.name + ": " + head + "; images: " + images_words(r) + "\n";
+      (v.passed() ? "ok    " : "FAIL  ") + r.name + ": " + head + "; images: " + images_text(r) + "\n";
   if (v.passed()) return out;
   std::size_t lines = 0;
   for (const Effect& e : v.effects)

@@ -17,31 +17,31 @@
 namespace lrb::golden {
 namespace {
 
-std::string words(std::uint64_t value) {
+std::string to_text(std::uint64_t value) {
   return std::to_string(value);
 }
-std::string words(double value) {
+std::string to_text(double value) {
   return io::number_text(value);
 }
-std::string words(bool value) {
+std::string to_text(bool value) {
   return value ? "yes" : "no";
 }
-std::string words(const std::optional<Separation>& s) {
+std::string to_text(const std::optional<Separation>& s) {
   return s ? "proven by wrappers of " + std::to_string(s->face_count[0]) + " and " +
                  std::to_string(s->face_count[1]) + " faces"
            : "none";
 }
 template <class Measured>
-std::string words(const std::optional<Measured>& m) {
-  return m ? trace::words(*m) : "none";
+std::string to_text(const std::optional<Measured>& m) {
+  return m ? trace::to_text(*m) : "none";
 }
-std::string words(const std::vector<std::uint32_t>& values) {
+std::string to_text(const std::vector<std::uint32_t>& values) {
   std::string out;
   for (const std::uint32_t value : values) out.append(out.empty() ? "" : ", ").append(std::to_string(value));
   return out;
 }
 template <class Enum>
-requires std::is_enum_v<Enum> std::string words(Enum value) {
+requires std::is_enum_v<Enum> std::string to_text(Enum value) {
   return std::string(name_of(value));
 }
 
@@ -58,8 +58,8 @@ void compare(const Record& x, const Record& y, Effect like, std::vector<Effect>&
       compare(expected, found, work, counters);
     } else {
       like.what = io::in_words(field.name);
-      like.expected = words(expected);
-      like.found = words(found);
+      like.expected = to_text(expected);
+      like.found = to_text(found);
       if constexpr (std::is_same_v<decltype(expected), const std::uint64_t&>)
         if (field.form == Form::hash) {
           like.expected = trace::to_hex(expected);
@@ -97,8 +97,8 @@ std::vector<Effect> find_effects(const Golden& golden, const GoldenRun& run) {
       compare(expected[i].result, found[i].result, like, of_step);
     if (i < lengths.size() && i < lengths_now.size() && lengths[i] != lengths_now[i]) {
       like.what = "length of contact";
-      like.expected = words(lengths[i]);
-      like.found = words(lengths_now[i]);
+      like.expected = to_text(lengths[i]);
+      like.found = to_text(lengths_now[i]);
       like.kind = Effect::Kind::measure;
       of_step.push_back(like);
     }
@@ -115,17 +115,17 @@ namespace {
 
 constexpr int kDefaultWidth = 480, kMinHeight = 320;
 
-std::string words(const Eigen::Vector3d& v) {
+std::string to_text(const Eigen::Vector3d& v) {
   std::ostringstream out;
   out.precision(6);
   out << "(" << v.x() + 0.0 << ", " << v.y() + 0.0 << ", " << v.z() + 0.0 << ")";
   return out.str();
 }
 
-std::string words(const render::Camera& c) {
+std::string to_text(const render::Camera& c) {
   std::ostringstream out;
   out.precision(6);
-  out << "eye " << words(c.eye) << "; target " << words(c.target) << "; up " << words(c.up) << "; ";
+  out << "eye " << to_text(c.eye) << "; target " << to_text(c.target) << "; up " << to_text(c.up) << "; ";
   if (c.orthographic)
     out << "half height " << c.half_height;
   else
@@ -184,12 +184,12 @@ run::RecordedRun recorded_run_of(const GoldenRun& run) {
   return p;
 }
 
-std::string camera_words(const std::vector<render::Camera>& cameras) {
+std::string camera_text(const std::vector<render::Camera>& cameras) {
   std::string out;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (i > 0) out += "; ";
     if (cameras.size() > 1) out += "view " + std::to_string(i + 1) + ": ";
-    out += words(cameras[i]);
+    out += to_text(cameras[i]);
   }
   return out;
 }
@@ -198,7 +198,7 @@ std::vector<render::PngText> golden_text(const GoldenRun& run, std::size_t frame
   return {{"lrbscope:scenario", run.scenario.name},
           {"lrbscope:scenario_hash", trace::to_hex(run.scenario.hash)},
           {"lrbscope:event", std::to_string(run.frames[frame].event)},
-          {kCameraText, camera_words(run.frames[frame].cameras)}};
+          {kCameraText, camera_text(run.frames[frame].cameras)}};
 }
 
 }  // namespace lrb::golden

@@ -37,7 +37,7 @@ std::vector<render::PngText> golden_text(const GoldenRun& run, std::size_t frame
 
 inline const char* const kCameraText = "lrbscope:camera";
 /// Describes the cameras of a frame, one view after the other, separated by "; ".
-std::string camera_words(const std::vector<render::Camera>& cameras);
+std::string camera_text(const std::vector<render::Camera>& cameras);
 
 /// Sets the default size of a golden's pictures if none is given: of the scenario's shape, small enough to be
 /// kept and large enough for their text.

@@ -78,7 +78,7 @@ const PaperObject& object_called(const PaperReport& r, const std::string& name) 
                        [&](const PaperObject& o) { return o.name == name; });
 }
 
-std::string collision_words(const CloseUp& c) {
+std::string collision_text(const CloseUp& c) {
   return "number " + std::to_string(c.collision) + ", " + render::group_digits(c.comparisons) +
          " face tests in " + std::to_string(c.steps.size()) +
          (c.steps.size() == 1 ? " time step" : " time steps");
@@ -88,7 +88,7 @@ std::string heat_caption(const PaperPair& pair, const CloseUp& easiest, const Cl
                          std::uint32_t collisions) {
   return "Face tests of each face of " + pair.a.name + " and of " + pair.x.name +
          " by the paper's recursion, in the easiest of their " + render::group_digits(collisions) +
-         " collisions (" + collision_words(easiest) + ") and in the hardest (" + collision_words(hardest) +
+         " collisions (" + collision_text(easiest) + ") and in the hardest (" + collision_text(hardest) +
          "). Each body stands alone, seen from where the other one is, as the wrapper that the last time "
          "step "
          "left of it: lids that stayed closed, and bare real faces. One logarithmic scale for all panels.";

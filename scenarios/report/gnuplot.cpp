@@ -107,7 +107,7 @@ std::string terminal(const Gnuplot& chart, const std::string& ending) {
 }
 
 /// Returns the last message of gnuplot in one line: it names the line and the error.
-std::string last_words(const std::string& errors) {
+std::string last_lines(const std::string& errors) {
   std::istringstream in(errors);
   std::string line, last;
   while (std::getline(in, line))
@@ -155,7 +155,7 @@ std::string drawn(const Gnuplot& chart, const std::string& path) {
   Finished finished = run("set terminal " + terminal(chart, ending) + "\nset encoding utf8\n" + chart.script);
   if (!finished.started) throw EnvironmentError(path + ": there is no program " + program() + kInstall);
   if (!finished.good || finished.output.empty())
-    throw EnvironmentError(path + ": " + program() + " failed: " + last_words(finished.errors));
+    throw EnvironmentError(path + ": " + program() + " failed: " + last_lines(finished.errors));
   return std::move(finished.output);
 }
 

@@ -8,7 +8,7 @@
 
 namespace lrb::run {
 
-std::string_view words(DecidedBy by) {
+std::string_view to_text(DecidedBy by) {
   switch (by) {
     case DecidedBy::node_boxes:
       return "boxes of tree nodes, which are disjoint";
@@ -181,7 +181,7 @@ std::string explanation_text(const PairExplanation& e, const LrbRep& a, const Lr
   out << "simplex " << e.pair.a << " of A (face " << a.face_of_simplex(e.pair.a) << " of " << a.name()
       << ") and " << e.pair.b << " of B (face " << b.face_of_simplex(e.pair.b) << " of " << b.name()
       << "): " << name_of(e.meet) << "\n";
-  out << "decided by " << words(e.decided_by) << "\n\n";
+  out << "decided by " << to_text(e.decided_by) << "\n\n";
   write_way(out, e);
   out << "\n";
   write_regions(out, a, e.hidden_by[0], "A's");

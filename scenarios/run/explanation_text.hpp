@@ -21,6 +21,6 @@ nlohmann::ordered_json explanation_json(const WalkExplanation& e);
 // Phrases of explanations, common to the program and the pages.
 
 /// Names the test that decided about two faces, as a phrase that follows "decided by".
-std::string_view words(DecidedBy by);
+std::string_view to_text(DecidedBy by);
 
 }  // namespace lrb::run

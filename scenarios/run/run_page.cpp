@@ -49,17 +49,17 @@ std::string sides_of(const RecordedRun& p, Test test) {
 /// Adds the measurements of a step other than pairs.
 void add_measured(const trace::StepResult& r, const std::string& at, std::vector<report::Number>& out) {
   if (r.distance)
-    out.push_back({"Distance", interval_words(r.distance->lower, r.distance->upper),
+    out.push_back({"Distance", interval_text(r.distance->lower, r.distance->upper),
                    at + "; of the surfaces, proven" +
                        (r.distance->solids_meet && r.distance->upper > 0 ? ". The solids overlap" : "")});
   if (!r.clash) return;
   const std::string reason(name_of(r.clash->reason));
-  out.push_back({"Contact kind", kind_words(r.clash->kind), reason.empty() ? at : at + "; " + reason});
+  out.push_back({"Contact kind", kind_text(r.clash->kind), reason.empty() ? at : at + "; " + reason});
   if (r.clash->depth)
-    out.push_back({"Penetration depth", interval_words((*r.clash->depth)[0], (*r.clash->depth)[1]),
+    out.push_back({"Penetration depth", interval_text((*r.clash->depth)[0], (*r.clash->depth)[1]),
                    at + "; length of B's separation vector, proven"});
   if (r.clash->volume)
-    out.push_back({"Shared volume", interval_words((*r.clash->volume)[0], (*r.clash->volume)[1]), at});
+    out.push_back({"Shared volume", interval_text((*r.clash->volume)[0], (*r.clash->volume)[1]), at});
 }
 
 std::vector<report::Number> collision_numbers(const RecordedRun& p, const trace::Step& step) {
@@ -183,7 +183,7 @@ std::string faces_text(const Separation& s) {
 }
 
 /// Describes the request of an approximate answer.
-std::string coarse_words(const CollideRequest& request) {
+std::string coarse_text(const CollideRequest& request) {
   std::string limits;
   const auto add = [&](const std::string& limit) { limits += (limits.empty() ? "" : " and ") + limit; };
   if (request.tolerance > 0) add("to a tolerance of " + render::short_number(request.tolerance));
@@ -217,10 +217,10 @@ report::Table steps_table(const trace::Trace& trace) {
                              s.result.finished ? "yes" : "no"});
     if (request.separation) row.push_back(s.result.separation ? faces_text(*s.result.separation) : "");
     if (const auto& d = s.result.distance; has_distance)
-      row.push_back(d ? interval_words(d->lower, d->upper) : "");
+      row.push_back(d ? interval_text(d->lower, d->upper) : "");
     if (const auto& c = s.result.clash; has_clash)
-      row.insert(row.end(), {c ? kind_words(c->kind, c->reason) : "",
-                             c && c->depth ? interval_words((*c->depth)[0], (*c->depth)[1]) : ""});
+      row.insert(row.end(), {c ? kind_text(c->kind, c->reason) : "",
+                             c && c->depth ? interval_text((*c->depth)[0], (*c->depth)[1]) : ""});
   }
   t.note = "The fingerprint is FNV-1a 64 over the sorted pairs: equal answers, equal fingerprints.";
   if (request.is_coarse()) t.note += " An error bound of 0: the answer is exact.";
@@ -241,7 +241,7 @@ void add_answer(report::Document& doc, const RecordedRun& p, const ReportText& t
   }
   if (two && p.trace->header.request.recursion != Recursion::complete)
     doc.purpose("(The paper's recursion was requested: it can miss contacts.)");
-  if (two && p.trace->header.request.is_coarse()) doc.purpose(coarse_words(p.trace->header.request));
+  if (two && p.trace->header.request.is_coarse()) doc.purpose(coarse_text(p.trace->header.request));
   if (p.trace->truncated())
     doc.purpose("(The trace was cut: it holds " + render::group_digits(p.trace->events.size()) + " of " +
                 render::group_digits(p.trace->events_seen) + " events, and so do frames and charts.)");

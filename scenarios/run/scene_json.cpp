@@ -431,7 +431,7 @@ json wrong_json(const RecordedRun& p, const Numbers& steps) {
   return {{"step", packed(step)}, {"a", packed(a)}, {"b", packed(b)}, {"missed", packed(missed)}};
 }
 
-std::string thinned_words(const trace::Trace& trace, const ThinnedEvents& events,
+std::string thinned_text(const trace::Trace& trace, const ThinnedEvents& events,
                           const std::string& trace_file) {
   if (events.all(trace)) return {};
   std::string out = "Of the run's " + render::group_digits(trace.events.size()) +
@@ -452,11 +452,11 @@ json passes_json(const trace::Trace& trace) {
   if (!trace.header.construction) return nullptr;
   json out = json::array();
   for (const trace::PassSummary& p : trace::passes_of(trace))
-    out.push_back({{"first", p.first}, {"last", p.last}, {"words", pass_words(p)}});
+    out.push_back({{"first", p.first}, {"last", p.last}, {"words", pass_text(p)}});
   return out;
 }
 
-std::string too_large_words(std::size_t faces, const SceneLimits& limits) {
+std::string too_large_text(std::size_t faces, const SceneLimits& limits) {
   return "No 3D view: the bodies have " + render::group_digits(faces) +
          " faces including their regions, and the limit for a page is " + render::group_digits(limits.faces) +
          ". Draw them with lrbscope render.";
@@ -491,8 +491,8 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
                     {"unit", frame.unit},
                     {"view", view_json(trace.header)},
                     {"wrapper", name_of(trace.header.request.wrapper)},
-                    {"thinned", thinned_words(trace, events, source.trace_file)},
-                    {"tooLarge", faces <= limits.faces ? "" : too_large_words(faces, limits)},
+                    {"thinned", thinned_text(trace, events, source.trace_file)},
+                    {"tooLarge", faces <= limits.faces ? "" : too_large_text(faces, limits)},
                     {"trace", source.trace_file},
                     {"firstContact", static_cast<std::int64_t>(first_contact(trace) == kNull
                                                                    ? std::int64_t{-1}

@@ -18,7 +18,7 @@ namespace lrb::test {
 using namespace shapes;
 namespace {
 
-struct Told {
+struct Reported {
   enum class Kind : std::uint8_t { pass, patch, cap, region, merged, end_pass, closed } kind;
   PassStart start = {};
   PassEnd end = {};
@@ -27,7 +27,7 @@ struct Told {
   std::uint32_t number = 0, pieces = 0;
 
   /// All that was told, in words: to compare.
-  std::string words() const {
+  std::string to_text() const {
     const std::array<double, 18> all = {static_cast<double>(kind),
                                         static_cast<double>(start.stage),
                                         double(start.layer),
@@ -53,17 +53,17 @@ struct Told {
 };
 
 struct Listener final : ConstructProbe {
-  std::vector<Told> reported;
-  void pass(const PassStart& p) override { reported.push_back({.kind = Told::Kind::pass, .start = p}); }
-  void patch(const GrownPatch& p) override { reported.push_back({.kind = Told::Kind::patch, .patch = p}); }
-  void cap(const TriedCap& c) override { reported.push_back({.kind = Told::Kind::cap, .cap = c}); }
-  void region(RegionId r) override { reported.push_back({.kind = Told::Kind::region, .number = r}); }
+  std::vector<Reported> reported;
+  void pass(const PassStart& p) override { reported.push_back({.kind = Reported::Kind::pass, .start = p}); }
+  void patch(const GrownPatch& p) override { reported.push_back({.kind = Reported::Kind::patch, .patch = p}); }
+  void cap(const TriedCap& c) override { reported.push_back({.kind = Reported::Kind::cap, .cap = c}); }
+  void region(RegionId r) override { reported.push_back({.kind = Reported::Kind::region, .number = r}); }
   void merged(RegionId into, std::uint32_t pieces) override {
-    reported.push_back({.kind = Told::Kind::merged, .number = into, .pieces = pieces});
+    reported.push_back({.kind = Reported::Kind::merged, .number = into, .pieces = pieces});
   }
-  void end_pass(const PassEnd& e) override { reported.push_back({.kind = Told::Kind::end_pass, .end = e}); }
+  void end_pass(const PassEnd& e) override { reported.push_back({.kind = Reported::Kind::end_pass, .end = e}); }
   void closed(std::uint32_t faces) override {
-    reported.push_back({.kind = Told::Kind::closed, .number = faces});
+    reported.push_back({.kind = Reported::Kind::closed, .number = faces});
   }
 };
 
@@ -108,27 +108,27 @@ std::size_t segments_or_triangles(const Mesh& mesh) {
 
 /// Follows what is told of one body, and checks that each part follows from what came before.
 /// Returns the number of pieces that were merged.
-std::size_t check_story(const std::vector<Told>& reported, const LrbRep& rep, std::size_t mesh_faces) {
+std::size_t check_story(const std::vector<Reported>& reported, const LrbRep& rep, std::size_t mesh_faces) {
   std::uint32_t regions = 0, front = static_cast<std::uint32_t>(mesh_faces), lids = 0;
   bool open = false;
   PassStart pass;
   TriedCap last;
   std::size_t merged = 0;
-  for (const Told& t : reported) {
+  for (const Reported& t : reported) {
     switch (t.kind) {
-      case Told::Kind::pass:
+      case Reported::Kind::pass:
         CHECK_FALSE(open);
         open = true;
         pass = t.start;
         CHECK(pass.front_faces == front);
         last = {};
         break;
-      case Told::Kind::patch:
+      case Reported::Kind::patch:
         CHECK(open);
         CHECK(t.patch.faces > 0);
         CHECK(t.patch.vertex < rep.vertices().size());
         break;
-      case Told::Kind::cap:
+      case Reported::Kind::cap:
         last = t.cap;
         if (last.off >= 0) CHECK(last.off <= pass.max_deviation);
         if (last.verdict != CapVerdict::accepted) break;
@@ -138,23 +138,23 @@ std::size_t check_story(const std::vector<Told>& reported, const LrbRep& rep, st
         else
           front = front + last.faces - last.covered;
         break;
-      case Told::Kind::region:
+      case Reported::Kind::region:
         CHECK(last.verdict == CapVerdict::accepted);
         CHECK(t.number == regions++);
         REQUIRE(t.number < rep.region_count());
         CHECK(rep.layer(RegionId(t.number)) == pass.layer);
         break;
-      case Told::Kind::merged:
+      case Reported::Kind::merged:
         CHECK(t.number < regions);
         merged += t.pieces;
         break;
-      case Told::Kind::end_pass:
+      case Reported::Kind::end_pass:
         CHECK(open);
         open = false;
         if (pass.stage == BuildStage::fill) front = t.end.front_faces;  // walls of voids are no longer hull
         CHECK(t.end.front_faces == front);
         break;
-      case Told::Kind::closed:
+      case Reported::Kind::closed:
         CHECK(&t == &reported.back());
         CHECK(t.number == front);
         CHECK(t.number == rep.outermost_faces().size());
@@ -162,21 +162,21 @@ std::size_t check_story(const std::vector<Told>& reported, const LrbRep& rep, st
     }
   }
   REQUIRE_FALSE(reported.empty());
-  CHECK(reported.back().kind == Told::Kind::closed);
+  CHECK(reported.back().kind == Reported::Kind::closed);
   CHECK(regions == rep.region_count());
   CHECK(lids == rep.face_count() - rep.real_face_count());
   return merged;
 }
 
-std::vector<std::string> words(const std::vector<Told>& reported) {
+std::vector<std::string> to_text(const std::vector<Reported>& reported) {
   std::vector<std::string> out;
-  for (const Told& t : reported) out.push_back(t.words());
+  for (const Reported& t : reported) out.push_back(t.to_text());
   return out;
 }
 
-std::size_t count(const std::vector<Told>& reported, CapVerdict verdict) {
+std::size_t count(const std::vector<Reported>& reported, CapVerdict verdict) {
   std::size_t n = 0;
-  for (const Told& t : reported) n += t.kind == Told::Kind::cap && t.cap.verdict == verdict;
+  for (const Reported& t : reported) n += t.kind == Reported::Kind::cap && t.cap.verdict == verdict;
   return n;
 }
 
@@ -196,7 +196,7 @@ TEST_CASE("what is told adds up to the body, which is the same without; 1, 2 and
     for (const unsigned threads : {2u, 4u}) {
       Listener many;
       CHECK(build_reported(mesh, many, threads).hash() == rep.hash());
-      CHECK((words(many.reported) == words(one.reported)));
+      CHECK((to_text(many.reported) == to_text(one.reported)));
     }
   }
   CHECK(merged > 0);
@@ -211,8 +211,8 @@ TEST_CASE("lean bodies, and those of patches of any size, tell a story that adds
     Listener listener;
     const LrbRep rep = build_reported(mesh, listener, 1, true);
     check_story(listener.reported, rep, segments_or_triangles(mesh));
-    for (const Told& t : listener.reported)
-      if (t.kind == Told::Kind::pass) CHECK(t.start.stage != BuildStage::fit);
+    for (const Reported& t : listener.reported)
+      if (t.kind == Reported::Kind::pass) CHECK(t.start.stage != BuildStage::fit);
   }
 }
 
@@ -225,7 +225,7 @@ TEST_CASE("a thin gap refuses caps because they meet the hull, and faces that cr
   Listener crossing;
   build_reported(several({bumpy_sphere(3, 5), translated(bumpy_sphere(3, 6), {0.9, 0.1, 0.2})}), crossing);
   std::uint32_t excluded = 0;
-  for (const Told& t : crossing.reported) excluded = std::max(excluded, t.end.excluded);
+  for (const Reported& t : crossing.reported) excluded = std::max(excluded, t.end.excluded);
   CHECK(excluded > 0);
 }
 

@@ -227,9 +227,9 @@ TEST_CASE("an isolated region is drawn once, close up, and said to be what it is
 
   const LrbRep rep = build_lrb(bowl(24, 8));
   const auto last = RegionId(rep.region_count() - 1);
-  CHECK(run::region_words(rep, std::vector{last}, " of B")
+  CHECK(run::region_text(rep, std::vector{last}, " of B")
             .starts_with("region " + std::to_string(last) + " of B: layer "));
-  CHECK(run::region_words(rep, std::vector{RegionId(0), RegionId(1)}, "")
+  CHECK(run::region_text(rep, std::vector{RegionId(0), RegionId(1)}, "")
             .starts_with("2 regions (0, 1): layer"));
 }
 

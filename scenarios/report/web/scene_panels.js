@@ -274,8 +274,8 @@ class EventTable {
       digits(events.id(i)),
       digits(events.stepNumber(i)),
       events.kindOf(i).name,
-      eventWords(events, i),
-      outcomeWords(events, i),
+      eventText(events, i),
+      outcomeText(events, i),
       level < 0 ? "" : level,
       cause === NONE ? "" : digits(cause),
     ];
@@ -383,9 +383,9 @@ class Panel {
     byId("event-title").textContent = eventPlace(events, i);
     const rows = [
       ["kind", kind.name],
-      ["what", eventWords(events, i)],
+      ["what", eventText(events, i)],
     ];
-    if (outcomeWords(events, i)) rows.push(["result", outcomeWords(events, i)]);
+    if (outcomeText(events, i)) rows.push(["result", outcomeText(events, i)]);
     if (level >= 0) rows.push(["level", level, "number of regions between it and the outside"]);
     if (cause >= 0)
       rows.push([
@@ -395,7 +395,7 @@ class Panel {
     if (this.wrappers && !events.engine)
       rows.push([
         events.passes ? "front" : "wrapper",
-        events.passes ? `${digits(this.wrappers.sizes[0])} faces` : sizeWords(this.bodies, this.wrappers.sizes),
+        events.passes ? `${digits(this.wrappers.sizes[0])} faces` : sizeText(this.bodies, this.wrappers.sizes),
       ]);
     const wrong = events.wrong[events.step(i)];
     if (wrong.length) rows.push(["wrong", this.wrongButton(wrong), "Pairs that the engine got wrong in this step"]);
@@ -404,7 +404,7 @@ class Panel {
       ...events
         .faces(i)
         .map((f) =>
-          textButton(this.bodies[f.side].faceWords(f.face) + this.name(f.side), () =>
+          textButton(this.bodies[f.side].faceText(f.face) + this.name(f.side), () =>
             this.selection.pickFace(f.side, f.face),
           ),
         ),
@@ -438,7 +438,7 @@ class Panel {
     if (!picked) return;
     const body = this.bodies[picked.side],
       hasFace = picked.face !== NONE;
-    const name = hasFace ? body.faceWords(picked.face) : `region ${digits(picked.region)}`;
+    const name = hasFace ? body.faceText(picked.face) : `region ${digits(picked.region)}`;
     byId("picked-title").textContent = name[0].toUpperCase() + name.slice(1) + this.name(picked.side);
     fillList(byId("picked-facts"), [
       ...(hasFace ? this.faceRows(body, picked.face) : []),
@@ -565,7 +565,7 @@ class WhyPanel {
     const names = simplices.map((s, side) => {
       const body = events.bodies[side];
       return body.complete
-        ? `${body.faceWords(body.faceOfSimplex(s))} of ${SIDES[side]}`
+        ? `${body.faceText(body.faceOfSimplex(s))} of ${SIDES[side]}`
         : `simplex ${digits(s)} of ${SIDES[side]}`;
     });
     this.title(`Why: ${names.join(", ")}`);
@@ -645,7 +645,7 @@ class WhyPanel {
     this.title("What separates the bodies");
     byId("why-note").textContent = "";
     byId("why-regions").replaceChildren();
-    byId("why-verdict").textContent = this.stepWords(e);
+    byId("why-verdict").textContent = this.stepText(e);
     this.showWay([]);
     const pairs = e.depths.reduce((n, [all]) => n + all, 0);
     this.showFacts([
@@ -658,7 +658,7 @@ class WhyPanel {
             `${digits(e.left)} are compared`
           : "none: the walk did not come so far",
       ],
-      ...(e.boxes ? [["nearest boxes", this.boxWords(e.boxes)]] : []),
+      ...(e.boxes ? [["nearest boxes", this.boxText(e.boxes)]] : []),
       ...(e.plane
         ? [["plane", `across (${e.plane.normal.map(short).join(", ")}), gap >= ${least(e.plane.gap)}`]]
         : []),
@@ -666,7 +666,7 @@ class WhyPanel {
     ]);
   }
 
-  stepWords(e) {
+  stepText(e) {
     const inside = e.relation !== "separate";
     if (e.plane)
       return `Apart: a plane has all of A on one side and all of B on the other, gap >= ${least(e.plane.gap)}.`;
@@ -682,7 +682,7 @@ class WhyPanel {
     return `${what}: the traversal ended in pairs of disjoint boxes${last}.`;
   }
 
-  boxWords(boxes) {
+  boxText(boxes) {
     const of = boxes.ofFaces ? "faces in nodes" : "nodes";
     return `${of} ${digits(boxes.a)} of A and ${digits(boxes.b)} of B, gap ${short(boxes.gap)} along ${boxes.axis}`;
   }

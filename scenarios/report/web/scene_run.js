@@ -106,7 +106,7 @@ class Body {
     for (let r = region; r !== NONE; r = this.parent[r]) depth++;
     return depth;
   }
-  faceWords(face) {
+  faceText(face) {
     return `${this.isReal(face) ? "face" : "pseudo face"} ${digits(face)}`;
   }
 }
@@ -438,25 +438,25 @@ class Wrappers {
 /** Returns a whole number with its digits in groups, as the rest of the page has them. */
 const digits = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, "\u202f");
 const plural = (n, one, many = one + "s") => `${digits(n)} ${n === 1 ? one : many}`;
-const relationWords = (name) =>
+const relationText = (name) =>
   ({ a_inside_b: "A inside B", b_inside_a: "B inside A" })[name] || name.replaceAll("_", " ");
 
 /** Describes the elements that an event concerns. */
-function eventWords(events, i) {
+function eventText(events, i) {
   const two = events.bodies.length > 1,
     kind = events.kind[i],
     a = events.a[i],
     b = events.b[i];
   const side = two ? ` of ${SIDES[events.side[i]]}` : "";
-  if (events.passes) return builtWords(events, i);
-  if (kind === events.STEP) return firstWrapperWords(events.bodies);
+  if (events.passes) return builtText(events, i);
+  if (kind === events.STEP) return firstWrapperText(events.bodies);
   if (kind === events.REFINE) return `region ${digits(a)}${side}: ${plural(b, "face")} exposed`;
   if (kind === events.COARSEN) return `region ${digits(a)}${side} added`;
   if (kind === events.RESULT)
-    return `${relationWords(events.relations[a])}: ${plural(b, "intersecting pair of faces", "intersecting pairs of faces")}`;
+    return `${relationText(events.relations[a])}: ${plural(b, "intersecting pair of faces", "intersecting pairs of faces")}`;
   const faces = events.faces(i);
   if (faces.length)
-    return faces.map((f) => `${events.bodies[f.side].faceWords(f.face)} of ${SIDES[f.side]}`).join(", ");
+    return faces.map((f) => `${events.bodies[f.side].faceText(f.face)} of ${SIDES[f.side]}`).join(", ");
   const { a: ra, b: rb } = events.kindOf(i);
   const one = (r, n) => {
     if (r.sort === "phase") return events.phases[n];
@@ -473,7 +473,7 @@ function eventWords(events, i) {
 
 /** Describes the state at the start of a step. A body without regions, such as an open one, has no
     wrapper. */
-function firstWrapperWords(bodies) {
+function firstWrapperText(bodies) {
   const bare = bodies.filter((b) => !b.regionCount);
   if (bodies.length === 1) return bare.length ? "the body (it has no wrapper)" : "the outermost wrapper";
   if (bare.length === 2) return "the bodies (they have no wrappers)";
@@ -483,14 +483,14 @@ function firstWrapperWords(bodies) {
 
 /** Returns the number of visible faces of each body: of its wrapper, or of the body itself if it has no
     wrapper. */
-function sizeWords(bodies, sizes) {
+function sizeText(bodies, sizes) {
   const one = (n, side) =>
     `${bodies.length > 1 ? `${SIDES[side]} ` : ""}${digits(n)}${bodies[side].regionCount ? "" : " (no wrapper)"}`;
   return `${sizes.map(one).join(" + ")} faces`;
 }
 
 /** Describes an event of a construction. */
-function builtWords(events, i) {
+function builtText(events, i) {
   const a = events.a[i],
     b = events.b[i];
   switch (events.kind[i]) {
@@ -512,7 +512,7 @@ function builtWords(events, i) {
 }
 
 /** Returns the outcome of an event; empty: unknown. */
-const outcomeWords = (events, i) => events.outcomes[events.outcome[i]] || "";
+const outcomeText = (events, i) => events.outcomes[events.outcome[i]] || "";
 
 /** Returns the position of an event in the run. */
 function eventPlace(events, i) {
@@ -524,10 +524,10 @@ function eventPlace(events, i) {
 
 /** Returns a sentence on an event and the wrappers after it. */
 function eventSentence(events, wrappers, i) {
-  const meet = outcomeWords(events, i);
+  const meet = outcomeText(events, i);
   const result = meet ? ` (${meet})` : "";
-  const about = `${eventPlace(events, i)}, ${events.kindOf(i).name}: ${eventWords(events, i)}${result}.`;
+  const about = `${eventPlace(events, i)}, ${events.kindOf(i).name}: ${eventText(events, i)}${result}.`;
   if (!wrappers || events.engine) return about;
   if (events.passes) return `${about} Hull: ${digits(wrappers.sizes[0])} faces.`;
-  return `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${sizeWords(events.bodies, wrappers.sizes)}.`;
+  return `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${sizeText(events.bodies, wrappers.sizes)}.`;
 }

@@ -72,9 +72,9 @@ MeasuredClash measured(const ClashResult& result, std::vector<Bounds> history);
 MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> history);
 
 /// Return a one-line summary: "[0.25, 0.25] in 31 looks".
-std::string words(const MeasuredDistance& m);
-std::string words(const MeasuredClash& m);
-std::string words(const MeasuredApproach& m);
+std::string to_text(const MeasuredDistance& m);
+std::string to_text(const MeasuredClash& m);
+std::string to_text(const MeasuredApproach& m);
 
 // The answer of another engine, as it reported it.
 
