@@ -143,7 +143,7 @@ Vector3d grid_shift(RandomEngine& random, int n, bool flat) {
 
 /// Exact motions keep the answer: rotations of the grid, integer translations and powers of two.
 void move_exactly(RandomEngine& random, Case& c) {
-  const double size = steady::exp2(pick(random, -3, 3));
+  const double size = deterministic::exp2(pick(random, -3, 3));
   const Pose by{size * grid_turn(random, true), pick_point(random, {-9, -9, -9}, {9, 9, 9})};
   move_both(c, by);
 }
@@ -252,7 +252,7 @@ Case containment_of_kind(int kind, RandomEngine& random, double near) {
 }
 
 Case make_containment(RandomEngine& random, double difficulty) {
-  const double near = 1 - steady::pow10(-1 - 13 * difficulty);
+  const double near = 1 - deterministic::pow10(-1 - 13 * difficulty);
   const int kind = pick(random, 0, 5);
   Case c = containment_of_kind(kind, random, near);
   if (random() % 2) move_both(c, near < 0.999 ? any_pose(random, 5) : Pose{grid_turn(random), {1, -2, 3}});
@@ -345,7 +345,7 @@ std::vector<Family> body_families() {
        "on the grid", false, 160, slack_value},
       {"containment", "inside, in a cavity, in the wall around one, nested shells, enclosed components",
        make_containment, "0.1 of the room left", "1e-14 of the room left", false, 170,
-       [](double difficulty) { return rounded_value(steady::pow10(-1 - 13 * difficulty)); }},
+       [](double difficulty) { return rounded_value(deterministic::pow10(-1 - 13 * difficulty)); }},
       {"voxels", "random cells of one grid: interiors overlap exactly if a cell is shared", make_voxels,
        "0.1 off the grid", "on the grid, or on half of it", false, 180, slack_value},
       {"plane", "2D bodies, random cells of one grid among them", make_plane, "0.1 off",

@@ -73,7 +73,7 @@ void move_both(Case& c, const Pose& by) {
 }
 
 double slack(double difficulty) {
-  return difficulty >= 1 ? 0 : 0.1 * steady::pow10(-15 * difficulty / 0.9);
+  return difficulty >= 1 ? 0 : 0.1 * deterministic::pow10(-15 * difficulty / 0.9);
 }
 
 std::string rounded_value(double value) {

@@ -34,7 +34,7 @@ std::vector<shapes::Point2> circle_section(int corners) {
   std::vector<shapes::Point2> p;
   for (int i = 0; i < corners; ++i) {
     const double angle = 2 * std::numbers::pi * i / corners;
-    p.emplace_back(steady::cos(angle), steady::sin(angle));
+    p.emplace_back(deterministic::cos(angle), deterministic::sin(angle));
   }
   return p;
 }
@@ -84,7 +84,7 @@ Mesh cone(int n) {
 
 Case make_kiss(RandomEngine& random, double difficulty) {
   static const std::vector<Body> cubes = {body(shapes::box()), body(shapes::quad_box())};
-  const double gap = steady::exp2(-std::round(4 + 48 * difficulty));  // at difficulty 1 an ulp of 1
+  const double gap = deterministic::exp2(-std::round(4 + 48 * difficulty));  // at difficulty 1 an ulp of 1
   Case c{cubes[random() % 2], cubes[random() % 2], {}, {}, {}, {}};
   const int axes = pick(random, 1, 3);  // in contact along: a face, an edge, a vertex
   bool apart = false, touch = false;
@@ -102,7 +102,7 @@ Case make_kiss(RandomEngine& random, double difficulty) {
   if (!apart && touch) c.relation = Relation::touching;
   c.interiors_overlap = !apart && !touch;
   // All operations are exact: a permutation of the axes, a change of signs, a power of two.
-  const double size = steady::exp2(std::round(40 * difficulty * uniform(random, -1, 1)));
+  const double size = deterministic::exp2(std::round(40 * difficulty * uniform(random, -1, 1)));
   const Pose by{size * grid_turn(random, true), Vector3d::Zero()};
   if (random() % 2) move_both(c, by);
   if (random() % 2) {
@@ -121,7 +121,7 @@ Case make_nested(RandomEngine& random, double difficulty) {
                                     : shapes::quad_box({-reach, -reach, -reach}, {reach, reach, reach});
     shells.push_back(i % 2 ? shapes::turned_inside_out(shell) : shell);
   }
-  const double near = 1 - steady::pow10(-1 - 13 * difficulty);  // share of the available space that is used
+  const double near = 1 - deterministic::pow10(-1 - 13 * difficulty);  // share of the available space that is used
   const double reach = 0.5 * near;
   const int layer = pick(random, 0, walls);  // 0: outside all of them
   const double position = walls - layer + 0.5;
@@ -192,7 +192,7 @@ Case make_fractal(RandomEngine& random, double difficulty) {
                                            body(shapes::scaled(shapes::icosphere(0), 0.1))};
   Case c{kSponge, probes[random() % 3], {}, {}, {}, {}};
   const int kind = pick(random, 0, 15);
-  const double fine = steady::pow10(-17 * difficulty);
+  const double fine = deterministic::pow10(-17 * difficulty);
   if (kind < 8) {  // a plug for a hole of the sponge, of a dented cube
     if (kind % 2) c.a = dented[random() % 3];
     const double cell = 1.0 / (kind % 2 ? 7 : 9);
@@ -223,10 +223,10 @@ std::vector<Family> large_families() {
   return {
       {"kiss", "cubes that share a face, an edge, a vertex; the same a gap apart, a gap inside", make_kiss,
        "gap 1/16", "gap 1 ulp", false, 210,
-       [](double difficulty) { return rounded_value(steady::exp2(-std::round(4 + 48 * difficulty))); }},
+       [](double difficulty) { return rounded_value(deterministic::exp2(-std::round(4 + 48 * difficulty))); }},
       {"nested", "nested shells, solid by parity, with components in and between the walls", make_nested,
        "2 walls, 0.1 of the room left", "32 walls, 1e-14 of the room left", false, 220,
-       [](double difficulty) { return rounded_value(steady::pow10(-1 - 13 * difficulty)); }},
+       [](double difficulty) { return rounded_value(deterministic::pow10(-1 - 13 * difficulty)); }},
       {"polygon", "faces with thousands of corners, convex and not", make_polygon, "8 corners, anywhere",
        "4096 corners, end to end", false, 230},
       {"fractal", "sponges, dented cubes and hubs of hundreds of faces against plugs that fit", make_fractal,

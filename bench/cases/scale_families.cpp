@@ -45,7 +45,7 @@ Vector3d random_sign_vector(RandomEngine& random, double size) {
 }
 
 Case make_sliver(RandomEngine& random, double difficulty) {
-  const double thin = steady::pow10(-8 * difficulty);
+  const double thin = deterministic::pow10(-8 * difficulty);
   const auto shape = [&] {
     const int kind = pick(random, 0, 2);
     return kind == 0 ? Vector3d(1, 1, thin) : kind == 1 ? Vector3d(1, thin, thin) : Vector3d(1, thin, 1);
@@ -66,7 +66,7 @@ Case make_sliver(RandomEngine& random, double difficulty) {
 
 /// Boxes flat against each other, side by side, crossing or rotated, all by the scale of their thickness.
 Case make_thin(RandomEngine& random, double difficulty) {
-  const double thin = steady::pow10(-1 - 11 * difficulty);
+  const double thin = deterministic::pow10(-1 - 11 * difficulty);
   const LrbRep cube = *body(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
   const Body sheet = stretched(cube, {1, 1, thin}), rod = stretched(cube, {1, thin, thin});
   const auto shape = [&] { return pick(random, 0, 1) == 0 ? sheet : rod; };
@@ -116,7 +116,7 @@ Case make_zero_area(RandomEngine& random, double difficulty) {
 }
 
 Case make_far(RandomEngine& random, double difficulty) {
-  const double offset = steady::pow10(16 * difficulty);
+  const double offset = deterministic::pow10(16 * difficulty);
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   const double size = random() % 2 ? 4 : 1;  // at 1e16 an ulp is 2: small faces collapse
   c.a = stretched(*c.a, Vector3d::Constant(size));
@@ -145,7 +145,7 @@ Case make_far(RandomEngine& random, double difficulty) {
 
 Case make_scale(RandomEngine& random, double difficulty) {
   const double exponent = 120 * difficulty * (random() % 2 ? 1 : -1);
-  const double by = random() % 2 ? steady::pow10(exponent) : steady::exp2(std::floor(exponent * 3.3));
+  const double by = random() % 2 ? deterministic::pow10(exponent) : deterministic::exp2(std::floor(exponent * 3.3));
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   c.pose_b = random() % 2 ? any_pose(random, 1.5) : Pose{grid_turn(random), random_sign_vector(random, 0.5)};
   loosen(random, c, std::max(1e-12, 0.1 * (1 - difficulty)));
@@ -175,7 +175,7 @@ Case make_extreme(RandomEngine& random, double difficulty) {
 }
 
 Case make_ratio(RandomEngine& random, double difficulty) {
-  const double by = steady::pow10(-(random() % 3 ? 12 : 60) * difficulty);
+  const double by = deterministic::pow10(-(random() % 3 ? 12 : 60) * difficulty);
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   c.b = stretched(*c.b, Vector3d::Constant(by));
   VertexId v[3] = {};
@@ -194,7 +194,7 @@ Case make_ratio(RandomEngine& random, double difficulty) {
 
 Case make_matrix(RandomEngine& random, double difficulty) {
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
-  const double strength = steady::pow10(6 * difficulty - 3);
+  const double strength = deterministic::pow10(6 * difficulty - 3);
   const auto matrix = [&]() -> Eigen::Matrix3d {
     const Eigen::Matrix3d r = shapes::random_rotation(random);
     const int kind = pick(random, 0, 5);
@@ -219,23 +219,23 @@ Case make_matrix(RandomEngine& random, double difficulty) {
 std::vector<Family> scale_families() {
   return {
       {"sliver", "needles and sheets", make_sliver, "aspect 1", "aspect 1e8", false, 80,
-       [](double difficulty) { return rounded_value(steady::pow10(8 * difficulty)); }},
+       [](double difficulty) { return rounded_value(deterministic::pow10(8 * difficulty)); }},
       {"thin", "sheets and rods: flat on each other, side by side, crossing, rotated", make_thin,
        "thickness 0.1", "thickness 1e-12", false, 85,
-       [](double difficulty) { return rounded_value(steady::pow10(-1 - 11 * difficulty)); }},
+       [](double difficulty) { return rounded_value(deterministic::pow10(-1 - 11 * difficulty)); }},
       {"zero-area", "faces that collapse to segments and points", make_zero_area, "corners 0.1 from collapse",
        "no area at all", false, 90, slack_value},
       {"far", "far from the origin of the world or of the bodies", make_far, "1 from the origin",
        "1e16 from the origin", false, 100,
-       [](double difficulty) { return rounded_value(steady::pow10(16 * difficulty)); }},
+       [](double difficulty) { return rounded_value(deterministic::pow10(16 * difficulty)); }},
       {"scale", "tiny and huge", make_scale, "size 1", "size 1e-120 or 1e120", false, 110,
-       [](double difficulty) { return rounded_value(steady::pow10(120 * difficulty)); }},
+       [](double difficulty) { return rounded_value(deterministic::pow10(120 * difficulty)); }},
       {"extreme", "tiny and huge up to the limits of double, and beyond", make_extreme, "size 1",
        "size 4e-322 or 1.6e308", false, 120},
       {"ratio", "bodies of different sizes", make_ratio, "equal sizes", "sizes 1e12 or 1e60 apart", false,
-       130, [](double difficulty) { return rounded_value(steady::pow10(12 * difficulty)); }},
+       130, [](double difficulty) { return rounded_value(deterministic::pow10(12 * difficulty)); }},
       {"matrix", "poses that scale, shear, reflect or flatten", make_matrix, "by 1e-3", "by 1e3, or flat",
-       false, 140, [](double difficulty) { return rounded_value(steady::pow10(6 * difficulty - 3)); }},
+       false, 140, [](double difficulty) { return rounded_value(deterministic::pow10(6 * difficulty - 3)); }},
   };
 }
 

@@ -6,7 +6,7 @@
 namespace lrb {
 
 Pose Pose::rotation(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& t) {
-  return {steady::rotation(axis.normalized(), angle), t};
+  return {deterministic::rotation(axis.normalized(), angle), t};
 }
 
 namespace {

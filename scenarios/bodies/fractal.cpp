@@ -91,7 +91,7 @@ class Carver {
       for (std::size_t i = 0; i < f.corners.size(); ++i)
         for (const Polygon& g : faces_)
           if (&f != &g && has_edge(g, f.corners[(i + 1) % f.corners.size()], f.corners[i]))
-            f.room.push_back((std::numbers::pi - steady::acos(normal(f).dot(normal(g)))) / 2);
+            f.room.push_back((std::numbers::pi - deterministic::acos(normal(f).dot(normal(g)))) / 2);
   }
 
   static bool has_edge(const Polygon& f, VertexId a, VertexId b) {
@@ -149,7 +149,7 @@ class Carver {
   void add(std::vector<VertexId> corners, std::vector<double> room, CellId outer, int level) {
     faces_.push_back({std::move(corners), std::move(room), kSolid, outer, level});
     const auto f = static_cast<FaceId>(faces_.size() - 1);
-    waiting_.push({breadth(faces_[f]) * steady::exp2(random_.in(-kUneven, kUneven)), f});
+    waiting_.push({breadth(faces_[f]) * deterministic::exp2(random_.in(-kUneven, kUneven)), f});
   }
 
   /// Returns true if some set of dents can add up to these numbers. Keeps a margin while many dents remain;
@@ -186,7 +186,7 @@ class Carver {
     for (const Kind& k : kKinds) {
       if (!fits(lids_left_ - k.lids(), gain_left_ - k.gain(m))) continue;
       const double off = static_cast<double>(k.gain(m)) / k.lids() - wanted;
-      sum += steady::exp(-off * off / 2) + 1e-3;
+      sum += deterministic::exp(-off * off / 2) + 1e-3;
       choice.emplace_back(sum, &k);
     }
     if (choice.empty()) return false;
@@ -243,10 +243,10 @@ Slope slope_of(const std::vector<double>& distance, const std::vector<double>& r
                double floor) {
   Slope s{std::numeric_limits<double>::infinity(), {}};
   for (std::size_t i = 0; i < room.size(); ++i) {
-    s.depth = std::min(s.depth, floor * distance[i] * steady::tan(kShare * room[i]));
-    s.depth = std::min(s.depth, (floor - rim) * distance[i] * steady::tan(kSteepest));
+    s.depth = std::min(s.depth, floor * distance[i] * deterministic::tan(kShare * room[i]));
+    s.depth = std::min(s.depth, (floor - rim) * distance[i] * deterministic::tan(kSteepest));
   }
-  for (const double d : distance) s.angle.push_back(steady::atan(s.depth / ((floor - rim) * d)));
+  for (const double d : distance) s.angle.push_back(deterministic::atan(s.depth / ((floor - rim) * d)));
   return s;
 }
 

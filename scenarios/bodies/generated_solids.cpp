@@ -16,7 +16,7 @@ namespace {
 /// Returns the distance of a gear's outline from its axis, at a fraction of a tooth's pitch: steep flanks,
 /// flat tops and feet.
 double tooth_radius(double pitch_fraction, double depth) {
-  const double s = steady::cos(2 * std::numbers::pi * pitch_fraction);
+  const double s = deterministic::cos(2 * std::numbers::pi * pitch_fraction);
   return 1 + 0.5 * depth * std::clamp(2.2 * s, -1.0, 1.0);
 }
 
@@ -26,7 +26,7 @@ std::vector<Eigen::Vector2d> outline(const GeneratorValues& v) {
   for (int i = 0; i < teeth * points; ++i) {
     const double angle = 2 * std::numbers::pi * i / (teeth * points);
     const double r = v.at("radius") * tooth_radius((i % points + 0.5) / points, v.at("depth"));
-    out.emplace_back(r * steady::cos(angle), r * steady::sin(angle));
+    out.emplace_back(r * deterministic::cos(angle), r * deterministic::sin(angle));
   }
   return out;
 }
@@ -115,8 +115,8 @@ Mesh island(const GeneratorValues& v, std::uint64_t seed) {
   std::vector<Eigen::Vector2d> outline;
   for (const auto& c : cape) {
     const double angle = 2 * std::numbers::pi * c[1];
-    outline.emplace_back(v.at("radius") * c[0] * steady::cos(angle),
-                         v.at("radius") * c[0] * steady::sin(angle));
+    outline.emplace_back(v.at("radius") * c[0] * deterministic::cos(angle),
+                         v.at("radius") * c[0] * deterministic::sin(angle));
   }
   for (int level = 0; level < static_cast<int>(v.at("levels")); ++level)
     outline = with_bays(outline, v.at("depth"), random);
@@ -130,8 +130,8 @@ struct KnotLine {
   double p, q, radius, swing;
   Eigen::Vector3d operator()(double t) const {
     const double u = 2 * std::numbers::pi * t;
-    const double r = radius * (1 + swing * steady::cos(q * u));
-    return {r * steady::cos(p * u), r * steady::sin(p * u), radius * swing * steady::sin(q * u)};
+    const double r = radius * (1 + swing * deterministic::cos(q * u));
+    return {r * deterministic::cos(p * u), r * deterministic::sin(p * u), radius * swing * deterministic::sin(q * u)};
   }
 };
 
@@ -146,17 +146,17 @@ Mesh knot(const GeneratorValues& v, std::uint64_t) {
   std::vector<Eigen::Vector3d> tangent(n), side(n + 1);
   for (int i = 0; i < n; ++i) tangent[i] = (line((i + 0.5) / n) - line((i - 0.5) / n)).normalized();
   side[0] = tangent[0].unitOrthogonal();
-  for (int i = 0; i < n; ++i) side[i + 1] = steady::turn_between(tangent[i], tangent[(i + 1) % n]) * side[i];
-  const double gap = steady::atan2(side[n].cross(side[0]).dot(tangent[0]), side[n].dot(side[0]));
+  for (int i = 0; i < n; ++i) side[i + 1] = deterministic::turn_between(tangent[i], tangent[(i + 1) % n]) * side[i];
+  const double gap = deterministic::atan2(side[n].cross(side[0]).dot(tangent[0]), side[n].dot(side[0]));
 
   Mesh mesh;
   for (int i = 0; i < n; ++i) {
-    const Eigen::Vector3d s = steady::rotation(tangent[i], gap * i / n) * side[i];
+    const Eigen::Vector3d s = deterministic::rotation(tangent[i], gap * i / n) * side[i];
     const Eigen::Vector3d w = tangent[i].cross(s);
     for (int j = 0; j < sides; ++j) {
       const double angle = 2 * std::numbers::pi * j / sides;
       mesh.vertices.push_back(line(static_cast<double>(i) / n) +
-                              tube * (steady::cos(angle) * s + steady::sin(angle) * w));
+                              tube * (deterministic::cos(angle) * s + deterministic::sin(angle) * w));
     }
   }
   const auto id = [&](int i, int j) { return static_cast<VertexId>((i % n) * sides + j % sides); };
@@ -184,7 +184,7 @@ void line_to(Profile& profile, const Eigen::Vector2d& end, int rows) {
 void arc(Profile& profile, double radius, double height, double from, double to, int rows) {
   for (int i = profile.empty() ? 0 : 1; i <= rows; ++i) {
     const double angle = from + (to - from) * i / rows;
-    profile.emplace_back(radius * steady::sin(angle), height - radius * steady::cos(angle));
+    profile.emplace_back(radius * deterministic::sin(angle), height - radius * deterministic::cos(angle));
   }
 }
 
@@ -197,7 +197,7 @@ Mesh lathe(const Profile& profile, int segments) {
   for (int row = 1; row + 1 < rows; ++row) {
     for (int i = 0; i < segments; ++i) {
       const double angle = 2 * std::numbers::pi * (i + 0.5 * (row % 2)) / segments;
-      mesh.vertices.emplace_back(profile[row].x() * steady::cos(angle), profile[row].x() * steady::sin(angle),
+      mesh.vertices.emplace_back(profile[row].x() * deterministic::cos(angle), profile[row].x() * deterministic::sin(angle),
                                  profile[row].y());
     }
   }
@@ -333,7 +333,7 @@ struct Crater {
 
 Eigen::Vector3d random_direction(Random& random) {
   const double z = random.in(-1, 1), angle = random.in(0, 2 * std::numbers::pi), s = std::sqrt(1 - z * z);
-  return {s * steady::cos(angle), s * steady::sin(angle), z};
+  return {s * deterministic::cos(angle), s * deterministic::sin(angle), z};
 }
 
 /// Returns the height of a crater's profile at the cosine of the angle from its centre: a bowl inside a soft
@@ -342,7 +342,7 @@ double crater_height(const Crater& c, double cosine) {
   const double t =
       (1 - cosine) / (1 - c.cos_rim);  // 0 at the centre, 1 on the rim, about the square of the angle
   if (t >= 2) return 0;
-  const double rim = 0.25 * c.depth * steady::exp(-8 * (t - 1) * (t - 1));
+  const double rim = 0.25 * c.depth * deterministic::exp(-8 * (t - 1) * (t - 1));
   return rim - (t < 1 ? c.depth * (1 - t) * (1 - t) * (1 + 2 * t) : 0);
 }
 
@@ -362,12 +362,12 @@ Mesh rock(const GeneratorValues& v, std::uint64_t seed) {
   std::vector<Crater> craters;
   for (int i = 0; i < static_cast<int>(v.at("craters")); ++i) {
     const double angle = random.in(0.15, 0.5);
-    craters.push_back({random_direction(random), steady::cos(angle), 0.28 * angle});
+    craters.push_back({random_direction(random), deterministic::cos(angle), 0.28 * angle});
   }
   const double radius = v.at("radius");
   const std::function<double(const Eigen::Vector3d&)> at = [&](const Eigen::Vector3d& d) {
     double r = 1;
-    for (const Wave& w : waves) r += w.height * steady::cos(w.direction.dot(d) + w.phase);
+    for (const Wave& w : waves) r += w.height * deterministic::cos(w.direction.dot(d) + w.phase);
     for (const Crater& c : craters) r += crater_height(c, c.direction.dot(d));
     return radius * std::max(r, 0.2);
   };

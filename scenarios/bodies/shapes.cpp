@@ -105,8 +105,8 @@ Mesh unit_cell(const Point3& low, const Point3& high, bool quads) {
 
 Point3 on_torus(int i, int j, int n, int m, double major, double minor) {
   const double u = 2 * kPi * i / n, v = 2 * kPi * j / m;
-  const double r = major + minor * steady::cos(v);
-  return {r * steady::cos(u), r * steady::sin(u), minor * steady::sin(v)};
+  const double r = major + minor * deterministic::cos(v);
+  return {r * deterministic::cos(u), r * deterministic::sin(u), minor * deterministic::sin(v)};
 }
 
 Mesh make_torus(int n, int m, double major, double minor, bool quads) {
@@ -168,7 +168,7 @@ std::vector<Point2> quarter(int stacks, double radius) {
   std::vector<Point2> arc;
   for (int i = 0; i <= stacks; ++i) {
     const double angle = kPi / 2 * i / stacks;
-    arc.emplace_back(radius * steady::sin(angle), -radius * steady::cos(angle));
+    arc.emplace_back(radius * deterministic::sin(angle), -radius * deterministic::cos(angle));
   }
   arc.back() = {radius, 0};
   return arc;
@@ -178,7 +178,7 @@ Mesh radial(int corners, const std::function<double(int)>& radius) {
   std::vector<Point2> points;
   for (int i = 0; i < corners; ++i) {
     const double angle = 2 * kPi * i / corners;
-    points.emplace_back(radius(i) * steady::cos(angle), radius(i) * steady::sin(angle));
+    points.emplace_back(radius(i) * deterministic::cos(angle), radius(i) * deterministic::sin(angle));
   }
   return polygon(points);
 }
@@ -268,7 +268,7 @@ Mesh bumpy_sphere(int level, std::uint64_t seed, double amplitude) {
   Mesh mesh = unit_icosphere(level);
   for (Point3& v : mesh.vertices) {
     double height = 0;
-    for (const auto& [k, phase] : waves) height += steady::sin(k.dot(v) + phase);
+    for (const auto& [k, phase] : waves) height += deterministic::sin(k.dot(v) + phase);
     v *= 1 + amplitude * height / static_cast<double>(waves.size());
   }
   mesh.name = "bumpy sphere " + std::to_string(seed);
@@ -283,7 +283,7 @@ Mesh revolve(const std::vector<Point2>& profile, int slices) {
   for (int i = 1; i <= rings; ++i)
     for (int j = 0; j < slices; ++j) {
       const double angle = 2 * kPi * j / slices;
-      mesh.vertices.emplace_back(profile[i].x() * steady::cos(angle), profile[i].x() * steady::sin(angle),
+      mesh.vertices.emplace_back(profile[i].x() * deterministic::cos(angle), profile[i].x() * deterministic::sin(angle),
                                  profile[i].y());
     }
   mesh.vertices.emplace_back(0, 0, profile.back().y());
@@ -326,7 +326,7 @@ Mesh open_cylinder(int slices) {
   mesh.name = "open cylinder";
   for (const double z : {0.0, 1.0})
     for (int j = 0; j < slices; ++j)
-      mesh.vertices.emplace_back(steady::cos(2 * kPi * j / slices), steady::sin(2 * kPi * j / slices), z);
+      mesh.vertices.emplace_back(deterministic::cos(2 * kPi * j / slices), deterministic::sin(2 * kPi * j / slices), z);
   const auto at = [&](int ring, int j) { return id(static_cast<std::size_t>(ring * slices + j % slices)); };
   for (int j = 0; j < slices; ++j) add_quad(mesh, at(0, j), at(0, j + 1), at(1, j + 1), at(1, j), false);
   return mesh;

@@ -48,7 +48,7 @@ inline Eigen::Vector3d random_direction(RandomEngine& random) {
 
 inline Eigen::Matrix3d random_rotation(RandomEngine& random, int dim = 3) {
   const double angle = uniform(random, 0, 6.283185307179586);
-  return steady::rotation(dim == 2 ? Eigen::Vector3d::UnitZ() : random_direction(random), angle);
+  return deterministic::rotation(dim == 2 ? Eigen::Vector3d::UnitZ() : random_direction(random), angle);
 }
 
 inline Eigen::AlignedBox3d box_of(const LrbRep& rep) {

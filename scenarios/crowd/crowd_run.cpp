@@ -198,7 +198,7 @@ namespace {
 Eigen::Vector3d random_direction(Random& random, int dim) {
   if (dim == 2) {
     const double angle = random.in(0, 2 * std::numbers::pi);
-    return {steady::cos(angle), steady::sin(angle), 0};
+    return {deterministic::cos(angle), deterministic::sin(angle), 0};
   }
   while (true) {
     const double x = random.in(-1, 1);
@@ -270,7 +270,7 @@ CrowdMotion::CrowdMotion(const spec::Crowd& crowd, std::span<const LrbRep* const
       m.speed = random_direction(random, dim);
       m.speed *= random.in(crowd.speed[0], crowd.speed[1]);
       m.axis = dim == 2 ? Eigen::Vector3d::UnitZ().eval() : random_direction(random, dim);
-      m.turned = steady::rotation(m.axis, random.in(0, 2 * std::numbers::pi));
+      m.turned = deterministic::rotation(m.axis, random.in(0, 2 * std::numbers::pi));
       if (dim == 3) m.axis = random_direction(random, dim);
       m.spin = random.in(crowd.spin[0], crowd.spin[1]) * std::numbers::pi / 180;
       movers_.push_back(m);
@@ -289,7 +289,7 @@ Pose CrowdMotion::pose(std::uint32_t body, std::uint32_t step) const {
   Pose move;
   const Eigen::Vector3d straight = m.start + static_cast<double>(step) * m.speed;
   for (int i = 0; i < 3; ++i) move.t[i] = thrown_back(straight[i], m.reach[i]);
-  move.r = steady::rotation(m.axis, m.spin * step) * m.turned;
+  move.r = deterministic::rotation(m.axis, m.spin * step) * m.turned;
   return spec::then(m.own, move);
 }
 

@@ -24,7 +24,7 @@ Pose moved(const Pose& pose, int dim, double share, RandomEngine& random) {
     axis = Eigen::Vector3d::UnitZ();
     way.z() = 0;
   }
-  const Eigen::Matrix3d turn = steady::rotation(axis, shapes::uniform(random, -share, share));
+  const Eigen::Matrix3d turn = deterministic::rotation(axis, shapes::uniform(random, -share, share));
   return {turn * pose.r, pose.t + shapes::uniform(random, 0, share) * way};
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("planes that held nodes apart at earlier steps leave out nothing that 
       // Now hardly, now more; and now and then B turns on one spot, through more than planes outlive.
       const double share = i % 100 < 50 ? 0.001 : i % 100 < 75 ? 0.01 : pair.most;
       poses.b = i % 100 < 90 ? moved(poses.b, dim, share, random)
-                             : Pose{steady::rotation(Eigen::Vector3d::UnitZ(), 0.2) * poses.b.r, poses.b.t};
+                             : Pose{deterministic::rotation(Eigen::Vector3d::UnitZ(), 0.2) * poses.b.r, poses.b.t};
       if (i % 7 == 0) poses.a = moved(poses.a, dim, share, random);
       const DistanceResult coherent = follows.distance(poses.a, poses.b),
                            alone = distance(pair.a, poses.a, pair.b, poses.b);
@@ -169,7 +169,7 @@ TEST_CASE("nothing comes nearer from one pose to another than is said, and littl
     const double share = std::pow(10, -i % 7);
     PosePair to{moved(from.a, 3, share, random), moved(from.b, 3, share, random)};
     if (i % 2 == 0) {  // both by the same: they keep their distances
-      to.a = {steady::rotation(Eigen::Vector3d::UnitX(), 1) * from.a.r, -from.a.t};
+      to.a = {deterministic::rotation(Eigen::Vector3d::UnitX(), 1) * from.a.r, -from.a.t};
       to.b = {to.a.r * from.a.r.transpose() * from.b.r,
               to.a.r * (from.a.r.transpose() * (from.b.t - from.a.t)) + to.a.t};
     }

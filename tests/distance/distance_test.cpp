@@ -303,7 +303,7 @@ TEST_CASE(
   const Pose start = shapes::random_pose(random, a, b, 1.1);
   for (int i = 0; i < 60; ++i)
     poses.push_back(
-        {steady::rotation(Eigen::Vector3d::UnitZ(), 0.02 * i) * start.r, start.t * (1 - 0.015 * i)});
+        {deterministic::rotation(Eigen::Vector3d::UnitZ(), 0.02 * i) * start.r, start.t * (1 - 0.015 * i)});
   const std::vector<DistanceResult> one = distances(a, Pose{}, b, poses, {}, 1);
   const std::vector<DistanceResult> three = distances(a, Pose{}, b, poses, {}, 3);
   CoherentDistance follows(a, b);

@@ -124,8 +124,8 @@ TEST_CASE("a motion is the function that its header says") {
   CHECK((spin.at(0).apply({0, 0, 0}) - Vector3d(2, 0, 0)).norm() == 0);
   const Motion keys = Motion::key_frames(std::array<Motion::KeyFrame, 3>{
       {{0, Pose{}}, {0.25, Pose::rotation({0, 0, 1}, 1)}, {1, Pose::translation({1, 0, 0})}}});
-  CHECK((keys.at(0.25).r - steady::rotation({0, 0, 1}, 1)).norm() < 1e-15);
-  CHECK((keys.at(0.625).r - steady::rotation({0, 0, 1}, 0.5)).norm() < 1e-15);
+  CHECK((keys.at(0.25).r - deterministic::rotation({0, 0, 1}, 1)).norm() < 1e-15);
+  CHECK((keys.at(0.625).r - deterministic::rotation({0, 0, 1}, 0.5)).norm() < 1e-15);
   CHECK((keys.at(0.625).t - Vector3d(0.5, 0, 0)).norm() < 1e-15);
 }
 
@@ -178,7 +178,7 @@ TEST_CASE("boxes: face to face, edge to edge, corner to face, at the time that i
   r = expect(Motion::linear(Pose::translation({4, 0, 0}), {-5, 0, 0}), 1.0 / 3);  // flush, and no double
   CHECK(r.speed == doctest::Approx(9));
   // A corner of B, which stands on it, comes down on A's upper face.
-  const Eigen::Matrix3d tip = steady::rotation(Vector3d(1, -1, 0).normalized(), std::atan(std::sqrt(2.0)));
+  const Eigen::Matrix3d tip = deterministic::rotation(Vector3d(1, -1, 0).normalized(), std::atan(std::sqrt(2.0)));
   const double lowest = (tip * Vector3d(0, 0, 0)).z();
   r = expect(Motion::linear({tip, {0.7, 0.4, 3}}, {0.7, 0.4, -1}), (2 + lowest) / 4);
   CHECK((r.normal - Vector3d(0, 0, 1)).norm() < 1e-9);
@@ -188,8 +188,8 @@ TEST_CASE("boxes: face to face, edge to edge, corner to face, at the time that i
   // Two bars on their edges, across each other: the upper edge of one is at z = 1 / sqrt(2), as is the lower
   // of the other.
   const LrbRep bar = closed(shapes::quad_box({-0.5, -5, -0.5}, {0.5, 5, 0.5}));
-  const Eigen::Matrix3d on_edge = steady::rotation({0, 1, 0}, kPi / 4);
-  const Pose lies{on_edge, {0, 0, 0}}, crosses{steady::rotation({0, 0, 1}, 1) * on_edge, {0, 0, 4}};
+  const Eigen::Matrix3d on_edge = deterministic::rotation({0, 1, 0}, kPi / 4);
+  const Pose lies{on_edge, {0, 0, 0}}, crosses{deterministic::rotation({0, 0, 1}, 1) * on_edge, {0, 0, 4}};
   r = checked(bar, Motion::still(lies), bar, Motion::linear(crosses, {0, 0, 0}));
   REQUIRE(r.is_contact());
   CHECK(r.t0 <= 1 - std::sqrt(2.0) / 4 + 1e-15);
@@ -246,7 +246,7 @@ TEST_CASE("sheets are never passed through, at any speed, parallel or not") {
     const bool parallel = i % 2 == 0;
     const Vector3d aside = i % 3 == 0 ? Vector3d(0, 0, 0) : Vector3d(0.3 * shapes::random_direction(random));
     Pose start = Pose::translation(aside + Vector3d(0, 0, 0.3 * speed));
-    if (!parallel) start.r = steady::rotation(shapes::random_direction(random), 0.001);
+    if (!parallel) start.r = deterministic::rotation(shapes::random_direction(random), 0.001);
     const Motion through = Motion::linear(start, aside - Vector3d(0, 0, 0.7 * speed));
     const FirstContactResult r = checked(a, kStill, i % 4 < 2 ? b : same, through);
     CHECK(r.is_contact());

@@ -43,7 +43,7 @@ class Random {
 
 }  // namespace lrb
 
-namespace lrb::steady {
+namespace lrb::deterministic {
 
 // Mathematical functions with the same result on every x86-64 processor.
 //
@@ -105,4 +105,4 @@ inline Eigen::Quaterniond turn_between(const Eigen::Vector3d& from, const Eigen:
   return q;
 }
 
-}  // namespace lrb::steady
+}  // namespace lrb::deterministic
