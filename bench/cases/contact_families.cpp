@@ -249,7 +249,9 @@ std::vector<Family> contact_families() {
   return {
       {"touch", "random bodies stopped within an ulp of contact", make_touch, "0.2 from first contact",
        "an ulp from first contact", false, 10,
-       [](double difficulty) { return rounded_value(12 * deterministic::exp2(-static_cast<int>(6 + 54 * difficulty))); }},
+       [](double difficulty) {
+         return rounded_value(12 * deterministic::exp2(-static_cast<int>(6 + 54 * difficulty)));
+       }},
       {"shared", "a face, edge or vertex in common, exactly or nearly", make_shared, "0.1 off",
        "in common exactly", false, 20, slack_value},
       {"coplanar", "face on face: shifted, rotated in the plane, tilted", make_coplanar,

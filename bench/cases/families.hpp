@@ -75,8 +75,8 @@ void move_both(Case& c, const Pose& by);
 /// Returns the distance of a case from its family's degenerate configuration: 0.1 at difficulty 0, 1e-16 at
 /// 0.9, 0 at 1. In the bodies' unit; bodies are a few units wide.
 double slack(double difficulty);
-std::string slack_value(double difficulty);     ///< as a short text
-std::string rounded_value(double value);  ///< one digit and an exponent: "0.1", "2e-3", "6e4"
+std::string slack_value(double difficulty);  ///< as a short text
+std::string rounded_value(double value);     ///< one digit and an exponent: "0.1", "2e-3", "6e4"
 /// Moves B by `by` in a random direction and rotates it by up to `by` radians. For 0 nothing moves, but the
 /// same number of random numbers is drawn.
 void loosen(RandomEngine& random, Case& c, double by);

@@ -121,7 +121,8 @@ Case make_nested(RandomEngine& random, double difficulty) {
                                     : shapes::quad_box({-reach, -reach, -reach}, {reach, reach, reach});
     shells.push_back(i % 2 ? shapes::turned_inside_out(shell) : shell);
   }
-  const double near = 1 - deterministic::pow10(-1 - 13 * difficulty);  // share of the available space that is used
+  const double near =
+      1 - deterministic::pow10(-1 - 13 * difficulty);  // share of the available space that is used
   const double reach = 0.5 * near;
   const int layer = pick(random, 0, walls);  // 0: outside all of them
   const double position = walls - layer + 0.5;
@@ -162,7 +163,8 @@ Case make_polygon(RandomEngine& random, double difficulty) {
   // The largest takes a hundred times as long as the others, so it is rare.
   const std::size_t largest = random() % 16 == 0 ? 3 : 2;
   const auto& bodies = uniform(random) < 0.5 * difficulty ? kComb : kRound;
-  Case c{bodies[std::min(largest, static_cast<std::size_t>(4 * difficulty))], any_body(random), {}, {}, {}, {}};
+  Case c{
+      bodies[std::min(largest, static_cast<std::size_t>(4 * difficulty))], any_body(random), {}, {}, {}, {}};
   const int kind = uniform(random) < difficulty ? pick(random, 0, 2) : 3;
   if (kind == 0) {  // one many-cornered end on another: the answer is quadratic
     c.a = bodies[random() % 64 == 0];
@@ -223,7 +225,9 @@ std::vector<Family> large_families() {
   return {
       {"kiss", "cubes that share a face, an edge, a vertex; the same a gap apart, a gap inside", make_kiss,
        "gap 1/16", "gap 1 ulp", false, 210,
-       [](double difficulty) { return rounded_value(deterministic::exp2(-std::round(4 + 48 * difficulty))); }},
+       [](double difficulty) {
+         return rounded_value(deterministic::exp2(-std::round(4 + 48 * difficulty)));
+       }},
       {"nested", "nested shells, solid by parity, with components in and between the walls", make_nested,
        "2 walls, 0.1 of the room left", "32 walls, 1e-14 of the room left", false, 220,
        [](double difficulty) { return rounded_value(deterministic::pow10(-1 - 13 * difficulty)); }},

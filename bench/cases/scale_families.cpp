@@ -145,7 +145,8 @@ Case make_far(RandomEngine& random, double difficulty) {
 
 Case make_scale(RandomEngine& random, double difficulty) {
   const double exponent = 120 * difficulty * (random() % 2 ? 1 : -1);
-  const double by = random() % 2 ? deterministic::pow10(exponent) : deterministic::exp2(std::floor(exponent * 3.3));
+  const double by =
+      random() % 2 ? deterministic::pow10(exponent) : deterministic::exp2(std::floor(exponent * 3.3));
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   c.pose_b = random() % 2 ? any_pose(random, 1.5) : Pose{grid_turn(random), random_sign_vector(random, 0.5)};
   loosen(random, c, std::max(1e-12, 0.1 * (1 - difficulty)));

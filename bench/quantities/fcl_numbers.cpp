@@ -84,7 +84,8 @@ NumberAnswer fcl_depth(const NumberQuery& q, Setting) {
 }
 
 NumberMethod fcl_method(const char* name, const char* what, const char* remark, Quantity quantity,
-                        std::function<NumberAnswer(const NumberQuery&, Setting)> ask, methods::MethodStyle style) {
+                        std::function<NumberAnswer(const NumberQuery&, Setting)> ask,
+                        methods::MethodStyle style) {
   NumberMethod m;
   m.info.name = name;
   m.info.title = std::string("FCL " FCL_VERSION ", ") + what;
@@ -113,12 +114,12 @@ std::vector<NumberMethod> fcl_number_methods() {
                              obbrss = {"FCL, OBBRSS", "#a3132f", "triangle"};
   const std::vector<double> tolerances = {0.1, 0.01, 1e-3, 0};
   return {
-      with_parameter(fcl_method("fcl-rss", "distance, RSS", "distance() of two BVHModel<RSS>.", Quantity::distance,
-                           fcl_distance<fcl::RSSd>, rss),
-                "tolerance", tolerances),
+      with_parameter(fcl_method("fcl-rss", "distance, RSS", "distance() of two BVHModel<RSS>.",
+                                Quantity::distance, fcl_distance<fcl::RSSd>, rss),
+                     "tolerance", tolerances),
       with_parameter(fcl_method("fcl-obbrss", "distance, OBBRSS", "distance() of two BVHModel<OBBRSS>.",
-                           Quantity::distance, fcl_distance<fcl::OBBRSSd>, obbrss),
-                "tolerance", tolerances),
+                                Quantity::distance, fcl_distance<fcl::OBBRSSd>, obbrss),
+                     "tolerance", tolerances),
       with_parameter(
           fcl_sweep(
               "fcl-naive", "continuousCollide, naive",

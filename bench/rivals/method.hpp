@@ -106,7 +106,7 @@ struct MethodInfo {
   bool pairs = true;          ///< lists the pairs; false: only reports whether the surfaces intersect
   Says says = Says::nothing;  ///< what else it reports
   Traits traits = {Trait::hard_cases};
-  std::string parameter;              ///< the parameter that `settings` sets: "level"; empty: none
+  std::string parameter;         ///< the parameter that `settings` sets: "level"; empty: none
   std::vector<double> settings;  ///< values for a sweep, from coarse to fine
   MethodStyle style = {};
   Role role = Role::peer;

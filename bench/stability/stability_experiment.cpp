@@ -257,7 +257,7 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
   workers::Job::Task task;
   task.command = command_of(method.program, quantity, family, cases, seed);
   task.command.insert(task.command.end(),
-                       {"--method", method.column.name, "--expected", kGivenFile, "--pairs"});
+                      {"--method", method.column.name, "--expected", kGivenFile, "--pairs"});
   task.given = right.descriptor();
   task.limit = seconds(timeout);
   task.on_line = [&](std::uint64_t, const std::string& line) {

@@ -24,8 +24,8 @@ struct ExperimentOptions {
   std::uint64_t cases = 1;                     ///< per difficulty
   std::uint64_t seed = 1;
   std::optional<int> difficulty;  ///< only this difficulty; nullopt: all
-  unsigned jobs = 2;        ///< number of concurrent workers
-  double timeout = 5;       ///< time limit per case in seconds, after which a method counts as hanging
+  unsigned jobs = 2;              ///< number of concurrent workers
+  double timeout = 5;             ///< time limit per case in seconds, after which a method counts as hanging
 };
 
 using ProgressFunction =

@@ -173,7 +173,8 @@ void add_legend(Sheet& sheet, double y, double columns, const std::string& absen
 report::Chart profile(const Grid& grid, std::size_t family) {
   const FamilyRow& row = grid.families[family];
   report::Axis difficulty{"", false, -0.6, kDifficulties - 0.4};
-  if (!row.benign.empty() || !row.degenerate.empty()) difficulty.label = row.benign + " \u2192 " + row.degenerate;
+  if (!row.benign.empty() || !row.degenerate.empty())
+    difficulty.label = row.benign + " \u2192 " + row.degenerate;
   constexpr std::size_t kEvery = 3;
   for (std::size_t i = 0; i < kDifficulties; i += kEvery)
     difficulty.ticks.push_back({static_cast<double>(i), row.values.empty() ? "" : row.values[i]});

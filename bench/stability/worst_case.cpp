@@ -270,8 +270,9 @@ WorstCaseText text_of(const Record& r, const std::string& method) {
   WorstCaseText text;
   text.title = r.family + " \u00d7 " + method;
   text.answer = answer_text(r);
-  text.counters = {{"difficulty", std::to_string(r.difficulty) + " of 0 to " + std::to_string(cases::kDifficulties - 1)},
-                   {"case", std::to_string(r.case_index)}};
+  text.counters = {
+      {"difficulty", std::to_string(r.difficulty) + " of 0 to " + std::to_string(cases::kDifficulties - 1)},
+      {"case", std::to_string(r.case_index)}};
   if (!r.expected_relation.empty()) text.counters.push_back({"relation", r.expected_relation});
   if (!r.relation.empty()) text.counters.push_back({"answered", r.relation});
   return text;
@@ -299,8 +300,8 @@ std::vector<std::string> draw_worst_cases(
     const std::string file = std::string(kFolder) + "/" + r.family + "-" + method.name + ".png";
     const AnsweredPairs pairs = ask(r);
     try {
-      draw_worst_case(cases::make_case(*family, r.seed, r.difficulty, r.case_index), pairs.expected, pairs.answered,
-                      text_of(r, method.title), folder + "/" + file, rasterizer);
+      draw_worst_case(cases::make_case(*family, r.seed, r.difficulty, r.case_index), pairs.expected,
+                      pairs.answered, text_of(r, method.title), folder + "/" + file, rasterizer);
       pictures[i] = file;
     } catch (const InputError&) {
       // Coordinates that are not finite cannot be drawn; the record contains the parameters of the case.

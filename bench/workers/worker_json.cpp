@@ -10,13 +10,18 @@ inline constexpr auto kFields<methods::MethodStyle> =
                field("shape", &methods::MethodStyle::shape)};
 
 template <>
-inline constexpr auto kFields<methods::MethodInfo> = std::tuple{
-    field("name", &methods::MethodInfo::name),     field("title", &methods::MethodInfo::title),
-    field("remark", &methods::MethodInfo::remark), field("present", &methods::MethodInfo::present),
-    field("pairs", &methods::MethodInfo::pairs),   field("says", &methods::MethodInfo::says),
-    field("parameter", &methods::MethodInfo::parameter),     field("settings", &methods::MethodInfo::settings),
-    field("style", &methods::MethodInfo::style),   field("role", &methods::MethodInfo::role),
-    field("rank", &methods::MethodInfo::rank)};
+inline constexpr auto kFields<methods::MethodInfo> =
+    std::tuple{field("name", &methods::MethodInfo::name),
+               field("title", &methods::MethodInfo::title),
+               field("remark", &methods::MethodInfo::remark),
+               field("present", &methods::MethodInfo::present),
+               field("pairs", &methods::MethodInfo::pairs),
+               field("says", &methods::MethodInfo::says),
+               field("parameter", &methods::MethodInfo::parameter),
+               field("settings", &methods::MethodInfo::settings),
+               field("style", &methods::MethodInfo::style),
+               field("role", &methods::MethodInfo::role),
+               field("rank", &methods::MethodInfo::rank)};
 
 static_assert(covers_all_fields<methods::MethodStyle>);
 // All members except the traits, which have separate keys.

@@ -19,7 +19,7 @@ namespace lrb::workers {
 namespace {
 
 constexpr int kMaxTimeouts = 3;  // number of consecutive time-outs after which a method is abandoned
-constexpr int kBadInput = 2;  // an exit code that does not count as a crash
+constexpr int kBadInput = 2;     // an exit code that does not count as a crash
 
 std::string how_it_ended(int status) {
   if (status >= 0) return "exited with code " + std::to_string(status);
@@ -80,8 +80,8 @@ void Job::go_on(const WorkerFailure& failure) {
   hung_ = failure.timed_out ? hung_ + 1 : 0;
   if (hung_ == kMaxTimeouts)
     while (next_ < task_.end)
-      task_.on_failure(next_++, {true, "skipped: " + failure.message + " for " + std::to_string(kMaxTimeouts) +
-                                          " cases in a row"});
+      task_.on_failure(next_++, {true, "skipped: " + failure.message + " for " +
+                                           std::to_string(kMaxTimeouts) + " cases in a row"});
   start();
 }
 

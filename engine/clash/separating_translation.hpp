@@ -46,7 +46,7 @@ class SeparationSearch {
   const LrbRep &a_, &b_;
   const Pose &pose_a_, &pose_b_;
   const UnitFrame& frame_;
-  double reach_ = 0;         ///< the largest world coordinate of B
+  double reach_ = 0;               ///< the largest world coordinate of B
   std::uint64_t query_count_ = 0;  ///< number of queries
   QueryContext query_;
   DistanceContext distance_;

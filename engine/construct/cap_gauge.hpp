@@ -16,8 +16,8 @@ namespace lrb::construct {
 // The deviation of points over a patch from the body.
 
 /// A patch's triangles with their own known deviation from the body (FrontMesh::Point::off,
-/// FrontMesh::Triangle::excess_deviation). The deviation of a point is at most its distance from a triangle plus the
-/// triangle's deviation at the nearest point.
+/// FrontMesh::Triangle::excess_deviation). The deviation of a point is at most its distance from a triangle
+/// plus the triangle's deviation at the nearest point.
 ///
 /// These estimates guide the builder; the bounds of lids are proven afterwards (region_thickness()).
 class PatchFloor {
@@ -39,8 +39,9 @@ class PatchFloor {
     double weight;                 ///< these weights at the centroid; negative for a degenerate triangle
     std::array<double, 3> height;  ///< of the corners above the opposite edges
     double radius;                 ///< of a ball about the centroid
-    double off, off_b, off_c;      ///< deviation at corner a, `excess_deviation` included, and the increase to b and c
-    double least;                  ///< minimum over the corners
+    double off, off_b,
+        off_c;     ///< deviation at corner a, `excess_deviation` included, and the increase to b and c
+    double least;  ///< minimum over the corners
   };
   /// Contains all points that a triangle can prove to be within the limit.
   struct Ball {

@@ -89,7 +89,8 @@ void CapSurface::load_surroundings(const FrontMesh& front, const Patch& patch) {
     const int i = front.index_of(s, patch.ring[next]);  // opposite to the direction of the ring
     // The outer neighbour's third vertex and plane: they limit the positions of vertices near the ring.
     beyond_[k].tip = front.x(front[s].v[(i + 2) % 3]);
-    const Eigen::Vector3d &a = front.x(front[s].v[0]), &b = front.x(front[s].v[1]), &c = front.x(front[s].v[2]);
+    const Eigen::Vector3d &a = front.x(front[s].v[0]), &b = front.x(front[s].v[1]),
+                          &c = front.x(front[s].v[2]);
     const Eigen::Vector3d normal = (b - a).cross(c - a);
     // A degenerate triangle has no plane: its normal is zero.
     const double length = normal.norm();

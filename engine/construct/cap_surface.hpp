@@ -28,8 +28,8 @@ class CapSurface {
     Plane plane;
     int kept;  ///< index into Patch::slots if this is still that triangle, else -1
     bool alive;
-    double excess_deviation;         ///< see FrontMesh::Triangle
-    std::uint32_t since;  ///< version of the surface at which it was created
+    double excess_deviation;  ///< see FrontMesh::Triangle
+    std::uint32_t since;      ///< version of the surface at which it was created
     /// The version at which the collapse of the edge v[i], v[i + 1] was rejected; 0: never.
     std::array<std::uint32_t, 3> rejected;
   };

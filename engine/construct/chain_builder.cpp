@@ -271,7 +271,8 @@ class ChainBuilder {
     if (cap.apex) corners = {a, front_.add_point(*cap.apex, cap.apex_off), b};
     if (cap.apex) complex_.add_vertex(*cap.apex);
     std::vector<Slot> added = add_segments(chain, corners, region);
-    for (std::size_t i = 0; i < added.size(); ++i) front_.set_excess_deviation(added[i], cap.excess_deviation[i]);
+    for (std::size_t i = 0; i < added.size(); ++i)
+      front_.set_excess_deviation(added[i], cap.excess_deviation[i]);
     if (options_.probe) options_.probe->region(region);
     return added;
   }

@@ -96,8 +96,8 @@ double off_by_chain(const FrontLoops& front, const std::vector<Slot>& chain, con
 
 /// Measures the excess deviation of a segment over a chain at sample points; the deviation of its ends is
 /// known. Returns false if a point deviates by more than `most`.
-bool excess_of_segment(const FrontLoops& front, const std::vector<Slot>& chain, const Vector3& a, double off_a,
-                      const Vector3& b, double off_b, double most, double& excess_deviation) {
+bool excess_of_segment(const FrontLoops& front, const std::vector<Slot>& chain, const Vector3& a,
+                       double off_a, const Vector3& b, double off_b, double most, double& excess_deviation) {
   // Seven sample points. The maximum between samples is not bounded: this estimate only guides the builder.
   constexpr int kParts = 8;
   excess_deviation = 0;
@@ -184,15 +184,15 @@ bool measure_cap(const FrontLoops& front, ChainCap& cap, double most) {
   const VertexId first = front[chain.front()].a, last = front[chain.back()].b;
   // The chord: one segment between two vertices of known deviation.
   if (!cap.apex)
-    return excess_of_segment(front, chain, front.x(first), front.off(first), front.x(last), front.off(last), most,
-                            cap.excess_deviation[0]);
+    return excess_of_segment(front, chain, front.x(first), front.off(first), front.x(last), front.off(last),
+                             most, cap.excess_deviation[0]);
   // The apex first, because its deviation is used for both segments.
   cap.apex_off = off_by_chain(front, chain, *cap.apex);
   return cap.apex_off <= most &&
          excess_of_segment(front, chain, front.x(first), front.off(first), *cap.apex, cap.apex_off, most,
-                          cap.excess_deviation[0]) &&
+                           cap.excess_deviation[0]) &&
          excess_of_segment(front, chain, *cap.apex, cap.apex_off, front.x(last), front.off(last), most,
-                          cap.excess_deviation[1]);
+                           cap.excess_deviation[1]);
 }
 
 double off_of(const FrontLoops& front, const ChainCap& cap) {
@@ -200,7 +200,8 @@ double off_of(const FrontLoops& front, const ChainCap& cap) {
   // On each segment: the larger deviation of its ends, plus its excess.
   const double first = front.off(front[chain.front()].a), last = front.off(front[chain.back()].b);
   if (!cap.apex) return std::max(first, last) + cap.excess_deviation[0];
-  return std::max(std::max(first, cap.apex_off) + cap.excess_deviation[0], std::max(cap.apex_off, last) + cap.excess_deviation[1]);
+  return std::max(std::max(first, cap.apex_off) + cap.excess_deviation[0],
+                  std::max(cap.apex_off, last) + cap.excess_deviation[1]);
 }
 
 CapVerdict judge_chain_cap(const FrontLoops& front, const AabbTree& tree, const ChainCap& cap,

@@ -50,7 +50,9 @@ class FrontLoops {
   double off(VertexId v) const { return off_[v]; }
 
   VertexId add_point(const Eigen::Vector3d& x, double off = 0);
-  void set_excess_deviation(Slot s, double excess_deviation) { segments_[s].excess_deviation = excess_deviation; }
+  void set_excess_deviation(Slot s, double excess_deviation) {
+    segments_[s].excess_deviation = excess_deviation;
+  }
   void set_component(Slot s, std::uint32_t component) { segments_[s].component = component; }
   /// Empties slots without closing the gap: place() must follow.
   void remove(std::span<const Slot> slots);

@@ -19,8 +19,8 @@
 #include "engine/construct/cap_surface.hpp"
 #include "engine/construct/convex_hull.hpp"
 #include "engine/construct/embed_check.hpp"
-#include "engine/construct/half_spaces.hpp"
 #include "engine/construct/front_update.hpp"
+#include "engine/construct/half_spaces.hpp"
 #include "engine/construct/patch_cap.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/predicates.hpp"
@@ -92,7 +92,8 @@ struct Bridge {
 };
 
 /// Finds them. `convex`: all faces of the convex hull, ascending. Triangles in both are retained.
-Bridge find_bridge(const FrontMesh& front, const std::vector<Slot>& slots, std::vector<PointTriangle> convex) {
+Bridge find_bridge(const FrontMesh& front, const std::vector<Slot>& slots,
+                   std::vector<PointTriangle> convex) {
   Bridge bridge;
   std::vector<PointTriangle> kept;
   for (const Slot s : slots) {

@@ -45,8 +45,8 @@ class ComplexBuilder {
 };
 
 // The regions that a builder makes of entire fronts when caps no longer simplify them, for FrontMesh and
-// FrontLoops alike. `home`: (components) the void in front of a component, which is the component itself if it
-// bounds a void; kNull for the outside.
+// FrontLoops alike. `home`: (components) the void in front of a component, which is the component itself if
+// it bounds a void; kNull for the outside.
 
 /// Makes the remainder of each void one region, which has only a floor.
 template <class Front>
@@ -63,8 +63,8 @@ void fill_voids(const Front& front, std::span<const std::uint32_t> home, std::ui
 
 /// Makes `wrapper` the outermost wrapper: the space between it and the outer fronts is one region.
 template <class Front>
-void enclose(const Front& front, std::span<const std::uint32_t> home, const Mesh& wrapper, std::uint16_t layer,
-             ComplexBuilder& complex) {
+void enclose(const Front& front, std::span<const std::uint32_t> home, const Mesh& wrapper,
+             std::uint16_t layer, ComplexBuilder& complex) {
   const RegionId region = complex.add_region(layer);
   for (const typename Front::Slot s : front.alive_slots())
     if (home[front[s].component] == kNull) complex.set_outer_cell(front[s].face, region);

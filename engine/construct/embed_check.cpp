@@ -48,7 +48,8 @@ bool turns_outward(const Vector3& a, const Vector3& b, const Vector3& p, const V
 
 }  // namespace
 
-CheckedTriangle::CheckedTriangle(const FrontMesh::Point& a, const FrontMesh::Point& b, const FrontMesh::Point& c)
+CheckedTriangle::CheckedTriangle(const FrontMesh::Point& a, const FrontMesh::Point& b,
+                                 const FrontMesh::Point& c)
     : x{a.x.data(), b.x.data(), c.x.data()}, id{a.id, b.id, c.id}, box(a.x) {
   box.extend(b.x);
   box.extend(c.x);

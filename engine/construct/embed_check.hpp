@@ -47,9 +47,9 @@ class EmbedCheck {
   /// never encloses another.
   void set_component_boxes(std::vector<Eigen::AlignedBox3d> boxes) { component_boxes_ = std::move(boxes); }
 
-  /// Returns CapVerdict::accepted if the cap's new triangles intersect neither the front outside the patch nor
-  /// the patch nor each other, and the entire front outside the patch is outside the region between patch and
-  /// cap; otherwise returns the obstacle.
+  /// Returns CapVerdict::accepted if the cap's new triangles intersect neither the front outside the patch
+  /// nor the patch nor each other, and the entire front outside the patch is outside the region between patch
+  /// and cap; otherwise returns the obstacle.
   CapVerdict judge_cap(const Patch& patch, const CapSurface& cap);
   /// Checks a fan from w that is to replace a star of the cap. Returns as judge_cap().
   CapVerdict judge_fan(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
@@ -75,9 +75,9 @@ class EmbedCheck {
   std::vector<Eigen::AlignedBox3d> component_boxes_;
   Eigen::AlignedBox3d seen_;
   std::vector<CheckedTriangle> obstacles_, added_;
-  std::vector<TriangleReach> reach_;       ///< of `added_`
+  std::vector<TriangleReach> reach_;        ///< of `added_`
   std::vector<FrontMesh::Slot> strangers_;  ///< gathered triangles of other components, one of each
-  std::vector<std::uint32_t> met_;         ///< (components) == stamp_: found while gathering
+  std::vector<std::uint32_t> met_;          ///< (components) == stamp_: found while gathering
   std::uint32_t stamp_ = 0;
 };
 

@@ -68,7 +68,8 @@ void notify(ConstructProbe& probe, std::uint32_t first_region, const RegionPiece
 
 }  // namespace
 
-Sheet make_sheet(const FrontMesh& front, std::span<const Slot> removed, std::span<const PointTriangle> added) {
+Sheet make_sheet(const FrontMesh& front, std::span<const Slot> removed,
+                 std::span<const PointTriangle> added) {
   Sheet sheet;
   sheet.removed.assign(removed.begin(), removed.end());
   sheet.added.assign(added.begin(), added.end());
@@ -113,7 +114,7 @@ std::vector<Slot> cover(FrontMesh& front, ComplexBuilder& complex, const Sheet& 
   const Corner first_new = front.point_count();
   for (std::size_t i = 0; i < sheet.new_points.size(); ++i)
     front.add_point(sheet.new_points[i], complex.add_vertex(sheet.new_points[i]),
-                   sheet.new_off.empty() ? 0 : sheet.new_off[i]);
+                    sheet.new_off.empty() ? 0 : sheet.new_off[i]);
   const std::vector<Slot>& removed = sheet.removed;
   const std::uint32_t first_region = complex.region_count();
   for (std::uint32_t p = 0; p < sheet.pieces.count; ++p) complex.add_region(layer);

@@ -61,7 +61,7 @@ struct Sheet {
 
   std::vector<FrontMesh::Slot> removed;  ///< ascending, so that the triangles of one polygon are adjacent
   std::vector<FrontMesh::Slot> kept;     ///< for a patch: the triangles that its cap retains
-  std::vector<PointTriangle> added;     ///< corners are vertices of the front
+  std::vector<PointTriangle> added;      ///< corners are vertices of the front
   std::vector<Eigen::Vector3d> new_points;
   /// (|new_points|), (|added|) their deviation from the body, see FrontMesh; empty if not measured.
   std::vector<double> new_off, added_excess;
@@ -85,6 +85,6 @@ Sheet make_sheet(const FrontMesh& front, const Patch& patch, const CapSurface& c
 /// with regions of this layer behind them and, for now, the outside in front; the faces that they cover get
 /// these regions in front. Returns the new slots. Reports the regions to `probe`, if not null.
 std::vector<FrontMesh::Slot> cover(FrontMesh& front, ComplexBuilder& complex, const Sheet& sheet,
-                                  std::uint16_t layer, std::uint32_t component, ConstructProbe* probe);
+                                   std::uint16_t layer, std::uint32_t component, ConstructProbe* probe);
 
 }  // namespace lrb::construct

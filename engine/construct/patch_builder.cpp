@@ -15,8 +15,8 @@
 #include "engine/construct/builders.hpp"
 #include "engine/construct/closing.hpp"
 #include "engine/construct/complex_builder.hpp"
-#include "engine/construct/half_spaces.hpp"
 #include "engine/construct/front_mesh.hpp"
+#include "engine/construct/half_spaces.hpp"
 #include "engine/construct/patch_pass.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/mesh/nesting.hpp"
@@ -115,10 +115,13 @@ std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const FrontMesh& front
 ///
 /// A cap over such faces would be inside the other component, where no front stops it, and could pass through
 /// the faces under that component's caps.
-std::vector<FaceId> find_buried(const Mesh& mesh, const FrontMesh& front, const std::vector<FaceId>& meeting) {
+std::vector<FaceId> find_buried(const Mesh& mesh, const FrontMesh& front,
+                                const std::vector<FaceId>& meeting) {
   // Nothing can be buried in a body that does not cross itself, or that has a single component.
   if (meeting.empty() || front.component_count() == 1) return {};
-  const auto meets = [&](Slot s) { return std::binary_search(meeting.begin(), meeting.end(), front[s].face); };
+  const auto meets = [&](Slot s) {
+    return std::binary_search(meeting.begin(), meeting.end(), front[s].face);
+  };
   std::vector<std::uint32_t> component_of(mesh.face_count(), kNull);
   DisjointSets sheets(front.slot_count());  // connected over edges; no sheet crosses a surface
   for (Slot s = 0; s < front.slot_count(); ++s) {
@@ -267,7 +270,8 @@ class PatchBuilder {
     std::vector<bool> joined(front_.component_count());
     for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = home_[c] == kNull;
     plan_polytope();
-    return bridge_concavities(front_, complex_, joined, passes_.layer(), options_.probe) == CapVerdict::accepted;
+    return bridge_concavities(front_, complex_, joined, passes_.layer(), options_.probe) ==
+           CapVerdict::accepted;
   }
 
   /// Reports a cap of `faces` faces over the entire outer front to the probe. Returns true if the cap was

@@ -168,7 +168,8 @@ Corner PatchGrower::best_candidate(Corner seed, double reach_sq, const Patch& pa
     // vertex.
     const std::uint32_t missing = front_.degree(v) - inside_[v];
     if (patch.slots.size() + missing > limits_.triangles) continue;
-    const double score = missing + kDistancePenalty * ((front_.x(v) - front_.x(seed)).squaredNorm() / reach_sq);
+    const double score =
+        missing + kDistancePenalty * ((front_.x(v) - front_.x(seed)).squaredNorm() / reach_sq);
     if (best == kNull || score < least || (score == least && v < best)) {
       best = v;
       least = score;

@@ -194,7 +194,8 @@ double PatchPass::off_of(const CapSurface& cap) {
   for (const CapSurface::Face& f : cap.faces())
     // The largest corner plus the excess is an upper bound of the estimate on the triangle.
     if (f.alive && f.kept < 0)
-      most = std::max(most, std::max({cap.off(f.v[0]), cap.off(f.v[1]), cap.off(f.v[2])}) + f.excess_deviation);
+      most =
+          std::max(most, std::max({cap.off(f.v[0]), cap.off(f.v[1]), cap.off(f.v[2])}) + f.excess_deviation);
   return most;
 }
 

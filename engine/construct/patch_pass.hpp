@@ -12,9 +12,9 @@
 #include "engine/construct/builders.hpp"
 #include "engine/construct/complex_builder.hpp"
 #include "engine/construct/embed_check.hpp"
-#include "engine/construct/half_spaces.hpp"
 #include "engine/construct/front_mesh.hpp"
 #include "engine/construct/front_update.hpp"
+#include "engine/construct/half_spaces.hpp"
 #include "engine/construct/patch_cap.hpp"
 #include "engine/construct/patch_grow.hpp"
 #include <lrbscope/build.hpp>

@@ -272,9 +272,9 @@ class Slabs {
     return r;
   }
 
-  /// Unites gaps across x, where the slab of the gaps [left, boundary) borders on the slab of [boundary, end):
-  /// gaps that open to each other belong to one cell. Both lists are in ascending order, so one merge finds
-  /// all such pairs.
+  /// Unites gaps across x, where the slab of the gaps [left, boundary) borders on the slab of [boundary,
+  /// end): gaps that open to each other belong to one cell. Both lists are in ascending order, so one merge
+  /// finds all such pairs.
   void join_neighbours(std::size_t left, std::size_t boundary, const Rational& x) {
     const std::vector<Opening> l = openings(left, boundary, x), r = openings(boundary, gaps_.size(), x);
     const std::vector<const Cut*> walls = walls_at(x);

@@ -237,7 +237,7 @@ Body Body::made(Mesh mesh, const BodyOptions& options, std::vector<std::string> 
   notes.insert(notes.end(), made.notes.begin(), made.notes.end());
   add_notes_on(made.rep, notes);
   auto rep = std::make_shared<const LrbRep>(std::move(made.rep));
-  return Body(std::make_shared<const Held>(Held{std::move(rep), std::move(notes), made.turned}));
+  return Body(std::make_shared<const Impl>(Impl{std::move(rep), std::move(notes), made.turned}));
 }
 
 Expected<Body> Body::from_rows(std::span<const double> coordinates, std::size_t each,
@@ -280,7 +280,7 @@ Body Body::from(std::shared_ptr<const LrbRep> rep) {
     rep = std::make_shared<const LrbRep>(LrbRep::without_regions(*rep));
   }
   add_notes_on(*rep, notes);
-  return Body(std::make_shared<const Held>(Held{std::move(rep), std::move(notes), 0}));
+  return Body(std::make_shared<const Impl>(Impl{std::move(rep), std::move(notes), 0}));
 }
 
 Expected<Body> Body::load(const std::string& path, const BodyOptions& options) try {

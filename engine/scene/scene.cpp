@@ -33,16 +33,16 @@ struct PlacedBody {
 /// has an empty box.
 struct Participant {
   std::span<const Box> boxes;
-  std::span<const PlacedBody> standing;
+  std::span<const PlacedBody> placed;
 };
 
 /// A candidate pair, by slot indices. Ordered by gap, then by keys.
-struct Near {
+struct NearbyPair {
   double gap = 0;  ///< lower bound on the distance of their AABBs
   BodyKey key_a{}, key_b{};
   std::uint32_t a = 0, b = 0;
 
-  friend bool operator<(const Near& x, const Near& y) {
+  friend bool operator<(const NearbyPair& x, const NearbyPair& y) {
     return std::tie(x.gap, x.key_a, x.key_b) < std::tie(y.gap, y.key_a, y.key_b);
   }
 };
@@ -54,17 +54,18 @@ namespace {
 using namespace scene;
 
 /// Returns the pair of two bodies of the same scene, the one with the lower key first.
-Near near_of_one(const Participant& party, std::uint32_t i, std::uint32_t j, double gap) {
-  if (party.standing[j].key < party.standing[i].key) std::swap(i, j);
-  return {gap, party.standing[i].key, party.standing[j].key, i, j};
+NearbyPair near_of_one(const Participant& participant, std::uint32_t i, std::uint32_t j, double gap) {
+  if (participant.placed[j].key < participant.placed[i].key) std::swap(i, j);
+  return {gap, participant.placed[i].key, participant.placed[j].key, i, j};
 }
 
-Near near_of_two(const Participant& a, const Participant& b, std::uint32_t i, std::uint32_t j, double gap) {
-  return {gap, a.standing[i].key, b.standing[j].key, i, j};
+NearbyPair near_of_two(const Participant& a, const Participant& b, std::uint32_t i, std::uint32_t j,
+                       double gap) {
+  return {gap, a.placed[i].key, b.placed[j].key, i, j};
 }
 
 /// The two sides of a query. `is_one`: both are the same scene, and each unordered pair counts once.
-struct Parties {
+struct Participants {
   Participant a, b;
   bool is_one = false;
 
@@ -80,17 +81,17 @@ struct Parties {
       });
   }
 
-  PosedPair posed(const Near& near) const {
-    const PlacedBody &x = a.standing[near.a], &y = b.standing[near.b];
+  PosedPair posed(const NearbyPair& near) const {
+    const PlacedBody &x = a.placed[near.a], &y = b.placed[near.b];
     return {x.rep, x.pose, y.rep, y.pose};
   }
 };
 
 /// Returns the pair with the smallest gap between AABBs (ties: lowest keys), or nullopt if there is no pair.
-std::optional<Near> nearest_of(const Parties& parties) {
-  std::optional<Near> nearest;
+std::optional<NearbyPair> nearest_of(const Participants& participants) {
+  std::optional<NearbyPair> nearest;
   double limit = std::numeric_limits<double>::infinity();
-  parties.each_near(limit, [&](const Near& n) {
+  participants.each_near(limit, [&](const NearbyPair& n) {
     // Lowering the limit during the sweep prunes the rest of it.
     if (nearest && !(n < *nearest)) return;
     nearest = n;
@@ -110,11 +111,11 @@ bool is_reported(const Expected<CollideResult>& answer) {
 
 }  // namespace
 
-using scene::Box, scene::Near, scene::Participant, scene::PlacedBody;
+using scene::Box, scene::NearbyPair, scene::Participant, scene::PlacedBody;
 
-class Scene::Held {
+class Scene::Impl {
  public:
-  explicit Held(unsigned threads) : workers_(threads), batch_(workers_.count()) {}
+  explicit Impl(unsigned threads) : workers_(threads), batch_(workers_.count()) {}
 
   BodyKey add(Body body, const Pose& pose);
   bool remove(BodyKey key);
@@ -123,26 +124,27 @@ class Scene::Held {
   std::size_t size() const { return place_of_.size(); }
   bool has(BodyKey key) const { return place_of_.contains(key); }
   const Body& body(BodyKey key) const { return *slots_[place_of_.at(key)].body; }
-  const Pose& pose(BodyKey key) const { return standing_[place_of_.at(key)].pose; }
+  const Pose& pose(BodyKey key) const { return placed_[place_of_.at(key)].pose; }
   std::vector<BodyKey> keys() const;
 
   void reserve(std::size_t bodies);
 
   /// Return the two sides of a query, with up-to-date boxes: the scene with itself; a body from outside with
   /// the scene; the scene with another one.
-  Parties own();
-  Parties with(const Participant& outside) { return {outside, party(), false}; }
-  Parties with(Held& other);
+  Participants own();
+  Participants with(const Participant& outside) { return {outside, participant(), false}; }
+  Participants with(Impl& other);
 
-  std::span<const ScenePair> near(const Parties& parties, double within);
-  std::optional<ScenePair> nearest_boxes(const Parties& parties) const;
-  std::span<const SceneAnswer> collide(const Parties& parties, const CollideRequest& request);
-  std::optional<SceneDistance> nearest(const Parties& parties, const DistanceRequest& request, Apart apart);
+  std::span<const ScenePair> near(const Participants& participants, double within);
+  std::optional<ScenePair> nearest_boxes(const Participants& participants) const;
+  std::span<const SceneAnswer> collide(const Participants& participants, const CollideRequest& request);
+  std::optional<SceneDistance> nearest(const Participants& participants, const DistanceRequest& request,
+                                       Apart apart);
 
   Work work;
 
  private:
-  /// The data of a body in addition to Standing and its box.
+  /// The data of a body in addition to PlacedBody and its box.
   struct Slot {
     std::optional<Body> body;
     std::shared_ptr<const BodyExtent> extent;  ///< shared by all copies of a body
@@ -153,10 +155,10 @@ class Scene::Held {
   std::uint32_t free_place();
   void add_places(std::size_t more);
   std::shared_ptr<const BodyExtent> extent_of(const LrbRep& rep);
-  Participant party();
-  std::vector<Near> find_near(const Parties& parties, double within);
-  std::vector<Near> sweep(const Participant& all);
-  void measure(const Parties& parties, std::span<const Near> near, DistanceRequest request);
+  Participant participant();
+  std::vector<NearbyPair> find_near(const Participants& participants, double within);
+  std::vector<NearbyPair> sweep(const Participant& all);
+  void measure(const Participants& participants, std::span<const NearbyPair> near, DistanceRequest request);
 
   Workers workers_;
   Batch batch_;
@@ -165,8 +167,8 @@ class Scene::Held {
   std::size_t came_and_gone_ = 0;  ///< bodies added or removed since the last sweep
 
   std::vector<Slot> slots_;
-  std::vector<PlacedBody> standing_;  ///< (|slots|)
-  std::vector<Box> boxes_;            ///< (|slots|) empty for free slots
+  std::vector<PlacedBody> placed_;  ///< (|slots|)
+  std::vector<Box> boxes_;          ///< (|slots|) empty for free slots
   std::vector<std::uint32_t> free_;
   std::vector<std::uint32_t> moved_;  ///< slots whose boxes must be recomputed
   std::unordered_map<BodyKey, std::uint32_t> place_of_;
@@ -179,7 +181,7 @@ class Scene::Held {
   std::vector<SceneAnswer> reported_;
 };
 
-std::vector<BodyKey> Scene::Held::keys() const {
+std::vector<BodyKey> Scene::Impl::keys() const {
   std::vector<BodyKey> out;
   out.reserve(place_of_.size());
   for (const auto& [key, place] : place_of_) out.push_back(key);
@@ -188,20 +190,20 @@ std::vector<BodyKey> Scene::Held::keys() const {
 }
 
 /// Adds free slots. The broad phase restarts if the number of boxes changes.
-void Scene::Held::add_places(std::size_t more) {
+void Scene::Impl::add_places(std::size_t more) {
   const std::size_t before = slots_.size();
   // Reverse order: slots are taken from the back of free_, so the lowest index is used first.
   for (std::size_t i = before + more; i-- > before;) free_.push_back(static_cast<std::uint32_t>(i));
   slots_.resize(before + more);
-  standing_.resize(before + more);
+  placed_.resize(before + more);
   boxes_.resize(before + more);
 }
 
-void Scene::Held::reserve(std::size_t bodies) {
+void Scene::Impl::reserve(std::size_t bodies) {
   if (bodies > slots_.size()) add_places(bodies - slots_.size());
 }
 
-std::uint32_t Scene::Held::free_place() {
+std::uint32_t Scene::Impl::free_place() {
   constexpr std::size_t kFew = 16;
   // Grow by half: amortised constant time per body.
   if (free_.empty()) add_places(std::max(kFew, slots_.size() / 2));
@@ -210,7 +212,7 @@ std::uint32_t Scene::Held::free_place() {
   return place;
 }
 
-std::shared_ptr<const BodyExtent> Scene::Held::extent_of(const LrbRep& rep) {
+std::shared_ptr<const BodyExtent> Scene::Impl::extent_of(const LrbRep& rep) {
   // Copies of a body share its extent. The map has weak references: the slots own it.
   std::weak_ptr<const BodyExtent>& known = extents_[rep.serial()];
   std::shared_ptr<const BodyExtent> extent = known.lock();
@@ -218,12 +220,12 @@ std::shared_ptr<const BodyExtent> Scene::Held::extent_of(const LrbRep& rep) {
   return extent;
 }
 
-BodyKey Scene::Held::add(Body body, const Pose& pose) {
+BodyKey Scene::Impl::add(Body body, const Pose& pose) {
   const std::uint32_t place = free_place();
   const auto key = BodyKey{next_key_++};
   Slot& slot = slots_[place];
   slot.extent = extent_of(body.rep());
-  standing_[place] = {key, &body.rep(), pose};
+  placed_[place] = {key, &body.rep(), pose};
   slot.body = std::move(body);
   slot.last = {};
   // The flag keeps each slot in moved_ at most once.
@@ -233,16 +235,16 @@ BodyKey Scene::Held::add(Body body, const Pose& pose) {
   return key;
 }
 
-bool Scene::Held::remove(BodyKey key) {
+bool Scene::Impl::remove(BodyKey key) {
   const auto found = place_of_.find(key);
   if (found == place_of_.end()) return false;
   const std::uint32_t place = found->second;
-  const std::uint64_t serial = standing_[place].rep->serial();
+  const std::uint64_t serial = placed_[place].rep->serial();
   // The last copy of a body releases the shared extent; then the map entry is removed.
   slots_[place].extent.reset();
   if (extents_[serial].expired()) extents_.erase(serial);
   slots_[place].body.reset();
-  standing_[place] = {};
+  placed_[place] = {};
   boxes_[place].setEmpty();
   free_.push_back(place);
   place_of_.erase(found);
@@ -250,79 +252,80 @@ bool Scene::Held::remove(BodyKey key) {
   return true;
 }
 
-bool Scene::Held::move(BodyKey key, const Pose& pose) {
+bool Scene::Impl::move(BodyKey key, const Pose& pose) {
   const auto found = place_of_.find(key);
   if (found == place_of_.end()) return false;
   const std::uint32_t place = found->second;
-  standing_[place].pose = pose;
+  placed_[place].pose = pose;
   if (!std::exchange(slots_[place].has_moved, true)) moved_.push_back(place);
   return true;
 }
 
-Participant Scene::Held::party() {
+Participant Scene::Impl::participant() {
   work.moved = moved_.size();
   // Recompute only the AABBs of moved bodies, in parallel: each task writes its own slot.
   workers_.for_each(moved_.size(), [&](std::size_t k, unsigned) {
     const std::uint32_t place = moved_[k];
     Slot& slot = slots_[place];
-    if (slot.body && slot.has_moved) boxes_[place] = slot.extent->in_world(standing_[place].pose, &slot.last);
+    if (slot.body && slot.has_moved) boxes_[place] = slot.extent->in_world(placed_[place].pose, &slot.last);
   });
   for (const std::uint32_t place : moved_) slots_[place].has_moved = false;
   moved_.clear();
-  return {boxes_, standing_};
+  return {boxes_, placed_};
 }
 
-Parties Scene::Held::own() {
-  const Participant all = party();
+Participants Scene::Impl::own() {
+  const Participant all = participant();
   return {all, all, true};
 }
 
-Parties Scene::Held::with(Held& other) {
-  const Participant others = other.party();
-  return {party(), others, false};
+Participants Scene::Impl::with(Impl& other) {
+  const Participant others = other.participant();
+  return {participant(), others, false};
 }
 
 /// Returns the pairs of a scene whose AABBs intersect, by the broad phase.
-std::vector<Near> Scene::Held::sweep(const Participant& all) {
+std::vector<NearbyPair> Scene::Impl::sweep(const Participant& all) {
   // The insertion sort moves each new box through the order. If more than 1 in 8 bodies were added or
   // removed, restart with a full sort.
   constexpr std::size_t kShareThatStays = 8;
   if (std::exchange(came_and_gone_, 0) > slots_.size() / kShareThatStays) sweep_ = {};
-  std::vector<Near> near;
+  std::vector<NearbyPair> near;
   for (const BodyPair& p : sweep_.update(all.boxes)) near.push_back(near_of_one(all, p.i, p.j, 0));
   work.broad_phase = sweep_.work();
   return near;
 }
 
-std::vector<Near> Scene::Held::find_near(const Parties& parties, double within) {
-  std::vector<Near> near;
+std::vector<NearbyPair> Scene::Impl::find_near(const Participants& participants, double within) {
+  std::vector<NearbyPair> near;
   // Within one scene and at distance 0, the coherent broad phase applies. Otherwise sweep along one axis.
-  if (parties.is_one && !(within > 0))
-    near = sweep(parties.a);
+  if (participants.is_one && !(within > 0))
+    near = sweep(participants.a);
   else
-    parties.each_near(within, [&](const Near& n) { near.push_back(n); });
+    participants.each_near(within, [&](const NearbyPair& n) { near.push_back(n); });
   // A unique order, whichever method found the pairs.
   std::sort(near.begin(), near.end());
   work.near = near.size();
   return near;
 }
 
-std::span<const ScenePair> Scene::Held::near(const Parties& parties, double within) {
+std::span<const ScenePair> Scene::Impl::near(const Participants& participants, double within) {
   near_.clear();
-  for (const Near& n : find_near(parties, within)) near_.push_back({n.key_a, n.key_b, n.gap});
+  for (const NearbyPair& n : find_near(participants, within)) near_.push_back({n.key_a, n.key_b, n.gap});
   return near_;
 }
 
-std::optional<ScenePair> Scene::Held::nearest_boxes(const Parties& parties) const {
-  const std::optional<Near> found = nearest_of(parties);
+std::optional<ScenePair> Scene::Impl::nearest_boxes(const Participants& participants) const {
+  const std::optional<NearbyPair> found = nearest_of(participants);
   if (!found) return {};
   return ScenePair{found->key_a, found->key_b, found->gap};
 }
 
-std::span<const SceneAnswer> Scene::Held::collide(const Parties& parties, const CollideRequest& request) {
-  const std::vector<Near> near = find_near(parties, 0);
+std::span<const SceneAnswer> Scene::Impl::collide(const Participants& participants,
+                                                  const CollideRequest& request) {
+  const std::vector<NearbyPair> near = find_near(participants, 0);
   questions_.clear();
-  for (const Near& n : near) questions_.push_back(parties.posed(n));
+  for (const NearbyPair& n : near) questions_.push_back(participants.posed(n));
   // The narrow phase runs all exact queries as one batch.
   batch_.collide(questions_, request, answers_);
   std::size_t count = 0;
@@ -340,32 +343,33 @@ std::span<const SceneAnswer> Scene::Held::collide(const Parties& parties, const 
 
 /// Computes the distances of pairs, into distances_. DistanceRequest::within is ignored, because every pair
 /// needs bounds.
-void Scene::Held::measure(const Parties& parties, std::span<const Near> near, DistanceRequest request) {
+void Scene::Impl::measure(const Participants& participants, std::span<const NearbyPair> near,
+                          DistanceRequest request) {
   request.within.reset();
   questions_.clear();
-  for (const Near& n : near) questions_.push_back(parties.posed(n));
+  for (const NearbyPair& n : near) questions_.push_back(participants.posed(n));
   batch_.distance(questions_, request, distances_);
 }
 
-std::optional<SceneDistance> Scene::Held::nearest(const Parties& parties, const DistanceRequest& request,
-                                                  Apart apart) {
+std::optional<SceneDistance> Scene::Impl::nearest(const Participants& participants,
+                                                  const DistanceRequest& request, Apart apart) {
   // Pairs per batch, independent of the number of threads. Distances found in a batch prune later ones.
   constexpr std::size_t kAtATime = 64;
   // Step 1: an upper bound, from the pair with the smallest gap between AABBs.
-  const std::optional<Near> likely = nearest_of(parties);
+  const std::optional<NearbyPair> likely = nearest_of(participants);
   if (!likely) return {};
-  measure(parties, std::span(&*likely, 1), request);
+  measure(participants, std::span(&*likely, 1), request);
   SceneDistance best{likely->key_a, likely->key_b, distances_[0]};
   if (!best.result) return best;
   // Step 2: only pairs whose gap is within that bound can be closer. They are in ascending order of gap.
-  const std::vector<Near> near = find_near(parties, distance_of(*best.result, apart));
+  const std::vector<NearbyPair> near = find_near(participants, distance_of(*best.result, apart));
   for (std::size_t begin = 0; begin < near.size(); begin += kAtATime) {
     const double upper = distance_of(*best.result, apart);
     // The gap is a lower bound on the distance: no further pair can be closer.
     if (upper == 0 || near[begin].gap > upper) break;
     const auto some = std::span(near).subspan(begin, std::min(kAtATime, near.size() - begin));
     // Step 3: exact distances of the next batch, which may lower the bound.
-    measure(parties, some, request);
+    measure(participants, some, request);
     for (std::size_t i = 0; i < some.size(); ++i) {
       const SceneDistance found{some[i].key_a, some[i].key_b, distances_[i]};
       // An error is the answer, because this pair might have been the closest.
@@ -381,96 +385,96 @@ namespace {
 /// A single body as one side of a query.
 struct ExclusiveAccess {
   ExclusiveAccess(const Body& body, const Pose& pose)
-      : box(world_box(body, pose)), standing{BodyKey{}, &body.rep(), pose} {}
-  operator Participant() const { return {{&box, 1}, {&standing, 1}}; }
+      : box(world_box(body, pose)), placed{BodyKey{}, &body.rep(), pose} {}
+  operator Participant() const { return {{&box, 1}, {&placed, 1}}; }
 
   Box box;
-  PlacedBody standing;
+  PlacedBody placed;
 };
 
 }  // namespace
 
-Scene::Scene(unsigned threads) : held_(std::make_unique<Held>(threads)) {}
+Scene::Scene(unsigned threads) : impl_(std::make_unique<Impl>(threads)) {}
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
 void Scene::reserve(std::size_t bodies) {
-  held_->reserve(bodies);
+  impl_->reserve(bodies);
 }
 BodyKey Scene::add(Body body, const Pose& pose) {
-  return held_->add(std::move(body), pose);
+  return impl_->add(std::move(body), pose);
 }
 bool Scene::remove(BodyKey key) {
-  return held_->remove(key);
+  return impl_->remove(key);
 }
 bool Scene::move(BodyKey key, const Pose& pose) {
-  return held_->move(key, pose);
+  return impl_->move(key, pose);
 }
 std::size_t Scene::size() const {
-  return held_->size();
+  return impl_->size();
 }
 bool Scene::has(BodyKey key) const {
-  return held_->has(key);
+  return impl_->has(key);
 }
 const Body& Scene::body(BodyKey key) const {
-  return held_->body(key);
+  return impl_->body(key);
 }
 const Pose& Scene::pose(BodyKey key) const {
-  return held_->pose(key);
+  return impl_->pose(key);
 }
 std::vector<BodyKey> Scene::keys() const {
-  return held_->keys();
+  return impl_->keys();
 }
 
 std::span<const ScenePair> Scene::near(double within) {
-  return held_->near(held_->own(), within);
+  return impl_->near(impl_->own(), within);
 }
 std::span<const ScenePair> Scene::near(const Body& body, const Pose& pose, double within) {
   const ExclusiveAccess alone(body, pose);
-  return held_->near(held_->with(alone), within);
+  return impl_->near(impl_->with(alone), within);
 }
 std::span<const ScenePair> Scene::near(Scene& other, double within) {
-  return held_->near(held_->with(*other.held_), within);
+  return impl_->near(impl_->with(*other.impl_), within);
 }
 
 std::optional<ScenePair> Scene::nearest_boxes() {
-  return held_->nearest_boxes(held_->own());
+  return impl_->nearest_boxes(impl_->own());
 }
 std::optional<ScenePair> Scene::nearest_boxes(const Body& body, const Pose& pose) {
   const ExclusiveAccess alone(body, pose);
-  return held_->nearest_boxes(held_->with(alone));
+  return impl_->nearest_boxes(impl_->with(alone));
 }
 std::optional<ScenePair> Scene::nearest_boxes(Scene& other) {
-  return held_->nearest_boxes(held_->with(*other.held_));
+  return impl_->nearest_boxes(impl_->with(*other.impl_));
 }
 
 std::span<const SceneAnswer> Scene::collide(const CollideRequest& request) {
-  return held_->collide(held_->own(), request);
+  return impl_->collide(impl_->own(), request);
 }
 std::span<const SceneAnswer> Scene::collide(const Body& body, const Pose& pose,
                                             const CollideRequest& request) {
   const ExclusiveAccess alone(body, pose);
-  return held_->collide(held_->with(alone), request);
+  return impl_->collide(impl_->with(alone), request);
 }
 std::span<const SceneAnswer> Scene::collide(Scene& other, const CollideRequest& request) {
-  return held_->collide(held_->with(*other.held_), request);
+  return impl_->collide(impl_->with(*other.impl_), request);
 }
 
 std::optional<SceneDistance> Scene::nearest(const DistanceRequest& request, Apart apart) {
-  return held_->nearest(held_->own(), request, apart);
+  return impl_->nearest(impl_->own(), request, apart);
 }
 std::optional<SceneDistance> Scene::nearest(const Body& body, const Pose& pose,
                                             const DistanceRequest& request, Apart apart) {
   const ExclusiveAccess alone(body, pose);
-  return held_->nearest(held_->with(alone), request, apart);
+  return impl_->nearest(impl_->with(alone), request, apart);
 }
 std::optional<SceneDistance> Scene::nearest(Scene& other, const DistanceRequest& request, Apart apart) {
-  return held_->nearest(held_->with(*other.held_), request, apart);
+  return impl_->nearest(impl_->with(*other.impl_), request, apart);
 }
 
 const Scene::Work& Scene::work() const {
-  return held_->work;
+  return impl_->work;
 }
 
 }  // namespace lrb

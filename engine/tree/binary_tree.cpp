@@ -77,8 +77,8 @@ class BinaryBuilder {
 
   /// Creates an inner node. Its subtrees contain the simplices before `boundary` and the rest. cost: 0 if
   /// measure() is to compute it. Returns the roots of the subtrees.
-  std::pair<std::uint32_t, std::uint32_t> fork(std::uint32_t self, std::uint32_t begin, std::uint32_t boundary,
-                                               std::uint32_t end, double cost) {
+  std::pair<std::uint32_t, std::uint32_t> fork(std::uint32_t self, std::uint32_t begin,
+                                               std::uint32_t boundary, std::uint32_t end, double cost) {
     // Preorder: the left subtree follows its parent, and its size follows from the number of its leaves.
     const std::uint32_t left = self + 1, right = left + nodes_for(boundary - begin);
     nodes_[self] = {begin, end, left, right, {}, {}, cost};

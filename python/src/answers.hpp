@@ -55,8 +55,8 @@ py::list regions_of(const Answer& answer);
 /// all cores.
 unsigned threads_of(std::size_t requested);
 
-/// Calls work(i, worker) for i = 0 .. n - 1 on threads_of(requested) threads without the GIL, which the caller
-/// must hold. Checks for signals meanwhile: after Ctrl-C, calls that have not started are skipped and
+/// Calls work(i, worker) for i = 0 .. n - 1 on threads_of(requested) threads without the GIL, which the
+/// caller must hold. Checks for signals meanwhile: after Ctrl-C, calls that have not started are skipped and
 /// KeyboardInterrupt is raised.
 void run_batch(std::size_t n, unsigned threads,
                const std::function<void(std::size_t i, unsigned worker)>& work);

@@ -191,7 +191,8 @@ class Decimator {
   void propose_all() {
     for (const Slot s : surface_.alive_slots())
       for (int i = 0; i < 3; ++i)
-        if (surface_[s].v[i] < surface_[s].v[(i + 1) % 3]) propose(surface_[s].v[i], surface_[s].v[(i + 1) % 3]);
+        if (surface_[s].v[i] < surface_[s].v[(i + 1) % 3])
+          propose(surface_[s].v[i], surface_[s].v[(i + 1) % 3]);
   }
 
   bool in_star(Slot s) const { return std::find(star_.begin(), star_.end(), s) != star_.end(); }
@@ -222,8 +223,8 @@ class Decimator {
   bool looks_good(const Vector3& w) const {
     double worst_old = 1, worst_new = 1;
     for (const Slot s : star_)
-      worst_old =
-          std::min(worst_old, shape(surface_.x(surface_[s].v[0]), surface_.x(surface_[s].v[1]), surface_.x(surface_[s].v[2])));
+      worst_old = std::min(worst_old, shape(surface_.x(surface_[s].v[0]), surface_.x(surface_[s].v[1]),
+                                            surface_.x(surface_[s].v[2])));
     for (const RimEdge& r : rim_) {
       const Vector3 &a = surface_.x(r.from), &b = surface_.x(r.to);
       const auto& t = surface_[r.inside].v;

@@ -131,7 +131,8 @@ struct KnotLine {
   Eigen::Vector3d operator()(double t) const {
     const double u = 2 * std::numbers::pi * t;
     const double r = radius * (1 + swing * deterministic::cos(q * u));
-    return {r * deterministic::cos(p * u), r * deterministic::sin(p * u), radius * swing * deterministic::sin(q * u)};
+    return {r * deterministic::cos(p * u), r * deterministic::sin(p * u),
+            radius * swing * deterministic::sin(q * u)};
   }
 };
 
@@ -146,7 +147,8 @@ Mesh knot(const GeneratorValues& v, std::uint64_t) {
   std::vector<Eigen::Vector3d> tangent(n), side(n + 1);
   for (int i = 0; i < n; ++i) tangent[i] = (line((i + 0.5) / n) - line((i - 0.5) / n)).normalized();
   side[0] = tangent[0].unitOrthogonal();
-  for (int i = 0; i < n; ++i) side[i + 1] = deterministic::turn_between(tangent[i], tangent[(i + 1) % n]) * side[i];
+  for (int i = 0; i < n; ++i)
+    side[i + 1] = deterministic::turn_between(tangent[i], tangent[(i + 1) % n]) * side[i];
   const double gap = deterministic::atan2(side[n].cross(side[0]).dot(tangent[0]), side[n].dot(side[0]));
 
   Mesh mesh;
@@ -197,8 +199,8 @@ Mesh lathe(const Profile& profile, int segments) {
   for (int row = 1; row + 1 < rows; ++row) {
     for (int i = 0; i < segments; ++i) {
       const double angle = 2 * std::numbers::pi * (i + 0.5 * (row % 2)) / segments;
-      mesh.vertices.emplace_back(profile[row].x() * deterministic::cos(angle), profile[row].x() * deterministic::sin(angle),
-                                 profile[row].y());
+      mesh.vertices.emplace_back(profile[row].x() * deterministic::cos(angle),
+                                 profile[row].x() * deterministic::sin(angle), profile[row].y());
     }
   }
   mesh.vertices.emplace_back(0, 0, profile.back().y());

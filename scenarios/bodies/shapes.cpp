@@ -283,8 +283,8 @@ Mesh revolve(const std::vector<Point2>& profile, int slices) {
   for (int i = 1; i <= rings; ++i)
     for (int j = 0; j < slices; ++j) {
       const double angle = 2 * kPi * j / slices;
-      mesh.vertices.emplace_back(profile[i].x() * deterministic::cos(angle), profile[i].x() * deterministic::sin(angle),
-                                 profile[i].y());
+      mesh.vertices.emplace_back(profile[i].x() * deterministic::cos(angle),
+                                 profile[i].x() * deterministic::sin(angle), profile[i].y());
     }
   mesh.vertices.emplace_back(0, 0, profile.back().y());
   const VertexId last = id(mesh.vertices.size() - 1);
@@ -326,7 +326,8 @@ Mesh open_cylinder(int slices) {
   mesh.name = "open cylinder";
   for (const double z : {0.0, 1.0})
     for (int j = 0; j < slices; ++j)
-      mesh.vertices.emplace_back(deterministic::cos(2 * kPi * j / slices), deterministic::sin(2 * kPi * j / slices), z);
+      mesh.vertices.emplace_back(deterministic::cos(2 * kPi * j / slices),
+                                 deterministic::sin(2 * kPi * j / slices), z);
   const auto at = [&](int ring, int j) { return id(static_cast<std::size_t>(ring * slices + j % slices)); };
   for (int j = 0; j < slices; ++j) add_quad(mesh, at(0, j), at(0, j + 1), at(1, j + 1), at(1, j), false);
   return mesh;

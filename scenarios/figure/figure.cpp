@@ -183,7 +183,8 @@ class FigureJob {
     for (Block& block : blocks_)
       for (std::size_t i = 0; i < block.seen.size(); ++i, ++panel)
         block.texts.push_back((letters ? render::panel_letter(panel) : "") +
-                              (letters && figure_.titles ? " " : "") + (figure_.titles ? captions_[panel] : ""));
+                              (letters && figure_.titles ? " " : "") +
+                              (figure_.titles ? captions_[panel] : ""));
   }
 
   void paint_all(render::Canvas& canvas, const run::ProgressReport& progress) {
@@ -277,8 +278,8 @@ class FigureJob {
     const View* view;
     std::vector<std::size_t> moments;
   };
-  std::vector<ViewPanels> views_;   ///< the views with content, and their events
-  std::vector<Block> blocks_;       ///< one for each of views_
+  std::vector<ViewPanels> views_;      ///< the views with content, and their events
+  std::vector<Block> blocks_;          ///< one for each of views_
   std::vector<std::string> captions_;  ///< (panels) description of each
   std::vector<render::LegendItem> key_;
   std::optional<render::ScaleBar> bar_;

@@ -29,8 +29,8 @@ double parse_length(const std::string& text, const std::string& option, double l
                      "\"");
   const double length = value * points;
   if (!(length >= least && length <= most))
-    throw InputError(option + ": expected a length from " + length_text(least) + " to " +
-                     length_text(most) + ", found \"" + text + "\"");
+    throw InputError(option + ": expected a length from " + length_text(least) + " to " + length_text(most) +
+                     ", found \"" + text + "\"");
   return length;
 }
 

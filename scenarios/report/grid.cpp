@@ -86,8 +86,8 @@ std::string axis_html(const std::vector<std::string>& axis) {
 std::string row_html(const GridHead& head) {
   std::string ends;
   if (!head.low.empty() || !head.high.empty())
-    ends =
-        fill("<small class=\"difficulty\"><span>{}</span> \u2192 <span>{}</span></small>", {head.low, head.high});
+    ends = fill("<small class=\"difficulty\"><span>{}</span> \u2192 <span>{}</span></small>",
+                {head.low, head.high});
   return fill("<th scope=\"row\"><b>{}</b>{!}{!}{!}</th>",
               {head.title, small(head.text), ends, axis_html(head.axis)});
 }

@@ -57,9 +57,9 @@ std::vector<ComparedPair> pairs_of(const RecordedRun& p, const Explained& what) 
     if (!x.same_pair(y)) return x.step != y.step ? x.step < y.step : x.pair < y.pair;
     return x.meets > y.meets;
   });
-  out.erase(
-      std::unique(out.begin(), out.end(), [](const ComparedPair& x, const ComparedPair& y) { return x.same_pair(y); }),
-      out.end());
+  out.erase(std::unique(out.begin(), out.end(),
+                        [](const ComparedPair& x, const ComparedPair& y) { return x.same_pair(y); }),
+            out.end());
   return out;
 }
 
@@ -73,7 +73,8 @@ void choose(std::vector<ComparedPair>& pairs, std::size_t most) {
   for (const std::size_t i : evenly(meeting, most)) out.push_back(pairs[i]);
   for (const std::size_t i : evenly(pairs.size() - meeting, most - out.size()))
     out.push_back(pairs[meeting + i]);
-  std::stable_sort(out.begin(), out.end(), [](const ComparedPair& x, const ComparedPair& y) { return x.step < y.step; });
+  std::stable_sort(out.begin(), out.end(),
+                   [](const ComparedPair& x, const ComparedPair& y) { return x.step < y.step; });
   pairs = std::move(out);
 }
 

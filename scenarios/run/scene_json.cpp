@@ -432,7 +432,7 @@ json wrong_json(const RecordedRun& p, const Numbers& steps) {
 }
 
 std::string thinned_text(const trace::Trace& trace, const ThinnedEvents& events,
-                          const std::string& trace_file) {
+                         const std::string& trace_file) {
   if (events.all(trace)) return {};
   std::string out = "Of the run's " + render::group_digits(trace.events.size()) +
                     " events, this page contains " + render::group_digits(events.kept.size()) + ": ";

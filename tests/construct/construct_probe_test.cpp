@@ -55,13 +55,17 @@ struct Reported {
 struct Listener final : ConstructProbe {
   std::vector<Reported> reported;
   void pass(const PassStart& p) override { reported.push_back({.kind = Reported::Kind::pass, .start = p}); }
-  void patch(const GrownPatch& p) override { reported.push_back({.kind = Reported::Kind::patch, .patch = p}); }
+  void patch(const GrownPatch& p) override {
+    reported.push_back({.kind = Reported::Kind::patch, .patch = p});
+  }
   void cap(const TriedCap& c) override { reported.push_back({.kind = Reported::Kind::cap, .cap = c}); }
   void region(RegionId r) override { reported.push_back({.kind = Reported::Kind::region, .number = r}); }
   void merged(RegionId into, std::uint32_t pieces) override {
     reported.push_back({.kind = Reported::Kind::merged, .number = into, .pieces = pieces});
   }
-  void end_pass(const PassEnd& e) override { reported.push_back({.kind = Reported::Kind::end_pass, .end = e}); }
+  void end_pass(const PassEnd& e) override {
+    reported.push_back({.kind = Reported::Kind::end_pass, .end = e});
+  }
   void closed(std::uint32_t faces) override {
     reported.push_back({.kind = Reported::Kind::closed, .number = faces});
   }
@@ -201,8 +205,8 @@ TEST_CASE("what is told adds up to the body, which is the same without; 1, 2 and
   }
   CHECK(merged > 0);
   using enum CapVerdict;
-  for (const CapVerdict v :
-       {accepted, too_thick, too_much_volume, too_many_faces, no_place, meets_front, overlaps, several_outlines})
+  for (const CapVerdict v : {accepted, too_thick, too_much_volume, too_many_faces, no_place, meets_front,
+                             overlaps, several_outlines})
     CHECK_MESSAGE(verdicts[static_cast<std::size_t>(v)] > 0, name_of(v));
 }
 

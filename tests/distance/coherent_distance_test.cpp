@@ -123,8 +123,9 @@ TEST_CASE("planes that held nodes apart at earlier steps leave out nothing that 
         poses.b = shapes::random_pose(random, pair.a, pair.b, shapes::uniform(random, 0.3, 1.6));
       // Now hardly, now more; and now and then B turns on one spot, through more than planes outlive.
       const double share = i % 100 < 50 ? 0.001 : i % 100 < 75 ? 0.01 : pair.most;
-      poses.b = i % 100 < 90 ? moved(poses.b, dim, share, random)
-                             : Pose{deterministic::rotation(Eigen::Vector3d::UnitZ(), 0.2) * poses.b.r, poses.b.t};
+      poses.b = i % 100 < 90
+                    ? moved(poses.b, dim, share, random)
+                    : Pose{deterministic::rotation(Eigen::Vector3d::UnitZ(), 0.2) * poses.b.r, poses.b.t};
       if (i % 7 == 0) poses.a = moved(poses.a, dim, share, random);
       const DistanceResult coherent = follows.distance(poses.a, poses.b),
                            alone = distance(pair.a, poses.a, pair.b, poses.b);

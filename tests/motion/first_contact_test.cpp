@@ -178,7 +178,8 @@ TEST_CASE("boxes: face to face, edge to edge, corner to face, at the time that i
   r = expect(Motion::linear(Pose::translation({4, 0, 0}), {-5, 0, 0}), 1.0 / 3);  // flush, and no double
   CHECK(r.speed == doctest::Approx(9));
   // A corner of B, which stands on it, comes down on A's upper face.
-  const Eigen::Matrix3d tip = deterministic::rotation(Vector3d(1, -1, 0).normalized(), std::atan(std::sqrt(2.0)));
+  const Eigen::Matrix3d tip =
+      deterministic::rotation(Vector3d(1, -1, 0).normalized(), std::atan(std::sqrt(2.0)));
   const double lowest = (tip * Vector3d(0, 0, 0)).z();
   r = expect(Motion::linear({tip, {0.7, 0.4, 3}}, {0.7, 0.4, -1}), (2 + lowest) / 4);
   CHECK((r.normal - Vector3d(0, 0, 1)).norm() < 1e-9);

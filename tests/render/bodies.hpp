@@ -37,7 +37,8 @@ inline LrbRep dented(const Mesh& convex, int levels, double depth = 0.35) {
       d.region_layer.push_back(static_cast<std::uint16_t>(levels - 1 - level));
       const auto x = [&](std::size_t i) -> const Eigen::Vector3d& { return d.vertices[lid.corners[i]]; };
       Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
-      for (const VertexId v : lid.corners) centroid += d.vertices[v] / static_cast<double>(lid.corners.size());
+      for (const VertexId v : lid.corners)
+        centroid += d.vertices[v] / static_cast<double>(lid.corners.size());
       const Eigen::Vector3d along = x(1) - x(0);
       const Eigen::Vector3d outward = convex.dim == 2 ? Eigen::Vector3d(along.y(), -along.x(), 0).normalized()
                                                       : along.cross(x(2) - x(0)).normalized();

@@ -25,9 +25,9 @@ using namespace lrb;
 
 namespace {
 
-constexpr int kDifficulties = 11;        // of each class, from benign to degenerate
+constexpr int kDifficulties = 11;       // of each class, from benign to degenerate
 constexpr int kCasesPerDifficulty = 8;  // of each class
-constexpr int kPosesPerPair = 3;  // of two generated bodies
+constexpr int kPosesPerPair = 3;        // of two generated bodies
 
 void print(const std::string& what, std::uint64_t hash) {
   std::printf("%016llx %s\n", static_cast<unsigned long long>(hash), what.c_str());

@@ -219,7 +219,8 @@ TEST_CASE(
   for (const char* name : {"ours-tolerance", "ours-one-pair"}) {
     const methods::MethodEntry& entry = methods::find_method(entries, name);
     infos.push_back(entry.info);
-    bench::BenchRunner runner(entry, entry.info.parameter.empty() ? std::nullopt : std::optional(0.1), set, true);
+    bench::BenchRunner runner(entry, entry.info.parameter.empty() ? std::nullopt : std::optional(0.1), set,
+                              true);
     for (std::uint64_t q = 0; q < set.questions.size(); ++q) records.push_back(runner.ask(q));
   }
   bool any_off = false;

@@ -48,15 +48,16 @@ int main(int argc, char** argv) {
   for (const cases::Family& family : cases::all_families()) {
     for (const int difficulty : {2, 10}) {
       const cases::Case c = cases::make_case(family, 1, difficulty, 3);
-      const std::string file = "worst/" + std::string(family.name) + "-" + std::to_string(difficulty) + ".png";
+      const std::string file =
+          "worst/" + std::string(family.name) + "-" + std::to_string(difficulty) + ".png";
       try {
         const BruteForceResult right = brute_force(*c.a, c.pose_a, *c.b, c.pose_b);
-        draw_worst_case(
-            c, right.pairs, spoilt(right.pairs, c),
-            {std::string(family.name) + " \u00d7 made up",
-             "wrong on purpose",
-             {{"difficulty", std::to_string(difficulty) + " of 10"}, {"relation", to_string(right.relation)}}},
-            folder + "/" + file, rasterizer);
+        draw_worst_case(c, right.pairs, spoilt(right.pairs, c),
+                        {std::string(family.name) + " \u00d7 made up",
+                         "wrong on purpose",
+                         {{"difficulty", std::to_string(difficulty) + " of 10"},
+                          {"relation", to_string(right.relation)}}},
+                        folder + "/" + file, rasterizer);
         if (difficulty == 10) sheet.push_back({render::read_png(folder + "/" + file).image, ""});
         for (std::size_t m = 0; m < grid.methods.size(); ++m)
           options.pictures[f * grid.methods.size() + m] = file;

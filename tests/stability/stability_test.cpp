@@ -119,8 +119,9 @@ TEST_CASE("a method that hangs on three cases in a row is not asked the others o
 TEST_CASE("every case has its record, in order, whatever died and however many ran at a time") {
   const Workers workers;
   const auto key = [](const Record& r) {
-    return r.family + " " + r.method + " " + std::to_string(r.difficulty) + " " + std::to_string(r.case_index) +
-           " " + std::string(name_of(r.outcome)) + " " + std::to_string(r.missed);
+    return r.family + " " + r.method + " " + std::to_string(r.difficulty) + " " +
+           std::to_string(r.case_index) + " " + std::string(name_of(r.outcome)) + " " +
+           std::to_string(r.missed);
   };
   std::vector<std::string> expected;
   for (const char* family : {"shared", "identical"})
@@ -322,7 +323,8 @@ TEST_CASE("judging a method by itself, with the bodies exchanged") {
   CHECK(r.outcome == Outcome::right);
 }
 
-// If the benign end were not benign the grid could not say where along the difficulty a method starts to fail.
+// If the benign end were not benign the grid could not say where along the difficulty a method starts to
+// fail.
 TEST_CASE("the textbook's method is right at the benign end of every dial, and not at the other") {
   StabilityRunner plain(methods::find_method(methods::registered_methods(), "plain"));
   int failing = 0, failed = 0;
@@ -373,8 +375,8 @@ TEST_CASE("lrbscope stability: table, records, exit code") {
   CHECK(o.out.find("out/stability/records.jsonl\n") != std::string::npos);
   CHECK(read_records(folder / "out/stability/records.jsonl").size() == 44);
 
-  o = run(folder, {"stability", "--family", "identical", "--method", "fake-miss", "--difficulty", "10", "--only",
-                   "0", "--pairs"});
+  o = run(folder, {"stability", "--family", "identical", "--method", "fake-miss", "--difficulty", "10",
+                   "--only", "0", "--pairs"});
   CHECK(o.code == 1);
   CHECK(o.out.find("identical, difficulty 10, case 0, fake-miss: wrong") == 0);
   CHECK(o.out.find("  missed:") != std::string::npos);

@@ -1,6 +1,6 @@
 // What must hold of answers for any case of any family. RapidCheck draws the cases and, where one fails,
-// looks for the most benign setting of the difficulty that fails too. ctest fixes its seed; by hand each run draws
-// others (RC_PARAMS="seed=... max_success=...").
+// looks for the most benign setting of the difficulty that fails too. ctest fixes its seed; by hand each run
+// draws others (RC_PARAMS="seed=... max_success=...").
 #include <algorithm>
 #include <filesystem>
 #include <string>

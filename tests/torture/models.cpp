@@ -81,8 +81,8 @@ cases::Case Models::make(RandomEngine& random, double difficulty) const {
   if (kind == 2) c.pose_b.t -= little * away;
   // Not as far as where the answer becomes quadratic, as faces become points.
   if (kind == 3)
-    cases::move_both(
-        c, {shapes::random_rotation(random), std::pow(10, 9 * difficulty) * shapes::random_direction(random)});
+    cases::move_both(c, {shapes::random_rotation(random),
+                         std::pow(10, 9 * difficulty) * shapes::random_direction(random)});
   return c;
 }
 

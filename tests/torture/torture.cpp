@@ -1,4 +1,5 @@
-// The torture suite: every family at every setting of its difficulty, against brute force and independent oracles.
+// The torture suite: every family at every setting of its difficulty, against brute force and independent
+// oracles.
 //
 // Each batch of poses runs in a process of its own, so that a crash or a hang is counted and the rest goes
 // on. A difference is printed with the command that shows it alone. A million poses near contact:

@@ -67,8 +67,8 @@ class Body {
   /// Reads a mesh file as read_mesh() does, or an .lrb file; detected by content.
   static Expected<Body> load(const std::string& path, const BodyOptions& options = default_body_options());
 
-  const LrbRep& rep() const { return *held_->rep; }
-  operator const LrbRep&() const { return *held_->rep; }
+  const LrbRep& rep() const { return *impl_->rep; }
+  operator const LrbRep&() const { return *impl_->rep; }
 
   const std::string& name() const { return rep().name(); }
   int dim() const { return rep().dim(); }
@@ -78,28 +78,28 @@ class Body {
   /// Returns true if the body has wrappers beyond its own surface. Bodies with few faces may need none.
   bool has_regions() const { return rep().region_count() > 0; }
   /// Returns the number of inward-oriented components that were reoriented.
-  std::uint32_t turned() const { return held_->turned; }
+  std::uint32_t turned() const { return impl_->turned; }
   /// Returns what was changed, and which queries are restricted and why; one line each, for users.
-  std::span<const std::string> notes() const { return held_->notes; }
+  std::span<const std::string> notes() const { return impl_->notes; }
 
   /// Returns true if both share the same data, as copies do.
-  friend bool operator==(const Body& x, const Body& y) { return x.held_ == y.held_; }
+  friend bool operator==(const Body& x, const Body& y) { return x.impl_ == y.impl_; }
 
  private:
-  struct Held {
+  struct Impl {
     std::shared_ptr<const LrbRep> rep;
     std::vector<std::string> notes;
     std::uint32_t turned = 0;
   };
 
-  explicit Body(std::shared_ptr<const Held> held) : held_(std::move(held)) {}
+  explicit Body(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
   /// `coordinates`: row-major, `each` per vertex. `corners`: row-major, `each_face` per face.
   static Expected<Body> from_rows(std::span<const double> coordinates, std::size_t each,
                                   std::span<const std::int64_t> corners, std::size_t each_face,
                                   const BodyOptions& options);
   static Body made(Mesh mesh, const BodyOptions& options, std::vector<std::string> notes = {});
 
-  std::shared_ptr<const Held> held_;
+  std::shared_ptr<const Impl> impl_;
 };
 
 template <class V, class F>

@@ -47,24 +47,24 @@ constexpr auto words_of(BuildStage) {
 /// is the first one in this order among all of them.
 enum class CapVerdict : std::uint8_t {
   accepted,
-  too_thick,         ///< with fewer faces its deviation would exceed the limit of the pass
-  too_much_volume,   ///< with fewer faces it would enclose more volume than a collapse may add
-  too_thin,          ///< with fewer faces some would be needles
-  no_place,          ///< no position is in front of all faces to be removed and within the body's bounds
-  no_surface,        ///< another edge collapse would leave no surface
-  too_many_faces,    ///< it saves too few faces to be worth a region
-  splits_polygon,    ///< it covers only part of a polygon of the mesh
-  turns_inward,      ///< at its boundary it would turn to the inside of the front
-  meets_itself,      ///< its faces intersect beyond shared corners and edges
-  meets_patch,       ///< it intersects the patch that it covers
-  meets_front,        ///< it intersects another part of the front
-  encloses_component,   ///< another component may be beneath it
-  overlaps,          ///< it overlaps another cap of the pass or the patch of one
-  several_outlines,  ///< bridging in 2D: there is more than one outline
-  too_crowded,       ///< bridging: the front has very large polygons or fans
-  flat,              ///< bridging: the convex hull has no interior, or the outline intersects itself
-  too_far_out,       ///< closing: coordinates are too large for a wrapper around them
-  leaves_out,        ///< closing: the wrapper does not contain the entire front
+  too_thick,           ///< with fewer faces its deviation would exceed the limit of the pass
+  too_much_volume,     ///< with fewer faces it would enclose more volume than a collapse may add
+  too_thin,            ///< with fewer faces some would be needles
+  no_place,            ///< no position is in front of all faces to be removed and within the body's bounds
+  no_surface,          ///< another edge collapse would leave no surface
+  too_many_faces,      ///< it saves too few faces to be worth a region
+  splits_polygon,      ///< it covers only part of a polygon of the mesh
+  turns_inward,        ///< at its boundary it would turn to the inside of the front
+  meets_itself,        ///< its faces intersect beyond shared corners and edges
+  meets_patch,         ///< it intersects the patch that it covers
+  meets_front,         ///< it intersects another part of the front
+  encloses_component,  ///< another component may be beneath it
+  overlaps,            ///< it overlaps another cap of the pass or the patch of one
+  several_outlines,    ///< bridging in 2D: there is more than one outline
+  too_crowded,         ///< bridging: the front has very large polygons or fans
+  flat,                ///< bridging: the convex hull has no interior, or the outline intersects itself
+  too_far_out,         ///< closing: coordinates are too large for a wrapper around them
+  leaves_out,          ///< closing: the wrapper does not contain the entire front
 };
 constexpr auto words_of(CapVerdict) {
   return std::to_array<EnumWord<CapVerdict>>({{CapVerdict::accepted, "stands"},
@@ -91,9 +91,9 @@ constexpr auto words_of(CapVerdict) {
 /// State at the start of a pass.
 struct PassStart {
   BuildStage stage = BuildStage::fit;
-  std::uint32_t layer = 0;       ///< layer of the regions that it makes
+  std::uint32_t layer = 0;        ///< layer of the regions that it makes
   std::uint32_t front_faces = 0;  ///< number of triangles (2D: segments) of the front
-  double max_deviation = 0;      ///< maximum deviation of caps from the body, mesh units; 0: unlimited
+  double max_deviation = 0;       ///< maximum deviation of caps from the body, mesh units; 0: unlimited
 };
 
 /// State at the end of a pass.

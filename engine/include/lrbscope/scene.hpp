@@ -119,8 +119,8 @@ class Scene {
   const Work& work() const;
 
  private:
-  class Held;
-  std::unique_ptr<Held> held_;
+  class Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace lrb

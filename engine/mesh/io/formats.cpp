@@ -54,8 +54,8 @@ constexpr std::array<Lookalike, 20> kLookalikes = {{
 }};
 
 constexpr std::array<std::string_view, 18> kObjKeywords = {"v",      "vn",     "vt", "vp", "f",      "l",
-                                                        "p",      "o",      "g",  "s",  "mtllib", "usemtl",
-                                                        "usemap", "maplib", "mg", "fo", "cstype", "deg"};
+                                                           "p",      "o",      "g",  "s",  "mtllib", "usemtl",
+                                                           "usemap", "maplib", "mg", "fo", "cstype", "deg"};
 
 std::string lower(std::string_view text) {
   std::string out(text);
@@ -132,7 +132,8 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   }
   if (first.empty()) reject(name, "only comments", "export or copy the file again");
   // OBJ has no signature, so its first statement identifies it.
-  if (std::find(kObjKeywords.begin(), kObjKeywords.end(), first) != kObjKeywords.end()) return MeshFormat::obj;
+  if (std::find(kObjKeywords.begin(), kObjKeywords.end(), first) != kObjKeywords.end())
+    return MeshFormat::obj;
   if (extension == "obj") return MeshFormat::obj;  // the OBJ reader reports the invalid line
   if (extension == "off" && is_number(first)) return MeshFormat::off;  // the keyword OFF is optional
   reject(name, "text that begins with " + in_quotes(first));

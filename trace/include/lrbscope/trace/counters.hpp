@@ -112,9 +112,9 @@ struct PassSummary {
   std::uint32_t retried = 0;  ///< patches whose first cap intersected something, so that a second was built
                               ///< with checks per collapse
   std::array<std::uint32_t, kWords<CapVerdict>.size()> caps{};  ///< patches by the verdict on their last cap
-  std::uint32_t lids = 0, covered = 0;                  ///< faces of accepted caps, and faces under them
+  std::uint32_t lids = 0, covered = 0;                    ///< faces of accepted caps, and faces under them
   std::uint32_t excluded = 0, no_patch = 0, waiting = 0;  ///< see PassEnd
-  bool given_up = false;                                ///< see PassEnd
+  bool given_up = false;                                  ///< see PassEnd
 
   std::uint32_t accepted() const { return caps[0]; }
   std::uint32_t rejected() const { return patches - accepted(); }

@@ -209,7 +209,7 @@ struct Pass {
   BuildStage stage{};
   std::uint32_t layer = 0;
   std::uint32_t excluded = 0;  ///< as PassEnd::excluded
-  float max_deviation = 0;   ///< as PassStart::max_deviation
+  float max_deviation = 0;     ///< as PassStart::max_deviation
 };
 struct Patch {
   VertexId vertex{};
