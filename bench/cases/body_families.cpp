@@ -14,13 +14,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-bool middle_of_three(int i) {
+bool is_central(int i) {
   return i % 3 == 1;
 }
 
 Mesh menger() {
   return shapes::voxels(3, 3, 3, [](int i, int j, int k) {
-    return middle_of_three(i) + middle_of_three(j) + middle_of_three(k) < 2;
+    return is_central(i) + is_central(j) + is_central(k) < 2;
   });
 }
 
@@ -28,8 +28,8 @@ Mesh menger() {
 Mesh koch_cube() {
   const auto in = [](int i, int low, int high) { return i >= low && i < high; };
   return shapes::voxels(5, 5, 5, [=](int i, int j, int k) {
-    const int core = in(i, 1, 4) + in(j, 1, 4) + in(k, 1, 4), middle = (i == 2) + (j == 2) + (k == 2);
-    return core == 3 || (core == 2 && middle >= 2);
+    const int core = in(i, 1, 4) + in(j, 1, 4) + in(k, 1, 4), central = (i == 2) + (j == 2) + (k == 2);
+    return core == 3 || (core == 2 && central >= 2);
   });
 }
 

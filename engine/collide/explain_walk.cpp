@@ -86,7 +86,7 @@ class NearestBoxes {
       }
   }
 
-  std::optional<PartedBoxes> take() const { return nearest_; }
+  std::optional<SeparatingBoxes> take() const { return nearest_; }
 
  private:
   struct Box {
@@ -111,12 +111,12 @@ class NearestBoxes {
     pair.node = {a.node, b.node};
     compare_boxes(a.box, b.box, pair);
     if (pair.gap > 0 && (!nearest_ || pair.gap < nearest_->pair.gap))
-      nearest_ = PartedBoxes{pair, {a.box, b.box}, faces};
+      nearest_ = SeparatingBoxes{pair, {a.box, b.box}, faces};
   }
 
   QueryContext& ctx_;
   const Stepper& stepper_;
-  std::optional<PartedBoxes> nearest_;
+  std::optional<SeparatingBoxes> nearest_;
 };
 
 /// Tests the normals of candidate separating planes of two bodies.

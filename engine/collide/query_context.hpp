@@ -147,7 +147,7 @@ class QueryContext {
   std::vector<Candidate> candidates;
   // Used only in observed queries; see NodeWatch.
   std::unordered_map<std::uint64_t, std::uint32_t> parents;
-  std::vector<PartedPair> rejected;
+  std::vector<RejectedPair> rejected;
   std::vector<NodePair> rejected_nodes;
   AffineTerms affine;  ///< of the current kernel, if its map is not rigid
   PairOrder pair_order;

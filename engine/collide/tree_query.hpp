@@ -113,7 +113,7 @@ class NodeWatch {
 
   Probe& probe_;
   std::unordered_map<std::uint64_t, std::uint32_t>& parents_;  ///< of waiting pairs: see take_parent()
-  std::vector<PartedPair>& rejected_;
+  std::vector<RejectedPair>& rejected_;
   std::vector<NodePair>& rejected_nodes_;
   bool all_;
 };

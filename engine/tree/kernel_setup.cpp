@@ -75,10 +75,10 @@ Matrix3d raised_inverse(const Matrix3d& r) {
 /// Returns the exponent of the query's unit: that of the larger body in the world, or more if the distance of
 /// the bodies would overflow floats.
 int query_exponent(const AffineMap& a, const Pose& pose_a, const AffineMap& b, const Pose& pose_b) {
-  // Halves, so that the difference cannot overflow. Floats can represent distances of 2^kFarOff units.
-  constexpr int kFarOff = 60, kLeast = -1022;
+  // Halves, so that the difference cannot overflow. Floats can represent distances of 2^kFarAway units.
+  constexpr int kFarAway = 60, kLeast = -1022;
   const double apart = (pose_b.t / 2 - pose_a.t / 2).cwiseAbs().maxCoeff();
-  return std::max({a.exponent, b.exponent, exponent_of(apart) - kFarOff, kLeast});
+  return std::max({a.exponent, b.exponent, exponent_of(apart) - kFarAway, kLeast});
 }
 
 void put(const Matrix3d& m, double size, KernelMap& to) {

@@ -38,7 +38,7 @@ struct Candidate {
 };
 
 /// A pair of real simplices that a plane separates.
-struct PartedPair {
+struct RejectedPair {
   SimplexId a, b;
   Side whose;  ///< the simplex that spans the plane; A's if both planes separate
 };
@@ -104,7 +104,7 @@ struct TreeKernel {
   std::uint32_t out_size;
 
   /// Null, or space for 64 pairs: those that planes separate; only for one pair of nodes at a time.
-  PartedPair* rejected;
+  RejectedPair* rejected;
   std::uint32_t rejected_size;
 
   // For observation step by step; a step ends with the first pair of nodes that it adds to node_pairs:

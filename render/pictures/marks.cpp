@@ -211,7 +211,7 @@ Square separating_square(const SeparatingPlane& plane, const PosedBodies& bodies
                 kShare * smaller.diagonal().norm(), bodies.dim());
 }
 
-Square separating_square(const PartedBoxes& rejected, int dim) {
+Square separating_square(const SeparatingBoxes& rejected, int dim) {
   const auto axis = static_cast<std::size_t>(rejected.pair.axis);
   const auto& [a, b] = rejected.boxes;
   Vector3d normal = axis < 3 ? a.across[axis] : b.across[axis - 3];

@@ -75,7 +75,7 @@ using Square = std::array<Eigen::Vector3d, 4>;
 /// scaled to it.
 Square separating_square(const SeparatingPlane& plane, const PosedBodies& bodies);
 /// Returns a square in the gap between two boxes, scaled to the smaller one.
-Square separating_square(const PartedBoxes& boxes, int dim);
+Square separating_square(const SeparatingBoxes& boxes, int dim);
 /// Returns the square of the separating plane, or otherwise of the boxes. Returns nullopt if there is
 /// neither.
 std::optional<Square> separating_square(const WalkExplanation& walk, const PosedBodies& bodies);

@@ -163,7 +163,7 @@ std::string packed_square(const Square& corners, const SceneFrame& frame) {
   return packed(out);
 }
 
-json boxes_json(const PartedBoxes& boxes, int dim, const SceneFrame& frame) {
+json boxes_json(const SeparatingBoxes& boxes, int dim, const SceneFrame& frame) {
   std::vector<float> places;
   for (const WorldBox& box : boxes.boxes) {
     frame.add_point(places, box.centre);

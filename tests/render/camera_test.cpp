@@ -108,9 +108,9 @@ TEST_CASE("a camera on the contact holds it with its surroundings") {
   deep.emplace_back(0, 0, 4);
   render::FitOptions wide_angle;
   wide_angle.fov_y = 1.2;
-  const render::Camera middle = render::fit_contact(deep, scene, 800, 600, wide_angle);
+  const render::Camera fitted = render::fit_contact(deep, scene, 800, 600, wide_angle);
   Eigen::AlignedBox2d extent;
-  for (const Vector3d& p : deep) extent.extend(*render::Projection(middle, 800, 600, scene).to_pixel(p));
+  for (const Vector3d& p : deep) extent.extend(*render::Projection(fitted, 800, 600, scene).to_pixel(p));
   CHECK((extent.center() - Eigen::Vector2d(400, 300)).norm() < 0.05 * extent.diagonal().norm());
   // A contact in one point is shown at the least size asked for.
   const render::Camera near =

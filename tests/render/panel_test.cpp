@@ -43,8 +43,8 @@ TEST_CASE("panels stand side by side along the longer side, each in its place, w
     const auto places = run::panel_places(picture, 2, 1);
     for (const render::PixelRect& place : places) {
       CHECK(picture.contains(place));
-      const render::PixelRect middle{place.x + 30, place.y + 30, place.width - 60, place.height - 60};
-      CHECK(others(image, middle, kPanelRed) == 0);
+      const render::PixelRect inner{place.x + 30, place.y + 30, place.width - 60, place.height - 60};
+      CHECK(others(image, inner, kPanelRed) == 0);
       CHECK(image.at(place.x, place.y) == render::kWhite);
     }
     CHECK(!places[0].overlaps(places[1]));

@@ -70,10 +70,10 @@ std::map<std::uint32_t, int> colours(const render::Image& image) {
 
 /// Pixels of exactly this colour below the title and above the legend.
 int pixels_of(const render::Image& image, render::Rgba c) {
-  render::Image middle(image.width(), image.height() - 180);
-  for (int y = 0; y < middle.height(); ++y)
-    for (int x = 0; x < image.width(); ++x) middle.at(x, y) = image.at(x, y + 90);
-  return colours(middle)[(c.r << 16U) | (c.g << 8U) | c.b];
+  render::Image inner(image.width(), image.height() - 180);
+  for (int y = 0; y < inner.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) inner.at(x, y) = image.at(x, y + 90);
+  return colours(inner)[(c.r << 16U) | (c.g << 8U) | c.b];
 }
 
 cases::Body made(const Mesh& mesh) {

@@ -113,9 +113,9 @@ class Motions {
       case 6:
         return graze();
       default: {
-        const Pose middle = pose(uniform(random_, 0.2, 0.8) * size);
+        const Pose between = pose(uniform(random_, 0.2, 0.8) * size);
         return Motion::key_frames(std::array<Motion::KeyFrame, 4>{
-            {{0, start}, {0.25, middle}, {0.7, pose(0.5 * size)}, {1, pose(0.1 * size)}}});
+            {{0, start}, {0.25, between}, {0.7, pose(0.5 * size)}, {1, pose(0.1 * size)}}});
       }
     }
   }

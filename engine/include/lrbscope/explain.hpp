@@ -146,7 +146,7 @@ struct SeparatingPlane {
 };
 
 /// Two boxes that the query compared and found disjoint.
-struct PartedBoxes {
+struct SeparatingBoxes {
   BoxPair pair;  ///< the nodes of these boxes; for boxes of faces, their leaves
   std::array<WorldBox, 2> boxes;
   bool of_faces = false;  ///< both are boxes of faces
@@ -163,7 +163,7 @@ struct WalkExplanation {
   std::uint64_t certain = 0;      ///< pairs among these that are decided in floats
   /// If the bodies do not intersect: the closest two boxes among those found disjoint along a face normal.
   /// Nodes rejected only along a cross product of edges are not considered.
-  std::optional<PartedBoxes> nearest_boxes;
+  std::optional<SeparatingBoxes> nearest_boxes;
   std::optional<SeparatingPlane> plane;  ///< for separate bodies: the best separating plane found; often none
                                          ///< exists
   /// If the bodies do not intersect: the closest pairs among those tested one by one, closest first, at most
