@@ -13,7 +13,7 @@ int main(int argc, char** argv) try {
   std::cout << built.real_face_count() << " real faces, " << built.region_count() << " regions, "
             << built.outermost_faces().size() << " faces in the outermost wrapper\n";
 
-  // Exact proof: cells are closed, and faces intersect in nothing but their common edges and vertices.
+  // Exact proof: cells are closed, and faces intersect only in their common edges and vertices.
   const lrb::ValidateReport proof = lrb::validate(built);
   for (const std::string& violation : proof.violations) std::cerr << violation << "\n";
   if (!proof.valid) return 1;
@@ -23,7 +23,7 @@ int main(int argc, char** argv) try {
   lrb::save_lrb(built, argv[2]);
   const lrb::LrbRep body = lrb::load_lrb(argv[2]);
 
-  // The body and a copy of it. The relation stays exact; the pairs are those of wrappers near the bodies.
+  // The body and a copy of it. The relation stays exact; the pairs belong to wrappers near the bodies.
   const Eigen::AlignedBox3d box = lrb::world_box(body, {});
   const lrb::Pose pose_b = lrb::Pose::translation(0.4 * box.sizes());
   lrb::CollideRequest request;

@@ -20,7 +20,7 @@ int main(int argc, char** argv) try {
     poses_b.push_back(lrb::Pose::rotation({0, 0, 1}, angle, {r * std::cos(angle), r * std::sin(angle), 0}));
   }
 
-  // All cores. Results are in the order of the poses, and the same for any number of threads.
+  // All cores. Results are in the order of the poses and do not depend on the number of threads.
   const lrb::CollideAnswers batch = lrb::collide(a, pose_a, b, poses_b);
 
   // One thread. The workspace keeps its memory, so that later queries do not allocate. The result stays in

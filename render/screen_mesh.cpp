@@ -28,7 +28,7 @@ constexpr double kGuard = 8;
 constexpr double kEdgesFull = 9, kEdgesGone = 1.5;
 /// ... where their width is reduced to this share.
 constexpr double kMinWidth = 0.6;
-/// Factor by which the shading of translucent faces is weaker than that of opaque ones.
+/// Factor by which translucent faces are shaded more weakly than opaque ones.
 constexpr double kSoften = 0.6;
 /// Margin for the soft border of lines, pixels.
 constexpr double kRim = 1;

@@ -78,7 +78,7 @@ inline constexpr const char* kLineFragment = R"(#version 330 core
 in vec2 v_at;
 flat in vec4 v_shape;
 flat in vec4 v_colour;
-uniform int ghost;  // the hidden part of what is on top: lines thinner and dashed, points as rings
+uniform int ghost;  // the hidden part of overlays: lines thinner and dashed, points as rings
 out vec4 colour;
 void main() {
   float length_ = v_shape.x;

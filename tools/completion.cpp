@@ -471,8 +471,7 @@ struct Variable {
 constexpr std::array kVariables = {
     Variable{"LRB_FONT", "Font file for text in pictures, if DejaVu Sans is not installed."},
     Variable{"LRB_SIMD",
-             "avx2 or baseline: use the kernels of an older processor than this machine's. Results do not "
-             "change."},
+             "avx2 or baseline: use the kernels for older processors. Results do not change."},
     Variable{"LRBSCOPE_METHODS", "Folder with the worker programs of other engines."},
     Variable{"NO_COLOR", "If set, progress is drawn without colours."}};
 

@@ -70,7 +70,7 @@ struct GzClose {
 
 [[noreturn]] void fail_to_read(const std::string& path, const std::string& why) {
   throw InputError(printable_name(path) + ": cannot read the trace: " + why +
-                   "; give a trace.json or trace.json.gz");
+                   "; pass a trace.json or trace.json.gz");
 }
 
 /// Maximum decompressed size of a compressed file. Traces compressed at gzip's highest level expand 15 times;

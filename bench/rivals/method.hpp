@@ -173,7 +173,7 @@ inline MethodEntry absent(const char* name, const char* title, const char* packa
 }
 
 /// Returns the methods linked into this program, in their order. A file of this folder defines
-/// `std::vector<MethodEntry> NAME_methods()`, and rivals.cmake lists it.
+/// `std::vector<MethodEntry> NAME_methods()` and is listed in the .cmake file next to it.
 std::vector<MethodEntry> registered_methods();
 
 /// Returns the method of that name. Throws InputError if it is unknown or absent.

@@ -12,8 +12,8 @@ namespace lrb::bench {
 namespace {
 
 constexpr const char* kHowToRead =
-    "Down is faster, left is more accurate; the left end is no error. The Pareto frontier joins the points that no other beats "
-    "in both. The tooltip of a point has all of its numbers; a click leads to the panel's scene, with trace and pictures.";
+    "Down is faster, left is more accurate; an error of 0 is at the left end. The Pareto frontier joins the points that "
+    "are beaten in both by none. The tooltip of a point has all of its numbers; a click leads to the panel's scene, with trace and pictures.";
 
 ChartText of_pairs() {
   return {
@@ -24,13 +24,13 @@ ChartText of_pairs() {
       "max deviation: proven",
       {{"Axes", kHowToRead},
        {"Error",
-        "The Hausdorff distance between the exact contact region and that of the answer, over the larger body's diagonal, "
-        "averaged over poses; for methods with boolean answers, the share of wrong ones. Contact where there is none, or none "
-        "where there is, counts as one diagonal, and so does a missing answer."},
+        "The Hausdorff distance between the exact and the reported contact region, over the larger body's diagonal, "
+        "averaged over poses; for methods with boolean answers, the share of wrong ones. A false contact, a missed one and a "
+        "missing answer count as one diagonal each."},
        {"Proof",
         "Only lrbscope proves its answers. Exact ones have no deviation; approximate ones come with a bound (a cross at the "
-        "same height) on the sum of the distances from both bodies where listed faces intersect. This is another length than the "
-        "error on the axis: where surfaces graze each other, a small deviation moves the contact far. Column \"off\" is the "
+        "same height) on the sum of the distances from both bodies where listed faces intersect. It differs from the error on "
+        "the axis: at a tangential contact, a small deviation moves the contact far. Column \"off\" is the "
         "measured deviation."}}};
 }
 

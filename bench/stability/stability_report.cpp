@@ -141,11 +141,11 @@ std::vector<report::Text> texts_of_numbers(Quantity quantity) {
           : "The time of impact, from 0 to 1: B moves in a straight line to its pose and beyond.";
   return {
       {"Query", std::string(query) + " Every method gets the same bodies, in double precision. Families and "
-                                     "difficulties are those of the page on pairs."},
+                                     "difficulties are the same as on the page on pairs."},
       {"Verdicts",
        "By rational arithmetic on the same doubles: brute force over all pairs of triangles, or over all separating planes of "
-       "convex bodies. An answer is wrong if it reports contact where there is none or the reverse; if a certified interval "
-       "does not contain the number; or if any other answer is off by more than a millionth of the bodies' size, or a "
+       "convex bodies. An answer is wrong if it reports a false contact or misses one; if a certified interval "
+       "does not contain the number; or if any other answer has an error of more than a millionth of the bodies' size, or a "
        "thousandth of the motion. Refused: 2D bodies, bodies of too many faces for rational arithmetic and, for depths, "
        "bodies that are not convex."},
       {"Limits",

@@ -59,7 +59,7 @@ inline constexpr double kLargestMoved = 0x1p1020;
 
 /// Directions are deduplicated on a grid of 1 / kDirectionGrid (about 0.6 degrees).
 inline constexpr double kDirectionGrid = 100;
-/// Number of directions tried: those of largest contact area, and those of largest face area.
+/// Number of directions tried: by largest contact area, and by largest face area.
 inline constexpr unsigned kDirectionsInContact = 32, kDirectionsOfFaces = 16;
 /// Number of lengths tried in each direction, and in the requested direction of the depth along it.
 inline constexpr int kDirectionSamples = 16, kWaySamples = 128;

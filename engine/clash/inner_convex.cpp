@@ -376,7 +376,7 @@ class Inflation {
 }  // namespace
 
 std::optional<ConvexPoints> shrunken_body(const UnitBody& body, const Vector3d& inside) {
-  // The running time is quadratic, so large bodies are skipped.
+  // Skip large bodies: the running time is quadratic.
   if (static_cast<double>(body.points.size()) * static_cast<double>(body.triangles.size()) > kMaxConvexWork)
     return std::nullopt;
   // Reject bodies that are clearly not convex, before the expensive proof.

@@ -317,7 +317,7 @@ class CutSurface {
   }
 
   /// With a simple face among the triangles, the edge is cut exactly where it intersects the other surface,
-  /// so that parts and samples have the same numbers.
+  /// so that the numbers of parts and samples agree.
   void join_beside(std::span<const EdgeUse> uses, const exact::RationalPoint& p, std::size_t part) {
     const std::uint32_t first = node_beside(uses[0], p, part);
     for (const EdgeUse& use : uses) nodes_.join(first, node_beside(use, p, part));

@@ -81,7 +81,7 @@ std::string read_file(const std::string& path, std::uint64_t most) {
   if (!kind.empty())
     cannot_read(
         path, "found " + std::string(kind) + ", expected a file" +
-                  (kind == "a directory" ? "; give a file in it" : "; copy its contents to a regular file"));
+                  (kind == "a directory" ? "; name a file in it" : "; copy its contents to a regular file"));
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) {
     const int reason = errno;

@@ -26,7 +26,7 @@ inline constexpr double kSimplexCost = 0x1p-40;
 inline constexpr double kMeasureAgain = 1e-6;
 
 /// Maximum deviation from orthonormality of a node's axes after rounding to float (largest row sum;
-/// dimensionless): 8 u, u = 2^-24, of which rounding uses 5.2 u. Larger: kKernelRounding does not hold.
+/// dimensionless): 8 u, u = 2^-24; rounding uses 5.2 u of it. Larger: kKernelRounding does not hold.
 /// Smaller: nodes lose their own axes.
 inline constexpr double kFrameDefect = 0x1p-21;
 
@@ -67,7 +67,7 @@ inline constexpr float kFarEdgeRounding = 0x1p-21f;
 /// Error bound of the displacement of a swept node or simplex, which is rounded to float and rotated twice
 /// (see kKernelRounding), relative to the sum of its coordinates' magnitudes.
 inline constexpr float kSweepRounding = 0x1p-16f;
-/// Factor for sizes that are rounded to float and must not become smaller: 16 u, of which rounding uses 1 u
+/// Factor for sizes that are rounded to float and must not become smaller: 16 u; rounding uses 1 u of it
 /// and the arithmetic before it little more.
 inline constexpr float kFloatUp = 1 + 0x1p-20f;
 /// Added to bounds so that float underflow (an absolute error of 2^-149 per operation) cannot affect a

@@ -250,7 +250,7 @@ PairDistance distance_of_simplices(const double* const* a, const double* const* 
 
 int compare_distance(const double* const* a, const double* const* b, int n, double distance) {
   const Pair pair(a, b, n, distance);
-  // Compare squares: both are non-negative, so the order is that of the distances.
+  // Compare squares: both are non-negative, so the order is the same.
   const cpp_int whole = pair.to_integer(distance);
   const Fraction &square = pair.nearest().square, given{whole * whole, 1};
   return less(square, given) ? -1 : less(given, square) ? 1 : 0;

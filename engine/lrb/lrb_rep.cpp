@@ -153,7 +153,7 @@ bool LrbRep::overlaps_itself() const {
   // For bodies with regions the builder has determined the flag.
   if (region_count() > 0) return d_.self_intersecting;
   std::call_once(overlap_->once, [this] {
-    // Without regions there are no pseudo faces, so the face arrays are those of the mesh.
+    // Without regions there are no pseudo faces, so the face arrays equal the mesh's.
     Mesh mesh;
     mesh.dim = d_.dim;
     mesh.vertices = d_.vertices;

@@ -165,7 +165,7 @@ class Validator {
     judge(soup, pairs);
   }
 
-  /// Returns true if a vertex has so many simplices that testing all pairs of them takes too long.
+  /// Returns true if testing all pairs of simplices at some vertex takes too long.
   bool has_hubs() const {
     if (rep_.dim() == 2) return false;
     std::vector<std::uint32_t> degree(rep_.vertices().size(), 0);
@@ -315,7 +315,7 @@ class Validator {
     // Volume: that of the boundary must equal that of the included cells, up to rounding.
     if (std::abs(enclosed_volume(rep_, as_is, reversed) - volume) >
         kVolumeRounding * std::abs(report_.volume_outer))
-      violation(name + " encloses a volume that differs from that of its cells");
+      violation(name + " encloses another volume than its cells");
     // A self-intersecting solid has vertices in its interior that are outside by parity.
     if (!rep_.self_intersecting()) check_enclosure(boundary, touched, name, random);
   }

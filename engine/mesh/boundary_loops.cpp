@@ -88,7 +88,7 @@ class LoopFinder {
   void pair_sides(std::size_t i, std::size_t end) {
     const std::uint32_t s = sides_[i].side, t = sides_[end - 1].side;
     if (end - i == 1) open_.push_back(s);
-    // Twins are exactly two sides in opposite directions. Non-manifold and flipped edges have none.
+    // Twins are exactly two sides in opposite directions. Non-manifold and flipped edges have no twins.
     if (end - i != 2 || start(s) == start(t)) return;
     twin_[s] = t;
     twin_[t] = s;

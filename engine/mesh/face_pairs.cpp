@@ -67,7 +67,7 @@ FacePairs::FacePairs(const Mesh& mesh, const std::vector<FaceUse>& use)
   }
 }
 
-/// Returns true if AABBs overlap far more boxes than those of their neighbours, estimated from a sample
+/// Returns true if AABBs overlap many boxes of faces other than their neighbours, estimated from a sample
 /// across the mesh. This happens for long narrow faces close to each other, and for large faces close in
 /// front of each other.
 bool FacePairs::boxes_are_crowded() const {
@@ -156,7 +156,7 @@ std::uint32_t FacePairs::build_units(std::vector<Unit>& units, std::size_t first
 
 std::uint32_t FacePairs::build_hub(std::vector<FaceId>& faces, std::size_t first, std::size_t last) {
   const std::uint32_t index = add_node();
-  // The rule for leaves is that of build_units().
+  // Same rule for leaves as in build_units().
   const bool is_leaf = last - first == 1 || (last - first <= kLeafFaces &&
                                              std::none_of(faces.begin() + static_cast<std::ptrdiff_t>(first),
                                                           faces.begin() + static_cast<std::ptrdiff_t>(last),

@@ -188,7 +188,7 @@ class Pieces {
     std::vector<Triangle> triangles;
     std::optional<Ring> ring;
     if (use == FaceUse::convex) {
-      // Convex: triangles of all sizes, whose boxes overlap less than those of a fan.
+      // Convex: triangles of all sizes, whose boxes overlap less than a fan's.
       triangulate_by_halves(mesh_, mesh_.face(f), triangles);
       ring.emplace(mesh_.face(f));
     } else {

@@ -191,7 +191,7 @@ inline void to_world(const KernelMap& map, const Scaled& node, const LeafBlock& 
 }
 
 /// Transforms the corners of two leaves to the world's axes, relative to the origin of A's leaf. World axes
-/// do not distort lengths. Errors are as in between(), with corners of A rotated like those of B, but without
+/// do not distort lengths. Errors are as in between(), with corners of A rotated as B's are, but without
 /// an offset.
 inline Between corners_of(const TreeKernel& k, const TreeNode& a, const TreeNode& b, const Skewed&,
                           Corners& of_a, Corners& of_b) {

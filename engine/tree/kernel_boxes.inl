@@ -107,7 +107,7 @@ inline float sweep(const TreeKernel& k, const TreeNode& b, const Columns& a_colu
   return __builtin_fabsf(parts[0]) + __builtin_fabsf(parts[1]) + __builtin_fabsf(parts[2]);
 }
 
-/// Returns the offset from the origin of A's node to that of B's, on A's axes.
+/// Returns the offset from the origin of A's node to the origin of B's, on A's axes.
 inline Float4 offset_between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
   // Double precision: the origins may be large and nearly equal, so their difference would cancel in float.
   const Double4* m = reinterpret_cast<const Double4*>(k.m);

@@ -223,7 +223,7 @@ double stretch(const Pose& pose) {
 
 namespace {
 
-/// B's rotation relative to A, with its deviation and that of A's own matrix from rotations.
+/// B's rotation relative to A, with the deviations of it and of A's own matrix from rotations.
 struct RelativeTurn {
   Eigen::Matrix3d m;
   double defect_a, defect_m;

@@ -299,7 +299,7 @@ void bind_numbers(BodyClass& c) {
       "int: faces of the LRB-rep, including pseudo faces.");
   c.def_property_readonly(
       "region_count", [](const Body& b) { return b.rep().region_count(); },
-      "int: regions of the LRB-rep; 0 if it has none.");
+      "int: number of regions of the LRB-rep.");
   c.def_property_readonly(
       "layer_count", [](const Body& b) { return b.rep().layer_count(); },
       "int: passes of the build that made regions.");

@@ -384,7 +384,7 @@ void bind_questions(SceneClass& c) {
         py::arg("contacts") = no, py::arg("interiors_overlap") = no, py::arg("max_pairs") = no,
         "collide(other=None, pose=None, *, mode='all', contacts=False, interiors_overlap=False, "
         "max_pairs=0)\n\n"
-        "Finds all pairs of bodies that intersect or of which one contains the other, in "
+        "Finds all pairs of bodies that intersect or contain one another, in "
         "ascending order of their keys. For the\n"
         "options see collide(). Returns Meetings.");
   c.def("any_meet", &any_meet, py::arg("other") = no, py::arg("pose") = no,

@@ -83,7 +83,7 @@ Mesh quad_box(const Point3& low = {0, 0, 0}, const Point3& high = {1, 1, 1});  /
 /// triangles. Cells that share only an edge or vertex make it non-manifold.
 Mesh voxels(int nx, int ny, int nz, const std::function<bool(int, int, int)>& solid, bool quads = false);
 Mesh l_shape();                        ///< three unit cells in an L
-Mesh comb(int teeth, int length = 4);  ///< a row of cells with a tooth of `length` cells on every second one
+Mesh comb(int teeth, int length = 4);  ///< cells in a row with a tooth of `length` cells on every second one
 Mesh box_with_void();  ///< 3 x 3 x 3 cells without the central one: two components, one a void
 
 // Round bodies.

@@ -34,7 +34,7 @@ void reject_folder_of_run(const std::string& folder);
 /// Meaning of the colours: box tests if both runs have recorded pairs of nodes, else face tests.
 render::FrameSpec::ColourBy common_colours(const Runs& runs);
 
-/// Draws one view of a run after an event. `framing`: what the camera shows.
+/// Draws one view of a run after an event. `framing`: the content of the picture.
 render::Panel panel_after(const run::RecordedRun& recorded, render::FrameSpec frame, trace::EventId event,
                           const std::string& title, const run::Framing& framing,
                           const run::ProgressReport& progress);

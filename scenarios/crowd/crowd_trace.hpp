@@ -16,7 +16,7 @@ namespace lrb::crowd {
 /// follow each other, and each body has a track that shows its queries; the trace does not depend on the
 /// number of threads. On the wall clock, in microseconds, each thread has a track. A track for steps and one
 /// for the broad phase come first; counters are per step. The metadata contain the bodies' poses (by step and
-/// body, each as in pose files) for the first steps; the number of poses is limited to that of the query
+/// body, each as in pose files) for the first steps; the number of poses is limited as for the query
 /// slices kept. This suffices for replay_crowd().
 void write_crowd_trace(const spec::Crowd& crowd, const CrowdRun& run, trace::ByteSink& sink);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Models for export to other programs: points, lines and polygons, each with a colour and a row of numbers.
+/// Models for export to other programs: points, lines and polygons, each with a colour and numeric attributes.
 
 #include <bit>
 #include <cstdint>

@@ -166,7 +166,7 @@ class FigureJob {
       blocks_.push_back(std::move(block));
       views_.push_back({&view, std::move(shown_moments)});
     }
-    if (blocks_.empty()) throw InputError("a figure of contacts needs a contact, and these panels have none");
+    if (blocks_.empty()) throw InputError("figure of contacts: expected a panel with a contact, found none");
     letter();
   }
 

@@ -151,7 +151,7 @@ Arranged arrange(const Block& block, const LayoutOptions& options) {
     if (layouter.panel_width() < kMinPanel)
       throw InputError("--columns " + std::to_string(options.columns) + ": leaves panels of less than " +
                        length_text(kMinPanel) + " in a figure of " + length_text(options.width) +
-                       ": ask for fewer, or a larger --width");
+                       "; use fewer columns or a larger --width");
     return layouter.arrange();
   }
   std::optional<Arranged> best;
@@ -193,7 +193,7 @@ double place_legend(const std::vector<render::LegendItem>& legend, const LayoutO
     if (widths.back() > room)
       throw InputError("the legend's entry \"" + item.text + "\" is wider than the figure of " +
                        length_text(o.width) +
-                       ": ask for a smaller --font-size, a larger --width, or --no-legend");
+                       "; use a smaller --font-size, a larger --width, or --no-legend");
   }
   const double gap = 1.2 * em;
   for (std::size_t first = 0, end = 0; first < legend.size(); first = end) {

@@ -143,7 +143,7 @@ std::vector<EventId> by_events(const trace::Trace& trace, const std::vector<std:
 
 Chosen choose(const run::RecordedRun& recorded, const Choice& choice) {
   const trace::Trace& trace = *recorded.trace;
-  if (trace.events.empty()) throw InputError("a figure needs a run with events, and this one has none");
+  if (trace.events.empty()) throw InputError("figure: expected a run with events, found one without");
   const std::size_t panels = choice.panels > 0 ? choice.panels : recorded.reps.size() == 1 ? 6 : 4;
   Chosen chosen;
   std::vector<EventId>& out = chosen.events;

@@ -25,7 +25,7 @@ namespace lrb::golden {
 
 /// Parts of a run that are compared with the approved one.
 enum class Level : std::uint8_t {
-  answers,   ///< for each step: relation, pairs, overlap of interiors, and what an approximate query proved
+  answers,   ///< for each step: relation, pairs, overlap of interiors, and proofs of an approximate query
   events,    ///< bodies, request, poses, every event and every counter
   pictures,  ///< frames, within a tolerance
 };

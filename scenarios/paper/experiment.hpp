@@ -41,7 +41,7 @@ struct PaperExperiment {
   bool collides() const;
 };
 
-/// Reads an experiment. Throws InputError: "file:line:column: pointer: what is wrong, what is known".
+/// Reads an experiment. Throws InputError: "file:line:column: pointer: fault, valid values".
 PaperExperiment parse_experiment(const std::string& text, const std::string& file);
 /// Reads a shipped experiment by its name, or one from a file.
 PaperExperiment open_experiment(const std::string& name_or_path);

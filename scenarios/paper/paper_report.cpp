@@ -89,9 +89,8 @@ std::string heat_caption(const PaperPair& pair, const CloseUp& easiest, const Cl
   return "Face tests of each face of " + pair.a.name + " and of " + pair.x.name +
          " by the paper's recursion, in the easiest of their " + render::group_digits(collisions) +
          " collisions (" + collision_text(easiest) + ") and in the hardest (" + collision_text(hardest) +
-         "). Each body stands alone, seen from where the other one is, as the wrapper that the last time "
-         "step "
-         "left of it: lids that stayed closed, and bare real faces. One logarithmic scale for all panels.";
+         "). Each body is drawn alone, seen from the other one, as its wrapper after the last time step: lids that "
+         "were not refined, and bare real faces. One logarithmic scale for all panels.";
 }
 
 std::string tree_caption(const PaperPair& pair, const CloseUp& c) {

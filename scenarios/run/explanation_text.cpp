@@ -222,7 +222,7 @@ std::string explanation_text(const WalkExplanation& e) {
         << e.depths[i].ended << "\n";
   out << "\npairs of leaves " << e.leaf_pairs << ", pairs of faces with overlapping boxes " << e.face_pairs
       << "; not separated by planes: " << e.left << ", about " << e.certain
-      << " of which are decided in floating point\n";
+      << " of them decided in floating point\n";
   if (!e.near.empty()) {
     out << "closest of these, for --pair:";
     for (const SimplexPair& p : e.near) out << " " << p.a << "," << p.b;

@@ -41,7 +41,7 @@ struct Explained {
 };
 
 /// Returns the results of explain_pair() for the pairs of real faces that these events compare, or that
-/// another engine got wrong, once for each step and pair, and those of explain_walk() for the steps without
+/// another engine got wrong, once for each step and pair, and explain_walk() for the steps without
 /// pairs. If there are too many pairs, contacts come first; others are evenly chosen. `command` explains
 /// other pairs, see ReportText::why. Returns null for a run of one body, and for requests that the complete
 /// query does not answer.

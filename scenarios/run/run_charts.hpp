@@ -25,7 +25,7 @@ bool was_measured(const trace::Trace& trace, Measured trace::StepResult::*what) 
 /// that narrowed them most often. Returns an empty list if nothing was measured.
 std::vector<report::Chart> measure_charts(const trace::Trace& trace);
 
-/// Returns the counters by region depth, and those of the regions with the most tests, for each body. Returns
+/// Returns the counters by region depth, and of the regions with the most tests, for each body. Returns
 /// an empty list for a run of one body.
 std::vector<report::Table> group_tables(const RecordedRun& run);
 

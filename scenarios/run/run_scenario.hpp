@@ -17,7 +17,7 @@ struct RunOutcome {
 
 /// Returns a recording with the settings for drawing its frames; both arguments must outlive it.
 RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& recording);
-/// Does the same for a run without a scenario.
+/// Returns it for a run without a scenario.
 RecordedRun recorded_run_of(const std::string& title, const std::string& purpose, const Recording& recording);
 
 /// Runs a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,

@@ -50,7 +50,7 @@ constexpr auto words_of(Crowd::Arrangement) {
 }
 
 /// Reads a crowd. `file` names it in messages; body files are relative to its folder. Throws InputError:
-/// "file:line:column: pointer: what is wrong, what is known".
+/// "file:line:column: pointer: fault, valid values".
 Crowd parse_crowd(const std::string& text, const std::string& file);
 
 /// Reads a shipped crowd by name, or a crowd from a file. Throws InputError.

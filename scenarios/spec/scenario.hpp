@@ -115,7 +115,7 @@ struct Scenario {
 };
 
 /// Reads a scenario. `file` names it in messages; body files are relative to its folder. Throws InputError:
-/// "file:line:column: pointer: what is wrong, what is known".
+/// "file:line:column: pointer: fault, valid values".
 Scenario parse_scenario(const std::string& text, const std::string& file);
 
 /// The largest integer that every JSON reader supports.

@@ -73,10 +73,10 @@ constexpr auto words_of(ClashReason) {
        {ClashReason::b_open, "B bounds no solid"},
        {ClashReason::a_overlaps, "A intersects itself"},
        {ClashReason::b_overlaps, "B intersects itself"},
-       {ClashReason::flat_face, "a face that meets the other body has no area in the world"},
+       {ClashReason::flat_face, "a face that intersects the other body has no area in the world"},
        {ClashReason::many_cells, "the other body cuts a face into too many cells"},
        {ClashReason::faces_coincide,
-        "faces coincide, and no point beside them is proved to be inside both"}});
+        "faces coincide, and no point beside them is proven to be inside both"}});
 }
 
 struct ClashRequest {

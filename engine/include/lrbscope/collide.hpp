@@ -189,7 +189,7 @@ struct CollideResult {
   std::vector<PairContactRecord> contacts;      ///< (|pairs|) if requested
   std::vector<ContactRegion> regions;           ///< connected groups of contacts, if requested
   std::array<std::vector<RegionId>, 2> opened;  ///< refined regions of A and of B, in order
-  /// 0 if the answer is exact. Otherwise the pairs are those of wrappers: where two of their faces intersect,
+  /// 0 if the answer is exact. Otherwise the pairs belong to wrappers: where two of their faces intersect,
   /// the distances to both bodies add up to at most this, in world units. The distance of unresolved bodies
   /// is at most this. Infinite: no level of detail was completed; the pair, if there is one, is one of the
   /// crossing pairs.

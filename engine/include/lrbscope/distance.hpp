@@ -2,8 +2,8 @@
 /// The distance of two bodies: an interval of doubles that is proven to contain the distance of their
 /// surfaces.
 ///
-/// As for collide(), the distance is that of the simplices whose corners are the doubles given by
-/// Pose::apply(), exactly. It is 0 if and only if the exact query finds an intersecting pair.
+/// As in collide(), bodies consist of the simplices whose corners are the doubles given by
+/// Pose::apply(), exactly. The distance is 0 if and only if the exact query finds an intersecting pair.
 ///
 /// Algorithm: best-first traversal of two BVHs (Quinlan, "Efficient Distance Computation between Non-Convex
 /// Objects", 1994). The distance of two boxes bounds that of their contents from below (Larsen, Gottschalk,
@@ -104,7 +104,7 @@ std::vector<DistanceResult> distances(const LrbRep& a, const Pose& pose_a, const
 
 /// Distance queries for two bodies that move little between queries. Starts with the pair of simplices that
 /// was closest or intersected before, reuses the relation if the surfaces cannot have intersected in between,
-/// and reuses separating planes of parts. Intervals are proven and as narrow as those of distance(). If
+/// and reuses separating planes of parts. Intervals are proven and as narrow as in distance(). If
 /// several pairs are equally close, or intersect, the witness may differ, and with it the relation of
 /// intersecting surfaces.
 class CoherentDistance {

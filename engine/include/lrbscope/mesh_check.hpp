@@ -85,7 +85,7 @@ struct MeshReport {
 
 /// Runs all checks. (To continue with the mesh, use CheckedMesh.) Self-intersections are found exactly with a
 /// box tree, only if requested, because they take longest. Faces without area are reported as zero_area_face
-/// only; what they touch is not a self-intersection. In 2D, vertices take the role of edges: each must end
+/// only; contacts with them are not self-intersections. In 2D, vertices take the role of edges: each must end
 /// one segment and start one.
 MeshReport check_mesh(const Mesh& mesh, bool self_intersections = true);
 

@@ -37,7 +37,7 @@ struct ValidateReport {
 
 /// Checks the invariants of an LRB-rep, weakest first:
 /// 1. Each region and the solid are closed, with volume >= 0 (up to rounding).
-/// 2. The volumes of solid and regions add up to that of the outermost wrapper.
+/// 2. The volumes of solid and regions add up to the outermost wrapper's volume.
 /// 3. No two faces of the complex intersect except in shared vertices and edges (the proof of embedding). A
 ///    face that touches a lid which hides it, from behind, is allowed and counted separately.
 /// 4. Each random wrapper state is closed, has the volume of its cells, and strictly contains the real

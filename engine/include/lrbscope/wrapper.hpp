@@ -127,7 +127,7 @@ std::string note_no_levels(const LrbRep& rep);
 /// closed or intersects itself.
 ///
 /// A region is included only together with all regions that it hides, so that the wrapper encloses the body.
-/// Enclosure requires that the LRB-rep is embedded (validate.hpp), as those of the builders are. A region
+/// Enclosure requires that the LRB-rep is embedded (validate.hpp), as the builders make it. A region
 /// without lids, such as a void, is never included.
 class WrapperLevels {
  public:

@@ -51,7 +51,7 @@ Mesh read_stl_binary(std::string_view bytes, std::string_view name);
 Mesh read_ply(std::string_view bytes, std::string_view name);
 Mesh read_off(std::string_view bytes, std::string_view name);
 
-/// Returns true if the size is that of a binary STL file: 84 bytes, plus 50 for each triangle in its header.
+/// Returns true if the size fits a binary STL file: 84 bytes, plus 50 for each triangle in its header.
 bool has_size_of_binary_stl(std::string_view bytes);
 
 /// Throws InputError unless the counts fit the engine's 32-bit indices.

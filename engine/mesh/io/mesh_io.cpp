@@ -145,7 +145,7 @@ void write_mesh(const Mesh& mesh, const std::string& path, std::span<const FaceC
   if (!face_colours.empty() && face_colours.size() != mesh.face_count())
     throw InputError(printable_name(path) + ": found " + std::to_string(face_colours.size()) +
                      " colours, expected " + std::to_string(mesh.face_count()) +
-                     ", the number of faces; give one for each or none");
+                     ", the number of faces; pass one for each face, or none");
   // The file appears atomically at commit().
   AtomicFile out(path);
   extension_of(path) == "ply" ? write_ply(mesh, face_colours, out) : write_obj(mesh, out);

@@ -87,7 +87,7 @@ inline Eigen::Matrix3d rotation(const Eigen::Vector3d& axis, double angle) {
   return Turn(angle, axis.cast<long double>()).toRotationMatrix().cast<double>();
 }
 
-/// Returns the smallest rotation that maps the direction of one vector to that of another; neither may be 0.
+/// Returns the smallest rotation that maps one vector's direction to another's; neither may be 0.
 /// Equal to Eigen's FromTwoVectors() unless they are opposite, without the singular value decomposition that
 /// takes seconds to compile.
 inline Eigen::Quaterniond turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
