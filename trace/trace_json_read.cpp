@@ -205,7 +205,7 @@ void read_node_pair(const TraceNode& args, Event& e) {
   work.box_tests = args.at("box tests").integer<std::uint8_t>();
   work.met = args.at("boxes that meet").integer<std::uint8_t>();
   if (end.step == NodeStep::leaves) {
-    work.rejected = args.at("parted by planes").integer<std::uint8_t>();
+    work.rejected = args.at("parted by planes").integer<std::uint8_t>();  // language: keep
     work.certain = args.at("certain").integer<std::uint8_t>();
   }
   if (work.met == 0 && !args.has("axis")) {

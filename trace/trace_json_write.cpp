@@ -461,7 +461,7 @@ class TraceWriter {
     write_number("box tests", work.box_tests);
     write_number("boxes that meet", work.met);
     if (end.step == NodeStep::leaves) {
-      write_number("parted by planes", work.rejected);
+      write_number("parted by planes", work.rejected);  // language: keep
       write_number("certain", work.certain);
     }
     if (engine_axis > 0)

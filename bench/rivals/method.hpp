@@ -101,7 +101,7 @@ struct MethodStyle {
 struct MethodInfo {
   std::string name;    ///< for the command line: "fcl"
   std::string title;   ///< display name with the version: "FCL 0.7.0, OBBRSS, double"
-  std::string remark;  ///< what it answers, and the options of the query
+  std::string remark;  ///< meaning of the answer, and the options of the query
   bool present = true;
   bool pairs = true;          ///< lists the pairs; false: only reports whether the surfaces intersect
   Says says = Says::nothing;  ///< what else it reports

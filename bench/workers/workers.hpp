@@ -63,7 +63,7 @@ void run_to_end(Job job);
 struct MethodColumn {
   std::string name;     ///< for the command line: "ours", "fcl"
   std::string title;    ///< display name: "FCL 0.7.0, OBBRSS, double"
-  std::string remark;   ///< what it answers, and the options of the query
+  std::string remark;   ///< meaning of the answer, and the options of the query
   bool present = true;  ///< false: not available when this was built
 };
 

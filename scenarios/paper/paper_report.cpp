@@ -196,7 +196,7 @@ report::Table table2(std::span<const ObjectRow> rows, std::size_t recursion) {
 std::vector<std::string> differences(const PaperReport& r, std::span<const ObjectRow> rows) {
   std::vector<std::string> out;
   if (!all_as_published(r))
-    out.push_back("Not the paper's objects, or not all of them: what is published is of its own.");
+    out.push_back("Not all objects are the paper's, so the published numbers are for others.");
   const RecursionRow &first = rows.front().recursions[0], &last = rows.back().recursions[0];
   std::string over;
   for (const ObjectRow& row : rows)

@@ -84,7 +84,7 @@ TEST_CASE("clash probe: an upper bound that no translation proves is reported as
   CHECK(reported.of_depth.back().upper == result.depth->upper);
 }
 
-TEST_CASE("clash probe: of bodies that are apart the distance is told, and of those that touch, nothing") {
+TEST_CASE("clash probe: separate bodies report their distance, touching bodies report no bounds") {
   const LrbRep box = closed(shapes::box({0, 0, 0}, {1, 1, 1}));
   ClashHistory apart, touching;
   const ClashResult gap = watched(box, box, Pose::translation({1.5, 0.25, 0.25}), apart);

@@ -111,7 +111,7 @@ TEST_CASE("clash: boxes that overlap by a known amount") {
   }
 }
 
-TEST_CASE("clash: kinds of touching, apart, and within a clearance") {
+TEST_CASE("clash: touching, separate, and within a clearance") {
   const Mesh a = shapes::box();
   const auto kind = [&](const Vector3d& at, double clearance = 0) {
     ClashRequest request;
@@ -297,7 +297,7 @@ Mesh random_convex(RandomEngine& random, int which) {
 
 }  // namespace
 
-TEST_CASE("clash: convex pairs against all facets of their difference, in rational arithmetic") {
+TEST_CASE("clash: convex pairs against all facets of their Minkowski difference, in rational arithmetic") {
   RandomEngine random(17);
   int overlap = 0;
   const int pairs = 40 * share();
@@ -404,7 +404,7 @@ double cells_volume(const Cells& a, const Cells& b, const Vector3d& at) {
 
 }  // namespace
 
-TEST_CASE("clash: bodies of cells, not convex: intervals hold depth and volume") {
+TEST_CASE("clash: non-convex bodies of cells: intervals contain depth and volume") {
   RandomEngine random(19);
   int overlap = 0, found = 0;
   for (int i = 0; i < 60 * share(); ++i) {
@@ -510,7 +510,7 @@ void look_for_counterexamples(RandomEngine& random, const LrbRep& a, const Pose&
 
 }  // namespace
 
-TEST_CASE("clash: bodies of all shapes: nothing that the answers rule out is found") {
+TEST_CASE("clash: bodies of all shapes: sampling finds no contradiction to the intervals") {
   RandomEngine random(20);
   int overlap = 0;
   for (int i = 0; i < 8 * share(); ++i) {
@@ -600,7 +600,7 @@ TEST_CASE("clash: round solids have narrow depths, the same in more faces") {
   compare(shapes::torus(12, 8), shapes::torus(10, 6), 0.9);
 }
 
-TEST_CASE("clash: anywhere, at any size") {
+TEST_CASE("clash: answers do not depend on position and scale") {
   const LrbRep a = closed(shapes::box()), b = closed(shapes::box({0, 0, 0}, {1, 1, 1}));
   for (const double scale : {1e-100, 1e-3, 1.0, 1e60, 1e100}) {
     CAPTURE(scale);
@@ -621,7 +621,7 @@ TEST_CASE("clash: anywhere, at any size") {
   check_holds(ask(a, b, Pose{mirror.r, {1.25, 0, 0}}).volume, 0.75, 1e-11);
 }
 
-TEST_CASE("clash: what has no inside, and what cannot be asked") {
+TEST_CASE("clash: open bodies and invalid requests") {
   const LrbRep a = closed(shapes::box()),
                open = LrbRep::without_regions(shapes::open_cylinder(8), false, false);
   const ClashResult r = ask(a, open);

@@ -54,7 +54,7 @@ bool overlap_after(const LrbRep& a, const LrbRep& b, const Pose& pose_b, const V
 
 }  // namespace
 
-TEST_CASE("the clearance of a point is its distance to all triangles, and never more") {
+TEST_CASE("the clearance of a point is at most its distance to all triangles") {
   RandomEngine random(41);
   for (const Mesh& mesh : {shapes::bumpy_sphere(2, 7, 0.3), shapes::torus(12, 8), shapes::comb(3),
                            shapes::scaled(shapes::box(), 1e-3)}) {
@@ -71,7 +71,7 @@ TEST_CASE("the clearance of a point is its distance to all triangles, and never 
   }
 }
 
-TEST_CASE("all translations shorter than what is proved leave an overlap, and little more does not") {
+TEST_CASE("all translations shorter than the proven depth leave an overlap, slightly longer ones need not") {
   RandomEngine random(42);
   const struct {
     LrbRep a, b;
@@ -109,7 +109,7 @@ TEST_CASE("all translations shorter than what is proved leave an overlap, and li
   }
 }
 
-TEST_CASE("without a point of both bodies nothing is proved") {
+TEST_CASE("no depth is proven without a point inside both bodies") {
   const LrbRep box = closed(shapes::box());
   Pair seen(box, box, Pose::translation({0.5, 0, 0}));
   const SurfaceDistance a(seen.bodies.body[0]), b(seen.bodies.body[1]);

@@ -91,7 +91,7 @@ void check_coarse(const PosedScene& s, const BruteForceResult& truth, QueryConte
 
 }  // namespace
 
-TEST_CASE("any affine maps: answers are those of brute force, in all modes") {
+TEST_CASE("affine maps: all modes agree with brute force") {
   RandomEngine random(11);
   int in_contact = 0, apart = 0, by_kind[test::kMapKinds] = {};
   for (const int dim : {3, 2}) {
@@ -113,7 +113,7 @@ TEST_CASE("any affine maps: answers are those of brute force, in all modes") {
   for (const int met : by_kind) CHECK(met > 5);
 }
 
-TEST_CASE("any affine maps: coherent queries while the bodies move") {
+TEST_CASE("affine maps: coherent queries of moving bodies") {
   RandomEngine random(12);
   int in_contact = 0;
   for (int i = 0; i < 200; ++i) {
@@ -137,7 +137,7 @@ TEST_CASE("any affine maps: coherent queries while the bodies move") {
   CHECK(in_contact > 400);
 }
 
-TEST_CASE("contact normals point from A to B, however bodies are mirrored or sized") {
+TEST_CASE("contact normals point from A to B for mirrored and scaled bodies") {
   for (const double size : {1.0, 1e-120, 1e120})
     for (const double mirror_a : {1.0, -1.0})
       for (const double mirror_b : {1.0, -1.0}) {
@@ -162,7 +162,7 @@ TEST_CASE("contact normals point from A to B, however bodies are mirrored or siz
       }
 }
 
-TEST_CASE("a plane body turned over is a mirrored one, whatever its matrix does to z") {
+TEST_CASE("a 2D body that is flipped over is mirrored, whatever its matrix does to z") {
   const LrbRep box = closed(shapes::polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}));
   CollideRequest request;
   request.contacts = request.interiors_overlap = true;
@@ -221,7 +221,7 @@ std::vector<Kind> kinds() {
 
 }  // namespace
 
-TEST_CASE("any affine map: no more node pairs than a rotation of the mapped mesh needs") {
+TEST_CASE("an affine map needs no more node pairs than a rotation of the mapped mesh") {
   const Mesh mesh_a = shapes::bumpy_sphere(4, 1), mesh_b = shapes::torus(60, 30);
   for (const Kind& kind : kinds())
     for (const bool on_a : {false, true}) {

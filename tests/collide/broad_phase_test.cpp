@@ -45,7 +45,7 @@ std::vector<BodyPair> all_pairs(const std::vector<Box>& boxes) {
 
 }  // namespace
 
-TEST_CASE("a world box is exactly that of all vertices") {
+TEST_CASE("a world box is exactly the box of all vertices") {
   RandomEngine random(1);
   const Mesh meshes[] = {shapes::tetrahedron(),
                          shapes::box(),
@@ -78,7 +78,7 @@ TEST_CASE("a world box is exactly that of all vertices") {
   }
 }
 
-TEST_CASE("pseudo faces and what is left of the last step do not change a world box") {
+TEST_CASE("pseudo faces and the previous step do not change a world box") {
   const LrbRep rep = build_lrb(shapes::bumpy_sphere(3, 5));
   REQUIRE(rep.region_count() > 0);
   ExtremeVertices last;
@@ -86,7 +86,7 @@ TEST_CASE("pseudo faces and what is left of the last step do not change a world 
     check_box(rep, Pose::rotation({1, 2, 3}, i < 90 ? 0.02 * i : 1.9 * i, {0.01 * i, 0, 0}), &last);
 }
 
-TEST_CASE("a large body's world box comes from its tree") {
+TEST_CASE("a large body's world box is computed from its tree") {
   const LrbRep rep = LrbRep::without_regions(shapes::bumpy_sphere(6, 1), true, false);
   REQUIRE(rep.vertices().size() > 40'000);
   ExtremeVertices last;
@@ -100,7 +100,7 @@ TEST_CASE("a large body's world box comes from its tree") {
   }
 }
 
-TEST_CASE("a body that may leave the range of doubles meets every box") {
+TEST_CASE("the box of a body that may leave the range of doubles intersects every box") {
   const LrbRep rep = LrbRep::without_regions(shapes::box(), true, false);
   Pose pose;
   pose.r *= 1e308;
@@ -111,7 +111,7 @@ TEST_CASE("a body that may leave the range of doubles meets every box") {
   CHECK(all_pairs(boxes).size() == 1);
 }
 
-TEST_CASE("sort and sweep finds the pairs of boxes that all pairs find, step after step") {
+TEST_CASE("sort and sweep finds the same pairs of boxes as brute force in every step") {
   RandomEngine random(2);
   for (const int dim : {2, 3}) {
     for (int round = 0; round < 20; ++round) {
@@ -142,7 +142,7 @@ TEST_CASE("sort and sweep finds the pairs of boxes that all pairs find, step aft
   }
 }
 
-TEST_CASE("boxes that hardly move cost hardly any swaps; the axis follows those that line up") {
+TEST_CASE("slow boxes cost few swaps; the axis changes when boxes line up") {
   SweepAndPrune sweep;
   std::vector<Box> boxes;
   for (int i = 0; i < 200; ++i) {

@@ -68,7 +68,7 @@ class Player {
 
 }  // namespace
 
-TEST_CASE("lists that pay are made again and again") {
+TEST_CASE("caches that save time are made repeatedly") {
   const Count c = Player().play({10, 15, 60, 2, 8, 8}, 1000);
   CHECK(c.scratch < 20);
   CHECK(c.lists[0] > 90);
@@ -76,7 +76,7 @@ TEST_CASE("lists that pay are made again and again") {
   CHECK(c.time < 0.45 * 1000 * 10);
 }
 
-TEST_CASE("the kind of list is chosen that is cheaper") {
+TEST_CASE("the cheaper kind of cache is chosen") {
   // B turns back so often that stretches break, but stays near one place.
   const Count c = Player().play({10, 15, 30, 2, 1, 200}, 2000);
   CHECK(c.from_cache > 1600);
@@ -84,7 +84,7 @@ TEST_CASE("the kind of list is chosen that is cheaper") {
   CHECK(c.time < 0.4 * 2000 * 10);
 }
 
-TEST_CASE("no list is for a longer way than some of the body, and none is where that is but a few steps") {
+TEST_CASE("a cache covers a limited motion, and none is made if that is only a few steps") {
   for (const double step : {1e-4, 1e-3, 1e-2, 1e-1, 1.0}) {
     CachePolicy policy;
     int lists = 0;
@@ -103,7 +103,7 @@ TEST_CASE("no list is for a longer way than some of the body, and none is where 
   }
 }
 
-TEST_CASE("lists that do not pay are rarely tried") {
+TEST_CASE("caches that do not save time are rarely tried") {
   for (const bool on_course : {true, false}) {
     const Count c = Player().play({10, 40, 40, 9, 3, 3, on_course}, 2000);
     CHECK(c.lists[0] + c.lists[1] < 40);
@@ -112,7 +112,7 @@ TEST_CASE("lists that do not pay are rarely tried") {
   }
 }
 
-TEST_CASE("lists are rarely tried where jumps end each of them too early") {
+TEST_CASE("caches are rarely tried if jumps invalidate each of them early") {
   PolicyScene scene{10, 30, 30, 5, 8, 8};
   CHECK(Player().play(scene, 2000).time < 2000 * 10);  // they would pay
   scene.jump_every = 4;
@@ -123,12 +123,12 @@ TEST_CASE("lists are rarely tried where jumps end each of them too early") {
   CHECK(Player().play(scene, 2000).time < 2000 * 10);
 }
 
-TEST_CASE("where queries from scratch take next to nothing there are no lists") {
+TEST_CASE("no caches are made if queries from scratch are very fast") {
   const Count c = Player().play({0.2, 0.1, 0.1, 0.01, 8, 8}, 2000);
   CHECK(c.lists[0] + c.lists[1] == 0);
 }
 
-TEST_CASE("what did not pay is tried again when the scene changes") {
+TEST_CASE("caches that did not save time are tried again when the scene changes") {
   Player player;
   const PolicyScene dear{10, 40, 40, 9, 3, 3}, cheap{10, 15, 60, 2, 8, 8};
   player.play(dear, 1000);

@@ -134,15 +134,15 @@ double share_tested(std::uint64_t seed, bool places) {
 
 }  // namespace
 
-TEST_CASE("a list holds every pair that meets along a stretch, and few that do not") {
+TEST_CASE("a swept cache contains every pair that intersects during the sweep, and few others") {
   CHECK(share_tested(5, false) < 0.87);
 }
 
-TEST_CASE("a list holds every pair that meets about a place, and few that do not") {
+TEST_CASE("a fixed cache contains every pair that intersects near a pose, and few others") {
   CHECK(share_tested(6, true) < 0.8);
 }
 
-TEST_CASE("what is chosen at two poses may miss what meets between them") {
+TEST_CASE("the pairs at two poses may miss pairs that intersect between them") {
   RandomEngine random(7);
   int none = 0, some = 0;
   for (int i = 0; i < 2000; ++i) {

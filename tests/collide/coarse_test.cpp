@@ -119,7 +119,7 @@ TEST_CASE("no point of a region's lids is further from the real faces than its t
   CHECK(tightest > 0.5);
 }
 
-TEST_CASE("a query with a tolerance gives the exact relation, and keeps its error bound") {
+TEST_CASE("an approximate query reports the exact relation and keeps its error bound") {
   RandomEngine random(41);
   int crossing = 0, with_pseudo = 0, exact = 0;
   std::vector<double> ratios;
@@ -178,7 +178,7 @@ std::vector<double> bounds_over_truth(const CoarseBodies& pair, int poses,
   return ratios;
 }
 
-TEST_CASE("the error bound is at most three times what pairs are off, in the middle of all poses") {
+TEST_CASE("the median error bound is at most three times the measured error of pairs") {
   RandomEngine random(46);
   std::vector<CoarseBodies> fine;
   fine.push_back(
@@ -196,7 +196,7 @@ TEST_CASE("the error bound is at most three times what pairs are off, in the mid
   CHECK(median(all) <= 3);
 }
 
-TEST_CASE("the error bound of real models is at most three times what pairs are off, too" *
+TEST_CASE("the error bound on real models is at most three times the measured error of pairs" *
           doctest::test_suite("shared meshes")) {
   RandomEngine random(47);
   for (const char* name : {"spot.obj", "rocker-arm.obj"}) {
@@ -233,7 +233,7 @@ TEST_CASE("an answer of one pair is exact, whatever the tolerance") {
   }
 }
 
-TEST_CASE("bodies that hardly touch are answered exactly, at what the exact query costs") {
+TEST_CASE("barely touching bodies are answered exactly, at the cost of the exact query") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(4, 7, 0.3)), b = build_lrb(shapes::bumpy_sphere(4, 8, 0.3));
   const CoarseBodies pair{"bumps", a, b};
   RandomEngine random(48);
@@ -273,7 +273,7 @@ TEST_CASE("bodies that hardly touch are answered exactly, at what the exact quer
   CHECK(given_up == 40);
 }
 
-TEST_CASE("a finer tolerance never says less") {
+TEST_CASE("a smaller tolerance never reports less") {
   RandomEngine random(44);
   int finer = 0;
   for (const CoarseBodies& pair : coarse_bodies()) {
@@ -297,8 +297,7 @@ TEST_CASE("a finer tolerance never says less") {
   CHECK(finer > 100);
 }
 
-TEST_CASE(
-    "wrappers alone never call bodies apart that meet: near first contact, and by what rounding leaves") {
+TEST_CASE("wrappers never report intersecting bodies as separate, near first contact and within rounding") {
   RandomEngine random(45);
   int apart = 0, meeting = 0;
   for (const CoarseBodies& pair : coarse_bodies()) {
@@ -332,7 +331,7 @@ TEST_CASE(
   CHECK(apart > 100);
 }
 
-TEST_CASE("a query with a tolerance keeps its claims under affine maps of both bodies") {
+TEST_CASE("an approximate query keeps its guarantees under affine maps of both bodies") {
   RandomEngine random(43);
   int with_lids = 0, separate = 0, alone = 0;
   for (const CoarseBodies& pair : coarse_bodies()) {
@@ -372,7 +371,7 @@ TEST_CASE("a query with a tolerance keeps its claims under affine maps of both b
   CHECK(alone > 20);
 }
 
-TEST_CASE("bodies that touch under flat lids are never called separate") {
+TEST_CASE("bodies that touch under flat lids are never reported as separate") {
   // Boxes against boxes and combs: lids lie in the planes of faces, and rounding moves both.
   RandomEngine random(77);
   const CoarseBodies pair{"combs", build_lrb(shapes::comb(4)), build_lrb(shapes::comb(3))};
@@ -396,7 +395,7 @@ TEST_CASE("bodies that touch under flat lids are never called separate") {
   CHECK(meeting > 50);
 }
 
-TEST_CASE("an answer at any time: within the limit, true as far as it goes, and exact in the end") {
+TEST_CASE("anytime answers: within the limit, correct at every limit, exact without one") {
   RandomEngine random(13);
   int unfinished = 0, narrowed = 0;
   for (const CoarseBodies& pair : coarse_bodies()) {
@@ -452,7 +451,7 @@ CollideResult ask_counted(const CoarseBodies& pair, const Pose& p, double looks,
   return result;
 }
 
-TEST_CASE("a query with a limit in time looks at the clock often enough, and ends when it is time") {
+TEST_CASE("a query with a time limit ends in time") {
   std::vector<CoarseBodies> list = coarse_bodies();
   list.push_back(
       {"bumps", build_lrb(shapes::bumpy_sphere(5, 7, 0.3)), build_lrb(shapes::bumpy_sphere(5, 8, 0.3))});
@@ -507,7 +506,7 @@ TEST_CASE("more time never makes the error bound larger") {
   CHECK(narrowed > 15);
 }
 
-TEST_CASE("a limit in time leaves none to make levels") {
+TEST_CASE("a query with a time limit does not build levels of detail") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 7, 0.3));
   CollideRequest request;
   request.max_time = 100;
@@ -520,7 +519,7 @@ TEST_CASE("a limit in time leaves none to make levels") {
   CHECK(a.has_levels());
 }
 
-TEST_CASE("levels are made once, whoever asks, and fall from the outermost wrapper towards the body") {
+TEST_CASE("levels of detail are built once, with deviations falling from the outermost wrapper to the body") {
   for (const CoarseBodies& pair : coarse_bodies()) {
     CAPTURE(pair.name);
     const LrbRep copy = pair.a;
@@ -563,7 +562,7 @@ TEST_CASE("open bodies are queried as they are") {
   }
 }
 
-TEST_CASE("what a coarse query cannot give is refused") {
+TEST_CASE("requests that an approximate query cannot answer are rejected") {
   const LrbRep a = build_lrb(shapes::box());
   CollideRequest request;
   request.tolerance = -1;

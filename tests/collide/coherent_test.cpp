@@ -90,7 +90,7 @@ void add(CoherentQuery::Statistics& sum, const CoherentQuery::Statistics& s) {
 
 }  // namespace
 
-TEST_CASE("coherent queries answer as queries from scratch do, for motions of all sizes") {
+TEST_CASE("coherent queries agree with queries from scratch for motions of all sizes") {
   RandomEngine random(4711);
   CoherentTally tally;
   CoherentQuery::Statistics sum;
@@ -152,7 +152,7 @@ TEST_CASE("coherent queries answer as queries from scratch do, for motions of al
   CHECK(tally.changes > 200);
 }
 
-TEST_CASE("coherent queries of bodies on courses: they screw, speed up, bend, and turn back") {
+TEST_CASE("coherent queries along paths: screws, acceleration, curves and reversals") {
   RandomEngine random(815);
   CoherentTally tally;
   CoherentQuery::Statistics sum;
@@ -200,7 +200,7 @@ TEST_CASE("coherent queries of bodies on courses: they screw, speed up, bend, an
   CHECK(tally.inside > 50);
 }
 
-TEST_CASE("coherent queries notice a small body that goes through a surface in one step") {
+TEST_CASE("coherent queries detect a small body that passes through a surface in one step") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 5, 0.2)), b = bare(shapes::icosphere(0, 0.01));
   QueryContext context;
   NullProbe probe;
@@ -222,7 +222,7 @@ TEST_CASE("coherent queries notice a small body that goes through a surface in o
   CHECK(through > 3);
 }
 
-TEST_CASE("coherent queries notice a body that slides through a contact in steps of every size") {
+TEST_CASE("coherent queries detect a body that slides through a contact in steps of every size") {
   RandomEngine random(12);
   const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 5, 0.2)), b = build_lrb(shapes::bumpy_sphere(2, 6, 0.2));
   QueryContext context;
@@ -260,7 +260,7 @@ TEST_CASE("coherent queries of bodies of any size") {
   }
 }
 
-TEST_CASE("coherent queries of bodies that stand still, creep, or go on after a rest") {
+TEST_CASE("coherent queries of resting, slow and restarting bodies") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 5, 0.2)), b = build_lrb(shapes::bumpy_sphere(2, 6, 0.2));
   QueryContext context;
   NullProbe probe;
@@ -278,7 +278,7 @@ TEST_CASE("coherent queries of bodies that stand still, creep, or go on after a 
   CHECK(tally.apart > 30);
 }
 
-TEST_CASE("coherent queries of bodies that go on to where no numbers are") {
+TEST_CASE("coherent queries of bodies that leave the range of doubles") {
   using Eigen::Vector3d;
   const double size = 1e300, step = 4e307;
   const LrbRep a = bare(shapes::scaled(shapes::icosphere(2), size)),
@@ -301,7 +301,7 @@ TEST_CASE("coherent queries of bodies that go on to where no numbers are") {
   }
 }
 
-TEST_CASE("what a coherent query has no list for is passed on") {
+TEST_CASE("a coherent query without a cache runs from scratch") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 5, 0.2));
   CollideRequest request;
   request.contacts = true;

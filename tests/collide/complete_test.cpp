@@ -131,7 +131,7 @@ TEST_CASE("complete equals brute force on identical bodies and grid-aligned cont
   CHECK(total.poses == 30 * 64);
 }
 
-TEST_CASE("any matrix is answered exactly, rotation or not") {
+TEST_CASE("queries are exact for any matrix, rotation or not") {
   RandomEngine random(8);
   QueryContext context;
   RelationTally total;
@@ -145,7 +145,7 @@ TEST_CASE("any matrix is answered exactly, rotation or not") {
   CHECK(total.in_contact > 20);
 }
 
-TEST_CASE("any_pair ends at the first pair that meets, where first_pair looks for one that crosses") {
+TEST_CASE("any_pair ends at the first intersecting pair, first_pair at the first crossing one") {
   const LrbRep ball = closed(shapes::icosphere(3));
   CollideRequest request;
   request.mode = Mode::first_pair;
@@ -159,7 +159,7 @@ TEST_CASE("any_pair ends at the first pair that meets, where first_pair looks fo
 }
 
 TEST_CASE(
-    "an open body has no inside: without contact the relation is undefined, unless boxes are disjoint") {
+    "an open body has no interior: without contact the relation is undefined unless boxes are disjoint") {
   const LrbRep open = LrbRep::without_regions(shapes::open_cylinder(12), false, false);
   const LrbRep ball = closed(shapes::icosphere(0, 0.1));
   CHECK(collide(open, Pose{}, ball, Pose{}).relation == Relation::undefined);

@@ -42,7 +42,7 @@ Mesh torn(const Mesh& mesh) {
 
 }  // namespace
 
-TEST_CASE("vertices that stand in one place are one: contacts across seams are whole") {
+TEST_CASE("coincident vertices are one: contacts across seams are connected") {
   const Mesh ball = shapes::icosphere(2), box = shapes::box({-1, -1, -1}, {1, 1, 1});
   const auto open = [](const Mesh& mesh) { return LrbRep::without_regions(torn(mesh), false, false); };
   for (const auto& [x, y, by] : {std::tuple{ball, ball, Eigen::Vector3d(1.3, 0.2, 0.1)},
@@ -82,7 +82,7 @@ TEST_CASE("a box on a box: one coplanar region with its area, centre and directi
   CHECK(region.length == doctest::Approx(2.5));
 }
 
-TEST_CASE("a tip through a face: one closed loop with its length, area and depth") {
+TEST_CASE("an apex through a face: one closed loop with its length, area and depth") {
   // A tetrahedron's corner at the origin, upside down, 0.25 deep into the top of a box.
   Pose p;
   p.r = Eigen::Vector3d(1, -1, -1).asDiagonal();

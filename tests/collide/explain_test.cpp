@@ -77,7 +77,7 @@ void check(const ExplainedScene& s, const SimplexPair& pair, exact::Meet meet) {
   }
 }
 
-TEST_CASE("pairs of the answer and beside it are explained as they are") {
+TEST_CASE("explanations of reported and other pairs are correct") {
   RandomEngine random(3);
   for (const ExplainedScene& s : scenes()) {
     const BruteForceResult truth = brute_force(s.a, {}, s.b, s.pose);
@@ -94,7 +94,7 @@ TEST_CASE("pairs of the answer and beside it are explained as they are") {
   }
 }
 
-TEST_CASE("the walk that is told is the one that the query does") {
+TEST_CASE("the reported traversal is the query's own") {
   for (const ExplainedScene& s : scenes()) {
     const CollideResult result = collide(s.a, {}, s.b, s.pose);
     const WalkExplanation e = explain_walk(s.a, {}, s.b, s.pose);
@@ -114,7 +114,7 @@ TEST_CASE("the walk that is told is the one that the query does") {
   }
 }
 
-TEST_CASE("pairs are explained one after the other, and at other poses, as they are alone") {
+TEST_CASE("explanations do not depend on earlier pairs and poses") {
   for (const ExplainedScene& s : scenes()) {
     PairExplainer explainer(s.a, s.b);
     for (const Pose& pose : {s.pose, Pose{}}) {
@@ -142,7 +142,7 @@ double reach(const LrbRep& rep, const Pose& pose, const Eigen::Vector3d& n) {
   return out;
 }
 
-TEST_CASE("what parts bodies: the nearest of the boxes found apart, and a plane where one was found") {
+TEST_CASE("separate bodies: the closest disjoint boxes, and a separating plane if one was found") {
   int planes = 0, boxes = 0;
   for (const ExplainedScene& s : scenes())
     for (const double factor : {1.0, 1.5, 4.0}) {
@@ -172,7 +172,7 @@ TEST_CASE("what parts bodies: the nearest of the boxes found apart, and a plane 
   CHECK(boxes > 10);
 }
 
-TEST_CASE("linked rings are apart, and no plane parts them") {
+TEST_CASE("linked rings are separate, but no plane separates them") {
   const LrbRep ring = build_lrb(torus(24, 12));
   Pose through;
   through.r << 1, 0, 0, 0, 0, -1, 0, 1, 0;
@@ -183,7 +183,7 @@ TEST_CASE("linked rings are apart, and no plane parts them") {
   CHECK(e.nearest_boxes);
 }
 
-TEST_CASE("faces are hidden by the regions that a wrapper opens to show them") {
+TEST_CASE("faces are hidden by the regions that a wrapper refines to reach them") {
   const LrbRep body = build_lrb(bumpy_sphere(3, 5, 0.2));
   const PairExplanation e = explain_pair(body, {}, body, {}, {7, 7});
   const auto& regions = e.hidden_by[0];
@@ -203,7 +203,7 @@ LrbRep segment(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   return LrbRep::without_regions(mesh, false, false);
 }
 
-TEST_CASE("what plain doubles get wrong is told apart from the exact sign") {
+TEST_CASE("wrong signs of plain doubles are reported next to the exact sign") {
   // Points within 2^-49 of the line x = y, about which doubles are known to err (L. Kettner et al.,
   // "Classroom examples of robustness problems in geometric computations", 2008).
   const LrbRep line = segment({12, 12, 0}, {24, 24, 0});
@@ -220,7 +220,7 @@ TEST_CASE("what plain doubles get wrong is told apart from the exact sign") {
   CHECK(wrong > 0);
 }
 
-TEST_CASE("a simplex that does not exist is refused by its number") {
+TEST_CASE("an invalid simplex number is rejected with the number") {
   const LrbRep body = build_lrb(icosphere(1));
   const std::string count = std::to_string(body.real_simplex_count());
   CHECK_THROWS_WITH_AS(explain_pair(body, {}, body, {}, {SimplexId(body.real_simplex_count()), 0}),

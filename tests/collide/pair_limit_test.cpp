@@ -38,7 +38,7 @@ CollideResult ask(const CollideRequest& request) {
 
 }  // namespace
 
-TEST_CASE("a query that finds more pairs than it may keep is refused, and says what to do") {
+TEST_CASE("a query with more pairs than its limit is rejected with a remedy") {
   REQUIRE(ask({}).pairs.size() == kPairs);
   CollideRequest request;
   request.max_pairs = kPairs;  // as many as there are
@@ -58,12 +58,12 @@ TEST_CASE("a query that finds more pairs than it may keep is refused, and says w
   CHECK_THROWS_AS(ask({.tolerance = 1e-9, .max_pairs = 10}), InputError);
 }
 
-TEST_CASE("one pair is never too many") {
+TEST_CASE("a limit of pairs does not apply to one pair") {
   for (const Mode mode : {Mode::first_pair, Mode::any_pair})
     CHECK(ask({.mode = mode, .max_pairs = 1}).pairs.size() == 1);
 }
 
-TEST_CASE("a coherent query is refused likewise, and answers again when fewer pairs meet") {
+TEST_CASE("a coherent query has the same limit of pairs, and recovers when fewer pairs intersect") {
   const LrbRep a = strips(0), b = strips(1);
   for (const auto use : {CoherentQuery::CacheUse::always, CoherentQuery::CacheUse::as_it_pays}) {
     CoherentQuery query(a, b, {.max_pairs = kPairs / 2}, use);
@@ -87,7 +87,7 @@ TEST_CASE("a coherent query is refused likewise, and answers again when fewer pa
   }
 }
 
-TEST_CASE("what is kept unless something else is asked for") {
+TEST_CASE("default limits of pairs") {
   CHECK(CollideRequest{}.pair_limit() == kMaxPairs);
   CHECK(CollideRequest{.contacts = true}.pair_limit() == kMaxPairsWithContacts);
   CHECK(CollideRequest{.max_pairs = 7}.pair_limit() == 7);

@@ -22,7 +22,7 @@ void check_same(const CollideResult& result, const std::vector<PairAndMeet>& exp
 
 }  // namespace
 
-TEST_CASE("pairs are put in order where half of them have the same simplex of A") {
+TEST_CASE("pairs are sorted if half of them share a simplex of A") {
   std::mt19937_64 random(2);
   PairOrder order;
   for (const std::size_t size : {std::size_t{33}, std::size_t{100}, std::size_t{4'000}, std::size_t{5'000}}) {
@@ -38,8 +38,7 @@ TEST_CASE("pairs are put in order where half of them have the same simplex of A"
   }
 }
 
-TEST_CASE(
-    "pairs are put in order with how they meet, in groups with the same simplex of A as short and long") {
+TEST_CASE("pairs are sorted with their kinds of contact, in short and long groups of the same simplex of A") {
   std::mt19937_64 random(3);
   PairOrder order;
   // To either side of where the way to sort changes: pairs in all, and pairs with the same simplex of A.
@@ -67,7 +66,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("pairs are put in order with what belongs to them, by comparing and by digits") {
+TEST_CASE("pairs are sorted with their data by comparison sort and by radix sort") {
   std::mt19937_64 random(1);
   PairOrder order;
   for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{100},

@@ -18,13 +18,13 @@ CollideResult ask(const LrbRep& a, const LrbRep& b, const Pose& p, Recursion rec
 
 }  // namespace
 
-TEST_CASE("the result says which recursion it used") {
+TEST_CASE("the result contains the recursion that was used") {
   const LrbRep a = shapes::dented_box();
   CHECK(ask(a, a, Pose{}, Recursion::paper).recursion == Recursion::paper);
   CHECK(ask(a, a, Pose{}, Recursion::complete).recursion == Recursion::complete);
 }
 
-TEST_CASE("without regions the paper's query is brute force, and finds all") {
+TEST_CASE("without regions the paper's query is brute force and finds all pairs") {
   const LrbRep a = LrbRep::without_regions(shapes::icosphere(1), true, false);
   const LrbRep b = LrbRep::without_regions(shapes::comb(3), true, false);
   shapes::RandomEngine random(3);
@@ -36,7 +36,7 @@ TEST_CASE("without regions the paper's query is brute force, and finds all") {
   }
 }
 
-TEST_CASE("a rod that comes in through the lid is found") {
+TEST_CASE("a rod that enters through the lid is found") {
   const LrbRep a = shapes::dented_box();
   const LrbRep rod = LrbRep::without_regions(shapes::box({1.6, 1.7, 0.5}, {2.1, 2.2, 3}), true, false);
   const CollideResult paper = ask(a, rod, Pose{}, Recursion::paper),
@@ -63,7 +63,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("the strict reading finds no more than the other, and no pair that is not there") {
+TEST_CASE("the strict reading of the paper finds a subset of the other, and no false pair") {
   shapes::RandomEngine random(4);
   const LrbRep a = shapes::dented_box();
   std::size_t strict_total = 0, paper_total = 0, complete_total = 0;
@@ -90,7 +90,7 @@ TEST_CASE("first_pair stops at the first real pair") {
   CHECK(one.counters.face_tests < ask(a, rod, Pose{}, Recursion::paper).counters.face_tests);
 }
 
-TEST_CASE("2D bodies run through the same query") {
+TEST_CASE("2D bodies use the same query") {
   const LrbRep a = shapes::stairs_2d();
   const LrbRep b = LrbRep::without_regions(shapes::polygon({{2.2, 1.8}, {5, 1.9}, {5, 2.4}}), true, false);
   const CollideResult paper = ask(a, b, Pose{}, Recursion::paper),

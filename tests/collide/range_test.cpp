@@ -28,7 +28,7 @@ std::string complaint(const LrbRep& a, const Pose& pose_a, const LrbRep& b, cons
 
 // Both bodies scaled by 100 or more: the kernel's inverse by transposition is then off by the fourth power,
 // of which the bound once covered the third. 23 pairs of 192 were missed.
-TEST_CASE("two matrices that scale miss nothing") {
+TEST_CASE("two scaling matrices miss no pair") {
   RandomEngine random(3);
   const LrbRep a = closed(shapes::icosphere(1)), b = closed(shapes::bumpy_sphere(1, 2));
   int in_contact = 0;
@@ -45,7 +45,7 @@ TEST_CASE("two matrices that scale miss nothing") {
   CHECK(in_contact > 100);
 }
 
-TEST_CASE("bodies made of denormals miss nothing") {
+TEST_CASE("bodies with denormal coordinates miss no pair") {
   RandomEngine random(4);
   int in_contact = 0;
   for (int i = 0; i < 300; ++i) {
@@ -63,7 +63,7 @@ TEST_CASE("bodies made of denormals miss nothing") {
   CHECK(in_contact > 100);
 }
 
-TEST_CASE("world coordinates that overflow are refused by name") {
+TEST_CASE("world coordinates that overflow are rejected with the body's name") {
   const LrbRep box = closed(shapes::box());
   Pose far;
   far.r *= 1.5e308;
@@ -109,7 +109,7 @@ TEST_CASE("a power of two scales contact regions exactly") {
 
 // At 1e16 doubles are 2 apart: a plate of thickness 1 becomes a sheet with two faces, one of which faces as
 // the box behind it does. That was taken for solids that lie on the same side.
-TEST_CASE("a plate that rounding has made flat has no interior to overlap") {
+TEST_CASE("a plate flattened by rounding has no interior") {
   CollideRequest request;
   request.interiors_overlap = true;
   const LrbRep plate = closed(shapes::box({0, 0, 0}, {1, 4, 4})),
@@ -123,7 +123,7 @@ TEST_CASE("a plate that rounding has made flat has no interior to overlap") {
 }
 
 // The same plate, pierced by a rod: its two flat faces cross the rod's, yet there is nothing between them.
-TEST_CASE("a crossing proves that interiors overlap only where the bodies have a volume") {
+TEST_CASE("a crossing proves overlapping interiors only for bodies with volume") {
   CollideRequest request;
   request.interiors_overlap = true;
   const LrbRep plate = closed(shapes::box({0, 0, 0}, {1, 4, 4})),
@@ -142,7 +142,7 @@ TEST_CASE("a crossing proves that interiors overlap only where the bodies have a
   CHECK(thin.interiors_overlap != Answer::yes);
 }
 
-TEST_CASE("crossings of ordinary bodies are all proved") {
+TEST_CASE("all crossings of ordinary bodies prove overlapping interiors") {
   CollideRequest request;
   request.interiors_overlap = true;
   const LrbRep bodies[] = {closed(shapes::bumpy_sphere(2, 3, 0.5)), closed(shapes::torus(12, 8)),
@@ -160,7 +160,7 @@ TEST_CASE("crossings of ordinary bodies are all proved") {
   CHECK(crossings > 100);
 }
 
-TEST_CASE("boxes that overlap in one ulp overlap") {
+TEST_CASE("boxes that overlap by one ulp overlap") {
   CollideRequest request;
   request.interiors_overlap = true;
   const LrbRep a = closed(shapes::box()),

@@ -47,7 +47,7 @@ struct Walk {
 
 }  // namespace
 
-TEST_CASE("no point of B moves further than its course says") {
+TEST_CASE("no point of B moves further than the predicted motion allows") {
   RandomEngine random(1);
   Mesh rod = shapes::icosphere(2);
   for (Eigen::Vector3d& x : rod.vertices) x.x() *= 20;
@@ -84,7 +84,7 @@ TEST_CASE("no point of B moves further than its course says") {
   CHECK(largest_turn > 0.9);
 }
 
-TEST_CASE("B is where its course puts it, while it keeps it") {
+TEST_CASE("B is at the predicted pose while its motion is steady") {
   RandomEngine random(2);
   const LrbRep body = LrbRep::without_regions(shapes::bumpy_sphere(2, 5, 0.3), true, false);
   int kept = 0, served = 0;
@@ -123,7 +123,7 @@ TEST_CASE("B is where its course puts it, while it keeps it") {
   CHECK(served > 3000);
 }
 
-TEST_CASE("a course that bends, or is none, is not taken for one") {
+TEST_CASE("curved and irregular motions are not predicted") {
   RandomEngine random(3);
   const LrbRep body = LrbRep::without_regions(shapes::bumpy_sphere(2, 5, 0.3), true, false);
   RelativeMotion history(body, body);

@@ -78,7 +78,7 @@ Relation check_all(const LrbRep& a, const LrbRep& b, const Pose& pose) {
 
 }  // namespace
 
-TEST_CASE("B5: an open body whose box is apart from the other's is separate, in every variant") {
+TEST_CASE("B5: an open body with a disjoint box is separate, in every query") {
   shapes::RandomEngine random(5);
   const Mesh meshes[] = {shapes::open_cylinder(9), without_last_face(shapes::icosphere(1)),
                          triangle({0, 0, 0})};
@@ -99,7 +99,7 @@ TEST_CASE("B5: an open body whose box is apart from the other's is separate, in 
   CHECK(undefined > 20);
 }
 
-TEST_CASE("B5: the same in the plane") {
+TEST_CASE("B5: an open 2D body with a disjoint box is separate") {
   shapes::RandomEngine random(6);
   const LrbRep open = open_body(without_last_face(shapes::circle(12))),
                solid = test::closed(shapes::circle(7, 0.3));
@@ -116,7 +116,7 @@ TEST_CASE("B5: the same in the plane") {
   CHECK(undefined > 5);
 }
 
-TEST_CASE("B5: boxes that touch are not apart, boxes a unit in the last place apart are") {
+TEST_CASE("B5: touching boxes are not disjoint, boxes one ulp apart are") {
   const LrbRep a = open_body(triangle({0, 0, 0}));
   CHECK(relation_of(a, open_body(triangle({1, 1, 0}))) == Relation::undefined);
   CHECK(relation_of(a, open_body(triangle({std::nextafter(1, 2), 1, 0}))) == Relation::separate);
@@ -135,7 +135,7 @@ TEST_CASE("B5: vertices without a face do not count, nor does the size of coordi
   CHECK(relation_of(low, open_body(triangle({-1.6e308, 1e307, 0}, 1e307))) == Relation::undefined);
 }
 
-TEST_CASE("B5: bodies of many faces, whose boxes come from their trees") {
+TEST_CASE("B5: bodies of many faces, with boxes computed from their trees") {
   const Mesh ball = without_last_face(shapes::icosphere(4));
   const LrbRep open = open_body(ball), other = test::closed(shapes::bumpy_sphere(4, 3));
   for (int i = 0; i < 40; ++i) {
@@ -147,7 +147,7 @@ TEST_CASE("B5: bodies of many faces, whose boxes come from their trees") {
   }
 }
 
-TEST_CASE("B5: coherent queries and distances find where boxes part, step by step") {
+TEST_CASE("B5: coherent queries and distances detect disjoint boxes in every step") {
   const LrbRep open = open_body(without_last_face(shapes::icosphere(1))),
                solid = test::closed(shapes::icosphere(1, 0.3));
   CoherentQuery query(open, solid, {}, CoherentQuery::CacheUse::always);
@@ -166,7 +166,7 @@ TEST_CASE("B5: coherent queries and distances find where boxes part, step by ste
   CHECK(changes > 2);
 }
 
-TEST_CASE("B5: a search for the first contact tells how bodies lie at the start") {
+TEST_CASE("B5: a first contact search reports the relation at the start") {
   const LrbRep open = open_body(without_last_face(shapes::icosphere(1))),
                solid = test::closed(shapes::icosphere(0, 0.3));
   const Motion still = Motion::still({}), far = Motion::linear(Pose::translation({5, 0, 0}), {3, 0, 0}),

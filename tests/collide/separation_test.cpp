@@ -105,7 +105,7 @@ std::vector<SeparateBodies> separate_bodies() {
 
 }  // namespace
 
-TEST_CASE("certificates of separation hold, and hold no region too many open") {
+TEST_CASE("certificates of separation are valid and refine no region needlessly") {
   RandomEngine random(99);
   for (const SeparateBodies& pair : separate_bodies()) {
     CAPTURE(pair.name);
@@ -141,7 +141,7 @@ TEST_CASE("certificates of separation hold, and hold no region too many open") {
   }
 }
 
-TEST_CASE("certificates of separation hold under affine maps") {
+TEST_CASE("certificates of separation are valid under affine maps") {
   RandomEngine random(101);
   for (const SeparateBodies& pair : separate_bodies()) {
     CAPTURE(pair.name);
@@ -166,7 +166,7 @@ TEST_CASE("certificates of separation hold under affine maps") {
   }
 }
 
-TEST_CASE("the checker can say no: wrappers as they come do not prove close bodies apart") {
+TEST_CASE("the checker rejects unrefined wrappers of close bodies") {
   RandomEngine random(7);
   const LrbRep bowl = build_lrb(shapes::bowl(16, 8)), ball = build_lrb(shapes::icosphere(2, 0.3));
   const Pose inside = Pose::translation({0, 0, 0.2});
@@ -183,7 +183,7 @@ TEST_CASE("the checker can say no: wrappers as they come do not prove close bodi
   CHECK(r.separation->face_count[0] > 0);
 }
 
-TEST_CASE("bodies nearer than rounding have no certificate") {
+TEST_CASE("bodies closer than rounding have no certificate") {
   const LrbRep a = build_lrb(shapes::box()), b = build_lrb(shapes::box());
   CollideRequest request;
   request.separation = true;

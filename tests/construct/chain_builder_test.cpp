@@ -22,7 +22,7 @@ Mesh coast(int corners) {
   return polygon(points);
 }
 
-TEST_CASE("2D bodies: valid, embedded by brute force, few outer segments") {
+TEST_CASE("2D bodies: valid, embedded according to brute force, few outer segments") {
   const Mesh meshes[] = {circle(64),
                          star(7),
                          gear(16),
@@ -45,7 +45,7 @@ TEST_CASE("2D bodies: valid, embedded by brute force, few outer segments") {
   }
 }
 
-TEST_CASE("a 2D body has layers enough for a sequence of refinements") {
+TEST_CASE("a 2D body has enough layers for a sequence of refinements") {
   const LrbRep rep = build_lrb(coast(90));
   CHECK(rep.layer_count() >= 4);
   CHECK(rep.face_count() < 2 * rep.real_face_count());
@@ -75,7 +75,7 @@ TEST_CASE("outlines that cross or touch themselves") {
   }
 }
 
-TEST_CASE("2D bodies that cannot be built") {
+TEST_CASE("2D bodies that cannot be built are rejected") {
   Mesh open = circle(10);
   open.face_vertices.resize(open.face_vertices.size() - 2);
   open.face_offsets.pop_back();

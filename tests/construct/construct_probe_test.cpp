@@ -184,8 +184,9 @@ std::size_t count(const std::vector<Reported>& reported, CapVerdict verdict) {
   return n;
 }
 
-TEST_CASE("what is told adds up to the body, which is the same without; 1, 2 and 4 threads tell the same" *
-          doctest::test_suite("long")) {
+TEST_CASE(
+    "reports to the probe add up to the body and do not depend on 1, 2 or 4 threads; the body is the same without a probe" *
+    doctest::test_suite("long")) {
   std::array<std::size_t, kWords<CapVerdict>.size()> verdicts{};
   std::size_t merged = 0;
   for (const Mesh& mesh : bodies()) {
@@ -210,7 +211,7 @@ TEST_CASE("what is told adds up to the body, which is the same without; 1, 2 and
     CHECK_MESSAGE(verdicts[static_cast<std::size_t>(v)] > 0, name_of(v));
 }
 
-TEST_CASE("lean bodies, and those of patches of any size, tell a story that adds up") {
+TEST_CASE("reports to the probe add up for lean bodies and patches of any size") {
   for (const Mesh& mesh : {bumpy_sphere(4, 7), comb(12), gear(60)}) {
     Listener listener;
     const LrbRep rep = build_reported(mesh, listener, 1, true);
@@ -220,7 +221,8 @@ TEST_CASE("lean bodies, and those of patches of any size, tell a story that adds
   }
 }
 
-TEST_CASE("a thin gap refuses caps because they meet the hull, and faces that cross others are barred") {
+TEST_CASE(
+    "in a thin gap caps are rejected because they intersect the front; intersecting faces are excluded") {
   Listener gap;
   const Mesh nested = several({icosphere(4), turned_inside_out(icosphere(4, 1.003)), icosphere(3, 1.5)});
   build_reported(nested, gap);
@@ -233,7 +235,7 @@ TEST_CASE("a thin gap refuses caps because they meet the hull, and faces that cr
   CHECK(excluded > 0);
 }
 
-TEST_CASE("what a probe throws ends the build") {
+TEST_CASE("an exception from a probe ends the build") {
   struct Thrower final : ConstructProbe {
     void region(RegionId) override { throw InputError("enough"); }
   } thrower;
@@ -242,7 +244,7 @@ TEST_CASE("what a probe throws ends the build") {
   CHECK_THROWS_WITH_AS(build_lrb(bumpy_sphere(3, 3), options), "enough", InputError);
 }
 
-TEST_CASE("a cap's cost: new faces for each that the hull loses") {
+TEST_CASE("a cap's cost: new faces per removed face of the front") {
   CHECK(TriedCap{.faces = 5, .covered = 20}.cost() == doctest::Approx(1.0 / 3));
   CHECK(TriedCap{.faces = 5, .covered = 5}.cost() == std::numeric_limits<double>::infinity());
 }

@@ -33,7 +33,7 @@ void check_closed(const Mesh& mesh) {
   for (const auto& [edge, sum] : balance) CHECK(sum == 0);
 }
 
-TEST_CASE("the convex hull is closed and leaves no point in front of a face") {
+TEST_CASE("the convex hull is closed and no point is in front of a face") {
   for (int round = 0; round < 20; ++round) {
     const auto points = random_points(20 + 20 * round, round, {1, 1, round % 2 ? 1e-6 : 1});
     const Mesh hull = convex_hull_mesh(points);
@@ -71,7 +71,7 @@ std::vector<std::array<std::uint32_t, 3>> hull_point_by_point(const std::vector<
   return hull;
 }
 
-TEST_CASE("the convex hull is that of points added in order, triangle for triangle") {
+TEST_CASE("the convex hull equals incremental insertion, triangle for triangle") {
   for (int round = 0; round < 40; ++round) {
     CAPTURE(round);
     auto cloud = random_points(30 + 10 * round, round, {1, 1, 1});
@@ -81,7 +81,7 @@ TEST_CASE("the convex hull is that of points added in order, triangle for triang
   }
 }
 
-TEST_CASE("the convex hull of points in common planes, on common lines, and twice in one place") {
+TEST_CASE("the convex hull of coplanar, collinear and coincident points") {
   std::mt19937_64 random(3);
   for (int round = 0; round < 600; ++round) {
     CAPTURE(round);
@@ -96,21 +96,20 @@ TEST_CASE("the convex hull of points in common planes, on common lines, and twic
   }
 }
 
-TEST_CASE("the convex hull of a fine ball takes no more than its size") {
+TEST_CASE("the convex hull of a fine ball takes memory linear in its size") {
   // Point by point this would be 1.7e9 signs.
   const Mesh ball = shapes::icosphere(6);
   CHECK(convex_hull(ball.vertices).size() == 2 * ball.vertices.size() - 4);
 }
 
-TEST_CASE("there is no convex hull of points in a plane") {
+TEST_CASE("coplanar points have no convex hull") {
   CHECK(convex_hull(random_points(30, 1, {1, 1, 0})).empty());
   CHECK(convex_hull(random_points(30, 1, {1, 0, 0})).empty());
   CHECK(convex_hull(random_points(3, 1, {1, 1, 1})).empty());
 }
 
 TEST_CASE(
-    "the outermost polytope is closed, has few faces, holds all points and is not much larger than their "
-    "hull") {
+    "the outermost polytope is closed, has few faces, contains all points and is little larger than their convex hull") {
   struct {
     Mesh mesh;
     double ratio;  // a measured bound
@@ -143,7 +142,7 @@ TEST_CASE("the outermost polytope of flat sets, single points and huge coordinat
         0);
 }
 
-TEST_CASE("the convex outline keeps points in the middle of its sides and turns left") {
+TEST_CASE("the convex outline is counter-clockwise and keeps points on its sides") {
   const std::vector<Vector3> points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0},
                                        {1, 2, 0}, {0, 2, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 0}};
   const auto outline = convex_outline(points);
@@ -159,7 +158,7 @@ TEST_CASE("the convex outline keeps points in the middle of its sides and turns 
   CHECK(convex_outline(random_points(10, 1, {1, 0, 0})).size() < 3);
 }
 
-TEST_CASE("the outermost polygon has few sides and holds all points") {
+TEST_CASE("the outermost polygon has few sides and contains all points") {
   for (const Mesh& mesh : {shapes::circle(100), shapes::star(9), shapes::comb_2d(5)}) {
     const auto polygon = enclosing_polygon(mesh.vertices, 8, 0.005);
     CHECK(polygon.size() >= 3);

@@ -8,7 +8,7 @@
 
 namespace lrb::test {
 
-TEST_CASE("bodies with huge faces and hubs are built, and every promise is kept") {
+TEST_CASE("bodies with huge faces and high-valence vertices are built with all guarantees") {
   for (const Mesh& mesh : {hard::drum(700), hard::cone(700), hard::bipyramid(700), hard::crown(700),
                            hard::frustum(700), hard::drum(100), hard::bipyramid(100)}) {
     CAPTURE(mesh.face_count());
@@ -19,7 +19,7 @@ TEST_CASE("bodies with huge faces and hubs are built, and every promise is kept"
   }
 }
 
-TEST_CASE("the proof of a body with hubs finds what is wrong with it") {
+TEST_CASE("validation finds the faults of a body with high-valence vertices") {
   LrbData broken = build_lrb(hard::bipyramid(300)).data();
   CHECK(validate(LrbRep(broken)).valid);
   broken.vertices[7] *= -1.5;  // through the body, and out between needles on its other side

@@ -14,7 +14,7 @@ namespace lrb::test {
 using namespace shapes;
 namespace {
 
-TEST_CASE("small bodies: valid, embedded by brute force, few outer faces") {
+TEST_CASE("small bodies: valid, embedded according to brute force, few outer faces") {
   const Mesh meshes[] = {
       tetrahedron(),
       box(),
@@ -82,11 +82,11 @@ TEST_CASE("folded quads: bridging does not split polygons that are not planar") 
   CHECK(built > 20);
 }
 
-TEST_CASE("a body that is simple enough stays as it is") {
+TEST_CASE("a sufficiently simple body gets no regions") {
   for (const Mesh& mesh : {tetrahedron(), box(), quad_box()}) CHECK(build_lrb(mesh).region_count() == 0);
 }
 
-TEST_CASE("every size of patch works, and larger ones make a lean structure smaller") {
+TEST_CASE("every patch size works; larger patches make lean LRB-reps smaller") {
   const Mesh mesh = bumpy_sphere(4, 5);
   std::uint32_t last = ~0u;
   for (const std::uint32_t interior : {4u, 8u, 16u, 32u, 64u}) {
@@ -115,7 +115,7 @@ TEST_CASE("the number of outer faces is an option") {
   }
 }
 
-TEST_CASE("polygons are covered whole: no face of the mesh borders two cells") {
+TEST_CASE("caps cover entire polygons: no face of the mesh borders two cells") {
   const Mesh mesh = quad_torus(20, 10);
   const LrbRep rep = build_lrb(mesh);
   check_keeps_mesh(rep, mesh);
@@ -136,7 +136,7 @@ TEST_CASE("several components share one outermost wrapper") {
   }
 }
 
-TEST_CASE("voids have regions of their own, and a solid in a void has its wrapper there") {
+TEST_CASE("voids have their own regions, and a solid in a void has its own wrapper") {
   const Mesh mesh = several(
       {icosphere(3, 3), turned_inside_out(icosphere(3, 2)), translated(icosphere(2, 0.5), {0.7, 0, 0})});
   const LrbRep rep = build_lrb(mesh);
@@ -154,7 +154,7 @@ TEST_CASE("voids have regions of their own, and a solid in a void has its wrappe
 /// Once a cap over the bowl's hollow was only checked against components in the cap's own box, so that a
 /// component deep in the hollow came to lie in a region that knew nothing of it: crossing faces, negative
 /// volumes.
-TEST_CASE("a component in another one's hollow is not buried under a cap") {
+TEST_CASE("a component in another one's concavity is not enclosed by a cap") {
   const Mesh ball_in_bowl = several({bowl(24, 10, 0.1), translated(icosphere(1, 0.1), {0.1, 0, -0.3})});
   const LrbRep rep = build_lrb(ball_in_bowl);
   check_keeps_mesh(rep, ball_in_bowl);
@@ -162,7 +162,7 @@ TEST_CASE("a component in another one's hollow is not buried under a cap") {
   CHECK(bad_pairs_by_brute_force(rep) == 0);
 }
 
-TEST_CASE("components that touch or cross: new faces still meet nothing") {
+TEST_CASE("touching or crossing components: new faces intersect no other face") {
   const Mesh touching_in_a_face = several({box(), translated(box(), {1, 0, 0})});
   const Mesh touching_in_a_point = several({icosphere(2), translated(icosphere(2), {2, 0, 0})});
   const Mesh crossing = several({icosphere(3), translated(icosphere(3), {1, 0.1, 0})});
@@ -182,14 +182,14 @@ TEST_CASE("components that touch or cross: new faces still meet nothing") {
   CHECK_THROWS_WITH_AS(build_lrb(one_in_the_other), doctest::Contains("inside out"), InputError);
 }
 
-TEST_CASE("a vertex that joins two fans") {
+TEST_CASE("a vertex shared by two fans") {
   const Mesh mesh = voxels(2, 2, 2, [](int x, int y, int z) { return x == y && y == z; });
   const LrbRep rep = build_lrb(mesh);
   check_valid(rep);
   CHECK(bad_pairs_by_brute_force(rep) == 0);
 }
 
-TEST_CASE("size and place do not matter") {
+TEST_CASE("the LRB-rep does not depend on scale and position") {
   for (const double scale : {1e-9, 1.0, 1e9}) {
     const LrbRep rep = build_lrb(scaled(bumpy_sphere(3, 7), scale));
     CAPTURE(scale);
@@ -199,7 +199,7 @@ TEST_CASE("size and place do not matter") {
   check_valid(build_lrb(translated(bumpy_sphere(3, 7), {1e4, -1e4, 1e4})));
 }
 
-TEST_CASE("progress is told after each pass") {
+TEST_CASE("progress is reported after each pass") {
   std::vector<std::uint32_t> faces;
   BuildOptions options;
   options.progress = [&](std::uint32_t pass, std::uint32_t front_faces) {
@@ -211,7 +211,7 @@ TEST_CASE("progress is told after each pass") {
   CHECK(faces.front() < 1280);
 }
 
-TEST_CASE("what cannot be built is refused with its offenders, on one line") {
+TEST_CASE("bodies that cannot be built are rejected with the affected elements, on one line") {
   const auto message = [](const Mesh& mesh) {
     try {
       build_lrb(mesh);

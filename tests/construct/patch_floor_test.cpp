@@ -43,7 +43,7 @@ struct Floor {
   }
 };
 
-TEST_CASE("A floor tells how far a point is off as each of its triangles, asked without short cuts, does") {
+TEST_CASE("the deviation of a point from a floor equals brute force over its triangles") {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   constexpr double kMax = 0.8;

@@ -60,7 +60,7 @@ TEST_CASE("patches are disks with a simple ring, of whole polygons, and do not o
   check_patches(shapes::box_with_void(), 16);
 }
 
-TEST_CASE("a vertex that joins two fans stands twice in the hull") {
+TEST_CASE("a vertex shared by two fans occurs twice in the front") {
   const Mesh mesh = shapes::voxels(2, 2, 2, [](int x, int y, int z) { return x == y && y == z; });
   const FrontMesh front(mesh);
   CHECK(front.point_count() == mesh.vertices.size() + 1);

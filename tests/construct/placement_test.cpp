@@ -38,7 +38,7 @@ double distance_by_brute_force(const Vector3& target, const std::vector<HalfSpac
   return best;
 }
 
-TEST_CASE("nearest_point, in either order, agrees with trying all planes, lines and corners") {
+TEST_CASE("nearest_point agrees with trying all planes, lines and corners, in either order") {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   int found = 0, empty = 0;

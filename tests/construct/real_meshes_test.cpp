@@ -39,7 +39,7 @@ struct Target {
   std::uint32_t faces[3];  ///< at most, within 0.005, 0.01 and 0.02 of the largest side of the box
 };
 
-TEST_CASE("real models meet the targets: faces, outer faces, volume, embedding, wrappers that fit" *
+TEST_CASE("real models meet the targets for faces, outer faces, volume, embedding and tight wrappers" *
           doctest::test_suite("shared meshes")) {
   const auto folder = shared_meshes();
   for (const Target& target : {Target{"spot", {4400, 1700, 820}}, Target{"homer", {2700, 1280, 615}},

@@ -64,7 +64,7 @@ TEST_CASE("any number of threads builds the same large LRB-rep" * doctest::test_
     check_threads(mesh);
 }
 
-TEST_CASE("any number of threads gives the same report on an LRB-rep, right or wrong") {
+TEST_CASE("the validation report does not depend on the number of threads, for valid and invalid LRB-reps") {
   LrbData broken = build_lrb(torus(60, 30)).data();
   for (std::size_t v = 0; v < broken.vertices.size(); v += 50) broken.vertices[v] *= 1.3;
   const LrbRep reps[] = {build_lrb(bumpy_sphere(4, 3)), build_lrb(crossing_balls()), LrbRep(broken)};
@@ -88,7 +88,7 @@ TEST_CASE("any number of threads gives the same report on an LRB-rep, right or w
   CHECK_FALSE(validate(reps[2]).valid);
 }
 
-TEST_CASE("workers do every piece of work once, hand on what the lowest one throws, and go on") {
+TEST_CASE("workers run every task once, rethrow the exception of the lowest task, and can be reused") {
   for (const unsigned threads : {1u, 2u, 5u}) {
     Workers workers(threads);
     CHECK(workers.count() == threads);

@@ -8,7 +8,7 @@
 
 namespace lrb::test {
 
-TEST_CASE("a file is there whole after commit, and untouched before") {
+TEST_CASE("a file is complete after commit and unchanged before") {
   const Folder directory;
   const std::string path = directory / "a.txt", large(300000, 'x');
   save(path, "before");
@@ -25,7 +25,7 @@ TEST_CASE("a file is there whole after commit, and untouched before") {
   CHECK(load_bytes(path) == std::string("a\0b", 3));
 }
 
-TEST_CASE("a file that is not committed leaves nothing") {
+TEST_CASE("a file that is not committed leaves no trace") {
   const Folder directory;
   {
     AtomicFile file(directory / "a.txt");
@@ -34,7 +34,7 @@ TEST_CASE("a file that is not committed leaves nothing") {
   CHECK(directory.tree().size() == 0);
 }
 
-TEST_CASE("a path that cannot be written is named, with the reason") {
+TEST_CASE("an unwritable path is reported with the reason") {
   const Folder directory;
   const auto message = [](const std::string& path) -> std::string {
     try {
@@ -50,7 +50,7 @@ TEST_CASE("a path that cannot be written is named, with the reason") {
   CHECK(directory.tree().size() == 0);
 }
 
-TEST_CASE("a full disk is the machine's fault") {
+TEST_CASE("a full disk is an EnvironmentError") {
   if (!std::filesystem::exists("/dev/full")) {
     MESSAGE("skipped: no /dev/full here");
     return;

@@ -67,7 +67,7 @@ static_assert(is_region(RegionId(kMaxId)) && !is_region(kOutside) && !is_region(
 
 }  // namespace
 
-TEST_CASE("ids count, print and hash as their numbers do") {
+TEST_CASE("ids increment, print and hash as their numbers do") {
   std::uint32_t n = 0;
   for (FaceId f = 0; f < 5; ++f) CHECK(f == n++);
   FaceId f(n);

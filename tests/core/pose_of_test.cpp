@@ -18,7 +18,7 @@ void check_equal(const Pose& x, const Pose& y) {
 
 }  // namespace
 
-TEST_CASE("a pose comes out of Eigen's types as it went in") {
+TEST_CASE("a pose converts from Eigen's types without loss") {
   check_equal(pose_of(transform_of(kPose)), kPose);
   Eigen::Isometry3d isometry = Eigen::Isometry3d::Identity();
   isometry.linear() = kPose.r;
@@ -31,7 +31,7 @@ TEST_CASE("a pose comes out of Eigen's types as it went in") {
   check_equal(pose_of(turn, {1, 2, 3}), {turn.toRotationMatrix(), {1, 2, 3}});
 }
 
-TEST_CASE("a pose comes out of rows of numbers, 3 x 4 or 4 x 4") {
+TEST_CASE("a pose converts from rows of numbers, 3 x 4 or 4 x 4") {
   const double rows[16] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0, 0, 0, 1};
   Pose expected;
   expected.r << 1, 2, 3, 5, 6, 7, 9, 10, 11;
@@ -46,7 +46,7 @@ TEST_CASE("a pose comes out of rows of numbers, 3 x 4 or 4 x 4") {
   CHECK(poses_of_rows({}, 0).value().empty());
 }
 
-TEST_CASE("what is no pose is refused, and the reason says which") {
+TEST_CASE("invalid poses are rejected with a reason") {
   double rows[32] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
                      1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   CHECK(pose_of_rows(std::span(rows).first(9)).error().reason ==

@@ -62,7 +62,7 @@ void check_same(const LrbRep& a, const LrbRep& b, const PosePair& poses, const D
 
 }  // namespace
 
-TEST_CASE("random walks and jumps of both bodies are answered as from scratch") {
+TEST_CASE("coherent distances agree with queries from scratch for random walks and jumps of both bodies") {
   RandomEngine random(31);
   struct {
     const char* name;
@@ -97,7 +97,7 @@ Mesh needle() {
   return test::stretched(shapes::icosphere(2), {2, 0.02, 0.02});
 }
 
-TEST_CASE("planes that held nodes apart at earlier steps leave out nothing that is nearer") {
+TEST_CASE("separating planes of earlier steps drop no closer pair") {
   RandomEngine random(33);
   struct {
     const char* name;
@@ -145,7 +145,7 @@ TEST_CASE("planes that held nodes apart at earlier steps leave out nothing that 
   }
 }
 
-TEST_CASE("a body that goes in and out of another by jumps lies where it is") {
+TEST_CASE("a body that jumps in and out of another has the right relation") {
   const LrbRep a = closed(shapes::icosphere(2)), b = closed(shapes::icosphere(1, 0.2));
   CoherentDistance follows(a, b);
   CoherentDistanceTally t;
@@ -158,7 +158,7 @@ TEST_CASE("a body that goes in and out of another by jumps lies where it is") {
   CHECK(t.apart == 10);
 }
 
-TEST_CASE("nothing comes nearer from one pose to another than is said, and little less") {
+TEST_CASE("the bound on the approach between two poses is valid and tight") {
   RandomEngine random(32);
   const LrbRep a = closed(shapes::bumpy_sphere(1, 7, 0.3)), b = closed(shapes::torus(6, 5));
   int near_bound = 0;

@@ -64,7 +64,7 @@ void check_watched(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const P
 
 }  // namespace
 
-TEST_CASE("distance probe: bounds hold and tighten, and the answer is the same as without") {
+TEST_CASE("distance probe: bounds are valid and tighten, and the answer is the same as without a probe") {
   const LrbRep ball = LrbRep::without_regions(shapes::icosphere(4), true, false);
   const LrbRep small = LrbRep::without_regions(shapes::icosphere(2), true, false);
   RandomEngine random(7);
@@ -87,7 +87,7 @@ TEST_CASE("distance probe: bounds hold and tighten, and the answer is the same a
   }
 }
 
-TEST_CASE("distance probe: the walk of bodies that floats do not suit is told too") {
+TEST_CASE("distance probe: traversals in doubles are reported") {
   const LrbRep ball = LrbRep::without_regions(shapes::icosphere(3), true, false);
   Pose squeezed;
   squeezed.r = Eigen::Vector3d(1, 0.5, 0.25).asDiagonal();
@@ -100,7 +100,7 @@ TEST_CASE("distance probe: the walk of bodies that floats do not suit is told to
   CHECK(reported.history.front().lower < 0.99 * result.lower);
 }
 
-TEST_CASE("distance probe: a course shows how the interval narrows, step by step at first") {
+TEST_CASE("distance probe: the history of the interval starts step by step") {
   const LrbRep ball = LrbRep::without_regions(shapes::icosphere(4), true, false);
   BoundsHistory reported;
   const DistanceResult result = distance(ball, {}, ball, Pose::translation({2.3, 0.4, 0.2}), {}, reported);

@@ -152,7 +152,7 @@ std::vector<DistantBodies> distant_bodies() {
 
 }  // namespace
 
-TEST_CASE("the interval holds the rational distance, from inside to far apart") {
+TEST_CASE("the interval contains the rational distance, from enclosed to distant bodies") {
   RandomEngine random(17);
   DistanceTally t;
   for (const DistantBodies& pair : distant_bodies()) {
@@ -168,7 +168,7 @@ TEST_CASE("the interval holds the rational distance, from inside to far apart") 
   CHECK(t.apart > 20);
 }
 
-TEST_CASE("the interval holds the rational distance where both bodies stand far from the origin") {
+TEST_CASE("the interval contains the rational distance for bodies far from the origin") {
   RandomEngine random(18);
   DistanceTally t;
   const LrbRep a = closed(shapes::bumpy_sphere(1, 3)), b = closed(shapes::torus(7, 5));
@@ -183,7 +183,7 @@ TEST_CASE("the interval holds the rational distance where both bodies stand far 
   CHECK(t.apart > 4);
 }
 
-TEST_CASE("the interval holds the rational distance for any affine maps") {
+TEST_CASE("the interval contains the rational distance for affine maps") {
   RandomEngine random(19);
   DistanceTally t;
   const LrbRep a = closed(shapes::icosphere(1)), b = closed(shapes::torus(6, 5));
@@ -204,7 +204,7 @@ TEST_CASE("the interval holds the rational distance for any affine maps") {
   CHECK(t.apart > 10);
 }
 
-TEST_CASE("bodies that touch are 0 apart, and those that miss by the least are not") {
+TEST_CASE("touching bodies have distance 0, bodies with the smallest gap do not") {
   DistanceTally t;
   const LrbRep box = closed(shapes::box()), quads = closed(shapes::quad_box()),
                ball = closed(shapes::icosphere(1));
@@ -218,7 +218,7 @@ TEST_CASE("bodies that touch are 0 apart, and those that miss by the least are n
   CHECK(t.apart > 20);
 }
 
-TEST_CASE("bodies 1e12 of their sizes away, and of extreme sizes") {
+TEST_CASE("distances of 1e12 body sizes, and bodies of extreme sizes") {
   RandomEngine random(21);
   DistanceTally t;
   const LrbRep a = closed(shapes::icosphere(1)), b = closed(shapes::bumpy_sphere(1, 4, 0.2)),
@@ -295,8 +295,7 @@ TEST_CASE("a tolerance and a budget only widen the interval, and more steps only
   }
 }
 
-TEST_CASE(
-    "many poses at once are answered in order, the same for any number of threads; so is a motion by steps") {
+TEST_CASE("batches of poses and steps of motions are answered in order, for any number of threads") {
   RandomEngine random(23);
   const LrbRep a = closed(shapes::bumpy_sphere(3, 5)), b = closed(shapes::torus(24, 16));
   std::vector<Pose> poses;
@@ -327,7 +326,7 @@ TEST_CASE(
   CHECK(meet < 55);
 }
 
-TEST_CASE("requests that cannot be answered are refused") {
+TEST_CASE("invalid requests are rejected") {
   const LrbRep box = closed(shapes::box()), flat = closed(shapes::gear(7));
   const auto rejected = [&](double within, double tolerance, double relative) {
     DistanceRequest request;

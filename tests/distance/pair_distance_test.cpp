@@ -65,8 +65,7 @@ void check_pair(const test::SimplexPair& pair, int n, PairTally& t) {
 
 }  // namespace
 
-TEST_CASE(
-    "distances of pairs of triangles and of segments hold the rational one, however degenerate they are") {
+TEST_CASE("distances of triangles and of segments contain the rational one, degenerate or not") {
   for (int k = 0; k < static_cast<int>(Kind::count); ++k) {
     const Kind kind = static_cast<Kind>(k);
     CAPTURE(test::name_of(kind));
@@ -108,7 +107,7 @@ TEST_CASE("distances of pairs that are parallel, coplanar, 1e-12 apart or 1e12 a
   CHECK(t.narrow > t.pairs / 2);
 }
 
-TEST_CASE("the features that are nearest, and points on them") {
+TEST_CASE("closest features, and points on them") {
   const double a[3][3] = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
   const auto ask = [&](std::array<std::array<double, 3>, 3> b, bool in_integers) {
     const double* const of_a[3] = {a[0], a[1], a[2]};

@@ -27,7 +27,7 @@ int wrong_sides() {
 
 }  // namespace
 
-TEST_CASE("floating predicates are wrong where doubles cannot decide, until the guard goes") {
+TEST_CASE("floating predicates are wrong where doubles cannot decide, within the scope of the guard") {
   CHECK(wrong_sides() == 0);
   {
     const exact::FloatingPredicates floating;
@@ -41,7 +41,7 @@ TEST_CASE("floating predicates are wrong where doubles cannot decide, until the 
   CHECK(wrong_sides() == 0);
 }
 
-TEST_CASE("a query with floating predicates misjudges near contacts, and the next one is exact again") {
+TEST_CASE("a query with floating predicates misjudges near contacts; the next query is exact") {
   shapes::RandomEngine random(5);
   CollideRequest floating;
   floating.predicates = Predicates::floating;

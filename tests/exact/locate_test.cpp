@@ -183,7 +183,7 @@ bool strictly_in(const Triangle& tri, const RationalPoint& x) {
 
 }  // namespace
 
-TEST_CASE("every cell of a triangle cut right through has a sample strictly inside") {
+TEST_CASE("every cell of a cut triangle has a sample strictly inside") {
   test::Rng rng(43);
   for (int i = 0; i < test::effort(60); ++i) {
     const Vec a{0, 0, 0}, b{4, test::random_int(rng, -1, 1) * 1.0, 1},
@@ -218,7 +218,7 @@ TEST_CASE("every cell of a triangle cut right through has a sample strictly insi
   }
 }
 
-TEST_CASE("a cell that touches no edge of the triangle is sampled, and so is one under a coplanar triangle") {
+TEST_CASE("cells without an edge of the triangle and cells under coplanar triangles are sampled") {
   const Vec a{0, 0, 0}, b{8, 0, 0}, c{0, 8, 0};
   const Triangle tri{a.data(), b.data(), c.data()};
   // The sides of a tetrahedron that pokes through the triangle, and its base that does not reach it.

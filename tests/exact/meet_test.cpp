@@ -31,13 +31,13 @@ void for_each_kind(std::uint64_t seed, int rounds, int grid_factor, Check check)
 
 }  // namespace
 
-TEST_CASE("triangles meet as the rational oracle says") {
+TEST_CASE("intersections of triangles agree with the rational oracle") {
   for_each_kind(11, 1500, 30, [](const test::SimplexPair& s) {
     return test::triangles_meet_as(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 3));
   });
 }
 
-TEST_CASE("segments in the plane meet as the rational oracle says") {
+TEST_CASE("intersections of 2D segments agree with the rational oracle") {
   for_each_kind(12, 1500, 20, [](const test::SimplexPair& s) {
     return test::segments_meet_as(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 2));
   });
@@ -61,7 +61,7 @@ TEST_CASE("orientation follows the convention") {
   CHECK(exact::orient3d(o, x, y, z) == 1);
 }
 
-TEST_CASE("the counter of exact fallbacks counts what the filter leaves") {
+TEST_CASE("the counter of exact fallbacks counts undecided predicates") {
   const double a[2] = {0, 0}, b[2] = {0.1, 0.1}, c[2] = {0.3, 0.3}, d[2] = {0.3, 0.7};
   const auto before = exact::exact_fallbacks();
   CHECK(exact::orient2d(a, b, d) == 1);

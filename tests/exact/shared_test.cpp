@@ -80,14 +80,14 @@ void compare(std::uint64_t seed, std::size_t n, int rounds) {
 
 }  // namespace
 
-TEST_CASE("triangles of a complex meet only in shared corners and edges") {
+TEST_CASE("triangles of a complex intersect only in shared corners and edges") {
   compare(21, 3, 1500);
 }
-TEST_CASE("segments of a complex meet only in shared corners") {
+TEST_CASE("segments of a complex intersect only in shared corners") {
   compare(22, 2, 1500);
 }
 
-TEST_CASE("a triangle that names a vertex twice is no triangle") {
+TEST_CASE("a triangle with a repeated vertex has no area") {
   const double o[3] = {0, 0, 0}, x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
   const double* const a[3] = {o, o, x};
   const double* const b[3] = {o, y, z};

@@ -83,16 +83,16 @@ Agreement ask_both(const Mesh& mesh_a, const Mesh& mesh_b, int poses, std::uint6
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("collide() of meshes gives all pairs and no others, and mostly FCL's", BV, ::fcl::AABBd,
-                   ::fcl::OBBd, ::fcl::RSSd, ::fcl::OBBRSSd, ::fcl::kIOSd, ::fcl::KDOP<double, 18>,
-                   ::fcl::OBBRSSf) {
+TEST_CASE_TEMPLATE("collide() of meshes returns exactly the intersecting pairs, mostly the same as FCL", BV,
+                   ::fcl::AABBd, ::fcl::OBBd, ::fcl::RSSd, ::fcl::OBBRSSd, ::fcl::kIOSd,
+                   ::fcl::KDOP<double, 18>, ::fcl::OBBRSSf) {
   const Agreement round = ask_both<BV>(shapes::bumpy_sphere(2, 4), shapes::torus(20, 10), 40, 1);
   MESSAGE("FCL gives all pairs of ", round.same_pairs, " of ", round.checked, " poses, and the verdict of ",
           round.same_verdict);
   CHECK(round.same_verdict >= round.checked - 2);
 }
 
-TEST_CASE("faces that touch: this engine is right, FCL need not be") {
+TEST_CASE("touching faces: this engine is exact, FCL need not be") {
   const auto a = model_of<::fcl::OBBRSSd>(shapes::box());
   const ::fcl::Transform3d home = ::fcl::Transform3d::Identity();
   for (const Eigen::Vector3d& t :
@@ -108,7 +108,7 @@ TEST_CASE("faces that touch: this engine is right, FCL need not be") {
   }
 }
 
-TEST_CASE("distances are those of lrb::distance(), and FCL's but for rounding") {
+TEST_CASE("distances equal lrb::distance() and agree with FCL up to rounding") {
   RandomEngine random(3);
   const auto a = model_of<::fcl::OBBRSSd>(shapes::bumpy_sphere(2, 4)),
              b = model_of<::fcl::OBBRSSd>(shapes::torus(20, 10));
@@ -135,7 +135,7 @@ TEST_CASE("distances are those of lrb::distance(), and FCL's but for rounding") 
   CHECK(apart > 20);
 }
 
-TEST_CASE("contacts have points in both, and normal and depth of their regions") {
+TEST_CASE("contacts have points in both meshes, and normal and depth of their regions") {
   const auto box = model_of<::fcl::OBBRSSd>(shapes::box());
   const ::fcl::CollisionObjectd o1(box);
   ::fcl::CollisionObjectd o2(box);
@@ -162,7 +162,7 @@ TEST_CASE("contacts have points in both, and normal and depth of their regions")
   CHECK(lrb::fcl::collide(&o1, &o2, request, result) == 3);  // there are enough
 }
 
-TEST_CASE("what is no mesh is FCL's, and names of FCL's are here too") {
+TEST_CASE("other shapes are passed to FCL, and FCL's names are available") {
   const auto box = std::make_shared<lrb::fcl::Boxd>(1, 1, 1);
   const lrb::fcl::CollisionObjectd o1(box), o2(model_of<lrb::fcl::OBBRSSd>(shapes::box()));
   lrb::fcl::CollisionResultd result;
@@ -173,7 +173,7 @@ TEST_CASE("what is no mesh is FCL's, and names of FCL's are here too") {
   CHECK(lrb::fcl::distance(&o1, &far, lrb::fcl::DistanceRequestd(), distance) == doctest::Approx(4));
 }
 
-TEST_CASE("a mesh that was changed, or another one at its address, is asked about as it is") {
+TEST_CASE("a changed mesh, or another one at its address, is not served from the cache") {
   lrb::fcl::known_bodies().clear();
   auto model = model_of<::fcl::OBBRSSd>(shapes::box());
   const auto other = model_of<::fcl::OBBRSSd>(shapes::box({2, 0, 0}, {3, 1, 1}));
@@ -198,7 +198,7 @@ TEST_CASE("a mesh that was changed, or another one at its address, is asked abou
   CHECK(lrb::fcl::known_bodies().size() <= 256);
 }
 
-TEST_CASE("threads ask about the same meshes at once") {
+TEST_CASE("threads query the same meshes concurrently") {
   lrb::fcl::known_bodies().clear();
   const auto a = model_of<::fcl::OBBRSSd>(shapes::bumpy_sphere(2, 4));
   std::vector<std::thread> threads;
@@ -218,7 +218,7 @@ TEST_CASE("threads ask about the same meshes at once") {
   CHECK(found == std::vector<std::size_t>(4, found[0]));
 }
 
-TEST_CASE("what cannot be a body is refused") {
+TEST_CASE("invalid bodies are rejected") {
   Mesh mesh = shapes::box();
   mesh.vertices[3].y() = std::numeric_limits<double>::infinity();
   const auto model = model_of<::fcl::AABBd>(mesh);

@@ -72,7 +72,7 @@ void draw(const std::string& name, const std::string& first, const std::vector<s
 
 }  // namespace
 
-TEST_CASE("what fuzzers found is refused, or read and answered") {
+TEST_CASE("inputs found by fuzzers are rejected, or read and answered") {
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(LRB_SOURCE_DIR "/tests/fuzz/corpus")) {
     if (!entry.is_regular_file()) continue;
@@ -82,34 +82,34 @@ TEST_CASE("what fuzzers found is refused, or read and answered") {
   }
 }
 
-TEST_CASE(".lrb files damaged field by field are refused or safe to read") {
+TEST_CASE(".lrb files damaged field by field are rejected or safe to read") {
   draw("fields", std::string("\0\1\2\3\4\5\6\7\10\11\12\13", 12), {5, 5, 10, 15}, 250);
 }
-TEST_CASE("bodies of folded polygons are built, proved, saved, loaded and queried") {
+TEST_CASE("bodies of folded polygons are built, validated, saved, loaded and queried") {
   draw("body", "12", {20, 40, 100}, 1000);
 }
 
 // Meshes are damaged in tests/mesh/io/malformed_test.cpp.
-TEST_CASE("damaged .lrb files are refused or safe to use") {
+TEST_CASE("damaged .lrb files are rejected or safe to use") {
   mutate("lrb", 800);
 }
-TEST_CASE("damaged pose files are refused or read") {
+TEST_CASE("damaged pose files are rejected or read") {
   mutate("poses", 5000);
 }
-TEST_CASE("damaged scenarios are refused or read") {
+TEST_CASE("damaged scenarios are rejected or read") {
   mutate("scenario", 700);
 }
-TEST_CASE("damaged crowds and experiments are refused or read") {
+TEST_CASE("damaged crowds and experiments are rejected or read") {
   mutate("crowd", 1500);
   mutate("experiment", 500);
 }
-TEST_CASE("damaged traces are refused or read") {
+TEST_CASE("damaged traces are rejected or read") {
   mutate("trace", 250);
 }
 TEST_CASE("damaged captures are refused or read") {
   mutate("capture", 20000);
 }
-TEST_CASE("queries of any bodies, poses, motions and tolerances end, and keep their promises") {
+TEST_CASE("queries of any bodies, poses, motions and tolerances end and keep their guarantees") {
   mutate("motion", 40);
 }
 

@@ -60,7 +60,7 @@ constexpr std::size_t kVersionAt = test::kVersionAt, kDimAt = 12, kRealFacesAt =
 
 }  // namespace
 
-TEST_CASE("a file gives back the same LRB-rep") {
+TEST_CASE("a saved LRB-rep is loaded unchanged") {
   for (const LrbRep& rep : {shapes::dented_box(), shapes::stairs_2d(), build_lrb(shapes::bumpy_sphere(2, 1)),
                             LrbRep::without_regions(shapes::open_cylinder(8), false, true)}) {
     const LrbRep back = load_lrb(std::string_view(bytes_of(rep)), "body.lrb");
@@ -76,7 +76,7 @@ TEST_CASE("a file gives back the same LRB-rep") {
   }
 }
 
-TEST_CASE("a body from a file gives the same answers") {
+TEST_CASE("a loaded body gives the same answers") {
   RandomEngine random(1);
   const LrbRep a = build_lrb(shapes::torus(12, 8)), b = build_lrb(shapes::bumpy_sphere(1, 2));
   const LrbRep a_back = load_lrb(std::string_view(bytes_of(a)), "a.lrb");
@@ -92,7 +92,7 @@ TEST_CASE("a body from a file gives the same answers") {
   }
 }
 
-TEST_CASE("every file that is cut short is refused in one line") {
+TEST_CASE("every truncated file is rejected in one line") {
   const std::string whole = bytes_of(shapes::dented_box());
   for (std::size_t size = 0; size < whole.size(); ++size) {
     const std::string text = complaint(whole.substr(0, size));
@@ -105,7 +105,7 @@ TEST_CASE("every file that is cut short is refused in one line") {
   REQUIRE_FALSE(complaint(with_right_checksum(whole + std::string(8, '\0'))).empty());
 }
 
-TEST_CASE("every changed byte is noticed") {
+TEST_CASE("every changed byte is detected") {
   const std::string whole = bytes_of(shapes::stairs_2d());
   for (std::size_t at = 0; at < whole.size(); ++at)
     for (const int change : {1, 0x80, 0xff}) {
@@ -115,14 +115,14 @@ TEST_CASE("every changed byte is noticed") {
     }
 }
 
-TEST_CASE("a newer version is refused politely, before anything else is looked at") {
+TEST_CASE("a newer version is rejected before any other check") {
   std::string newer = bytes_of(shapes::stairs_2d());
   newer[kVersionAt] = static_cast<char>(kLrbFileVersion + 1);
   CHECK(complaint(newer) ==
         "body.lrb: byte 8: found file version 4, expected at most 3; use a newer lrbscope");
 }
 
-TEST_CASE("lengths beyond the file are refused before memory is taken") {
+TEST_CASE("lengths beyond the file are rejected before memory is allocated") {
   const LrbRep rep = shapes::stairs_2d();
   const std::string whole = bytes_of(rep);
   constexpr std::size_t kHash = ~std::size_t{0};  // a number, no array
@@ -158,7 +158,7 @@ TEST_CASE("lengths beyond the file are refused before memory is taken") {
   CHECK(at + sizeof(std::uint32_t) + 8 == whole.size());  // no levels
 }
 
-TEST_CASE("numbers that make no LRB-rep are refused, whatever the checksum says") {
+TEST_CASE("invalid LRB-reps are rejected even if the checksum is right") {
   const std::string whole = bytes_of(shapes::dented_box());
   CHECK_FALSE(complaint(with(whole, kDimAt, std::uint32_t{0})).empty());
   CHECK_FALSE(complaint(with(whole, kDimAt, std::uint32_t{2})).empty());
@@ -177,14 +177,14 @@ TEST_CASE("a name with control characters does not break a message into lines") 
   CHECK(is_one_line(text));
 }
 
-TEST_CASE("a 2D body lies in the plane") {
+TEST_CASE("a 2D body has two coordinates") {
   LrbData d = shapes::stairs_2d().data();
   d.vertices[0].z() = 1;
   CHECK_THROWS_AS(LrbRep{d}, InputError);
 }
 
 // Damage that a checksum would hide from us: either refused, or an LRB-rep that can be walked and queried.
-TEST_CASE("damaged files with a right checksum are refused or harmless") {
+TEST_CASE("damaged files with a right checksum are rejected or harmless") {
   RandomEngine random(9);
   int taken = 0, rejected = 0;
   const LrbRep with_levels = build_lrb(shapes::icosphere(1));
@@ -229,7 +229,7 @@ std::pair<std::vector<TreeNode>, std::vector<LeafBlock>> changed(const LrbRep& r
 
 }  // namespace
 
-TEST_CASE("files of version 2 are read, and have no levels") {
+TEST_CASE("files of version 2 are read, without levels of detail") {
   const LrbRep rep = build_lrb(shapes::bumpy_sphere(2, 1));
   std::string old = bytes_of(rep);
   old.erase(old.size() - 8 - sizeof(std::uint32_t), sizeof(std::uint32_t));
@@ -242,7 +242,7 @@ TEST_CASE("files of version 2 are read, and have no levels") {
   CHECK(bytes_of(back) == bytes_of(rep));
 }
 
-TEST_CASE("a saved body that intersects itself has no levels, loads, and answers as its mesh does") {
+TEST_CASE("a saved self-intersecting body has no levels of detail and answers as its mesh") {
   const Mesh rock = shapes::bumpy_sphere(2, 1);
   const Mesh twice = shapes::several({rock, shapes::translated(rock, {0.3, 0.1, 0.05})});
   const LrbRep rep = build_lrb(twice);
@@ -265,7 +265,7 @@ TEST_CASE("a saved body that intersects itself has no levels, loads, and answers
   }
 }
 
-TEST_CASE("levels that were made are in the file, and come back as they were") {
+TEST_CASE("levels of detail are saved and loaded unchanged") {
   for (const Mesh& mesh : {shapes::bumpy_sphere(3, 1), shapes::quad_torus(20, 12), shapes::gear(40)}) {
     const LrbRep rep = build_lrb(mesh);
     const std::string without = bytes_of(rep);
@@ -298,8 +298,7 @@ TEST_CASE("levels that were made are in the file, and come back as they were") {
   }
 }
 
-TEST_CASE(
-    "stored levels that are not the body's: wrappers that leave some of it out are refused, lies are found") {
+TEST_CASE("stored levels of another body: incomplete wrappers are rejected, wrong deviations are found") {
   const LrbRep rep = build_lrb(shapes::bumpy_sphere(3, 1));
   using Needed = std::vector<double>;
   using Levels = std::vector<WrapperLevels::StoredLevel>;
@@ -343,7 +342,7 @@ TEST_CASE(
   CHECK_FALSE(found([](Needed&, Levels&) {}));
 }
 
-TEST_CASE("files of version 1 are read, and written as this version's") {
+TEST_CASE("files of version 1 are read, and written in the current version") {
   const LrbRep rep = build_lrb(shapes::bumpy_sphere(2, 1));
   const LrbRep back = load_lrb(std::string_view(test::lrb_bytes_version_1(rep)), "body.lrb");
   CHECK(back.hash() == rep.hash());
@@ -353,7 +352,7 @@ TEST_CASE("files of version 1 are read, and written as this version's") {
   CHECK(complaint(damaged).find("checksum") != std::string::npos);
 }
 
-TEST_CASE("a stored tree is the one that would be built, and its bounds hold") {
+TEST_CASE("a stored tree equals the built one, and its bounds are valid") {
   for (const LrbRep& rep : {shapes::dented_box(), shapes::stairs_2d(), build_lrb(shapes::torus(40, 30)),
                             build_lrb(shapes::scaled(shapes::bumpy_sphere(3, 1), 1e-200))}) {
     const LrbRep back = load_lrb(std::string_view(bytes_of(rep)), "body.lrb");
@@ -366,7 +365,7 @@ TEST_CASE("a stored tree is the one that would be built, and its bounds hold") {
   }
 }
 
-TEST_CASE("a stored tree that is not the body's: unsafe ones are refused, wrong bounds are found") {
+TEST_CASE("a stored tree of another body: unsafe ones are rejected, wrong bounds are found") {
   const LrbRep rep = build_lrb(shapes::torus(40, 30));
   using Nodes = std::vector<TreeNode>;
   using Blocks = std::vector<LeafBlock>;

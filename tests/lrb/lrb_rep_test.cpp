@@ -6,7 +6,7 @@
 
 using namespace lrb;
 
-TEST_CASE("an LRB-rep knows its regions' lids and floors") {
+TEST_CASE("an LRB-rep lists lids and floors of its regions") {
   const LrbRep rep = shapes::dented_box();
   REQUIRE(rep.region_count() == 1);
   CHECK(rep.real_face_count() == 28);
@@ -44,7 +44,7 @@ TEST_CASE("components are pieces joined by vertices") {
   CHECK(LrbRep::without_regions(shapes::box_with_void(), true, false).component_vertices().size() == 2);
 }
 
-TEST_CASE("arrays that do not fit together are refused by name") {
+TEST_CASE("inconsistent arrays are rejected by name") {
   const auto message = [](auto change) -> std::string {
     LrbData d = shapes::dented_box().data();
     change(d);
@@ -68,7 +68,7 @@ TEST_CASE("arrays that do not fit together are refused by name") {
   CHECK(names(message([](LrbData& d) { d.face_offsets[2] = 50; }), "not ascending"));
 }
 
-TEST_CASE("the hash names the complex") {
+TEST_CASE("the hash identifies the complex") {
   const LrbRep a = shapes::dented_box(), b = shapes::dented_box();
   CHECK(a.hash() == b.hash());
   CHECK(a.serial() != b.serial());

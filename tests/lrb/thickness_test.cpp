@@ -264,8 +264,7 @@ std::vector<Mesh> all_kinds() {
           several({circle(40, 3), turned_inside_out(circle(30, 2)), star(5)})};
 }
 
-TEST_CASE("no lid is further off than is proved of its region, and hardly nearer" *
-          doctest::test_suite("long")) {
+TEST_CASE("the thickness of a region bounds its lids' deviation tightly" * doctest::test_suite("long")) {
   for (const Mesh& mesh : all_kinds()) {
     for (const bool lean : {false, true}) {
       CAPTURE(mesh.name);
@@ -278,7 +277,7 @@ TEST_CASE("no lid is further off than is proved of its region, and hardly nearer
   }
 }
 
-TEST_CASE("the bound holds where bodies are tiny, huge and far from the origin") {
+TEST_CASE("the thickness bound is valid for tiny and huge bodies, and far from the origin") {
   for (const double scale : {1e-30, 1e-9, 1e9, 1e30}) {
     CAPTURE(scale);
     const LrbRep rep = build_lrb(scaled(bumpy_sphere(2, 7, 0.3), scale));
@@ -292,7 +291,7 @@ TEST_CASE("the bound holds where bodies are tiny, huge and far from the origin")
   check_bounds(build_lrb(translated(bumpy_sphere(3, 7), {1e4, -1e4, 1e4})), 12);
 }
 
-TEST_CASE("no point of a lid is further from the real faces, exactly, than is proved") {
+TEST_CASE("no point of a lid is exactly further from the real faces than the thickness") {
   RandomEngine random(5);
   for (const Mesh& mesh : {bumpy_sphere(1, 3, 0.4), bowl(8, 4), comb(3), quad_torus(8, 5), gear(14),
                            several({icosphere(1), translated(icosphere(1), {1, 0.1, 0})})}) {
@@ -302,7 +301,7 @@ TEST_CASE("no point of a lid is further from the real faces, exactly, than is pr
   check_exactly(LrbRep(toy::notched_plate()), random);
 }
 
-TEST_CASE("a flat lid over coplanar faces is off by nothing") {
+TEST_CASE("a flat lid over coplanar faces has thickness 0") {
   // A board with a thousand faces on each side: lids over them lie in their plane but for the builder's
   // margin. The other regions go round its edges.
   const Mesh board = voxels(24, 24, 1, [](int, int, int) { return true; });
@@ -313,13 +312,13 @@ TEST_CASE("a flat lid over coplanar faces is off by nothing") {
   CHECK(3 * flat > proved.size());
 }
 
-TEST_CASE("any number of threads proves the same") {
+TEST_CASE("thickness does not depend on the number of threads") {
   const LrbRep rep = build_lrb(bumpy_sphere(4, 3));
   const std::vector<double> one = region_thickness(rep, 1);
   for (const unsigned threads : {2U, 5U}) CHECK(region_thickness(rep, threads) == one);
 }
 
-TEST_CASE("real models: the bound is true and tight" * doctest::test_suite("shared meshes")) {
+TEST_CASE("real models: the thickness bound is valid and tight" * doctest::test_suite("shared meshes")) {
   const auto folder = shared_meshes();
   for (const char* name : {"spot", "homer", "fandisk", "cheburashka", "rocker-arm"}) {
     CAPTURE(name);

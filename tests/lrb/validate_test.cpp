@@ -22,7 +22,7 @@ bool names(const ValidateReport& report, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("clean LRB-reps pass, with the volumes known by heart") {
+TEST_CASE("valid LRB-reps pass, with known volumes") {
   const ValidateReport box = validate(shapes::dented_box());
   CHECK(box.valid);
   CHECK(box.volume_solid == doctest::Approx(28));
@@ -44,7 +44,7 @@ TEST_CASE("clean LRB-reps pass, with the volumes known by heart") {
   CHECK(pit.volume_outer == doctest::Approx(32.0 / 3));
 }
 
-TEST_CASE("lids stand off by the volume of the regions over the lids' area") {
+TEST_CASE("the mean thickness is the volume of the regions over the lids' area") {
   CHECK(lid_height(shapes::dented_box()) == doctest::Approx(1));  // 4 under 4
   CHECK(lid_height(LrbRep::without_regions(shapes::box(), true, false)) == 0);
   const LrbRep plate(toy::small_plate());
@@ -55,7 +55,7 @@ TEST_CASE("lids stand off by the volume of the regions over the lids' area") {
   CHECK(lid_height(plate) * length == doctest::Approx(36 - 25));
 }
 
-TEST_CASE("a region that is open is named") {
+TEST_CASE("an open region is named") {
   LrbData d = shapes::dented_box().data();
   d.outer_cell[18] = kOutside;  // a face of the dent leaves the region's collector
   const ValidateReport report = validate(LrbRep(d));
@@ -69,7 +69,7 @@ TEST_CASE("a closed body with a face that names a vertex twice is closed") {
   CHECK(validate(LrbRep::without_regions(collapsed, true, false)).valid);
 }
 
-TEST_CASE("faces that cross are found, and told apart by whose fault they are") {
+TEST_CASE("intersecting faces are found, and classified by the body or the builder") {
   LrbData d = shapes::dented_box().data();
   for (VertexId v = 12; v < 16; ++v)
     d.vertices[v].z() = -1;  // the dent goes through the bottom: real against real
@@ -87,7 +87,7 @@ TEST_CASE("faces that cross are found, and told apart by whose fault they are") 
   CHECK(names(report, "(pseudo)"));
 }
 
-TEST_CASE("a lid that lies flat on what it hides is allowed and counted") {
+TEST_CASE("a lid that coincides with its floor is allowed and counted") {
   LrbData d = shapes::dented_box().data();
   for (VertexId v = 12; v < 16; ++v)
     d.vertices[v].z() = 2;  // the dent has depth 0: its floor lies in the lid's plane
@@ -98,7 +98,7 @@ TEST_CASE("a lid that lies flat on what it hides is allowed and counted") {
   CHECK_MESSAGE(report.valid, (report.violations.empty() ? "" : report.violations[0]));
 }
 
-TEST_CASE("a negative region is refused") {
+TEST_CASE("a region of negative volume is rejected") {
   LrbData d = shapes::dented_box().data();
   for (VertexId v = 12; v < 16; ++v) d.vertices[v].z() = 3;  // a bump through the lid
   const ValidateReport report = validate(LrbRep(d));
@@ -106,7 +106,7 @@ TEST_CASE("a negative region is refused") {
   CHECK(names(report, "negative"));
 }
 
-TEST_CASE("a tree whose bounds are no numbers is reported, with levels too") {
+TEST_CASE("a tree with NaN bounds is reported, also with levels of detail") {
   const LrbRep sound = build_lrb(shapes::bumpy_sphere(3, 1));
   const WrapperLevels& levels = sound.levels();
   std::vector<TreeNode> nodes = sound.tree().nodes();

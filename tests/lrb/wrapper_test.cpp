@@ -30,7 +30,7 @@ TEST_CASE("refining goes from the outermost wrapper to the real faces and back")
   CHECK(w.boundary() == outermost);
 }
 
-TEST_CASE("any set of regions is legal: a region may go before the one that hides it") {
+TEST_CASE("any set of regions is valid: a region may be refined before the one that hides it") {
   const LrbRep rep = shapes::stairs_2d();
   Wrapper w(rep);
   w.refine(0);  // a bubble under region 1: its lid is there, seen from behind

@@ -371,11 +371,11 @@ void check_matrix(bool all) {
 
 }  // namespace
 
-TEST_CASE("kinds of bodies through two doors answer as brute force does") {
+TEST_CASE("kinds of bodies through two interfaces agree with brute force") {
   check_matrix(false);
 }
 
-TEST_CASE("kinds of bodies through all doors answer as brute force does" * doctest::test_suite("long")) {
+TEST_CASE("kinds of bodies through all interfaces agree with brute force" * doctest::test_suite("long")) {
   check_matrix(true);
 }
 

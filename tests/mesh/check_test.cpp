@@ -248,7 +248,7 @@ TEST_CASE("two cubes that share an edge, or a vertex") {
   CHECK(report[MeshFault::non_manifold_edge].first == Elements{{2, kNull}});
 }
 
-TEST_CASE("faces turned against their neighbours") {
+TEST_CASE("faces flipped against their neighbours") {
   const MeshReport report = check_mesh(with_face_turned(icosphere(1), 17));
   check_faults(report, {{MeshFault::flipped_face, 3}});
   CHECK_FALSE(report.closed);
@@ -286,7 +286,7 @@ TEST_CASE("unused vertices") {
   CHECK(report.buildable());
 }
 
-TEST_CASE("vertices in one place, whatever the sign of their zeros") {
+TEST_CASE("coincident vertices, whatever the sign of their zeros") {
   Mesh m = box();
   for (const double x : {0.0, -0.0, 1.0}) m.vertices.emplace_back(x, 0, 0);
   const MeshReport report = check_mesh(m);
@@ -297,7 +297,7 @@ TEST_CASE("vertices in one place, whatever the sign of their zeros") {
   CHECK(report.obstacles(m).empty());
 }
 
-TEST_CASE("findings say what, how often and where, in one line each") {
+TEST_CASE("findings report fault, count and location, in one line each") {
   Mesh m = without_face(box(), 0);
   m.name = "box.obj";
   const std::vector<std::string> lines = check_mesh(m).lines(m);

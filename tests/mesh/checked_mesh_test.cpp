@@ -42,7 +42,7 @@ std::vector<Mesh> bodies() {
           Mesh{}};
 }
 
-TEST_CASE("a checked mesh says what check_mesh() says, before it is turned and after") {
+TEST_CASE("a checked mesh has the report of check_mesh(), before and after orientation") {
   for (const Mesh& m : bodies()) {
     CAPTURE(m.face_count());
     CheckedMesh checked = check(m);
@@ -66,7 +66,7 @@ TEST_CASE("a checked mesh says what check_mesh() says, before it is turned and a
   }
 }
 
-TEST_CASE("what is buildable is built, and nothing else") {
+TEST_CASE("a checked mesh is buildable if and only if it can be built") {
   for (const Mesh& m : bodies()) {
     CAPTURE(m.face_count());
     CheckedMesh checked = check(m);
@@ -92,7 +92,7 @@ TEST_CASE("what is buildable is built, and nothing else") {
   CHECK(inside_out.obstacles(icosphere(1)).size() == 1);
 }
 
-TEST_CASE("one ray finds the sides of all surfaces that rays at each surface alone find") {
+TEST_CASE("one ray finds the same sides of surfaces as one ray per surface") {
   std::mt19937_64 random(3);
   for (const Mesh& m : {several({icosphere(2, 2), turned_inside_out(icosphere(1, 1)), icosphere(1, 0.5),
                                  translated(icosphere(1), {2, 0, 0}), box({-1, -1, -1}, {1, 1, 1})}),

@@ -83,7 +83,7 @@ Mesh with_random_holes(const Mesh& m, double share, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("a rim is found whole, and measured") {
+TEST_CASE("a boundary loop is found completely and measured") {
   CHECK(loops_of(icosphere(1)).empty());
   const auto one = loops_of(without_faces(box(), {7}));
   REQUIRE(one.size() == 1);
@@ -105,7 +105,7 @@ TEST_CASE("a rim is found whole, and measured") {
   CHECK_FALSE(bent[0].planar);
 }
 
-TEST_CASE("every open edge is in one rim, and no rim comes through a vertex twice") {
+TEST_CASE("every open edge is in one boundary loop, and no loop visits a vertex twice") {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Mesh m = with_random_holes(icosphere(2), 0.05 * (seed % 10 + 1), seed);
     std::size_t edges = 0;
@@ -118,7 +118,7 @@ TEST_CASE("every open edge is in one rim, and no rim comes through a vertex twic
   }
 }
 
-TEST_CASE("two holes that touch are two rims; one that a fin interrupts is no loop") {
+TEST_CASE("two touching holes are two loops; a hole interrupted by a fin is no loop") {
   const Mesh ball = icosphere(0);
   std::vector<FaceId> at_first;
   for (FaceId f = 0; f < ball.face_count(); ++f)
@@ -146,7 +146,7 @@ TEST_CASE("two holes that touch are two rims; one that a fin interrupts is no lo
         HoleState::not_a_loop);
 }
 
-TEST_CASE("flat holes are closed, corners on straight sides included") {
+TEST_CASE("flat holes are closed, also with collinear corners") {
   const ClosedHoles one = close(without_faces(box(), {7}));
   CHECK(one.new_faces == 1);
   CHECK(volume(one.mesh) == doctest::Approx(1));
@@ -176,7 +176,7 @@ TEST_CASE("holes that are not flat are closed") {
   }
 }
 
-TEST_CASE("random holes: what is closed meets nothing, and what is left is named") {
+TEST_CASE("random holes: fills intersect nothing, and holes left open are reported") {
   std::size_t closed = 0, all = 0;
   for (unsigned seed = 0; seed < 30; ++seed) {
     const Mesh body = seed % 3 == 0 ? icosphere(2) : seed % 3 == 1 ? torus(16, 10) : comb(3);
@@ -188,7 +188,7 @@ TEST_CASE("random holes: what is closed meets nothing, and what is left is named
   CHECK(all > 300);
 }
 
-TEST_CASE("a lid that would cut the surface is not put on, and the face in its way is named") {
+TEST_CASE("a fill that would intersect the surface is rejected, and the face in its way is named") {
   const Mesh pole = box({0.4, 0.4, 0.1}, {0.6, 0.6, 3});
   const Mesh pot = open_box({0, 0, 0}, {1, 1, 1});
   const ClosedHoles out = close(several({pot, pole}));
@@ -208,7 +208,7 @@ TEST_CASE("a lid that would cut the surface is not put on, and the face in its w
   CHECK(alone.holes[0].obstacle == 0);
 }
 
-TEST_CASE("of two nested rims in one plane the ring between them is closed") {
+TEST_CASE("two nested loops in one plane are closed by the ring between them") {
   for (const int holes : {1, 2}) {
     const Mesh walls =
         without(voxels(2 * holes + 1, 3, 1, [](int x, int y, int) { return y != 1 || x % 2 == 0; }),
@@ -251,7 +251,7 @@ TEST_CASE("two holes with the same two corners do not both take the edge between
   CHECK(check_mesh(out.mesh)[MeshFault::open_edge].count == 0);
 }
 
-TEST_CASE("large rims take no longer than they must") {
+TEST_CASE("large loops take the expected time") {
   const ClosedHoles out = close(open_cylinder(3000));
   CHECK(out.new_faces == 2 * 2998);
 }

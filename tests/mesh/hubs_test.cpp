@@ -87,7 +87,7 @@ Mesh shaken(Mesh m, double by, std::uint64_t seed) {
 
 constexpr std::uint32_t kMany = 90;  // more than kFewNeighbours
 
-TEST_CASE("clean bodies with hubs and large faces intersect themselves nowhere") {
+TEST_CASE("clean bodies with high-valence vertices and large faces have no self-intersections") {
   for (const Mesh& m : {drum(kMany), fine_box(4 * kMany), cone(kMany), bipyramid(kMany), crown(kMany),
                         fan_disk(kMany), frustum(kMany), uv_sphere(kMany, 6), drum(1000), bipyramid(1000)}) {
     CAPTURE(m.face_count());
@@ -98,7 +98,7 @@ TEST_CASE("clean bodies with hubs and large faces intersect themselves nowhere")
   }
 }
 
-TEST_CASE("about hubs and at large faces exactly those faces are found that all pairs name") {
+TEST_CASE("self-intersections at high-valence vertices and large faces agree with brute force") {
   std::vector<Mesh> meshes;
   for (std::uint64_t seed = 0; seed < 4; ++seed)
     for (const double by : {0.003, 0.03, 0.3}) {
@@ -129,7 +129,7 @@ TEST_CASE("about hubs and at large faces exactly those faces are found that all 
   CHECK(found > 10000);
 }
 
-TEST_CASE("at any size and place of the body") {
+TEST_CASE("self-intersections do not depend on scale and position") {
   const Mesh m = shaken(crown(kMany), 0.3, 7);
   const auto expected = found_in(m);
   CHECK(!expected.empty());
@@ -185,7 +185,7 @@ TEST_CASE("a large polygon is cut into triangles with area that cover it once") 
   }
 }
 
-TEST_CASE("turned boxes never part what has a point in common") {
+TEST_CASE("rotated boxes never separate faces with a common point") {
   std::mt19937_64 random(5);
   const auto number = [&] { return static_cast<double>(random() % 4096) / 2048 - 1; };
   int apart = 0;

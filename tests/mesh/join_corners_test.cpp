@@ -38,7 +38,7 @@ MeshReport joined_report(Mesh m, JoinedCorners* said = nullptr) {
 
 }  // namespace
 
-TEST_CASE("faces with vertices of their own become the body that they came from") {
+TEST_CASE("a triangle soup is merged into the body that it came from") {
   for (const Mesh& body :
        {box(), quad_box(), comb(3), torus(8, 5), icosphere(2), box_with_void(), l_shape()}) {
     JoinedCorners said;
@@ -53,7 +53,7 @@ TEST_CASE("faces with vertices of their own become the body that they came from"
   }
 }
 
-TEST_CASE("bodies that are closed stay as they are, wherever they touch") {
+TEST_CASE("closed bodies are unchanged, wherever they touch") {
   const Mesh edge = several({box(), box({1, 1, 0}, {2, 2, 1})}),
              corner = several({box(), box({1, 1, 1}, {2, 2, 2})}),
              face = several({quad_box(), quad_box({1, 0, 0}, {2, 1, 1})}), twice = several({box(), box()});
@@ -71,7 +71,7 @@ TEST_CASE("bodies that are closed stay as they are, wherever they touch") {
   CHECK(check_mesh(m).buildable());
 }
 
-TEST_CASE("loose faces of two bodies that touch become two bodies, if their other edges tell") {
+TEST_CASE("a soup of two touching bodies becomes two bodies, if their other edges decide") {
   for (const Mesh& other : {box({1, 1, 0}, {2, 2, 1}), box({1, 1, 1}, {2, 2, 2})}) {
     const MeshReport report = joined_report(as_soup(several({box(), other})));
     CHECK(report.components == 2);
@@ -83,7 +83,7 @@ TEST_CASE("loose faces of two bodies that touch become two bodies, if their othe
   CHECK(stacked.bounds_solid);
 }
 
-TEST_CASE("rims in one place are sewn up; what is a fault stays one") {
+TEST_CASE("coincident boundary loops are merged; faults remain") {
   const auto half = [](bool upper) {  // of a box, cut at z = 1
     const Mesh b = upper ? box({0, 0, 1}, {1, 1, 2}) : box();
     std::set<FaceId> gone;
@@ -107,7 +107,7 @@ TEST_CASE("rims in one place are sewn up; what is a fault stays one") {
   CHECK(joined_report(doubled)[MeshFault::non_manifold_edge].count == 3);
 }
 
-TEST_CASE("0 and -0 are one place, an ulp more is another") {
+TEST_CASE("0 and -0 coincide, values an ulp apart do not") {
   Mesh m = as_soup(box());
   for (Point3& x : m.vertices)
     if (x.x() == 0 && (&x - m.vertices.data()) % 2 == 0) x.x() = -0.0;
@@ -116,7 +116,7 @@ TEST_CASE("0 and -0 are one place, an ulp more is another") {
   CHECK(joined_report(m)[MeshFault::open_edge].count > 0);
 }
 
-TEST_CASE("segments with vertices of their own become a polygon") {
+TEST_CASE("separate segments are merged into a polygon") {
   for (const Mesh& body : {star(5), ring_2d(12)}) {
     JoinedCorners said;
     CHECK(joined_report(as_soup(body), &said).buildable());
@@ -124,7 +124,7 @@ TEST_CASE("segments with vertices of their own become a polygon") {
   }
 }
 
-TEST_CASE("faces that name what is not there, or no number, are left alone") {
+TEST_CASE("faces with invalid indices or coordinates are left unchanged") {
   Mesh m = as_soup(box());
   m.face_vertices[0] = VertexId(1000);
   m.vertices[5].y() = std::numeric_limits<double>::quiet_NaN();

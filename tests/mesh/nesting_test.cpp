@@ -148,20 +148,20 @@ TEST_CASE("components inside others are voids, and solid again inside those") {
   CHECK(check_mesh(rings).lines(rings).empty());
 }
 
-TEST_CASE("a void that touches its body from inside") {
+TEST_CASE("a void that touches its body's surface") {
   Mesh m = several({box({0, 0, 0}, {4, 4, 4}), box({0, 1, 1}, {1, 2, 2})});  // in the plane x = 0
   CHECK(orient_outward(m) == 1);
   CHECK(check_mesh(m)[MeshFault::inside_out].count == 0);
 }
 
-TEST_CASE("a component that is there twice is no void of itself") {
+TEST_CASE("a duplicated component is not a void of itself") {
   Mesh m = several({icosphere(2), icosphere(2)});
   CHECK(orient_outward(m) == 0);
   m = several({icosphere(2), turned_inside_out(icosphere(2))});
   CHECK(orient_outward(m) == 1);
 }
 
-TEST_CASE("components that cross each other are not nested") {
+TEST_CASE("intersecting components are not nested") {
   for (const Point3& offset : {Point3(0.9, 0.1, 0.2), Point3(1.5, 0, 0), Point3(0.3, 0.3, 0.3)}) {
     Mesh m = several({icosphere(2), translated(icosphere(2), offset)});
     CHECK(orient_outward(m) == 0);
@@ -176,7 +176,7 @@ TEST_CASE("components that cross each other are not nested") {
   CHECK(orient_outward(m) == 1);
 }
 
-TEST_CASE("open components are left as they are") {
+TEST_CASE("open components are unchanged") {
   Mesh m = several({open_cylinder(8), turned_inside_out(box({3, 3, 3}, {4, 4, 4}))});
   const Mesh before = m;
   CHECK(orient_outward(m) == 1);
@@ -184,7 +184,7 @@ TEST_CASE("open components are left as they are") {
   CHECK(check_mesh(m)[MeshFault::inside_out].count == 0);
 }
 
-TEST_CASE("triangles of turned triangles and quads keep their numbers") {
+TEST_CASE("flipped triangles and quads keep their triangles' numbers") {
   for (const Mesh& body : {icosphere(1), quad_box(), quad_torus(8, 5)}) {
     Mesh m = turned_inside_out(body);
     const auto before = fan_triangles(m);

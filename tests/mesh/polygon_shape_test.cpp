@@ -12,7 +12,7 @@ namespace lrb::test {
 
 using namespace shapes;
 
-TEST_CASE("a convex polygon with corners in the middle of its sides falls into triangles with area") {
+TEST_CASE("a convex polygon with collinear corners is split into triangles with area") {
   const std::vector<std::vector<Point2>> shapes = {{{0, 0}, {840, 0}, {0, 840}},
                                                    {{0, 0}, {840, 0}, {840, 840}, {0, 840}},
                                                    {{0, 0}, {840, 0}, {1680, 840}, {840, 1680}, {0, 840}}};

@@ -79,7 +79,7 @@ Mesh random_soup(std::uint64_t seed, int triangles, int dim) {
 
 }  // namespace
 
-TEST_CASE("self-intersections: as many as an oracle finds over all pairs") {
+TEST_CASE("self-intersections agree with an oracle over all pairs") {
   check_against_oracle(several({icosphere(1), translated(icosphere(1), {1, 0.25, 0})}));
   check_against_oracle(several({box(), translated(box(), {0.5, 0.5, 0.5})}));
   check_against_oracle(several({box(), translated(box(), {1, 0, 0})}));          // two faces in one place
@@ -123,7 +123,7 @@ TEST_CASE("self-intersections of polygons are counted by face") {
   CHECK(check_mesh(apart)[MeshFault::self_intersection].count == 0);
 }
 
-TEST_CASE("corners in the middle of straight sides are no self-intersections") {
+TEST_CASE("collinear corners are not self-intersections") {
   // A slab whose top and bottom have them on every side: their plain fans hold triangles without area.
   for (int shift = 0; shift < 8; ++shift) {
     Mesh m;
@@ -148,7 +148,7 @@ TEST_CASE("corners in the middle of straight sides are no self-intersections") {
   CHECK(check_mesh(three_sided).lines(three_sided).empty());
 }
 
-TEST_CASE("real-looking bodies that pass through themselves") {
+TEST_CASE("realistic bodies with self-intersections") {
   Mesh m = bumpy_sphere(2, 3);
   CHECK(check_mesh(m)[MeshFault::self_intersection].count == 0);
   m.vertices[5] *= -2;  // one vertex through to the other side
@@ -158,7 +158,7 @@ TEST_CASE("real-looking bodies that pass through themselves") {
   CHECK(report.buildable());
 }
 
-TEST_CASE("solids that overlap, and those that only touch") {
+TEST_CASE("overlapping and touching solids") {
   struct Case {
     Mesh a, b;
     bool overlap;

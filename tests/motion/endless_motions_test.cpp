@@ -71,7 +71,7 @@ FirstContactResult ended(const LrbRep& a, const LrbRep& b, const Motion& motion,
 
 }  // namespace
 
-TEST_CASE("a scaled body that slides along another comes to an end") {
+TEST_CASE("the search for a sliding scaled body ends") {
   const LrbRep box = closed(shapes::quad_box());
   // It went on by its gap at a time.
   const FirstContactResult r = ended(box, box, slide({3, 0.25, 1 + 1e-6}, {-3, 0.25, 1 + 1e-6}, 2));
@@ -81,7 +81,7 @@ TEST_CASE("a scaled body that slides along another comes to an end") {
     ended(box, box, slide({3, 0.25, 1 + gap}, {-3, 0.25, 1 + gap}, 2), 1e-15);
 }
 
-TEST_CASE("a sheet that slides or turns in its own plane comes to an end") {
+TEST_CASE("the search for a sheet that slides or rotates in its own plane ends") {
   const LrbRep one = grid(1), fine = grid(8);
   for (const LrbRep* sheet : {&one, &fine})
     for (const double gap : {0.0, 5e-324, 1e-17, 1e-15, 1e-14, 1e-13}) {
@@ -98,7 +98,7 @@ TEST_CASE("a sheet that slides or turns in its own plane comes to an end") {
   }
 }
 
-TEST_CASE("no tolerance is too small, nor any motion too degenerate") {
+TEST_CASE("the search ends for any tolerance and degenerate motion") {
   const LrbRep box = closed(shapes::quad_box()), ball = closed(shapes::icosphere(1));
   const Motion screw = Motion::screw(Pose::rotation(Vector3d(1, 2, 3).normalized(), 0.4, {3, 0.3, 0.2}),
                                      Pose::rotation(Vector3d(1, -2, 3).normalized(), 1.4, {-0.5, 0.1, 0.2}));

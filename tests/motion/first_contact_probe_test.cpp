@@ -59,7 +59,7 @@ TEST_CASE("first contact probe: t0 rises and t1 falls to the answer, with the di
   }
 }
 
-TEST_CASE("first contact probe: bodies that never meet, and bodies that begin in contact") {
+TEST_CASE("first contact probe: bodies that never collide, and bodies that start in contact") {
   const LrbRep ball = LrbRep::without_regions(shapes::icosphere(2), true, false);
   FirstContactResult result;
   const std::vector<ContactBounds> passing =
@@ -74,7 +74,7 @@ TEST_CASE("first contact probe: bodies that never meet, and bodies that begin in
   CHECK(met[0].upper == 0);
 }
 
-TEST_CASE("first contact probe: poses that are no rotations are searched by distances, and told") {
+TEST_CASE("first contact probe: poses other than rotations are searched by distances, and reported") {
   const LrbRep ball = LrbRep::without_regions(shapes::icosphere(2), true, false);
   Pose start;
   start.r = Vector3d(1, 0.5, 2).asDiagonal();

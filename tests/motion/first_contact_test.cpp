@@ -99,7 +99,7 @@ Vector3d rounded(const Vector3d& x) {
 
 }  // namespace
 
-TEST_CASE("a motion is the function that its header says") {
+TEST_CASE("a motion is the function documented in its header") {
   RandomEngine random(1);
   for (int i = 0; i < 40; ++i) {
     const Pose start{shapes::random_rotation(random), shapes::random_direction(random)};
@@ -129,7 +129,7 @@ TEST_CASE("a motion is the function that its header says") {
   CHECK((keys.at(0.625).t - Vector3d(0.5, 0, 0)).norm() < 1e-15);
 }
 
-TEST_CASE("straight motions: the interval holds the rational time of first contact") {
+TEST_CASE("straight motions: the interval contains the rational time of first contact") {
   RandomEngine random(2);
   const LrbRep bodies[] = {closed(shapes::tetrahedron()),
                            closed(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.75, 0.5})),
@@ -161,7 +161,7 @@ TEST_CASE("straight motions: the interval holds the rational time of first conta
   CHECK(never > 5);
 }
 
-TEST_CASE("boxes: face to face, edge to edge, corner to face, at the time that is known") {
+TEST_CASE("boxes: face to face, edge to edge and corner to face, at known times") {
   const LrbRep box = closed(shapes::quad_box());
   const auto expect = [&](const Motion& motion, double time) {
     const FirstContactResult r = checked(box, kStill, box, motion);
@@ -200,7 +200,7 @@ TEST_CASE("boxes: face to face, edge to edge, corner to face, at the time that i
   CHECK((r.normal - Vector3d(0, 0, 1)).norm() < 1e-6);
 }
 
-TEST_CASE("turning bodies: at the time that is known, however many turns there are in the motion") {
+TEST_CASE("rotating bodies: at known times, for any number of revolutions") {
   // The blade's end goes round, from (1, 0), and meets the knife, none of which is lower, at y = 0.5: after
   // pi / 6.
   const LrbRep blade = closed(shapes::quad_box({0, -0.25, -1}, {1, 0, 1}));
@@ -222,7 +222,7 @@ TEST_CASE("turning bodies: at the time that is known, however many turns there a
         MotionOutcome::never);
 }
 
-TEST_CASE("balls meet between the times of the balls inside and outside of them") {
+TEST_CASE("polyhedral balls collide between the times of their inner and outer balls") {
   RandomEngine random(4);
   const LrbRep ball = closed(shapes::icosphere(4));
   const double inner = 0.998;  // all points of the mesh are further than this from the middle
@@ -238,7 +238,7 @@ TEST_CASE("balls meet between the times of the balls inside and outside of them"
   }
 }
 
-TEST_CASE("sheets are never passed through, at any speed, parallel or not") {
+TEST_CASE("no sheet is tunnelled through, at any speed, parallel or not") {
   RandomEngine random(5);
   const LrbRep a = sheet(1), b = sheet(0.75), same = sheet(1);
   for (int i = 0; i < 60; ++i) {
@@ -258,7 +258,7 @@ TEST_CASE("sheets are never passed through, at any speed, parallel or not") {
   }
 }
 
-TEST_CASE("contact at the start is said so, and a body inside another does not meet it") {
+TEST_CASE("contact at the start is reported, and an enclosed body is not in contact") {
   const LrbRep box = closed(shapes::quad_box()), small = closed(shapes::scaled(shapes::icosphere(1), 0.2));
   FirstContactResult r =
       first_contact(box, kStill, box, Motion::linear(Pose::translation({1, 0, 0}), {5, 0, 0}));
@@ -277,7 +277,7 @@ TEST_CASE("contact at the start is said so, and a body inside another does not m
   CHECK(r.t1 < 0.2);
 }
 
-TEST_CASE("grazing bodies get an interval that is wider, and said to be") {
+TEST_CASE("tangential contacts have a wider interval and are marked as grazing") {
   const LrbRep box = closed(shapes::quad_box());
   // Flush in doubles: both slide along the plane z = 1 and touch from t = 0.5 on.
   FirstContactResult r =
@@ -328,7 +328,7 @@ TEST_CASE("both bodies move: the same as one of them in the other's frame") {
   CHECK(contacts > 10);
 }
 
-TEST_CASE("scaled and mirrored bodies, and bodies in the plane") {
+TEST_CASE("scaled, mirrored and 2D bodies") {
   RandomEngine random(8);
   const LrbRep a = closed(shapes::icosphere(1)), b = closed(shapes::torus(8, 6));
   for (int i = 0; i < 6; ++i) {
@@ -350,7 +350,7 @@ TEST_CASE("scaled and mirrored bodies, and bodies in the plane") {
   }
 }
 
-TEST_CASE("a tolerance only widens the interval; a budget leaves what is proved; threads change nothing") {
+TEST_CASE("a tolerance only widens the interval; a budget keeps proven bounds; threads do not matter") {
   RandomEngine random(9);
   const LrbRep a = closed(shapes::bumpy_sphere(3, 5)), b = closed(shapes::torus(24, 16));
   std::vector<Motion> motions;
@@ -389,7 +389,7 @@ TEST_CASE("a tolerance only widens the interval; a budget leaves what is proved;
   }
 }
 
-TEST_CASE("motions and requests that cannot be answered are refused") {
+TEST_CASE("invalid motions and requests are rejected") {
   const LrbRep box = closed(shapes::box()), flat = closed(shapes::gear(7));
   Pose sheared;
   sheared.r(0, 1) = 0.5;

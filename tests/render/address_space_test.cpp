@@ -11,7 +11,7 @@
 
 using namespace lrb;
 
-TEST_CASE("too little address space for Mesa is the environment's fault, not a crash") {
+TEST_CASE("too little address space for Mesa is an EnvironmentError") {
   rlimit before{};
   REQUIRE(getrlimit(RLIMIT_AS, &before) == 0);
   std::size_t pages = 0;

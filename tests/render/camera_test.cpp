@@ -27,7 +27,7 @@ Eigen::AlignedBox3d box_of(const std::vector<Vector3d>& points) {
 
 }  // namespace
 
-TEST_CASE("a fitted camera shows every point, within the margin, and wastes no room") {
+TEST_CASE("a fitted camera shows every point within the margin, and fills the frame") {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> angle(-3.1, 3.1);
   for (int i = 0; i < 400; ++i) {
@@ -56,7 +56,7 @@ TEST_CASE("a fitted camera shows every point, within the margin, and wastes no r
   }
 }
 
-TEST_CASE("single points, flat and far scenes can be fitted") {
+TEST_CASE("single points, flat and distant scenes can be fitted") {
   for (const Vector3d& at : {Vector3d(0, 0, 0), Vector3d(1e6, -1e6, 3), Vector3d(1e-8, 0, 0)}) {
     for (const bool orthographic : {false, true}) {
       render::FitOptions options;
@@ -87,7 +87,7 @@ TEST_CASE("the view from above keeps x to the right and y up") {
   CHECK(origin.y() == doctest::Approx(360));                              // 0.1 * 400 free below
 }
 
-TEST_CASE("a camera on the contact holds it with its surroundings") {
+TEST_CASE("a camera on the contact shows it with its surroundings") {
   const std::vector<Vector3d> contact{{1, 1, 1}, {1.1, 1, 1}, {1.05, 1.04, 1.02}};
   Eigen::AlignedBox3d scene(Vector3d(-2, -2, -2), Vector3d(2, 2, 2));
   for (const bool orthographic : {false, true}) {
@@ -120,7 +120,7 @@ TEST_CASE("a camera on the contact holds it with its surroundings") {
   CHECK((wide.eye - wide.target).norm() > 5 * (near.eye - near.target).norm());
 }
 
-TEST_CASE("nearer in depth is nearer in the world, by shares of the picture's height") {
+TEST_CASE("the depth bias is a distance in the world, in shares of the picture's height") {
   for (const bool orthographic : {false, true}) {
     render::Camera camera;
     camera.eye = {0, 0, 5};
@@ -136,7 +136,7 @@ TEST_CASE("nearer in depth is nearer in the world, by shares of the picture's he
   }
 }
 
-TEST_CASE("a view from beside puts both ends of the axis side by side") {
+TEST_CASE("a side view shows both ends of the axis side by side") {
   for (const Vector3d& up : {Vector3d(0, 0, 1), Vector3d(0, 1, 0)}) {
     for (const Vector3d& axis :
          {Vector3d(1, 0.3, 0.2), Vector3d(-0.1, 2, 5), Vector3d(0, -1, 0.2), Vector3d(0, 0, 7)}) {
@@ -165,7 +165,7 @@ TEST_CASE("orbit keeps target, distance and height") {
   CHECK((top.eye - top.target).cross(top.up).norm() > 0.01);
 }
 
-TEST_CASE("cameras without a direction or an opening are refused") {
+TEST_CASE("cameras without a direction or a field of view are rejected") {
   render::Camera camera;
   camera.eye = camera.target;
   const Eigen::AlignedBox3d scene(Vector3d(-1, -1, -1), Vector3d(1, 1, 1));

@@ -62,7 +62,7 @@ void check_order(const std::vector<render::EyePolygon>& input, bool orthographic
 
 }  // namespace
 
-TEST_CASE("random triangles that pass through each other are painted from the back") {
+TEST_CASE("random intersecting triangles are painted back to front") {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> u(-3, 3);
   for (const std::uint32_t count : {2U, 10U, 80U}) {
@@ -75,7 +75,7 @@ TEST_CASE("random triangles that pass through each other are painted from the ba
   }
 }
 
-TEST_CASE("three triangles that overlap in a ring") {
+TEST_CASE("three cyclically overlapping triangles") {
   std::mt19937 random(2);
   std::vector<render::EyePolygon> ring;
   for (std::uint32_t i = 0; i < 3; ++i) {

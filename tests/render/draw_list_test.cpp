@@ -101,7 +101,7 @@ TEST_CASE("edge distances are pixels on the screen") {
   for (const render::FaceVertex& v : mesh.faces) CHECK(v.edge[1] == render::kNoEdge);
 }
 
-TEST_CASE("what lies behind a camera within the scene is clipped") {
+TEST_CASE("geometry behind a camera within the scene is clipped") {
   render::DrawList list;
   test::add(list, test::sphere_triangles(2, 1), {});
   render::Camera camera;

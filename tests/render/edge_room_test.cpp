@@ -41,7 +41,7 @@ double brute_room(const render::DrawList& list, const render::DrawTriangle& t,
 
 }  // namespace
 
-TEST_CASE("the room of edges is the mean altitude round about, of triangles of one style") {
+TEST_CASE("the room of edges is the local mean altitude of triangles of one style") {
   render::DrawList list;
   render::DrawTriangle t;
   t.edges = 7;
@@ -61,7 +61,7 @@ TEST_CASE("the room of edges is the mean altitude round about, of triangles of o
   }
 }
 
-TEST_CASE("what comes up to the eye has room") {
+TEST_CASE("triangles close to the camera have room") {
   render::DrawList list;
   render::DrawTriangle t;
   t.edges = 7;
@@ -81,7 +81,7 @@ TEST_CASE("fading is smooth between its ends") {
   CHECK(render::fade_between(2.01, 2, 4) < 0.001);
 }
 
-TEST_CASE("the even room of edges is one number for each style, by what its triangles cover") {
+TEST_CASE("the uniform room of edges is one number per style, weighted by covered area") {
   render::DrawList list;
   render::DrawTriangle t;
   t.edges = 7;

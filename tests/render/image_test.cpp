@@ -12,7 +12,7 @@
 
 using namespace lrb;
 
-TEST_CASE("painting over is the compositing formula, rounded") {
+TEST_CASE("painting over is the rounded compositing formula") {
   std::mt19937 random(7);
   const auto byte = [&] { return static_cast<std::uint8_t>(random()); };
   for (int i = 0; i < 20000; ++i) {
@@ -86,7 +86,7 @@ TEST_CASE("image difference counts in buckets") {
   CHECK(shown.at(50, 50) == render::Rgba{0, 0, 0});
 }
 
-TEST_CASE("colours that must be told apart differ in grey") {
+TEST_CASE("colours that must be distinguished differ in grey") {
   CHECK(std::abs(render::luma(render::palette::body(Side::a)) -
                  render::luma(render::palette::body(Side::b))) > 50);
   for (const Side side : {Side::a, Side::b}) {
@@ -128,7 +128,7 @@ std::array<double, 3> lab(render::Rgba c, const Matrix& seen) {
 
 }  // namespace
 
-TEST_CASE("kinds differ in lightness, and to people with any common colour vision") {
+TEST_CASE("kinds differ in lightness, and for all common kinds of colour vision") {
   // Severity 1 of G. Machado, M. Oliveira, L. Fernandes, "A physiologically-based model for simulation of
   // color vision deficiency", 2009: nobody's, protanopes', deuteranopes', tritanopes'.
   const std::vector<Matrix> eyes = {

@@ -62,7 +62,7 @@ TEST_CASE("in frames of the usual sizes nothing overlaps or is cut off") {
   CHECK_THROWS_AS(render::lay_out(overlay, 100, 60), InputError);
 }
 
-TEST_CASE("a logarithmic scale has its values below it, each at its place") {
+TEST_CASE("a logarithmic scale has its values below it, at their positions") {
   if (!test::have_font()) return;
   render::Overlay overlay = full_overlay();
   overlay.scale = render::ScaleBar{"distance / largest side", 0.0005, 0.1, true};
@@ -93,7 +93,7 @@ TEST_CASE("a logarithmic scale has its values below it, each at its place") {
   }
 }
 
-TEST_CASE("more pixels an inch change nothing but the number of pixels") {
+TEST_CASE("a higher resolution changes only the number of pixels") {
   if (!test::have_font()) return;
   const render::Overlay overlay = full_overlay();
   const render::OverlayLayout screen = render::lay_out(overlay, 1280, 720),
@@ -107,7 +107,7 @@ TEST_CASE("more pixels an inch change nothing but the number of pixels") {
   CHECK(std::abs(print.picture.height - 3 * screen.picture.height) < 3 * 12);
 }
 
-TEST_CASE("the overlay draws where it was laid out, the rest stays") {
+TEST_CASE("the overlay draws only within its layout") {
   if (!test::have_font()) return;
   const render::Overlay overlay = full_overlay();
   const render::OverlayLayout layout = render::lay_out(overlay, 1280, 720);
@@ -150,7 +150,7 @@ TEST_CASE("numbers are short and grouped") {
   CHECK(render::short_number(3e9) == "3e+09");
 }
 
-TEST_CASE("panels of a montage lie in a grid and do not overlap") {
+TEST_CASE("panels of a montage form a grid and do not overlap") {
   if (!test::have_font()) return;
   std::vector<render::Panel> panels;
   for (int i = 0; i < 5; ++i) {
@@ -182,7 +182,7 @@ TEST_CASE("panels of a montage lie in a grid and do not overlap") {
   CHECK_THROWS_AS(render::montage({}), InputError);
 }
 
-TEST_CASE("four panels of a figure stand two by two; letters go on after z") {
+TEST_CASE("four panels of a figure are arranged two by two; letters continue after z") {
   if (!test::have_font()) return;
   const std::vector<render::Panel> panels(4, render::Panel{render::Image(400, 300), ""});
   const render::MontageLayout layout = render::lay_out(panels);

@@ -79,7 +79,7 @@ render::DrawLine line_on_top(double z) {
 
 }  // namespace
 
-TEST_CASE("a line on top is cut where a face begins to hide it, and dashed from there on") {
+TEST_CASE("a line on top is split where a face begins to hide it, and dashed from there") {
   render::DrawList list = half_covered();
   list.lines.push_back(line_on_top(0));
   const Notes notes = painted(list);
@@ -96,7 +96,7 @@ TEST_CASE("a line on top is cut where a face begins to hide it, and dashed from 
   CHECK(hidden.pen.width < 2);
 }
 
-TEST_CASE("a line above or on the face that it runs along is seen wholly") {
+TEST_CASE("a line above or on a face is visible entirely") {
   for (const double z : {1.0, 1.5}) {
     CAPTURE(z);
     render::DrawList list = half_covered();
@@ -107,7 +107,7 @@ TEST_CASE("a line above or on the face that it runs along is seen wholly") {
   }
 }
 
-TEST_CASE("a hidden point on top is a ring") {
+TEST_CASE("a hidden point on top is drawn as a ring") {
   render::DrawList list = half_covered();
   render::DrawPoint point;
   point.layer = render::Layer::on_top;
@@ -122,7 +122,7 @@ TEST_CASE("a hidden point on top is a ring") {
   CHECK(notes.strokes[0].closed);
 }
 
-TEST_CASE("what is painted over a picture is not in it, and the other way round") {
+TEST_CASE("items are painted either into a picture or over it") {
   render::DrawList list = half_covered();
   list.lines.push_back(line_on_top(0));
   render::DrawLine below = line_on_top(0);
@@ -134,7 +134,7 @@ TEST_CASE("what is painted over a picture is not in it, and the other way round"
   CHECK(under.triangles.size() == list.triangles.size());
 }
 
-TEST_CASE("depths are those of the projection, and 1 where there is nothing") {
+TEST_CASE("depths equal the projection's, and 1 in the background") {
   const render::DrawList list = half_covered();
   const render::Camera camera = from_above();
   render::Rasterizer rasterizer;
@@ -172,7 +172,7 @@ TEST_CASE("a PDF has its size, its fonts, no date, and the same bytes each time"
   CHECK(pdf == render::paint_pdf(page, paint));
 }
 
-TEST_CASE("pixels of a canvas: sizes, colours, what is left transparent") {
+TEST_CASE("pixels of a canvas: sizes, colours, transparency") {
   const auto paint = [](render::Canvas& canvas) {
     canvas.fill({{{0, 0}, {36, 0}, {36, 72}, {0, 72}}}, {10, 20, 30, 255});
     canvas.begin_clip({Vector2d(36, 0), Vector2d(72, 36)});
@@ -187,7 +187,7 @@ TEST_CASE("pixels of a canvas: sizes, colours, what is left transparent") {
   CHECK(image.at(80, 80).a == 0);
 }
 
-TEST_CASE("a picture on the grid of pixels comes out as it is") {
+TEST_CASE("a picture on the pixel grid is unchanged") {
   render::Image image(3, 2, render::kWhite);
   image.at(0, 0) = {255, 0, 0, 255};
   image.at(2, 1) = {0, 128, 0, 255};

@@ -33,7 +33,7 @@ int others(const render::Image& image, const render::PixelRect& r, render::Rgba 
 
 }  // namespace
 
-TEST_CASE("panels stand side by side along the longer side, each in its place, with a rule between") {
+TEST_CASE("panels are placed along the longer side, with a rule between") {
   const render::Look look;
   render::Rasterizer rasterizer;
   for (const render::PixelRect& picture : {render::PixelRect{0, 0, 304, 150}, {0, 0, 150, 304}}) {
@@ -53,7 +53,7 @@ TEST_CASE("panels stand side by side along the longer side, each in its place, w
   }
 }
 
-TEST_CASE("titles are in their panels, and a look leaves them out; transparent panels keep their alpha") {
+TEST_CASE("titles are in their panels, and a look can omit them; transparent panels keep their alpha") {
   if (!test::have_font()) return;
   render::Look look;
   render::Rasterizer rasterizer;
@@ -68,7 +68,7 @@ TEST_CASE("titles are in their panels, and a look leaves them out; transparent p
   CHECK(clear.at(150, 100) == kPanelRed);
 }
 
-TEST_CASE("a picture between the texts of an overlay is as it is without them, at any resolution") {
+TEST_CASE("a picture is unchanged by the texts of its overlay, at any resolution") {
   if (!test::have_font()) return;
   render::Overlay overlay;
   overlay.title = "Title";
@@ -96,7 +96,7 @@ TEST_CASE("a picture between the texts of an overlay is as it is without them, a
   }
 }
 
-TEST_CASE("a look without legend or titles clears these texts alone") {
+TEST_CASE("a look without legend or titles removes only these texts") {
   render::Overlay overlay;
   overlay.title = "t", overlay.event = "e", overlay.key = {{run::Mark::line, kPanelRed, "k"}};
   render::Look look;

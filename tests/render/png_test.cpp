@@ -63,7 +63,7 @@ TEST_CASE("PNG carries text and resolution") {
   CHECK_THROWS_AS(render::encode_png(render::Image()), InputError);
 }
 
-TEST_CASE("damaged PNGs are refused, never crash") {
+TEST_CASE("damaged PNGs are rejected") {
   const auto good = render::encode_png(noise(16, 16, true), {{{"key", "value"}}, 72});
   for (std::size_t cut = 0; cut < good.size(); cut += 7) {
     const std::vector<std::uint8_t> part(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(cut));
@@ -85,7 +85,7 @@ TEST_CASE("damaged PNGs are refused, never crash") {
   }
 }
 
-TEST_CASE("files appear whole or not at all") {
+TEST_CASE("files appear complete or not at all") {
   const Folder folder;
   const render::Image image = noise(30, 20, true);
   render::write_png(image, folder / "a.png", {{{"k", "v"}}, 0});

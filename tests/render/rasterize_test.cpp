@@ -64,7 +64,7 @@ bool near(render::Rgba a, render::Rgba b, int by = 2) {
 
 }  // namespace
 
-TEST_CASE("faces are where they should be, nearer ones in front, rows from the top") {
+TEST_CASE("faces are at their positions, closer ones in front, rows from the top") {
   render::DrawList list;
   square(list, 10, 10, 50, 40, 0, flat(kRed));
   square(list, 30, 20, 60, 60, 1, flat(kGreen));
@@ -94,7 +94,7 @@ TEST_CASE("supersampling averages in integers; the background may be transparent
   CHECK(rasterizer().draw({}, pixel_camera(32, 32), o).at(3, 3) == render::Rgba{7, 8, 9});
 }
 
-TEST_CASE("edges are drawn with their width, and only those asked for") {
+TEST_CASE("edges are drawn with their width, and only the requested ones") {
   for (const int supersample : {1, 2, 4}) {
     render::DrawList list;
     render::DrawTriangle t = flat(render::kWhite);
@@ -113,7 +113,7 @@ TEST_CASE("edges are drawn with their width, and only those asked for") {
   }
 }
 
-TEST_CASE("edges fade where they would cover the face") {
+TEST_CASE("edges fade before they cover the face") {
   render::DrawList list;
   render::DrawTriangle t = flat(kGreen);
   t.edges = 7;
@@ -123,7 +123,7 @@ TEST_CASE("edges fade where they would cover the face") {
   CHECK(image.at(30, 30) == kGreen);
 }
 
-TEST_CASE("edges of faces that show their back are paler where their style says so") {
+TEST_CASE("edges of back faces are paler if their style requires it") {
   render::DrawList list;
   render::DrawTriangle t = flat(render::kWhite, render::Layer::translucent);
   t.edges = 7;
@@ -137,7 +137,7 @@ TEST_CASE("edges of faces that show their back are paler where their style says 
   CHECK(image.at(112, 50).r > 220);  // 0.7 of the width
 }
 
-TEST_CASE("in a close-up among large bodies, lines on top know what hides them") {
+TEST_CASE("in a close-up among large bodies, lines on top are hidden correctly") {
   // A slope across the view, a line on it and one as far behind it as it is wide, and then some.
   render::DrawList list;
   render::DrawTriangle t = flat(kGreen);
@@ -169,7 +169,7 @@ TEST_CASE("in a close-up among large bodies, lines on top know what hides them")
   CHECK(red(100, 60, 200, 130) < 300);
 }
 
-TEST_CASE("translucent faces blend by depth, whatever their order, also where they cross") {
+TEST_CASE("translucent faces blend by depth in any order, also at intersections") {
   for (const bool swapped : {false, true}) {
     render::DrawList list;
     square(list, 0, 0, 40, 40, -5, flat(render::kWhite));
@@ -190,7 +190,7 @@ TEST_CASE("translucent faces blend by depth, whatever their order, also where th
   }
 }
 
-TEST_CASE("what is opaque hides translucent faces behind it") {
+TEST_CASE("opaque faces hide translucent faces behind them") {
   render::DrawList list;
   square(list, 0, 0, 20, 40, 1, flat(kGreen));
   square(list, 0, 0, 40, 40, 0, flat({255, 0, 0, 128}, render::Layer::translucent));
@@ -199,7 +199,7 @@ TEST_CASE("what is opaque hides translucent faces behind it") {
   CHECK(near(image.at(30, 20), {255, 127, 127}));
 }
 
-TEST_CASE("a nudge settles what lies in one plane") {
+TEST_CASE("a depth bias orders coplanar faces") {
   render::DrawList list;
   render::DrawTriangle lid = flat(kBlue);
   lid.nudge = 1;
@@ -240,7 +240,7 @@ TEST_CASE("lines have their width, round ends, dashes and halos") {
   for (const int x : {35, 55, 75}) CHECK(near(at(x, 60), render::kWhite));
 }
 
-TEST_CASE("what is on top shines through, ghosted") {
+TEST_CASE("overlays shine through, ghosted") {
   render::DrawList list;
   square(list, 0, 0, 50, 100, 15,
          flat(render::kWhite));  // hides the left half, and is farther off than dots are thick
@@ -320,7 +320,7 @@ TEST_CASE("cells that share segments leave no gap between them") {
   }
 }
 
-TEST_CASE("ids name the face seen at each pixel") {
+TEST_CASE("ids name the visible face at each pixel") {
   render::DrawList list;
   render::DrawTriangle t;
   test::add(list, test::sphere_triangles(3), t, 1000);
@@ -358,7 +358,7 @@ TEST_CASE("shading is flat, brightest towards the light, the same on both sides"
   CHECK(lit({1, -1, 0.01}) > 0.3 * render::luma(c));
 }
 
-TEST_CASE("the same picture twice is the same to the byte, also after others and by another rasterizer") {
+TEST_CASE("pictures are reproducible byte for byte, also after others and by another rasterizer") {
   render::DrawList list;
   render::DrawTriangle t;
   t.edges = 7;
@@ -410,13 +410,13 @@ TEST_CASE("labels are written at their points") {
   CHECK(changed.center().y() == doctest::Approx(30).epsilon(0.15));
 }
 
-TEST_CASE("impossible sizes are refused") {
+TEST_CASE("impossible sizes are rejected") {
   CHECK_THROWS_AS(rasterizer().draw({}, pixel_camera(8, 8), size(0, 8)), InputError);
   CHECK_THROWS_AS(rasterizer().draw({}, pixel_camera(8, 8), size(20000, 8)), InputError);
   CHECK_THROWS_AS(rasterizer().draw({}, pixel_camera(8, 8), size(8, 8, 9)), InputError);
 }
 
-TEST_CASE("the environment is looked at before Mesa sees it") {
+TEST_CASE("the environment is checked before Mesa starts") {
   using Level = render::Finding::Level;
   bool context = false;
   for (const render::Finding& f : render::check_rendering()) {
@@ -434,8 +434,7 @@ TEST_CASE("the environment is looked at before Mesa sees it") {
   unsetenv("GALLIUM_DRIVER");
 }
 
-TEST_CASE(
-    "a transparent picture laid on a colour is the picture drawn on that colour: no fringe at any edge") {
+TEST_CASE("a transparent picture composited on a colour equals the picture drawn on that colour") {
   render::DrawList list;
   square(list, 10, 10, 70, 50, 0, flat({240, 240, 240}));
   square(list, 30.4, 20.3, 90, 58.7, 1, flat({255, 60, 0, 120}, render::Layer::translucent));

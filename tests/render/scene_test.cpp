@@ -70,7 +70,7 @@ TEST_CASE("the picture follows the wrapper: all real faces, and the lids of its 
   CHECK(!has_key(bare, "A, pseudo faces"));
 }
 
-TEST_CASE("lids have their edges; those of a region being refined are lines, each once") {
+TEST_CASE("lids have edges; a refined region's are lines, each once") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 1);
   const Wrapper wrapper(rep);
   const std::vector<render::SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
@@ -85,7 +85,7 @@ TEST_CASE("lids have their edges; those of a region being refined are lines, eac
   CHECK(scene.list.lines.size() == 3);  // one triangular lid over three real faces
 }
 
-TEST_CASE("poses move bodies, names and sides are told apart") {
+TEST_CASE("poses move bodies; names and sides are distinguished") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 1);
   const Pose pose = Pose::rotation({0, 1, 0}, 0.4, {3, 0, 0});
   const std::vector<render::SceneBody> bodies = {{&rep, nullptr, {}, {}, "bowl"},
@@ -103,7 +103,7 @@ TEST_CASE("poses move bodies, names and sides are told apart") {
   CHECK(b.center().x() == doctest::Approx(3).epsilon(0.05));
 }
 
-TEST_CASE("what the event is about is highlighted") {
+TEST_CASE("the elements of the event are highlighted") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 2);
   Wrapper wrapper(rep);
   const RegionId r = 3;
@@ -179,7 +179,7 @@ TEST_CASE("layers, regions and values give faces their colours and the frame its
   CHECK(render::build_scene(body, {}, options).scale->high == 20);
 }
 
-TEST_CASE("isolated regions stand before ghosts, or alone") {
+TEST_CASE("isolated regions are drawn before ghosts, or alone") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 2);
   const std::vector<render::SceneBody> body = {{&rep, nullptr, {}, {}, ""}};
   render::SceneOptions options;
@@ -262,7 +262,7 @@ TEST_CASE("2D: the solid dark, regions light, the wrapper as a line") {
   }
 }
 
-TEST_CASE("segments become as few polylines as can be") {
+TEST_CASE("segments are joined into as few polylines as possible") {
   using render::scene::chains;
   auto found = chains({{0, 1}, {2, 0}, {1, 2}});
   REQUIRE(found.size() == 1);
@@ -279,7 +279,7 @@ TEST_CASE("segments become as few polylines as can be") {
   CHECK(chains({}).empty());
 }
 
-TEST_CASE("many bodies: each in its colour, faces in contact in that of contacts") {
+TEST_CASE("many bodies: each in its colour, faces in contact in the contact colour") {
   const LrbRep solid = test::dented(shapes::icosphere(0), 1), flat = test::dented(shapes::circle(5), 1);
   for (const LrbRep* rep : {&solid, &flat}) {
     const std::vector<std::uint8_t> marks = {0, 1, 1};
@@ -361,7 +361,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("scenes that make no sense are refused") {
+TEST_CASE("inconsistent scenes are rejected") {
   const LrbRep solid = test::dented(shapes::icosphere(0), 1), flat = test::dented(shapes::circle(5), 1);
   CHECK_THROWS_AS(render::build_scene({}), InputError);
   CHECK_THROWS_AS(render::build_scene(std::vector<render::SceneBody>{{&solid, nullptr, {}, {}, ""},

@@ -86,7 +86,7 @@ std::vector<PathFill> fills_in(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("fills of an SVG cover what the rasterizer paints") {
+TEST_CASE("fills of an SVG cover the rasterizer's pixels") {
   const LrbRep rep = test::dented(shapes::circle(12), 1);
   const Wrapper wrapper(rep);
   render::DrawList list =
@@ -157,13 +157,13 @@ TEST_CASE("lines, points and labels of an SVG") {
   CHECK(count(render::svg(list, camera, options), "<rect") == 0);
 }
 
-TEST_CASE("an SVG has no depth: triangles are refused") {
+TEST_CASE("an SVG has no depth: triangles are rejected") {
   render::DrawList list;
   list.triangles.emplace_back();
   CHECK_THROWS_AS(render::svg(list, render::Camera{}), InputError);
 }
 
-TEST_CASE("an SVG keeps its size on paper, whatever its units") {
+TEST_CASE("an SVG keeps its size on paper in any units") {
   render::DrawList list;
   list.lines.push_back({{{0, 0, 0}, {1, 0, 0}}, false, render::kBlack, 1});
   render::SvgOptions options;

@@ -24,14 +24,14 @@ render::PixelRect ink(const render::Image& image) {
 
 }  // namespace
 
-TEST_CASE("UTF-8 is decoded, and what is none becomes a mark") {
+TEST_CASE("UTF-8 is decoded, and invalid bytes become a replacement mark") {
   std::string_view text = "aé€\U0001F600\xff\xc3";
   std::vector<char32_t> got;
   while (!text.empty()) got.push_back(render::next_code_point(text));
   CHECK(got == std::vector<char32_t>{U'a', U'é', U'€', U'\U0001F600', 0xFFFD, 0xFFFD});
 }
 
-TEST_CASE("a text stays within what was measured") {
+TEST_CASE("a text stays within its measured box") {
   if (!test::have_font()) return;
   const render::Font& font = render::default_font();
   for (const float height : {9.0F, 14.0F, 31.5F}) {
@@ -92,7 +92,7 @@ TEST_CASE("a halo surrounds the letters and keeps them") {
   CHECK(white > 200);
 }
 
-TEST_CASE("wrapped lines fit and lose nothing") {
+TEST_CASE("wrapped lines fit and keep all words") {
   if (!test::have_font()) return;
   render::TextStyle style;
   style.height = 15;
@@ -112,7 +112,7 @@ TEST_CASE("wrapped lines fit and lose nothing") {
   }
 }
 
-TEST_CASE("a missing font is named with what to do") {
+TEST_CASE("a missing font is reported with a remedy") {
   const char* const old = std::getenv("LRB_FONT");
   const std::string kept = old == nullptr ? "" : old;
   setenv("LRB_FONT", "/nowhere/font.ttf", 1);

@@ -72,7 +72,7 @@ bool same(const CollideResult& x, const CollideResult& y) {
          x.regions.size() == y.regions.size() && x.counters.face_tests == y.counters.face_tests;
 }
 
-TEST_CASE("a query that runs out of memory, and the next one in its context") {
+TEST_CASE("a query that runs out of memory leaves its context usable") {
   for (const Recursion recursion : {Recursion::complete, Recursion::paper, Recursion::paper_strict}) {
     CAPTURE(to_string(recursion));
     Asked q;
@@ -92,14 +92,14 @@ TEST_CASE("a query that runs out of memory, and the next one in its context") {
   }
 }
 
-TEST_CASE("a body that is built while memory runs out") {
+TEST_CASE("building a body while memory runs out") {
   for (const Mesh& mesh : {l_shape(), comb_2d(3)}) {
     const std::uint64_t expected = build_lrb(mesh).hash();
     CHECK(fail_each_allocation([&] { return build_lrb(mesh).hash() == expected; }, [] {}) > 100);
   }
 }
 
-TEST_CASE("a mesh that is read and checked while memory runs out") {
+TEST_CASE("reading and checking a mesh while memory runs out") {
   const Mesh body = box();
   for (const std::string& bytes : {to_ply_ascii(body), to_ply_binary(body, true), to_stl_ascii(body),
                                    to_stl_binary(body), to_off(body)}) {
@@ -111,7 +111,7 @@ TEST_CASE("a mesh that is read and checked while memory runs out") {
   }
 }
 
-TEST_CASE("a .lrb that is saved while memory runs out leaves no file, or a whole one") {
+TEST_CASE("saving a .lrb while memory runs out leaves no file or a complete one") {
   const Folder folder;
   const std::string path = folder / "x.lrb";
   const LrbRep rep(shapes::dented_box());
@@ -132,7 +132,7 @@ TEST_CASE("a .lrb that is saved while memory runs out leaves no file, or a whole
   CHECK(fail_each_allocation([&] { return load_lrb(path).hash() == rep.hash(); }, [] {}) > 5);
 }
 
-TEST_CASE("a coherent query that runs out of memory answers the next pose rightly") {
+TEST_CASE("a coherent query that runs out of memory answers the next pose correctly") {
   const LrbRep a = LrbRep::without_regions(bumpy_sphere(2, 1), true, false),
                b = LrbRep::without_regions(bumpy_sphere(2, 2), true, false);
   // In and out again, deeper each time: lists become longer, and B comes back to where the one before was
@@ -165,7 +165,7 @@ TEST_CASE("a coherent query that runs out of memory answers the next pose rightl
   CHECK(failures > 30);
 }
 
-TEST_CASE("a warm query takes memory for its answer alone") {
+TEST_CASE("a warm query allocates memory only for its answer") {
   const LrbRep a = build_lrb(bumpy_sphere(3, 1)), b = build_lrb(bumpy_sphere(3, 2));
   QueryContext context;
   NullProbe probe;
@@ -195,7 +195,7 @@ TEST_CASE("a warm query takes memory for its answer alone") {
 
 // Not the reading of traces: the destructors of nlohmann-json 3.11 allocate, and end the process if they
 // cannot (lrbscope then says what it says for std::bad_alloc, see tools/terminal.cpp).
-TEST_CASE("a run that is recorded while memory runs out") {
+TEST_CASE("recording a run while memory runs out") {
   Asked q;
   const auto record = [&] {
     trace::Recorder recorder(q.a, q.b, {});

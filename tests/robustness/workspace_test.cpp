@@ -10,7 +10,7 @@
 
 namespace lrb::test {
 
-TEST_CASE("queries in a workspace ask for no memory after the first ones") {
+TEST_CASE("queries in a workspace allocate no memory after the first ones") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 4)), b = build_lrb(shapes::torus(40, 20)),
                flat = build_lrb(shapes::ring_2d(40));
   shapes::RandomEngine random(1);

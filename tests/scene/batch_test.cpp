@@ -76,7 +76,7 @@ struct Bodies {
 
 }  // namespace
 
-TEST_CASE("a batch of poses gives each the answer that it gets alone, for any number of threads") {
+TEST_CASE("a batch of poses gives the answers of single queries, for any number of threads") {
   const Bodies bodies;
   const std::vector<Pose> poses = some_poses(bodies.ball, bodies.ring, 60, 1);
   const Pose pose_a = Pose::rotation({3, 1, 2}, 0.4, {1, 2, 3});
@@ -99,7 +99,7 @@ TEST_CASE("a batch of poses gives each the answer that it gets alone, for any nu
   CHECK(met > 200);
 }
 
-TEST_CASE("a batch of pairs gives each the answer that it gets alone, for any number of threads") {
+TEST_CASE("a batch of pairs gives the answers of single queries, for any number of threads") {
   const Bodies bodies;
   const LrbRep* all[] = {&bodies.ball, &bodies.ring, &bodies.box};
   RandomEngine random(2);
@@ -127,7 +127,7 @@ TEST_CASE("a batch of pairs gives each the answer that it gets alone, for any nu
   }
 }
 
-TEST_CASE("a batch of distances for poses is that of distances one by one") {
+TEST_CASE("a batch of distances gives the answers of single queries") {
   const Bodies bodies;
   const std::vector<Pose> poses = some_poses(bodies.ring, bodies.box, 40, 3);
   for (const unsigned threads : kThreads) {
@@ -138,7 +138,7 @@ TEST_CASE("a batch of distances for poses is that of distances one by one") {
   }
 }
 
-TEST_CASE("what is refused of a batch has its reason in its place, and memory that is used again is clean") {
+TEST_CASE("rejected queries of a batch have their reason, and reused memory is clean") {
   const Bodies bodies;
   const LrbRep flat = build_lrb(shapes::circle(8));
   std::vector<Pose> poses = some_poses(bodies.ball, bodies.ring, 12, 4);
@@ -170,7 +170,7 @@ TEST_CASE("what is refused of a batch has its reason in its place, and memory th
   CHECK(collide(std::span<const PosedPair>()).empty());
 }
 
-TEST_CASE("a workspace answers one query after another, of any bodies, as new ones do") {
+TEST_CASE("a reused workspace gives the answers of new ones, for any bodies") {
   const Bodies bodies;
   const LrbRep* all[] = {&bodies.ball, &bodies.ring, &bodies.box};
   Workspace workspace;

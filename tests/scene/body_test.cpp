@@ -53,7 +53,7 @@ std::string reason(const Expected<Body>& body) {
 
 }  // namespace
 
-TEST_CASE("a body is the same from matrices, arrays, a mesh and files") {
+TEST_CASE("a body is the same when made from matrices, arrays, a mesh and files") {
   const Mesh mesh = shapes::bumpy_sphere(2, 3);
   BodyOptions options;
   options.name = "rock";
@@ -83,7 +83,7 @@ TEST_CASE("a body is the same from matrices, arrays, a mesh and files") {
   CHECK(Body::from(LrbRep(whole.rep().data())).rep().hash() == hash);
 }
 
-TEST_CASE("copies of a body share it, and it stands where an LRB-rep does") {
+TEST_CASE("copies of a body share its data, and it converts to an LRB-rep") {
   const Body body = Body::from(shapes::box()).value();
   const Body copy = body;
   CHECK(copy == body);
@@ -92,7 +92,7 @@ TEST_CASE("copies of a body share it, and it stands where an LRB-rep does") {
   CHECK(collide(body, Pose{}, copy, Pose::translation({0.5, 0.5, 0.5})).relation == Relation::crossing);
 }
 
-TEST_CASE("what is inside out is turned, and it is said; or left, if that is wanted") {
+TEST_CASE("inward-oriented bodies are flipped with a note, or kept on request") {
   const Mesh mesh = shapes::turned_inside_out(shapes::box());
   const Body turned = Body::from(mesh).value();
   CHECK(turned.turned() == 1);
@@ -112,7 +112,7 @@ TEST_CASE("what is inside out is turned, and it is said; or left, if that is wan
   CHECK(left.notes()[0].find("a component is inside out") != std::string::npos);
 }
 
-TEST_CASE("what bounds no solid is a body that says what cannot be asked of it") {
+TEST_CASE("an open mesh is a body with a note on unavailable queries") {
   const Body tube = Body::from(shapes::open_cylinder(12)).value(), box = Body::from(shapes::box()).value();
   CHECK(!tube.is_solid());
   REQUIRE(tube.notes().size() == 2);
@@ -141,7 +141,7 @@ TEST_CASE("a body of faces alone gives the answers of a body with regions") {
   }
 }
 
-TEST_CASE("polygons and bodies in the plane come from matrices, too") {
+TEST_CASE("polygons and 2D bodies are made from matrices") {
   Eigen::MatrixXd corners(4, 2);
   corners << 0, 0, 1, 0, 1, 1, 0, 1;
   Eigen::MatrixXi sides(4, 2);
@@ -158,7 +158,7 @@ TEST_CASE("polygons and bodies in the plane come from matrices, too") {
   CHECK(Body::from(vertices_of(box), quads).value().rep().real_face_count() == 6);
 }
 
-TEST_CASE("what cannot be a body is refused with a reason that names the element") {
+TEST_CASE("invalid bodies are rejected with a reason that names the element") {
   const Mesh box = shapes::box();
   Eigen::MatrixX3d v = vertices_of(box);
   Eigen::Matrix<int, Eigen::Dynamic, 3> f = triangles_of<int>(box);
@@ -196,8 +196,7 @@ TEST_CASE("what cannot be a body is refused with a reason that names the element
                        "/nowhere/at.obj: no such file; check the path", InputError);
 }
 
-TEST_CASE(
-    "an LRB-rep whose cells are not closed is queried from its faces, and a note says where it is open") {
+TEST_CASE("an LRB-rep with open cells is queried by its faces, with a note on the location") {
   const Mesh rock = shapes::bumpy_sphere(3, 1);
   const Body sound = Body::from(rock).value();
   REQUIRE(sound.has_regions());
@@ -219,7 +218,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a body that intersects itself says that it has no approximate answers") {
+TEST_CASE("a self-intersecting body has a note that it has no approximate answers") {
   const Mesh rock = shapes::bumpy_sphere(2, 1);
   const Body body = Body::from(shapes::several({rock, shapes::translated(rock, {0.3, 0.1, 0.05})})).value();
   REQUIRE(body.notes().size() == 1);

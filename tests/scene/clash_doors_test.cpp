@@ -82,7 +82,7 @@ void check_same(const ClashResult& x, const ClashResult& y) {
 
 }  // namespace
 
-TEST_CASE("B2: clash answers the same through every door, and says why a kind is undecided") {
+TEST_CASE("B2: clash gives the same answer through every interface, with a reason if undecided") {
   const test::Folder folder;
   const LrbRep cube = Body::from(shapes::box({-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4})).value().rep();
   const Pose apart = Pose::translation({9, 0, 0}), meeting = Pose::translation({0.93, 0.11, 0.07});
@@ -111,14 +111,14 @@ TEST_CASE("B2: clash answers the same through every door, and says why a kind is
   }
 }
 
-TEST_CASE("B2: a clash is no question of bodies in the plane, through any door") {
+TEST_CASE("B2: a clash of 2D bodies is rejected through every interface") {
   const test::Folder folder;
   for (const Body& body : through_all_doors(shapes::circle(12), folder))
     CHECK_THROWS_WITH_AS(clash(body, Pose{}, body, Pose{}), doctest::Contains("expected 3D bodies"),
                          InputError);
 }
 
-TEST_CASE("B2: whether interiors overlap does not depend on the door either") {
+TEST_CASE("B2: overlap of interiors is the same through every interface") {
   const test::Folder folder;
   const Mesh mesh = shapes::several({shapes::box(), shapes::box({0.5, 0.25, 0.25}, {2, 0.75, 0.75})});
   const LrbRep cube = Body::from(shapes::box({2, 0, 0}, {3, 1, 1})).value().rep();

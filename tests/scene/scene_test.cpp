@@ -129,7 +129,7 @@ void change(Scene& scene, Plain& plain, const std::vector<Body>& bodies, RandomE
 
 }  // namespace
 
-TEST_CASE("a scene tells what all pairs tell, whatever comes, goes and moves") {
+TEST_CASE("a scene agrees with queries of all pairs while bodies are added, removed and moved") {
   const std::vector<Body> bodies = some_bodies();
   for (std::uint64_t round = 0; round < 6; ++round) {
     RandomEngine random(round + 1);
@@ -153,7 +153,7 @@ TEST_CASE("a scene tells what all pairs tell, whatever comes, goes and moves") {
   }
 }
 
-TEST_CASE("bodies that hardly touch are at no distance, and the nearest of many is found among few") {
+TEST_CASE("barely touching bodies have distance 0, and the closest body is found with few queries") {
   const Body ball = Body::from(shapes::icosphere(2, 0.4)).value();
   Scene scene(2);
   CHECK(!scene.nearest());
@@ -171,7 +171,7 @@ TEST_CASE("bodies that hardly touch are at no distance, and the nearest of many 
   CHECK(scene.nearest()->result->upper == 0);
 }
 
-TEST_CASE("two scenes meet where their bodies do") {
+TEST_CASE("two scenes collide if and only if their bodies do") {
   const std::vector<Body> bodies = some_bodies();
   RandomEngine random(9);
   for (int round = 0; round < 8; ++round) {
@@ -194,7 +194,7 @@ TEST_CASE("two scenes meet where their bodies do") {
   CHECK(!empty.nearest(empty));
 }
 
-TEST_CASE("a scene's request is that of its queries, and what is refused says why") {
+TEST_CASE("a scene passes its request to its queries, and rejections have a reason") {
   Scene scene(2);
   const Body box = Body::from(shapes::box()).value(),
              square = Body::from(shapes::polygon({{0, 0}, {1, 0}, {0, 1}})).value();
@@ -219,7 +219,7 @@ TEST_CASE("a scene's request is that of its queries, and what is refused says wh
   CHECK(scene.collide()[0].a == a);
 }
 
-TEST_CASE("thousands of bodies: the order is kept while they move by little") {
+TEST_CASE("thousands of bodies: the sorted order is reused for small motions") {
   const Body ball = Body::from(shapes::icosphere(1, 0.55)).value();
   Scene scene(2);
   std::vector<BodyKey> keys;
@@ -248,7 +248,7 @@ TEST_CASE("thousands of bodies: the order is kept while they move by little") {
   CHECK(scene.work().moved == 1);
 }
 
-TEST_CASE("pairs whose boxes are near, nearest first, against all pairs of boxes") {
+TEST_CASE("pairs of close boxes, closest first, against all pairs of boxes") {
   RandomEngine random(18);
   const std::vector<Body> bodies = some_bodies();
   Scene scene(2);
@@ -292,7 +292,7 @@ TEST_CASE("pairs whose boxes are near, nearest first, against all pairs of boxes
   CHECK(other.nearest_boxes(scene)->gap == scene.nearest_boxes(other)->gap);
 }
 
-TEST_CASE("the nearest solids: a body in another one is nearer than any beside it") {
+TEST_CASE("closest solids: an enclosed body is closer than any outside") {
   Scene scene;
   const Body big = Body::from(shapes::icosphere(2, 3)).value(),
              small = Body::from(shapes::tetrahedron(1)).value();
@@ -306,7 +306,7 @@ TEST_CASE("the nearest solids: a body in another one is nearer than any beside i
   CHECK(solids->result->upper > surfaces->result->upper);
 }
 
-TEST_CASE("a scene with room for its bodies keeps its order as they come") {
+TEST_CASE("a scene with reserved space keeps its order while bodies are added") {
   Scene scene;
   scene.reserve(30);
   const Body ball = Body::from(shapes::icosphere(0, 0.4)).value();

@@ -200,7 +200,7 @@ TEST_CASE("a workspace answers all four questions as the functions without one, 
   compare.distance(flat, flat, Pose::translation({9, 0, 0}), {});
 }
 
-TEST_CASE("an answer stays in the workspace until the same question is asked there again") {
+TEST_CASE("an answer stays in the workspace until the next query of the same kind") {
   const LrbRep box = build_lrb(shapes::box());
   const Pose at = Pose::translation({0.5, 0.25, 0.125});
   Workspace workspace;
@@ -221,7 +221,7 @@ TEST_CASE("an answer stays in the workspace until the same question is asked the
   CHECK(collide(box, {}, box, at, {}, workspace)->pairs == mine.pairs);
 }
 
-TEST_CASE("describe_contact() adds what a query without contacts left out") {
+TEST_CASE("describe_contact() adds the contacts that a query without them omitted") {
   const LrbRep ball = build_lrb(shapes::bumpy_sphere(2, 4)), box = build_lrb(shapes::box());
   Workspace workspace;
   CollideRequest more;
@@ -250,7 +250,7 @@ TEST_CASE("describe_contact() adds what a query without contacts left out") {
     }
 }
 
-TEST_CASE("a workspace refuses what the functions without one throw for, with the same reason") {
+TEST_CASE("a workspace returns the errors that the functions without one throw") {
   const LrbRep box = build_lrb(shapes::box()), flat = build_lrb(shapes::circle(8));
   const Pose nowhere = Pose::translation({std::numeric_limits<double>::quiet_NaN(), 0, 0});
   Workspace workspace;

@@ -62,7 +62,7 @@ bench::DataSet made_up_set(int questions) {
 
 }  // namespace
 
-TEST_CASE("quantiles are values that are there, means of ratios are geometric") {
+TEST_CASE("quantiles are observed values, means of ratios are geometric") {
   CHECK(bench::quantile({5, 1, 4, 2, 3}, 0.5) == 3);
   CHECK(bench::quantile({5, 1, 4, 2, 3}, 0.95) == 5);
   CHECK(bench::quantile({1, 2}, 0.5) == 1);
@@ -70,7 +70,7 @@ TEST_CASE("quantiles are values that are there, means of ratios are geometric") 
   CHECK(bench::geometric_mean({2, 8}) == doctest::Approx(4));
 }
 
-TEST_CASE("the oracle of data sets is brute force, but faster") {
+TEST_CASE("the fast oracle of data sets agrees with brute force") {
   shapes::RandomEngine random(3);
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1)), b = build_lrb(shapes::torus(12, 8));
   std::size_t met = 0;
@@ -84,7 +84,7 @@ TEST_CASE("the oracle of data sets is brute force, but faster") {
   CHECK(bench::exact_pairs(a, Pose{}, a, Pose{}) == brute_force(a, Pose{}, a, Pose{}).pairs);
 }
 
-TEST_CASE("a data set holds poses of the classes it says, and comes back from its file as it was") {
+TEST_CASE("a data set contains poses of its classes, and is read back unchanged") {
   const Folder folder;
   const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
   REQUIRE(set.questions.size() == 4 * 4 + 1);
@@ -111,7 +111,7 @@ TEST_CASE("a data set holds poses of the classes it says, and comes back from it
   CHECK_THROWS_AS(bench::read_data_set(folder / "spheres.set.json"), InputError);
 }
 
-TEST_CASE("a body a hundredth of the diagonal apart is not nearer and hardly farther") {
+TEST_CASE("a gap of a hundredth of the diagonal is placed accurately") {
   const Folder folder;
   const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1)), b = build_lrb(shapes::bumpy_sphere(2, 2));
@@ -125,7 +125,7 @@ TEST_CASE("a body a hundredth of the diagonal apart is not nearer and hardly far
   }
 }
 
-TEST_CASE("records come back from their lines, and half a line is passed over") {
+TEST_CASE("records are read back from their lines, and a partial line is skipped") {
   bench::Record r = answer("spheres", 3, bench::PoseClass::small, 1.5);
   r.setting = 4;
   r.all.pairs = {{1, 2}, {3, 4}};
@@ -147,7 +147,7 @@ TEST_CASE("records come back from their lines, and half a line is passed over") 
   CHECK_THROWS_AS(bench::record_from(nlohmann::json::parse("{}")), InputError);
 }
 
-TEST_CASE("ratios are medians over questions; who is ahead is said") {
+TEST_CASE("ratios are medians over questions; faster engines are named") {
   std::vector<bench::Record> records;
   for (std::uint64_t q = 0; q < 3; ++q) {
     records.push_back(answer("ours", q, bench::PoseClass::deep, 10));
@@ -168,7 +168,7 @@ TEST_CASE("ratios are medians over questions; who is ahead is said") {
   CHECK(text.find("crash") != std::string::npos);
 }
 
-TEST_CASE("errors of a contact region: none for the exact list, the worst for nothing, between for a part") {
+TEST_CASE("errors of a contact region: 0 for the exact list, 1 for an empty one, between for a part") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1));
   const Pose p = Pose::translation({1.2, 0.1, 0});
   const auto pairs = bench::exact_pairs(a, Pose{}, a, p);
@@ -192,7 +192,7 @@ TEST_CASE("errors of a contact region: none for the exact list, the worst for no
         0.5);
 }
 
-TEST_CASE("how far points are off two bodies: both distances together") {
+TEST_CASE("the deviation of points from two bodies is the sum of both distances") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1));
   const Pose near = Pose::translation({1.2, 0.1, 0}), far = Pose::translation({10, 0, 0});
   bench::RegionMaker maker(a, Pose{}, a, near);
@@ -209,8 +209,7 @@ TEST_CASE("how far points are off two bodies: both distances together") {
   CHECK(bench::BodyDistance(a, Pose{}, a, far).off({x}) > nearest - 0.1);
 }
 
-TEST_CASE(
-    "an answer to a tolerance is no further off than it says, and one pair that meets is off by nothing") {
+TEST_CASE("an approximate answer deviates by at most its bound, and an intersecting pair by 0") {
   const Folder folder;
   const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
   const auto entries = methods::registered_methods();
@@ -236,7 +235,7 @@ TEST_CASE(
   CHECK(any_off);
 }
 
-TEST_CASE("points: what fails scores the worst, and the frontier is what nothing beats in both") {
+TEST_CASE("points: failures score worst, and the Pareto frontier contains the undominated points") {
   const Folder folder;
   const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
   std::vector<methods::MethodInfo> infos = {info("right"), info("blind"), info("dead"), info("slow"),
@@ -285,7 +284,7 @@ TEST_CASE("points: what fails scores the worst, and the frontier is what nothing
   CHECK(seen == 5 * bench::classes_of(bench::Quantity::pairs).size());
 }
 
-TEST_CASE("a sphere tree misses nothing, and is closer to the truth at deeper levels") {
+TEST_CASE("a sphere tree misses no contact, and is more accurate at deeper levels") {
   const auto spheres = methods::find_method(methods::registered_methods(), "spheres").make();
   const LrbRep a = build_lrb(shapes::torus(32, 12));  // far from its own outermost sphere
   const auto body_a = spheres->build(a), body_b = spheres->build(a);
@@ -307,7 +306,7 @@ TEST_CASE("a sphere tree misses nothing, and is closer to the truth at deeper le
   CHECK(wolves[1] < wolves[0]);
 }
 
-TEST_CASE("the commands: records, table, charts; what is there is not asked again") {
+TEST_CASE("the commands: records, table, charts; existing records are reused") {
   const Folder folder;
   const std::vector<std::string> bench = {"bench", "--faces",  "320",           "--poses", "1", "--method",
                                           "ours",  "--method", "ours-floating", "-o",      "b"};
@@ -329,7 +328,7 @@ TEST_CASE("the commands: records, table, charts; what is there is not asked agai
   CHECK(test::run(folder, {"bench", "--method", "nobody", "-o", "b"}).code == 2);
 }
 
-TEST_CASE("numbers are judged by how far they are off what is known, in diagonals or parts of the motion") {
+TEST_CASE("numbers are judged by their error, in diagonals or fractions of the motion") {
   const auto error = [](Quantity quantity, double known, const bench::Record& r) {
     bench::DataSet set;
     set.name = r.set;
@@ -363,8 +362,7 @@ TEST_CASE("numbers are judged by how far they are off what is known, in diagonal
   CHECK(p.errors[static_cast<std::size_t>(Metric::penetration)].has_value());
 }
 
-TEST_CASE(
-    "a data set of numbers is the same when it is read again, and is whole when all numbers are known") {
+TEST_CASE("a data set of numbers is read back unchanged, and complete if all numbers are known") {
   const Folder folder;
   bench::DataSet set = made_up_set(2);
   set.quantity = Quantity::first_contact;
@@ -382,7 +380,7 @@ TEST_CASE(
   CHECK(bench::is_complete(set));
 }
 
-TEST_CASE("chart --quantity: the right answers, records, points and a page for each number") {
+TEST_CASE("chart --quantity: correct answers, records, points and a page for each quantity") {
   const Folder folder;
   const auto chart = [&](const std::string& quantity, std::vector<std::string> more = {}) {
     std::vector<std::string> words = {"chart", "--quantity", quantity, "--faces", "80", "--poses", "1"};

@@ -62,7 +62,7 @@ TEST_CASE("true numbers of two boxes") {
   CHECK(!true_number(Quantity::depth, large).least);
 }
 
-TEST_CASE("B meets A at the time at which an exact query finds it") {
+TEST_CASE("B collides with A at the time found by exact queries") {
   const cases::Case c = boxes({0.25, 0.5, 0.875});
   const RightAnswer e = true_number(Quantity::first_contact, c);
   const NumberQuery q = query_of(c);
@@ -94,7 +94,7 @@ TEST_CASE("judging numbers") {
   CHECK(judged(Quantity::first_contact, 0.5, 0.5, 0.51, 0.51, false) == Outcome::wrong);
 }
 
-TEST_CASE("our numbers are right from benign to degenerate") {
+TEST_CASE("lrbscope's numbers are right from benign to degenerate") {
   int right = 0;
   for (const Quantity quantity : {Quantity::distance, Quantity::first_contact, Quantity::depth})
     for (const char* name : {"kiss", "sliver", "thin", "far", "scale"})
@@ -124,7 +124,7 @@ TEST_CASE("a needle that passes many triangles is decided") {
   }
 }
 
-TEST_CASE("lrbscope stability --quantity: table, records, a case again, a quantity that is none") {
+TEST_CASE("lrbscope stability --quantity: table, records, a repeated case, an unknown quantity") {
   setenv("LRBSCOPE_METHODS", LRBSCOPE_FOLDER, 1);
   const test::Folder folder;
   const std::vector<std::string> kiss = {"stability", "--quantity", "distance", "--family", "kiss",

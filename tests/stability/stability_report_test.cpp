@@ -122,7 +122,7 @@ struct GnuplotIs {
 
 }  // namespace
 
-TEST_CASE("the page is whole, and fetches nothing") {
+TEST_CASE("the page is complete and self-contained") {
   const std::string folder = scratch_folder("page");
   const Grid grid = made_up_grid();
   ReportOptions options;
@@ -140,7 +140,7 @@ TEST_CASE("the page is whole, and fetches nothing") {
   CHECK(count(html, "<img src=") == 1);
 }
 
-TEST_CASE("dials have their physical values on page and charts") {
+TEST_CASE("difficulties have their physical values on page and charts") {
   const Grid grid = made_up_grid();
   const auto family = [&](const char* name) {
     return std::find_if(grid.families.begin(), grid.families.end(),
@@ -204,7 +204,7 @@ TEST_CASE("names are escaped, and their addresses are plain") {
     CHECK(std::regex_match((*i)[1].str(), std::regex("[A-Za-z0-9-]+")));
 }
 
-TEST_CASE("refusals are no failures, and first failures are found along the dial") {
+TEST_CASE("rejections are not failures, and the first failing difficulty is found") {
   Cell c;
   c.cases.fill(10);
   c.rejected[3] = 10;
@@ -220,13 +220,13 @@ TEST_CASE("refusals are no failures, and first failures are found along the dial
   CHECK_FALSE(s.only_rejected());
 }
 
-TEST_CASE("a grid that does not fit together is refused") {
+TEST_CASE("an inconsistent grid is rejected") {
   Grid grid = made_up_grid();
   grid.cells.pop_back();
   CHECK_THROWS_AS(stability_page(grid, ".", {}), InputError);
 }
 
-TEST_CASE("without gnuplot there is the page, and one line on what is missing") {
+TEST_CASE("without gnuplot the page is written, with one line on the missing program") {
   const GnuplotIs none("lrbscope-has-no-such-program");
   const std::string folder = scratch_folder("no_gnuplot");
   const report::Document page = write_stability_report(made_up_grid(), folder);
@@ -238,7 +238,8 @@ TEST_CASE("without gnuplot there is the page, and one line on what is missing") 
   CHECK_FALSE(report::has_gnuplot());
 }
 
-TEST_CASE("the charts are drawn, and texts in them are no commands" * doctest::skip(!report::has_gnuplot())) {
+TEST_CASE("charts are drawn, and their texts are not run as commands" *
+          doctest::skip(!report::has_gnuplot())) {
   const std::string folder = scratch_folder("charts");
   Grid grid = made_up_grid();
   grid.methods[0].title = "it's `touch " + folder + "/ran` <& @x $y \\n \"q\" ";
@@ -263,7 +264,7 @@ TEST_CASE("the charts are drawn, and texts in them are no commands" * doctest::s
   CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 5);  // nothing is left behind
 }
 
-TEST_CASE("gnuplot's complaint comes back in one line" * doctest::skip(!report::has_gnuplot())) {
+TEST_CASE("gnuplot's error is reported in one line" * doctest::skip(!report::has_gnuplot())) {
   const std::string path = scratch_folder("complaint") + "/chart.svg";
   report::Gnuplot chart;
   chart.script = "plot nonsense(\n";
@@ -294,7 +295,7 @@ TEST_CASE("a 2D picture has exactly the colours of its marks") {
   CHECK(pixels_of(right, colour_of(Mark::extra)) == 0);
 }
 
-TEST_CASE("size and place of the world do not show in the picture") {
+TEST_CASE("the picture does not depend on scale and position of the world") {
   const render::Image here = picture(boxes());
   CHECK(here == picture(boxes(0x1p-400)));
   CHECK(here == picture(boxes(0x1p900)));
@@ -303,7 +304,7 @@ TEST_CASE("size and place of the world do not show in the picture") {
   CHECK(differing(here, picture(boxes(), 3)) > 0.01);
 }
 
-TEST_CASE("what is missed is seen beside a body 1e60 times as large") {
+TEST_CASE("a missed pair is visible next to a body 1e60 times as large") {
   cases::Case c = boxes(1e-60);
   c.b = made(shapes::box({-1, -1, 0}, {1, 1, 1}));
   c.pose_b = Pose::translation({0, 0, 0.5e-60});
@@ -317,7 +318,7 @@ TEST_CASE("what is missed is seen beside a body 1e60 times as large") {
   CHECK(red > 1000);
 }
 
-TEST_CASE("what cannot be drawn is refused") {
+TEST_CASE("cases that cannot be drawn are rejected") {
   render::Rasterizer rasterizer;
   cases::Case c = boxes();
   c.pose_a.t.x() = std::numeric_limits<double>::infinity();
@@ -327,7 +328,7 @@ TEST_CASE("what cannot be drawn is refused") {
   CHECK_THROWS_AS(worst_case_picture(c, wild, std::nullopt, {}, rasterizer), InputError);
 }
 
-TEST_CASE("every cell that failed gets a picture, and the old ones go") {
+TEST_CASE("every failed cell gets a picture, and old pictures are removed") {
   const std::string folder = scratch_folder("worst");
   std::filesystem::create_directories(folder + "/worst");
   io::write_text(folder + "/worst/of-an-earlier-run.png", "old");
@@ -353,7 +354,7 @@ TEST_CASE("every cell that failed gets a picture, and the old ones go") {
   CHECK_FALSE(std::filesystem::exists(folder + "/worst/of-an-earlier-run.png"));
 }
 
-TEST_CASE("every family's cases can be drawn at both ends of the dial") {
+TEST_CASE("every family's cases can be drawn at the lowest and highest difficulty") {
   render::Rasterizer rasterizer;
   for (const cases::Family& family : cases::all_families())
     for (const int difficulty : {0, cases::kDifficulties - 1}) {
@@ -379,7 +380,7 @@ TEST_CASE("every family's cases can be drawn at both ends of the dial") {
     }
 }
 
-TEST_CASE("a case is the same every time, and follows seed, index and dial") {
+TEST_CASE("a case is determined by seed, index and difficulty") {
   const cases::Family& family = *cases::find_family("sliver");
   const auto hash = [&](std::uint64_t seed, int difficulty, std::uint64_t index) {
     const cases::Case c = cases::make_case(family, seed, difficulty, index);

@@ -79,7 +79,7 @@ Record some_record() {
 
 }  // namespace
 
-TEST_CASE("what becomes of a method that misbehaves") {
+TEST_CASE("outcomes of methods that crash, hang or return garbage") {
   const Workers workers;
   const auto outcome_of_contact = [](const std::string& name, double timeout) {
     std::map<Outcome, int> with, without;
@@ -99,7 +99,7 @@ TEST_CASE("what becomes of a method that misbehaves") {
   CHECK(outcome_of_contact("fake-miss", 20) == Outcome::wrong);
 }
 
-TEST_CASE("a method that hangs on three cases in a row is not asked the others of its family") {
+TEST_CASE("a method that hangs on three consecutive cases skips the rest of its family") {
   const Workers workers;
   std::map<std::string, int> in_a_row, asked;
   for (const Record& r : ask({"fake-hang"}, 12, 0.4)) {
@@ -116,7 +116,7 @@ TEST_CASE("a method that hangs on three cases in a row is not asked the others o
   }
 }
 
-TEST_CASE("every case has its record, in order, whatever died and however many ran at a time") {
+TEST_CASE("every case has its record, in order, despite crashes and parallel runs") {
   const Workers workers;
   const auto key = [](const Record& r) {
     return r.family + " " + r.method + " " + std::to_string(r.difficulty) + " " +
@@ -139,7 +139,7 @@ TEST_CASE("every case has its record, in order, whatever died and however many r
   }
 }
 
-TEST_CASE("a case asked again gives the same record, and its pairs") {
+TEST_CASE("a repeated case gives the same record, with its pairs") {
   const Workers workers;
   const std::vector<Record> all = ask({"fake-miss"}, 3);
   const Replay again = replay(method("fake-miss"), "shared", 10, 2, 1, 20);
@@ -155,7 +155,7 @@ TEST_CASE("a case asked again gives the same record, and its pairs") {
   CHECK(!died.answered);
 }
 
-TEST_CASE("a worker that is not there, or is no worker") {
+TEST_CASE("a missing or invalid worker") {
   const Folder folder;
   const Environment where("LRBSCOPE_METHODS", folder.path.string());
   CHECK_THROWS_AS(workers::find_methods(), EnvironmentError);
@@ -171,7 +171,7 @@ TEST_CASE("a worker that is not there, or is no worker") {
   CHECK_THROWS_AS(workers::find_methods(), EnvironmentError);
 }
 
-TEST_CASE("records survive their file") {
+TEST_CASE("records are read back unchanged") {
   const Folder folder;
   Record plain;
   plain.family = "plane";
@@ -186,7 +186,7 @@ TEST_CASE("records survive their file") {
   CHECK(back[1].outcome == Outcome::rejected);
 }
 
-TEST_CASE("a file of records that is wrong is refused by line") {
+TEST_CASE("an invalid file of records is rejected by line") {
   const Folder folder;
   const std::string good = to_lines({some_record()});
   const auto complaint = [&](const std::string& text) -> std::string {
@@ -325,7 +325,8 @@ TEST_CASE("judging a method by itself, with the bodies exchanged") {
 
 // If the benign end were not benign the grid could not say where along the difficulty a method starts to
 // fail.
-TEST_CASE("the textbook's method is right at the benign end of every dial, and not at the other") {
+TEST_CASE(
+    "the textbook's method is right at the lowest difficulty of every family, and wrong at the highest") {
   StabilityRunner plain(methods::find_method(methods::registered_methods(), "plain"));
   int failing = 0, failed = 0;
   for (const cases::Family& f : cases::all_families()) {
@@ -351,7 +352,7 @@ TEST_CASE("the textbook's method is right at the benign end of every dial, and n
   CHECK(failing > 15);
 }
 
-TEST_CASE("a textbook's test of triangles, where nothing is near") {
+TEST_CASE("a textbook's test of distant triangles") {
   const auto meet = [](std::initializer_list<Eigen::Vector3d> a, std::initializer_list<Eigen::Vector3d> b) {
     return methods::plain_triangles_meet(a.begin(), b.begin());
   };
@@ -383,7 +384,7 @@ TEST_CASE("lrbscope stability: table, records, exit code") {
   CHECK(o.out.find("  found:") != std::string::npos);
 }
 
-TEST_CASE("lrbscope stability: arguments that are wrong") {
+TEST_CASE("lrbscope stability: invalid arguments") {
   const Workers workers;
   const Folder folder;
   const std::vector<std::vector<std::string>> wrong = {{"--family", "tuch"},

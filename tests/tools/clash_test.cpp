@@ -49,7 +49,7 @@ TEST_CASE("clash: a line for each pose, and a table") {
   CHECK(table.out.find("0.015625") != std::string::npos);
 }
 
-TEST_CASE("B2: clash says why a kind is undecided, of a mesh and of its .lrb alike") {
+TEST_CASE("B2: clash reports why a kind is undecided, for a mesh and its .lrb") {
   ClashingBoxes boxes;
   write_mesh(shapes::several({shapes::box(), shapes::box({0.5, 0.25, 0.25}, {2, 0.75, 0.75})}),
              boxes.folder / "b.obj");
@@ -78,7 +78,7 @@ TEST_CASE("B2: clash says why a kind is undecided, of a mesh and of its .lrb ali
   CHECK(table.out.find("undecided: B intersects itself") != std::string::npos);
 }
 
-TEST_CASE("clash: what cannot be asked is refused in one line") {
+TEST_CASE("clash: invalid requests are rejected in one line") {
   ClashingBoxes boxes;
   boxes.check_refusals({{{"--clearance", "-1"}, "clearance of at least 0, found -1"},
                         {{"--clearance", "nan"}, "clearance of at least 0, found nan"},

@@ -52,7 +52,7 @@ TEST_CASE("query: a JSON line per pose") {
   CHECK(answers[2]["relation"] == "b_inside_a");
 }
 
-TEST_CASE("query: without --pairs and --repeat there is nothing but the four keys") {
+TEST_CASE("query: without --pairs and --repeat a line has four keys") {
   const Folder folder;
   folder.write("a.obj", kCube);
   folder.write("p.txt", kApart);
@@ -60,7 +60,7 @@ TEST_CASE("query: without --pairs and --repeat there is nothing but the four key
         "{\"pose\":0,\"relation\":\"separate\",\"pairs\":0,\"fingerprint\":\"cbf29ce484222325\"}\n");
 }
 
-TEST_CASE("query: bodies that touch say whether they overlap, unless not all pairs were found exactly") {
+TEST_CASE("query: touching bodies report whether they overlap, unless not all pairs were found exactly") {
   const Folder folder;
   folder.write("a.obj", kCube);
   folder.write("p.txt", "1 0 0 0.1 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n" +
@@ -88,7 +88,7 @@ TEST_CASE("query: bodies that touch say whether they overlap, unless not all pai
 }
 
 TEST_CASE(
-    "query: a pose that carries a vertex beyond all numbers is named by file and line, before any answer") {
+    "query: a pose that moves a vertex beyond doubles is rejected by file and line, before any answer") {
   const Folder folder;
   folder.write("a.obj", kCube);
   folder.write("p.txt", "# first\n" + std::string(kApart) + "\n1e308 1e308 0 0 0 1 0 0 0 0 1 0\n");
@@ -135,7 +135,7 @@ TEST_CASE("run: an open body has no wrapper to refine or construct") {
   }
 }
 
-TEST_CASE("query: first finds one pair, the paper's recursion says that it is not the complete one") {
+TEST_CASE("query: first finds one pair; the paper's recursion is marked as incomplete") {
   const Folder folder;
   folder.write("a.obj", kCube);
   folder.write("p.txt", "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125\n");
@@ -151,7 +151,7 @@ TEST_CASE("query: first finds one pair, the paper's recursion says that it is no
   CHECK(floating["predicates"] == "floating");
 }
 
-TEST_CASE("query: an open mesh is queried all the same, and inside has no meaning then") {
+TEST_CASE("query: an open mesh is queried, without containment") {
   const Folder folder;
   folder.write("a.obj", kCube);
   folder.write("b.obj", kTriangle);
@@ -166,7 +166,7 @@ TEST_CASE("query: an open mesh is queried all the same, and inside has no meanin
   CHECK(run(folder, {"--quiet", "query", "a.obj", "b.obj", "--poses", "p.txt"}).err.empty());
 }
 
-TEST_CASE("bad input: one line on stderr, exit 2, nothing on stdout, nothing left behind") {
+TEST_CASE("invalid input: one line on stderr, exit code 2, no output, no files") {
   const Folder folder;
   folder.write("a.obj", kCube);
   folder.write("good.txt", kApart);
@@ -224,7 +224,7 @@ TEST_CASE("bad input: one line on stderr, exit 2, nothing on stdout, nothing lef
             .err.find("bad.json:3:3: /porpose: unknown key; did you mean \"purpose\"?") != std::string::npos);
 }
 
-TEST_CASE("build: the figures, the proof, and a file that can be used in the mesh's place") {
+TEST_CASE("build: the figures, the proof, and a file that replaces the mesh") {
   const Folder folder;
   folder.write("a.obj", kCube);
   folder.write("p.txt", "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125\n");
@@ -247,7 +247,7 @@ TEST_CASE("build: the figures, the proof, and a file that can be used in the mes
   CHECK(run(folder, {"inspect", "a.lrb", "--validate"}).code == 0);
 }
 
-TEST_CASE("levels: faces and proved distances at a row of tolerances, the same from build --json") {
+TEST_CASE("levels: faces and proven distances for several tolerances, the same as build --json") {
   const Folder folder;
   lrb::write_mesh(lrb::shapes::icosphere(3), (folder.path / "ball.obj").string());
   const json built = json::parse(run(folder, {"build", "ball.obj", "-o", "ball.lrb", "--json"}).out);
@@ -325,7 +325,7 @@ TEST_CASE("run: page, trace, summary and frames; twice the same bytes; a mismatc
   CHECK(wrong.err.find("expected relation touching, found separate") != std::string::npos);
 }
 
-TEST_CASE("collide: two files of the user's own") {
+TEST_CASE("collide: two user files") {
   const Folder folder;
   folder.write("a cube.obj", kCube);
   const Outcome o = run(folder, {"collide", "a cube.obj", "a cube.obj", "-o", "out dir", "--size", "320x240",
@@ -338,7 +338,7 @@ TEST_CASE("collide: two files of the user's own") {
   CHECK(summary["steps"].back()["relation"] == "crossing");
 }
 
-TEST_CASE("an output folder that cannot be made is the environment's fault") {
+TEST_CASE("an output folder that cannot be created is an EnvironmentError") {
   const Folder folder;
   folder.write("a.obj", kCube);
   folder.write("in_the_way", "x");
@@ -348,7 +348,7 @@ TEST_CASE("an output folder that cannot be made is the environment's fault") {
   CHECK(o.out.empty());
 }
 
-TEST_CASE("run and render: a tolerance, a limit, certificates; answers as query gives them") {
+TEST_CASE("run and render: tolerance, limit and certificates, with the answers of query") {
   const Folder folder;
   std::set<std::string> relations;
   bool pseudo = false;

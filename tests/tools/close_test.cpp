@@ -53,7 +53,7 @@ TEST_CASE("inspect lists every loop, and close closes them") {
   CHECK(is.vertices == was.vertices);
 }
 
-TEST_CASE("a sheet is told from a body with a hole, by inspect and by close") {
+TEST_CASE("inspect and close distinguish a sheet from a body with a hole") {
   const Folder folder;
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\n",
                     faces = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
@@ -79,7 +79,7 @@ TEST_CASE("a sheet is told from a body with a hole, by inspect and by close") {
   CHECK(run(folder, {"inspect", "bent.obj"}).out.find("close the hole") != std::string::npos);
 }
 
-TEST_CASE("close says what it leaves, with exit code 1, and refuses what it cannot take") {
+TEST_CASE("close reports remaining holes with exit code 1, and rejects invalid input") {
   const Folder folder;
   Mesh pot = box();
   std::set<FaceId> top;

@@ -31,7 +31,7 @@ struct Runs {
   }
 };
 
-TEST_CASE("compare: the same run, another recursion, other levels of events; and what is no run") {
+TEST_CASE("compare: the same run, another recursion, other levels of events, and invalid runs") {
   const Runs runs;
   const Outcome same = run(runs.folder, {"--quiet", "compare", "one", "one", "-o", "same"});
   CHECK(same.code == 0);
@@ -55,7 +55,7 @@ TEST_CASE("compare: the same run, another recursion, other levels of events; and
   CHECK_FALSE(std::filesystem::exists(runs.folder / "out3"));
 }
 
-TEST_CASE("compare: both runs' views stand side by side as long as both pages are there") {
+TEST_CASE("compare: both runs' views are shown side by side if both pages exist") {
   const Runs runs;
   const auto page = [&](const std::string& folder) { return slurp(runs.folder / (folder + "/index.html")); };
   REQUIRE(run(runs.folder, {"--quiet", "compare", "one", "paper", "-o", "a b/out"}).code == 0);
@@ -72,7 +72,7 @@ TEST_CASE("compare: both runs' views stand side by side as long as both pages ar
   CHECK(page("alone").find("<iframe") == std::string::npos);
 }
 
-TEST_CASE("compare: two constructions of a body, pass by pass; not one body with two") {
+TEST_CASE("compare: two constructions of a body, pass by pass; one body with two is rejected") {
   const Runs runs;
   const auto scenario = [](const std::string& build) {
     return "{\"name\": \"built\", \"purpose\": \"Built.\", \"show\": \"construction\", \"bodies\": {\"a\": {\"generator\": "

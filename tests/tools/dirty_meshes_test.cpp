@@ -407,7 +407,7 @@ TEST_CASE("faults, kind by kind: inspect, build, query") {
   for (const Row& row : rows_3d()) check_row(row);
 }
 
-TEST_CASE("corners in one place are kept apart if that is asked for") {
+TEST_CASE("coincident vertices stay separate on request") {
   const Folder folder;
   write_mesh(as_soup(icosphere(1)), folder / "m.obj");
   const Outcome o = run(folder, {"inspect", "m.obj", "--json", "--no-join"});
@@ -437,7 +437,7 @@ TEST_CASE("corners in one place are kept apart if that is asked for") {
   }
 }
 
-TEST_CASE("faults in the plane, kind by kind: inspect, build, query") {
+TEST_CASE("faults of 2D meshes, kind by kind: inspect, build, query") {
   for (const Row& row : rows_2d()) check_row(row);
 }
 
@@ -469,7 +469,7 @@ std::vector<Spoiled> spoil(const Mesh& m, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("real models, spoiled: no crash, exact pairs, built or refused in one line" *
+TEST_CASE("damaged real models: exact pairs, built or rejected in one line" *
           doctest::test_suite("shared meshes")) {
   const auto meshes = shared_meshes();
   const Mesh speck = icosphere(0, 1);

@@ -19,7 +19,7 @@ struct Boxes : Command {
   }
 };
 
-TEST_CASE("distance: intervals, points, and what differs for solids") {
+TEST_CASE("distance: intervals, points, and solids") {
   const auto lines = Boxes().lines();
   REQUIRE(lines.size() == 4);
   const double expected[] = {2, 0.25, 0, 5};
@@ -64,7 +64,7 @@ TEST_CASE("distance: within, tolerance, budget, features and times") {
   CHECK(features[3]["us"].get<double>() > 0);
 }
 
-TEST_CASE("distance: what cannot be asked is refused in one line") {
+TEST_CASE("distance: invalid requests are rejected in one line") {
   Boxes boxes;
   boxes.check_refusals({{{"--within", "-1"}, "`within` of at least 0, found -1"},
                         {{"--within", "nan"}, "`within` of at least 0, found nan"},

@@ -35,7 +35,7 @@ struct TwoCubes : Command {
   }
 };
 
-TEST_CASE("draw: a picture for each answer, numbered where there are several") {
+TEST_CASE("draw: a picture for each answer, numbered if there are several") {
   const TwoCubes c;
   c.ask("distance", {"--draw", "gap.png"});
   c.ask("clash", {"--draw", "clash.png"});
@@ -47,7 +47,7 @@ TEST_CASE("draw: a picture for each answer, numbered where there are several") {
   }
 }
 
-TEST_CASE("draw: bodies in the plane too") {
+TEST_CASE("draw: 2D bodies") {
   const TwoCubes c;
   c.lines({"distance", "star.obj", "star.obj", "--poses", "beside.txt", "--draw", "gap.png"});
   c.folder.write("way.txt", "1 0 0 4 0 1 0 0.3 0 0 1 0   1 0 0 -4 0 1 0 0.3 0 0 1 0\n");
@@ -56,7 +56,7 @@ TEST_CASE("draw: bodies in the plane too") {
   CHECK(c.has_png("met.png"));
 }
 
-TEST_CASE("draw: of the size that was asked for, and no picture of another") {
+TEST_CASE("draw: pictures of the requested size, other sizes are rejected") {
   const TwoCubes c;
   c.lines({"distance", "star.obj", "star.obj", "--poses", "beside.txt", "--draw", "small.png", "--size",
            "640x400", "--up", "y"});
@@ -66,7 +66,7 @@ TEST_CASE("draw: of the size that was asked for, and no picture of another") {
         "--size: expected WIDTHxHEIGHT"}});
 }
 
-TEST_CASE("course: how bounds tightened, in the line") {
+TEST_CASE("convergence: the history of bounds in the line") {
   const TwoCubes c;
   const auto gaps = c.ask("distance", {"--convergence"});
   REQUIRE(gaps.size() == 4);
@@ -89,13 +89,13 @@ TEST_CASE("chart: of the bounds, by gnuplot" * doctest::skip(!report::has_gnuplo
   CHECK(slurp(c.folder / "met.svg").find("time of impact, lower bound") != std::string::npos);
 }
 
-TEST_CASE("chart: of another kind is refused before anything is printed") {
+TEST_CASE("chart: other kinds are rejected before anything is printed") {
   const TwoCubes c;
   c.check_refusals({{{"distance", "cube.obj", "small.obj", "--poses", "poses.txt", "--chart", "gap.txt"},
                      "expected a file name that ends in .svg, .png or .pdf"}});
 }
 
-TEST_CASE("query: the kind of contact and the distance, as clash and distance say them") {
+TEST_CASE("query: kind of contact and distance agree with clash and distance") {
   const TwoCubes c;
   const auto lines = c.ask("query", {"--kind", "--distance"}), plain = c.ask("query");
   const auto clashes = c.ask("clash"), gaps = c.ask("distance");

@@ -55,7 +55,7 @@ TEST_CASE("export: poses of a run, and from one form to another") {
   }
 }
 
-TEST_CASE("export: what cannot be is refused, and nothing is written") {
+TEST_CASE("export: invalid requests are rejected, and nothing is written") {
   const Command command({"-q", "export"});
   command.folder.write("p.csv", "1,2\n");
   command.check_refusals(

@@ -75,7 +75,7 @@ TEST_CASE("the picture shows each kind of fault in its colour") {
   }
 }
 
-TEST_CASE("all rims are drawn, however many edges are open, and the picture is as large as asked") {
+TEST_CASE("all boundary loops are drawn at the requested size, for any number of open edges") {
   const Folder folder;
   // Every hundredth face is missing: 13 holes, of which the first eight open edges show three.
   const Mesh ball = icosphere(3);
@@ -109,7 +109,7 @@ TEST_CASE("open edges are counted by loops") {
         "6 open edges in 2 loops, of 3 and 3");
 }
 
-TEST_CASE("a clean mesh says that there is nothing to draw, and no picture is written") {
+TEST_CASE("for a clean mesh no picture is written, with a message") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   const std::vector<std::string> before = folder.tree();
@@ -127,7 +127,7 @@ TEST_CASE("an LRB-rep has no findings to draw") {
   check_rejected(folder, {"inspect", "cube.lrb", "--draw", "x.png"});
 }
 
-TEST_CASE("kinds that say the same are drawn once") {
+TEST_CASE("faults with the same elements are drawn once") {
   const Mesh doubled = with_doubled(icosphere(1), {3, 9});  // they also meet
   CHECK(render::findings::kinds(check_mesh(doubled)) ==
         std::vector{MeshFault::duplicate_face, MeshFault::non_manifold_edge});

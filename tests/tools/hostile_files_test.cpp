@@ -142,7 +142,7 @@ constexpr std::size_t kMega = 1'000'000;
 
 }  // namespace
 
-TEST_CASE("compressed traces that unpack to more than any trace are refused, and little is held") {
+TEST_CASE("decompression bombs as traces are rejected with little memory") {
   const Folder folder;
   write_gzip(folder / "zeros.json.gz", "{\"traceEvents\":[", "0,", 60 * kMega);
   REQUIRE(fs::file_size(folder / "zeros.json.gz") < 100'000);
@@ -155,7 +155,7 @@ TEST_CASE("compressed traces that unpack to more than any trace are refused, and
   CHECK_FALSE(fs::exists(folder / "out"));
 }
 
-TEST_CASE("what the parser holds of a trace is bounded by its text") {
+TEST_CASE("the parser's memory is bounded by the trace's size") {
   const Folder folder;
   const auto rejected = [&](const std::string& begin, const std::string& again, const char* what, long mb) {
     folder.write("t.json", repeated(begin, again, 20 * kMega));
@@ -171,7 +171,7 @@ TEST_CASE("what the parser holds of a trace is bounded by its text") {
   rejected("{\"else\":[", "{},", "its values take more than 8 times", 350);
 }
 
-TEST_CASE("a scenario that is too large to be one is refused before it is read") {
+TEST_CASE("an oversized scenario is rejected before it is read") {
   const Folder folder;
   folder.write("large.json", repeated("{\"name\": [", "0,", 60 * kMega));
   check_rejected_within(folder, {"run", "large.json"}, "expected at most 8388608 bytes", 60);
@@ -180,7 +180,7 @@ TEST_CASE("a scenario that is too large to be one is refused before it is read")
                         60);
 }
 
-TEST_CASE("named pipes are refused and not waited for; pipes that a shell makes are read") {
+TEST_CASE("named pipes are rejected without waiting; pipes of a shell are read") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   folder.write("p.txt", kApart);
@@ -200,7 +200,7 @@ TEST_CASE("named pipes are refused and not waited for; pipes that a shell makes 
   CHECK(slurp(folder / "out.txt").find("\nfaces: 6\n") != std::string::npos);
 }
 
-TEST_CASE("pictures that claim or unpack to more than they can be are refused") {
+TEST_CASE("decompression bombs as pictures are rejected") {
   CHECK(rejection_of_png(png_of(64, 64, 64UL * 193)).empty());
   CHECK(rejection_of_png(png_of(64, 64, 64UL * 193), 4095).find("has 64x64 pixels, expected at most 4095") !=
         std::string::npos);
@@ -212,7 +212,7 @@ TEST_CASE("pictures that claim or unpack to more than they can be are refused") 
         std::string::npos);
 }
 
-TEST_CASE("pictures that are damaged are refused in words that say how") {
+TEST_CASE("damaged pictures are rejected with a reason") {
   const std::string good = png_of(64, 64, 64UL * 193);
   CHECK(rejection_of_png("GIF89a, or so") == "p.png: not a readable PNG (Not a PNG file)");
   CHECK(rejection_of_png(png_of(64, 64, 20 * kMega)) ==
@@ -227,7 +227,7 @@ TEST_CASE("pictures that are damaged are refused in words that say how") {
   CHECK(rejection_of_png(flipped).find("p.png: not a readable PNG (IDAT: ") == 0);
 }
 
-TEST_CASE("texts in pictures are held within limits") {
+TEST_CASE("texts in pictures have a size limit") {
   const auto with_text = [](const std::string& value, int times) {
     std::string png = png_of(1, 1, 4);
     const std::string end = png.substr(png.size() - 12);
@@ -243,7 +243,7 @@ TEST_CASE("texts in pictures are held within limits") {
       0);
 }
 
-TEST_CASE("a golden of bombs fails within little memory, and the others are tested") {
+TEST_CASE("a golden of decompression bombs fails with little memory, and the others are tested") {
   const Folder folder;
   const std::string text = R"({"name": "NAME", "purpose": "p",
     "bodies": {"a": {"generator": "ball", "parameters": {"frequency": 2}},
@@ -279,7 +279,7 @@ TEST_CASE("a golden of bombs fails within little memory, and the others are test
   check_fails("unpack to more than");
 }
 
-TEST_CASE("more pairs than are to be kept: one line, nothing on stdout, and the limit can be raised") {
+TEST_CASE("too many pairs: one line, no output, and the limit can be raised") {
   const Folder folder;
   const auto strips = [](bool along_y) {
     std::string obj;

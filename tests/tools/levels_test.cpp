@@ -39,7 +39,7 @@ double coloured_share(const lrb::render::Image& image) {
 
 }  // namespace
 
-TEST_CASE("levels: what pictures and page say is proved, and no less than what is measured") {
+TEST_CASE("levels: distances in pictures and page are proven, and at least the measured ones") {
   const Folder folder;
   lrb::write_mesh(lrb::shapes::bumpy_sphere(3, 1), folder / "rock.obj");
   const Outcome o = succeed(folder, {"levels", "rock.obj", "-o", "out", "--up", "y", "--json"});
@@ -82,7 +82,7 @@ TEST_CASE("levels: what pictures and page say is proved, and no less than what i
   CHECK(!(wrappers == distances));
 }
 
-TEST_CASE("levels: a free simplification stands beside the wrappers where the program for it was built") {
+TEST_CASE("levels: an unconstrained simplification is shown next to the wrappers if its program was built") {
   if (!fs::exists(fs::path(LRBSCOPE_BINARY).parent_path() / "lrbscope-simplify")) return;
   const Folder folder;
   lrb::write_mesh(lrb::shapes::bumpy_sphere(3, 1), folder / "rock.obj");
@@ -97,7 +97,7 @@ TEST_CASE("levels: a free simplification stands beside the wrappers where the pr
   CHECK(fine["to_body"].get<double>() < written["levels"][0]["bound"].get<double>());
 }
 
-TEST_CASE("levels: a 2D body is drawn, too") {
+TEST_CASE("levels: a 2D body is drawn") {
   const Folder folder;
   std::string comb = "v 0 0 0\nv 10 0 0\n";
   int corners = 2;
@@ -117,7 +117,7 @@ TEST_CASE("levels: a 2D body is drawn, too") {
   CHECK(coloured_share(lrb::render::read_png(folder / "out/distances.png").image) > 0.002);
 }
 
-TEST_CASE("levels: what cannot be drawn is refused in one line, and nothing is written") {
+TEST_CASE("levels: invalid input is rejected in one line, and nothing is written") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   folder.write("open.obj", "v 0.5 0.5 -1\nv 0.5 0.6 2\nv 0.6 0.5 2\nf 1 2 3\n");

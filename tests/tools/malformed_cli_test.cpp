@@ -260,7 +260,7 @@ TEST_CASE("malformed scenarios") {
              {"[]", "1:1: "}});
 }
 
-TEST_CASE("a scenario that asks for a picture of an event that there is not writes nothing") {
+TEST_CASE("a scenario with a picture of a missing event writes nothing") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   folder.write("s.json", scenario("\"at\": \"none\"", "\"events\": [99999]"));
@@ -297,7 +297,7 @@ TEST_CASE("malformed traces") {
              {"", " line 1"}});
 }
 
-TEST_CASE("a trace without its bodies, or with other bodies, is refused before anything is written") {
+TEST_CASE("a trace without its bodies, or with other bodies, is rejected before anything is written") {
   const Folder folder;
   folder.write("t.json", seeds("trace").at(2));
   folder.write("cube.obj", kCube);
@@ -307,7 +307,7 @@ TEST_CASE("a trace without its bodies, or with other bodies, is refused before a
     check_rejected(folder, arguments);
 }
 
-TEST_CASE("files that are no files are named, and devices without an end are not read") {
+TEST_CASE("paths that are not regular files are rejected, and endless devices are not read") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   std::filesystem::create_directory(folder / "dir.obj");
@@ -322,7 +322,7 @@ TEST_CASE("files that are no files are named, and devices without an end are not
   CHECK(run(folder, {"query", "cube.obj", "cube.obj", "--poses", "/dev/zero"}).code == 2);
 }
 
-TEST_CASE("what a scenario or trace says cannot lead out of the output folder") {
+TEST_CASE("names in scenarios and traces cannot escape the output folder") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   folder.write("s.json", scenario("\"x\"", "\"inside\""));
@@ -354,7 +354,7 @@ TEST_CASE("what a scenario or trace says cannot lead out of the output folder") 
   CHECK(slurp(folder / "precious") == "keep me");
 }
 
-TEST_CASE("names that are not UTF-8 do no harm") {
+TEST_CASE("names that are not UTF-8 are accepted") {
   const Folder folder;
   folder.write("\xff.obj", kCube);
   CHECK(run(folder, {"inspect", "\xff.obj", "--json"}).code == 0);

@@ -16,7 +16,7 @@ std::vector<std::string> models() {
   return names;
 }
 
-TEST_CASE("build --json: few outer faces, little overhead, proved" * doctest::test_suite("shared meshes")) {
+TEST_CASE("build --json: few outer faces, little overhead, proven" * doctest::test_suite("shared meshes")) {
   const auto meshes = shared_meshes();
   const Folder folder;
   for (const std::string& name : models()) {

@@ -43,7 +43,7 @@ json run_json(const Folder& folder, std::vector<std::string> words) {
 
 }  // namespace
 
-TEST_CASE("the figures of regions add up to the body") {
+TEST_CASE("figures of regions add up to the body's") {
   for (const Mesh& mesh : {bowl(24, 8), comb(4), gear(12)}) {
     const LrbRep rep = build_lrb(mesh);
     std::vector<FaceId> real(rep.real_face_count());
@@ -118,7 +118,7 @@ TEST_CASE("inspect --regions lists all in JSON, the worst in text, and draws ten
   check_rejected(folder, {"inspect", "open.obj", "--regions"});
 }
 
-TEST_CASE("regions of a body in the plane are listed and drawn, too") {
+TEST_CASE("regions of a 2D body are listed and drawn") {
   const Folder folder;
   write_mesh(gear(9), folder / "gear.obj");
   const json j =
@@ -127,7 +127,7 @@ TEST_CASE("regions of a body in the plane are listed and drawn, too") {
   CHECK(render::read_png(folder / "g.png").image.width() > 3 * 200);
 }
 
-TEST_CASE("what is said to help was tried") {
+TEST_CASE("suggested options were tried") {
   const Folder folder;
   write_mesh(thin_disc(), folder / "disc.obj");
   const LrbRep disc = build_lrb(thin_disc());
@@ -157,7 +157,7 @@ TEST_CASE("what is said to help was tried") {
       "--patch 40 has the lowest waste: 2 instead of 3 faces per point, with 1.42 instead of 1.59 faces per real face");
 }
 
-TEST_CASE("build warns on one line where the LRB-rep is poor, and says why") {
+TEST_CASE("build warns on one line about a poor LRB-rep, with the reason") {
   const Folder folder;
   write_mesh(thin_disc(), folder / "disc.obj");
   write_mesh(bumpy_sphere(3, 1), folder / "fine.obj");
@@ -170,7 +170,7 @@ TEST_CASE("build warns on one line where the LRB-rep is poor, and says why") {
   CHECK(run(folder, {"build", "fine.obj", "--no-validate"}).err.empty());
 }
 
-TEST_CASE("build warns of a noisy scan by its waste, and names the cause") {
+TEST_CASE("build warns about the waste of a noisy scan, and names the cause") {
   const Folder folder;
   Mesh scan = bumpy_sphere(5, 1);
   RandomEngine random(1);
@@ -198,7 +198,7 @@ TEST_CASE("build warns of a noisy scan by its waste, and names the cause") {
   CHECK(lines[0].starts_with("no setting lowers the waste of 5e+03 (typical of clean meshes: 20 to 120)"));
 }
 
-TEST_CASE("an isolated region is drawn once, close up, and said to be what it is") {
+TEST_CASE("an isolated region is drawn once, in a close-up with its name") {
   const Folder folder;
   folder.write("s.json", kThinGear);
   REQUIRE(run(folder, {"run", "s.json", "-o", "run"}).code == 0);
@@ -233,7 +233,7 @@ TEST_CASE("an isolated region is drawn once, close up, and said to be what it is
             .starts_with("2 regions (0, 1): layer"));
 }
 
-TEST_CASE("nothing of an exploded body is cut off") {
+TEST_CASE("an exploded body is drawn completely") {
   const Folder folder;
   for (const char* generator : {"bowl", "cog2d"}) {
     CAPTURE(std::string(generator));
@@ -249,7 +249,7 @@ TEST_CASE("nothing of an exploded body is cut off") {
   }
 }
 
-TEST_CASE("a direction to look from is refused for bodies in the plane") {
+TEST_CASE("a view direction is rejected for 2D bodies") {
   const Folder folder;
   write_mesh(star(5), folder / "star.obj");
   write_mesh(without_faces(star(5), {0}), folder / "open.obj");

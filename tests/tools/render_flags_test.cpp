@@ -28,7 +28,7 @@ struct Recorded {
 
 }  // namespace
 
-TEST_CASE("render --region: alone, with a ghost of the rest or without") {
+TEST_CASE("render --region: with or without a ghost of the rest") {
   constexpr Part kWithoutTexts{0, 1.0 / 6, 1, 4.0 / 5};
   for (const char* generator : {"knot", "island"}) {
     CAPTURE(std::string(generator));
@@ -56,7 +56,7 @@ TEST_CASE("render --format svg: each frame, of 2D bodies") {
   CHECK_FALSE(std::filesystem::exists(folder / "svg/frames/frame_0000.svg"));  // of the former run
 }
 
-TEST_CASE("--dpi: the same size on paper in more pixels, said in the file; lines and texts grow with them") {
+TEST_CASE("--dpi: the same size on paper in more pixels, recorded in the file; lines and texts scale") {
   const Recorded r("island");
   const render::DecodedPng screen = r.frame("screen"),
                            print = r.frame("print", {"--dpi", "288", "--format", "svg"});
@@ -106,7 +106,7 @@ TEST_CASE("--style: background and lines of frames, montages, figures and sheets
   CHECK(corner("sheet.png") == dark);
 }
 
-TEST_CASE("--no-title, --no-legend: what is left out needs no room, so that small frames can be drawn") {
+TEST_CASE("--no-title, --no-legend: omitted parts take no space, so small frames can be drawn") {
   const Folder folder;
   folder.write("s.json", scenario("island"));
   const std::vector<std::string> small = {"run",    "s.json", "--frames", "refinement", "--size",
@@ -129,7 +129,7 @@ TEST_CASE("--no-title, --no-legend: what is left out needs no room, so that smal
   CHECK(bottom - top > 0.8 * image.height());
 }
 
-TEST_CASE("--transparent: no background in PNG and SVG; laid on white, the usual frame") {
+TEST_CASE("--transparent: no background in PNG and SVG; on white, the usual frame") {
   const Recorded r("island");
   const Folder& folder = r.folder;
   const render::Image white = r.frame("white").image,
@@ -141,7 +141,7 @@ TEST_CASE("--transparent: no background in PNG and SVG; laid on white, the usual
   CHECK(render::read_png(folder / "clear/montage.png").image.at(0, 0) == render::kTransparent);
 }
 
-TEST_CASE("run --format svg: frames, montage and caption; the former run's are gone") {
+TEST_CASE("run --format svg: frames, montage and caption; files of the previous run are removed") {
   const Folder folder;
   succeed(folder, {"run", "figure2", "-o", "two", "--most", "4"});
   const std::string montage = slurp(folder / "two/montage.svg"), caption = slurp(folder / "two/caption.txt");
@@ -154,7 +154,7 @@ TEST_CASE("run --format svg: frames, montage and caption; the former run's are g
     CHECK_FALSE(std::filesystem::exists(folder / gone));
 }
 
-TEST_CASE("render: of a crowd's trace, with the flags that fit") {
+TEST_CASE("render: a crowd's trace, with the applicable flags") {
   const Folder folder;
   folder.write("c.json", R"({"name": "few", "purpose": "p", "room": [2, 2, 2],
     "bodies": [{"name": "bead", "body": {"generator": "ball", "parameters": {"frequency": 2, "radius": 0.5}}, "count": 4},
@@ -189,7 +189,7 @@ TEST_CASE("render: of a crowd's trace, with the flags that fit") {
 }
 
 TEST_CASE(
-    "run: colours and boxes of a walk are refused where no trees are walked, before anything is written") {
+    "run: colours and boxes of a traversal are rejected if no trees are traversed, before anything is written") {
   const Folder folder;
   folder.write("one.json", scenario("knot"));
   for (const char* by : {"box_tests", "plane_tests", "expansions"}) {
@@ -206,7 +206,7 @@ TEST_CASE(
   CHECK(paper.err.find("--recursion paper does not use trees") != std::string::npos);
 }
 
-TEST_CASE("render: flags that do not fit are refused before anything is written") {
+TEST_CASE("render: inapplicable flags are rejected before anything is written") {
   const Recorded r("ball");
   for (const std::vector<std::string>& flags : {std::vector<std::string>{"--format", "svg"},
                                                 {"--format", "gif"},

@@ -26,7 +26,7 @@ struct MovingBoxes : Command {
   }
 };
 
-TEST_CASE("sweep: contact, none, from inside, at the start, turning, grazing") {
+TEST_CASE("sweep: contact, no contact, from inside, at the start, rotating, tangential") {
   const auto lines = MovingBoxes().lines();
   REQUIRE(lines.size() == 6);
   for (std::size_t i = 0; i < 6; ++i) CHECK(lines[i]["motion"] == i);
@@ -69,7 +69,7 @@ TEST_CASE("sweep: tolerance, budget, features, history and times") {
   CHECK(!more[1].contains("on_a"));
 }
 
-TEST_CASE("sweep: what cannot be asked is refused in one line") {
+TEST_CASE("sweep: invalid requests are rejected in one line") {
   MovingBoxes boxes;
   for (const char* tolerance : {"0", "-1", "2", "nan"})
     boxes.check_refusals({{{"--tolerance", tolerance}, "first contact: expected a tolerance"}});

@@ -11,7 +11,7 @@ bool says(const Outcome& o, const std::string& what) {
   return o.err.find(what) != std::string::npos;
 }
 
-TEST_CASE("usage: a misspelt command is named, with the nearest one") {
+TEST_CASE("usage: a misspelt command is reported with a suggestion") {
   const Folder folder;
   const auto rejected = [&](const std::vector<std::string>& arguments, const std::string& message) {
     CHECK(check_rejected(folder, arguments).err == "lrbscope: " + message + "\n");
@@ -38,7 +38,7 @@ TEST_CASE("usage: errors name the help of their own command") {
   }
 }
 
-TEST_CASE("usage: an empty text is no value of any option") {
+TEST_CASE("usage: an empty text is rejected by every option") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   folder.write("apart.txt", kApart);
@@ -63,7 +63,7 @@ TEST_CASE("usage: an empty text is no value of any option") {
   }
 }
 
-TEST_CASE("folders are made for exports and pictures, not for bodies") {
+TEST_CASE("folders are created for exports and pictures, not for bodies") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   folder.write("apart.txt", kApart);
@@ -84,7 +84,7 @@ TEST_CASE("folders are made for exports and pictures, not for bodies") {
   check_rejected(folder, {"close", "open.obj", "-o", "k/x.stl"});
 }
 
-TEST_CASE("commands that take a recorded run take its folder, and its trace") {
+TEST_CASE("commands accept a recorded run by its folder and by its trace") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   folder.write("apart.txt", kApart);
@@ -110,7 +110,7 @@ TEST_CASE("commands that take a recorded run take its folder, and its trace") {
   CHECK(says(check_rejected(folder, {"render", ".", "-o", "none"}), "no trace.json"));
 }
 
-TEST_CASE("inspect names the option of pictures that has no picture") {
+TEST_CASE("inspect reports picture options without --draw") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   CHECK(check_rejected(folder, {"inspect", "cube.obj", "--regions", "--up", "y"}).err ==

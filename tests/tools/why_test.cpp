@@ -38,7 +38,7 @@ TEST_CASE("why: a pair of the answer, as JSON, as text and as a picture") {
   CHECK(text.out.find("contact: segment") != std::string::npos);
 }
 
-TEST_CASE("why: bodies that are apart") {
+TEST_CASE("why: separate bodies") {
   const Bodies bodies;
   const Outcome text = bodies.run({"--pose", "1"});
   CHECK(text.code == 0);
@@ -75,7 +75,7 @@ TEST_CASE(
   CHECK(text("1e-15").find("units in the last place") != std::string::npos);
 }
 
-TEST_CASE("why: what parts bodies that are apart") {
+TEST_CASE("why: a separating plane of separate bodies") {
   const Bodies bodies;
   CHECK(bodies.run({"--pose", "1", "-o", "plane.png"}).out.find("separating plane with normal (") !=
         std::string::npos);
@@ -118,7 +118,7 @@ TEST_CASE("why: a step of a run, by the run's folder or its trace") {
   bodies.check_refusals({{{"--run", "out"}, "the .lrb file next to it is not the recorded body A"}});
 }
 
-TEST_CASE("why: bad input is refused in one line, and nothing is written") {
+TEST_CASE("why: invalid input is rejected in one line, and nothing is written") {
   Bodies bodies;
   bodies.words = bodies.with({"-o", "no.png"});
   bodies.check_refusals({{{"--pair", "0,99999"}, "simplex of B: expected a number below "},

@@ -117,7 +117,7 @@ TEST_CASE("regions change no answer") {
   }));
 }
 
-TEST_CASE("a body from a file gives the same answers") {
+TEST_CASE("a loaded body gives the same answers") {
   CHECK(rc::check([] {
     const cases::Case c = any_case_with_regions();
     const cases::Case loaded{saved_and_loaded(*c.a), saved_and_loaded(*c.b), c.pose_a, c.pose_b, {}, {}};

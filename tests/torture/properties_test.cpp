@@ -106,7 +106,7 @@ TEST_CASE("moving both bodies by the same exact translation changes nothing") {
   CHECK(in_contact > 100);
 }
 
-TEST_CASE("a query leaves nothing behind: the same context, asked again, gives the same answer") {
+TEST_CASE("a context has no memory: a repeated query gives the same answer") {
   RandomEngine random(2);
   QueryContext context;
   NullProbe probe;
@@ -122,7 +122,7 @@ TEST_CASE("a query leaves nothing behind: the same context, asked again, gives t
   }
 }
 
-TEST_CASE("refining and coarsening again is the identity") {
+TEST_CASE("refining and then coarsening is the identity") {
   RandomEngine random(3);
   for (const LrbRep& rep : built())
     for (const WrapperMode mode : {WrapperMode::regularised, WrapperMode::unregularised}) {
@@ -226,7 +226,7 @@ std::uint64_t vertices_outside(const Wrapper& w) {
 
 }  // namespace
 
-TEST_CASE("the lids of every region alone, and of any set of regions, enclose the whole solid exactly") {
+TEST_CASE("lids of single regions and of sets of regions enclose the solid exactly") {
   RandomEngine random(5);
   for (const LrbRep& rep : built()) {
     CAPTURE(rep.name());

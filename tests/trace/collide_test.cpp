@@ -70,7 +70,7 @@ Recorded record(const Bodies& bodies, const CollideRequest& request, int steps) 
 
 }  // namespace
 
-TEST_CASE("recording changes no answer, misses nothing and replays to the wrappers the query left") {
+TEST_CASE("recording changes no answer, is complete, and replays to the query's final wrappers") {
   std::size_t refinements = 0, contacts = 0;
   for (const CollideRequest& request : all_requests())
     for (const Bodies& bodies : all_bodies()) {
@@ -100,8 +100,7 @@ TEST_CASE("recording changes no answer, misses nothing and replays to the wrappe
   CHECK(contacts > 1000);
 }
 
-TEST_CASE(
-    "a face test comes after the refinement that brought in its face, which the trace names as its cause") {
+TEST_CASE("a face test follows the refinement that added its face, its cause in the trace") {
   for (const CollideRequest& request : all_requests())
     for (const Bodies& bodies : all_bodies()) {
       const Recorded run = record(bodies, request, 10);
@@ -128,8 +127,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "coarse queries and certificates: the trace has what was answered, and says which faces are pseudo") {
+TEST_CASE("approximate queries and certificates: the trace has the answers, and marks pseudo faces") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), b = build_lrb(shapes::bumpy_sphere(2, 8, 0.3));
   const LrbRep flat_a = build_lrb(shapes::gear(24)), flat_b = build_lrb(shapes::gear(19, 0.9, 0.6));
   std::size_t pseudo = 0, unfinished = 0, unknown = 0, proofs = 0, earlier = 0;

@@ -120,7 +120,8 @@ TEST_CASE("the same trace on any number of threads") {
   }
 }
 
-TEST_CASE("a construction survives a file, and fulfils the schema, on both clocks and cut anywhere") {
+TEST_CASE(
+    "a construction is read back unchanged and satisfies the schema, on both clocks and truncated anywhere") {
   const Mesh mesh = shapes::bumpy_sphere(3, 7, 0.3);
   const auto events = static_cast<std::uint32_t>(rock().trace.events.size());
   for (const std::uint32_t cap : {0u, 1u, 2u, 3u, 40u, events - 1, events}) {
@@ -141,7 +142,7 @@ TEST_CASE("a construction survives a file, and fulfils the schema, on both clock
   }
 }
 
-TEST_CASE("a body that came with its regions tells of its layers") {
+TEST_CASE("a body loaded with regions reports its layers") {
   const LrbRep& rep = rock().rep;
   const Built known{rep, known_construction(rep, {}, {})};
   const std::vector<PassSummary> passes = passes_of(known.trace);
@@ -159,7 +160,7 @@ TEST_CASE("a body that came with its regions tells of its layers") {
   CHECK((trace_from_json(trace_to_json(known.trace), "t.json") == known.trace));
 }
 
-TEST_CASE("summaries say why caps were refused, and nothing of refinements") {
+TEST_CASE("summaries contain reasons of rejected caps, and no refinements") {
   const std::string text = summary_json(rock().trace);
   CHECK(text.find("refine") == std::string::npos);
   const Json c = Json::parse(text).at("construction");
@@ -177,7 +178,7 @@ TEST_CASE("summaries say why caps were refused, and nothing of refinements") {
   CHECK(c.at("passes").at(0).at("stage") == "fitting");
 }
 
-TEST_CASE("refusals in words, most frequent first") {
+TEST_CASE("reasons of rejection as text, most frequent first") {
   std::array<std::uint32_t, kWords<CapVerdict>.size()> caps{};
   CHECK(rejection_text(caps) == "");
   caps[static_cast<std::size_t>(CapVerdict::accepted)] = 7;
@@ -186,7 +187,7 @@ TEST_CASE("refusals in words, most frequent first") {
   CHECK(rejection_text(caps) == "9 met the hull, 3 too thick");
 }
 
-TEST_CASE("two constructions that differ: in which event, and in what") {
+TEST_CASE("two different constructions: the first different event and field") {
   const Trace& x = rock().trace;
   const auto differ = [&](EventKind kind, auto change) {
     Trace y = x;
@@ -210,7 +211,7 @@ TEST_CASE("two constructions that differ: in which event, and in what") {
   CHECK(first_divergence(x, query)->what == "construction");
 }
 
-TEST_CASE("damaged constructions are refused") {
+TEST_CASE("damaged constructions are rejected") {
   const auto rejected = [](EventKind kind, auto change) {
     Trace t = rock().trace;
     change(t, t.events[find(t, kind)]);
@@ -232,7 +233,7 @@ TEST_CASE("damaged constructions are refused") {
   CHECK_THROWS_AS(check_trace(two, "t.json"), InputError);
 }
 
-TEST_CASE("stages and verdicts are those of the schema") {
+TEST_CASE("stages and verdicts agree with the schema") {
   const Json& schema = test::trace_schema();
   Json stages = Json::array(), verdicts = Json::array();
   for (const auto& entry : kWords<BuildStage>) stages.push_back(entry.word);

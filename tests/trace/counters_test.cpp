@@ -56,7 +56,7 @@ TEST_CASE("totals count each kind") {
   CHECK(t.contacts == 1);
 }
 
-TEST_CASE("statistics are the ratios that they say") {
+TEST_CASE("statistics are the documented ratios") {
   const auto all = statistics(by_hand());
   CHECK(value_of(all, "tests_per_contact") == 4.0);
   CHECK(value_of(all, "hit_rate") == 0.75);
@@ -72,7 +72,7 @@ TEST_CASE("statistics are the ratios that they say") {
   CHECK(std::isnan(value_of(statistics(nothing.take()), "tests_per_contact")));
 }
 
-TEST_CASE("histograms hold every event once") {
+TEST_CASE("histograms contain every event once") {
   const Trace t = by_hand();
   const Histogram depth = tests_by_depth(t);
   CHECK(depth.counts == std::vector<std::uint64_t>{2, 1, 1});
@@ -87,7 +87,7 @@ TEST_CASE("histograms hold every event once") {
   CHECK(steps.edges.back() > 3);
 }
 
-TEST_CASE("counts per face add up to the events, and lie on the faces of the events") {
+TEST_CASE("counts per face add up to the events, on the events' faces") {
   const Trace t = by_hand();
   const FaceCounts a = count_faces(plate(), Side::a, t.events), b = count_faces(plate(), Side::b, t.events);
   CHECK(a.tests == std::vector<std::uint32_t>{1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 1, 0});

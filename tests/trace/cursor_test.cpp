@@ -50,7 +50,7 @@ void check_run(const LrbRep& a, const LrbRep& b, const std::vector<Eigen::Vector
 
 }  // namespace
 
-TEST_CASE("a replay equals the wrappers that were there, after every event, in any order") {
+TEST_CASE("a replay equals the recorded wrappers after every event, in any order") {
   const LrbRep plate(toy::notched_plate()), box(toy::dented_box());
   for (const WrapperMode mode : {WrapperMode::regularised, WrapperMode::unregularised}) {
     CAPTURE(static_cast<int>(mode));
@@ -125,7 +125,7 @@ TEST_CASE("one body alone: refining and coarsening") {
   CHECK(cursor.wrapper(Side::a).boundary() == real);
 }
 
-TEST_CASE("a replay refuses another body and another number of bodies") {
+TEST_CASE("a replay rejects another body and another number of bodies") {
   const LrbRep plate(toy::notched_plate());
   LrbData moved = toy::notched_plate();
   moved.vertices[5].y() += 0.25;
@@ -137,7 +137,7 @@ TEST_CASE("a replay refuses another body and another number of bodies") {
   CHECK_THROWS_AS(Cursor(t, plate), InputError);
 }
 
-TEST_CASE("a replay notices refinements that are not those recorded") {
+TEST_CASE("a replay detects different refinements") {
   const LrbRep plate(toy::notched_plate());
   const runs::Run run = runs::record(plate, plate, runs::kPlatePoses);
   Trace t = run.trace;

@@ -40,7 +40,7 @@ TEST_CASE("equal runs do not diverge, whatever the clock or the names") {
   CHECK(difference(diverging_run(), other) == "none");
 }
 
-TEST_CASE("the first divergent event is named, with the field and both values") {
+TEST_CASE("the first divergent event is reported, with the field and both values") {
   const Trace x = diverging_run();
   Trace y = x;
   const EventId contact = first_of(x, EventKind::contact);
@@ -92,7 +92,7 @@ TEST_CASE("two events swapped, one lost, one too many") {
   CHECK(d->expected == "the end of the step");
 }
 
-TEST_CASE("what is around the events is compared too") {
+TEST_CASE("metadata of events is compared") {
   const Trace x = diverging_run();
   Trace y = x;
   y.header.bodies[1].hash ^= 1;

@@ -58,7 +58,7 @@ std::vector<Json> counters(const Json& document, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("what was measured comes back from a file, and a change of it is a divergence") {
+TEST_CASE("measurements are read back unchanged, and changes are divergences") {
   const Trace trace = measured_run(Clock::event);
   REQUIRE(trace.steps[0].result.distance.has_value());
   REQUIRE(trace.steps[2].result.clash.has_value());
@@ -109,7 +109,7 @@ TEST_CASE("bounds are counters within the step's last event, and times do not fa
   }
 }
 
-TEST_CASE("a measured step that is damaged is refused by its place") {
+TEST_CASE("a damaged measured step is rejected with its location") {
   const std::string good = trace_to_json(measured_run(Clock::event));
   const auto complaint = [&](const std::string& part, const std::string& by) {
     std::string text = good;

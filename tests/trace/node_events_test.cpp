@@ -84,7 +84,7 @@ bool is_more(const Event& e) {
 
 }  // namespace
 
-TEST_CASE("a query that is watched more closely does the same") {
+TEST_CASE("a query does the same work at every event detail") {
   for (const WatchedBodies& bodies : watched_bodies())
     for (const CollideRequest& request : requests()) {
       const WatchedRun faces = record(bodies, request, EventLevel::faces);
@@ -116,8 +116,7 @@ TEST_CASE("a query that is watched more closely does the same") {
     }
 }
 
-TEST_CASE(
-    "coherent queries that are watched answer and count as those that are not, and tell what adds up to that") {
+TEST_CASE("observed coherent queries have the same answers and counters, and their events add up to these") {
   std::map<Phase, std::uint64_t> phases;
   std::uint64_t refined_again = 0, taken_back = 0;
   for (const WatchedBodies& bodies : watched_bodies())
@@ -231,7 +230,7 @@ TEST_CASE("the events of a step add up to its counters") {
   CHECK(expansions > 0);
 }
 
-TEST_CASE("pairs of nodes hang together: each pair's children are those whose boxes met, one step below") {
+TEST_CASE("pairs of nodes form a tree: each pair's children are the overlapping ones, one level below") {
   for (const WatchedBodies& bodies : watched_bodies()) {
     const Trace t = record(bodies, {}, EventLevel::nodes).trace;
     std::map<EventId, std::uint32_t> children;
@@ -260,8 +259,7 @@ TEST_CASE("pairs of nodes hang together: each pair's children are those whose bo
   }
 }
 
-TEST_CASE(
-    "a pair of leaves, its plane tests and the face tests that are left are all pairs of the leaves' simplices") {
+TEST_CASE("plane tests and face tests of a pair of leaves cover all pairs of their simplices") {
   for (const WatchedBodies& bodies : watched_bodies()) {
     const WatchedRun run = record(bodies, {}, EventLevel::all);
     const Trace& t = run.trace;
@@ -281,7 +279,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("walks of levels say which level they walk, and are not counted as walks of the body") {
+TEST_CASE("traversals of levels of detail name the level, and are not counted for the body") {
   static const LrbRep rock = build_lrb(shapes::bumpy_sphere(4, 7, 0.3));
   RecorderSettings settings;
   settings.level = EventLevel::nodes;
@@ -310,7 +308,7 @@ TEST_CASE("walks of levels say which level they walk, and are not counted as wal
   CHECK_THROWS_AS(walked_tree(rock, 1000), InputError);
 }
 
-TEST_CASE("the axis of a pair that ended parts the nodes' boxes where they are said to be apart") {
+TEST_CASE("the recorded axis of a rejected pair separates the nodes' boxes") {
   const WatchedBodies& bodies = watched_bodies()[0];
   const WatchedRun run = record(bodies, {}, EventLevel::nodes);
   std::size_t step = 0;
@@ -335,7 +333,7 @@ TEST_CASE("the axis of a pair that ended parts the nodes' boxes where they are s
   }
 }
 
-TEST_CASE("phases nest in steps, begin and end once, and count what they say") {
+TEST_CASE("phases nest in steps, begin and end once, and have correct counts") {
   for (const CollideRequest& request : requests()) {
     const WatchedRun run = record(watched_bodies()[1], request, EventLevel::nodes);
     EventId open = kNull;
@@ -368,7 +366,7 @@ TEST_CASE("phases nest in steps, begin and end once, and count what they say") {
   }
 }
 
-TEST_CASE("traces of all levels are read back as they were, and fulfil the schema") {
+TEST_CASE("traces of all event details are read back unchanged and satisfy the schema") {
   for (const Clock clock : {Clock::event, Clock::wall})
     for (const CollideRequest& request : requests()) {
       RecorderSettings settings;
@@ -398,7 +396,7 @@ TEST_CASE("traces of all levels are read back as they were, and fulfil the schem
     }
 }
 
-TEST_CASE("a recording that is cut keeps its rules, and is read back") {
+TEST_CASE("a truncated recording keeps its invariants, and is read back") {
   const WatchedBodies& bodies = watched_bodies()[0];
   for (const std::uint32_t cap : {1u, 2u, 3u, 10u, 37u, 200u}) {
     RecorderSettings settings;
@@ -417,7 +415,7 @@ TEST_CASE("a recording that is cut keeps its rules, and is read back") {
   }
 }
 
-TEST_CASE("box tests are shared by the faces beneath the nodes: what faces have is what nodes have") {
+TEST_CASE("box tests of nodes are distributed to the faces below them") {
   for (const WatchedBodies& bodies : watched_bodies()) {
     const WatchedRun run = record(bodies, {}, EventLevel::nodes);
     std::uint64_t box_tests = 0;
@@ -446,7 +444,7 @@ TEST_CASE("box tests are shared by the faces beneath the nodes: what faces have 
   CHECK_THROWS_AS(count_nodes(TreeShape(watched_bodies()[3].a->tree()), Side::a, damaged.events), InputError);
 }
 
-TEST_CASE("the chart of the work holds what its parts hold, each event once") {
+TEST_CASE("the chart of the work contains each event once") {
   for (const CollideRequest& request : requests()) {
     const WatchedRun r = record(watched_bodies()[0], request, EventLevel::all);
     const WorkChart chart = work_chart(r.trace);
@@ -475,7 +473,7 @@ TEST_CASE("the chart of the work holds what its parts hold, each event once") {
   }
 }
 
-TEST_CASE("a probe from outside the engine sees the walk, too") {
+TEST_CASE("an external probe observes the traversal") {
   struct Walk : CollideProbe {
     EventLevel level() const override { return EventLevel::all; }
     std::uint32_t node_pair(const NodeVisit& v) override {
@@ -501,7 +499,7 @@ TEST_CASE("a probe from outside the engine sees the walk, too") {
   CHECK(probe.counts[Phase::sort] == result.pairs.size());
 }
 
-TEST_CASE("the summary has the walk by depth and the quality of the bodies") {
+TEST_CASE("the summary has the traversal by depth and the quality of the bodies") {
   for (const WatchedBodies& bodies : watched_bodies()) {
     const WatchedRun run = record(bodies, {}, EventLevel::nodes);
     const std::array<TreeShape, 2> trees = {TreeShape(bodies.a->tree()), TreeShape(bodies.b->tree())};

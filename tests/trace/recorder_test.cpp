@@ -40,7 +40,7 @@ TEST_CASE("the recorder offers what NullProbe offers") {
   CHECK(t.events[3].meet == Meet::touch);
 }
 
-TEST_CASE("a refinement is caused by the face test that hit before it, and by no other") {
+TEST_CASE("a refinement is caused by the intersecting face test before it") {
   Recorder recorder(plate(), plate(), paper());
   recorder.begin_step(0, {}, {});
   recorder.refine(Side::a, 2, 3);                    // 1: nothing before it
@@ -74,7 +74,7 @@ TEST_CASE("the complete query's refinements have no cause among the events, its 
   CHECK(t.events[4].cause == 3);
 }
 
-TEST_CASE("a face test is caused by the refinement that brought in the later of its faces") {
+TEST_CASE("a face test is caused by the refinement that added the later of its faces") {
   Recorder recorder(plate(), plate(), paper());
   recorder.begin_step(0, {}, {});
   recorder.face_test(11, 0, Meet::cross, 0, 0);  // 1: lid of region 2, seen from outside
@@ -99,7 +99,7 @@ TEST_CASE("a face test is caused by the refinement that brought in the later of 
   CHECK(t.events[12].cause == kNull);
 }
 
-TEST_CASE("refinements carry the size of the wrapper they left") {
+TEST_CASE("refinements contain the size of the resulting wrapper") {
   Recorder recorder(plate(), plate(), {});
   recorder.begin_step(0, {}, {});
   recorder.refine(Side::a, 2, 3);  // 5 outer faces: two lids go, three come
@@ -162,7 +162,7 @@ TEST_CASE("depths beyond 16 bits are cut, not wrapped") {
   CHECK(t.events[1].depth_b == 65535);
 }
 
-TEST_CASE("misuse of the recorder is told") {
+TEST_CASE("misuse of the recorder is reported") {
   Recorder recorder(plate(), plate(), {});
   Pose nowhere;
   nowhere.t.x() = std::numeric_limits<double>::quiet_NaN();
@@ -175,7 +175,7 @@ TEST_CASE("misuse of the recorder is told") {
   CHECK_THROWS_AS(other.begin_step(3, {}, {}), std::logic_error);
 }
 
-TEST_CASE("a recorder that was emptied begins anew") {
+TEST_CASE("an emptied recorder starts from the beginning") {
   Recorder recorder(plate(), plate(), {});
   const auto run = [&] {
     recorder.begin_step(5, {}, {});

@@ -27,7 +27,7 @@ Json box_run(Clock clock) {
 
 }  // namespace
 
-TEST_CASE("traces fulfil the schema") {
+TEST_CASE("traces satisfy the schema") {
   CHECK(test::trace_faults(box_run(Clock::event)) == "");
   CHECK(test::trace_faults(box_run(Clock::wall)) == "");
   const LrbRep plate(toy::notched_plate());
@@ -43,7 +43,7 @@ TEST_CASE("traces fulfil the schema") {
   CHECK(test::trace_faults(Json::parse(trace_to_json(alone.take()))) == "");
 }
 
-TEST_CASE("traces of coarse queries and certificates do, too") {
+TEST_CASE("traces of approximate queries and certificates satisfy the schema") {
   static const LrbRep rock = build_lrb(shapes::bumpy_sphere(2, 7, 0.3));
   std::string all;
   for (const CollideRequest& request :
@@ -70,7 +70,7 @@ TEST_CASE("traces of coarse queries and certificates do, too") {
   }
 }
 
-TEST_CASE("broken traces do not fulfil the schema") {
+TEST_CASE("broken traces do not satisfy the schema") {
   const Json good = box_run(Clock::event);
   const auto find = [](Json& document, const char* name, const char* phase) -> Json& {
     for (Json& e : document["traceEvents"])

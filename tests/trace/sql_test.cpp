@@ -115,7 +115,7 @@ Trace record(Clock clock) {
 
 }  // namespace
 
-TEST_CASE("the SQL for Perfetto gives the numbers of the summary") {
+TEST_CASE("the SQL for Perfetto gives the summary's numbers") {
   for (const Clock clock : {Clock::event, Clock::wall}) {
     const Trace t = record(clock);
     const Json summary = Json::parse(summary_json(t));
@@ -168,7 +168,7 @@ TEST_CASE("the SQL for Perfetto gives the numbers of the summary") {
   }
 }
 
-TEST_CASE("and of a construction, pass by pass") {
+TEST_CASE("the SQL for Perfetto gives the passes of a construction") {
   for (const Clock clock : {Clock::event, Clock::wall}) {
     RecorderSettings settings;
     settings.clock = clock;

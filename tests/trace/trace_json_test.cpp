@@ -61,7 +61,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 }  // namespace
 
-TEST_CASE("what is written reads back equal") {
+TEST_CASE("a written trace is read back unchanged") {
   for (const Clock clock : {Clock::event, Clock::wall})
     for (const WrapperMode mode : {WrapperMode::regularised, WrapperMode::unregularised}) {
       const Trace t = ordered_box_run(clock, mode);
@@ -77,7 +77,7 @@ TEST_CASE("what is written reads back equal") {
   CHECK(trace_from_json(trace_to_json(Recorder(plate(), RecorderSettings{}).take()), "none").events.empty());
 }
 
-TEST_CASE("poses, counters and names survive to the last bit") {
+TEST_CASE("poses, counters and names are read back to the last bit") {
   RecorderSettings settings;
   settings.scenario = "quotes \" \\ / \b \f \x01 \x7f tab\t and nul\0 inside, € 😀"s;
   settings.sources[0] = "a\nb";
@@ -136,7 +136,7 @@ TEST_CASE("files: plain, compressed, replaced whole, or not at all") {
   if (fs::exists("/dev/full")) CHECK_THROWS_AS(save_trace(t, "/dev/full"), EnvironmentError);
 }
 
-TEST_CASE("a write that fails leaves what was there and nothing else") {
+TEST_CASE("a failed write leaves the previous file unchanged") {
   struct Full : ByteSink {
     void write(std::string_view) override { throw EnvironmentError("full"); }
   } full;
@@ -154,7 +154,7 @@ TEST_CASE("a write that fails leaves what was there and nothing else") {
   CHECK(folder.count() == 1);
 }
 
-TEST_CASE("the file keeps the rules by which Perfetto and chrome://tracing show everything") {
+TEST_CASE("the file satisfies the rules of Perfetto and chrome://tracing") {
   for (const Clock clock : {Clock::event, Clock::wall}) {
     const Trace t = ordered_box_run(clock);
     const OrderedJson document = OrderedJson::parse(trace_to_json(t));
@@ -252,7 +252,7 @@ TEST_CASE("counters show the wrappers of the step") {
   }
 }
 
-TEST_CASE("bad files are refused with one line that says where and what") {
+TEST_CASE("invalid files are rejected with location and reason in one line") {
   const std::string good = trace_to_json(ordered_box_run());
   const auto complaint = [](const std::string& text) -> std::string {
     try {
@@ -327,7 +327,7 @@ TEST_CASE("bad files are refused with one line that says where and what") {
         "/metadata/bodies: expected one body or two");
 }
 
-TEST_CASE("no damage to a trace does more than a refusal") {
+TEST_CASE("a damaged trace is rejected or read") {
   const std::string good = trace_to_json(runs::record(plate(), plate(), {runs::kPlatePoses[1]}).trace);
   std::mt19937 random(3);
   std::size_t rejected = 0;
@@ -359,7 +359,7 @@ TEST_CASE("no damage to a trace does more than a refusal") {
   CHECK(rejected > 500);
 }
 
-TEST_CASE("files that cannot be read are named") {
+TEST_CASE("unreadable files are reported by name") {
   const TempFolder folder;
   CHECK_THROWS_WITH_AS(load_trace(folder.file("none.json")),
                        doctest::Contains("none.json: cannot read the trace"), InputError);

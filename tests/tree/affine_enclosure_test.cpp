@@ -120,7 +120,7 @@ Pose sized(Pose pose, double r, double t) {
 
 }  // namespace
 
-TEST_CASE("whatever boxes leave out under affine maps is apart in exact arithmetic") {
+TEST_CASE("pairs culled by boxes under affine maps are disjoint in exact arithmetic") {
   RandomEngine random(17);
   const double sizes[] = {1, 1, 1e-150, 1e150, 1e-12};
   Share total;

@@ -104,7 +104,7 @@ std::vector<std::uint32_t> leaves_of(const std::vector<BinaryNode>& tree) {
 
 }  // namespace
 
-TEST_CASE("a binary tree is collapsed to the wide nodes that cost least in all") {
+TEST_CASE("a binary tree is collapsed to wide nodes of minimum total cost") {
   RandomEngine random(1);
   const auto anywhere = [&](std::uint32_t leaves) {
     return static_cast<std::uint32_t>(shapes::uniform(random, 1, std::nextafter(1.0 * leaves, 0.0)));
@@ -127,7 +127,7 @@ TEST_CASE("a binary tree is collapsed to the wide nodes that cost least in all")
   }
 }
 
-TEST_CASE("trees of nodes without any size become low") {
+TEST_CASE("trees of nodes without extent have low depth") {
   const auto halve = [](std::uint32_t leaves) { return leaves / 2; };
   const auto nothing = [] { return 0.0; };
   for (const auto& [leaves, height] : {std::pair{8u, 2u},

@@ -132,7 +132,7 @@ void spoil(Scene& s, RandomEngine& random, int kind) {
 
 }  // namespace
 
-TEST_CASE("whatever boxes leave out is apart in exact arithmetic: random and adversarial poses") {
+TEST_CASE("pairs culled by boxes are disjoint in exact arithmetic: random and adversarial poses") {
   RandomEngine random(31);
   const double kSizes[] = {1, 1, 1e-12, 1e12, 1e-60, 1e100, 1e-308};
   Share total;

@@ -135,7 +135,7 @@ constexpr std::uint32_t kAll = 10'000;
 
 }  // namespace
 
-TEST_CASE("of all cuts across the coordinate axes that one is found whose halves have the smallest boxes") {
+TEST_CASE("the split across the coordinate axes with the smallest boxes is found") {
   RandomEngine random(5);
   for (const int count : {9, 16, 17, 40, 61, 203}) {
     const Triangles triangles = bent_strip(random, count, 1, 0.1);
@@ -175,7 +175,7 @@ TEST_CASE("of all cuts across the coordinate axes that one is found whose halves
   }
 }
 
-TEST_CASE("the cut that is ranked first costs little more than the best one") {
+TEST_CASE("the split that is ranked first costs little more than the best one") {
   struct Strips {
     double crowding, most;
   };
@@ -192,7 +192,7 @@ TEST_CASE("the cut that is ranked first costs little more than the best one") {
   }
 }
 
-TEST_CASE("two plates side by side are parted, however they lie") {
+TEST_CASE("two adjacent plates are split between them in any orientation") {
   RandomEngine random(6);
   for (int round = 0; round < 20; ++round) {
     const Eigen::Matrix3d turn = shapes::random_rotation(random);
@@ -207,7 +207,7 @@ TEST_CASE("two plates side by side are parted, however they lie") {
   }
 }
 
-TEST_CASE("a long body is cut across its longest principal axis, where no coordinate axis parts it") {
+TEST_CASE("a long body is split across its longest principal axis if no coordinate axis separates it") {
   // Two discs that face each other along a diagonal, so wide that they overlap as seen along any coordinate
   // axis, but less wide than they are apart; one holds three times as many triangles.
   const Vector3d along = Vector3d(1, 1, 1).normalized();
@@ -220,7 +220,7 @@ TEST_CASE("a long body is cut across its longest principal axis, where no coordi
   }
 }
 
-TEST_CASE("a body is cut across the principal axis that parts it, be it the second or the last") {
+TEST_CASE("a body is split across the second or last principal axis if that one separates it") {
   const Vector3d u = Vector3d(1, 1, 1).normalized(), v = u.unitOrthogonal(), w = u.cross(v);
   // Two strips side by side along u, and two plates that face each other: all overlap as seen along any
   // coordinate axis and along the other principal axes.
@@ -236,7 +236,7 @@ TEST_CASE("a body is cut across the principal axis that parts it, be it the seco
   CHECK_FALSE(FirstCut(plates, {.principal = 2, .tried = 1}).parts_first(64));
 }
 
-TEST_CASE("what is cut does not depend on the order in which simplices are given, nor on the others") {
+TEST_CASE("a split does not depend on the order of simplices, nor on other simplices") {
   RandomEngine random(9);
   const Triangles strip = bent_strip(random, 300, 1, 0.1);
   const Soup soup = strip.soup();
@@ -279,7 +279,7 @@ std::uint32_t height_of(const Triangles& triangles) {
   return heights[0];
 }
 
-TEST_CASE("a node of the binary tree has the cost of the box that fits, or of that on the coordinate axes") {
+TEST_CASE("a node of the binary tree has the cost of its tight box, or of its AABB") {
   RandomEngine random(12);
   const Triangles strip = bent_strip(random, 500, 1, 0.1);
   for (const std::uint32_t fitted : {64u, 500u, 2048u}) {
@@ -297,7 +297,7 @@ TEST_CASE("a node of the binary tree has the cost of the box that fits, or of th
   }
 }
 
-TEST_CASE("a small part of a large body is cut as it is when it is alone") {
+TEST_CASE("a small part of a large body is split as if it were alone") {
   RandomEngine random(10);
   for (const double size : {1e-3, 1e-6, 1e-9, 1e-12}) {
     Triangles alone;
@@ -313,7 +313,7 @@ TEST_CASE("a small part of a large body is cut as it is when it is alone") {
   }
 }
 
-TEST_CASE("trees over straight lines and over one point are no lists") {
+TEST_CASE("trees over collinear points and over one point are balanced") {
   for (const int count : {2'000, 20'000}) {
     Triangles line, point;
     for (int i = 0; i < count; ++i) {
@@ -331,7 +331,7 @@ TEST_CASE("trees over straight lines and over one point are no lists") {
   }
 }
 
-TEST_CASE("straight lines and simplices at one point are halved, not peeled leaf by leaf") {
+TEST_CASE("collinear and coincident simplices are split in halves") {
   RandomEngine random(8);
   for (const Vector3d& along : {Vector3d(1, 0, 0), Vector3d(0, 0, 1), shapes::random_direction(random)}) {
     Triangles line, point, alike;

@@ -66,7 +66,7 @@ LargeAndSmall small_on_large(RandomEngine& random, double size, double offset) {
 
 }  // namespace
 
-TEST_CASE("small triangles on large ones: the answer is that of brute force") {
+TEST_CASE("small triangles on large ones: queries agree with brute force") {
   RandomEngine random(3);
   std::size_t meeting = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -85,7 +85,7 @@ TEST_CASE("small triangles on large ones: the answer is that of brute force") {
   CHECK(meeting > 20'000);
 }
 
-TEST_CASE("small triangles on large ones: coherent queries while they quiver") {
+TEST_CASE("small triangles on large ones: coherent queries under tiny motions") {
   RandomEngine random(5);
   std::size_t meeting = 0, from_cache = 0, changes = 0;
   for (int i = 0; i < 300; ++i) {
@@ -114,7 +114,7 @@ TEST_CASE("small triangles on large ones: coherent queries while they quiver") {
   CHECK(changes > 500);
 }
 
-TEST_CASE("a small triangle above the long edge of an obtuse sliver: coherent queries while it comes down") {
+TEST_CASE("a small triangle above the long edge of an obtuse sliver: coherent queries while it descends") {
   RandomEngine random(1);
   std::size_t meeting = 0, from_cache = 0;
   for (int i = 0; i < 3000; ++i) {

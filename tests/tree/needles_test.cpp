@@ -14,7 +14,7 @@ namespace {
 
 using test::closed;
 
-TEST_CASE("queries of bodies full of needles answer as brute force does") {
+TEST_CASE("queries of bodies full of needles agree with brute force") {
   constexpr std::uint32_t kMany = 700;
   const std::vector<LrbRep> bodies = {closed(hard::cone(kMany)), closed(hard::bipyramid(kMany)),
                                       closed(hard::crown(kMany)), closed(hard::frustum(kMany)),
@@ -41,7 +41,7 @@ TEST_CASE("queries of bodies full of needles answer as brute force does") {
   CHECK(in_contact > 10);
 }
 
-TEST_CASE("queries of a fan of thousands of needles answer as brute force does") {
+TEST_CASE("queries of a fan of thousands of needles agree with brute force") {
   const LrbRep cone = closed(hard::cone(3400));
   shapes::RandomEngine random(12);
   Pose at;
@@ -52,7 +52,7 @@ TEST_CASE("queries of a fan of thousands of needles answer as brute force does")
   CHECK((collide(cone, Pose{}, cone, at, {}).pairs == expected.pairs));
 }
 
-TEST_CASE("needles that meet in one point are not lost" * doctest::test_suite("long")) {
+TEST_CASE("needles that share one point are not missed" * doctest::test_suite("long")) {
   const LrbRep cone = closed(hard::cone(2000)), other = closed(hard::bipyramid(2000));
   for (const VertexId v : std::initializer_list<VertexId>{
            0, 17, 1000, 2000}) {  // corners of the ring, and the apex, on each other
@@ -66,7 +66,7 @@ TEST_CASE("needles that meet in one point are not lost" * doctest::test_suite("l
   }
 }
 
-TEST_CASE("the work grows with the number of needles, not with that of their pairs") {
+TEST_CASE("the work grows with the number of needles, not of their pairs") {
   Pose at = Pose::translation({0.3, 0.2, 0.4});
   at.r = Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   const auto tests = [&](std::uint32_t n) {

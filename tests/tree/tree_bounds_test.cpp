@@ -172,7 +172,7 @@ using test::stretched;
 
 }  // namespace
 
-TEST_CASE("boxes and balls hold all simplices beneath them, at any scale, aspect and offset") {
+TEST_CASE("boxes and balls contain all simplices below them, at any scale, aspect and offset") {
   const double kScales[] = {1, 1e-12, 1e120, 1e-120, 1e-310, 1e-320, 1e300};
   for (const Mesh& m : {shapes::bumpy_sphere(2, 1), shapes::comb(5), shapes::torus(12, 8), shapes::gear(20)})
     for (const double scale : kScales) {
@@ -182,7 +182,7 @@ TEST_CASE("boxes and balls hold all simplices beneath them, at any scale, aspect
     }
 }
 
-TEST_CASE("a tree of simplices that all are one point, or on one line") {
+TEST_CASE("a tree of coincident or collinear simplices") {
   check_tree(closed(shapes::scaled(shapes::icosphere(1), 0)));
   check_tree(closed(stretched(shapes::icosphere(1), {1, 0, 0})));
   check_tree(closed(shapes::translated(stretched(shapes::icosphere(1), {0, 0, 1e-15}), {1, 1, 1})));

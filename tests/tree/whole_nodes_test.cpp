@@ -82,7 +82,7 @@ Pose near_pose(shapes::RandomEngine& random, const Met& m) {
   return pose;
 }
 
-TEST_CASE("nodes that are parted as wholes are apart, and those that are clearly apart are parted so") {
+TEST_CASE("node OBB tests reject only disjoint nodes, and all clearly disjoint ones") {
   shapes::RandomEngine random(21);
   std::size_t rejected = 0, across = 0, opened = 0, flat = 0;
   for (const Met& m : bodies()) {
@@ -116,7 +116,7 @@ TEST_CASE("nodes that are parted as wholes are apart, and those that are clearly
   CHECK(opened > 1000);
 }
 
-TEST_CASE("pairs of nodes that wait take no more room than there is") {
+TEST_CASE("pending node pairs fit the fixed space") {
   const LrbRep ball = closed(shapes::bumpy_sphere(5, 1));
   QueryContext context;
   NullProbe probe;

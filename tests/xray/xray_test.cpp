@@ -30,7 +30,7 @@ std::vector<xray::PosePair> some_poses() {
 }  // namespace
 
 TEST_CASE(
-    "what an engine's program prints is what it counts, and its pairs are the exact ones in general position") {
+    "an engine's printed traversal matches its counters, and its pairs are exact in general position") {
   const LrbRep ball = bodies::body_of_mesh(shapes::bumpy_sphere(3, 7, 0.3)).rep,
                ring = bodies::body_of_mesh(shapes::torus(24, 12)).rep;
   int recorded = 0;
@@ -68,7 +68,7 @@ TEST_CASE(
   MESSAGE("engines recorded: " << recorded);
 }
 
-TEST_CASE("xray: a page with both runs, or one clear error") {
+TEST_CASE("xray: a page with both runs, or one error line") {
   const Folder folder;
   write_mesh(shapes::icosphere(2), folder / "ball.obj");
   write_mesh(shapes::circle(12), folder / "circle.obj");

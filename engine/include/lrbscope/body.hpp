@@ -120,7 +120,7 @@ Expected<Body> Body::from(const Eigen::MatrixBase<V>& vertices, const Eigen::Mat
 
 struct MadeBody {
   LrbRep rep;
-  std::vector<std::string> notes;  ///< what was changed or could not be done; one line each, for users
+  std::vector<std::string> notes;  ///< changes and failures, one line each, for users
   double build_seconds = 0;        ///< 0 if no regions were built
   std::uint32_t turned = 0;        ///< number of inward-oriented components
 };

@@ -160,7 +160,7 @@ CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, cons
   LRB_EVENT(point, "point", "vertex", "")                                         \
   LRB_EVENT(begin, "begin", "phase", "")                                          \
   LRB_EVENT(end, "end", "phase", "count")                                         \
-  LRB_EVENT(pass, "pass", "layer", "faces barred")                                \
+  LRB_EVENT(pass, "pass", "layer", "faces barred") /* language: keep */           \
   LRB_EVENT(patch, "patch", "vertex", "faces")                                    \
   LRB_EVENT(cap, "cap", "faces", "faces covered")                                 \
   LRB_EVENT(region, "region", "region", "faces covered")                          \

@@ -65,7 +65,7 @@ std::string binary_ply(const std::string& vertex_count, const std::string& face_
 
 }  // namespace
 
-TEST_CASE("malformed OBJ files are refused by line") {
+TEST_CASE("malformed OBJ files are rejected by line") {
   check_all({
       {"v 0 0 nan\n", "a.obj", "a.obj:1: ", "found 'nan', expected a finite number (coordinate z)"},
       {"v 0 0 0\nv inf 0 0\n", "a.obj", "a.obj:2: ", "found 'inf'"},
@@ -112,7 +112,7 @@ TEST_CASE("malformed OBJ files are refused by line") {
   });
 }
 
-TEST_CASE("malformed STL files are refused by line, byte or triangle") {
+TEST_CASE("malformed STL files are rejected by line, byte or triangle") {
   const std::string ascii = to_stl_ascii(tetrahedron());
   const std::string binary = to_stl_binary(tetrahedron());
   const auto changed = [&](const std::string& from, const std::string& to) {
@@ -151,7 +151,7 @@ TEST_CASE("malformed STL files are refused by line, byte or triangle") {
   });
 }
 
-TEST_CASE("malformed PLY headers are refused by line") {
+TEST_CASE("malformed PLY headers are rejected by line") {
   const std::string both = kPlyVertex + kPlyFace;
   check_all({
       {"ply\n", "a.ply", "a.ply:2: ", "found the end of the file"},
@@ -187,7 +187,7 @@ TEST_CASE("malformed PLY headers are refused by line") {
   });
 }
 
-TEST_CASE("malformed PLY data are refused by line, or by byte and element") {
+TEST_CASE("malformed PLY data are rejected by line, or by byte and element") {
   const std::string both = kPlyVertex + kPlyFace;
   const std::string good = to_ply_binary(tetrahedron(), false);
   const std::size_t data = good.find("end_header") + 11;
@@ -235,7 +235,7 @@ TEST_CASE("malformed PLY data are refused by line, or by byte and element") {
   });
 }
 
-TEST_CASE("malformed OFF files are refused by line") {
+TEST_CASE("malformed OFF files are rejected by line") {
   const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
   check_all({
       {"OFF\n", "a.off",
@@ -268,7 +268,7 @@ TEST_CASE("malformed OFF files are refused by line") {
   });
 }
 
-TEST_CASE("files of other kinds are named for what they look like") {
+TEST_CASE("files of other kinds are rejected with their apparent format") {
   check_all({
       {"", "a.obj", "a.obj:1: ", "an empty file"},
       {" \r\n\n\t ", "a.ply", "a.ply:1: ", "only white space"},
@@ -292,7 +292,7 @@ TEST_CASE("files of other kinds are named for what they look like") {
   });
 }
 
-TEST_CASE("paths that are no files") {
+TEST_CASE("paths that are not files are rejected") {
   const Folder directory;
   const auto message = [](const std::string& path) -> std::string {
     try {
@@ -306,7 +306,7 @@ TEST_CASE("paths that are no files") {
   CHECK(message(directory / "").find("found a directory, expected a file") != std::string::npos);
 }
 
-TEST_CASE("a file cut short anywhere is refused, or read as far as its format can tell") {
+TEST_CASE("a truncated file is rejected, or read if its format cannot tell") {
   const Mesh body = tetrahedron();
   for (const std::string& whole : {to_stl_ascii(body), to_stl_binary(body), to_ply_binary(body, false),
                                    to_off(body), to_ply_ascii(body)}) {
@@ -321,7 +321,7 @@ TEST_CASE("a file cut short anywhere is refused, or read as far as its format ca
   }
 }
 
-TEST_CASE("random damage is refused or read, and nothing else") {
+TEST_CASE("randomly damaged files are rejected or read") {
   std::mt19937_64 random(1);
   const Mesh body = tetrahedron();
   const std::string obj = with_face("f 1 2 3") + with_face("f 1/1/1 2//2 -1");

@@ -54,18 +54,18 @@ TEST_CASE("OBJ: negative indices count from the vertex before the face") {
   CHECK(m.face_vertices == std::vector<VertexId>{0, 1, 2, 0, 3, 1});
 }
 
-TEST_CASE("OBJ: a face may stand before its vertices") {
+TEST_CASE("OBJ: a face may precede its vertices") {
   const Mesh m = read_mesh("f 1 2 3\n" + kFourVertices, "t.obj");
   CHECK(m.face_vertices == std::vector<VertexId>{0, 1, 2});
 }
 
-TEST_CASE("OBJ: quads and n-gons stay whole") {
+TEST_CASE("OBJ: quads and n-gons are kept") {
   const Mesh m =
       read_mesh("v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\nf 1 2 3 4\nf 1 2 3", "t.obj");
   CHECK(m.face_offsets == std::vector<std::uint32_t>{0, 5, 9, 12});
 }
 
-TEST_CASE("OBJ: weights, colours, groups, materials and comments say nothing about the shape") {
+TEST_CASE("OBJ: weights, colours, groups, materials and comments are ignored") {
   const Mesh m = read_mesh(
       "\xef\xbb\xbf# a comment that ends with a backslash \\\nmtllib a.mtl\no thing\ng one two\ns off\n"
       "v 1e0 2. -.5 1.0\nv 0 0 0 0.1 0.2 0.3\nv 0 1 0 0.1 0.2 0.3 1\nvn 0 0 1\nvt 0.5\nusemtl red\n\n"
@@ -98,7 +98,7 @@ TEST_CASE("OBJ: numbers are rounded to the nearest double, also below the smalle
   CHECK(m.vertices[1].z() == std::numeric_limits<double>::max());
 }
 
-TEST_CASE("OBJ: polylines without faces are a body in the plane") {
+TEST_CASE("OBJ: polylines without faces are a 2D body") {
   const Mesh m = read_mesh(
       "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 0\nv 1 2 0\nv 2 1 0\nl 1 2 3 1\nl 4 5\nl 5 6\nl -1 -3\n", "t.obj");
   CHECK(m.dim == 2);
@@ -129,7 +129,7 @@ TEST_CASE("STL: 0 and -0 are one coordinate, numbers an ulp apart are two") {
   CHECK(read_mesh(text, "t.stl").vertices.size() == 5);
 }
 
-TEST_CASE("STL binary: told by its size, whatever its header says") {
+TEST_CASE("STL binary: recognised by its size, whatever its header") {
   const Mesh body = icosphere(2);
   for (const char* header : {"exported by something", "solid ", "solid name\nfacet normal", ""}) {
     const Mesh m = read_mesh(to_stl_binary(body, header), "t.stl");

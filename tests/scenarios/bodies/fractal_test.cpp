@@ -7,7 +7,7 @@
 
 using namespace lrb;
 
-TEST_CASE("the paper's objects: table 1's numbers of faces exactly, closed, embedded, few outer faces") {
+TEST_CASE("the paper's objects: exactly table 1's numbers of faces, closed, embedded, few outer faces") {
   for (const generators::FractalSpec& spec : generators::paper_objects()) {
     CAPTURE(spec.name);
     const LrbRep rep = generators::fractal_body(spec);
@@ -24,7 +24,7 @@ TEST_CASE("the paper's objects: table 1's numbers of faces exactly, closed, embe
   }
 }
 
-TEST_CASE("fractal bodies: every face is flat, exactly") {
+TEST_CASE("fractal bodies: every face is exactly planar") {
   const LrbRep rep = generators::fractal_body(generators::paper_objects()[3]);
   std::size_t quads = 0;
   for (FaceId f = 0; f < rep.face_count(); ++f) {
@@ -36,7 +36,7 @@ TEST_CASE("fractal bodies: every face is flat, exactly") {
   CHECK(quads > 100);
 }
 
-TEST_CASE("fractal bodies: the seed alone decides, and other numbers of faces work") {
+TEST_CASE("fractal bodies: the seed alone determines the body, and other numbers of faces work") {
   const generators::FractalSpec small{"small", 500, 600, 3};
   generators::FractalSpec other = small;
   other.seed = 4;
@@ -50,12 +50,12 @@ TEST_CASE("fractal bodies: the seed alone decides, and other numbers of faces wo
   CHECK(generators::fractal_body({"prism", 7, 7, 1}).face_count() == 7);
 }
 
-TEST_CASE("fractal bodies: numbers that no dents make are refused") {
+TEST_CASE("fractal bodies: unreachable numbers of faces are rejected") {
   for (const auto& [real, total] : {std::pair{500u, 400u}, {500u, 501u}, {500u, 900u}, {6u, 6u}, {8u, 9u}})
     CHECK_THROWS_AS(generators::fractal_body({"body", real, total, 1}), InputError);
 }
 
-TEST_CASE("fractal bodies: as a generator, with their own regions; as a mesh, the real faces alone") {
+TEST_CASE("fractal bodies: as a generator, with their own regions; as a mesh, only the real faces") {
   const generators::FractalSpec object = generators::paper_objects()[3];
   const generators::GeneratorValues values = {{"real_faces", object.real_faces},
                                               {"total_faces", object.total_faces}};

@@ -28,7 +28,7 @@ TEST_CASE("every generator makes a closed, clean body that faces outward, whatev
     for (std::uint64_t seed = 1; seed <= 4; ++seed) check_clean(generators::generate(g.name, {}, seed));
 }
 
-TEST_CASE("clean also away from the fallbacks") {
+TEST_CASE("generated bodies are clean without the fallbacks") {
   check_clean(generators::generate("rock", {{"frequency", 7}, {"bumps", 0.5}, {"craters", 40}}, 5));
   check_clean(
       generators::generate("knot", {{"p", 3}, {"q", 2}, {"tube", 0.1}, {"segments", 90}, {"sides", 5}}));
@@ -40,17 +40,17 @@ TEST_CASE("clean also away from the fallbacks") {
     check_clean(generators::generate("island", {{"levels", levels}, {"depth", 0.32}}, 9));
 }
 
-TEST_CASE("the two bodies of the main job have real detail") {
+TEST_CASE("the two bodies of the collision scenario have fine detail") {
   CHECK(generators::generate("rock").face_count() == 5120);
   CHECK(generators::generate("knot").face_count() == 5280);
 }
 
-TEST_CASE("same seed, same body; other seed, other body") {
+TEST_CASE("a seed determines the body") {
   CHECK(generators::generate("rock", {}, 3).vertices == generators::generate("rock", {}, 3).vertices);
   CHECK(generators::generate("rock", {}, 3).vertices != generators::generate("rock", {}, 4).vertices);
 }
 
-TEST_CASE("unknown names and values out of range are refused") {
+TEST_CASE("unknown names and values out of range are rejected") {
   CHECK_THROWS_WITH_AS(generators::generate("rok"), doctest::Contains("did you mean \"rock\"?"), InputError);
   CHECK_THROWS_WITH_AS(generators::generate("rock", {{"bump", 1}}),
                        doctest::Contains("did you mean \"bumps\"?"), InputError);

@@ -38,7 +38,7 @@ std::string error_of_one(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("two files are loaded as one after the other") {
+TEST_CASE("two files are loaded in parallel as in sequence") {
   const Folder folder;
   const std::string a = folder.write("a.obj", kTetrahedron), b = folder.write("b.obj", kOpen);
   const auto two = bodies::load_faces_of_two(a, b);
@@ -55,7 +55,7 @@ TEST_CASE("two files are loaded as one after the other") {
   CHECK(same[0].rep.serial() != same[1].rep.serial());
 }
 
-TEST_CASE("if files cannot be loaded, the error is that of the first bad one") {
+TEST_CASE("if files cannot be loaded, the error of the first bad one is reported") {
   const Folder folder;
   const std::string good = folder.write("good.obj", kTetrahedron), bad = folder.write("bad.obj", "v 0 0 x\n"),
                     worse = folder.write("worse.obj", "v 0 0 0\nf 1 2 3\n"), missing = folder / "missing.obj";

@@ -109,7 +109,7 @@ void check_against_brute_force(const crowd::CrowdRun& run, std::set<Relation>& s
 
 }  // namespace
 
-TEST_CASE("all pairs of a crowd, asked or not, are answered as brute force answers them") {
+TEST_CASE("all pairs of a crowd agree with brute force") {
   std::set<Relation> seen;
   const crowd::CrowdRun run = crowd::run_crowd(crowd_of(good()), 2, run::kSilent);
   check_against_brute_force(run, seen);
@@ -120,14 +120,14 @@ TEST_CASE("all pairs of a crowd, asked or not, are answered as brute force answe
   CHECK(asked < run.steps.size() * 12 * 11 / 2);
 }
 
-TEST_CASE("a crowd of 2D bodies, too") {
+TEST_CASE("a crowd of 2D bodies") {
   std::set<Relation> seen;
   const crowd::CrowdRun run = crowd::run_crowd(crowd_of(good_2d()), 2, run::kSilent);
   check_against_brute_force(run, seen);
   CHECK(seen.contains(Relation::crossing));
 }
 
-TEST_CASE("the number of threads does not show in trace, numbers or pictures") {
+TEST_CASE("trace, numbers and pictures do not depend on the number of threads") {
   for (const json& j : {good(), good_2d()}) {
     const spec::Crowd crowd = crowd_of(j);
     const test::Folder scratch;
@@ -154,7 +154,7 @@ TEST_CASE("the number of threads does not show in trace, numbers or pictures") {
   }
 }
 
-TEST_CASE("a crowd's trace is enough to draw it again, pixel by pixel") {
+TEST_CASE("a crowd is redrawn from its trace, pixel by pixel") {
   const test::Folder scratch;
   const auto& folder = scratch.path;
   for (const json& j : {good(), good_2d()})
@@ -186,7 +186,7 @@ TEST_CASE("a crowd's trace is enough to draw it again, pixel by pixel") {
     }
 }
 
-TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
+TEST_CASE("truncated, damaged, old and foreign traces of crowds") {
   spec::Crowd crowd = crowd_of(good());
   crowd.frames.at = render::FrameSpec::At::none;
   const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
@@ -252,7 +252,7 @@ TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
   CHECK(error(other.dump(), kinds()).find(": expected crossing in ") != std::string::npos);
 }
 
-TEST_CASE("traces of crowds fulfil the schema of traces, on either clock; broken ones do not") {
+TEST_CASE("traces of crowds satisfy the schema of traces, on either clock; broken ones do not") {
   for (json text : {good(), good_2d()}) {
     for (const char* clock : {"event", "wall"}) {
       text["trace"] = {{"clock", clock}};
@@ -284,7 +284,7 @@ TEST_CASE("traces of crowds fulfil the schema of traces, on either clock; broken
   }
 }
 
-TEST_CASE("slices of a track lie one after the other, and say what was asked and answered") {
+TEST_CASE("slices of a track do not overlap, and contain query and answer") {
   spec::Crowd crowd = crowd_of(good());
   for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
     crowd.clock = clock;
@@ -312,7 +312,7 @@ TEST_CASE("slices of a track lie one after the other, and say what was asked and
   CHECK(cut["metadata"]["query_slices"]["stored"] == 3);
 }
 
-TEST_CASE("bodies stay in the room as far as they fit") {
+TEST_CASE("bodies stay in the arena if they fit") {
   for (const json& j : {good(), good_2d()}) {
     spec::Crowd crowd = crowd_of(j);
     crowd.speed = {0.5, 2};
@@ -336,7 +336,7 @@ TEST_CASE("the shipped crowd is valid and has about forty bodies") {
   CHECK(schema_accepts(json::parse(io::embedded_file("crowd.crowd.json"))));
 }
 
-TEST_CASE("schema and reader agree on good and bad crowds") {
+TEST_CASE("schema and reader agree on valid and invalid crowds") {
   const json texts[] = {good(),
                         good_2d(),
                         with("/arrangement", "grid"),
@@ -368,7 +368,7 @@ TEST_CASE("schema and reader agree on good and bad crowds") {
   }
 }
 
-TEST_CASE("what is wrong with a crowd is said with its place") {
+TEST_CASE("errors in crowds are reported with their location") {
   CHECK(error_of(with("/arrangement", "grd")).find("did you mean \"grid\"?") != std::string::npos);
   CHECK(error_of(with("/motion/speed", {2, 1})).find("/motion/speed: expected 0 <= least <= most") !=
         std::string::npos);

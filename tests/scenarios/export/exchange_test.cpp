@@ -113,7 +113,7 @@ TEST_CASE("models: the body's faces keep their numbers, the wrapper's are its bo
   CHECK(check_mesh(mesh_of(lids)).bounds_solid);
 }
 
-TEST_CASE("models: the distance of a lid is one that holds for its corners") {
+TEST_CASE("models: the distance of a lid is valid for its corners") {
   const Wrapper wrapper(ball());
   const Model model = make_model(moment_of(ball(), &wrapper), {false, true, false, {true, true}});
   const Part& part = model.parts.at(0);
@@ -132,7 +132,7 @@ TEST_CASE("models: the distance of a lid is one that holds for its corners") {
   }
 }
 
-TEST_CASE("models: a mirrored body is not inside out") {
+TEST_CASE("models: a mirrored body is outward-oriented") {
   Pose mirror;
   mirror.r(0, 0) = -1;
   const Model model = make_model(moment_of(ball(), nullptr, mirror), {true, false, false, {true, true}});
@@ -141,7 +141,7 @@ TEST_CASE("models: a mirrored body is not inside out") {
   CHECK(check(mesh_of(model.parts[0])).turn_outward() == 0);
 }
 
-TEST_CASE("wrappers by number of faces: never more than asked for, ever nearer, the body at the end") {
+TEST_CASE("wrappers by number of faces: at most the requested number, ever closer, the body at the end") {
   std::size_t before = 0;
   double off_before = 1e300;
   for (const std::uint32_t most : {30U, 60U, 120U, 10'000'000U}) {
@@ -171,7 +171,7 @@ TEST_CASE("wrappers by layer: the body, and layer by layer the outermost one") {
   for (RegionId r = 0; r < ball().region_count(); ++r) CHECK(one.included(r) == (ball().layer(r) == 0));
 }
 
-TEST_CASE("regions apart: no face is lost or twice there, and vertices are those in use") {
+TEST_CASE("separate regions: every face occurs once, and only used vertices are written") {
   const Wrapper wrapper = wrapper_of_faces(ball(), 120);
   const Model model = make_model(moment_of(ball(), &wrapper), {false, true, false, {true, true}});
   const std::vector<Part> parts = split_by_region(model);
@@ -191,7 +191,7 @@ TEST_CASE("regions apart: no face is lost or twice there, and vertices are those
   CHECK(parts.size() > 5);
 }
 
-TEST_CASE("runs: the counters of all faces add up to the step's events, curves to the contact's length") {
+TEST_CASE("runs: counters of faces add up to the step's events, curves to the contact's length") {
   const ShippedRun r("stick_through_wall", {true, true, true, {true, true}});
   REQUIRE(r.model.parts.size() == 5);
   CHECK(r.model.parts[4].name == "contact_curves");
@@ -222,7 +222,7 @@ TEST_CASE("runs: the counters of all faces add up to the step's events, curves t
   CHECK(length == doctest::Approx(reported).epsilon(1e-9));
 }
 
-TEST_CASE("PLY and OBJ: our own readers find the same mesh, to the last bit") {
+TEST_CASE("PLY and OBJ: lrbscope's readers find the same mesh, to the last bit") {
   const Model model = make_model(moment_of(ball(), nullptr), {true, false, false, {true, true}});
   const Mesh expected = mesh_of(model.parts.at(0));
   const test::Folder folder;
@@ -267,7 +267,7 @@ std::pair<nlohmann::json, std::string> open_glb(const std::string& bytes) {
   return {nlohmann::json::parse(bytes.substr(20, json)), bytes.substr(28 + json)};
 }
 
-TEST_CASE("GLB: a node a part, triangles of all fans, positions round a middle that nodes put back") {
+TEST_CASE("GLB: a node per part, triangles of all fans, positions around a centre that nodes restore") {
   const LrbRep box = LrbRep::without_regions(shapes::quad_box({1e6, 0, 0}, {1e6 + 1, 2, 3}), true, false);
   const Model model = make_model(moment_of(box, nullptr), {true, false, false, {true, true}});
   const auto [json, bin] = open_glb(glb_bytes(model, {}));
@@ -284,7 +284,7 @@ TEST_CASE("GLB: a node a part, triangles of all fans, positions round a middle t
   CHECK(json["buffers"][0]["byteLength"] == bin.size());
 }
 
-TEST_CASE("GLB: lids are translucent, and a node for a region has its number") {
+TEST_CASE("GLB: lids are translucent, and a region's node has its number") {
   const Wrapper wrapper = wrapper_of_faces(ball(), 120);
   const Model model = make_model(moment_of(ball(), &wrapper), {false, true, false, {true, true}});
   const auto [json, bin] = open_glb(glb_bytes(model, {false, true, 1}));
@@ -303,7 +303,7 @@ TEST_CASE("GLB: lids are translucent, and a node for a region has its number") {
   }
 }
 
-TEST_CASE("bodies in the plane are lines") {
+TEST_CASE("2D bodies are lines") {
   const ShippedRun r("figure1", {false, true, false, {true, true}});
   REQUIRE(!r.model.parts.empty());
   for (const Part& part : r.model.parts) CHECK(part.shape == Shape::lines);

@@ -11,7 +11,7 @@
 using namespace lrb;
 using Eigen::Vector3d;
 
-TEST_CASE("what a trace keeps of pictures is read back as it was") {
+TEST_CASE("picture settings in a trace are read back unchanged") {
   render::FrameSpec frames;
   frames.width = 300, frames.height = 200, frames.dpi = 150;
   frames.montage = 6, frames.montage_columns = 3;
@@ -34,7 +34,7 @@ TEST_CASE("what a trace keeps of pictures is read back as it was") {
   CHECK_THROWS_AS(spec::read_pictures(R"({"view":[]})", "x"), InputError);
 }
 
-TEST_CASE("a long body is seen from its long side, whatever points up") {
+TEST_CASE("a long body is viewed from its long side, whatever the up direction") {
   const Eigen::AlignedBox3d along_x(Vector3d(0, 0, 0), Vector3d(4, 1, 1));
   const Vector3d z_up = run::broadside(along_x, {0, 0, 1});
   CHECK(std::abs(z_up.y()) > 2 * std::abs(z_up.x()));
@@ -44,7 +44,7 @@ TEST_CASE("a long body is seen from its long side, whatever points up") {
   CHECK(y_up.y() > 0);
 }
 
-TEST_CASE("render draws a trace as run drew it: view, projection, size") {
+TEST_CASE("render draws a trace as run does: view, projection, size") {
   const test::Folder folder;
   folder.write("s.json",
                R"({"name": "x", "purpose": "y", "show": "refinement", "bodies": {"a": {"generator": "gear"}},
@@ -62,7 +62,7 @@ TEST_CASE("render draws a trace as run drew it: view, projection, size") {
         render::read_png(folder / "turned/frames/frame_0000.png").image);
 }
 
-TEST_CASE("--up turns what a scenario gives; --from is in the axes of the files") {
+TEST_CASE("--up rotates a scenario's view; --from is in the axes of the files") {
   const test::Folder folder;
   folder.write("cube.obj", test::kCube);
   const auto picture = [&](const std::vector<std::string>& more, const std::string& name) {
@@ -80,7 +80,7 @@ TEST_CASE("--up turns what a scenario gives; --from is in the axes of the files"
   test::check_rejected(folder, {"inspect", "cube.obj", "--render", "--size", "5x5", "-o", "no.png"});
 }
 
-TEST_CASE("--animate: by ffmpeg; without it, refused before anything is drawn") {
+TEST_CASE("--animate: by ffmpeg; rejected before drawing if it is missing") {
   const test::Folder folder;
   folder.write("s.json",
                R"({"name": "x", "purpose": "y", "show": "refinement", "bodies": {"a": {"generator": "gear"}},
@@ -116,7 +116,7 @@ TEST_CASE("--animate: by ffmpeg; without it, refused before anything is drawn") 
   test::check_rejected(folder, {"run", "s.json", "-o", "other", "--animate", "x.avi"});
 }
 
-TEST_CASE("collide keeps the view that it chose in the trace") {
+TEST_CASE("collide stores its chosen view in the trace") {
   const test::Folder folder;
   folder.write("cube.obj", test::kCube);
   test::succeed(folder, {"collide", "cube.obj", "cube.obj", "--frames", "none", "-o", "run"});

@@ -85,7 +85,7 @@ TEST_CASE("panels of one body: from the outermost wrapper to the body, in equal 
   CHECK(layers.back() + 1 == s.recording.trace.events.size());
 }
 
-TEST_CASE("panels of layers: 26 at most, evenly chosen, and what is left out is said") {
+TEST_CASE("panels of layers: at most 26, evenly chosen, and omissions are reported") {
   const Shipped few("figure2"), many("figure2_mesh");
   CHECK(choose(few.run, {Choice::By::layers, {}}).left_out.empty());
   const std::uint32_t layers = many.recording.trace.header.bodies[0].layers;
@@ -98,7 +98,7 @@ TEST_CASE("panels of layers: 26 at most, evenly chosen, and what is left out is 
         "26 of " + std::to_string(layers + 1) + " panels are shown, evenly chosen; --events shows others");
 }
 
-TEST_CASE("titles of panels name the view, where there are several") {
+TEST_CASE("titles of panels name the view if there are several") {
   const Shipped s("stick_through_wall");
   FigureSpec spec;
   spec.format = FigureSpec::Format::svg;
@@ -115,7 +115,7 @@ TEST_CASE("titles of panels name the view, where there are several") {
   CHECK(count(figure.bytes, ">(b) Second, step ") == 1);
 }
 
-TEST_CASE("panels of two bodies: time steps, the first contact among them") {
+TEST_CASE("panels of two bodies: time steps, including the first contact") {
   const Shipped s("islands");
   std::uint32_t first = 0;
   while (s.recording.trace.steps[first].result.pair_count == 0) ++first;
@@ -132,7 +132,7 @@ TEST_CASE("panels of two bodies: time steps, the first contact among them") {
   CHECK_THROWS_AS(choose(s.run, {Choice::By::layers, {}}), InputError);
 }
 
-TEST_CASE("panels fill the width; what is left out takes no room") {
+TEST_CASE("panels fill the width; omitted parts take no space") {
   Block block = squares(6);
   const FigureLayout bare = lay_out({block}, {}, {}, "", at_width(240));
   double right = 0;
@@ -151,7 +151,7 @@ TEST_CASE("panels fill the width; what is left out takes no room") {
   CHECK(lay_out({block}, {}, {}, "What it shows.", at_width(240)).height > lettered.height + 8);
 }
 
-TEST_CASE("panels that differ in size keep one scale, and their places in row and column") {
+TEST_CASE("panels of different sizes keep one scale, and their rows and columns") {
   Block block = squares(4);
   block.seen[3] = AlignedBox2d(Vector2d(20, 30), Vector2d(60, 60));  // smaller, inside
   LayoutOptions o = at_width(200);
@@ -170,7 +170,7 @@ TEST_CASE("panels that differ in size keep one scale, and their places in row an
       InputError);
 }
 
-TEST_CASE("panels lie on the grid of pixels") {
+TEST_CASE("panels are aligned to the pixel grid") {
   LayoutOptions o = at_width(241);
   o.grid = 0.24;
   const FigureLayout layout = lay_out({squares(5)}, {}, {}, "", o);
@@ -179,7 +179,7 @@ TEST_CASE("panels lie on the grid of pixels") {
       CHECK(std::abs(x / o.grid - std::round(x / o.grid)) < 1e-9);
 }
 
-TEST_CASE("a figure of a 2D body is lines and text, and no pixels") {
+TEST_CASE("a figure of a 2D body consists of lines and text, without pixels") {
   const Shipped s("figure2");
   FigureSpec spec;
   spec.format = FigureSpec::Format::svg;
@@ -218,7 +218,7 @@ TEST_CASE("a figure of 3D bodies: faces as pixels, contacts and texts as lines a
   CHECK(read.dpi == doctest::Approx(150).epsilon(0.001));
 }
 
-TEST_CASE("colours that mean numbers mean the same in all panels") {
+TEST_CASE("colours of numbers mean the same in all panels") {
   const Shipped s("collision");
   FigureSpec spec;
   spec.format = FigureSpec::Format::svg;
@@ -229,7 +229,7 @@ TEST_CASE("colours that mean numbers mean the same in all panels") {
   CHECK(count(all.bytes, ">face tests</text>") == 1);
 }
 
-TEST_CASE("lrbscope figure: files, and what it refuses before it writes anything") {
+TEST_CASE("lrbscope figure: files, and errors before it writes anything") {
   const test::Folder folder;
   test::Outcome o =
       test::run(folder, {"figure", "figure1", "-o", "out/fig.pdf", "--width", "60mm", "--caption"});

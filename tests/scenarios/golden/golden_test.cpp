@@ -99,7 +99,7 @@ trace::EventId first_of(const trace::Trace& t, EventKind kind) {
 
 }  // namespace
 
-TEST_CASE("goldens: what is approved passes, and leaves nothing behind; approving again changes nothing") {
+TEST_CASE("goldens: approved runs pass and leave no files; approving again changes nothing") {
   const Approved folder;
   const std::vector<std::string> before = folder.tree();
   CHECK(before == std::vector<std::string>{"balls.scenario.json", "goldens", "goldens/balls",
@@ -140,7 +140,7 @@ TEST_CASE("goldens: any number of rasterizer threads gives equal pictures") {
   }
 }
 
-TEST_CASE("goldens: a moved camera is called a moved camera") {
+TEST_CASE("goldens: a moved camera is reported as such") {
   const Approved folder;
   folder.write("balls.scenario.json", two_balls(R"(, "views": [{"from": [0.62, -0.6, 0.42]}])"));
   const Outcome o = folder.test();
@@ -168,7 +168,7 @@ TEST_CASE("goldens: a moved camera is called a moved camera") {
   CHECK(files_ending(folder, "index.html") == 0);
 }
 
-TEST_CASE("goldens: a changed colour is told from a moved camera") {
+TEST_CASE("goldens: a changed colour is distinguished from a moved camera") {
   const Approved folder;
   const std::string picture = folder / "goldens/balls/frame_1.png";
   render::DecodedPng png = render::read_png(picture);
@@ -194,7 +194,7 @@ TEST_CASE("goldens: noise of processors passes, and is reported as such") {
   CHECK(has(o.out, "images: 2 equal, 1 of them within tolerance"));
 }
 
-TEST_CASE("goldens: a variant is right as well; a picture that has changed loses its variants") {
+TEST_CASE("goldens: a variant passes; a changed picture loses its variants") {
   const Approved folder;
   const std::string base = folder / "goldens/balls/frame_1.png";
   render::DecodedPng png = render::read_png(base);
@@ -213,7 +213,7 @@ TEST_CASE("goldens: a variant is right as well; a picture that has changed loses
   CHECK(folder.test().code == 0);
 }
 
-TEST_CASE("goldens: two events swapped are named, and both sides are drawn") {
+TEST_CASE("goldens: two swapped events are reported, and both sides are drawn") {
   const Approved folder;
   const std::string file = folder / "goldens/balls/trace.json.gz";
   trace::Trace t = trace::load_trace(file);
@@ -235,7 +235,7 @@ TEST_CASE("goldens: two events swapped are named, and both sides are drawn") {
   CHECK(test::run(folder, {"golden", "approve", "--variant", "here"}).code == 2);  // events have no variants
 }
 
-TEST_CASE("goldens: a contact that is lost is called lost, one that is new is called added") {
+TEST_CASE("goldens: lost and added contacts are reported as such") {
   golden::GoldenRun run = play();
   golden::Golden golden = golden_of(run);
   REQUIRE(golden::check_golden(golden, run).passed());
@@ -292,7 +292,7 @@ TEST_CASE("goldens: counters, poses and bodies are part of the run") {
   CHECK(has(body.comparisons[0].text, "cannot be replayed"));
 }
 
-TEST_CASE("goldens: frames that one side alone has are failures") {
+TEST_CASE("goldens: missing and additional frames are failures") {
   const Approved folder;
   fs::remove(folder / "goldens/balls/frame_2.png");
   CHECK(has(folder.test().out, "frame_2.png: not approved yet"));
@@ -315,7 +315,7 @@ TEST_CASE("goldens: a report shows every picture, passed or not") {
   CHECK(files_ending(folder, ".actual.png") == 0);
 }
 
-TEST_CASE("goldens: what cannot be tested ends with code 2 and one line") {
+TEST_CASE("goldens: invalid goldens end with code 2 and one line") {
   const Approved folder;
   folder.write("other.scenario.json", two_balls().replace(10, 5, "other"));
   const std::vector<std::vector<std::string>> bad = {
@@ -337,7 +337,7 @@ TEST_CASE("goldens: what cannot be tested ends with code 2 and one line") {
   CHECK(has(test::run(folder, {"golden", "test", "other.scenario.json"}).err, "lrbscope golden approve"));
 }
 
-TEST_CASE("goldens: what is damaged fails, and the others are tested all the same") {
+TEST_CASE("goldens: a damaged golden fails, and the others are tested") {
   const Approved folder;
   folder.write("other.scenario.json", two_balls().replace(10, 5, "other"));
   REQUIRE(test::run(folder, {"golden", "approve", "--frames", "1", "other.scenario.json"}).code == 0);
@@ -367,7 +367,7 @@ TEST_CASE("goldens: what is damaged fails, and the others are tested all the sam
   check_fails("golden.json:1:");
 }
 
-TEST_CASE("goldens: two scenarios of one name are refused; one that has been moved is not") {
+TEST_CASE("goldens: two scenarios of one name are rejected; a moved one is not") {
   const Approved folder;
   const std::string approved = slurp(folder / "goldens/balls/trace.json.gz");
   fs::create_directory(folder / "more");
@@ -407,7 +407,7 @@ struct ApprovedFiles : Folder {
 
 }  // namespace
 
-TEST_CASE("goldens: effects come first, then which vertex moved and by how much") {
+TEST_CASE("goldens: effects are reported first, then the moved vertex and its distance") {
   ApprovedFiles folder;
   CHECK(fs::exists(folder / "goldens/tips/a.ply"));
   CHECK(test::run(folder, {"golden", "test"}).code == 0);
@@ -433,7 +433,7 @@ TEST_CASE("goldens: effects come first, then which vertex moved and by how much"
   CHECK_FALSE(has(junit, "FAIL"));
 }
 
-TEST_CASE("goldens: a body built otherwise from the same mesh is told from another mesh") {
+TEST_CASE("goldens: a differently built body is distinguished from another mesh") {
   golden::GoldenRun run = play();
   golden::Golden golden = golden_of(run);
   ++golden.trace.header.bodies[0].hash;
@@ -452,7 +452,7 @@ TEST_CASE("goldens: a body built otherwise from the same mesh is told from anoth
   CHECK(has(golden::check_golden(golden, run).causes.at(0), "the query request changed: contacts"));
 }
 
-TEST_CASE("goldens: what is compared can be chosen, by the golden or by the call") {
+TEST_CASE("goldens: the compared parts are set by the golden or by the call") {
   ApprovedFiles folder;
   golden::GoldenRun run = play();
   golden::Golden golden = golden_of(run);
@@ -483,8 +483,7 @@ TEST_CASE("goldens: what is compared can be chosen, by the golden or by the call
   CHECK(has(o.out, "ok    tips: answers of 2 steps: equal; images: not compared"));
 }
 
-TEST_CASE(
-    "goldens: jobs change nothing but the time; one that cannot run fails alone; list says what there is") {
+TEST_CASE("goldens: jobs change only the time; one that cannot run fails alone; list shows all") {
   Approved folder;
   for (const char* name : {"other", "third", "gone"}) {
     const std::string file = std::string(name) + ".scenario.json";

@@ -20,7 +20,7 @@ std::string json_error(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("values are found again by their pointers") {
+TEST_CASE("values are found by their pointers") {
   const io::JsonText parsed("{\n  \"a\": [1,\n    {\"b/c\": \"x\\\"y\"}],\n \"~\": true }", "f");
   CHECK(parsed.where("") == "f:1:1");
   CHECK(parsed.where("/a") == "f:2:8");
@@ -35,7 +35,7 @@ TEST_CASE("columns count characters, not bytes") {
   CHECK(parsed.where("/\xc3\xa4\xc3\xb6") == "f:1:8");
 }
 
-TEST_CASE("bad syntax names line and column in one line") {
+TEST_CASE("syntax errors report line and column in one line") {
   for (const char* text : {"{\n  \"a\": 1,,\n}", "{\"a\" 1}", "[1, 2", "", "{\"a\": nul}", "\xff\xfe",
                            "<!DOCTYPE html>", "{} {}"}) {
     CAPTURE(text);
@@ -51,13 +51,13 @@ TEST_CASE("a repeated key is an error at its second place") {
   CHECK(json_error("{\"a\": 1,\n \"a\": 2}").find("occurs twice") != std::string::npos);
 }
 
-TEST_CASE("absurd nesting is refused, not crashed on") {
+TEST_CASE("absurd nesting is rejected") {
   const std::string deep(100'000, '[');
   CHECK(json_error(deep + std::string(100'000, ']')).find("levels") != std::string::npos);
   CHECK(json_error(deep).find("levels") != std::string::npos);  // before the rest is read
 }
 
-TEST_CASE("near words are suggested, far ones are not") {
+TEST_CASE("similar words are suggested, others are not") {
   const std::vector<std::string> known = {"motion", "query", "frames"};
   CHECK(io::nearest_word("moton", known) == "motion");
   CHECK(io::nearest_word("qurey", known) == "query");
@@ -67,7 +67,7 @@ TEST_CASE("near words are suggested, far ones are not") {
   CHECK(io::edit_distance("ab", "ba") == 1);
 }
 
-TEST_CASE("readers say what they expected and where") {
+TEST_CASE("readers report location and expectation") {
   const io::JsonText parsed("{\"n\": -1, \"s\": \"x\", \"v\": [1, 2], \"big\": 1e300, \"f\": 1.5}", "f");
   const io::JsonNode root(parsed);
   CHECK_THROWS_WITH_AS(root.at("n").integer(0, 9), "f:1:7: /n: expected a whole number from 0 to 9, found -1",
@@ -80,12 +80,12 @@ TEST_CASE("readers say what they expected and where") {
   CHECK_THROWS_AS(root.at("big").number(-1, 1), InputError);
 }
 
-TEST_CASE("a byte order mark moves no place, and nothing may follow a NUL byte") {
+TEST_CASE("a byte order mark does not change locations, and nothing may follow a NUL byte") {
   CHECK(json_error("\xef\xbb\xbf{\"a\": 1,\n \"a\": 2}").find("file.json:2:2: ") == 0);
   CHECK(json_error(std::string("{}\0{", 4)).find("file.json:1:3: not JSON: found a NUL byte") == 0);
 }
 
-TEST_CASE("messages stay one line, whatever stands in the file") {
+TEST_CASE("messages stay one line, whatever the file contains") {
   const io::JsonText parsed("{\"a\\nb\": 1, \"c\": \"\\u001b[2J\\n\"}", "f");
   const io::JsonNode root(parsed);
   CHECK_THROWS_WITH_AS(root.object({"c"}), doctest::Contains("/a\\x0ab: unknown key"), InputError);

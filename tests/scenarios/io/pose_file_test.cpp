@@ -22,7 +22,7 @@ TEST_CASE("poses: row-major") {
   CHECK(p.t == Eigen::Vector3d(4, 8, 12));
 }
 
-TEST_CASE("poses: what is wrong is said with file and line") {
+TEST_CASE("poses: errors report file and line") {
   const auto fails = [](const std::string& text, const char* message) {
     CAPTURE(text);
     CHECK_THROWS_WITH_AS(io::parse_poses(text, "p.txt"), message, InputError);

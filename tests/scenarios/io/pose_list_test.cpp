@@ -20,7 +20,7 @@ bool same(const Pose& x, const Pose& y) {
 
 }  // namespace
 
-TEST_CASE("poses in CSV: plain rows, rows of 16, names in another order beside other columns") {
+TEST_CASE("poses in CSV: rows of 12 and 16, named columns in any order among others") {
   std::vector<std::size_t> lines;
   const std::vector<Pose> plain = io::parse_pose_table(
       "# made by hand\n1,2,3,4,5,6,7,8,9,10,11,12\r\n\n1, 2 ,3,4,5,6,7,8,9,10,11,12,0,0,0,1\n", "p.csv",
@@ -38,7 +38,7 @@ TEST_CASE("poses in CSV: plain rows, rows of 16, names in another order beside o
   CHECK(same(named[0], kPose));
 }
 
-TEST_CASE("poses in CSV: what is wrong is said with file and line") {
+TEST_CASE("poses in CSV: errors report file and line") {
   const auto fails = [](const std::string& text, const char* message) {
     CAPTURE(text);
     CHECK_THROWS_WITH_AS(io::parse_pose_table(text, "p.csv"), message, InputError);
@@ -71,7 +71,7 @@ TEST_CASE("poses in JSON: flat or in rows, 3x4 or 4x4, alone or under \"poses\""
   }
 }
 
-TEST_CASE("poses in JSON: what is wrong is said with file, line and column") {
+TEST_CASE("poses in JSON: errors report file, line and column") {
   const auto fails = [](const std::string& text, const char* message) {
     CAPTURE(text);
     CHECK_THROWS_WITH_AS(io::parse_pose_json(text, "p.json"), message, InputError);
@@ -97,7 +97,7 @@ TEST_CASE("poses in JSON: what is wrong is said with file, line and column") {
         "p.json:1:32: not JSON: value - unexpected number literal; expected end of input");
 }
 
-TEST_CASE("poses in JSON: other members are skipped, whatever they hold") {
+TEST_CASE("poses in JSON: other members are skipped, whatever they contain") {
   const io::PoseList list = io::parse_pose_json(
       "\xef\xbb\xbf{\"meta\": {\"poses\": [1, {\"poses\": null}], \"x\": [[], 1.5, \"y\"]},\n \"poses\": "
       "[[1,2,3,4,5,6,7,8,9,10,11,12],\n[1 , 2,3,4,\t[5,6,7,8],9,10,11,12]], \"after\": [{}]}",
@@ -108,7 +108,7 @@ TEST_CASE("poses in JSON: other members are skipped, whatever they hold") {
   CHECK(list.places == std::vector<std::string>{"p.json:2:12", "p.json:3:1"});
 }
 
-TEST_CASE("poses in JSON: refused at the first mistake, before the rest is read; large files not at all") {
+TEST_CASE("poses in JSON: rejected at the first error, before the rest is read; large files are read") {
   std::string text = "[";
   for (int i = 0; i < 1'000'000; ++i) text += "[],";
   CHECK_THROWS_WITH_AS(io::parse_pose_json(text + "no JSON", "p.json"),

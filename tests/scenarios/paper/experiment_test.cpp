@@ -64,7 +64,7 @@ std::vector<paper::PaperObject> small_objects() {
 }  // namespace
 
 TEST_CASE(
-    "shipped experiments: valid by schema and reader; their numbers are the paper's and the protocol's") {
+    "shipped experiments: valid according to schema and reader, with the numbers of paper and protocol") {
   const std::vector<std::string> names = paper::shipped_experiments();
   CHECK(names.size() == 5);
   for (const std::string& name : names) {
@@ -90,7 +90,7 @@ TEST_CASE(
   CHECK_FALSE(paper::open_experiment("table1").collides());
 }
 
-TEST_CASE("experiments: schema and reader agree on good and bad files") {
+TEST_CASE("experiments: schema and reader agree on valid and invalid files") {
   json lone = good_experiment();
   lone["objects"].erase(1);
   lone["report"] = {"table1"};
@@ -145,7 +145,7 @@ TEST_CASE("experiments: errors name file, line, column and the nearest word") {
       doctest::Contains("expected a 3D body"), InputError);
 }
 
-TEST_CASE("easiest and hardest: by comparisons over all time steps, the first of several") {
+TEST_CASE("easiest and hardest collision: by comparisons over all time steps; ties go to the first") {
   std::vector<paper::ContactStep> steps(5);
   const std::uint32_t collisions[] = {3, 3, 5, 7, 9}, comparisons[] = {10, 10, 15, 15, 20};
   for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -157,7 +157,7 @@ TEST_CASE("easiest and hardest: by comparisons over all time steps, the first of
   CHECK_THROWS_AS(paper::easiest_and_hardest(steps, "D"), InputError);
 }
 
-TEST_CASE("a close-up is the recorded collision, event by event; records of another one are refused") {
+TEST_CASE("a close-up is the recorded collision, event by event; records of another one are rejected") {
   const auto objects = small_objects();
   paper::SweepOptions sweep;
   sweep.protocol.collisions = 3;
@@ -178,7 +178,7 @@ TEST_CASE("a close-up is the recorded collision, event by event; records of anot
                        InputError);
 }
 
-TEST_CASE("the icicle chart has a box for each region that the query came to") {
+TEST_CASE("the icicle chart has a box for each visited region") {
   const auto objects = small_objects();
   paper::SweepOptions sweep;
   sweep.protocol.collisions = 1;
@@ -196,7 +196,7 @@ TEST_CASE("the icicle chart has a box for each region that the query came to") {
   CHECK(count(svg, "<rect") == count(svg, "</rect>") + 5);  // the background and four colours of the legend
 }
 
-TEST_CASE("paper --experiment: only what is asked for, on bodies of one's own; pictures in report and page") {
+TEST_CASE("paper --experiment: only the requested parts, on your own bodies; pictures in report and page") {
   const test::Folder folder;
   const auto run = [&](std::vector<std::string> args) { return test::run(folder, std::move(args)); };
   REQUIRE(run({"paper", "--experiment", "table1", "-o", "one"}).code == 0);

@@ -65,7 +65,7 @@ TEST_CASE("the paper's sweep: every collision ends in contact, and the complete 
   CHECK(firsts.size() == 12);
 }
 
-TEST_CASE("the paper's records: as JSON Lines and back; what is none of them is refused by line") {
+TEST_CASE("the paper's records: round trip as JSON Lines; other lines are rejected by line") {
   const auto steps = paper::run_sweep(few_objects(), few_collisions(), {});
   const std::string text = paper::to_json_lines(steps);
   CHECK(paper::to_json_lines(paper::read_json_lines(text, "r.jsonl")) == text);
@@ -103,7 +103,7 @@ TEST_CASE("the paper's tables: averages, and the paper's own columns") {
   CHECK(j["table2_face_comparisons_of_object_A_with_complete"].contains("C"));
 }
 
-TEST_CASE("the paper's experiment: counts that must not change unnoticed") {
+TEST_CASE("the paper's experiment: approved counts") {
   const LrbRep a = generators::fractal_body(generators::paper_objects()[0]),
                e = generators::fractal_body(generators::paper_objects()[4]);
   Workspace workspace;
@@ -151,7 +151,7 @@ TEST_CASE("paper: the program's shards make the report of the whole, and bad inp
     CHECK(run({"--shard", bad, "-o", "none"}).code == 2);
 }
 
-TEST_CASE("the series: the power of exact powers is found, and the error of others") {
+TEST_CASE("the series: exact powers are recovered, and the errors of others") {
   const double x[] = {1, 10, 100, 1000}, exact[] = {3, 3 * std::sqrt(10.0), 30, 30 * std::sqrt(10.0)};
   CHECK(resolutions::fit_power(x, exact).exponent == doctest::Approx(0.5));
   CHECK(resolutions::fit_power(x, exact).factor == doctest::Approx(3));
@@ -163,7 +163,7 @@ TEST_CASE("the series: the power of exact powers is found, and the error of othe
   CHECK(resolutions::fit_power(x, y).error == doctest::Approx(std::sqrt(0.02)));
 }
 
-TEST_CASE("the series: rows and powers from records; records of other bodies are refused") {
+TEST_CASE("the series: rows and powers from records; records of other bodies are rejected") {
   const LrbRep a = generators::fractal_body(generators::paper_objects()[1]);
   const Mesh rock = [] {
     Mesh m = generators::generate("rock", {{"frequency", 10}});

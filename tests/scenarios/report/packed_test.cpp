@@ -25,7 +25,7 @@ TEST_CASE("numbers are packed as narrow as the largest allows, low byte first") 
   CHECK(packed_numbers({0x01020304}) == "u4:BAMCAQ==");
 }
 
-TEST_CASE("none is all ones in every width, and makes no number wider") {
+TEST_CASE("null is all ones in every width, and makes no number wider") {
   CHECK(packed_numbers({kNull, 3}) == "u1:/wM=");
   CHECK(packed_numbers({kNull, 300}) == "u2://8sAQ==");
   CHECK(packed_numbers({kNull, 70'000}) == "u4://///3ARAQA=");

@@ -34,11 +34,11 @@ std::string full_page(const std::string& scene = {}) {
 
 }  // namespace
 
-TEST_CASE("numbers in tables are aligned right, with their digits in groups, too") {
+TEST_CASE("numbers in tables are right-aligned, also with grouped digits") {
   CHECK(count(full_page(), "<td class=\"n\">1\u202f234</td><td class=\"n\">0.5</td><td>gear 3</td>") == 1);
 }
 
-TEST_CASE("a page fetches nothing: no address outside, all scripts and pictures inside") {
+TEST_CASE("a page is self-contained: no external addresses, all scripts and pictures inside") {
   std::string html = full_page();
   // The charting library's own banner names its home page; nothing is loaded from there.
   const std::string library(io::embedded_file("chart.min.js"));
@@ -61,7 +61,7 @@ TEST_CASE("text cannot become markup or end the data") {
   CHECK(count(html, "<script") == count(html, "</script>"));
 }
 
-TEST_CASE("a page with a run's data has the view in three dimensions, and nothing of it comes from outside") {
+TEST_CASE("a page with a run's data contains the 3D view without external files") {
   std::string html = full_page(R"({"name":"</script><b>"})");
   for (const char* name : {"three.min.js", "OrbitControls.js", "chart.min.js"}) {
     const std::string library(io::embedded_file(name));
@@ -78,14 +78,14 @@ TEST_CASE("a page with a run's data has the view in three dimensions, and nothin
   CHECK(count(html, "<script") == count(html, "</script>"));
 }
 
-TEST_CASE("every script of the view is in the page, none twice") {
+TEST_CASE("every script of the view is in the page once") {
   const std::string html = report::Document("t").scene("{}").html();
   for (const io::EmbeddedFile& file : io::embedded_files())
     if (file.name.starts_with("scene") && file.name.ends_with(".js"))
       CHECK_MESSAGE(count(html, std::string(file.text)) == 1, file.name);
 }
 
-TEST_CASE("parts that a page does not have leave nothing behind") {
+TEST_CASE("missing parts of a page leave no markup") {
   const std::string html = report::Document("t").html();
   CHECK(html.find("<canvas") == std::string::npos);
   CHECK(html.find("id=\"player\"") == std::string::npos);
@@ -109,7 +109,7 @@ TEST_CASE("a document writes its page and the files that it names, and locks its
   doc.write(locked);
 }
 
-TEST_CASE("charts for print: each panel has its series, and one key has each label once") {
+TEST_CASE("charts for print: each panel has its series, and one legend has each label once") {
   report::Chart chart{
       "left", {"x", true, 1, 100, {{1, "0"}, {10, "10 %"}}}, {"y"}, {{"it's", {1, 2}, {3, 4}}}};
   chart.series.push_back({"bars", {1, 2}, {3, 4}, {report::Line::none, "#123456", "rect"}, {2, 3}, {4, 5}});
@@ -133,7 +133,7 @@ TEST_CASE("base64") {
   CHECK(encoded("foobar") == "data:t;base64,Zm9vYmFy");
 }
 
-TEST_CASE("pictures stay PNGs while they fit, and become small enough when they do not") {
+TEST_CASE("pictures stay PNGs if they fit, and are reduced otherwise") {
   render::Image image(256, 192);
   for (int y = 0; y < 192; ++y)
     for (int x = 0; x < 256; ++x)

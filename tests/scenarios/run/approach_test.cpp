@@ -32,7 +32,7 @@ Relation relation_at(const LrbRep& a, const Pose& pose) {
 
 }  // namespace
 
-TEST_CASE("approach: whole steps, the first that meets") {
+TEST_CASE("approach: whole steps, the first in contact") {
   const run::Approach found = run::find_approach(box(), {}, box(), {}, coming(0.05));
   REQUIRE(found.met);
   REQUIRE(found.poses.size() == 6);
@@ -65,7 +65,7 @@ TEST_CASE("approach: a step at the first contact itself") {
   CHECK(found.search.length->at(1) == doctest::Approx(found.poses[0].t.z() - 1));
 }
 
-TEST_CASE("approach: a sheet that is passed between two steps is met all the same") {
+TEST_CASE("approach: a sheet between two steps is detected") {
   Mesh mesh;
   mesh.vertices = {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
   mesh.add_face(std::array<VertexId, 4>{0, 1, 2, 3});
@@ -78,7 +78,7 @@ TEST_CASE("approach: a sheet that is passed between two steps is met all the sam
   CHECK(relation_at(sheet, found.poses[found.first_contact]) != Relation::undefined);
 }
 
-TEST_CASE("approach: bodies inside each other meet at once; bodies that miss do not") {
+TEST_CASE("approach: nested bodies collide at once; bodies that miss do not") {
   const LrbRep large = LrbRep::without_regions(shapes::box({-9, -9, -9}, {9, 9, 9}), true, false);
   const run::Approach inside = run::find_approach(large, {}, box(), {}, coming(0.05));
   CHECK(inside.met);
@@ -92,7 +92,7 @@ TEST_CASE("approach: bodies inside each other meet at once; bodies that miss do 
 }
 
 // It was counted from the start of the approach, of which a run records the end alone.
-TEST_CASE("approach: the first contact is a step of those that are recorded") {
+TEST_CASE("approach: the first contact is a recorded step") {
   const run::Approach found = run::find_approach(box(), {}, box(), {}, coming(0.05));
   REQUIRE(found.search.step.has_value());
   CHECK(found.search.step->at(0) > found.first_contact - 1);

@@ -59,7 +59,7 @@ run::FrameState at_end(const run::Recording& r, std::size_t step, const render::
 
 }  // namespace
 
-TEST_CASE("measured runs: each step has its distance and its clash, and the search for the contact is kept") {
+TEST_CASE("measured runs: each step has its distance and clash, and the contact search is recorded") {
   const run::Recording r = recorded(R"({"distance": true, "clash": true})");
   REQUIRE(r.trace.steps.size() == 7);
   for (const trace::Step& step : r.trace.steps) {
@@ -80,7 +80,7 @@ TEST_CASE("measured runs: each step has its distance and its clash, and the sear
   CHECK(plain.trace.header.first_contact->history.empty());
 }
 
-TEST_CASE("measured runs: frames show the nearest points, and the way out, and say how long they are") {
+TEST_CASE("measured runs: frames show closest points and separation vectors with their lengths") {
   const run::Recording r = recorded(R"({"distance": true, "clash": true})"), plain = recorded("{}");
   const render::FrameSpec spec;
   const run::FrameState apart = at_end(r, 0, spec), met = at_end(r, 6, spec);
@@ -98,7 +98,7 @@ std::string page_of(const run::Recording& r) {
   return run::run_page(run::recorded_run_of("gap", "", r), {}, ".", {}).html();
 }
 
-TEST_CASE("measured runs: the page has the numbers, columns and charts, and others do not") {
+TEST_CASE("measured runs: only their pages have the numbers, columns and charts") {
   const std::string page = page_of(recorded(R"({"distance": true, "clash": true})")),
                     plain = page_of(recorded("{}"));
   CHECK(number(page, "Distance").starts_with("0<small>"));
@@ -115,7 +115,7 @@ TEST_CASE("measured runs: the page has the numbers, columns and charts, and othe
   CHECK(count(plain, "<h2>Search for the first contact</h2>") == 0);
 }
 
-TEST_CASE("B2: frames and page state why a contact kind is undecided") {
+TEST_CASE("B2: frames and page state the reason of an undecided contact kind") {
   run::Recording r = recorded(R"({"clash": true})");
   trace::MeasuredClash& last = *r.trace.steps.back().result.clash;
   last.kind = ClashKind::undecided;
@@ -129,7 +129,7 @@ TEST_CASE("B2: frames and page state why a contact kind is undecided") {
   CHECK(count(page, "<td>undecided: B intersects itself</td>") == 1);
 }
 
-TEST_CASE("measured runs: a clash of bodies in the plane is refused by step") {
+TEST_CASE("measured runs: a clash of 2D bodies is rejected by step") {
   const std::string text = R"({"name": "flat", "purpose": "Two cogs.",
       "bodies": {"a": {"generator": "cog2d"}, "b": {"generator": "cog2d"}},
       "motion": {"kind": "poses", "poses": [[1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0]]},

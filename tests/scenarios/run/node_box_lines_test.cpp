@@ -17,7 +17,7 @@ const render::Style& kStyle = render::style_of(render::StyleName::screen);
 
 }  // namespace
 
-TEST_CASE("boxes of the nodes of a depth that were visited are drawn, solid where they met") {
+TEST_CASE("visited node boxes of a depth are drawn, solid if they overlapped") {
   const LrbRep ball = build_lrb(shapes::icosphere(4));
   trace::RecorderSettings settings;
   settings.level = EventLevel::nodes;

@@ -10,7 +10,7 @@
 
 using namespace lrb;
 
-TEST_CASE("a run whose trace names a vertex that the body does not have is refused") {
+TEST_CASE("a run whose trace names an invalid vertex is rejected") {
   spec::Scenario s;
   s.bodies.resize(2);
   for (spec::BodySpec& body : s.bodies) body.generator = "ball";

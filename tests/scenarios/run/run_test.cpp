@@ -40,7 +40,7 @@ spec::Scenario two_balls() {
 
 }  // namespace
 
-TEST_CASE("an approach ends in contact: apart before, together from then on") {
+TEST_CASE("an approach ends in contact: separate before, in contact from then on") {
   const run::Recording r = run::record(two_balls(), run::kSilent);
   REQUIRE(r.results.size() == 8);
   for (std::size_t step = 0; step < 3; ++step) CHECK(r.results[step].relation == Relation::separate);
@@ -48,7 +48,7 @@ TEST_CASE("an approach ends in contact: apart before, together from then on") {
   CHECK(r.trace.steps.size() == 8);
 }
 
-TEST_CASE("an approach that misses says so and still shows the way") {
+TEST_CASE("an approach that misses reports it and still shows the path") {
   spec::Scenario s = two_balls();
   s.motion.target = {0, 5, 0};
   const run::Recording r = run::record(s, run::kSilent);
@@ -58,7 +58,7 @@ TEST_CASE("an approach that misses says so and still shows the way") {
   CHECK(r.notes[0].find("do not touch") != std::string::npos);
 }
 
-TEST_CASE("expectations that are not met are named, those that are met are not") {
+TEST_CASE("only expectations that are not met are reported") {
   spec::Scenario s = two_balls();
   const run::Recording r = run::record(s, run::kSilent);
   spec::Expectation e;
@@ -105,7 +105,7 @@ TEST_CASE(
   CHECK_THROWS_AS(run::moments(s.frames, down.trace), InputError);
 }
 
-TEST_CASE("a construction's frames say what each pass made and refused, and nothing of refinements") {
+TEST_CASE("a construction's frames show accepted and rejected caps of each pass, and no refinements") {
   const spec::Scenario s = one_rock(spec::Show::construction);
   const run::Recording r = run::record(s, run::kSilent);
   const run::RecordedRun p = run::recorded_run_of(s, r);
@@ -132,7 +132,7 @@ TEST_CASE("a construction's frames say what each pass made and refused, and noth
   CHECK(state.caption().starts_with("Built: "));
 }
 
-TEST_CASE("a body that comes with its regions is shown layer by layer") {
+TEST_CASE("a body loaded with regions is shown layer by layer") {
   spec::Scenario s = one_rock(spec::Show::construction);
   s.bodies[0].generator = "fractal";
   s.bodies[0].parameters = {};
@@ -145,7 +145,7 @@ TEST_CASE("a body that comes with its regions is shown layer by layer") {
   CHECK(r.trace.events[frames.back()].boundary == rep.outermost_faces().size());
 }
 
-TEST_CASE("moments: first and last are always there, never too many") {
+TEST_CASE("moments: first and last are always included, within the limit") {
   const run::Recording r = run::record(two_balls(), run::kSilent);
   render::FrameSpec spec;
   CHECK(run::moments(spec, r.trace).size() == 8);
@@ -164,7 +164,7 @@ TEST_CASE("moments: first and last are always there, never too many") {
   CHECK(run::evenly(2, 9) == std::vector<std::size_t>{0, 1});
 }
 
-TEST_CASE("hull volumes of bodies whose hull is known") {
+TEST_CASE("volumes of known convex hulls") {
   std::vector<Eigen::Vector3d> cube;
   for (int i = 0; i < 27; ++i)
     cube.emplace_back(i % 3, i / 3 % 3, i / 9);  // with points on faces, edges and inside
@@ -181,7 +181,7 @@ TEST_CASE("hull volumes of bodies whose hull is known") {
   CHECK(bodies::hull_area(square) == doctest::Approx(4));
 }
 
-TEST_CASE("the shipped collisions come out as they promise, and as brute force has it") {
+TEST_CASE("the shipped collisions meet their expectations and agree with brute force") {
   for (const std::string& name : spec::shipped_names(spec::kScenarioEnding)) {
     const spec::Scenario s = spec::open_scenario(name);
     if (s.show != spec::Show::collision) continue;

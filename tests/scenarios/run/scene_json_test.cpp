@@ -55,14 +55,14 @@ std::size_t changes(const trace::Trace& trace) {
 
 }  // namespace
 
-TEST_CASE("thinned events: all of them where they fit") {
+TEST_CASE("thinned events: all of them if they fit") {
   const run::Recording r = rocks_that_meet();
   const run::ThinnedEvents t = run::thin_events(r.trace, r.trace.events.size());
   CHECK(t.all(r.trace));
   CHECK(t.steps == r.trace.steps.size());
 }
 
-TEST_CASE("thinned events: what changes wrappers comes first, and the first contact is among them") {
+TEST_CASE("thinned events: changes of wrappers have priority, and the first contact is kept") {
   const run::Recording r = rocks_that_meet();
   const std::size_t most = changes(r.trace) + 3 * r.trace.steps.size();
   REQUIRE(most < r.trace.events.size());
@@ -77,7 +77,7 @@ TEST_CASE("thinned events: what changes wrappers comes first, and the first cont
   CHECK(std::binary_search(t.kept.begin(), t.kept.end(), run::first_contact(r.trace)));
 }
 
-TEST_CASE("thinned events: where even those are too many, whole steps are left out") {
+TEST_CASE("thinned events: if even those are too many, entire steps are omitted") {
   const run::Recording r = rocks_that_meet();
   const run::ThinnedEvents t = run::thin_events(r.trace, changes(r.trace) / 2);
   CHECK(t.kept.size() <= changes(r.trace) / 2);
@@ -95,7 +95,7 @@ TEST_CASE("thinned events: where even those are too many, whole steps are left o
   CHECK(std::binary_search(t.kept.begin(), t.kept.end(), run::first_contact(r.trace)));
 }
 
-TEST_CASE("thinned events: of a single step that is too long, the beginning is left") {
+TEST_CASE("thinned events: a single step that is too long keeps its beginning") {
   const run::Recording r = rocks_that_meet();
   const run::ThinnedEvents t = run::thin_events(r.trace, 5);
   CHECK(t.cut);
@@ -116,7 +116,7 @@ TEST_CASE("thinned events: a refinement face by face keeps the test that caused 
   CHECK(causes > 0);
 }
 
-TEST_CASE("boxes of tree nodes hold the faces, and each depth those of the one below") {
+TEST_CASE("boxes of tree nodes contain the faces, and each depth the boxes of the next") {
   const run::Recording r = rocks_that_meet();
   const LrbRep& rep = r.bodies[0].rep;
   const std::vector<run::TreeBox> boxes = run::tree_boxes(rep.tree(), 100'000);
@@ -137,7 +137,7 @@ TEST_CASE("boxes of tree nodes hold the faces, and each depth those of the one b
         }));
 }
 
-TEST_CASE("boxes of tree nodes: whole depths, as many as fit") {
+TEST_CASE("boxes of tree nodes: complete depths, as many as fit") {
   const run::Recording r = rocks_that_meet();
   const ObbTree& tree = r.bodies[0].rep.tree();
   const std::vector<run::TreeBox> all = run::tree_boxes(tree, 100'000);
@@ -147,8 +147,7 @@ TEST_CASE("boxes of tree nodes: whole depths, as many as fit") {
   CHECK(run::tree_boxes(tree, upper - 1).size() == 1);
 }
 
-TEST_CASE(
-    "boxes of deep nodes: those on the ways to faces, as many as fit, each where the whole tree has it") {
+TEST_CASE("boxes of deep nodes: those on paths to faces, as many as fit, with the complete tree's boxes") {
   const run::Recording r = rocks_that_meet();
   const ObbTree& tree = r.bodies[0].rep.tree();
   const std::vector<run::TreeBox> all = run::tree_boxes(tree, 100'000);
@@ -175,7 +174,7 @@ TEST_CASE(
   CHECK(counts[1] == std::count_if(all.begin(), all.end(), [](const auto& b) { return b.depth == 1; }));
 }
 
-TEST_CASE("a run as data of its page: bodies, steps and events, and nothing said where nothing is left out") {
+TEST_CASE("page data of a run: bodies, steps and events, without notes if it is complete") {
   const run::Recording r = rocks_that_meet();
   const json scene = json::parse(run::scene_json(run_of(r), {"trace.json", ""}));
   CHECK(scene["bodies"].size() == 2);
@@ -189,7 +188,7 @@ TEST_CASE("a run as data of its page: bodies, steps and events, and nothing said
   CHECK(scene["kinds"].size() == trace::kEventKinds);
 }
 
-TEST_CASE("a run as data of its page says what it left out, and where that is") {
+TEST_CASE("page data of a run names omissions and where to find them") {
   const run::Recording r = rocks_that_meet();
   run::SceneLimits limits;
   limits.events = 100;
@@ -203,7 +202,7 @@ TEST_CASE("a run as data of its page says what it left out, and where that is") 
   CHECK_FALSE(scene["bodies"][0].contains("geometry"));
 }
 
-TEST_CASE("a run as data of its page says in a word how each event came out") {
+TEST_CASE("page data of a run has the outcome of each event") {
   const run::Recording r = rocks_that_meet(WrapperMode::regularised, EventLevel::all);
   const json events = json::parse(run::scene_json(run_of(r), {"trace.json", ""}))["events"];
   const std::vector<std::string> words = events["outcomes"]["words"];
@@ -219,12 +218,12 @@ TEST_CASE("a run as data of its page says in a word how each event came out") {
   CHECK(expected.count(std::string(name_of(NodeStep::leaves))) == 1);
 }
 
-TEST_CASE("a run as data of its page has no chart of the work where pairs of nodes were not recorded") {
+TEST_CASE("page data of a run has no chart of the work without recorded node pairs") {
   const run::Recording r = rocks_that_meet();
   CHECK(json::parse(run::scene_json(run_of(r), {"trace.json", ""}))["work"].is_null());
 }
 
-TEST_CASE("a run as data of its page explains each pair of a step once, and each step without any") {
+TEST_CASE("page data of a run explains each pair of a step once, and each step without pairs") {
   const run::Recording r = rocks_that_meet();
   const json why = json::parse(run::scene_json(run_of(r), {"trace.json", "lrbscope why --run x"}))["why"];
   std::set<std::array<std::uint32_t, 3>> pairs;
@@ -246,7 +245,7 @@ TEST_CASE("a run as data of its page explains each pair of a step once, and each
   }
 }
 
-TEST_CASE("a run as data of its page says how many pairs it explains where it leaves some out") {
+TEST_CASE("page data of a run has the number of explained pairs if some are omitted") {
   const run::Recording r = rocks_that_meet();
   run::SceneLimits limits;
   limits.explained.pairs = 5;
@@ -258,13 +257,12 @@ TEST_CASE("a run as data of its page says how many pairs it explains where it le
   CHECK(cut.rfind("This page explains 5 of the ", 0) == 0);
 }
 
-TEST_CASE("a run as data of its page explains nothing that the complete query does not answer") {
+TEST_CASE("page data of a run explains only answers of the complete query") {
   const run::Recording r = rocks_that_meet(WrapperMode::unregularised);
   CHECK(json::parse(run::scene_json(run_of(r), {"trace.json", ""}))["why"].is_null());
 }
 
-TEST_CASE(
-    "a run as data of its page has a way for each step in which bodies are apart or overlap, if that was asked") {
+TEST_CASE("page data of a run has a segment for each measured step with separate or overlapping bodies") {
   const auto scene_of = [](const run::Recording& r) {
     return json::parse(run::scene_json(run_of(r), {"trace.json", ""}));
   };

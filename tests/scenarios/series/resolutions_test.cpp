@@ -65,7 +65,7 @@ TEST_CASE("decimation: closed, of the same genus, free of self-intersections, at
   }
 }
 
-TEST_CASE("decimation: without the proof the thin shell would break through itself") {
+TEST_CASE("decimation: without the proof the thin shell would intersect itself") {
   // 60 faces for both balls: the inner one's corners reach further out than the outer one's faces, unless
   // collapses that would bring this about are refused.
   const std::uint32_t targets[] = {60};
@@ -73,7 +73,7 @@ TEST_CASE("decimation: without the proof the thin shell would break through itse
   CHECK(series.face_count() > 200);
 }
 
-TEST_CASE("decimation: flat parts cost nothing, creases stay") {
+TEST_CASE("decimation: flat parts cost nothing, creases are kept") {
   Mesh box = shapes::voxels(6, 6, 6, [](int, int, int) { return true; });
   const std::uint32_t targets[] = {12};
   const Mesh out = resolutions::decimate(box, targets).front();
@@ -81,7 +81,7 @@ TEST_CASE("decimation: flat parts cost nothing, creases stay") {
   CHECK(volume(out) == doctest::Approx(216).epsilon(5e-3));
 }
 
-TEST_CASE("decimation: the same for the same mesh, and an unreachable target ends") {
+TEST_CASE("decimation: deterministic, and ends at an unreachable target") {
   const Mesh mesh = generators::generate("rock", {{"frequency", 8}});
   const std::uint32_t targets[] = {300, 2};
   const auto once = resolutions::decimate(mesh, targets), again = resolutions::decimate(mesh, targets);
@@ -106,7 +106,7 @@ TEST_CASE("subdivision: four faces for one, smoother, still closed") {
                  1);
 }
 
-TEST_CASE("resolutions: half of the faces each time; what cannot be built is refused") {
+TEST_CASE("resolutions: half of the faces each time; invalid meshes are rejected") {
   const auto series =
       resolutions::resolutions(generators::generate("rock", {{"frequency", 10}}), {1, 8, 500});
   REQUIRE(series.size() == 5);

@@ -55,7 +55,7 @@ json words() {
 
 }  // namespace
 
-TEST_CASE("every shipped scenario is valid by the schema and by the reader, and says why it is there") {
+TEST_CASE("every shipped scenario is valid according to schema and reader, and states its purpose") {
   int count = 0;
   for (const io::EmbeddedFile& file : io::embedded_files()) {
     if (!file.name.ends_with(".scenario.json")) continue;
@@ -69,7 +69,7 @@ TEST_CASE("every shipped scenario is valid by the schema and by the reader, and 
   CHECK(count >= 6);
 }
 
-TEST_CASE("a scenario's query has the fields of requests, and its words are the enums'") {
+TEST_CASE("a scenario's query has the fields and enumerators of requests") {
   const json document = json::parse(io::embedded_file("scenario.schema.json"));
   json keys = json::object();
   const json& query = document["properties"]["query"]["properties"];
@@ -98,7 +98,7 @@ TEST_CASE("a scenario's query has the fields of requests, and its words are the 
   CHECK(kinds == words<spec::Motion::Kind>());
 }
 
-TEST_CASE("schema and reader agree on good and bad files") {
+TEST_CASE("schema and reader agree on valid and invalid files") {
   const std::string scenarios[] = {
       good().dump(),
       with("/name", "../escape"),
@@ -190,8 +190,7 @@ TEST_CASE("errors name file, line, column and the nearest known word") {
         std::string::npos);
 }
 
-TEST_CASE(
-    "a query that does no more than a scene needs: read as it is, and what cannot be is said in a line") {
+TEST_CASE("minimal scene queries: read unchanged, or rejected in one line") {
   const CollideRequest r =
       spec::parse_scenario(
           with("/query", json{{"tolerance", 0.25}, {"max_tests", 200}, {"separation", true}}), "s")
@@ -221,13 +220,13 @@ TEST_CASE("body files are looked up from the scenario's folder") {
   CHECK(spec::parse_scenario(s.dump(), "some/dir/s.json").bodies[0].file == "some/meshes/x.obj");
 }
 
-TEST_CASE("a word that is neither scenario nor file gets the nearest name") {
+TEST_CASE("a word that is neither scenario nor file gets a suggestion") {
   CHECK_THROWS_WITH_AS(spec::open_scenario("colision"), doctest::Contains("did you mean \"collision\"?"),
                        InputError);
   CHECK_THROWS_AS(spec::open_scenario("no/such/file.json"), InputError);
 }
 
-TEST_CASE("motions pass through what they name") {
+TEST_CASE("motions pass through their key poses") {
   spec::Motion m;
   m.kind = spec::Motion::Kind::sweep;
   m.from = {0, 0, 0};
