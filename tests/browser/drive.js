@@ -1,8 +1,8 @@
-// Uses a run's page as a person does, and writes down what came out: "ok ...", "FAIL ...", "done" at the end.
+// Operates a run's page with mouse and keys, and prints "ok ..." or "FAIL ..." for each check, then "done".
 (async function () {
   const lines = [],
     wait = (ms) => new Promise((then) => setTimeout(then, ms));
-  // Time is virtual here and does not wait for pictures: they are asked for.
+  // Time is virtual here and does not wait for pictures: the script requests them.
   const frame = async () => {
     await wait(20);
     if (run.view) run.view.draw();
@@ -215,7 +215,7 @@
     check(/The faces (cross|touch)\. Decided by /.test(text()), "with a verdict", text());
     const rows = byId("why-way").querySelectorAll("tr");
     check(rows.length > 1 && rows[0].textContent.startsWith("0, 0"), "the way begins at the roots", rows.length);
-    check(byId("why-facts").textContent.includes("contact"), "the contact is told");
+    check(byId("why-facts").textContent.includes("contact"), "the contact is shown");
     check(view.whyMarks.group.children.length > 0, "and shown");
     const [a, b] = events.faces(contact).map((f, side) => events.bodies[side].firstSimplex[f.face]);
     equal(
@@ -243,7 +243,7 @@
     selection.pickFace(0, 0);
     selection.pickFace(1, 0);
     await frame();
-    check(/--pair 0,0$/.test(byId("why-command").textContent), "two faces that are picked are asked about");
+    check(/--pair 0,0$/.test(byId("why-command").textContent), "two picked faces are explained");
     press("Escape");
     const empty = [...why.explanations.steps.keys()];
     check(empty.length > 0, "steps without contact are explained");
@@ -277,7 +277,7 @@
     check(table.rows.length > of(parts), "a phase has the events of its parts", table.rows.length);
     check(!named("relation") && named("boxes of nodes"), "and fills the chart");
     byId("filter-clear").click();
-    equal(table.rows.length, events.count, "show all does, too");
+    equal(table.rows.length, events.count, "show all shows all");
     run.selection.goTo(events.work.indexOf(parts[0]));
     check(named("boxes of nodes").classList.contains("here"), "the chart marks the part of the event");
   }
@@ -348,7 +348,7 @@
     const foreign = structuredClone(trace);
     foreign.metadata.bodies[0].hash = "0";
     for (const [wrong, what] of [
-      [{}, "what is no trace"],
+      [{}, "no trace"],
       [foreign, "the trace of other bodies"],
     ]) {
       let refused = "";

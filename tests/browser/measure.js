@@ -1,7 +1,7 @@
 // Measures a page in its window: boxes of text that are cut off, stick out, lie on each other or under something, text
-// that hardly differs from what is behind it, drawings that nobody sees. Posts "ok ...", "FAIL ..." and "done" to the top.
+// that hardly differs from its background, invisible drawings. Posts "ok ...", "FAIL ..." and "done" to the top.
 (async function () {
-  const found = new Map(); // what is wrong: [example, number]
+  const found = new Map(); // fault: [example, number]
   const fail = (what, where) => {
     const known = found.get(what);
     if (known) known[1]++;
@@ -84,7 +84,7 @@
       const style = styleOf(e);
       if (style.position === "sticky" || style.position === "fixed") sticky = true;
       shortened ||= style.textOverflow === "ellipsis" || style.webkitLineClamp !== "none";
-      titled ||= shortened && Boolean(e.title); // what is shortened on purpose is said in full there
+      titled ||= shortened && Boolean(e.title); // the title has the full text of a shortened one
       if (style.position === "fixed") free = true;
       const holds = e !== element || style.display !== "inline";
       if (free || !holds || (e instanceof SVGElement && !(e instanceof SVGSVGElement))) continue;
@@ -188,7 +188,7 @@
     if (ratio < least - 0.01) fail(`contrast ${ratio.toFixed(2)} of ${path(element)}`, `"${t.text}"`);
   }
 
-  /** Fields: what they hold must fit. */
+  /** Fields: their content must fit. */
   function measureFields() {
     const pen = document.createElement("canvas").getContext("2d");
     for (const field of document.querySelectorAll("select, input:not([type=range])")) {

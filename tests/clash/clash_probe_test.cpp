@@ -1,4 +1,4 @@
-// What a clash query tells a probe.
+// Reports of a clash query to a probe.
 #include <algorithm>
 #include <cmath>
 
@@ -28,8 +28,8 @@ ClashResult watched(const LrbRep& a, const LrbRep& b, const Pose& pose_b, ClashH
   return result;
 }
 
-/// The ends of a depth tighten but for the proof of the last upper end, which is a little more than what was
-/// found.
+/// Bounds of a depth tighten, except for the proof of the last upper bound, which is slightly larger than the
+/// result.
 void check_depth(const ClashHistory& reported, const ClashResult& result) {
   REQUIRE(reported.of_depth.size() >= 2);
   CHECK(reported.of_distance.empty());

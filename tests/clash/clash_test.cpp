@@ -247,8 +247,8 @@ Rational width(const Vec& n, const std::vector<Vec>& of_a, const std::vector<Vec
   return high - low;
 }
 
-/// Compares depth and way out of two convex bodies with the least over all facets of their difference, which
-/// are rational but for roots. Returns false if they do not overlap.
+/// Compares depth and separation vector of two convex bodies with the minimum over all facets of their
+/// Minkowski difference, which are rational but for roots. Returns false if they do not overlap.
 bool check_convex(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const Vector3d& along, double narrow) {
   const std::vector<Vec> of_a = world_points(a, pose_a), of_b = world_points(b, pose_b);
@@ -434,7 +434,7 @@ TEST_CASE("clash: non-convex bodies of cells: intervals contain depth and volume
     found += r.depth->upper < depth + 1e-9;
   }
   CHECK(overlap > 25 * share());
-  CHECK(found > overlap * 8 / 10);  // the shortest way out, which is not promised
+  CHECK(found > overlap * 8 / 10);  // the shortest separation vector, which is not guaranteed
 }
 
 namespace {
@@ -490,7 +490,7 @@ bool have_in_common(const ProvedInterval& x, const ProvedInterval& y) {
   return x.lower <= y.upper && y.lower <= x.upper;
 }
 
-/// Looks for what the intervals of two bodies that overlap rule out.
+/// Searches for contradictions to the intervals of two overlapping bodies.
 void look_for_counterexamples(RandomEngine& random, const LrbRep& a, const Pose& pose_a, const LrbRep& b,
                               const Pose& pose_b, const ClashResult& r, const Vector3d& along) {
   check_translation(a, pose_a, b, pose_b, r);

@@ -1,4 +1,4 @@
-// What is proved of translations after which two bodies still overlap.
+// Proofs that two bodies still overlap after a translation.
 #include "engine/clash/overlap_proof.hpp"
 
 #include <algorithm>
@@ -103,7 +103,7 @@ TEST_CASE("all translations shorter than the proven depth leave an overlap, slig
     CHECK(lower < 1.001 * pair.depth);
     for (int i = 0; i < 50; ++i)
       CHECK(overlap_after(pair.a, pair.b, pair.pose_b, 0.999999 * lower * shapes::random_direction(random)));
-    // What is left is where the way out is.
+    // The rest is where the separation vector is.
     const Vector3d out = proof.doubtful().normalized();
     CHECK_FALSE(overlap_after(pair.a, pair.b, pair.pose_b, 1.1 * pair.depth * out));
   }

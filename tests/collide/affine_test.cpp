@@ -73,7 +73,7 @@ void check_modes(const PosedScene& s, const BruteForceResult& truth, QueryContex
     REQUIRE(std::binary_search(truth.pairs.begin(), truth.pairs.end(), p));
 }
 
-/// What a tolerance may leave open, against the truth.
+/// Checks the answer within a tolerance against the exact one.
 void check_coarse(const PosedScene& s, const BruteForceResult& truth, QueryContext& context) {
   CollideRequest request;
   request.tolerance = 0.05 * s.a.tree().extent();

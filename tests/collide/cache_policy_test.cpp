@@ -1,4 +1,4 @@
-// When lists are made, by a clock that the test tells.
+// When caches are made, with a clock that the test sets.
 #include <doctest/doctest.h>
 
 #include "engine/collide/candidate_cache.hpp"

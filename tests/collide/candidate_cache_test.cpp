@@ -17,7 +17,7 @@ using shapes::RandomEngine;
 
 namespace {
 
-/// Triangles of about that size, with corners in a ball of radius 1 and what is around it.
+/// Triangles of about that size, with corners in and around a ball of radius 1.
 LrbRep soup(RandomEngine& random, int count, double size) {
   Mesh m;
   for (int i = 0; i < count; ++i) {
@@ -112,7 +112,7 @@ void compare(RandomEngine& random, const LrbRep& a, const LrbRep& b, const Sweep
   }
 }
 
-/// Stretches, or places: of what is listed, the share that is tested.
+/// Sweeps or fixed poses: the share of the cached pairs that is tested.
 double share_tested(std::uint64_t seed, bool places) {
   RandomEngine random(seed);
   CandidateTally tally;

@@ -62,7 +62,7 @@ CollideResult ask(const CoarseBodies& pair, const Pose& p, const CollideRequest&
   return collide(pair.a, Pose{}, pair.b, p, request, context, probe);
 }
 
-/// What a coarse answer claims, against the truth.
+/// Checks an approximate answer against the exact one.
 void check_claims(const CoarseBodies& pair, const Pose& p, const CollideResult& coarse,
                   const BruteForceResult& truth) {
   if (coarse.relation == Relation::unresolved) {
@@ -566,7 +566,7 @@ TEST_CASE("requests that an approximate query cannot answer are rejected") {
   const LrbRep a = build_lrb(shapes::box());
   CollideRequest request;
   request.tolerance = -1;
-  CHECK(collide(a, Pose{}, a, Pose{}, request).error_bound == 0);  // not asked for
+  CHECK(collide(a, Pose{}, a, Pose{}, request).error_bound == 0);  // not requested
   request.tolerance = INFINITY;
   CHECK_THROWS_AS(collide(a, Pose{}, a, Pose{}, request), InputError);
   request.tolerance = 1;

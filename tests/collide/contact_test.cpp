@@ -112,7 +112,7 @@ TEST_CASE("a corner on a face touches in a point; an edge on a face in a segment
   on_corner.r = Eigen::Matrix3d::Identity();
   const CollideResult corner =
       contact(floor, closed(shapes::tetrahedron()), Pose::translation({0.1, 0.2, 0}));
-  CHECK(corner.relation == Relation::touching);  // the tetrahedron stands on its face z = 0
+  CHECK(corner.relation == Relation::touching);  // the tetrahedron rests on its face z = 0
   REQUIRE(corner.regions.size() == 1);
   CHECK(corner.regions[0].area == doctest::Approx(0.5));
 
@@ -182,7 +182,7 @@ TEST_CASE("interiors: inscribed bodies overlap, kissing bodies do not, though no
   REQUIRE(corner.regions.size() == 1);
   CHECK(near(corner.regions[0].centroid, {1, 1, 1}));
 
-  // A smaller box inside a larger one, standing on its inner side of the floor.
+  // A smaller box inside a larger one, resting on the inner side of its floor.
   const CollideResult standing =
       contact(closed(shapes::box({0, 0, 0}, {3, 3, 3})), closed(shapes::box()), Pose::translation({1, 1, 0}));
   CHECK(standing.relation == Relation::touching);

@@ -1,4 +1,4 @@
-// What `why` tells, against the query itself, brute force and distances from another source.
+// Explanations against the query itself, brute force and distances from another source.
 #include <algorithm>
 #include <limits>
 #include <string>
@@ -45,7 +45,7 @@ Points corners(const LrbRep& rep, const Pose& pose, SimplexId s) {
   return simplex_points(rep, pose, s);
 }
 
-/// What must be so for any explanation.
+/// Checks the invariants of any explanation.
 void check(const ExplainedScene& s, const SimplexPair& pair, exact::Meet meet) {
   CAPTURE(pair.a);
   CAPTURE(pair.b);

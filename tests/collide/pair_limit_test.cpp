@@ -1,4 +1,4 @@
-/// Queries whose answers would be larger than is allowed end there, whichever way they are asked.
+/// Queries end at the limit of pairs, through every interface.
 
 #include <array>
 #include <utility>

@@ -1,4 +1,4 @@
-// What a course claims of B's motion, point by point.
+// The predicted motion of B, point by point.
 #include "engine/collide/relative_motion.hpp"
 
 #include <cmath>
@@ -79,7 +79,7 @@ TEST_CASE("no point of B moves further than the predicted motion allows") {
       }
     }
   }
-  MESSAGE("the furthest went " << largest << " of what was allowed, by turning " << largest_turn);
+  MESSAGE("largest motion: " << largest << " of the bound, by rotation " << largest_turn);
   CHECK(largest > 0.9);
   CHECK(largest_turn > 0.9);
 }

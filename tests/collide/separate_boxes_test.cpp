@@ -38,7 +38,7 @@ Relation relation_of(const LrbRep& a, const LrbRep& b, const Pose& pose_b = {}) 
   return collide(a, Pose{}, b, pose_b).relation;
 }
 
-/// What the corners of the faces alone say.
+/// The boxes of the faces' corners only.
 bool boxes_are_disjoint(const LrbRep& a, const LrbRep& b, const Pose& pose_b) {
   Eigen::AlignedBox3d of_a, of_b;
   for (const VertexId v : a.data().face_vertices) of_a.extend(Pose{}.apply(a.vertices()[v]));

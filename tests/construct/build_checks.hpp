@@ -1,5 +1,5 @@
 #pragma once
-/// What every LRB-rep that a builder makes must be, found out without the builders' own means.
+/// Checks of every built LRB-rep, independent of the builders' code.
 
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What a builder tells of itself adds up to the body that it built, on any number of threads, and changes
+// A builder's reports to its probe add up to the body that it built, on any number of threads, and change
 // nothing.
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct Reported {
   TriedCap cap = {};
   std::uint32_t number = 0, pieces = 0;
 
-  /// All that was told, in words: to compare.
+  /// All reported values as text, to compare.
   std::string to_text() const {
     const std::array<double, 18> all = {static_cast<double>(kind),
                                         static_cast<double>(start.stage),
@@ -110,7 +110,7 @@ std::size_t segments_or_triangles(const Mesh& mesh) {
   return count;
 }
 
-/// Follows what is told of one body, and checks that each part follows from what came before.
+/// Follows the reports on one body, and checks that each one follows from the previous ones.
 /// Returns the number of pieces that were merged.
 std::size_t check_story(const std::vector<Reported>& reported, const LrbRep& rep, std::size_t mesh_faces) {
   std::uint32_t regions = 0, front = static_cast<std::uint32_t>(mesh_faces), lids = 0;

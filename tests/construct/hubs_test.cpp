@@ -1,4 +1,4 @@
-// Huge faces and hubs are built without patches over them; what is built is valid.
+// Bodies with huge faces and high-valence vertices are built without patches over these, and are valid.
 
 #include <doctest/doctest.h>
 

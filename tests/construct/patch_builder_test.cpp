@@ -145,7 +145,7 @@ TEST_CASE("voids have their own regions, and a solid in a void has its own wrapp
   CHECK(bad_pairs_by_brute_force(rep) == 0);
   std::uint32_t cores = 0;
   for (RegionId r = 0; r < rep.region_count(); ++r) cores += rep.lids(r).empty();
-  CHECK(cores == 1);  // what is left of the void has a floor only
+  CHECK(cores == 1);  // the rest of the void has only a floor
   for (const FaceId f : rep.outermost_faces())
     for (const VertexId v : rep.face(f)) CHECK(rep.vertices()[v].norm() > 2.9);
   check_valid(build_lrb(box_with_void()));

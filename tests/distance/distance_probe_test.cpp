@@ -1,5 +1,5 @@
-// What a distance tells a probe: bounds that hold, tighten, and end at the answer, which is the same as
-// without.
+// Reports of a distance query to a probe: bounds that are valid, tighten, and end at the answer, which is the
+// same as without.
 #include <limits>
 
 #include <doctest/doctest.h>
@@ -54,7 +54,7 @@ void check_watched(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const P
   CHECK(reported.history.back().lower >= watched.lower);
   CHECK(reported.history.back().upper <= watched.upper);
   if (request.within) return;
-  if (request.relative_tolerance > 0) {  // what was known on the way may be narrower than what was asked for
+  if (request.relative_tolerance > 0) {  // reported bounds may be narrower than requested
     CHECK(watched.upper - watched.lower <= request.relative_tolerance * watched.upper);
     return;
   }

@@ -40,7 +40,7 @@ Rational surface_distance_sq(const LrbRep& a, const Pose& pose_a, const LrbRep& 
   std::vector<test::Points> of_a, of_b;
   for (SimplexId s = 0; s < a.real_simplex_count(); ++s) of_a.push_back(test::simplex_points(a, pose_a, s));
   for (SimplexId s = 0; s < b.real_simplex_count(); ++s) of_b.push_back(test::simplex_points(b, pose_b, s));
-  // The oracle in doubles loses digits to coordinates: what it may be off by, generously.
+  // The oracle in doubles loses digits for large coordinates: a generous bound on its error.
   double size = 0;
   for (const auto* points : {&of_a, &of_b})
     for (const test::Points& simplex : *points)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """commands.py TREE LRBSCOPE [PAGE...]: runs the `lrbscope` lines of the shell blocks of README and docs/.
 
-Those of a page run one after the other in a folder with files of the names that they speak of. What is not run
-stands in NOT_RUN with its reason, other programs' lines too: a new line is run or needs a reason.
+Those of a page run one after the other in a folder with files of the names that they mention. Lines that are
+not run are in NOT_RUN with a reason, also those of other programs: a new line is run or needs a reason.
 """
 import json
 import math
@@ -31,7 +31,7 @@ NOT_RUN = [
     ),
     ("", r"^lrbscope xray\b", "needs another engine; xray_tests"),
     ("", r"\.lrbcap\b", "needs another engine's program; profile_tests"),
-    ("docs/meshes.md", r"\b(twin|cow)2?\.(obj|lrb)", "tests/docs/bodies.sh, with what they say"),
+    ("docs/meshes.md", r"\b(twin|cow)2?\.(obj|lrb)", "tests/docs/bodies.sh, with their output"),
     (
         "docs/scenarios.md",
         r"--dpi 300|--format svg|--frames refinement|--events nodes",
@@ -40,7 +40,7 @@ NOT_RUN = [
     ("docs/figures.md", r"out/mine", "tests/docs/figures.sh, with their widths"),
     ("docs/packages.md", r"man -l|completion", "tests/words"),
     ("docs/capture.md", r"^LRBCAP_OUT=.*/aabb ", "tests/examples/capture.sh"),
-    ("docs/golden.md", r"\b(bolt|hinge|lid|valve)\b", "tests/docs/goldens.sh, with what they say"),
+    ("docs/golden.md", r"\b(bolt|hinge|lid|valve)\b", "tests/docs/goldens.sh, with their output"),
     (
         "CONTRIBUTING.md",
         r"golden (report|approve) --goldens tests/golden",
@@ -156,7 +156,7 @@ def scenario(tree):
 
 
 def lines_of(tree, page):
-    """Yields (number, line) of the shell blocks of a page, without comments, prompts and what is printed."""
+    """Yields (number, line) of the shell blocks of a page, without comments, prompts and output."""
     on = False
     with open(os.path.join(tree, page)) as f:
         for number, line in enumerate(f, 1):

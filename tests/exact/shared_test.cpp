@@ -31,7 +31,7 @@ Ids share_vertices(test::Rng& rng, test::SimplexPair& s, std::size_t n) {
 }
 
 /// Nothing but the shared face: the hulls stay apart if any of the corners that are not shared is given a
-/// positive weight. That is asked of a linear program for each such corner, so no geometry is used.
+/// positive weight. A linear program decides this for each such corner, without geometry.
 bool only_in_shared(const test::SimplexPair& s, const Ids& ids, std::size_t n) {
   const auto a = s.a(), b = s.b();
   const auto p = oracle::to_integers({{a.begin(), a.begin() + static_cast<std::ptrdiff_t>(n)},

@@ -1,4 +1,4 @@
-// FCL's interface on this engine, beside FCL: what both answer, and where they differ, what brute force says.
+// FCL's interface on this engine against FCL; brute force decides if they differ.
 #include <algorithm>
 #include <limits>
 #include <thread>
@@ -129,8 +129,7 @@ TEST_CASE("distances equal lrb::distance() and agree with FCL up to rounding") {
     CHECK((ours.nearest_points[0] - ours.nearest_points[1]).norm() == doctest::Approx(d));
     CHECK(SimplexId(ours.b1) == truth.witness[0].simplex);
     CHECK(::fcl::distance(&o1, &o2, request, theirs) == doctest::Approx(d).epsilon(1e-9));
-    CHECK(lrb::fcl::distance(&o1, &o2, ::fcl::DistanceRequestd(), ours) ==
-          d);  // no worse than what was found
+    CHECK(lrb::fcl::distance(&o1, &o2, ::fcl::DistanceRequestd(), ours) == d);  // no worse than the result
   }
   CHECK(apart > 20);
 }

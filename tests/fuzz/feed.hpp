@@ -11,11 +11,11 @@ namespace lrb::fuzz {
 
 /// The first byte chooses the extension of the name, the rest are the file.
 bool feed_mesh(std::string_view bytes);
-/// The first byte says whether the checksum is put right (its lowest bit) and what is then done with the body
+/// The first byte decides whether the checksum is corrected (its lowest bit) and how the body is used
 /// (the next two), the rest are the file.
 bool feed_lrb(std::string_view bytes);
 /// Four edits of five bytes each say which fields of a good file are damaged; the first byte chooses the
-/// file. Its checksum is put right, and what is accepted goes through every reader.
+/// file. Its checksum is corrected, and accepted files go through every reader.
 bool feed_fields(std::string_view bytes);
 /// The first byte: '0', and the rest is an OBJ, or '1' or '2', and the rest says how a body's polygons fold.
 /// It is built, proved, saved, loaded and queried.
@@ -32,7 +32,7 @@ bool feed_capture(std::string_view bytes);
 /// plane; with 128 of a body and itself. The rest choose bodies, poses, motions and tolerances.
 bool feed_motion(std::string_view bytes);
 
-/// Without it the checksum of a .lrb would stop nearly every mutation, and what is behind it would never be
+/// Without it the checksum of a .lrb would stop nearly every mutation, and the code behind it would never be
 /// tried.
 void put_checksum_right(std::string& file);
 

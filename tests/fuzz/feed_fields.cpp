@@ -39,7 +39,7 @@ const std::vector<std::string>& good_files() {
 /// A run of numbers in a file.
 struct Section {
   std::size_t at, element, count;
-  bool counted;  ///< its length stands in the eight bytes before
+  bool counted;  ///< its length is in the eight bytes before
 };
 
 template <class T>
@@ -147,7 +147,7 @@ void damage(std::string& file, std::string_view how) {
   }
 }
 
-/// What is refused is refused in one line.
+/// Rejections must be one line.
 template <class Ask>
 void ask(const Ask& question) {
   try {

@@ -21,8 +21,8 @@ namespace {
 
 /// A file that is accepted may be nonsense as a body, but using it must be safe. One use for each input, of a
 /// small body: using costs more than reading does. For the same reason all pairs are decided in floating
-/// point; exact predicates, slow for hostile numbers, are asked until the first pair, and have the torture
-/// suite.
+/// point; exact predicates, slow for hostile numbers, are used until the first pair, and are tested by the
+/// torture suite.
 void use(const LrbRep& rep, int how) {
   static constexpr std::size_t kSmall = 64;  // corners
   if (rep.data().face_vertices.size() > kSmall) return;

@@ -1,4 +1,4 @@
-// A few queries for guard.sh to count the instructions of, under callgrind, which this program tells where a
+// A few queries whose instructions guard.sh counts under callgrind, to which this program reports where a
 // query begins and ends. Alone it runs them and counts nothing. Prints the compiler first: counts depend on
 // it.
 #include <cstdio>
@@ -19,11 +19,11 @@ struct Guarded {
   double share;  ///< of the distance at which round bodies just miss each other; 0: the same pose
   Mode mode;
   Predicates predicates;
-  bool watched = false;  ///< with a probe that is told everything and does nothing
+  bool watched = false;  ///< with a probe that receives all reports and ignores them
   double tolerance = 0;
 };
 
-/// What the events themselves cost: nothing, if the query works out nothing for them alone.
+/// The cost of the events themselves: 0 if the query computes no value for them alone.
 struct IdleProbe : NullProbe {
   static constexpr bool kEnabled = true;
 };

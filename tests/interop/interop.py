@@ -140,7 +140,7 @@ def read_with_vtk(vtp_file, ply_file, obj_file, glb_file, vtp):
         from vtkmodules.vtkIOPLY import vtkPLYReader
         from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
     except ImportError:
-        print("VTK is not here (Debian's python3-vtk9): not asked")
+        print("VTK is missing (Debian's python3-vtk9): skipped")
         return
 
     def read(reader, path):

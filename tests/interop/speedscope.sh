@@ -21,9 +21,9 @@ browse "${webgl[@]}" --allow-file-access-from-files --enable-logging=stderr --vi
   "file://$page#localProfilePath=$work/load.js" >"$work/page.html"
 
 # Chromium logs warnings like any other line, so every line that a good import does not print counts as one.
-told=$(sed -n 's/.*:CONSOLE[^"]*"\(.*\)", source: .*/\1/p' "$work/browser.log")
+report=$(sed -n 's/.*:CONSOLE[^"]*"\(.*\)", source: .*/\1/p' "$work/browser.log")
 good='^speedscope v|^WebGL initialized|GL Driver Message|^Importing as Trace Event Format profile$|^import: '
-if grep -vE "$good" <<<"$told" || ! grep -q '^Importing as Trace Event' <<<"$told"; then
+if grep -vE "$good" <<<"$report" || ! grep -q '^Importing as Trace Event' <<<"$report"; then
   echo "speedscope: $1: warning, or not recognised as a trace" && exit 1
 fi
 grep -qF "$title" "$work/page.html" || { echo "speedscope: the page of $1 does not show \"$title\"" && exit 1; }

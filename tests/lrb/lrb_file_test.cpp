@@ -30,7 +30,7 @@ std::string bytes_of(const LrbRep& rep) {
   return test::load_bytes(path);
 }
 
-/// The complaint about bytes, or nothing if they are taken.
+/// Returns the error for bytes, or an empty string if they are accepted.
 std::string complaint(const std::string& bytes) {
   try {
     load_lrb(std::string_view(bytes), "body.lrb");
@@ -98,7 +98,7 @@ TEST_CASE("every truncated file is rejected in one line") {
     const std::string text = complaint(whole.substr(0, size));
     REQUIRE_FALSE(text.empty());
     REQUIRE(is_one_line(text));
-    // A cut whose end looks right must be caught by what is read, not by the checksum.
+    // A truncation with a plausible end must be detected by the reader, not by the checksum.
     if (size > 20) REQUIRE_FALSE(complaint(with_right_checksum(whole.substr(0, size))).empty());
   }
   REQUIRE_FALSE(complaint(whole + '\0').empty());

@@ -1,4 +1,4 @@
-// What is proved of how far lids are off the body: against dense sampling, and against exact distances.
+// Proven deviations of lids from the body, against dense sampling and exact distances.
 
 #include <algorithm>
 #include <cmath>

@@ -51,8 +51,8 @@ Mesh lone(const Vector3d& third) {
   return test::with_face({}, {{0, 0, 0}, {1, 0, 0}, third}, {VertexId(0), VertexId(1), VertexId(2)});
 }
 
-/// A cube with a vertex in the centre of an edge of its first face: that face is two, and what is left
-/// between them and the neighbour is a face without area.
+/// A cube with a vertex at the midpoint of an edge of its first face: that face is split in two, and a face
+/// without area lies between them and the neighbour.
 Mesh with_flat_face() {
   const Mesh cube = shapes::box();
   const VertexId a = cube.face(0)[0], b = cube.face(0)[1], c = cube.face(0)[2];
@@ -173,7 +173,7 @@ Step step_at(const LrbRep& a, const LrbRep& b, const Pose& pose) {
   return step;
 }
 
-/// Where B stands: apart, in A's surface, and in its centre; against itself also in its own place.
+/// Poses of B: separate, in A's surface, and in its centre; against itself also at the identity.
 std::vector<Pose> poses_of(const Kind& a, const LrbRep& rep, bool itself) {
   const Eigen::AlignedBox3d box = box_of(rep);
   const bool flat = a.mesh.dim == 2;
@@ -189,7 +189,7 @@ std::vector<Pose> poses_of(const Kind& a, const LrbRep& rep, bool itself) {
 }
 
 Cell make_cell(const std::vector<Kind>& kinds, std::size_t a, std::size_t b) {
-  const int exponent = exponent_of(kinds[a]);  // what is true of a body is true of it at any power of two
+  const int exponent = exponent_of(kinds[a]);  // a body's properties do not change by powers of two
   const auto rep_of = [&](const Kind& k) {
     return LrbRep::without_regions(times(k.mesh, -exponent), k.solid, !k.simple);
   };

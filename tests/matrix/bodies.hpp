@@ -1,6 +1,6 @@
 #pragma once
 /// The matrix of tests: kinds of bodies, and for each what brute force says of it beside others. Every door
-/// to the engine is asked about the same cells (README.md).
+/// to the engine is tested with the same cells (README.md).
 
 #include <optional>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace lrb::matrix {
 
-/// A kind of body, and what is known of it from the way it is made.
+/// A kind of body, and its properties known by construction.
 struct Kind {
   std::string name;
   Mesh mesh;
@@ -24,14 +24,14 @@ struct Kind {
   const char* format = "ply";  ///< of its second file; in the plane "obj"
 };
 
-/// What is true of two bodies at a pose of B.
+/// Properties of two bodies at a pose of B.
 struct Step {
   Pose pose;
   BruteForceResult truth;
   double distance = 0;  ///< of the surfaces, but for rounding
 };
 
-/// Two bodies, and what is asked about them.
+/// Two bodies and their queries.
 struct Cell {
   std::size_t a = 0, b = 0;  ///< kinds
   std::vector<Step> steps;

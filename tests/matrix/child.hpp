@@ -13,7 +13,7 @@ namespace lrb::matrix {
 
 inline constexpr unsigned kChildSeconds = 600;
 
-/// Writes to the parent what is done, and what is wrong.
+/// Reports progress and faults to the parent.
 class Report {
  public:
   explicit Report(int out) : out_(out) {}

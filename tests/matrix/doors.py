@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """doors.py LRBSCOPE MATRIX_BODIES [--all] [--only KIND] [--python PYTHON PACKAGE]: the matrix (README.md) through the
-command, scenarios and Python. Prints what is wrong with the command that shows it, and exits with 1; else what was asked.
+command, scenarios and Python. Prints faults with the commands that show them, and exits with 1; otherwise the number of commands.
 
-Each command ends within SECONDS with exit code 0, 1, 2 or 3; what it refuses it refuses in one line.
+Each command ends within SECONDS with exit code 0, 1, 2 or 3; rejections are one line.
 """
 import argparse
 import concurrent.futures
@@ -93,11 +93,11 @@ class Matrix:
         for cell in self.data["cells"]:
             cell["simple"] = all(self.kinds[cell[x]]["solid"] and self.kinds[cell[x]]["simple"] for x in "ab")
             cell["dim"] = self.kinds[cell["a"]]["dim"]
-        self.asked, self.wrong = 0, []
+        self.count, self.wrong = 0, []
 
     def start(self, words, codes=(0,)):
-        """Runs a command; returns its exit code, output, and what is wrong with the way it ended."""
-        self.asked += 1
+        """Runs a command; returns its exit code, output, and faults of its end."""
+        self.count += 1
         seconds = SANITIZED if self.options.sanitized else SECONDS
         try:
             done = subprocess.run(words, cwd=self.folder, capture_output=True, timeout=seconds, stdin=subprocess.DEVNULL)
@@ -333,7 +333,7 @@ def main():
         chosen = [(i, name) for i, name in enumerate(rows) if options.only == name or not options.only and (options.all or i % 5 == 0)]
         for row in [pool.submit(matrix.row, i, matrix.kinds[name]) for i, name in chosen]:
             row.result()
-    print("\n".join(matrix.wrong + [f"{matrix.asked} commands, {len(matrix.wrong)} findings"]))
+    print("\n".join(matrix.wrong + [f"{matrix.count} commands, {len(matrix.wrong)} findings"]))
     return 1 if matrix.wrong else 0
 
 

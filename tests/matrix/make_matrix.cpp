@@ -1,4 +1,4 @@
-/// matrix_bodies DIR [NOISY]: writes the bodies of the matrix with what is true of them, for doors.py:
+/// matrix_bodies DIR [NOISY]: writes the bodies of the matrix with their properties, for doors.py:
 /// DIR/matrix.json, and of each kind NAME.obj and a file of another format; for each cell poses, a motion and
 /// a scenario. matrix_bodies --save MESH FILE.lrb: saves a body without levels, as a program in C++ may;
 /// which `lrbscope build` does not.

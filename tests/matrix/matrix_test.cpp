@@ -283,7 +283,7 @@ constexpr Door kDoors[] = {
     {"lrb", [](const Kind& k, const test::Folder& folder) { return saved(k, folder, false); }},
     {"lrb with levels", [](const Kind& k, const test::Folder& folder) { return saved(k, folder, true); }}};
 
-/// What is said of the mesh, and what is built of it.
+/// The report on the mesh, and the body built from it.
 void check_build(Report& report, const Kind& kind) {
   report.doing("check");
   CheckedMesh mesh = check(kind.mesh);

@@ -14,7 +14,7 @@ namespace {
 
 using namespace shapes;
 
-// Nobody can make one but check(), or change the mesh in it: so nothing has to be checked again.
+// Only check() can make one, and its mesh cannot be changed, so that it need not be checked again.
 static_assert(!std::is_default_constructible_v<CheckedMesh>);
 static_assert(!std::is_constructible_v<CheckedMesh, Mesh>);
 static_assert(!std::is_constructible_v<CheckedMesh, MeshFindings>);

@@ -144,7 +144,7 @@ TEST_CASE("self-intersections do not depend on scale and position") {
 }
 
 TEST_CASE("a chord of a large face is not an edge that others may share") {
-  // A fin that stands on the line between two corners of the drum's end that are no neighbours.
+  // A fin on the line between two corners of the drum's end that are not neighbours.
   for (const std::uint32_t other : {2u, 7u, kMany / 2, kMany - 2}) {
     Mesh m = drum(kMany);
     const VertexId tip = static_cast<VertexId>(m.vertices.size());

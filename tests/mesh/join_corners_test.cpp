@@ -77,7 +77,7 @@ TEST_CASE("a soup of two touching bodies becomes two bodies, if their other edge
     CHECK(report.components == 2);
     CHECK(report.buildable());
   }
-  // Two faces in one place: nothing tells which belongs to which body, but both are closed as one.
+  // Two coincident faces: it is undecided which belongs to which body, but both are closed as one.
   const MeshReport stacked = joined_report(as_soup(several({quad_box(), quad_box({1, 0, 0}, {2, 1, 1})})));
   CHECK(stacked[MeshFault::open_edge].count == 0);
   CHECK(stacked.bounds_solid);

@@ -164,23 +164,23 @@ TEST_CASE("overlapping and touching solids") {
     bool overlap;
   };
   const Mesh square = polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
-  for (const Case& c : std::vector<Case>{
-           {box(), box({1, 0, 0}, {2, 1, 1}), false},                  // face on face
-           {box(), box({1, 0.5, 0.25}, {2, 2, 2}), false},             // part of a face on part of a face
-           {box(), box({1, 1, 0}, {2, 2, 1}), false},                  // edge on edge
-           {box(), box({1, 1, 1}, {2, 2, 2}), false},                  // corner on corner
-           {box(), translated(tetrahedron(), {0.25, 0.5, 1}), false},  // standing on it
-           {box(), turned_inside_out(box({0, 0, 0}, {0.5, 0.5, 0.5})),
-            false},  // a notch, flush with three walls
-           {box(), box(), true},
-           {box(), box({0, 0, 0.5}, {1, 1, 1.5}), true},          // flush with four walls
-           {box(), box({0.25, 0.25, 0}, {0.5, 0.5, 0.5}), true},  // standing within, on the floor
-           {box(), translated(box(), {0.5, 0.5, 0.5}), true},
-           {square, translated(square, {1, 0, 0}), false},
-           {square, translated(square, {1, 0.5, 0}), false},
-           {square, square, true},
-           {square, translated(square, {0.5, 0, 0}), true},
-           {square, translated(square, {0.5, 0.5, 0}), true}}) {
+  for (const Case& c :
+       std::vector<Case>{{box(), box({1, 0, 0}, {2, 1, 1}), false},       // face on face
+                         {box(), box({1, 0.5, 0.25}, {2, 2, 2}), false},  // part of a face on part of a face
+                         {box(), box({1, 1, 0}, {2, 2, 1}), false},       // edge on edge
+                         {box(), box({1, 1, 1}, {2, 2, 2}), false},       // corner on corner
+                         {box(), translated(tetrahedron(), {0.25, 0.5, 1}), false},  // resting on it
+                         {box(), turned_inside_out(box({0, 0, 0}, {0.5, 0.5, 0.5})),
+                          false},  // a notch, flush with three walls
+                         {box(), box(), true},
+                         {box(), box({0, 0, 0.5}, {1, 1, 1.5}), true},          // flush with four walls
+                         {box(), box({0.25, 0.25, 0}, {0.5, 0.5, 0.5}), true},  // inside, on the floor
+                         {box(), translated(box(), {0.5, 0.5, 0.5}), true},
+                         {square, translated(square, {1, 0, 0}), false},
+                         {square, translated(square, {1, 0.5, 0}), false},
+                         {square, square, true},
+                         {square, translated(square, {0.5, 0, 0}), true},
+                         {square, translated(square, {0.5, 0.5, 0}), true}}) {
     CAPTURE(c.b.vertices[0].transpose());
     CHECK(check_mesh(several({c.a, c.b}))[MeshFault::self_intersection].count > 0);
     CHECK(overlaps(several({c.a, c.b})) == c.overlap);

@@ -1,4 +1,4 @@
-// What a search for a first contact tells a probe.
+// Reports of a first contact search to a probe.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Asks with a probe, and checks what holds for whatever it is told.
+/// Searches with a probe, and checks the invariants of all reports.
 std::vector<ContactBounds> history_of(const LrbRep& a, const LrbRep& b, const Motion& motion,
                                       FirstContactResult& watched, const FirstContactRequest& request = {}) {
   FirstContactHistory reported;

@@ -177,7 +177,7 @@ TEST_CASE("boxes: face to face, edge to edge and corner to face, at known times"
   CHECK(r.at_begin == Relation::separate);
   r = expect(Motion::linear(Pose::translation({4, 0, 0}), {-5, 0, 0}), 1.0 / 3);  // flush, and no double
   CHECK(r.speed == doctest::Approx(9));
-  // A corner of B, which stands on it, comes down on A's upper face.
+  // B, balanced on a corner, descends on A's upper face.
   const Eigen::Matrix3d tip =
       deterministic::rotation(Vector3d(1, -1, 0).normalized(), std::atan(std::sqrt(2.0)));
   const double lowest = (tip * Vector3d(0, 0, 0)).z();
@@ -286,7 +286,7 @@ TEST_CASE("tangential contacts have a wider interval and are marked as grazing")
   CHECK(r.t0 <= 0.5);
   CHECK(r.t1 >= 0.5);
   CHECK(r.t1 - r.t0 <= 1e-9);
-  // Above it by less than rounding: nobody knows, from the time on when edges are over each other.
+  // Above it by less than rounding: undecided from the time on when edges are above each other.
   r = checked(box, kStill, box,
               Motion::linear(Pose::translation({3, 0.25, 1 + 1e-15}), {-1, 0.25, 1 + 1e-15}));
   CHECK(r.outcome == MotionOutcome::undecided);

@@ -9,7 +9,7 @@
 
 namespace {
 
-/// Counts what it is told.
+/// Counts reports.
 struct Counter : lrb::CollideProbe {
   void contact(lrb::SimplexId, lrb::SimplexId, lrb::exact::Meet) override { ++contacts; }
   std::size_t contacts = 0;

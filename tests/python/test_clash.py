@@ -26,9 +26,9 @@ def test_cubes(cube, pose, kind, depth, volume):
     assert found.depth[0] <= depth * (1 + 1e-12) and depth <= found.depth[1] * (1 + 1e-12)
     assert found.volume[0] <= volume * (1 + 1e-12) and volume <= found.volume[1] * (1 + 1e-12)
     assert np.isclose(np.linalg.norm(found.translation), found.depth[1])
-    parted = pose.copy()
-    parted[:3, 3] += found.translation * (1 + 1e-12)
-    assert clash(cube, cube, parted).interiors_overlap is False
+    separated = pose.copy()
+    separated[:3, 3] += found.translation * (1 + 1e-12)
+    assert clash(cube, cube, separated).interiors_overlap is False
 
 
 def test_requests(cube):

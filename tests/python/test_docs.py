@@ -83,7 +83,7 @@ def parameters_of(node):
 
 
 def test_the_stub_has_the_parameters_that_functions_take():
-    """Docstrings begin with the signature; a function called with each name alone complains of what is
+    """Docstrings begin with the signature; a function called with each name alone reports what is
     missing, not of it.
     """
     nodes = {n.name: n for n in stubs() if isinstance(n, ast.FunctionDef)}

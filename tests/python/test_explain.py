@@ -49,8 +49,8 @@ def test_every_pair_is_explained(cube):
                 assert np.isclose(np.linalg.norm(e.points[1] - e.points[0]), e.distance)
             else:
                 assert (e.meet == "cross") == crosses[i, j] and e.distance == 0
-            told = e.dict()
-            assert told["pair"] == [i, j] and told["meet"] == e.meet and told["decided_by"] == e.decided_by
+            as_dict = e.dict()
+            assert as_dict["pair"] == [i, j] and as_dict["meet"] == e.meet and as_dict["decided_by"] == e.decided_by
             assert str(e).startswith(f"simplex {i} of A") and e.meet in str(e)
             assert len(e.hidden_by) == 2
 

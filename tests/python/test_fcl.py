@@ -280,7 +280,7 @@ def test_a_callback_ends_the_walk():
     assert len(found) == 10, "all boxes are nearer than 1"
 
 
-def test_a_mesh_that_is_built_anew_is_asked_anew():
+def test_a_rebuilt_mesh_is_not_served_from_the_cache():
     triangles = np.array([[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]])
     corners = np.vstack([np.zeros(3), np.eye(3)])
     mesh = model(corners, triangles)
@@ -293,16 +293,16 @@ def test_a_mesh_that_is_built_anew_is_asked_anew():
 
 
 def test_the_nearest_of_many(rng):
-    """A manager's distance is the least of all pairs, and few pairs are asked about."""
+    """A manager's distance is the least of all pairs, and few pairs are queried."""
     places = rng.uniform(-20, 20, (40, 3))
     spheres = [fcl.CollisionObject(fcl.Sphere(0.25), fcl.Transform(p)) for p in places]
-    m, asked = manager(*spheres), []
+    m, queried = manager(*spheres), []
 
     def callback(o1, o2, data):
-        asked.append((o1, o2))
+        queried.append((o1, o2))
         return fcl.defaultDistanceCallback(o1, o2, data)
 
     least = min(fcl.distance(a, b) for i, a in enumerate(spheres) for b in spheres[:i])
-    assert nearest(m, callback=callback) == least and len(asked) < 40
+    assert nearest(m, callback=callback) == least and len(queried) < 40
     lone = fcl.CollisionObject(fcl.Box(1, 1, 1), at(50))
     assert nearest(m, lone) == min(fcl.distance(s, lone) for s in spheres)

@@ -134,7 +134,7 @@ def test_objects_come_and_go(box):
     assert m.add_object("x", box, shifted(5, 0, 0)) is body, "the same mesh is taken in once"
     assert not m.in_collision_internal()
     for action in (m.remove_object, lambda name: m.set_transform(name, np.eye(4))):
-        with pytest.raises(ValueError, match="nobody not in collision manager!"):
+        with pytest.raises(ValueError, match="nobody not in collision manager!"):  # language: keep
             action("nobody")
     with pytest.raises(TypeError, match="expected something with vertices and faces, got int"):
         m.add_object("z", 3)

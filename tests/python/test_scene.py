@@ -30,7 +30,7 @@ def scene_of(bodies, poses):
     return s
 
 
-def told(meetings):
+def as_dict(meetings):
     return {tuple(k): (r.relation, r.fingerprint) for k, r in zip(meetings.keys.tolist(), meetings)}
 
 
@@ -56,7 +56,7 @@ def test_all_pairs(crowd, threads):
     assert [s.add(b, p) for b, p in zip(bodies, poses)] == list(range(60))
     wanted = brute(bodies, poses)
     found = s.collide()
-    assert len(wanted) > 20 and told(found) == wanted and len(found) == len(wanted)
+    assert len(wanted) > 20 and as_dict(found) == wanted and len(found) == len(wanted)
     assert found.keys.tolist() == sorted(found.keys.tolist())
     assert found.relations.tolist() == [r.relation for r in found]
     assert found.counts.sum() == len(found.all_pairs)
@@ -89,7 +89,7 @@ def test_bodies_come_go_and_move(crowd, rng):
         assert s.body(key) is bodies[step] and np.array_equal(s.pose(key), poses[step + 1])
         names = sorted(place)
         by_place = brute([place[k][0] for k in names], [place[k][1] for k in names])
-        assert told(s.collide()) == {(names[i], names[j]): r for (i, j), r in by_place.items()}
+        assert as_dict(s.collide()) == {(names[i], names[j]): r for (i, j), r in by_place.items()}
 
 
 def test_others(crowd):
@@ -101,7 +101,7 @@ def test_others(crowd):
             r = lrbscope.collide(bodies[i], bodies[j], two.pose(j), poses[i])
             if r:
                 wanted[i, j] = (r.relation, r.fingerprint)
-    assert told(one.collide(two)) == wanted and one.any_meet(two)
+    assert as_dict(one.collide(two)) == wanted and one.any_meet(two)
     alone = one.collide(bodies[0], two.pose(0), contacts=True)
     assert (alone.keys[:, 0] == -1).all()
     for key, r in zip(alone.keys[:, 1].tolist(), alone):
@@ -189,9 +189,9 @@ def test_what_is_refused(kinds):
 
 def test_threads_share_a_scene(crowd):
     one, two = scene_of(*crowd), scene_of(*crowd)
-    wanted, across = told(one.collide()), told(one.collide(two))
+    wanted, across = as_dict(one.collide()), as_dict(one.collide(two))
     with ThreadPoolExecutor(4) as pool:
-        found = list(pool.map(lambda i: told(one.collide()) if i % 2 else told(two.collide(one)), range(12)))
+        found = list(pool.map(lambda i: as_dict(one.collide()) if i % 2 else as_dict(two.collide(one)), range(12)))
     assert all(f == wanted for f in found[1::2])
     assert all(f.keys() == across.keys() for f in found[::2])
 
@@ -199,13 +199,13 @@ def test_threads_share_a_scene(crowd):
 SCENE = None
 
 
-def _asked_in_a_child(_):
-    return told(SCENE.collide())
+def _query_in_a_child(_):
+    return as_dict(SCENE.collide())
 
 
 def test_a_scene_goes_on_after_a_fork(crowd):
     global SCENE
     SCENE = scene_of(*crowd)
-    wanted = told(SCENE.collide())  # threads have been started before the fork
+    wanted = as_dict(SCENE.collide())  # threads have been started before the fork
     with multiprocessing.get_context("fork").Pool(2) as pool:
-        assert pool.map(_asked_in_a_child, range(3)) == [wanted] * 3
+        assert pool.map(_query_in_a_child, range(3)) == [wanted] * 3

@@ -58,7 +58,7 @@ def test_a_batch_lets_other_threads_run(ball, rng):
         signal.signal(signal.SIGUSR1, kept)
 
 
-def _asked_in_a_child(pose):
+def _query_in_a_child(pose):
     body = Body(*ball_arrays(3))
     one = collide(body, body, pose)
     return collide(body, body, [pose] * 10, threads=0).fingerprints.tolist() + [one.fingerprint]
@@ -69,18 +69,18 @@ def test_processes(ball, way):
     poses = [shifted(1.1 + 0.1 * i, 0.2, 0.3) for i in range(4)]
     collide(ball, ball, poses)  # threads have been started before the fork
     with multiprocessing.get_context(way).Pool(2) as pool:
-        found = pool.map(_asked_in_a_child, poses)
+        found = pool.map(_query_in_a_child, poses)
     for pose, prints in zip(poses, found):
         assert set(prints) == {collide(ball, ball, pose).fingerprint}
 
 
-def _asked_of_a_copy(body):
+def _query_of_a_copy(body):
     return collide(body, body, [shifted(1.1, 0.2, 0.3)] * 3).fingerprints.tolist()
 
 
 def test_bodies_go_to_other_processes(ball):
     with multiprocessing.get_context("fork").Pool(2) as pool:
-        assert pool.map(_asked_of_a_copy, [ball]) == [_asked_of_a_copy(ball)]
+        assert pool.map(_query_of_a_copy, [ball]) == [_query_of_a_copy(ball)]
 
 
 INTERRUPTED = """

@@ -107,9 +107,9 @@ def test_pictures_that_are_refused(ball, options, said):
 def test_scenarios(tmp_path):
     assert "collision" in lrbscope.scenarios()
     s = Scenario("islands")
-    told = []
-    t = s.record(progress=lambda what, done, total: told.append((what, done, total)))
-    assert told and len(t.steps) > 0 and len(t) > 0
+    reports = []
+    t = s.record(progress=lambda what, done, total: reports.append((what, done, total)))
+    assert reports and len(t.steps) > 0 and len(t) > 0
     file = tmp_path / "mine.scenario.json"
     file.write_text(
         json.dumps(

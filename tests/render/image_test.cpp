@@ -130,7 +130,7 @@ std::array<double, 3> lab(render::Rgba c, const Matrix& seen) {
 
 TEST_CASE("kinds differ in lightness, and for all common kinds of colour vision") {
   // Severity 1 of G. Machado, M. Oliveira, L. Fernandes, "A physiologically-based model for simulation of
-  // color vision deficiency", 2009: nobody's, protanopes', deuteranopes', tritanopes'.
+  // color vision deficiency", 2009: normal vision, protanopia, deuteranopia, tritanopia.
   const std::vector<Matrix> eyes = {
       {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
       {{{0.152286, 1.052583, -0.204868}, {0.114503, 0.786281, 0.099216}, {-0.003882, -0.048116, 1.051998}}},
@@ -160,7 +160,7 @@ TEST_CASE("kinds differ in lightness, and for all common kinds of colour vision"
 }
 
 TEST_CASE("texts, lines and bodies stand out from the background of each style") {
-  // Of WCAG 2: 4.5 for text, 3 for what has to be seen; a thin frame may be fainter.
+  // WCAG 2: 4.5 for text, 3 for graphics; a thin frame may be fainter.
   const auto luminance = [](render::Rgba c) {
     const double lightness = lab(c, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}})[0];
     return std::pow((lightness + 16) / 116, 3);

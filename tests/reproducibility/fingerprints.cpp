@@ -1,4 +1,4 @@
-// fingerprints [THREADS]: hashes of what the engine answers, one to a line: bodies, .lrb files, queries of
+// fingerprints [THREADS]: hashes of the engine's results, one per line: bodies, .lrb files, queries of
 // every class of the torture suite, traces. reproducibility.sh compares what it prints over compilers,
 // optimisation and threads.
 

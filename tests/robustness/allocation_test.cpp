@@ -1,5 +1,5 @@
 /// Memory runs out at each allocation in turn: std::bad_alloc comes out, nothing is left behind (ASan's leak
-/// check sees to that), and what was in use goes on working.
+/// check verifies that), and objects in use keep working.
 
 #include <algorithm>
 #include <bit>
@@ -51,7 +51,7 @@ std::uint64_t fail_each_allocation(const Work& work, const After& after) {
   }
 }
 
-struct Asked {
+struct Query {
   LrbRep a{toy::dented_box()}, b{toy::dented_box()};
   Pose pose_b = Pose::translation({1.75, 1.25, 2.5});
   CollideRequest request;
@@ -75,7 +75,7 @@ bool same(const CollideResult& x, const CollideResult& y) {
 TEST_CASE("a query that runs out of memory leaves its context usable") {
   for (const Recursion recursion : {Recursion::complete, Recursion::paper, Recursion::paper_strict}) {
     CAPTURE(to_string(recursion));
-    Asked q;
+    Query q;
     q.request.recursion = recursion;
     q.request.contacts = true;
     q.request.interiors_overlap = true;
@@ -196,7 +196,7 @@ TEST_CASE("a warm query allocates memory only for its answer") {
 // Not the reading of traces: the destructors of nlohmann-json 3.11 allocate, and end the process if they
 // cannot (lrbscope then says what it says for std::bad_alloc, see tools/terminal.cpp).
 TEST_CASE("recording a run while memory runs out") {
-  Asked q;
+  Query q;
   const auto record = [&] {
     trace::Recorder recorder(q.a, q.b, {});
     recorder.begin_step(0, Pose{}, q.pose_b);

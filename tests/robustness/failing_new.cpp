@@ -10,11 +10,11 @@ namespace {
 
 thread_local std::uint64_t left = kNoFailure;
 thread_local bool failed = false;
-thread_local std::uint64_t asked = 0;
+thread_local std::uint64_t count = 0;
 
 /// Null if it is this allocation's turn to fail.
 void* allocate(std::size_t size, std::size_t alignment) {
-  ++asked;
+  ++count;
   if (left != kNoFailure && left-- == 0) {
     left = kNoFailure;
     failed = true;
@@ -41,7 +41,7 @@ bool allocation_has_failed() {
 }
 
 std::uint64_t allocations() {
-  return asked;
+  return count;
 }
 
 }  // namespace lrb::test
@@ -49,7 +49,7 @@ std::uint64_t allocations() {
 using lrb::test::allocate;
 using lrb::test::allocate_or_throw;
 
-// Every form that is used: under ASan a form left out would be ASan's own, which frees nobody else's memory.
+// Every form that is used: under ASan a form left out would be ASan's own, which frees only its own memory.
 void* operator new(std::size_t size) {
   return allocate_or_throw(size, alignof(std::max_align_t));
 }

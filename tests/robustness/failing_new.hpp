@@ -10,7 +10,7 @@ namespace lrb::test {
 inline constexpr std::uint64_t kNoFailure = ~std::uint64_t{0};
 void fail_allocation_after(std::uint64_t count);
 
-/// Returns true if the failure that was asked for has come.
+/// Returns true if the requested failure has occurred.
 bool allocation_has_failed();
 
 /// Of this thread, so far.

@@ -1,4 +1,4 @@
-// One query of two bodies under poses that are no rotations: it grows with the answer and with what is near,
+// One query of two bodies under poses other than rotations: it grows with the answer and the nearby faces,
 // as under a rotation. Where boxes culled nothing it would grow with the product of both bodies' faces.
 
 #include <cmath>

@@ -73,8 +73,8 @@ Growth fit(const std::vector<Cost>& costs) {
 /// True if nothing grows faster than it may.
 bool run(const Family& family, bool share) {
   std::vector<std::uint32_t> sizes = family.share;
-  // Small sizes on a busy machine: what is quadratic shows, what is a little over n log n only in the whole
-  // run.
+  // Small sizes on a busy machine: quadratic growth is detected, growth slightly above n log n only in the
+  // full run.
   constexpr double kShareSlack = 0.35;
   const double max_time = family.max_time + (share ? kShareSlack : 0);
   if (!share) sizes.insert(sizes.end(), family.more.begin(), family.more.end());

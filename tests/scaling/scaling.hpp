@@ -1,5 +1,5 @@
 #pragma once
-/// How time and memory grow: families of inputs that code makes at any size, and what is done with them.
+/// Growth of time and memory: families of generated inputs of any size, and the measured operations.
 ///
 /// A file that adds families says so in a variable of its own; no list elsewhere needs to know:
 ///
@@ -20,15 +20,15 @@ using Sizes = std::vector<std::uint32_t>;
 /// The sizes that most families are measured at.
 inline const Sizes kShare = {1000, 2000, 4000, 8000}, kMore = {16000, 32000, 64000};
 
-/// One input, and what is measured with it.
+/// One input with its measured operation.
 struct Task {
   double size = 0;             ///< what time and memory are fitted against: of the input, and of the answer
   std::function<void()> work;  ///< may be called several times
 };
 
 struct Family {
-  std::string input, work;           ///< what it is called in the table: "drum", "query"
-  std::string unit;                  ///< what is counted: "corners"
+  std::string input, work;           ///< name in the table: "drum", "query"
+  std::string unit;                  ///< unit of the size: "corners"
   std::vector<std::uint32_t> share;  ///< sizes for the test suite: a second or two together
   std::vector<std::uint32_t> more;   ///< further sizes, larger, for the whole run
   std::function<Task(std::uint32_t size)> make;

@@ -1,4 +1,4 @@
-// Bodies made in one call: of matrices, arrays, meshes, files; what is refused, and what is said of them.
+// Bodies made in one call from matrices, arrays, meshes and files: errors and notes.
 #include <array>
 #include <cmath>
 #include <limits>

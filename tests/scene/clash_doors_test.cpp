@@ -1,4 +1,4 @@
-// B2: one definition of clash: whoever made the bodies, the same answer, and a reason where it is undecided.
+// B2: one definition of clash: the same answer through every interface, and a reason if it is undecided.
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"

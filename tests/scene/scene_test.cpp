@@ -15,7 +15,7 @@ using shapes::RandomEngine;
 
 namespace {
 
-/// What a scene is told, kept in the plainest way.
+/// The content of a scene in a simple form.
 struct Plain {
   struct Entry {
     Body body;
@@ -45,7 +45,7 @@ Pose random_place(RandomEngine& random, double room) {
   return pose;
 }
 
-/// Checks what a scene tells of all its pairs against the answer for each pair.
+/// Checks a scene's answers on all its pairs against the answer for each pair.
 void check_collide(Scene& scene, const Plain& plain) {
   std::vector<std::pair<BodyKey, BodyKey>> expected;
   std::vector<BruteForceResult> answers;
@@ -101,7 +101,7 @@ double min_distance(const Plain& plain) {
   return least;
 }
 
-/// Adds, removes and moves at random, a scene and what is plain alike.
+/// Adds, removes and moves at random, in a scene and in the simple form.
 void change(Scene& scene, Plain& plain, const std::vector<Body>& bodies, RandomEngine& random, double room) {
   const auto any = [&] {
     auto entry = plain.entries.begin();

@@ -55,7 +55,7 @@ std::string unbalanced(const std::string& markup) {
       open.pop_back();
     } else if (tag.back() != '/' && !kVoid.contains(name)) {
       open.push_back(name);
-      // What is in these is no markup.
+      // The content of these is not markup.
       if (name == "script" || name == "style") at = markup.find("</" + name, at);
     }
   }
@@ -335,7 +335,7 @@ TEST_CASE("every failed cell gets a picture, and old pictures are removed") {
   Grid grid = made_up_grid();
   for (std::size_t i = 0; i < grid.cells.size(); ++i)
     if (i / grid.methods.size() > 2) grid.cells[i].worst.reset();  // few are enough
-  grid.cells[1].worst->family = "none of ours";
+  grid.cells[1].worst->family = "unknown";
   std::size_t checked = 0;
   const std::vector<std::string> pictures = draw_worst_cases(grid, folder, [&](const Record& r) {
     ++checked;

@@ -101,18 +101,18 @@ TEST_CASE("outcomes of methods that crash, hang or return garbage") {
 
 TEST_CASE("a method that hangs on three consecutive cases skips the rest of its family") {
   const Workers workers;
-  std::map<std::string, int> in_a_row, asked;
+  std::map<std::string, int> in_a_row, runs;
   for (const Record& r : ask({"fake-hang"}, 12, 0.4)) {
     const bool given_up = in_a_row[r.family] == 3, hung = r.outcome == Outcome::timed_out;
     CHECK((r.message.compare(0, 7, "skipped") == 0) == given_up);
     CHECK(hung == (given_up || r.expected > 0));
     if (given_up) continue;
-    ++asked[r.family];
+    ++runs[r.family];
     in_a_row[r.family] = hung ? in_a_row[r.family] + 1 : 0;
   }
   for (const char* family : {"shared", "identical"}) {
     CHECK(in_a_row[family] == 3);
-    CHECK(asked[family] < 12);
+    CHECK(runs[family] < 12);
   }
 }
 

@@ -19,7 +19,7 @@ inline RationalPoint to_rational_point(const double* p, std::size_t dim) {
   return r;
 }
 
-/// The one solution of A x = b (rows: coefficients, then b), or nothing if there is none or more than one.
+/// Returns the unique solution of A x = b (rows: coefficients, then b), or nullopt without a unique one.
 inline std::optional<std::vector<cpp_rational>> unique_solution(std::vector<std::vector<cpp_rational>> m) {
   const std::size_t n = m[0].size() - 1;
   for (std::size_t c = 0; c < n; ++c) {

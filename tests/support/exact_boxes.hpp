@@ -135,7 +135,7 @@ void check_axes(const std::vector<Range3>& home, const std::vector<Range3>& gues
         ++share.boxes;
         // Both boxes, grown once by the error, hold their contents.
         share.too_small += Exact(error) < home_off[i] + guest_off[j];
-        // And as the kernel decides, rounding included: what it drops is apart.
+        // And as the kernel decides, rounding included: culled pairs are disjoint.
         const float gap = std::fabs(guest_boxes.centre[axis][j] - home_boxes.centre[axis][i]);
         if (!(gap > guest_boxes.half[axis][j] + home_boxes.half[axis][i])) continue;
         ++share.culled;
@@ -171,7 +171,7 @@ struct Checked {
   int dropped = 0, disjoint = 0, cross = 0;
 };
 
-/// What the kernel is certain of is what the rational oracle says.
+/// Checks decided pairs of the kernel against the rational oracle.
 void check_certain(const Scene& s, std::span<const Candidate> found, RandomEngine& random, int most,
                    Checked& checked) {
   for (int i = 0; i < most && !found.empty(); ++i) {
@@ -196,7 +196,7 @@ std::vector<Candidate> candidates_of(const Scene& s, TreeKernel& k, void (*run)(
   return out;
 }
 
-/// Pairs that boxes or planes have dropped do not meet, says the rational oracle, and what is certain of the
+/// Pairs culled by boxes or planes are disjoint according to the rational oracle, and decided ones of the
 /// others is true. `found`: all that were not dropped.
 void check_outcome(const Scene& s, std::span<const Candidate> found, RandomEngine& random, int most,
                    Checked& checked) {

@@ -7,7 +7,7 @@
 
 namespace lrb::hard {
 
-/// An uneven ball of 20 * 4^level triangles: what is not hard, beside the others.
+/// An uneven ball of 20 * 4^level triangles: an easy body, to compare.
 Mesh rock(std::uint32_t level);
 
 /// A prism over a regular polygon: two faces of n corners, at z = 0 and 1, and n quads.

@@ -8,7 +8,7 @@
 
 namespace lrb::test {
 
-/// Returns a ball of quads with triangles at its poles; `radius` is asked for each vertex in turn. Where
+/// Returns a ball of quads with triangles at its poles; `radius` is called for each vertex in turn. Where
 /// radii differ the quads fold.
 inline Mesh quad_ball(std::uint32_t slices, std::uint32_t rings, const std::function<double()>& radius) {
   constexpr double kHalfTurn = 3.141592653589793;

@@ -72,8 +72,8 @@ inline double simplex_distance(const Points& s, const Points& t) {
   return least;
 }
 
-/// Of surfaces that do not pass through each other. Only pairs whose balls are nearer than what was found are
-/// measured.
+/// Of surfaces that do not pass through each other. Only pairs whose balls are closer than the current
+/// distance are measured.
 inline double surface_distance(const std::vector<Points>& a, const std::vector<Points>& b) {
   struct Ball {
     Eigen::Vector3d centre;

@@ -1,4 +1,4 @@
-// lrbscope clash: what it prints, and what it refuses.
+// lrbscope clash: output and errors.
 #include <string>
 
 #include <doctest/doctest.h>
@@ -69,10 +69,10 @@ TEST_CASE("B2: clash reports why a kind is undecided, for a mesh and its .lrb") 
     CHECK_FALSE(lines[1].contains("reason"));
     if (first.empty()) first = lines;
     CHECK(lines == first);
-    const std::vector<Json> asked =
+    const std::vector<Json> found =
         lines_of(boxes.folder, {"--quiet", "query", "cube.obj", b, "--poses", "poses.txt", "--kind"});
-    CHECK(asked[0]["kind"] == "undecided");
-    CHECK(asked[0]["reason"] == "B intersects itself");
+    CHECK(found[0]["kind"] == "undecided");
+    CHECK(found[0]["reason"] == "B intersects itself");
   }
   const Outcome table = boxes.run({"--table"});
   CHECK(table.out.find("undecided: B intersects itself") != std::string::npos);

@@ -94,7 +94,7 @@ TEST_CASE(
   folder.write("p.txt", "# first\n" + std::string(kApart) + "\n1e308 1e308 0 0 0 1 0 0 0 0 1 0\n");
   const Outcome o = check_rejected(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt"});
   CHECK(o.err.starts_with("lrbscope: p.txt:4: body B, vertex "));
-  // What no pose can mend is not the pose's fault.
+  // The error does not blame a pose if no pose is valid.
   folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3 1\n");
   CHECK(check_rejected(folder, {"query", "a.obj", "flat.obj", "--poses", "p.txt"}).err.find("p.txt") ==
         std::string::npos);

@@ -1,4 +1,4 @@
-/// lrbscope close, and the loops that inspect tells of.
+/// lrbscope close, and the loops listed by inspect.
 
 #include <set>
 

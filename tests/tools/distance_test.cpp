@@ -1,4 +1,4 @@
-// lrbscope distance: what it prints, and what it refuses.
+// lrbscope distance: output and errors.
 #include <string>
 
 #include <doctest/doctest.h>

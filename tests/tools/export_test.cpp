@@ -1,4 +1,4 @@
-// lrbscope export: what it writes, and what it refuses.
+// lrbscope export: files and errors.
 #include <string>
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-/// inspect --draw: what is wrong with a mesh, pointed out in a picture.
+/// inspect --draw: the faults of a mesh, marked in a picture.
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>

@@ -62,7 +62,7 @@ Measured measure(const Folder& folder, const std::vector<std::string>& arguments
   return m;
 }
 
-/// What the program takes to do nothing.
+/// The memory that the program needs to do nothing.
 long idle_mb(const Folder& folder) {
   static const long mb = measure(folder, {"--version"}).peak_mb;
   return mb;

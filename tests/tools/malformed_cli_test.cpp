@@ -344,7 +344,7 @@ TEST_CASE("names in scenarios and traces cannot escape the output folder") {
   for (const std::string& name : folder.tree())
     CHECK((std::find(before.begin(), before.end(), name) != before.end() || name.starts_with("drawn")));
   CHECK(slurp(folder / "drawn/index.html").find("escaped</script>") == std::string::npos);
-  // Frames of an earlier run are links that somebody planted: refused, and what they lead to stays.
+  // Frames of an earlier run are planted links: rejected, and their targets are kept.
   folder.write("precious", "keep me");
   std::filesystem::create_symlink(folder / "precious", folder / "out/inside/frames/frame_0000.png");
   std::filesystem::create_symlink(folder / "precious", folder / "out/inside/montage.png");

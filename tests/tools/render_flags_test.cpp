@@ -1,4 +1,4 @@
-/// What `render` can be asked for: regions alone, ghosts, SVG.
+/// Options of `render`: isolated regions, ghosts, SVG.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// lrbscope sweep: what it prints, and what it refuses.
+// lrbscope sweep: output and errors.
 #include <string>
 
 #include <doctest/doctest.h>

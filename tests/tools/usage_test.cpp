@@ -1,4 +1,4 @@
-/// What the program says of a command line that it cannot take, and of limits that the machine sets.
+/// Errors of invalid command lines and of the machine's limits.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// lrbscope why: what it prints agrees with `query`, and bad input is refused before anything is written.
+// lrbscope why: output that agrees with `query`, and errors before anything is written.
 #include <string>
 
 #include <doctest/doctest.h>

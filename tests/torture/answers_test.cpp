@@ -1,5 +1,5 @@
-// What must hold of answers for any case of any family. RapidCheck draws the cases and, where one fails,
-// looks for the most benign setting of the difficulty that fails too. ctest fixes its seed; by hand each run
+// Invariants of answers for any case of any family. RapidCheck draws the cases and, if one fails,
+// searches the lowest difficulty that also fails. ctest fixes its seed; by hand each run
 // draws others (RC_PARAMS="seed=... max_success=...").
 #include <algorithm>
 #include <filesystem>
@@ -22,9 +22,9 @@ using namespace lrb::cases;
 
 namespace {
 
-constexpr std::uint32_t kMaxSimplices = 300;  // the builder is asked often
+constexpr std::uint32_t kMaxSimplices = 300;  // the builder is called often
 
-/// A case of any family whose coordinates are finite. Discards bodies too large for so many rounds.
+/// A case of any family whose coordinates are finite. Discards bodies above kMaxSimplices.
 cases::Case any_case() {
   const auto families = cases::all_families();
   const cases::Family& family = families[*rc::gen::inRange<std::size_t>(0, families.size()).as("family")];

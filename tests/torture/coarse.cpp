@@ -166,10 +166,10 @@ class CoarseChecker {
   void measure(const Pose& pose_a, const Pose& pose_b, const CollideResult& coarse, bool meets) {
     ++t_.measured;
     const test::RealSurfaces real(bodies_.a, pose_a, bodies_.b, pose_b);
-    // What is measured is rounded, too.
+    // Measured values are also rounded.
     const double bound = coarse.error_bound * (1 + 1e-9) + 1e-12 * pose_b.t.cwiseAbs().maxCoeff();
     if (!coarse.pairs.empty() && real.off(coarse.pairs[random_() % coarse.pairs.size()]) > bound)
-      complain(t_.wrong_bounds, "a pair is further off than the bound");
+      complain(t_.wrong_bounds, "a pair deviates by more than the bound");
     if (!meets && coarse.relation == Relation::unresolved && real.between() > bound)
       complain(t_.wrong_bounds, "unresolved, and further apart than the bound");
   }

@@ -14,7 +14,7 @@ using namespace cases;
 struct Tally {
   std::uint64_t poses = 0;
   std::uint64_t in_contact = 0, inside = 0;
-  std::uint64_t with_regions = 0;  ///< asked again of bodies as the builder makes them
+  std::uint64_t with_regions = 0;                          ///< repeated on bodies with regions
   std::uint64_t false_negatives = 0, false_positives = 0;  ///< pairs of simplices
   std::uint64_t wrong_lists =
       0;  ///< repeated or misordered pairs, touch for cross, modes or contacts at odds
@@ -30,15 +30,16 @@ struct Tally {
 };
 
 struct Effort {
-  std::size_t oracle_pairs = 3;  ///< pairs of a case that the rational oracle is asked
-  int parity_every = 8;          ///< one case in so many has its relation checked by the parity oracle
-  /// One case in so many goes through the builder first, if its bodies have at most so many simplices.
+  std::size_t oracle_pairs = 3;  ///< number of pairs of a case for the rational oracle
+  int parity_every = 8;          ///< the parity oracle checks the relation of every parity_every-th case
+  /// Every regions_every-th case is built with regions first, if its bodies have at most
+  /// regions_most_simplices.
   std::uint64_t regions_every = 4;
   std::uint32_t regions_most_simplices = 700;
-  /// Above so many pairs of simplices brute force sorts boxes first (sweep_oracle.hpp).
+  /// Above this number of simplex pairs brute force sorts boxes first (sweep_oracle.hpp).
   std::uint64_t brute_force_pairs = 20000;
-  /// Above so many pairs of simplices one case in so many is asked whether interiors overlap, unless it is
-  /// known.
+  /// Overlap of interiors is tested in every case with at most small_pairs pairs of simplices, and in every
+  /// interiors_every-th one above, unless it is known.
   std::uint64_t small_pairs = 200;
   std::uint64_t interiors_every = 8;
 };

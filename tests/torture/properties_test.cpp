@@ -1,4 +1,4 @@
-// What must hold for any body and pose, tried on random ones.
+// Invariants for any body and pose, on random ones.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// The torture suite: every family at every setting of its difficulty, against brute force and independent
+// The torture suite: every family at every difficulty, against brute force and independent
 // oracles.
 //
 // Each batch of poses runs in a process of its own, so that a crash or a hang is counted and the rest goes
@@ -90,7 +90,7 @@ constexpr cases::Family kModels = {"models", "real models against each other and
                                    nullptr};
 
 Tally one_pose(const Class& c, std::uint64_t index, const Options& o, std::string& trouble) {
-  // As make_case() at setting index % kDifficulties; what is left of the random numbers drives the checks.
+  // As make_case() at difficulty index % kDifficulties; the remaining random numbers drive the checks.
   RandomEngine random = cases::case_random(c.family, o.seed, index);
   const double difficulty = cases::scaled_difficulty(static_cast<int>(index % cases::kDifficulties));
   cases::Case made = c.make(random, difficulty);
@@ -203,7 +203,7 @@ Tally run_class(const Class& c, const Options& o) {
       [&](Batch b, int status) { return lost_batch(c, b, status, o); });
 }
 
-/// Every class that is asked for, a row each; 1 if there was a difference.
+/// Runs the requested classes and prints a row each. Returns 1 if there was a difference.
 int run_table(const Options& o, const std::vector<Class>& classes) {
   const auto seconds_since = [](auto start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -45,7 +45,7 @@ struct Recorded {
   std::vector<CollideResult> results;
 };
 
-/// Each step also runs without the recorder and must come out the same.
+/// Each step also runs without the recorder and must give the same result.
 Recorded record(const Bodies& bodies, const CollideRequest& request, int steps) {
   RecorderSettings settings;
   settings.request = request;

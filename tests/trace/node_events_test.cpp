@@ -1,4 +1,4 @@
-/// What a watched query tells of its walk: pairs of tree nodes, planes, points and phases.
+/// Events of an observed traversal: pairs of tree nodes, planes, points and phases.
 
 #include <algorithm>
 #include <map>

@@ -33,7 +33,7 @@ Json words() {
   return out;
 }
 
-/// What the schema must say of a field by its type.
+/// The schema of a field, by its type.
 template <class Value>
 void check_type(const Json& field, Form form) {
   if constexpr (std::is_enum_v<Value>)

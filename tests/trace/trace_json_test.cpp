@@ -159,7 +159,7 @@ TEST_CASE("the file satisfies the rules of Perfetto and chrome://tracing") {
     const Trace t = ordered_box_run(clock);
     const OrderedJson document = OrderedJson::parse(trace_to_json(t));
     REQUIRE(document.size() == 2);
-    CHECK(document.begin().key() == "traceEvents");  // what is ours comes last
+    CHECK(document.begin().key() == "traceEvents");  // lrbscope's keys come last
     CHECK_FALSE(document.contains("displayTimeUnit"));
     double last = 0;
     std::size_t recorded = 0;
@@ -384,7 +384,7 @@ TEST_CASE("traces of older formats are read: their steps are named \"step\"") {
   CHECK(trace_from_json(old, "old.json") == t);
 }
 
-TEST_CASE("steps are named by what they found") {
+TEST_CASE("steps are named by their relation") {
   Recorder recorder(box(), box(), {});
   CollideResult result;
   recorder.begin_step(3, {}, {});

@@ -1,6 +1,5 @@
-// Whatever the affine kernel leaves out is exactly apart: boxes of every pair of tree nodes, on the axes of
-// either body, against exact arithmetic on the world coordinates that the answer is about; and what it is
-// certain of.
+// Pairs that the affine kernel culls are exactly disjoint: boxes of every pair of tree nodes, on the axes of
+// either body, against exact arithmetic on the world coordinates. Also pairs that it decides.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -102,7 +101,7 @@ void check_on(const AffineScene& scene, Side side, Share& share) {
   }
 }
 
-/// What is dropped or called certain, checked again with the rational oracle.
+/// Checks culled and decided pairs with the rational oracle.
 void check_verdicts(AffineScene scene, RandomEngine& random, Checked& checked) {
   const Scene& s = scene.bodies;
   TreeKernel& k = scene.k;

@@ -17,8 +17,8 @@ using shapes::RandomEngine;
 
 namespace {
 
-/// Appends a binary tree with so many leaves of eight simplices each. split: returns how many of some leaves
-/// go to the left; cost: what the next node costs.
+/// Appends a binary tree with `leaves` leaves of eight simplices each. split: returns how many of some leaves
+/// go to the left; cost: the cost of the next node.
 void add_tree(std::vector<BinaryNode>& tree, std::uint32_t leaves,
               const std::function<std::uint32_t(std::uint32_t)>& split, const std::function<double()>& cost,
               std::uint32_t first = 0) {

@@ -1,5 +1,5 @@
-// Every bound of the tree and of its kernel, against arithmetic of 100 digits: boxes hold what lies beneath
-// them, and what the kernel adds to boxes covers all that transforms and rounding do.
+// Every bound of the tree and of its kernel, against arithmetic of 100 digits: boxes contain the simplices
+// below them, and the kernel's margins cover the errors of transforms and rounding.
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -79,7 +79,7 @@ void check_tree(const LrbRep& rep) {
   for (std::uint32_t i = 0; i < rep.tree().nodes().size(); ++i) check_node(rep, i);
 }
 
-/// r^T (w - t) / unit in a node's coordinates: what the kernel's boxes are about.
+/// r^T (w - t) / unit in a node's coordinates, as bounded by the kernel's boxes.
 Real3 functional(const Pose& pose, const TreeNode& n, double own_unit, double unit,
                  const Eigen::Vector3d& world) {
   Real3 local;

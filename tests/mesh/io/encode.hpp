@@ -1,5 +1,5 @@
 #pragma once
-/// Meshes as the bytes of files, written by other means than the engine's: what the readers are tested with.
+/// Meshes as the bytes of files, encoded without the engine, as input for the readers.
 
 #include <bit>
 #include <cstdio>

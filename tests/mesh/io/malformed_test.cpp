@@ -27,7 +27,7 @@ struct Case {
   std::string bytes;
   std::string name;
   std::string start;  ///< of the message: file and line, or file and element
-  std::string part;   ///< what was found or expected
+  std::string part;   ///< found or expected value
 };
 
 void check_all(const std::vector<Case>& cases) {

@@ -1,4 +1,4 @@
-// Crowds: what the broad phase leaves out is apart, what it keeps is answered as brute force answers it, and
+// Crowds: pairs culled by the broad phase are separate, the others agree with brute force, and
 // the number of threads shows in times alone.
 #include <atomic>
 #include <filesystem>
@@ -94,16 +94,16 @@ void check_against_brute_force(const crowd::CrowdRun& run, std::set<Relation>& s
       for (std::uint32_t j = i + 1; j < n; ++j) {
         const BruteForceResult slow =
             brute_force(run.rep(i), run.motion.pose(i, step), run.rep(j), run.motion.pose(j, step));
-        const bool asked = next != queries.end() && next->bodies == BodyPair{i, j};
+        const bool is_queried = next != queries.end() && next->bodies == BodyPair{i, j};
         CAPTURE(step);
         CAPTURE(i);
         CAPTURE(j);
-        CHECK(slow.relation == (asked ? next->result.relation : Relation::separate));
-        CHECK(fingerprint(slow.pairs) == (asked ? next->result.fingerprint : fingerprint({})));
-        if (asked) seen.insert(slow.relation);
-        next += asked;
+        CHECK(slow.relation == (is_queried ? next->result.relation : Relation::separate));
+        CHECK(fingerprint(slow.pairs) == (is_queried ? next->result.fingerprint : fingerprint({})));
+        if (is_queried) seen.insert(slow.relation);
+        next += is_queried;
       }
-    CHECK(next == queries.end());  // each asked once, in order
+    CHECK(next == queries.end());  // each is_queried once, in order
   }
 }
 
@@ -115,9 +115,9 @@ TEST_CASE("all pairs of a crowd agree with brute force") {
   check_against_brute_force(run, seen);
   CHECK(seen.contains(Relation::crossing));
   CHECK(seen.contains(Relation::b_inside_a));  // or the test shows little
-  std::size_t asked = 0;
-  for (const crowd::CrowdStep& s : run.steps) asked += s.queries.size();
-  CHECK(asked < run.steps.size() * 12 * 11 / 2);
+  std::size_t queried = 0;
+  for (const crowd::CrowdStep& s : run.steps) queried += s.queries.size();
+  CHECK(queried < run.steps.size() * 12 * 11 / 2);
 }
 
 TEST_CASE("a crowd of 2D bodies") {

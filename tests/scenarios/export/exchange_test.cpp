@@ -196,7 +196,7 @@ TEST_CASE("runs: counters of faces add up to the step's events, curves to the co
   REQUIRE(r.model.parts.size() == 5);
   CHECK(r.model.parts[4].name == "contact_curves");
   REQUIRE(r.totals.face_tests > 0);
-  // Pseudo faces that were tested may have gone from the wrapper: what is left is real.
+  // Tested pseudo faces may have been refined: the others are real.
   for (const std::size_t body : {0U, 2U}) {
     const Part& part = r.model.parts[body];
     const auto sum = [&](const char* name) {

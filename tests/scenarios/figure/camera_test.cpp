@@ -73,7 +73,7 @@ TEST_CASE("--up rotates a scenario's view; --from is in the axes of the files") 
   const render::Image above = picture({"--from", "0.01,0,1", "--projection", "orthographic"}, "a.png");
   CHECK(above != picture({"--from", "1,0.01,0", "--projection", "orthographic", "--up", "z"}, "b.png"));
   CHECK(above != picture({"--from", "0.01,0,1", "--zoom", "0.5", "--projection", "orthographic"}, "c.png"));
-  CHECK(above.width() < 500);  // panels have the size that was asked for
+  CHECK(above.width() < 500);  // panels have the requested size
   for (const char* bad : {"0,0,1", "0,0,0", "1,2"})
     test::check_rejected(folder, {"inspect", "cube.obj", "--render", "--from", bad, "-o", "no.png"});
   test::check_rejected(folder, {"inspect", "cube.obj", "--up", "y"});

@@ -148,7 +148,7 @@ TEST_CASE("panels fill the width; omitted parts take no space") {
   CHECK(lay_out({block}, legend, {}, "", at_width(240)).height > lettered.height + 8);
   CHECK(lay_out({block}, {}, render::ScaleBar{"tests", 0, 9}, "", at_width(240)).height >
         lettered.height + 16);
-  CHECK(lay_out({block}, {}, {}, "What it shows.", at_width(240)).height > lettered.height + 8);
+  CHECK(lay_out({block}, {}, {}, "Its content.", at_width(240)).height > lettered.height + 8);
 }
 
 TEST_CASE("panels of different sizes keep one scale, and their rows and columns") {

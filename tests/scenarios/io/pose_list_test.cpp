@@ -1,4 +1,4 @@
-// Lists of poses as CSV and JSON: what is read, what is refused, and that writing loses nothing.
+// Lists of poses as CSV and JSON: reading, errors, and lossless writing.
 #include <cmath>
 #include <limits>
 
@@ -108,7 +108,8 @@ TEST_CASE("poses in JSON: other members are skipped, whatever they contain") {
   CHECK(list.places == std::vector<std::string>{"p.json:2:12", "p.json:3:1"});
 }
 
-TEST_CASE("poses in JSON: rejected at the first error, before the rest is read; large files are read") {
+TEST_CASE(
+    "poses in JSON: rejected at the first error, before the rest is read; too large files are not read") {
   std::string text = "[";
   for (int i = 0; i < 1'000'000; ++i) text += "[],";
   CHECK_THROWS_WITH_AS(io::parse_pose_json(text + "no JSON", "p.json"),

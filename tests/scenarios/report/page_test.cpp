@@ -50,7 +50,7 @@ TEST_CASE("a page is self-contained: no external addresses, all scripts and pict
   CHECK(html.find("@import") == std::string::npos);
   CHECK_FALSE(std::regex_search(html, std::regex("\\ssrc=\"")));
   CHECK_FALSE(std::regex_search(html, std::regex("url\\(")));
-  CHECK(html.find("default-src 'none'") != std::string::npos);  // and the browser is told so
+  CHECK(html.find("default-src 'none'") != std::string::npos);  // and the page declares it to the browser
 }
 
 TEST_CASE("text cannot become markup or end the data") {

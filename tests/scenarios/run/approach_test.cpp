@@ -72,7 +72,7 @@ TEST_CASE("approach: a sheet between two steps is detected") {
   const LrbRep sheet = LrbRep::without_regions(mesh, false, false);
   spec::Motion motion = coming(0.1);
   motion.from = {0, 0, 7};
-  // Steps of 2.7, and the box is 1: it stands at 1.5 before the sheet, and then 0.2 behind it.
+  // Steps of 2.7 and a box of 1: one step ends 1.5 before the sheet, and the next 0.2 behind it.
   const run::Approach found = run::find_approach(sheet, {}, box(), {}, motion);
   REQUIRE(found.met);
   CHECK(relation_at(sheet, found.poses[found.first_contact]) != Relation::undefined);

@@ -8,7 +8,7 @@
 
 using namespace lrb;
 
-// Events hold simplices; what is said of them is said of faces. The two have the same numbers until a face
+// Events contain simplices, captions name faces. The two have the same numbers until a face
 // has more than three corners: "face 11" of a cube of six was shown for its last triangle.
 TEST_CASE("captions name faces, also of bodies of polygons") {
   const LrbRep a = LrbRep::without_regions(shapes::quad_box(), true, false);

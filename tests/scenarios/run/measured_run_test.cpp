@@ -1,4 +1,4 @@
-// Scenarios that ask for distances and kinds of contact: what is recorded, said, drawn and charted.
+// Scenarios with distances and kinds of contact: records, texts, pictures and charts.
 #include <algorithm>
 #include <string>
 

@@ -81,7 +81,7 @@ TEST_CASE("a scenario's query has the fields and enumerators of requests") {
     using Value = std::remove_cvref_t<decltype(CollideRequest{}.*field.member)>;
     if constexpr (std::is_enum_v<Value>) CHECK(query.at(name).at("enum") == words<Value>());
   });
-  // How steps follow each other, and what is asked of other queries.
+  // The sequence of steps, and the other queries.
   for (const char* key : {"coherent", "distance", "clash"}) keys[key] = query.at(key);
   CHECK(keys == query);
   const auto at = [&](const char* pointer) { return document.at(json::json_pointer(pointer)).at("enum"); };
