@@ -10,11 +10,11 @@ namespace {
 
 thread_local std::uint64_t left = kNoFailure;
 thread_local bool failed = false;
-thread_local std::uint64_t count = 0;
+thread_local std::uint64_t allocation_count = 0;
 
 /// Null if it is this allocation's turn to fail.
 void* allocate(std::size_t size, std::size_t alignment) {
-  ++count;
+  ++allocation_count;
   if (left != kNoFailure && left-- == 0) {
     left = kNoFailure;
     failed = true;
@@ -41,7 +41,7 @@ bool allocation_has_failed() {
 }
 
 std::uint64_t allocations() {
-  return count;
+  return allocation_count;
 }
 
 }  // namespace lrb::test

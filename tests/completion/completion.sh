@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# words.sh LRBSCOPE: checks manual pages and completions against --help. Every command must have a page with all its options, which
+# completion.sh LRBSCOPE: checks manual pages and completions against --help. Every command must have a page with all its options, which
 # man and mandoc format without a warning. bash, zsh and fish must load their scripts, and bash and fish must complete commands,
 # options and values. Missing programs are reported as skipped.
 set -euo pipefail
@@ -7,7 +7,7 @@ lrbscope=$(realpath "$1")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-fail() { echo "words.sh: $1" >&2 && exit 1; }
+fail() { echo "completion.sh: $1" >&2 && exit 1; }
 absent() { echo "skipped: $1 is not installed"; }
 
 # ---- manual pages
