@@ -18,7 +18,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace.hpp>
 
-namespace lrb::words {
+namespace lrb::completion {
 namespace {
 
 // The commands and options of a program as data, taken from the definitions that parse them.
@@ -93,7 +93,7 @@ Option option_of(const CLI::Option& o) {
 }
 
 /// Returns the words of a program or command, without hidden ones.
-Command words_of(const CLI::App& app) {
+Command command_of(const CLI::App& app) {
   Command out;
   out.name = app.get_name();
   out.purpose = app.get_description();
@@ -102,7 +102,7 @@ Command words_of(const CLI::App& app) {
     out.options.push_back(option_of(*option));
   for (const CLI::App* command :
        app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
-    out.commands.push_back(words_of(*command));
+    out.commands.push_back(command_of(*command));
   return out;
 }
 
@@ -518,7 +518,7 @@ std::string command_page(const Command& program, const Command& command, const s
 }
 
 }  // namespace
-}  // namespace lrb::words
+}  // namespace lrb::completion
 
 namespace lrb::cli {
 
@@ -529,13 +529,13 @@ struct CompletionOptions {
 };
 
 int print_completion(const CLI::App& root, const CompletionOptions& o) {
-  const words::Command all = words::words_of(root);
-  const words::ShippedNames names = {spec::shipped_names(spec::kScenarioEnding),
+  const completion::Command all = completion::command_of(root);
+  const completion::ShippedNames names = {spec::shipped_names(spec::kScenarioEnding),
                                      spec::shipped_names(spec::kCrowdEnding),
                                      spec::shipped_names(spec::kExperimentEnding)};
-  const std::string script = o.shell == "bash"  ? words::bash_completion(all, names)
-                             : o.shell == "zsh" ? words::zsh_completion(all, names)
-                                                : words::fish_completion(all, names);
+  const std::string script = o.shell == "bash"  ? completion::bash_completion(all, names)
+                             : o.shell == "zsh" ? completion::zsh_completion(all, names)
+                                                : completion::fish_completion(all, names);
   if (!o.file.empty()) io::write_text(o.file, script);
   print(o.file.empty() ? script : o.file + "\n");
   return kOk;
@@ -546,13 +546,13 @@ struct ManualOptions {
 };
 
 int print_manual(const CLI::App& root, const ManualOptions& o) {
-  const words::Command all = words::words_of(root);
+  const completion::Command all = completion::command_of(root);
   const std::string version = trace::lrbscope_version();
   bool known = o.command.empty();
-  std::string page = known ? words::program_page(all, version) : std::string();
-  if (!o.folder.empty()) io::write_text(o.folder + "/lrbscope.1", words::program_page(all, version));
-  for (const words::Command& c : all.commands) {
-    const std::string text = words::command_page(all, c, version);
+  std::string page = known ? completion::program_page(all, version) : std::string();
+  if (!o.folder.empty()) io::write_text(o.folder + "/lrbscope.1", completion::program_page(all, version));
+  for (const completion::Command& c : all.commands) {
+    const std::string text = completion::command_page(all, c, version);
     if (c.name == o.command) page = text;
     known |= c.name == o.command;
     if (!o.folder.empty()) io::write_text(o.folder + "/lrbscope-" + c.name + ".1", text);

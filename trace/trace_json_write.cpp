@@ -224,7 +224,7 @@ class TraceWriter {
                         [&](const EngineReport::Mark& m) { return m.name == marks[k].name; });
   }
 
-  /// Writes phases as slices up to the next one, and values of counters, at their places among the events.
+  /// Writes phases as slices up to the next one, and values of counters, in the order of the events.
   void write_marks(std::size_t step, const EngineReport& r) {
     const std::size_t stored = t_.events_of(step).size();
     const EventId first = t_.steps[step].first_event;
