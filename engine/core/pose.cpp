@@ -17,10 +17,10 @@ constexpr std::size_t kRow = 4;  // numbers in a row
 /// Returns the fault of a matrix in row-major order, or an empty string if it is valid.
 std::string fault_of(std::span<const double> n) {
   if (n.size() != kOf3x4 && n.size() != kOf4x4)
-    return "has " + std::to_string(n.size()) + " numbers; give 12 (3 x 4) or 16 (4 x 4), row by row";
+    return ": expected 12 numbers (3 x 4) or 16 (4 x 4), row by row, found " + std::to_string(n.size());
   // An affine map has the last row 0 0 0 1. The comparison also rejects NaN.
   if (n.size() == kOf4x4 && !(n[12] == 0 && n[13] == 0 && n[14] == 0 && n[15] == 1))
-    return "has a last row other than 0 0 0 1; give an affine matrix for column vectors, without perspective";
+    return ": expected an affine matrix for column vectors, with the last row 0 0 0 1, found another last row";
   return {};
 }
 
@@ -37,14 +37,14 @@ Pose pose_of_checked(std::span<const double> n) {
 }  // namespace
 
 Expected<Pose> pose_of_rows(std::span<const double> numbers) {
-  if (const std::string fault = fault_of(numbers); !fault.empty()) return Error{"the pose " + fault};
+  if (const std::string fault = fault_of(numbers); !fault.empty()) return Error{"pose" + fault};
   return pose_of_checked(numbers);
 }
 
 Expected<Pose> pose_of(const Eigen::MatrixXd& matrix) {
   if (matrix.cols() != 4 || (matrix.rows() != 3 && matrix.rows() != 4))
-    return Error{"the pose is a matrix of " + std::to_string(matrix.rows()) + " x " +
-                 std::to_string(matrix.cols()) + "; give one of 3 x 4 or 4 x 4"};
+    return Error{"pose: expected a matrix of 3 x 4 or 4 x 4, found " + std::to_string(matrix.rows()) + " x " +
+                 std::to_string(matrix.cols())};
   // Eigen stores columns; the common path expects rows.
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = matrix;
   return pose_of_rows({rows.data(), static_cast<std::size_t>(rows.size())});
@@ -56,13 +56,14 @@ Expected<std::vector<Pose>> poses_of_rows(std::span<const double> numbers, std::
   // All poses have the same shape, so the number of values decides between 3 x 4 and 4 x 4.
   const std::size_t each = count == 0 ? 0 : numbers.size() / count;
   if (count == 0 || numbers.size() % count != 0 || (each != kOf3x4 && each != kOf4x4))
-    return Error{std::to_string(numbers.size()) + " numbers do not make " + std::to_string(count) +
-                 " poses; give 12 (3 x 4) or 16 (4 x 4) for each, row by row"};
+    return Error{std::to_string(count) +
+                 " poses: expected 12 numbers (3 x 4) or 16 (4 x 4) for each, row by row, found " +
+                 std::to_string(numbers.size()) + " in all"};
   poses.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::span<const double> n = numbers.subspan(i * each, each);
     if (const std::string fault = fault_of(n); !fault.empty())
-      return Error{"pose " + std::to_string(i) + " " + fault};
+      return Error{"pose " + std::to_string(i) + fault};
     poses.push_back(pose_of_checked(n));
   }
   return poses;

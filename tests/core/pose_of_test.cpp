@@ -50,17 +50,17 @@ TEST_CASE("invalid poses are rejected with a reason") {
   double rows[32] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
                      1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   CHECK(pose_of_rows(std::span(rows).first(9)).error().reason ==
-        "the pose has 9 numbers; give 12 (3 x 4) or 16 (4 x 4), row by row");
+        "pose: expected 12 numbers (3 x 4) or 16 (4 x 4), row by row, found 9");
   CHECK(pose_of(Eigen::Matrix3d(Eigen::Matrix3d::Zero())).error().reason ==
-        "the pose is a matrix of 3 x 3; give one of 3 x 4 or 4 x 4");
+        "pose: expected a matrix of 3 x 4 or 4 x 4, found 3 x 3");
   CHECK(poses_of_rows(rows, 3).error().reason ==
-        "32 numbers do not make 3 poses; give 12 (3 x 4) or 16 (4 x 4) for each, row by row");
+        "3 poses: expected 12 numbers (3 x 4) or 16 (4 x 4) for each, row by row, found 32 in all");
   CHECK(!poses_of_rows({}, 2));
   CHECK(!poses_of_rows(rows, 0));
   rows[31] = 2;
   CHECK(
       poses_of_rows(rows, 2).error().reason ==
-      "pose 1 has a last row other than 0 0 0 1; give an affine matrix for column vectors, without perspective");
+      "pose 1: expected an affine matrix for column vectors, with the last row 0 0 0 1, found another last row");
   rows[31] = std::numeric_limits<double>::quiet_NaN();
   CHECK(!poses_of_rows(rows, 2));
 }
