@@ -14,7 +14,7 @@
 
 namespace lrb::trace {
 
-std::string words(const EngineReport& r) {
+std::string to_text(const EngineReport& r) {
   std::string out = std::string(name_of(r.query)) + ", " + std::string(name_of(r.verdict)) + ", " +
                     std::to_string(r.pairs) + (r.pairs == 1 ? " pair" : " pairs");
   if (!r.complete) out += ", not all events";

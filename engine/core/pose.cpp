@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kOf3x4 = 12, kOf4x4 = 16;
 constexpr std::size_t kRow = 4;  // numbers in a row
 
-/// Returns the fault of a matrix in row-major order, or an empty string if it is valid.
+/// Returns the rest of the error message for a matrix in row-major order, or an empty string if it is valid.
 std::string fault_of(std::span<const double> n) {
   if (n.size() != kOf3x4 && n.size() != kOf4x4)
     return ": expected 12 numbers (3 x 4) or 16 (4 x 4), row by row, found " + std::to_string(n.size());

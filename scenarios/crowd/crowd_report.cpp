@@ -186,12 +186,12 @@ std::string crowd_speed(const CrowdRun& run) {
     broad_phases.push_back(static_cast<double>(s.broad_phase_ns) / 1000);
     queries.push_back(static_cast<double>(s.queries_ns) / 1000);
   }
-  const auto median = [](std::vector<double>& x) {
+  const auto median_text = [](std::vector<double>& x) {
     const auto median = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
     std::nth_element(x.begin(), median, x.end());
     return render::short_number(*median) + " us";
   };
-  return "a step takes (medians): broad phase " + median(broad_phases) + ", queries " + median(queries) +
+  return "a step takes (medians): broad phase " + median_text(broad_phases) + ", queries " + median_text(queries) +
          ", on " + std::to_string(run.threads) + (run.threads == 1 ? " thread" : " threads");
 }
 

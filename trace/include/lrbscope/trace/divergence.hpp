@@ -26,7 +26,7 @@ struct Divergence {
 std::optional<Divergence> first_divergence(const Trace& expected, const Trace& actual);
 
 /// Returns a one-line summary of another engine's answer: "any, intersecting, 1 pair".
-std::string words(const EngineReport& report);
+std::string to_text(const EngineReport& report);
 
 /// Returns an event as text, e.g. "refine: region 3 of A, faces added 5, wrapper faces 14, cause 7".
 std::string describe(const Event& event);
