@@ -53,9 +53,14 @@ QueryRange range_of(const std::string& text) {
   return out;
 }
 
+/// Returns the name of a tree's mesh; of one that is named after its file, the file's name alone.
 std::string mesh_name(const capture::Capture& c, std::uint32_t tree) {
-  const std::string& name = c.meshes[c.trees[tree].mesh].name;
-  return name.empty() ? "mesh " + std::to_string(c.trees[tree].mesh + 1) : printable_name(name);
+  const std::filesystem::path name = c.meshes[c.trees[tree].mesh].name;
+  if (name.filename().empty()) return "mesh " + std::to_string(c.trees[tree].mesh + 1);
+  const std::string extension = name.extension().string();
+  const bool is_file =
+      extension == ".obj" || extension == ".stl" || extension == ".ply" || extension == ".off";
+  return printable_name((is_file ? name.stem() : name.filename()).string());
 }
 
 /// The scenario of a run: its title, its pictures and the hash of what defines it.

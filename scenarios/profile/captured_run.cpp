@@ -302,7 +302,9 @@ std::string captured_words(const capture::Capture& capture, const TreePair& pair
 
 CapturedTotals& CapturedTotals::operator+=(const CapturedTotals& o) {
   queries += o.queries, events += o.events;
-  right += o.right, missed += o.missed, false_pairs += o.false_pairs, wrong_verdicts += o.wrong_verdicts;
+  right += o.right, missed += o.missed, false_pairs += o.false_pairs;
+  right_verdicts += o.right_verdicts, wrong_verdicts += o.wrong_verdicts;
+  has_pairs = has_pairs || o.has_pairs;
   checked = checked || o.checked;
   return *this;
 }
@@ -310,13 +312,17 @@ CapturedTotals& CapturedTotals::operator+=(const CapturedTotals& o) {
 CapturedTotals totals_of(const run::Recording& run) {
   CapturedTotals out;
   out.queries = run.trace.steps.size();
-  out.events = run.trace.events_seen;
   out.checked = !run.results.empty();
-  for (std::size_t i = 0; i < run.results.size(); ++i) {
-    const run::AnswerScore score = run::score_of(run.trace.steps[i].result, run.wrong[i], run.results[i]);
+  for (std::size_t i = 0; i < run.trace.steps.size(); ++i) {
+    const trace::StepResult& answer = run.trace.steps[i].result;
+    out.events += answer.counters.node_pairs + answer.counters.face_tests;
+    out.has_pairs = out.has_pairs || !answer.engine || answer.engine->complete;
+    if (!out.checked) continue;
+    const run::AnswerScore score = run::score_of(answer, run.wrong[i], run.results[i]);
     out.right += score.right;
     out.missed += score.missed;
     out.false_pairs += score.false_pairs;
+    out.right_verdicts += score.verdict == true;
     out.wrong_verdicts += score.verdict == false;
   }
   return out;
@@ -325,9 +331,12 @@ CapturedTotals totals_of(const run::Recording& run) {
 std::string words(const CapturedTotals& t) {
   std::string out = counted(t.queries, "query", "queries") + ", " + counted(t.events, "event", "events");
   if (!t.checked) return out + "; answers not checked";
-  out += "; pairs: " + group_digits(t.right) + " right, " + group_digits(t.missed) + " missed, " +
-         group_digits(t.false_pairs) + " false";
-  if (t.wrong_verdicts > 0) out += "; " + counted(t.wrong_verdicts, "wrong verdict", "wrong verdicts");
+  if (t.right_verdicts + t.wrong_verdicts > 0)
+    out += "; verdicts: " + group_digits(t.right_verdicts) + " right, " + group_digits(t.wrong_verdicts) +
+           " wrong";
+  if (t.has_pairs)
+    out += "; pairs: " + group_digits(t.right) + " right, " + group_digits(t.missed) + " missed, " +
+           group_digits(t.false_pairs) + " false";
   return out;
 }
 

@@ -26,7 +26,8 @@ AnswerScore score_at(const RecordedRun& p, std::size_t step) {
 /// Sums over the steps of a run.
 struct EngineTotals {
   AnswerScore pairs;
-  std::uint64_t wrong_verdicts = 0, wrong_queries = 0, intersecting = 0;
+  std::uint64_t verdicts = 0, wrong_verdicts = 0, wrong_queries = 0, intersecting = 0;
+  bool has_pairs = false;  ///< all tests of some query were recorded
   std::uint64_t box_tests = 0, node_pairs = 0, face_tests = 0;
 };
 
@@ -34,6 +35,7 @@ EngineTotals totals_of(const RecordedRun& p) {
   EngineTotals out;
   for (std::size_t i = 0; i < p.trace->steps.size(); ++i) {
     const trace::StepResult& r = p.trace->steps[i].result;
+    out.has_pairs = out.has_pairs || !r.engine || r.engine->complete;
     out.intersecting += r.relation == Relation::crossing;
     out.box_tests += r.counters.box_tests;
     out.node_pairs += r.counters.node_pairs;
@@ -41,6 +43,7 @@ EngineTotals totals_of(const RecordedRun& p) {
     if (!is_checked(p)) continue;
     const AnswerScore s = score_at(p, i);
     out.pairs.right += s.right, out.pairs.missed += s.missed, out.pairs.false_pairs += s.false_pairs;
+    out.verdicts += s.verdict.has_value();
     out.wrong_verdicts += s.verdict == false;
     out.wrong_queries += s.missed + s.false_pairs > 0 || s.verdict == false;
   }
@@ -60,12 +63,13 @@ void add_engine_answer(report::Document& doc, const RecordedRun& p) {
   else
     doc.verdict("wrong in " + counted(t.wrong_queries, "query", "queries"), false);
   doc.number({"Queries", group_digits(steps), group_digits(t.intersecting) + " intersecting, by the engine"});
-  if (is_checked(p)) {
-    const std::string wrong = counted(t.wrong_verdicts, "wrong verdict", "wrong verdicts");
-    doc.number({"Right pairs", group_digits(t.pairs.right), "found by the engine, and exact"})
-        .number({"Missed pairs", group_digits(t.pairs.missed), wrong})
+  if (is_checked(p) && t.verdicts > 0)
+    doc.number({"Right verdicts", group_digits(t.verdicts - t.wrong_verdicts),
+                group_digits(t.wrong_verdicts) + " wrong"});
+  if (is_checked(p) && t.has_pairs)
+    doc.number({"Right pairs", group_digits(t.pairs.right), "of triangles; found by the engine, and exact"})
+        .number({"Missed pairs", group_digits(t.pairs.missed), "intersecting, but not found"})
         .number({"False pairs", group_digits(t.pairs.false_pairs), "found, but disjoint"});
-  }
   doc.number({"Tests of volumes", group_digits(t.box_tests),
               t.node_pairs == t.box_tests ? "" : "in " + group_digits(t.node_pairs) + " pairs of nodes"})
       .number({"Tests of triangles", group_digits(t.face_tests),
@@ -99,7 +103,10 @@ std::vector<report::Chart> engine_charts(const RecordedRun& p) {
   tests.series = {series("volumes", counter(&Counters::box_tests)),
                   series("triangles", counter(&Counters::face_tests))};
   report::Chart pairs{"Pairs of triangles by query", {"query"}, {"pairs"}, {}, {}, report::Cursor::step};
-  pairs.series = {series("found by the engine", [&](std::size_t i) { return steps[i].result.pair_count; })};
+  pairs.series = {series("found by the engine", [&](std::size_t i) {
+    const trace::StepResult& r = steps[i].result;
+    return r.engine && !r.engine->complete ? r.engine->pairs : r.pair_count;
+  })};
   if (is_checked(p)) {
     const auto add_unless_zero = [&](const char* name, std::uint64_t AnswerScore::*which) {
       report::Series s = series(name, [&](std::size_t i) { return score_at(p, i).*which; });
@@ -109,7 +116,14 @@ std::vector<report::Chart> engine_charts(const RecordedRun& p) {
     add_unless_zero("missed", &AnswerScore::missed);
     add_unless_zero("false", &AnswerScore::false_pairs);
   }
-  std::vector<report::Chart> out = {std::move(tests), std::move(pairs)};
+  const auto is_above = [](const report::Chart& chart, double least) {
+    return std::any_of(chart.series.begin(), chart.series.end(), [&](const report::Series& s) {
+      return std::any_of(s.y.begin(), s.y.end(), [&](double y) { return y > least; });
+    });
+  };
+  std::vector<report::Chart> out;
+  if (is_above(tests, 1)) out.push_back(std::move(tests));
+  if (is_above(pairs, 0)) out.push_back(std::move(pairs));
   report::Chart times{"Time by query",
                       {"query"},
                       {"microseconds", true},
@@ -120,8 +134,7 @@ std::vector<report::Chart> engine_charts(const RecordedRun& p) {
     const auto& r = steps[i].result.engine;
     return r ? std::max(1e-3 * static_cast<double>(r->duration_ns), 1e-3) : 1e-3;
   })};
-  if (std::any_of(times.series[0].y.begin(), times.series[0].y.end(), [](double y) { return y > 1e-3; }))
-    out.push_back(std::move(times));
+  if (is_above(times, 1e-3)) out.push_back(std::move(times));
   return out;
 }
 

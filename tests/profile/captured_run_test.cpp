@@ -287,6 +287,7 @@ TEST_CASE("wrong answers are found pair by pair: those missed, those that are fa
   CHECK(totals.missed == missed);
   CHECK(totals.false_pairs == planted.size() - missed);
   CHECK(totals.right + missed == run.results[0].pairs.size());
+  CHECK(totals.events == engine.capture.queries[0].events.size());
 }
 
 TEST_CASE("what counts as wrong depends on the kind of query") {
@@ -337,6 +338,7 @@ TEST_CASE("a query whose events were not all kept is not said to miss pairs") {
   CHECK(
       profile::captured_words(engine.capture, profile::tree_pairs(engine.capture).pairs[0]).find("1 query") !=
       std::string::npos);
+  CHECK(profile::words(profile::totals_of(run)) == "1 query, 0 events; verdicts: 1 right, 0 wrong");
   q.verdict = capture::Verdict::separate;  // but its verdict is its own
   run = recorded(engine.capture);
   CHECK(profile::totals_of(run).missed == run.results[0].pairs.size());
@@ -508,7 +510,7 @@ TEST_CASE("import: a run that other commands open, a line of totals, or one clea
 TEST_CASE("import: many pairs of trees get a page that lists their runs") {
   const Folder folder;
   ToyEngine engine;
-  for (const char* name : {"floor", "crate", "ball"}) engine.add(captured(shapes::box(), name));
+  for (const char* name : {"floor", "meshes/crate.obj", "ball"}) engine.add(captured(shapes::box(), name));
   engine.query(0, 1, {0.5, 0.5, 0.5});
   engine.query(1, 2, {0.5, 0.25, 0.5});
   engine.query(2, 2, {0, 0, 0}, capture::QueryKind::self);
