@@ -403,7 +403,7 @@ class Reader {
     Query& query = growing.query;
     const std::uint32_t verdict = u32();
     if (verdict > 2)
-      fail("expected the verdict 0 (apart), 1 (meet) or 2 (untold), found " + text(verdict) +
+      fail("expected the verdict 0 (separate), 1 (intersecting) or 2 (unreported), found " + text(verdict) +
            "; see docs/capture.md");
     require(!query.ended, "ends a second time; the file is damaged, or two programs wrote to it");
     query.ended = true;

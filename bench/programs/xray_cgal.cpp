@@ -164,7 +164,7 @@ void run(std::istream& in, const char* file) {
     }
     LRBCAP_COUNT(volume_tests, box_count);
     LRBCAP_COUNT(leaf_tests, leaf_count);
-    LRBCAP_END(pairs > 0 ? LRBCAP_MEET : LRBCAP_APART, pairs);
+    LRBCAP_END(pairs > 0 ? LRBCAP_INTERSECTING : LRBCAP_SEPARATE, pairs);
   }
 }
 

@@ -93,7 +93,7 @@ void run(std::istream& in, const char* file) {
     fcl::detail::collide(&traversal);
     LRBCAP_COUNT(volume_tests, traversal.num_bv_tests);
     LRBCAP_COUNT(leaf_tests, traversal.num_leaf_tests);
-    LRBCAP_END(result.isCollision() ? LRBCAP_MEET : LRBCAP_APART, result.numContacts());
+    LRBCAP_END(result.isCollision() ? LRBCAP_INTERSECTING : LRBCAP_SEPARATE, result.numContacts());
   }
 }
 

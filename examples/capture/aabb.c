@@ -231,7 +231,7 @@ static void query(const double* pose) {
   pairs = 0;
   LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, a->tree, NULL, b->tree, pose);
   descend(0, 0);
-  LRBCAP_END(pairs ? LRBCAP_MEET : LRBCAP_APART, pairs);
+  LRBCAP_END(pairs ? LRBCAP_INTERSECTING : LRBCAP_SEPARATE, pairs);
   printf("%llu pairs\n", (unsigned long long)pairs);
 }
 

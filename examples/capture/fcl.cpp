@@ -125,7 +125,7 @@ std::size_t query(const Body& a, const Body& b, const std::array<double, 12>& po
                           result);
   LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, a.tree, nullptr, b.tree, pose.data());
   fcl::detail::collide(&traversal);
-  LRBCAP_END(result.numContacts() ? LRBCAP_MEET : LRBCAP_APART, result.numContacts());
+  LRBCAP_END(result.numContacts() ? LRBCAP_INTERSECTING : LRBCAP_SEPARATE, result.numContacts());
   return result.numContacts();
 }
 

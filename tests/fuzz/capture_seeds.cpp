@@ -41,7 +41,7 @@ std::string recorded(std::uint32_t volume, const std::uint32_t* ids) {
     LRBCAP_NODES(id(1), id(2), 4, 2, 7);
     LRBCAP_PRIM(1, 0, 0);
     LRBCAP_COUNT(name, 70000);
-    LRBCAP_END(LRBCAP_MEET, 1);
+    LRBCAP_END(LRBCAP_INTERSECTING, 1);
   }
   LRBCAP_CLOSE();
   return out;

@@ -38,7 +38,7 @@ int main(int argc, char **argv) {
     LRBCAP_NODES(0, 0, 4, 2, LRBCAP_NO_AXIS);
     LRBCAP_PRIM(0, 0, 1);
     LRBCAP_COUNT(name, q);
-    LRBCAP_END(LRBCAP_MEET, 1);
+    LRBCAP_END(LRBCAP_INTERSECTING, 1);
   }
   if (argc > 2) return 0; /* without LRBCAP_CLOSE */
   LRBCAP_THREAD_END();

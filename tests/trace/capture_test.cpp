@@ -107,7 +107,7 @@ void a_query() {
   LRBCAP_NODES(2, 10, 4, 3, LRBCAP_NO_AXIS);
   LRBCAP_PRIM(3, 1, 1);
   LRBCAP_COUNT(name, 4000000000);
-  LRBCAP_END(LRBCAP_MEET, 1);
+  LRBCAP_END(LRBCAP_INTERSECTING, 1);
 }
 
 // Damage. Chunks are named by kind and number, their content by offset.
@@ -244,7 +244,7 @@ TEST_CASE("any numbers of any length read back, across buffers") {
         LRBCAP_NODES(e.a, e.b, e.tests, e.met, e.axis);
       else
         LRBCAP_PRIM(e.a, e.b, e.met);
-    LRBCAP_END(LRBCAP_UNTOLD, 0);
+    LRBCAP_END(LRBCAP_UNREPORTED, 0);
   }));
   CHECK(c.queries.at(0).events == told);
   CHECK(c.queries[0].complete());
@@ -286,8 +286,8 @@ TEST_CASE("nothing is recorded, and every call may be made, unless an output is 
   CHECK(LRBCAP_BEGIN(LRBCAP_ANY, 0, nullptr, 0, nullptr) == 0);
   LRBCAP_NODE(0, 0, 1, 0);
   LRBCAP_JOIN(0);
-  LRBCAP_END(LRBCAP_MEET, 1);
-  LRBCAP_END(LRBCAP_MEET, 1);
+  LRBCAP_END(LRBCAP_INTERSECTING, 1);
+  LRBCAP_END(LRBCAP_INTERSECTING, 1);
   LRBCAP_THREAD_END();
   LRBCAP_CLOSE();
   LRBCAP_CLOSE();
@@ -431,7 +431,7 @@ TEST_CASE("events are checked") {
       const std::uint32_t a = a_tree(), b = a_tree_with_ids();
       LRBCAP_BEGIN(static_cast<std::uint32_t>(kind), a, nullptr, b, kPose);
       events();
-      LRBCAP_END(LRBCAP_APART, 0);
+      LRBCAP_END(LRBCAP_SEPARATE, 0);
     });
   };
   const auto root = [] { LRBCAP_NODE(0, 30, 1, 255); };
@@ -471,7 +471,7 @@ TEST_CASE("threads record at once, and helpers join a query") {
           LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, tree, nullptr, tree, nullptr);
           LRBCAP_NODE(0, 0, 1, 255);
           for (std::uint32_t i = 0; i < 20000; ++i) LRBCAP_PRIM(k, i % 4, i % 2);
-          LRBCAP_END(LRBCAP_MEET, k);
+          LRBCAP_END(LRBCAP_INTERSECTING, k);
         }
         LRBCAP_THREAD_END();
       });
@@ -491,7 +491,7 @@ TEST_CASE("threads record at once, and helpers join a query") {
     for (std::uint32_t i = 0; i < 5000; ++i) LRBCAP_PRIM(3, i % 4, 1);
     LRBCAP_JOIN(query);  // no effect: in a query of its own
     for (std::thread& t : threads) t.join();
-    LRBCAP_END(LRBCAP_MEET, 1);
+    LRBCAP_END(LRBCAP_INTERSECTING, 1);
   });
   const Capture c = read(bytes);
   REQUIRE(c.queries.size() == 81);
@@ -529,7 +529,7 @@ void queries(int count, std::uint32_t tests = 10) {
     LRBCAP_BEGIN(LRBCAP_ANY, 0, nullptr, 0, nullptr);
     for (std::uint32_t i = 0; i < q * tests; ++i) LRBCAP_PRIM(i, i, 1);
     LRBCAP_COUNT(name, q);
-    LRBCAP_END(LRBCAP_MEET, q);
+    LRBCAP_END(LRBCAP_INTERSECTING, q);
   }
 }
 
@@ -585,7 +585,7 @@ TEST_CASE("LRBCAP_SLOWER_US keeps the events of slow and of long queries") {
           for (int i = 0; i < (which == 2 ? 9000 : 3); ++i) LRBCAP_PRIM(0, 0, 0);
           LRBCAP_COUNT(name, 1);
           if (which == 1) std::this_thread::sleep_for(std::chrono::milliseconds(700));
-          LRBCAP_END(LRBCAP_APART, 0);
+          LRBCAP_END(LRBCAP_SEPARATE, 0);
         }
       },
       {{"LRBCAP_SLOWER_US", "500000"}}));
@@ -637,8 +637,8 @@ TEST_CASE("a query without an end, or within another, loses only ends") {
     LRBCAP_PRIM(1, 1, 0);
     LRBCAP_BEGIN(LRBCAP_ANY, 0, nullptr, 0, nullptr);
     LRBCAP_PRIM(2, 2, 0);
-    LRBCAP_END(LRBCAP_APART, 0);
-    LRBCAP_END(LRBCAP_MEET, 9);
+    LRBCAP_END(LRBCAP_SEPARATE, 0);
+    LRBCAP_END(LRBCAP_INTERSECTING, 9);
     LRBCAP_BEGIN(LRBCAP_ANY, 0, nullptr, 0, nullptr);
     LRBCAP_PRIM(3, 3, 0);
   }));

@@ -12,7 +12,7 @@
  *   LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, tree_a, pose_a, tree_b, pose_b);   12 doubles each: 3x4, row by row
  *     LRBCAP_NODE(i, j, met, axis);                                   two bounding volumes were tested
  *     LRBCAP_PRIM(f, g, met);                                         two triangles were tested
- *   LRBCAP_END(LRBCAP_MEET, n_pairs);                                 the engine's own answer
+ *   LRBCAP_END(LRBCAP_INTERSECTING, n_pairs);                                 the engine's own answer
  *   LRBCAP_CLOSE();
  *
  * Threads: each has its own buffer (215 kB). Open, describe and close while no query runs; everything else
@@ -52,7 +52,7 @@
 /* Kinds of queries. LRBCAP_SELF: one tree with itself. */
 enum { LRBCAP_ALL_PAIRS = 1, LRBCAP_ANY = 2, LRBCAP_DISTANCE = 3, LRBCAP_FIRST_CONTACT = 4, LRBCAP_SELF = 5 };
 /* The engine's answer. */
-enum { LRBCAP_APART = 0, LRBCAP_MEET = 1, LRBCAP_UNTOLD = 2 };
+enum { LRBCAP_SEPARATE = 0, LRBCAP_INTERSECTING = 1, LRBCAP_UNREPORTED = 2 };
 /* The axis on which two volumes are apart: 0-2 axes of A, 3-5 axes of B, 6-14 cross products of edges
  * (6 + 3 i + j), 32 + k direction k of a k-DOP. */
 enum { LRBCAP_NO_AXIS = 255 };
