@@ -42,7 +42,7 @@ struct Prices {
   std::uint64_t volume_tests = 0;  ///< of all visits; more than visits for wide nodes
   std::uint64_t triangle_tests = 0, triangle_tests_for_nothing = 0;
   /// Of those for nothing: tests in a pair of leaves with more than one pair of triangles, which smaller
-  /// leaves might save.
+  /// leaves might save. Not those of triangles whose own volumes were compared, as at leaves of wide nodes.
   std::uint64_t crowded_tests = 0;
   /// An estimate of the visits and tests of triangles that leaves of up to kLargerLeaves triangles would
   /// save: for each first visited pair of nodes of that size whose volumes overlap, the visits and tests

@@ -37,7 +37,8 @@ run::Recording recorded_tori(EventLevel level, Mode mode = Mode::all_pairs, std:
     recorder.end_step(out.results.back());
   }
   out.trace = recorder.take();
-  out.trees = run::trees_of(out.trace, out.bodies);
+  if (level != EventLevel::faces)
+    for (const bodies::LoadedBody& body : out.bodies) out.trees.emplace_back(body.rep.tree());
   return out;
 }
 
