@@ -212,7 +212,7 @@ Command add_check(CLI::App& root, const Globals& globals) {
                                  "may err [float if all volumes are floats, else double]");
   app->add_flag("--split", o->split,
                 "Split waste into volumes and order even for captures of more than " +
-                    std::to_string(profile::kMostVisitsToSplit) + " visits, which takes long");
+                    std::to_string(profile::kMaxVisitsToSplit) + " visits, which takes long");
   app->add_flag("--json", o->json, "Print JSON, a line for each query and one for the sums");
   app->add_option("-o,--output", o->folder, "Also write a page to this folder")->type_name("DIR");
   return {app, [o, &globals] { return run_check(*o, globals); }};

@@ -25,7 +25,7 @@ void run(benchmark::State& state, const Event& event) {
       event(i);
       benchmark::DoNotOptimize(i);
     }
-    LRBCAP_END(LRBCAP_UNTOLD, 0);
+    LRBCAP_END(LRBCAP_UNREPORTED, 0);
   }
   state.counters["event"] = benchmark::Counter(
       kEvents, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);

@@ -1,5 +1,5 @@
 #pragma once
-/// The price of each visit of a captured query: what it was good for.
+/// The price of each visit of a captured query: its contribution to the answer.
 ///
 /// A visit is a test of two nodes' volumes (of wide nodes: the comparison of all their children, which counts
 /// once), and has one of these prices:
@@ -11,7 +11,7 @@
 /// - order: the rest of the visits beneath a pair of proof. Another choice of the node to open, or none at
 /// all
 ///   if the visit is a repetition, would have saved them. The choice is that of an oracle: this is a bound.
-/// - unsplit: volumes and order together, where least_visits() was not asked for or has no answer.
+/// - unsplit: volumes and order together, if least_visits() was not requested or has no answer.
 /// - unattributed: the visit does not descend from a start (QueryWalk::is_start()).
 ///   All visits of queries of distance and first contact, whose tests have another meaning, and of queries
 ///   with a side without a tree.

@@ -20,7 +20,7 @@
  * of another calls LRBCAP_JOIN(query), later LRBCAP_JOIN(0), and before it exits LRBCAP_THREAD_END(). Queries
  * do not nest: one that begins within another leaves the other without an end.
  *
- * Output is only appended: to a file, a FIFO, or a function of yours (LRBCAP_OPEN_SINK).
+ * Output is only appended: to a file, a FIFO, or your own function (LRBCAP_OPEN_SINK).
  *   LRBCAP_OUT=FILE            where; without it nothing is recorded
  *   LRBCAP_QUERIES=40-60       only these queries, numbered from 1 (also 40 or 40-)
  *   LRBCAP_SLOWER_US=N         events only of queries that take at least N microseconds, or have over 8,192
@@ -52,7 +52,7 @@
 /* Kinds of queries. LRBCAP_SELF: one tree with itself. */
 enum { LRBCAP_ALL_PAIRS = 1, LRBCAP_ANY = 2, LRBCAP_DISTANCE = 3, LRBCAP_FIRST_CONTACT = 4, LRBCAP_SELF = 5 };
 /* The engine's answer. */
-enum { LRBCAP_APART = 0, LRBCAP_MEET = 1, LRBCAP_UNTOLD = 2 };
+enum { LRBCAP_APART = 0, LRBCAP_MEET = 1, LRBCAP_UNREPORTED = 2 };
 /* The axis on which two volumes are apart: 0-2 axes of A, 3-5 axes of B, 6-14 cross products of edges
  * (6 + 3 i + j), 32 + k direction k of a k-DOP. */
 enum { LRBCAP_NO_AXIS = 255 };
