@@ -97,8 +97,7 @@ std::string json_lines(const profile::Check& c) {
                      {"missed", v.missed},
                      {"false", v.extra},
                      {"wrong_pairs", std::move(wrong)},
-                     {"prices", json_of(q.prices)}}) +
-           "\n";
+                     {"prices", json_of(q.prices)}});
   }
   const profile::CheckSums sum = c.sum();
   ordered_json verdicts;
@@ -109,8 +108,7 @@ std::string json_lines(const profile::Check& c) {
                    {"precision", name_of(c.precision)},
                    {"verdicts", std::move(verdicts)},
                    {"prices", json_of(sum.prices)},
-                   {"advice", profile::advice(sum.prices)}}) +
-         "\n";
+                   {"advice", profile::advice(sum.prices)}});
   return out;
 }
 
