@@ -97,8 +97,7 @@ std::string json_lines(const profile::Check& c) {
                      {"missed", v.missed},
                      {"false", v.extra},
                      {"wrong_pairs", std::move(wrong)},
-                     {"prices", json_of(q.prices)}}) +
-           "\n";
+                     {"prices", json_of(q.prices)}});
   }
   const profile::CheckSums sum = c.sum();
   ordered_json verdicts;
@@ -109,8 +108,7 @@ std::string json_lines(const profile::Check& c) {
                    {"precision", name_of(c.precision)},
                    {"verdicts", std::move(verdicts)},
                    {"prices", json_of(sum.prices)},
-                   {"advice", profile::advice(sum.prices)}}) +
-         "\n";
+                   {"advice", profile::advice(sum.prices)}});
   return out;
 }
 
@@ -212,7 +210,7 @@ Command add_check(CLI::App& root, const Globals& globals) {
                                  "may err [float if all volumes are floats, else double]");
   app->add_flag("--split", o->split,
                 "Split waste into volumes and order even for captures of more than " +
-                    std::to_string(profile::kMostVisitsToSplit) + " visits, which takes long");
+                    std::to_string(profile::kMaxVisitsToSplit) + " visits, which takes long");
   app->add_flag("--json", o->json, "Print JSON, a line for each query and one for the sums");
   app->add_option("-o,--output", o->folder, "Also write a page to this folder")->type_name("DIR");
   return {app, [o, &globals] { return run_check(*o, globals); }};

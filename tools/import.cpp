@@ -187,14 +187,14 @@ int run_import(const ImportOptions& o, const Globals& globals) {
   if (found.without_tree > 0)
     notes.push_back(name + ": " + (left_out = without_tree_words(found.without_tree)));
   // A scene of many bodies, or trees that are refitted, make many pairs.
-  constexpr std::size_t kMostPairs = 24;
-  if (found.pairs.size() > kMostPairs) {
+  constexpr std::size_t kMaxPairs = 24;
+  if (found.pairs.size() > kMaxPairs) {
     std::stable_sort(found.pairs.begin(), found.pairs.end(),
                      [](const auto& x, const auto& y) { return x.queries.size() > y.queries.size(); });
-    const std::string words = render::group_digits(found.pairs.size() - kMostPairs) + " of " +
+    const std::string words = render::group_digits(found.pairs.size() - kMaxPairs) + " of " +
                               render::group_digits(found.pairs.size()) +
                               " pairs of trees, those with the fewest queries, are left out (--queries)";
-    found.pairs.resize(kMostPairs);
+    found.pairs.resize(kMaxPairs);
     notes.push_back(name + ": " + words);
     left_out += (left_out.empty() ? "" : ". ") + words;
   }

@@ -140,12 +140,12 @@ std::string text_of_tree(const Trees& all, const capture::Tree& tree, const prof
        (f.unreached > 0 ? ", not below the root " + std::to_string(f.unreached) : "") + "; depth " +
        std::to_string(f.depth) + ", of leaves on average " + number(f.mean_depth));
   std::string sizes;
-  constexpr std::size_t kMostSizes = 16;
+  constexpr std::size_t kMaxSizes = 16;
   std::size_t i = 0;
   for (const auto& [size, count] : f.leaf_sizes)
-    if (i++ < kMostSizes)
+    if (i++ < kMaxSizes)
       sizes += (i == 1 ? "" : ", ") + std::to_string(count) + " with " + std::to_string(size);
-  if (f.leaf_sizes.size() > kMostSizes) sizes += " ... up to " + std::to_string(f.leaf_sizes.rbegin()->first);
+  if (f.leaf_sizes.size() > kMaxSizes) sizes += " ... up to " + std::to_string(f.leaf_sizes.rbegin()->first);
   line("triangles in leaves: " + sizes);
   if (const auto sah = f.sah())
     line("SAH: " + number(*sah) + " (1.2 x " + number(*f.sah_inner) + " for inner nodes + " +
@@ -163,7 +163,7 @@ std::string text_of_tree(const Trees& all, const capture::Tree& tree, const prof
                             : "") +
          (f.siblings.nodes_left_out > 0
               ? "; " + counted(f.siblings.nodes_left_out, "node", "nodes") + " with more than " +
-                    std::to_string(profile::SiblingFigures::kMostChildren) + " children left out"
+                    std::to_string(profile::SiblingFigures::kMaxChildren) + " children left out"
               : ""));
   if (f.looseness)
     line("volume / tightest box of its triangles: median " + number(f.looseness->median) +
@@ -309,11 +309,11 @@ void write_pages(const std::string& folder, const Trees& all, const std::vector<
 }
 
 int run_tree(const TreeCommandOptions& o, const Globals& globals) {
-  constexpr std::size_t kMostPages = 24;
+  constexpr std::size_t kMaxPages = 24;
   std::vector<std::string> notes;
   const Trees all = read_trees(o, notes);
-  if (!o.folder.empty() && all.trees.size() > kMostPages)
-    throw InputError("-o: expected " + std::to_string(kMostPages) + " trees at most, found " +
+  if (!o.folder.empty() && all.trees.size() > kMaxPages)
+    throw InputError("-o: expected " + std::to_string(kMaxPages) + " trees at most, found " +
                      std::to_string(all.trees.size()) + "; choose one with --tree");
   note(globals, notes);
   std::vector<profile::TreeReport> reports;

@@ -95,7 +95,7 @@ class Reader {
   }
 
  private:
-  /// Throws an InputError: the name, where, and what is wrong.
+  /// Throws an InputError: the name, the location and the fault.
   [[noreturn]] void fail(const std::string& what) const {
     std::string where = name_ + ":";
     if (chunk_ != 0) where += " chunk " + text(chunk_) + " (" + kind_ + " at byte " + text(begin_) + ")";
@@ -264,7 +264,7 @@ class Reader {
       tree.replaces = index_of(trees_, replaces, "tree");
       if (replaces == tree.id) fail("tree " + text(tree.id) + " replaces itself; name the tree before it");
     }
-    require(nodes != 0 && nodes != kNull, "expected at least one node; describe the root, too");
+    require(nodes != 0 && nodes != kNull, "expected at least one node; also describe the root");
     require((options & ~(kHasIds | kFloatVolumes)) == 0, "unknown options of a tree; use a newer lrbscope");
     require(kind != static_cast<std::uint32_t>(VolumeKind::kdop) || directions <= left() / 24,
             "more directions than its content has room for; the file is damaged");

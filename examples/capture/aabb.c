@@ -65,7 +65,7 @@ static void read_obj(body* m, const char* path) {
 /* Sorts the triangles of a node by their middle along an axis. */
 static const body* sorted;
 static int axis;
-static int by_middle(const void* p, const void* q) {
+static int by_centroid(const void* p, const void* q) {
   double d = 0;
   for (int i = 0; i < 3; ++i) {
     const uint32_t v = sorted->triangles[3 * *(const uint32_t*)p + i];
@@ -91,14 +91,14 @@ static void build(body* m, uint32_t at, uint32_t first, uint32_t count) {
   for (int k = 1; k < 3; ++k)
     if (n->high[k] - n->low[k] > n->high[axis] - n->low[axis]) axis = k;
   sorted = m;
-  qsort(m->order + first, count, sizeof *m->order, by_middle);
+  qsort(m->order + first, count, sizeof *m->order, by_centroid);
   n->child = m->n_nodes;
   m->n_nodes += 2;
   build(m, n->child, first, count / 2);
   build(m, n->child + 1, first + count / 2, count - count / 2);
 }
 
-/* Tells the recorder mesh and tree. */
+/* Reports mesh and tree to the recorder. */
 static void describe(body* m, const char* name) {
   const uint32_t n = m->n_nodes;
   uint32_t *first_child = grow(NULL, (n + 1) * 4), *child = grow(NULL, 2 * n * 4);

@@ -68,7 +68,7 @@ void read_obj(Body& body, const std::string& path) {
   }
 }
 
-/// Tells the recorder mesh and tree.
+/// Reports mesh and tree to the recorder.
 void describe(Body& body, const std::string& name) {
   std::vector<std::uint32_t> first_child{0}, child, first_prim{0}, prim;
   std::vector<double> boxes;

@@ -90,13 +90,13 @@ report::Table owner_table(std::span<const Check> checks) {
 }
 
 report::Table wrong_table(std::span<const Check> checks) {
-  constexpr std::size_t kMostRows = 50;
+  constexpr std::size_t kMaxRows = 50;
   report::Table t{"Wrong and undecidable answers", {"engine", "verdict", "explanation"}};
   for (const Check& c : checks)
     for (const auto& [word, lines] : {std::pair{"wrong", &c.wrong}, {"undecidable", &c.undecidable}})
       for (const std::string& line : *lines)
-        if (t.rows.size() < kMostRows) t.rows.push_back({c.engine, word, line});
-  if (t.rows.size() == kMostRows) t.note = "The first " + std::to_string(kMostRows) + ".";
+        if (t.rows.size() < kMaxRows) t.rows.push_back({c.engine, word, line});
+  if (t.rows.size() == kMaxRows) t.note = "The first " + std::to_string(kMaxRows) + ".";
   return t;
 }
 
@@ -126,10 +126,10 @@ report::Chart without_empty(report::Chart chart) {
 }
 
 report::Chart chart_by_query(const Check& c) {
-  constexpr std::size_t kMostBars = 400;
+  constexpr std::size_t kMaxBars = 400;
   report::Chart out = bars("Prices by query, " + c.engine, "query");
   // Longer captures show every n-th query.
-  const std::size_t every = 1 + c.queries.size() / kMostBars;
+  const std::size_t every = 1 + c.queries.size() / kMaxBars;
   for (std::size_t i = 0; i < c.queries.size(); i += every) {
     const Prices& p = c.queries[i].prices;
     add_bar(out, c.queries[i].verdict.number, {p.needed, p.proof, p.volumes, p.order, p.unsplit});
@@ -178,7 +178,7 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
   Check out;
   out.engine = capture.engine;
   out.precision = settings.precision.value_or(precision_of(capture));
-  const bool split = settings.split.value_or(visits_in(capture) <= kMostVisitsToSplit);
+  const bool split = settings.split.value_or(visits_in(capture) <= kMaxVisitsToSplit);
   CapturedBodies bodies(capture);
   Checker checker(bodies, out.precision);
   PriceBook book(bodies);
@@ -202,7 +202,7 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
 }
 
 report::Table price_table(std::span<const Check> checks) {
-  report::Table t{"What the visits were good for",
+  report::Table t{"Benefit of the visits",
                   {"engine", "queries", "visits", "needed", "proof", "volumes", "order"}};
   const bool unsplit =
       std::any_of(checks.begin(), checks.end(), [](const Check& c) { return c.sum().prices.unsplit > 0; });

@@ -19,11 +19,11 @@ namespace lrb::profile {
 /// Captures with at most this many visits are split into volumes and order unless CheckSettings::split
 /// decides otherwise: that takes about 1 to 5 microseconds a visit and the same for each pair that it would
 /// save.
-inline constexpr std::uint64_t kMostVisitsToSplit = 2'000'000;
+inline constexpr std::uint64_t kMaxVisitsToSplit = 2'000'000;
 
 struct CheckSettings {
   std::optional<Precision> precision;  ///< nullopt: precision_of()
-  std::optional<bool> split;           ///< nullopt: for at most kMostVisitsToSplit visits
+  std::optional<bool> split;           ///< nullopt: for at most kMaxVisitsToSplit visits
 };
 
 struct CheckedQuery {

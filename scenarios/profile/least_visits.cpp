@@ -23,7 +23,7 @@ class Search {
   /// Returns the least number of visits of a pair and beneath it.
   std::uint32_t least(std::uint32_t a, std::uint32_t b) {
     if (const std::uint32_t* const known = least_.find(a, b)) return *known;
-    if (least_.size() >= kMostPairs) gave_up_ = true;
+    if (least_.size() >= kMaxPairs) gave_up_ = true;
     if (gave_up_) return 1;
     std::uint32_t best = 1;
     const std::uint32_t visit = walk_.visit_of(a, b);
@@ -90,7 +90,7 @@ std::uint32_t levels_of(const TreeIndex& index) {
 
 std::optional<std::uint64_t> least_visits(CapturedBodies& bodies, const QueryWalk& walk) {
   // The search recurses once for each level.
-  if (levels_of(walk.index(0)) + levels_of(walk.index(1)) > kMostLevels) return std::nullopt;
+  if (levels_of(walk.index(0)) + levels_of(walk.index(1)) > kMaxLevels) return std::nullopt;
   Search search(bodies, walk);
   std::uint64_t least = 0;
   for (const std::uint32_t i : walk.from_root())

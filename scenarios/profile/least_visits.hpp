@@ -11,11 +11,11 @@ namespace lrb::profile {
 
 /// The pairs of nodes that a search for the least number may look at, and the levels of both trees together.
 /// Beyond them there is no answer.
-inline constexpr std::size_t kMostPairs = 50'000'000;
-inline constexpr std::uint32_t kMostLevels = 4000;
+inline constexpr std::size_t kMaxPairs = 50'000'000;
+inline constexpr std::uint32_t kMaxLevels = 4000;
 
 /// Returns the least number of visits that any order of descent needs with the volumes of these trees;
-/// nullopt beyond kMostPairs or kMostLevels.
+/// nullopt beyond kMaxPairs or kMaxLevels.
 ///
 /// A descent begins where the recorded one did, usually with both roots. At a pair whose volumes overlap it
 /// opens A's node, or B's, or both if the recorded engine ever did so. It then visits all pairs of children

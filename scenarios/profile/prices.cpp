@@ -44,6 +44,16 @@ bool is_exhaustive(const capture::Query& query) {
                               (query.kind == QueryKind::any && query.verdict == capture::Verdict::separate));
 }
 
+/// Returns true if two triangles share their pair of leaves with others, and only the volumes of the leaves
+/// were compared before.
+bool is_crowded(const QueryWalk& walk, std::size_t event) {
+  const Event& e = walk.query().events[event];
+  const std::uint32_t a = walk.index(0).leaf[e.a], b = walk.index(1).leaf[e.b], visit = walk.parent(event);
+  if (a == kNull || b == kNull) return false;
+  if (visit != QueryWalk::kNone && walk.query().events[visit].tests > 1) return false;
+  return std::uint64_t{walk.index(0).triangles_below[a]} * walk.index(1).triangles_below[b] > 1;
+}
+
 }  // namespace
 
 Prices& Prices::operator+=(const Prices& other) {
@@ -76,15 +86,12 @@ Prices PriceBook::add(const capture::Query& query, const QueryWalk* walk, std::s
   const bool one_is_enough = !found.empty();
   price_visits(*walk, one_is_enough ? std::span<const TrianglePair>(found) : exact, one_is_enough, out);
   price_leaves(*walk, out);
-  for (const Event& e : query.events)
-    if (e.kind == EventKind::triangles && !is_exact(*walk, exact, e)) {
-      ++out.triangle_tests_for_nothing;
-      const std::uint32_t a = walk->index(0).leaf[e.a], b = walk->index(1).leaf[e.b];
-      if (a == kNull || b == kNull) continue;
-      const std::uint64_t pairs =
-          std::uint64_t{walk->index(0).triangles_below[a]} * walk->index(1).triangles_below[b];
-      out.crowded_tests += pairs > 1;
-    }
+  for (std::size_t i = 0; i < query.events.size(); ++i) {
+    const Event& e = query.events[i];
+    if (e.kind != EventKind::triangles || is_exact(*walk, exact, e)) continue;
+    ++out.triangle_tests_for_nothing;
+    out.crowded_tests += is_crowded(*walk, i);
+  }
   const std::uint64_t wasted = std::exchange(out.unsplit, 0);
   if (one_is_enough) {
     out.order = wasted;

@@ -1,5 +1,5 @@
 #pragma once
-/// The price of each visit of a captured query: what it was good for.
+/// The price of each visit of a captured query: its contribution to the answer.
 ///
 /// A visit is a test of two nodes' volumes (of wide nodes: the comparison of all their children, which counts
 /// once), and has one of these prices:
@@ -11,7 +11,7 @@
 /// - order: the rest of the visits beneath a pair of proof. Another choice of the node to open, or none at
 /// all
 ///   if the visit is a repetition, would have saved them. The choice is that of an oracle: this is a bound.
-/// - unsplit: volumes and order together, where least_visits() was not asked for or has no answer.
+/// - unsplit: volumes and order together, if least_visits() was not requested or has no answer.
 /// - unattributed: the visit does not descend from a start (QueryWalk::is_start()).
 ///   All visits of queries of distance and first contact, whose tests have another meaning, and of queries
 ///   with a side without a tree.
@@ -42,7 +42,7 @@ struct Prices {
   std::uint64_t volume_tests = 0;  ///< of all visits; more than visits for wide nodes
   std::uint64_t triangle_tests = 0, triangle_tests_for_nothing = 0;
   /// Of those for nothing: tests in a pair of leaves with more than one pair of triangles, which smaller
-  /// leaves might save.
+  /// leaves might save. Not those of triangles whose own volumes were compared, as at leaves of wide nodes.
   std::uint64_t crowded_tests = 0;
   /// An estimate of the visits and tests of triangles that leaves of up to kLargerLeaves triangles would
   /// save: for each first visited pair of nodes of that size whose volumes overlap, the visits and tests

@@ -99,7 +99,7 @@ void Finder::find_cycles() {
     fault.count = below_[n];
     add(std::move(fault));
   }
-  // What is left hangs on a cycle that nothing leads to.
+  // The remaining nodes are below a cycle that is not reached from the root.
   for (std::uint32_t n = 0; n < tree_.size(); ++n)
     if (state_[n] == 0) search_from(n);
 }

@@ -176,7 +176,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
   using namespace render::svg_text;
   constexpr double kWidth = 1200, kMargin = 8, kRow = 18, kText = 11, kRule = 0.7, kRuleShare = 0.2;
   constexpr double kRoomForText = 40, kNarrowest = 1;  // pixels
-  constexpr std::uint32_t kMostDepths = 40;
+  constexpr std::uint32_t kMaxDepths = 40;
   double largest = 0;
   if (figures.epo)
     for (const double epo : figures.epo->by_node) largest = std::max(largest, epo);
@@ -193,7 +193,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
       left[child] = next;
       next += unit * index.triangles_below[child];
     }
-    if (width < kNarrowest || index.depth[n] >= kMostDepths) continue;
+    if (width < kNarrowest || index.depth[n] >= kMaxDepths) continue;
     depths = std::max(depths, index.depth[n] + 1);
     const double y = kMargin + kRow * index.depth[n], rule = std::min(kRule, kRuleShare * width);
     // The square root spreads the small values.

@@ -105,7 +105,7 @@ SiblingFigures siblings_of(const Volumes& volumes, const TreeIndex& index, std::
   std::uint64_t measured = 0;
   for (const std::uint32_t n : index.from_root) {
     const auto children = tree.children(n);
-    if (children.size() > SiblingFigures::kMostChildren) {
+    if (children.size() > SiblingFigures::kMaxChildren) {
       ++out.nodes_left_out;
       continue;
     }
@@ -171,14 +171,14 @@ std::vector<NodeFigures> worst_by(const std::vector<NodeFigures>& nodes, double 
 
 std::optional<Epo> sample_epo(const Volumes& volumes, const capture::Mesh& mesh, const TreeIndex& index,
                               std::uint64_t samples, std::uint64_t seed) {
-  constexpr std::uint64_t kMostTests = 30'000'000, kFewest = 100;
+  constexpr std::uint64_t kMaxTests = 30'000'000, kFewest = 100;
   Surface surface(volumes, mesh, index);
   if (!(surface.area > 0)) return {};
   Epo out;
   out.by_node.assign(volumes.tree().size(), 0);
   Random random(seed);
   double sum = 0, sum_of_squares = 0;
-  for (std::uint64_t tests = 0; out.samples < samples && (tests < kMostTests || out.samples < kFewest);
+  for (std::uint64_t tests = 0; out.samples < samples && (tests < kMaxTests || out.samples < kFewest);
        ++out.samples) {
     // A triangle by area, and a point of it.
     const auto place = std::upper_bound(surface.area_up_to.begin(), surface.area_up_to.end() - 1,

@@ -41,7 +41,7 @@ std::optional<Epo> exact_epo(const Volumes& volumes, const capture::Mesh& mesh, 
 
 /// Siblings: children of one node.
 struct SiblingFigures {
-  static constexpr std::size_t kMostChildren = 64;  ///< wider nodes are left out
+  static constexpr std::size_t kMaxChildren = 64;  ///< wider nodes are left out
   std::uint64_t pairs = 0, overlapping = 0, nodes_left_out = 0;
   /// Mean over pairs of the volume of the intersection / that of the smaller volume; pairs with a flat volume
   /// are left out. nullopt: RSS, or no pairs.

@@ -291,15 +291,15 @@ void Checker::check_pairs(const Posed& posed, const QueryWalk& walk, QueryVerdic
 void Checker::check_answer(const Posed& posed, QueryVerdict& out) {
   const Query& query = posed.query;
   if (query.verdict == Verdict::unreported) return;
-  const bool told = query.verdict == Verdict::intersecting, meet = !out.exact.empty();
-  if (query.kind == QueryKind::first_contact && (told || !meet)) return;
+  const bool reported = query.verdict == Verdict::intersecting, meet = !out.exact.empty();
+  if (query.kind == QueryKind::first_contact && (reported || !meet)) return;
   out.answer = Judgement::right;
   const auto depth = [&](const TrianglePair& pair) { return describe(posed, pair, true); };
   const auto undecidable_pairs = [&] {
     return std::count_if(out.exact.begin(), out.exact.end(),
                          [&](const TrianglePair& pair) { return depth(pair).undecidable; });
   };
-  if (told && !meet) {
+  if (reported && !meet) {
     const bool neighbours = posed.is_self() && out.extra == 0;
     if (neighbours) {
       out.answer = Judgement::unchecked;  // it may count triangles with a common vertex
@@ -325,7 +325,7 @@ void Checker::check_answer(const Posed& posed, QueryVerdict& out) {
     out.remark = "the engine's verdict is intersecting; the bodies are separate";
     return;
   }
-  if (!told && meet) {
+  if (!reported && meet) {
     const bool all_undecidable = undecidable_pairs() == static_cast<std::ptrdiff_t>(out.exact.size());
     out.answer = all_undecidable ? Judgement::undecidable : Judgement::wrong;
     out.remark = "the engine's verdict is separate; " + std::to_string(out.exact.size()) +

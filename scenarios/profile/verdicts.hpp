@@ -1,7 +1,7 @@
 #pragma once
 /// The answers of a captured engine, checked by the exact query on the captured meshes and poses.
 ///
-/// What is checked depends on the kind of query:
+/// The checks depend on the kind of query:
 /// - all pairs: the verdict, the number of pairs, and the pairs themselves, as far as tests of triangles were
 ///   recorded.
 /// - any: the verdict, and the tests of triangles that were recorded.
@@ -102,7 +102,7 @@ struct QueryVerdict {
   capture::QueryKind kind = capture::QueryKind::all_pairs;
   Judgement outcome = Judgement::unchecked;  ///< the worst of the answer's and the pairs'
   Judgement answer = Judgement::unchecked;   ///< of the verdict and the number of pairs
-  std::string remark;                        ///< what is wrong with the answer, or why something is unchecked
+  std::string remark;                        ///< the error of the answer, or why something is unchecked
   bool pairs_checked = false;                ///< the recorded tests of triangles were compared
   std::uint64_t exact_pairs = 0;
   std::uint64_t found = 0;              ///< pairs whose recorded tests say that they intersect
@@ -133,7 +133,7 @@ class Checker {
 
   CapturedBodies& bodies_;
   Precision precision_;
-  bool records_triangles_ = false;  ///< some query tells of tests of triangles
+  bool records_triangles_ = false;  ///< some query reports tests of triangles
   Workspace workspace_;
 };
 

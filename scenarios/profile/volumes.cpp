@@ -405,9 +405,9 @@ ShapeBox Volumes::box(std::uint32_t node) const {
   constexpr double kOrthogonal = 1e-9;
   const Matrix3d gram = from_products_.transpose() * from_products_;
   if (Matrix3d(gram.diagonal().asDiagonal()).isApprox(gram, kOrthogonal)) {
-    Vector3d middle, reach;
-    products(node, middle, reach);
-    ShapeBox out{from_products_ * middle, {}};
+    Vector3d centre, reach;
+    products(node, centre, reach);
+    ShapeBox out{from_products_ * centre, {}};
     for (int i = 0; i < 3; ++i)
       out.half[static_cast<std::size_t>(i)] = std::max(0.0, reach[i]) * from_products_.col(i);
     return out;
@@ -419,12 +419,12 @@ ShapeBox Volumes::box(std::uint32_t node) const {
   return aabb(low, high);
 }
 
-void Volumes::products(std::uint32_t node, Vector3d& middle, Vector3d& reach) const {
+void Volumes::products(std::uint32_t node, Vector3d& centre, Vector3d& reach) const {
   const auto n = tree_->volume_of(node);
   for (int i = 0; i < 3; ++i) {
     const std::size_t k = 2 * spanning_[static_cast<std::size_t>(i)];
     reach[i] = (n[k + 1] - n[k]) / 2;
-    middle[i] = n[k] + reach[i];
+    centre[i] = n[k] + reach[i];
   }
 }
 
@@ -470,11 +470,11 @@ std::vector<HalfSpace> Volumes::half_spaces(std::uint32_t node) const {
 Polytope Volumes::polytope(std::uint32_t node) const {
   if (inverted(*tree_, node)) return {};
   // It lies in the parallelepiped of three directions.
-  Vector3d middle, reach;
-  products(node, middle, reach);
+  Vector3d centre, reach;
+  products(node, centre, reach);
   double radius = 0;
   for (int i = 0; i < 3; ++i) radius += from_products_.col(i).norm() * reach[i];
-  return solid(half_spaces(node), from_products_ * middle, radius);
+  return solid(half_spaces(node), from_products_ * centre, radius);
 }
 
 std::optional<double> Volumes::shared_volume(std::uint32_t node, std::uint32_t other) const {

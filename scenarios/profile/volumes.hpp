@@ -64,8 +64,8 @@ class Volumes {
   const capture::Tree& tree() const { return *tree_; }
 
  private:
-  /// Finds the middle and half of the extent of a k-DOP along its three independent directions.
-  void products(std::uint32_t node, Eigen::Vector3d& middle, Eigen::Vector3d& reach) const;
+  /// Finds the centre and half of the extent of a k-DOP along its three independent directions.
+  void products(std::uint32_t node, Eigen::Vector3d& centre, Eigen::Vector3d& reach) const;
 
   const capture::Tree* tree_;
   std::array<std::size_t, 3> spanning_{};  ///< k-DOPs: indices of three independent directions

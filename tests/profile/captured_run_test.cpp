@@ -202,7 +202,7 @@ TEST_CASE("a captured walk becomes a trace: which pair led to which, and what me
   CHECK(counts.visits == std::vector<std::uint32_t>{1, 3, 3, 1, 1, 0, 0});
 }
 
-TEST_CASE("an engine that tests triangles of leaves without a test of their volumes: these are led to, too") {
+TEST_CASE("tests of triangles without a test of their volumes get a path from the root") {
   ToyEngine engine;
   const std::uint32_t tree = engine.add(captured(shapes::tetrahedron()), 1);
   const capture::Tree& t = engine.capture.trees[tree];

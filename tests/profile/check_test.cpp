@@ -37,7 +37,8 @@ run::Recording recorded_tori(EventLevel level, Mode mode = Mode::all_pairs, std:
     recorder.end_step(out.results.back());
   }
   out.trace = recorder.take();
-  out.trees = run::trees_of(out.trace, out.bodies);
+  if (level != EventLevel::faces)
+    for (const bodies::LoadedBody& body : out.bodies) out.trees.emplace_back(body.rep.tree());
   return out;
 }
 
@@ -137,7 +138,7 @@ TEST_CASE("lrbscope check prints verdicts, prices and advice, and fails for a wr
   CHECK(o.out.find("query 2: missed ") != std::string::npos);
   const std::string page = slurp(folder / "page/index.html");
   for (const char* part :
-       {"What the visits were good for", "Prices by query", "Prices by depth of the descent",
+       {"Benefit of the visits", "Prices by query", "Prices by depth of the descent",
         "Wrong and undecidable answers", "query 2: missed "})
     CHECK(page.find(part) != std::string::npos);
   // Only the first query is right.

@@ -248,7 +248,7 @@ TEST_CASE("A query of kind any needs the path to its pair, and all else is order
   CHECK(found.prices.proof + found.prices.volumes + found.prices.unsplit == 0);
   CHECK(found.prices.order == found.prices.visits - path);
   CHECK(found.prices.order > 0);
-  // Separate bodies: as if all pairs had been asked for.
+  // Separate bodies: as if all pairs had been requested.
   engine.ask(a, {}, a, Pose::translation({0.9, 0.9, 0.9}), how);
   engine.ask(a, {}, a, Pose::translation({0.9, 0.9, 0.9}));
   REQUIRE(engine.capture.queries[1].verdict == capture::Verdict::separate);

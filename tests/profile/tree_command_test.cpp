@@ -87,7 +87,7 @@ TEST_CASE("tree: of a mesh and of an LRB-rep, lrbscope's own tree") {
   }
 }
 
-TEST_CASE("tree: what is no tree is refused in one line") {
+TEST_CASE("tree: invalid input is rejected in one line") {
   const Folder folder;
   write_trees(folder, false);
   ToyEngine none;

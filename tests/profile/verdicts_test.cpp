@@ -127,7 +127,7 @@ TEST_CASE("A test of triangles that lies is blamed, in both directions") {
   CHECK(v.wrong[1].margin > 0);
 }
 
-TEST_CASE("A traversal that forgets a pair of children is blamed at that pair, of wide nodes, too") {
+TEST_CASE("a traversal that omits a pair of children is blamed at that pair, also for wide nodes") {
   for (const bool wide : {false, true}) {
     CAPTURE(wide);
     Sheets s;
@@ -226,7 +226,7 @@ TEST_CASE("The depth of two triangles is the shortest translation that separates
 
 TEST_CASE("Errors about triangles within the error of a float or double are undecidable, others are wrong") {
   // A triangle whose lowest corner is `height` above, or below, the middle of another.
-  const auto touching = [](double height, bool told) {
+  const auto touching = [](double height, bool reported) {
     FaultyEngine engine;
     std::mt19937_64 random(1);
     const std::uint32_t a =
@@ -235,9 +235,9 @@ TEST_CASE("Errors about triangles within the error of a float or double are unde
         engine.add(triangle_mesh({Eigen::Vector3d(1, 1, 1 + height), {1, 1, 3}, {1.5, 1.2, 3}})), random);
     capture::Query& q = engine.ask(a, {}, b, {});
     q.events = {{.a = 0, .b = 0, .met = 1},
-                {.a = 0, .b = 0, .kind = capture::EventKind::triangles, .met = told}};
-    q.verdict = told ? capture::Verdict::intersecting : capture::Verdict::separate;
-    q.pairs = told;
+                {.a = 0, .b = 0, .kind = capture::EventKind::triangles, .met = reported}};
+    q.verdict = reported ? capture::Verdict::intersecting : capture::Verdict::separate;
+    q.pairs = reported;
     FaultyEngine::close(q);
     return engine.capture;
   };

@@ -97,14 +97,14 @@ inline capture::Tree halving_tree(const capture::Mesh& mesh, capture::VolumeKind
     } else {
       Eigen::Index axis = 0;
       centres.sizes().maxCoeff(&axis);
-      const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-      std::nth_element(all.begin(), middle, all.end(), [&](std::uint32_t s, std::uint32_t t) {
+      const auto median = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+      std::nth_element(all.begin(), median, all.end(), [&](std::uint32_t s, std::uint32_t t) {
         const double x = centre(s)[axis], y = centre(t)[axis];
         return x != y ? x < y : s < t;
       });
       for (int k = 0; k < 2; ++k) tree.child.push_back(static_cast<std::uint32_t>(nodes.size()) + k);
-      nodes.emplace_back(all.begin(), middle);
-      nodes.emplace_back(middle, all.end());
+      nodes.emplace_back(all.begin(), median);
+      nodes.emplace_back(median, all.end());
     }
     tree.first_child.push_back(static_cast<std::uint32_t>(tree.child.size()));
     tree.first_triangle.push_back(static_cast<std::uint32_t>(tree.triangle.size()));

@@ -1,5 +1,5 @@
 #pragma once
-/// A collision engine of a few lines that fills a capture: trees of AABBs split in the middle, exact tests of
+/// A collision engine of a few lines that fills a capture: trees of AABBs split in the median, exact tests of
 /// triangles. Poses must be translations.
 
 #include <algorithm>
@@ -104,9 +104,9 @@ class ToyEngine {
     };
     std::stable_sort(triangles.begin(), triangles.end(),
                      [&](std::uint32_t x, std::uint32_t y) { return key(x) < key(y); });
-    const auto middle = triangles.begin() + static_cast<std::ptrdiff_t>(triangles.size() / 2);
-    const std::uint32_t left = build(mesh, {triangles.begin(), middle}, leaf_size, nodes);
-    const std::uint32_t right = build(mesh, {middle, triangles.end()}, leaf_size, nodes);
+    const auto median = triangles.begin() + static_cast<std::ptrdiff_t>(triangles.size() / 2);
+    const std::uint32_t left = build(mesh, {triangles.begin(), median}, leaf_size, nodes);
+    const std::uint32_t right = build(mesh, {median, triangles.end()}, leaf_size, nodes);
     nodes[number].children = {left, right};
     return number;
   }

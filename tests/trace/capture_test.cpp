@@ -30,7 +30,7 @@ int append(void* user, const void* bytes, std::uint64_t size) {
   return 1;
 }
 
-/// Records what `body` tells, with environment variables set.
+/// Records the reports of `body`, with environment variables set.
 Bytes record(const std::function<void()>& body, const Settings& settings = {}) {
   for (const char* name :
        {"LRBCAP_OUT", "LRBCAP_QUERIES", "LRBCAP_SLOWER_US", "LRBCAP_EVENTS", "LRBCAP_MAX_MB"})
@@ -226,27 +226,27 @@ TEST_CASE("a capture reads back what an engine reported") {
 
 TEST_CASE("any numbers of any length read back, across buffers") {
   std::mt19937 random(1);
-  std::vector<Event> told;
+  std::vector<Event> reported;
   for (int i = 0; i < 30000; ++i) {
     const auto a = static_cast<std::uint32_t>(random() >> random() % 32);
     const auto b = static_cast<std::uint32_t>(random() >> random() % 32);
     const auto tests = static_cast<std::uint8_t>(1 + random() % 3 * 100);
-    told.push_back({a, b, static_cast<EventKind>(random() % 2),
+    reported.push_back({a, b, static_cast<EventKind>(random() % 2),
                     static_cast<std::uint8_t>(random() % (tests + 1)), tests,
                     static_cast<std::uint8_t>(random() % 2 ? 255 : random() % 15)});
-    if (told.back().kind == EventKind::triangles)
-      told.back().tests = 1, told.back().met %= 2, told.back().axis = 255;
+    if (reported.back().kind == EventKind::triangles)
+      reported.back().tests = 1, reported.back().met %= 2, reported.back().axis = 255;
   }
   const Capture c = read(record([&] {
     LRBCAP_BEGIN(LRBCAP_ANY, 0, nullptr, 0, nullptr);  // shapes without trees
-    for (const Event& e : told)
+    for (const Event& e : reported)
       if (e.kind == EventKind::nodes)
         LRBCAP_NODES(e.a, e.b, e.tests, e.met, e.axis);
       else
         LRBCAP_PRIM(e.a, e.b, e.met);
     LRBCAP_END(LRBCAP_UNREPORTED, 0);
   }));
-  CHECK(c.queries.at(0).events == told);
+  CHECK(c.queries.at(0).events == reported);
   CHECK(c.queries[0].complete());
   CHECK(c.queries[0].trees == std::array<std::uint32_t, 2>{kNull, kNull});
   CHECK(c.queries[0].verdict == Verdict::unreported);
@@ -316,7 +316,7 @@ TEST_CASE("a capture cut off anywhere is read up to its last whole chunk") {
   CHECK(begin < events);
 }
 
-TEST_CASE("files that are no captures are refused by what they look like") {
+TEST_CASE("other files are rejected with their apparent format") {
   const auto bytes = [](const std::string& s) {
     const auto* from = reinterpret_cast<const std::byte*>(s.data());
     return Bytes(from, from + s.size());
@@ -426,7 +426,7 @@ TEST_CASE("poses must be rigid, row by row") {
 }
 
 TEST_CASE("events are checked") {
-  const auto told = [](const std::function<void()>& events, int kind = LRBCAP_ALL_PAIRS) {
+  const auto reported = [](const std::function<void()>& events, int kind = LRBCAP_ALL_PAIRS) {
     return record([&] {
       const std::uint32_t a = a_tree(), b = a_tree_with_ids();
       LRBCAP_BEGIN(static_cast<std::uint32_t>(kind), a, nullptr, b, kPose);
@@ -435,29 +435,29 @@ TEST_CASE("events are checked") {
     });
   };
   const auto root = [] { LRBCAP_NODE(0, 30, 1, 255); };
-  contains(refusal(told([&] { root(), LRBCAP_NODE(3, 30, 1, 255); })),
+  contains(refusal(reported([&] { root(), LRBCAP_NODE(3, 30, 1, 255); })),
            {"query 1, event 2: expected a node of tree 1 (A), which has 3 nodes, found id 3"});
-  contains(refusal(told([&] { root(), LRBCAP_NODE(1, 2, 1, 255); })),
+  contains(refusal(reported([&] { root(), LRBCAP_NODE(1, 2, 1, 255); })),
            {"event 2", "tree 2 (B)", "found id 2"});
-  contains(refusal(told([&] { LRBCAP_PRIM(0, 4, 1); })),
+  contains(refusal(reported([&] { LRBCAP_PRIM(0, 4, 1); })),
            {"event 1: expected a triangle of B below 4, found 4"});
-  contains(refusal(told([&] { LRBCAP_PRIM(0, 1, 1), LRBCAP_NODE(0, 10, 1, 255); })),
+  contains(refusal(reported([&] { LRBCAP_PRIM(0, 1, 1), LRBCAP_NODE(0, 10, 1, 255); })),
            {"event 2: expected the roots in the first test of nodes, found node 10 of B"});
-  contains(refusal(told([&] { LRBCAP_NODE(2, 30, 1, 255); })), {"event 1", "found node 2 of A"});
-  CHECK(read(told([&] { LRBCAP_NODE(1, 10, 1, 255); }, LRBCAP_SELF)).queries[0].complete());
-  contains(refusal(told([&] { LRBCAP_NODES(0, 30, 2, 3, 255); })), {"event 1", "found 3 of 2"});
-  contains(refusal(told([&] { LRBCAP_NODES(0, 30, 0, 0, 255); })), {"event 1", "at least one test"});
-  contains(refusal(told([&] { LRBCAP_NODE(0, 30, 1, 15); })), {"event 1", "axis", "found 15"});
-  CHECK(read(told([&] { LRBCAP_NODE(0, 30, 0, 32 + 9); })).queries[0].events.at(0).axis == 41);
-  contains(refusal(told([&] { LRBCAP_COUNT(1, 5); })),
+  contains(refusal(reported([&] { LRBCAP_NODE(2, 30, 1, 255); })), {"event 1", "found node 2 of A"});
+  CHECK(read(reported([&] { LRBCAP_NODE(1, 10, 1, 255); }, LRBCAP_SELF)).queries[0].complete());
+  contains(refusal(reported([&] { LRBCAP_NODES(0, 30, 2, 3, 255); })), {"event 1", "found 3 of 2"});
+  contains(refusal(reported([&] { LRBCAP_NODES(0, 30, 0, 0, 255); })), {"event 1", "at least one test"});
+  contains(refusal(reported([&] { LRBCAP_NODE(0, 30, 1, 15); })), {"event 1", "axis", "found 15"});
+  CHECK(read(reported([&] { LRBCAP_NODE(0, 30, 0, 32 + 9); })).queries[0].events.at(0).axis == 41);
+  contains(refusal(reported([&] { LRBCAP_COUNT(1, 5); })),
            {"event 1: refers to name 1, which was not described"});
   // The encoding. EVTS: query, thread, number of the first, count, chunk; events.
-  const Bytes good = told([&] { root(), LRBCAP_PRIM(3, 3, 1); });
+  const Bytes good = reported([&] { root(), LRBCAP_PRIM(3, 3, 1); });
   contains(refusal(with(good, "EVTS", 8, std::uint64_t{1})), {"expected event 0 of thread", "found event 1"});
   contains(refusal(with(good, "EVTS", 16, 1u)), {"more content"});
   contains(refusal(with(good, "EVTS", 24, std::uint8_t{0x80})), {"event 1: unknown bits"});
   contains(refusal(twice(good, "EVTS")), {"expected event 2 of thread"});
-  const Bytes large = told([&] { root(), LRBCAP_NODE(0x7fffffff, 30, 1, 255); });
+  const Bytes large = reported([&] { root(), LRBCAP_NODE(0x7fffffff, 30, 1, 255); });
   contains(refusal(with(large, "EVTS", 24 + 3 + 1 + 4, std::uint8_t{0x7f})), {"more than 32 bits"});
 }
 
@@ -628,7 +628,7 @@ TEST_CASE("a sink ends the recording, which is then read up to its last whole ch
   const Capture c = read(out);
   CHECK(c.cut_off);
   CHECK(c.queries.size() >= 3);
-  CHECK(record(a_query).size() > 1000);  // a new recording begins anew
+  CHECK(record(a_query).size() > 1000);  // a new recording begins again
 }
 
 TEST_CASE("a query without an end, or within another, loses only ends") {

@@ -59,7 +59,7 @@ TEST_CASE("an engine's answers, counters, phases and axes survive a file, which 
   CHECK(test::trace_faults(document) == "");
   CHECK(document["metadata"]["version"] == 4);
   CHECK(t.events.at(3).node_pair().engine_axis == 1);
-  // What a viewer shows: a slice for each query on its thread, in its own time, phases and counters.
+  // The view of Perfetto: a slice for each query on its thread, in its own time, phases and counters.
   const auto find = [&](const std::string& name) {
     std::vector<Json> out;
     for (const Json& e : document["traceEvents"])
@@ -122,7 +122,7 @@ TEST_CASE("counters without a name, or at a place that does not exist, are refus
   }
 }
 
-TEST_CASE("a broken tree keeps what holds: first parents, and what the root reaches") {
+TEST_CASE("a broken tree keeps first parents and nodes reachable from the root") {
   const ShapeBox box{Eigen::Vector3d::Zero(),
                      {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()}};
   using Children = std::vector<std::uint32_t>;
@@ -133,7 +133,7 @@ TEST_CASE("a broken tree keeps what holds: first parents, and what the root reac
   tree.add(Children{4, 0}, {}, box);  // 4 has two parents, and the root is a child
   tree.add({}, Simplices{0, 1}, box);
   tree.add({}, Simplices{2}, box);
-  tree.add(Children{6}, {}, box);  // nobody's child
+  tree.add(Children{6}, {}, box);  // no node's child
   tree.add({}, Simplices{3}, box);
   const TreeShape::Faults faults = tree.finish();
   CHECK(faults.links == 2);

@@ -20,7 +20,7 @@
  * of another calls LRBCAP_JOIN(query), later LRBCAP_JOIN(0), and before it exits LRBCAP_THREAD_END(). Queries
  * do not nest: one that begins within another leaves the other without an end.
  *
- * Output is only appended: to a file, a FIFO, or a function of yours (LRBCAP_OPEN_SINK).
+ * Output is only appended: to a file, a FIFO, or your own function (LRBCAP_OPEN_SINK).
  *   LRBCAP_OUT=FILE            where; without it nothing is recorded
  *   LRBCAP_QUERIES=40-60       only these queries, numbered from 1 (also 40 or 40-)
  *   LRBCAP_SLOWER_US=N         events only of queries that take at least N microseconds, or have over 8,192

@@ -1,5 +1,5 @@
 #pragma once
-/// A capture: what a program with lrbscope_capture.h recorded of another engine's collision queries. The
+/// A capture: a record of another engine's collision queries, made with lrbscope_capture.h. The
 /// meshes and trees of the engine, and for each query its poses, the tests in the engine's order, and its
 /// answer.
 ///

@@ -78,7 +78,7 @@ std::string to_text(const MeasuredApproach& m);
 
 // The answer of another engine, as it reported it.
 
-/// What the engine was asked for.
+/// The kind of query.
 enum class EngineQuery : std::uint8_t { all_pairs, any, distance, first_contact, self };
 constexpr auto words_of(EngineQuery) {
   return std::to_array<EnumWord<EngineQuery>>({{EngineQuery::all_pairs, "all_pairs"},
