@@ -75,11 +75,6 @@ void add_engine_answer(report::Document& doc, const RecordedRun& p) {
       .number({"Tests of triangles", group_digits(t.face_tests),
                "brute force: " + group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} *
                                               p.reps[1]->real_simplex_count() * steps)});
-  std::uint64_t faces = 0;
-  for (const LrbRep* rep : p.reps) faces += rep->real_face_count();
-  doc.number(
-      {"Triangles", group_digits(faces),
-       group_digits(p.reps[0]->real_face_count()) + " + " + group_digits(p.reps[1]->real_face_count())});
 }
 
 std::vector<report::Chart> engine_charts(const RecordedRun& p) {

@@ -29,8 +29,7 @@ std::vector<xray::PosePair> some_poses() {
 
 }  // namespace
 
-TEST_CASE(
-    "an engine's printed traversal matches its counters, and its pairs are exact in general position") {
+TEST_CASE("an engine's printed traversal matches its counters, and its pairs are exact in general position") {
   const LrbRep ball = bodies::body_of_mesh(shapes::bumpy_sphere(3, 7, 0.3)).rep,
                ring = bodies::body_of_mesh(shapes::torus(24, 12)).rep;
   int recorded = 0;
