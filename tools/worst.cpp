@@ -104,10 +104,18 @@ void find_wrong(const WorstOptions& o, const Contest& contest, tails::Engine& en
 }
 
 int run_worst(const WorstOptions& o, const Globals& globals) {
-  const Contest contest = make_contest(o);
+  Contest contest = make_contest(o);
   if (contest.engines.size() != 1)
     throw InputError("expected one engine, found " + std::to_string(contest.engines.size()) +
                      "; run worst for each");
+  if (o.goal == tails::Goal::wasted && o.command.empty()) {
+    // Only a recorded traversal tells what was wasted.
+    const std::string name = contest.engines.front()->name();
+    if (name != "fcl" && name != "cgal")
+      throw InputError("--goal wasted: expected fcl, cgal or a --command, found " + name);
+    contest.engines.front() =
+        tails::recorded_engine(name, (*contest.bodies)[0].rep, (*contest.bodies)[1].rep);
+  }
   tails::Engine& engine = *contest.engines.front();
   if (o.goal == tails::Goal::wrong)
     find_wrong(o, contest, engine, globals);

@@ -9,7 +9,9 @@
 
 #include "bench/tails/engine.hpp"
 #include "bench/workers/child.hpp"
+#include "bench/xray/foreign_walk.hpp"
 #include "scenarios/io/poses.hpp"
+#include "scenarios/profile/check.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
@@ -105,7 +107,7 @@ class CommandEngine : public Engine {
   }
 
   std::vector<EngineAnswer> answers(std::span<const Pose> poses, Wanted wanted) const {
-    return read(recorded(poses, wanted.tests || wanted.list), poses, wanted);
+    return read(recorded(poses, wanted.tests || wanted.list || wanted.waste), poses, wanted);
   }
 
   /// Runs the program to its end.
@@ -169,12 +171,8 @@ std::vector<EngineAnswer> CommandEngine::read(const std::vector<std::byte>& byte
   if (c.queries.size() != poses.size())
     complain("expected " + std::to_string(poses.size()) + " queries, one for each pose, found " +
              std::to_string(c.queries.size()));
-  std::vector<EngineAnswer> out;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    check(c.queries[i], poses[i]);
-    out.push_back(answer_of(c.queries[i], c.names, wanted.list));
-  }
-  return out;
+  for (std::size_t i = 0; i < poses.size(); ++i) check(c.queries[i], poses[i]);
+  return answers_of(c, wanted);
 }
 
 }  // namespace
@@ -190,6 +188,47 @@ std::string record_capture(const std::string& command, const BodyFiles& files,
 std::unique_ptr<Engine> command_engine(const std::string& command, const BodyFiles& files,
                                        std::chrono::duration<double> limit) {
   return std::make_unique<CommandEngine>(command, files, limit);
+}
+
+namespace {
+
+class RecordedEngine : public Engine {
+ public:
+  RecordedEngine(std::string method, const LrbRep& a, const LrbRep& b)
+      : method_(std::move(method)), a_(a), b_(b) {}
+
+  std::string name() const override { return method_; }
+
+  std::vector<EngineAnswer> ask(std::span<const Pose> poses, Wanted wanted,
+                                const Progress& progress) override {
+    std::vector<xray::PosePair> pairs;
+    for (const Pose& pose : poses) pairs.push_back({{}, pose});
+    std::vector<EngineAnswer> out = answers_of(xray::walk_of(method_, a_, b_, pairs), wanted);
+    progress(out.size());
+    return out;
+  }
+
+ private:
+  std::string method_;
+  const LrbRep &a_, &b_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> recorded_engine(const std::string& method, const LrbRep& a, const LrbRep& b) {
+  return std::make_unique<RecordedEngine>(method, a, b);
+}
+
+std::vector<EngineAnswer> answers_of(const capture::Capture& capture, Wanted wanted) {
+  std::vector<EngineAnswer> out;
+  for (const capture::Query& q : capture.queries) out.push_back(answer_of(q, capture.names, wanted.list));
+  if (!wanted.waste) return out;
+  const profile::Check checked = profile::check(capture, {.split = false});
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const profile::Prices& prices = checked.queries[i].prices;
+    out[i].wasted = prices.wasted() + prices.triangle_tests_for_nothing;
+  }
+  return out;
 }
 
 EngineAnswer answer_of(const capture::Query& query, const std::vector<std::string>& names, bool list) {

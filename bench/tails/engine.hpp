@@ -27,6 +27,7 @@ namespace lrb::tails {
 struct Wanted {
   bool tests = false;
   bool list = false;  ///< the pairs themselves
+  bool waste = false;
 };
 
 /// The answer at one pose.
@@ -38,6 +39,9 @@ struct EngineAnswer {
   std::optional<methods::TestCounts> kinds;     ///< the same by kind; nullopt: not known
   std::map<std::string, std::uint64_t> phases;  ///< tests by the engine's own phases, if it reports them
   std::vector<SimplexPair> list;                ///< ascending
+  /// Visits of nodes that perfect volumes or another order of descent would save (profile::Prices::wasted()),
+  /// and tests of triangles that do not intersect; nullopt: not known.
+  std::optional<std::uint64_t> wasted;
 };
 
 /// An engine with two bodies; A is at the identity.
@@ -76,18 +80,23 @@ std::unique_ptr<Engine> worker_engine(const workers::WorkerMethod& method, const
 ///   COMMAND A B POSES
 /// with LRBCAP_OUT in its environment: it reads both meshes and the poses of B (12 numbers a line), answers a
 /// query for each pose in order, and records them to that file. It is started once for up to kPosesAtOnce
-/// poses; without Wanted::tests and list with LRBCAP_EVENTS=0, so that events do not take time. ask() throws
+/// poses; if only times are wanted with LRBCAP_EVENTS=0, so that events do not take time. ask() throws
 /// InputError that names the program if it fails, takes longer than `limit`, or writes no capture, a broken
 /// one or one of other queries.
 std::unique_ptr<Engine> command_engine(const std::string& command, const BodyFiles& files,
                                        std::chrono::duration<double> limit);
 inline constexpr std::size_t kPosesAtOnce = 256;
 
+/// Returns a method whose traversal xray records ("fcl", "cgal"). The bodies must outlive it.
+std::unique_ptr<Engine> recorded_engine(const std::string& method, const LrbRep& a, const LrbRep& b);
+
 /// Runs such a program for one pose and returns its capture. Throws as command_engine() does.
 std::string record_capture(const std::string& command, const BodyFiles& files,
                            std::chrono::duration<double> limit, const Pose& pose);
 
-/// Returns the answer of a captured query. `names`: of phases.
+/// Returns the answers of the queries of a capture.
+std::vector<EngineAnswer> answers_of(const capture::Capture& capture, Wanted wanted);
+/// Returns the answer of a captured query, without waste. `names`: of phases.
 EngineAnswer answer_of(const capture::Query& query, const std::vector<std::string>& names, bool list);
 
 // The lines between worker_engine() and its worker. When both bodies are built the worker says that it is

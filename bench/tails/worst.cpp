@@ -25,6 +25,7 @@ constexpr double kNoCost = -1;
 double cost_of(const EngineAnswer& answer, Goal goal) {
   if (!answer.failure.empty()) return kNoCost;
   if (goal == Goal::time) return answer.us;
+  if (goal == Goal::wasted) return static_cast<double>(answer.wasted.value());
   const auto tests = static_cast<double>(answer.tests.value());
   return goal == Goal::tests ? tests : tests / (1 + static_cast<double>(answer.pairs));
 }
@@ -35,6 +36,8 @@ const char* unit_of(Goal goal) {
       return "tests / (1 + pairs)";
     case Goal::tests:
       return "tests";
+    case Goal::wasted:
+      return "wasted visits and tests";
     case Goal::time:
       return "\u00b5s";
     case Goal::wrong:
@@ -52,7 +55,8 @@ class Asker {
     std::vector<Pose> poses;
     for (const Placement& at : placements) poses.push_back(space_.pose(at));
     const Engine::Progress silent = [](std::size_t) {};
-    std::vector<EngineAnswer> answers = engine_.ask(poses, {.tests = true}, silent);
+    std::vector<EngineAnswer> answers =
+        engine_.ask(poses, {.tests = true, .waste = goal_ == Goal::wasted}, silent);
     if (goal_ == Goal::time)
       for (int round = 0; round < kRounds; ++round) {
         const std::vector<EngineAnswer> again = engine_.ask(poses, {}, silent);

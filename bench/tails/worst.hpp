@@ -21,12 +21,14 @@ namespace lrb::tails {
 enum class Goal : std::uint8_t {
   tests_per_answer,  ///< tests / (1 + pairs)
   tests,
-  time,   ///< microseconds, the least of kRounds
-  wrong,  ///< wrong pairs, which are not searched but tried: wrong_poses.hpp
+  wasted,  ///< EngineAnswer::wasted
+  time,    ///< microseconds, the least of kRounds
+  wrong,   ///< wrong pairs, which are not searched but tried: wrong_poses.hpp
 };
 constexpr auto words_of(Goal) {
   return std::to_array<EnumWord<Goal>>({{Goal::tests_per_answer, "tests-per-answer"},
                                         {Goal::tests, "tests"},
+                                        {Goal::wasted, "wasted"},
                                         {Goal::time, "time"},
                                         {Goal::wrong, "wrong"}});
 }
