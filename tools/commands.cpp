@@ -1,6 +1,7 @@
 /// The list of all commands.
 #include "tools/commands.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace lrb::cli {
@@ -33,6 +34,8 @@ Command add_doctor(CLI::App& root, const Globals& globals);
 Command add_list(CLI::App& root, const Globals& globals);
 Command add_bench(CLI::App& root, const Globals& globals);
 Command add_chart(CLI::App& root, const Globals& globals);
+Command add_tails(CLI::App& root, const Globals& globals);
+Command add_worst(CLI::App& root, const Globals& globals);
 Command add_completion(CLI::App& root, const Globals& globals);
 Command add_manual(CLI::App& root, const Globals& globals);
 
@@ -52,6 +55,18 @@ std::vector<Command> add_commands(CLI::App& root, const Globals& globals) {
   std::vector<Command> commands;
   for (const auto add : kCommands) commands.push_back(add(root, globals));
   return commands;
+}
+
+int run_command(const std::vector<std::string>& words, const Globals& globals) {
+  Globals own = globals;
+  own.command_line = "lrbscope";
+  for (const std::string& word : words) own.command_line += " " + shell_word(word);
+  CLI::App app("", "lrbscope");
+  const std::vector<Command> commands = add_commands(app, own);
+  app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them from the back
+  const auto named =
+      std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.app->parsed(); });
+  return named->run();
 }
 
 }  // namespace lrb::cli

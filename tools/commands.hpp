@@ -29,6 +29,9 @@ struct Command {
 /// Adds all commands to the program, in their order in --help. They are listed in commands.cpp.
 std::vector<Command> add_commands(CLI::App& root, const Globals& globals);
 
+/// Runs another command, given by its words without `lrbscope`. Returns its exit code.
+int run_command(const std::vector<std::string>& words, const Globals& globals);
+
 /// Parses the command line and runs the command. Turns exceptions into one line on stderr and an exit code.
 int main(int argc, char** argv);
 

@@ -11,11 +11,15 @@
 ///                         case, from case 0 on) or computed; with --pairs also the lists of pairs
 ///   --questions FILE --method M [--setting X] [--pairs] --begin K --end L
 ///                         a bench::Record for each of a data set's queries K .. L - 1
+///   --bodies A B --method M [--no-join]
+///                         a reply for each request in file descriptor 3, until its end
+///                         (bench/tails/engine.hpp)
 /// Exit codes: 0, or 2 with the line {"error": "..."}.
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <iostream>
 #include <vector>
 
@@ -26,6 +30,7 @@
 #include "bench/speed/bench_runner.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/stability/stability_experiment.hpp"
+#include "bench/tails/engine.hpp"
 #include "bench/workers/worker_json.hpp"
 #include <lrbscope/error.hpp>
 
@@ -39,6 +44,8 @@ struct WorkerOptions {
   bool pairs = false;
   std::string questions;
   std::optional<double> setting;
+  std::vector<std::string> bodies;
+  bool no_join = false;
 };
 
 void list_methods(const std::vector<methods::MethodEntry>& entries, Lines& out) {
@@ -70,6 +77,12 @@ void work(const WorkerOptions& o, const std::vector<methods::MethodEntry>& entri
   if (o.queue.list) return list_methods(entries, out);
   if (o.queue.method.empty()) return say_expected(o.queue, out);
   const methods::MethodEntry& entry = methods::find_method(entries, o.queue.method);
+  if (!o.bodies.empty()) {
+    std::ifstream requests("/proc/self/fd/3");
+    return tails::serve(
+        entry, {o.bodies[0], o.bodies[1], o.no_join ? bodies::Corners::apart : bodies::Corners::joined},
+        requests, [&](const std::string& line) { out.say(line); });
+  }
   if (o.questions.empty()) return say_records(o, entry, out);
   const bench::DataSet set = bench::read_data_set(o.questions);
   bench::BenchRunner runner(entry, o.setting, set, o.pairs);
@@ -85,6 +98,8 @@ int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries
   app.add_flag("--pairs", o.pairs);
   app.add_option("--questions", o.questions);
   app.add_option("--setting", o.setting);
+  app.add_option("--bodies", o.bodies)->expected(2);
+  app.add_flag("--no-join", o.no_join);
   CLI11_PARSE(app, argc, argv);
   return run_worker([&](Lines& out) { work(o, entries, out); });
 }

@@ -24,6 +24,7 @@ constexpr int kRank = 30;
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/detail/traversal/collision_node.h>
 
 #include "bench/rivals/triangles.hpp"
 #include <lrbscope/error.hpp>
@@ -67,7 +68,6 @@ class Fcl : public Method {
     check_rigid(pose_b);
     const auto& model_a = static_cast<const FclBody<S>&>(a).model;
     const auto& model_b = static_cast<const FclBody<S>&>(b).model;
-    static constexpr std::size_t kAll = std::size_t{1} << 40;
     const fcl::CollisionRequest<S> request(mode == Mode::all_pairs ? kAll : 1, false);
     const Stopwatch watch;
     fcl::CollisionResult<S> result;
@@ -82,6 +82,26 @@ class Fcl : public Method {
     answer.contact = result.isCollision();
     return answer;
   }
+
+  /// Runs the traversal as fcl::collide() does, with FCL's own statistics.
+  std::optional<TestCounts> count_tests(const MethodBody& a, const Pose& pose_a, const MethodBody& b,
+                                        const Pose& pose_b) override {
+    const auto& model_a = static_cast<const FclBody<S>&>(a).model;
+    const auto& model_b = static_cast<const FclBody<S>&>(b).model;
+    const fcl::CollisionRequest<S> request(kAll, false);
+    fcl::CollisionResult<S> result;
+    fcl::detail::MeshCollisionTraversalNodeOBBRSS<S> node;
+    if (!fcl::detail::initialize(node, model_a, transform<S>(pose_a), model_b, transform<S>(pose_b), request,
+                                 result))
+      return std::nullopt;
+    node.enableStatistics(true);
+    fcl::detail::collide(&node);
+    return TestCounts{static_cast<std::uint64_t>(node.num_bv_tests),
+                      static_cast<std::uint64_t>(node.num_leaf_tests)};
+  }
+
+ private:
+  static constexpr std::size_t kAll = std::size_t{1} << 40;  // contacts
 };
 
 MethodInfo fcl_info(const char* name, const char* scalar, const char* remark, int rank) {

@@ -135,6 +135,12 @@ struct MethodAnswer {
   std::vector<Eigen::Vector3d> points;
 };
 
+/// Number of tests of a query for all pairs.
+struct TestCounts {
+  std::uint64_t boxes = 0;  ///< of two bounding volumes
+  std::uint64_t faces = 0;  ///< of two faces
+};
+
 /// A method. Not thread-safe.
 class Method {
  public:
@@ -148,6 +154,13 @@ class Method {
   /// rigid (InputError).
   virtual MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                              Mode mode) = 0;
+  /// Runs the query for all pairs again, untimed, and counts its tests. Returns nullopt if the method does not
+  /// count them.
+  virtual std::optional<TestCounts> count_tests(const MethodBody& a, const Pose& pose_a, const MethodBody& b,
+                                                const Pose& pose_b) {
+    static_cast<void>(a), static_cast<void>(pose_a), static_cast<void>(b), static_cast<void>(pose_b);
+    return std::nullopt;
+  }
 };
 
 /// A method that may or may not be available in this program.

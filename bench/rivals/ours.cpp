@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -71,6 +72,15 @@ class Ours : public Method {
     MethodAnswer answer = answer_from(std::move(result), watch.microseconds());
     if (recursion_ == Recursion::complete && predicates_ == Predicates::exact) answer.error_bound = 0;
     return answer;
+  }
+
+  std::optional<TestCounts> count_tests(const MethodBody& a, const Pose& pose_a, const MethodBody& b,
+                                        const Pose& pose_b) override {
+    CollideRequest request;
+    request.recursion = recursion_;
+    request.predicates = predicates_;
+    const Counters counters = ask(rep_of(a), pose_a, rep_of(b), pose_b, request, workspace_).counters;
+    return TestCounts{counters.box_tests, std::max(counters.prefilter_tests, counters.face_tests)};
   }
 
  private:

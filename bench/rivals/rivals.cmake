@@ -114,7 +114,7 @@ list(REMOVE_DUPLICATES LRB_WORKER_PROGRAMS)
 foreach(program IN LISTS LRB_WORKER_PROGRAMS)
   get_property(names GLOBAL PROPERTY lrb_peers_of_${program})
   add_executable(${program} programs/methods.cpp)
-  target_link_libraries(${program} PRIVATE lrb_case_queue lrb::speed)
+  target_link_libraries(${program} PRIVATE lrb_case_queue lrb::speed lrb::tails)
   lrb_register_methods(${program} ${names})
 endforeach()
 
