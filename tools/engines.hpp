@@ -1,5 +1,5 @@
 #pragma once
-/// The options that name two bodies and the engines that are asked about them.
+/// The options that name two bodies and the engines that are queried about them.
 
 #include <chrono>
 #include <memory>

@@ -64,8 +64,8 @@ void write(const TailsOptions& o, const std::vector<tails::Tail>& tails, const s
            const std::string& purpose, const std::string& machine, const Globals& globals) {
   for (const tails::Tail& tail : tails) {
     if (!tail.queries.empty()) continue;
-    constexpr std::size_t kMost = 10;
-    for (const std::size_t pose : tails::costliest(tail, kMost))
+    constexpr std::size_t kMaxRows = 10;
+    for (const std::size_t pose : tails::costliest(tail, kMaxRows))
       io::save_poses(recordable(o, tail, pose).pose_file, {&tail.poses[pose], 1});
   }
   const tails::TailsPage page = {
@@ -112,7 +112,7 @@ int run_on_capture(const TailsOptions& o, const Globals& globals) {
 
 int run_tails(const TailsOptions& o, const Globals& globals) {
   if (!o.record.empty() && o.folder.empty())
-    throw InputError("--record: expected a folder for what is recorded; add -o DIR");
+    throw InputError("--record: expected a folder for the recordings; add -o DIR");
   for (const std::string& at : o.record) tails::percentile_share(at);
   if (o.b.empty()) {
     if (!o.methods.empty() || !o.command.empty())

@@ -74,7 +74,7 @@ void find_costly(const WorstOptions& o, const Contest& contest, tails::Engine& e
   print_found(o, worst.engine, tails::table_of(worst), tails::json_of(worst, contest.space));
   if (o.folder.empty()) return;
   std::vector<Pose> poses;
-  for (const tails::AskedTrial& t : worst.poses) poses.push_back(contest.space.pose(t.trial.at));
+  for (const tails::QueriedTrial& t : worst.poses) poses.push_back(contest.space.pose(t.trial.at));
   const tails::WorstPage page = {
       title_of(o, worst.engine),
       "The poses at which the engine does worst, found by search: 60 % of the queries are random, the others "
@@ -109,7 +109,7 @@ int run_worst(const WorstOptions& o, const Globals& globals) {
     throw InputError("expected one engine, found " + std::to_string(contest.engines.size()) +
                      "; run worst for each");
   if (o.goal == tails::Goal::wasted && o.command.empty()) {
-    // Only a recorded traversal tells what was wasted.
+    // Only a recorded traversal shows wasted visits.
     const std::string name = contest.engines.front()->name();
     if (name != "fcl" && name != "cgal")
       throw InputError("--goal wasted: expected fcl, cgal or a --command, found " + name);

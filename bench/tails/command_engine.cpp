@@ -87,14 +87,14 @@ class CommandEngine : public Engine {
 
   /// Runs the program once for these poses and returns its capture.
   std::vector<std::byte> recorded(std::span<const Pose> poses, bool events) const {
-    const MemoryFile asked("poses"), capture("capture");
+    const MemoryFile requested("poses"), capture("capture");
     std::string text;
     for (const Pose& pose : poses) {
       for (const double x : io::rows_of(pose)) text.append(io::exact_text(x)).append(" ");
       text.back() = '\n';
     }
-    asked.write(text);
-    run(asked.path(), capture.path(), events);
+    requested.write(text);
+    run(requested.path(), capture.path(), events);
     return capture.bytes();
   }
 

@@ -23,7 +23,7 @@
 
 namespace lrb::tails {
 
-/// What is asked besides time and number of pairs.
+/// Requested results besides time and number of pairs.
 struct Wanted {
   bool tests = false;
   bool list = false;  ///< the pairs themselves
@@ -55,7 +55,7 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
 
   virtual std::string name() const = 0;
-  /// Returns the answer for B at each pose, in order. Every pose is asked once.
+  /// Returns the answer for B at each pose, in order. Every pose is queried once.
   virtual std::vector<EngineAnswer> ask(std::span<const Pose> poses, Wanted wanted,
                                         const Progress& progress) = 0;
 };

@@ -25,7 +25,7 @@ double normal(Random& random) {
   return sum;
 }
 
-constexpr double kFirstSigma = 0.1, kGrow = 1.5, kShrink = 0.9, kLeastSigma = 1e-5, kMostSigma = 0.5;
+constexpr double kFirstSigma = 0.1, kGrow = 1.5, kShrink = 0.9, kLeastSigma = 1e-5, kMaxSigma = 0.5;
 constexpr std::size_t kBlock = 256;  // random trials asked together
 
 void ask(Search& search, std::span<const Placement> placements, const CostsOf& costs,
@@ -69,7 +69,7 @@ Placement placement_near(const Placement& at, double sigma, Random& random) {
 bool alike(const Placement& p, const Placement& q, double angle, double distance) {
   // The rotations differ by twice the angle of the quaternions.
   const double cosine = std::abs(p.turn.dot(q.turn));
-  return cosine > steady::cos(angle / 2) && (p.offset - q.offset).norm() < distance;
+  return cosine > deterministic::cos(angle / 2) && (p.offset - q.offset).norm() < distance;
 }
 
 std::vector<Trial> Search::worst(std::size_t most) const {
@@ -108,7 +108,7 @@ Search search(const SearchOptions& options, const CostsOf& costs, const SearchPr
       const Trial& t = out.trials[begin + i];
       const bool better = t.cost > best[i].cost;
       if (better) best[i] = t;
-      sigma[i] = better ? std::min(kMostSigma, sigma[i] * kGrow) : std::max(kLeastSigma, sigma[i] * kShrink);
+      sigma[i] = better ? std::min(kMaxSigma, sigma[i] * kGrow) : std::max(kLeastSigma, sigma[i] * kShrink);
     }
   }
   return out;

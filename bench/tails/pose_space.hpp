@@ -50,7 +50,7 @@ Placement placement_near(const Placement& at, double sigma, Random& random);
 /// Returns true if two placements differ by less than `angle` (radians) and by less than `distance`.
 bool alike(const Placement& p, const Placement& q, double angle = 0.01, double distance = 0.01);
 
-/// A placement whose cost was asked.
+/// A placement with its cost.
 struct Trial {
   Placement at;
   double cost = -std::numeric_limits<double>::infinity();
@@ -82,7 +82,7 @@ struct Search {
 /// Searches for placements of high cost. A share of the budget is random. The best of those are improved in
 /// turn: a step is kept if it raises the cost, and steps grow by 1.5 after a success and shrink by 0.9
 /// otherwise (adaptation of the step length by success: Rechenberg's rule for the (1+1) evolution strategy,
-/// 1973). Steps of all starts are asked together, and depend only on the earlier ones of the same start.
+/// 1973). Steps of all starts are evaluated together, and depend only on the earlier ones of the same start.
 Search search(const SearchOptions& options, const CostsOf& costs, const SearchProgress& progress);
 /// Spends the budget at random.
 Search random_search(const SearchOptions& options, const CostsOf& costs, const SearchProgress& progress);

@@ -335,12 +335,12 @@ std::string count_text(const std::optional<std::uint64_t>& n) {
 }
 
 report::Table costliest_table(const Tail& tail, const TailsPage& page) {
-  constexpr std::size_t kMost = 10;
+  constexpr std::size_t kMaxRows = 10;
   const bool captured = !tail.queries.empty();
   report::Table t{tail.engine + ": the costliest poses",
                   {captured ? "query" : "pose", "\u00b5s", "tests", "box tests", "face tests", "pairs", "",
                    "recorded by"}};
-  for (const std::size_t i : costliest(tail, kMost)) {
+  for (const std::size_t i : costliest(tail, kMaxRows)) {
     const Sample& s = tail.samples[i];
     const auto kind = [&](std::uint64_t methods::TestCounts::*member) {
       return s.answer.kinds ? std::to_string((*s.answer.kinds).*member) : std::string("\u2013");

@@ -18,7 +18,7 @@ namespace lrb::tails {
 /// One pose: the answer, with the least time of some rounds.
 struct Sample {
   EngineAnswer answer;
-  /// Its time per test was unusually long in all rounds, but not when it was asked again.
+  /// Its time per test was unusually long in all rounds, but not when it was measured again.
   bool noise = false;
 };
 
@@ -28,12 +28,12 @@ struct Tail {
   std::vector<Sample> samples;  ///< (|poses|)
   /// (|poses|) numbers of the queries of a capture; of several at the same pose the fastest. Otherwise empty.
   std::vector<std::uint32_t> queries;
-  int rounds = 0;            ///< least number of times that a pose was asked
+  int rounds = 0;            ///< least number of queries of a pose
   bool with_events = false;  ///< events were recorded during the timed queries
 };
 
 inline constexpr int kRounds = 3;
-/// A pose whose time per test exceeds this multiple of the median is asked again.
+/// A pose whose time per test exceeds this multiple of the median is measured again.
 inline constexpr double kNoiseFactor = 5;
 
 /// Asks every pose in kRounds separate rounds, so that a slow moment of the machine does not slow all repeats

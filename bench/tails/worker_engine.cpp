@@ -68,16 +68,16 @@ class WorkerEngine : public Engine {
   std::vector<EngineAnswer> ask(std::span<const Pose> poses, Wanted wanted,
                                 const Progress& progress) override {
     std::vector<EngineAnswer> out;
-    std::size_t asked = 0;
+    std::size_t requested = 0;
     int late = 0;  // consecutive poses without an answer in time
     while (out.size() < poses.size()) {
       if (!child_) {
         start();
-        asked = 0;
+        requested = 0;
       }
-      asked = std::max(asked, out.size());
-      for (; asked < poses.size() && asked < out.size() + kAhead; ++asked)
-        pipe_->write(request_line(poses[asked], wanted));
+      requested = std::max(requested, out.size());
+      for (; requested < poses.size() && requested < out.size() + kAhead; ++requested)
+        pipe_->write(request_line(poses[requested], wanted));
       std::vector<std::string> lines;
       const std::string failure = wait_for_lines(limit_, lines);
       for (const std::string& line : lines) out.push_back(reply_from(line));
@@ -89,7 +89,7 @@ class WorkerEngine : public Engine {
         out.emplace_back().failure = failure;
         late = failure == kLate ? late + 1 : 0;
       }
-      if (late == kPatience)
+      if (late == kMaxLate)
         while (out.size() < poses.size())
           out.emplace_back().failure = "skipped after three poses in a row without an answer in time";
       progress(out.size());
@@ -101,7 +101,7 @@ class WorkerEngine : public Engine {
   /// Requests sent ahead of their answers, so that the worker does not wait between two queries. They fit the
   /// buffer of a pipe.
   static constexpr std::size_t kAhead = 64;
-  static constexpr int kPatience = 3;
+  static constexpr int kMaxLate = 3;
   static constexpr std::chrono::seconds kBuild{600};  // time to read and build the bodies
   static constexpr const char* kLate = "no answer in time";
 

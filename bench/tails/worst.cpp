@@ -130,7 +130,7 @@ std::string table_of(const Worst& worst) {
   };
   const bool time = worst.goal == Goal::time;
   std::string out = row({time ? "us" : "cost", "tests", "box tests", "face tests", "pairs", "query"});
-  for (const AskedTrial& t : worst.poses) {
+  for (const QueriedTrial& t : worst.poses) {
     const auto& kinds = t.answer.kinds;
     out += row({cost_text(t.trial.cost), count_text(t.answer.tests),
                 kinds ? std::to_string(kinds->boxes) : "-", kinds ? std::to_string(kinds->faces) : "-",
@@ -144,7 +144,7 @@ std::string table_of(const Worst& worst) {
 
 std::vector<nlohmann::ordered_json> json_of(const Worst& worst, const PoseSpace& space) {
   std::vector<nlohmann::ordered_json> out;
-  for (const AskedTrial& t : worst.poses) {
+  for (const QueriedTrial& t : worst.poses) {
     nlohmann::ordered_json line = {
         {"engine", worst.engine}, {"goal", name_of(worst.goal)}, {"cost", t.trial.cost}};
     if (t.answer.tests) line["tests"] = *t.answer.tests;
@@ -276,7 +276,7 @@ std::string cost_map(const std::vector<Trial>& trials, const std::string& unit) 
 namespace {
 
 /// Returns the highest cost so far over the number of queries, at its increases.
-report::Series course(const std::string& label, const Search& search) {
+report::Series progress_of(const std::string& label, const Search& search) {
   report::Series out{label, {}, {}, {report::Line::steps, "", "none"}};
   double highest = 0;
   for (const Trial& t : search.trials) {
@@ -302,7 +302,7 @@ std::vector<std::string> write_worst_page(const Worst& worst, const WorstPage& p
   report::Table table{"The worst poses",
                       {unit, "tests", "box tests", "face tests", "pairs", "query", "recorded by"}};
   for (std::size_t i = 0; i < worst.poses.size(); ++i) {
-    const AskedTrial& t = worst.poses[i];
+    const QueriedTrial& t = worst.poses[i];
     const auto& kinds = t.answer.kinds;
     table.rows.push_back({cost_text(t.trial.cost), count_text(t.answer.tests),
                           kinds ? std::to_string(kinds->boxes) : "-",
@@ -312,9 +312,9 @@ std::vector<std::string> write_worst_page(const Worst& worst, const WorstPage& p
   table.note = "Poses that differ by less than 0.01 radians and 1 % of the diagonal count as one.";
   for (const std::string& failure : worst.failures) table.note += " No answer: " + failure + ".";
   document.table(table);
-  report::Chart chart{"Course of the search", {"queries"}, {"highest " + unit, true}};
-  chart.series.push_back(course("search", worst.found));
-  if (worst.at_random) chart.series.push_back(course("at random", *worst.at_random));
+  report::Chart chart{"Progress of the search", {"queries"}, {"highest " + unit, true}};
+  chart.series.push_back(progress_of("search", worst.found));
+  if (worst.at_random) chart.series.push_back(progress_of("at random", *worst.at_random));
   chart.note = "The first " + std::to_string(worst.found.random) + " queries of the search are random.";
   document.chart(chart);
   std::vector<Trial> trials = worst.found.trials;

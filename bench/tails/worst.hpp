@@ -33,8 +33,8 @@ constexpr auto words_of(Goal) {
                                         {Goal::wrong, "wrong"}});
 }
 
-/// The answer of an engine where its cost was asked.
-struct AskedTrial {
+/// The answer of an engine at a placement of the search.
+struct QueriedTrial {
   Trial trial;
   EngineAnswer answer;
 };
@@ -43,7 +43,7 @@ struct Worst {
   std::string engine;
   Goal goal = Goal::tests_per_answer;
   SearchOptions options;
-  std::vector<AskedTrial> poses;      ///< distinct, the worst first
+  std::vector<QueriedTrial> poses;    ///< distinct, the worst first
   Search found;                       ///< all trials
   std::optional<Search> at_random;    ///< the same budget at random
   std::vector<std::string> failures;  ///< "query 17: killed by signal 11"
@@ -78,8 +78,8 @@ struct WorstPage {
   std::vector<std::string> recorders;  ///< (|poses|) the commands that record them
 };
 
-/// Writes folder/index.html with the poses, the map, the course of the search and its scenario. Returns notes
-/// as text.
+/// Writes folder/index.html with the poses, the map, the progress of the search and its scenario. Returns
+/// notes as text.
 std::vector<std::string> write_worst_page(const Worst& worst, const WorstPage& page,
                                           const std::string& folder);
 

@@ -75,8 +75,8 @@ class Maker {
       const FirstContactResult found = lrb::first_contact(a_, Motion::still(Pose{}), b_, motion, request);
       if (!found.is_contact() || found.at_start || found.passed) continue;
       double apart = found.t0, together = found.t1;
-      for (double middle; (middle = apart + (together - apart) / 2) > apart && middle < together;)
-        (meet(motion.at(middle)) ? together : apart) = middle;
+      for (double midpoint; (midpoint = apart + (together - apart) / 2) > apart && midpoint < together;)
+        (meet(motion.at(midpoint)) ? together : apart) = midpoint;
       return {motion.at(together), direction};
     }
   }
@@ -87,8 +87,8 @@ class Maker {
 
   /// Returns a rotation that maps a direction to another, followed by a random one about that.
   Matrix3d rotation_to(const Vector3d& from, const Vector3d& to) {
-    const Matrix3d aligned = steady::turn_between(from, to).toRotationMatrix();
-    return steady::rotation(to.normalized(), random_.in(0, 6.283185307179586)) * aligned;
+    const Matrix3d aligned = deterministic::turn_between(from, to).toRotationMatrix();
+    return deterministic::rotation(to.normalized(), random_.in(0, 6.283185307179586)) * aligned;
   }
 
   std::pair<Pose, Vector3d> coplanar() {

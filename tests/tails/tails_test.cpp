@@ -33,7 +33,7 @@ using namespace lrb::tails;
 class FakeEngine : public Engine {
  public:
   FakeEngine(std::vector<std::vector<double>> times, std::vector<std::uint64_t> tests)
-      : times_(std::move(times)), tests_(std::move(tests)), asked_(times_.size(), 0) {}
+      : times_(std::move(times)), tests_(std::move(tests)), queries_(times_.size(), 0) {}
 
   std::string name() const override { return "fake"; }
   std::vector<EngineAnswer> ask(std::span<const Pose> poses, Wanted wanted,
@@ -47,17 +47,17 @@ class FakeEngine : public Engine {
         answer.tests = tests_[i];
         continue;
       }
-      answer.us = times_[i][std::min(asked_[i]++, times_[i].size() - 1)];
+      answer.us = times_[i][std::min(queries_[i]++, times_[i].size() - 1)];
     }
     progress(out.size());
     return out;
   }
-  std::size_t asked(std::size_t i) const { return asked_[i]; }
+  std::size_t queries(std::size_t i) const { return queries_[i]; }
 
  private:
   std::vector<std::vector<double>> times_;
   std::vector<std::uint64_t> tests_;
-  std::vector<std::size_t> asked_;
+  std::vector<std::size_t> queries_;
 };
 
 std::vector<Pose> numbered_poses(std::size_t n) {
@@ -174,10 +174,10 @@ TEST_CASE("the least of three rounds counts, and a time per test that does not r
   CHECK(us(3) == 10);
   CHECK(us(4) == 1000);
   for (std::size_t i = 0; i < 8; ++i) CHECK(tail.samples[i].noise == (i == 1));
-  CHECK(engine.asked(0) == 3);
-  CHECK(engine.asked(1) == 6);
-  CHECK(engine.asked(2) == 6);
-  CHECK(engine.asked(4) == 3);
+  CHECK(engine.queries(0) == 3);
+  CHECK(engine.queries(1) == 6);
+  CHECK(engine.queries(2) == 6);
+  CHECK(engine.queries(4) == 3);
   CHECK(notes_of({tail}).size() == 1);
 }
 
@@ -247,17 +247,17 @@ TEST_CASE("the search finds a planted maximum that three times as many random po
 
 TEST_CASE("a search spends its budget exactly, however small") {
   for (const std::size_t budget : {8, 9, 13, 20, 257, 700}) {
-    std::size_t asked = 0, said = 0;
+    std::size_t queried = 0, said = 0;
     SearchOptions options;
     options.budget = budget;
     const Search found = search(
         options,
         [&](std::span<const Placement> at) {
-          asked += at.size();
+          queried += at.size();
           return planted_cost(at);
         },
         [&](std::size_t done) { said = done; });
-    CHECK(asked == budget);
+    CHECK(queried == budget);
     CHECK(said == budget);
     CHECK(found.trials.back().number == budget);
   }
@@ -272,7 +272,7 @@ TEST_CASE("the worst poses of an engine: goals, failures, and engines that do no
   const Worst worst = find_worst(*ours, space, Goal::tests_per_answer, options, true, run::kSilent);
   REQUIRE(!worst.poses.empty());
   CHECK(worst.failures.empty());
-  for (const AskedTrial& t : worst.poses) {
+  for (const QueriedTrial& t : worst.poses) {
     CHECK(t.trial.cost == static_cast<double>(*t.answer.tests) / (1 + static_cast<double>(t.answer.pairs)));
     const Pose pose = space.pose(t.trial.at);
     const EngineAnswer again = ours->ask({&pose, 1}, {.tests = true}, kNoProgress).front();
@@ -305,7 +305,7 @@ TEST_CASE("the worst poses of an engine: goals, failures, and engines that do no
   const Worst times = find_worst(uncounted, space, Goal::time, options, false, run::kSilent);
   CHECK(times.poses[0].trial.cost > 0);
   CHECK(times.failures.size() > 50);
-  for (const AskedTrial& t : times.poses) CHECK(t.answer.failure.empty());
+  for (const QueriedTrial& t : times.poses) CHECK(t.answer.failure.empty());
 }
 
 TEST_CASE("the map has a cell for every direction, in its range of distances") {
@@ -385,7 +385,8 @@ TEST_CASE("wrong pairs of an engine in single precision are found, exact answers
   CHECK(table_of(wrong) != table_of(right));
 }
 
-TEST_CASE("answers of captured queries: tests by kind and phase, pairs, and nothing where nothing was kept") {
+TEST_CASE(
+    "answers of captured queries: tests by kind and phase, pairs, and zero for events that were not kept") {
   using capture::EventKind;
   const std::vector<std::string> names = {"broad", "narrow"};
   capture::Query q = query(1, 2.5,
@@ -597,7 +598,7 @@ TEST_CASE("a program that fails, hangs, or records nothing or something else is 
   CHECK(missing.err.find("exited with code 127") != std::string::npos);
 }
 
-TEST_CASE("tails of a capture, and what is refused") {
+TEST_CASE("tails of a capture, and rejected captures") {
   const Two two;
   io::save_poses(two.folder / "poses.txt",
                  std::vector<Pose>{Pose::translation({0.1, 0, 0}), Pose::translation({3, 0, 0}),
