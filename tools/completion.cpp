@@ -470,8 +470,7 @@ struct Variable {
 };
 constexpr std::array kVariables = {
     Variable{"LRB_FONT", "Font file for text in pictures, if DejaVu Sans is not installed."},
-    Variable{"LRB_SIMD",
-             "avx2 or baseline: use the kernels for older processors. Results do not change."},
+    Variable{"LRB_SIMD", "avx2 or baseline: use the kernels for older processors. Results do not change."},
     Variable{"LRBSCOPE_METHODS", "Folder with the worker programs of other engines."},
     Variable{"NO_COLOR", "If set, progress is drawn without colours."}};
 
@@ -531,8 +530,8 @@ struct CompletionOptions {
 int print_completion(const CLI::App& root, const CompletionOptions& o) {
   const completion::Command all = completion::command_of(root);
   const completion::ShippedNames names = {spec::shipped_names(spec::kScenarioEnding),
-                                     spec::shipped_names(spec::kCrowdEnding),
-                                     spec::shipped_names(spec::kExperimentEnding)};
+                                          spec::shipped_names(spec::kCrowdEnding),
+                                          spec::shipped_names(spec::kExperimentEnding)};
   const std::string script = o.shell == "bash"  ? completion::bash_completion(all, names)
                              : o.shell == "zsh" ? completion::zsh_completion(all, names)
                                                 : completion::fish_completion(all, names);

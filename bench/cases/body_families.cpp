@@ -19,9 +19,8 @@ bool is_central(int i) {
 }
 
 Mesh menger() {
-  return shapes::voxels(3, 3, 3, [](int i, int j, int k) {
-    return is_central(i) + is_central(j) + is_central(k) < 2;
-  });
+  return shapes::voxels(
+      3, 3, 3, [](int i, int j, int k) { return is_central(i) + is_central(j) + is_central(k) < 2; });
 }
 
 /// A cube of 3^3 cells with a smaller cube at the centre of every face.

@@ -31,8 +31,8 @@ struct NumberMethod {
 /// Returns a method with a parameter named `parameter`, and its settings from coarse to fine.
 NumberMethod with_parameter(NumberMethod m, const char* parameter, std::vector<double> settings);
 
-/// Returns lrbscope's methods, including exact queries at equally spaced times, and the methods of the engines
-/// found at build time.
+/// Returns lrbscope's methods, including exact queries at equally spaced times, and the methods of the
+/// engines found at build time.
 std::vector<NumberMethod> number_methods();
 std::vector<NumberMethod> own_number_methods();
 std::vector<NumberMethod> fcl_number_methods();

@@ -154,8 +154,8 @@ class Method {
   /// rigid (InputError).
   virtual MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                              Mode mode) = 0;
-  /// Runs the query for all pairs again, untimed, and counts its tests. Returns nullopt if the method does not
-  /// count them.
+  /// Runs the query for all pairs again, untimed, and counts its tests. Returns nullopt if the method does
+  /// not count them.
   virtual std::optional<TestCounts> count_tests(const MethodBody& a, const Pose& pose_a, const MethodBody& b,
                                                 const Pose& pose_b) {
     static_cast<void>(a), static_cast<void>(pose_a), static_cast<void>(b), static_cast<void>(pose_b);

@@ -86,8 +86,8 @@ void fit_fronts(double size, std::uint32_t least, Faces faces, Pass pass) {
 // 1. The front is covered with patches, disks of a few dozen triangles (patch_grow.hpp).
 // 2. Each patch is simplified outward into a cap with the same ring (patch_cap.hpp).
 // 3. A cap is accepted only if it is proven, exactly, to be disjoint from all other faces (embed_check.hpp).
-//    The new front is then embedded again and encloses the old one, so that all faces of the complex intersect
-//    only in shared vertices and edges.
+//    The new front is then embedded again and encloses the old one, so that all faces of the complex
+//    intersect only in shared vertices and edges.
 // 4. The space between becomes a region, with the patch as its floor and the cap as its lids
 //    (front_update.hpp). The caps are part of the front of the next pass.
 //

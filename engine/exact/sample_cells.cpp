@@ -153,8 +153,8 @@ std::vector<Rational> events_of(const std::vector<Cut>& cuts) {
   return events;
 }
 
-/// A cut that spans a slab. The layers of a slab are in ascending order; coincident cuts are listed once, by the
-/// first of them.
+/// A cut that spans a slab. The layers of a slab are in ascending order; coincident cuts are listed once, by
+/// the first of them.
 struct Layer {
   Rational y;  ///< at the centre of the slab
   std::size_t cut;

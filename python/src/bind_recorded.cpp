@@ -384,7 +384,8 @@ void bind_scenario(py::module_& m) {
   c.def_property_readonly(
       "name", [](const spec::Scenario& s) { return s.name; }, "str");
   c.def_property_readonly(
-      "purpose", [](const spec::Scenario& s) { return s.purpose; }, "str: the expected content of the pictures.");
+      "purpose", [](const spec::Scenario& s) { return s.purpose; },
+      "str: the expected content of the pictures.");
   c.def("record", &record_scenario, py::kw_only(), py::arg("progress") = py::none(),
         "record(*, progress=None)\n\n"
         "Runs the scenario without drawing. progress(what, done, total) is called at intervals. "

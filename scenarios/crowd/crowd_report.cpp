@@ -191,8 +191,9 @@ std::string crowd_speed(const CrowdRun& run) {
     std::nth_element(x.begin(), median, x.end());
     return render::short_number(*median) + " us";
   };
-  return "a step takes (medians): broad phase " + median_text(broad_phases) + ", queries " + median_text(queries) +
-         ", on " + std::to_string(run.threads) + (run.threads == 1 ? " thread" : " threads");
+  return "a step takes (medians): broad phase " + median_text(broad_phases) + ", queries " +
+         median_text(queries) + ", on " + std::to_string(run.threads) +
+         (run.threads == 1 ? " thread" : " threads");
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
-/// Models for export to other programs: points, lines and polygons, each with a colour and numeric attributes.
+/// Models for export to other programs: points, lines and polygons, each with a colour and numeric
+/// attributes.
 
 #include <bit>
 #include <cstdint>

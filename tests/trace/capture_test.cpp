@@ -232,8 +232,8 @@ TEST_CASE("any numbers of any length read back, across buffers") {
     const auto b = static_cast<std::uint32_t>(random() >> random() % 32);
     const auto tests = static_cast<std::uint8_t>(1 + random() % 3 * 100);
     reported.push_back({a, b, static_cast<EventKind>(random() % 2),
-                    static_cast<std::uint8_t>(random() % (tests + 1)), tests,
-                    static_cast<std::uint8_t>(random() % 2 ? 255 : random() % 15)});
+                        static_cast<std::uint8_t>(random() % (tests + 1)), tests,
+                        static_cast<std::uint8_t>(random() % 2 ? 255 : random() % 15)});
     if (reported.back().kind == EventKind::triangles)
       reported.back().tests = 1, reported.back().met %= 2, reported.back().axis = 255;
   }
