@@ -53,7 +53,7 @@ bool is_capture_file(const std::string& path) {
 Trees read_trees(const TreeCommandOptions& o, std::vector<std::string>& notes) {
   const std::string name = printable_name(o.file);
   Trees out;
-  if (is_capture_file(o.file)) {
+  if (o.file.ends_with(".lrbcap") || is_capture_file(o.file)) {
     capture::Capture c = capture::read_capture(o.file, kNull, kNull);  // no queries
     if (c.cut_off)
       notes.push_back(name + ": the capture ends within a chunk or without its end; the rest was read");

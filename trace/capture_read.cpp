@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <string_view>
@@ -619,6 +620,11 @@ Capture parse_capture(std::span<const std::byte> bytes, const std::string& name,
 }
 
 Capture read_capture(const std::string& path, std::uint32_t first, std::uint32_t last) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(path, unknown) && !unknown)
+    throw InputError(printable_name(path) +
+                     ": no such file; check the path, and that the engine was compiled with -DLRBCAP_ENABLE "
+                     "and run with LRBCAP_OUT");
   const std::string bytes = read_file(path);
   return parse_capture(std::as_bytes(std::span(bytes)), path, first, last);
 }

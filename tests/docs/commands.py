@@ -35,6 +35,7 @@ NOT_RUN = [
         r"--method (ours,)?fcl|--command|run\.lrbcap",
         "needs another engine or its capture; tails_tests",
     ),
+    ("docs/profile_your_engine.md", r"", "tests/examples/capture.sh, in order, with their output"),
     ("", r"\.lrbcap\b", "needs another engine's program; profile_tests"),
     ("docs/meshes.md", r"\b(twin|cow)2?\.(obj|lrb)", "tests/docs/bodies.sh, with their output"),
     (

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# capture.sh TREE AABB [FCL]: runs the example engines of examples/capture with the models of data/. Both must find the same
-# pairs, and record a whole capture if and only if LRBCAP_OUT names a file.
+# capture.sh TREE LRBSCOPE AABB [FCL]: runs the example engines of examples/capture with the models of data/. Both must find the
+# same pairs, and record a whole capture if and only if LRBCAP_OUT names a file. Then runs the commands of
+# docs/profile_your_engine.md, whose blocks must show aabb.c and their output.
 set -euo pipefail
-tree=$1
-shift
+tree=$(cd "$1" && pwd)
+program=$2
+shift 2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -33,4 +35,31 @@ done
 code=0
 "$1" "$gear" missing.obj poses >/dev/null 2>said || code=$?
 [ $code = 1 ] && grep -qF 'missing.obj: cannot open the file' said || fail "a missing file: $(cat said)"
-echo "example_capture: as expected"
+
+# The page, in a folder like a checkout. Without FCL its commands are left out, and the output of them.
+page=$tree/docs/profile_your_engine.md
+mkdir page
+cd page
+ln -s "$tree/examples" "$tree/tests" "$tree/trace" .
+lrbscope() { "$program" "$@"; }
+sed 's/^ *//' examples/capture/aabb.c >shown
+ran=0
+while IFS= read -r line; do
+  case "$line" in *fcl*) [ $# -gt 1 ] || continue ;; esac
+  expected=0 code=0
+  case "$line" in *"# exit code 1") expected=1 ;; esac
+  eval "$line" >said 2>&1 || code=$?
+  [ $code = $expected ] || fail "$page: exit code $code, expected $expected: $line: $(cat said)"
+  sed 's/^ *//; s/\xe2\x80\xaf/ /g' said >>shown # the space between thousands
+  ran=$((ran + 1))
+done < <(awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' "$page")
+[ $ran -ge 13 ] || fail "$page: ran only $ran commands"
+# Blocks without a language, but not those of FCL without it.
+awk -v fcl=$(($# - 1)) '/^```/ { if (inside && plain && (fcl || block !~ /FCL/)) printf "%s", block
+    inside = !inside; plain = $0 == "```"; block = ""; next }
+  inside && $1 != "..." { sub(/^ */, ""); block = block $0 "\n" }' "$page" >blocks
+[ "$(wc -l <blocks)" -ge 30 ] || fail "$page: found only $(wc -l <blocks) lines of output"
+while IFS= read -r line; do
+  grep -qxF -- "$line" shown || fail "$page: no command prints, and aabb.c does not contain: $line"
+done <blocks
+echo "example_capture: as expected, with $ran commands of the page"

@@ -293,6 +293,14 @@ TEST_CASE("nothing is recorded, and every call may be made, unless an output is 
   LRBCAP_CLOSE();
 }
 
+TEST_CASE("a capture that does not exist is refused with the two ways to record none") {
+  CHECK_THROWS_WITH_AS(
+      read_capture("/nowhere/run.lrbcap"),
+      "/nowhere/run.lrbcap: no such file; check the path, and that the engine was compiled with "
+      "-DLRBCAP_ENABLE and run with LRBCAP_OUT",
+      InputError);
+}
+
 TEST_CASE("a capture cut off anywhere is read up to its last whole chunk") {
   const Bytes whole = record(a_query);
   const std::vector<std::size_t> chunks = chunks_of(whole);
