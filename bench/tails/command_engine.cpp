@@ -223,7 +223,7 @@ std::vector<EngineAnswer> answers_of(const capture::Capture& capture, Wanted wan
   std::vector<EngineAnswer> out;
   for (const capture::Query& q : capture.queries) out.push_back(answer_of(q, capture.names, wanted.list));
   if (!wanted.waste) return out;
-  const profile::Check checked = profile::check(capture, {.split = false});
+  const profile::Check checked = profile::check(capture, {.precision = {}, .split = false});
   for (std::size_t i = 0; i < out.size(); ++i) {
     const profile::Prices& prices = checked.queries[i].prices;
     out[i].wasted = prices.wasted() + prices.triangle_tests_for_nothing;

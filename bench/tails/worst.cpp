@@ -90,7 +90,7 @@ std::string cost_text(double cost) {
   return cost >= 1000 ? io::fixed_text(cost, 0) : io::number_text(cost, 4);
 }
 
-std::string count_text(const std::optional<std::uint64_t>& n) {
+std::string count_or_dash(const std::optional<std::uint64_t>& n) {
   return n ? std::to_string(*n) : "-";
 }
 
@@ -132,7 +132,7 @@ std::string table_of(const Worst& worst) {
   std::string out = row({time ? "us" : "cost", "tests", "box tests", "face tests", "pairs", "query"});
   for (const QueriedTrial& t : worst.poses) {
     const auto& kinds = t.answer.kinds;
-    out += row({cost_text(t.trial.cost), count_text(t.answer.tests),
+    out += row({cost_text(t.trial.cost), count_or_dash(t.answer.tests),
                 kinds ? std::to_string(kinds->boxes) : "-", kinds ? std::to_string(kinds->faces) : "-",
                 std::to_string(t.answer.pairs), std::to_string(t.trial.number)});
   }
@@ -304,7 +304,7 @@ std::vector<std::string> write_worst_page(const Worst& worst, const WorstPage& p
   for (std::size_t i = 0; i < worst.poses.size(); ++i) {
     const QueriedTrial& t = worst.poses[i];
     const auto& kinds = t.answer.kinds;
-    table.rows.push_back({cost_text(t.trial.cost), count_text(t.answer.tests),
+    table.rows.push_back({cost_text(t.trial.cost), count_or_dash(t.answer.tests),
                           kinds ? std::to_string(kinds->boxes) : "-",
                           kinds ? std::to_string(kinds->faces) : "-", std::to_string(t.answer.pairs),
                           std::to_string(t.trial.number), page.recorders[i]});

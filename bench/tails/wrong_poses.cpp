@@ -235,8 +235,8 @@ WrongSearch find_wrong(Engine& engine, const LrbRep& a, const LrbRep& b, const P
 
 namespace {
 
-const std::vector<std::string> kColumns = {"poses",        "number",      "no answer",    "wrong contact",
-                                           "missed pairs", "false pairs", "largest error"};
+const std::vector<std::string> kKindColumns = {"poses",        "number",      "no answer",    "wrong contact",
+                                               "missed pairs", "false pairs", "largest error"};
 
 /// Returns a row for each kind of poses.
 std::vector<std::vector<std::string>> rows_of(const WrongSearch& search) {
@@ -270,7 +270,7 @@ std::string table_of(const WrongSearch& search) {
       out += std::string(cell.size() < kWidth ? kWidth - cell.size() : 1, ' ') + cell;
     out += "\n";
   };
-  add(kColumns);
+  add(kKindColumns);
   for (const auto& row : rows_of(search)) add(row);
   return out;
 }
@@ -301,7 +301,7 @@ std::vector<std::string> write_wrong_page(const WrongSearch& search, const std::
       "exact ones: at first contact, with coplanar faces, with parallel edges, with vertices on vertices, "
       "and up to 256 units in the last place beside them.");
   document.table(
-      {"Kinds of poses", kColumns, rows_of(search),
+      {"Kinds of poses", kKindColumns, rows_of(search),
        "Error: the gap of triangles that were reported but do not intersect, or the depth of those that "
        "were missed, over the mean of both bodies' diagonals. An error near the engine's rounding "
        "(1e-16 of the coordinates in double, 6e-8 in single precision) is none that it could avoid."});
