@@ -327,6 +327,19 @@ TEST_CASE("what counts as wrong depends on the kind of query") {
   }
 }
 
+TEST_CASE("an engine that records no tests of triangles is not said to miss pairs") {
+  ToyEngine engine = two_balls();
+  capture::Query& q = engine.capture.queries[0];
+  std::erase_if(q.events, [](const capture::Event& e) { return e.kind == capture::EventKind::triangles; });
+  q.parts = {};
+  q.events_seen = 0;
+  REQUIRE(q.complete());
+  REQUIRE(!q.events.empty());
+  const profile::CapturedTotals totals = profile::totals_of(recorded(engine.capture));
+  CHECK(totals.missed == 0);
+  CHECK(totals.right_verdicts == 1);
+}
+
 TEST_CASE("a query whose events were not all kept is not said to miss pairs") {
   ToyEngine engine = two_balls();
   capture::Query& q = engine.capture.queries[0];
