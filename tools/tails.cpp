@@ -60,8 +60,8 @@ void record(const TailsOptions& o, const tails::Tail& tail, std::size_t pose, co
   run_command(words_of(o, tail, pose), globals);
 }
 
-void write(const TailsOptions& o, const std::vector<tails::Tail>& tails, const std::string& title,
-           const std::string& purpose, const std::string& machine, const Globals& globals) {
+void write_tails(const TailsOptions& o, const std::vector<tails::Tail>& tails, const std::string& title,
+                 const std::string& purpose, const std::string& machine, const Globals& globals) {
   for (const tails::Tail& tail : tails) {
     if (!tail.queries.empty()) continue;
     constexpr std::size_t kMaxRows = 10;
@@ -86,7 +86,7 @@ int finish(const TailsOptions& o, const std::vector<tails::Tail>& tails, const s
     print(title + "\n" + tails::table_of(tails));
   }
   if (o.folder.empty()) return kOk;
-  write(o, tails, title, purpose, machine, globals);
+  write_tails(o, tails, title, purpose, machine, globals);
   if (!o.json) print(o.folder + "/index.html\n");
   for (const tails::Tail& tail : tails)
     for (const std::string& at : o.record) record(o, tail, tails::pose_at(tail, at), globals);
