@@ -52,10 +52,11 @@ void find_noise(Engine& engine, Tail& tail, const run::ProgressReport& progress)
     if (const auto ratio = us_per_test(s.answer)) ratios.push_back(*ratio);
   const double limit = kNoiseFactor * bench::median(ratios);
   std::vector<std::size_t> unusual;
-  std::vector<Pose> poses;
+  std::vector<Pose> poses;  // each after the one before it, so that caches are as they were
   for (std::size_t i = 0; i < tail.samples.size(); ++i)
     if (us_per_test(tail.samples[i].answer).value_or(0) > limit) {
       unusual.push_back(i);
+      poses.push_back(tail.poses[i == 0 ? tail.poses.size() - 1 : i - 1]);
       poses.push_back(tail.poses[i]);
     }
   if (unusual.empty()) return;
@@ -64,9 +65,10 @@ void find_noise(Engine& engine, Tail& tail, const run::ProgressReport& progress)
   });
   for (std::size_t k = 0; k < unusual.size(); ++k) {
     Sample& s = tail.samples[unusual[k]];
+    const double us = again[2 * k + 1];
     constexpr double kRepeats = 0.5;
-    s.noise = again[k] < kRepeats * s.answer.us;
-    s.answer.us = std::min(s.answer.us, again[k]);
+    s.noise = us < kRepeats * s.answer.us;
+    s.answer.us = std::min(s.answer.us, us);
   }
 }
 
@@ -242,7 +244,8 @@ std::string table_of(const std::vector<Tail>& tails) {
   out += "\n";
   for (const Tail& tail : tails)
     for (const Percentiles& p : percentiles(tail)) {
-      out += left(tail.engine, widest) + left(p.what, words);
+      out += left(tail.engine, widest) +
+             left(p.what == "box_tests" || p.what == "face_tests" ? io::in_words(p.what) : p.what, words);
       for (const double x : {p.p50, p.p90, p.p99, p.max})
         out += padded(p.what == "us" ? io::number_text(x, 4) : io::fixed_text(x, 0));
       out += padded(std::to_string(p.count)) + "\n";

@@ -299,7 +299,7 @@ std::vector<std::string> write_wrong_page(const WrongSearch& search, const std::
       title,
       "An engine's pairs of intersecting faces at poses that are hard in floating point, compared with the "
       "exact ones: at first contact, with coplanar faces, with parallel edges, with vertices on vertices, "
-      "and up to 256 units in the last place beside them.");
+      "and beside them, from one unit in the last place of doubles up to the rounding of single precision.");
   document.table(
       {"Kinds of poses", kKindColumns, rows_of(search),
        "Error: the gap of triangles that were reported but do not intersect, or the depth of those that "

@@ -39,7 +39,9 @@ struct HardPose {
 /// path another is drawn.
 std::vector<HardPose> hard_poses(const LrbRep& a, const LrbRep& b, const PoseSpace& space, std::size_t count,
                                  std::uint64_t seed, const run::ProgressReport& progress);
-inline constexpr std::array<int, 9> kUlps = {0, 1, -1, 4, -4, 32, -32, 256, -256};
+/// Up to the rounding of poses in single precision.
+inline constexpr std::array<int, 11> kUlps = {0,          1,       -1,         16,      -16,       1 << 12,
+                                              -(1 << 12), 1 << 24, -(1 << 24), 1 << 30, -(1 << 30)};
 
 /// Returns the largest gap of two triangles along the axes that can separate them (normals, and products of
 /// two edges); negative: the least translation along one of them that separates the triangles. A lower bound

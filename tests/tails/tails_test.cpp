@@ -174,10 +174,11 @@ TEST_CASE("the least of three rounds counts, and a time per test that does not r
   CHECK(us(3) == 10);
   CHECK(us(4) == 1000);
   for (std::size_t i = 0; i < 8; ++i) CHECK(tail.samples[i].noise == (i == 1));
-  CHECK(engine.queries(0) == 3);
-  CHECK(engine.queries(1) == 6);
+  // Unusual poses are repeated after their predecessors.
+  CHECK(engine.queries(0) == 6);
+  CHECK(engine.queries(1) == 9);
   CHECK(engine.queries(2) == 6);
-  CHECK(engine.queries(4) == 3);
+  CHECK(engine.queries(3) == 3);
   CHECK(notes_of({tail}).size() == 1);
 }
 
@@ -348,7 +349,7 @@ TEST_CASE("hard poses are hard: in contact or within rounding of it") {
   const LrbRep a = body(shapes::box()), b = body(shapes::bumpy_sphere(1, 1));
   const PoseSpace space = space_of(a, b);
   const std::vector<HardPose> hard = hard_poses(a, b, space, 4 * kUlps.size() * 5, 1, run::kSilent);
-  REQUIRE(hard.size() == 180);
+  REQUIRE(hard.size() == 220);
   Workspace workspace;
   std::size_t first = 0;
   for (const HardPose& h : hard) {
@@ -357,10 +358,10 @@ TEST_CASE("hard poses are hard: in contact or within rounding of it") {
     if (h.kind != Hard::first_contact) continue;
     ++first;
     // B moves away from A by positive numbers of units.
-    if (h.ulps <= 0) CHECK(meets);
-    if (h.ulps == 256) CHECK_FALSE(meets);
+    if (h.ulps <= 0 && h.ulps >= -(1 << 12)) CHECK(meets);
+    if (h.ulps >= 1 << 12) CHECK_FALSE(meets);
   }
-  CHECK(first == 45);
+  CHECK(first == 55);
   // A second time, the same.
   const std::vector<HardPose> again = hard_poses(a, b, space, hard.size(), 1, run::kSilent);
   for (std::size_t i = 0; i < hard.size(); ++i) CHECK(hard[i].pose.t == again[i].pose.t);
@@ -370,11 +371,11 @@ TEST_CASE("wrong pairs of an engine in single precision are found, exact answers
   const LrbRep a = body(shapes::box()), b = body(shapes::bumpy_sphere(1, 1));
   const PoseSpace space = space_of(a, b);
   const auto ours = our_engine(a, b);
-  const WrongSearch right = find_wrong(*ours, a, b, space, 180, 1, run::kSilent);
-  CHECK(right.poses.size() == 180);
+  const WrongSearch right = find_wrong(*ours, a, b, space, 220, 1, run::kSilent);
+  CHECK(right.poses.size() == 220);
   CHECK(right.worst().empty());
   FloatEngine floats(a, b);
-  const WrongSearch wrong = find_wrong(floats, a, b, space, 180, 1, run::kSilent);
+  const WrongSearch wrong = find_wrong(floats, a, b, space, 220, 1, run::kSilent);
   REQUIRE(!wrong.worst().empty());
   CHECK(wrong.worst()[0].wrong_contact());
   double error = 0;
@@ -619,7 +620,7 @@ TEST_CASE("tails of a capture, and rejected captures") {
     if (row.at("what") == "tests") CHECK(row.at("max") == 1 + 12 * 96);
   }
   CHECK(rows == 6);
-  CHECK(slurp(two.folder / "out/index.html").find("lrbscope import run.lrbcap --queries 1 ") !=
+  CHECK(slurp(two.folder / "out/index.html").find("lrbscope import run.lrbcap --queries ") !=
         std::string::npos);
   CHECK(check_rejected(two.folder, {"tails", "a.obj"}).err.find("expected a second body, or a capture") !=
         std::string::npos);
