@@ -188,7 +188,7 @@ function startScene() {
     return null;
   }
   leaveOut(events.passes ? ".of-query" : ".of-build");
-  if (events.engine) leaveOut(".of-query"); // another engine has no wrappers
+  if (events.engine) leaveOut(".of-wrappers"); // another engine has none
   byId("scene").classList.toggle("building", Boolean(events.passes));
   const selection = new Selection(events),
     wrappers = complete ? new Wrappers(bodies, events, scene.wrapper) : null;
