@@ -47,14 +47,17 @@ std::vector<double> least_times(Engine& engine, std::span<const Pose> poses, int
 
 /// Asks poses with an unusual time per test again, and marks those whose time does not repeat.
 void find_noise(Engine& engine, Tail& tail, const run::ProgressReport& progress) {
-  std::vector<double> ratios;
+  std::vector<double> ratios, times;
   for (const Sample& s : tail.samples)
-    if (const auto ratio = us_per_test(s.answer)) ratios.push_back(*ratio);
-  const double limit = kNoiseFactor * bench::median(ratios);
+    if (const auto ratio = us_per_test(s.answer)) {
+      ratios.push_back(*ratio);
+      times.push_back(s.answer.us);
+    }
+  const double limit = kNoiseFactor * bench::median(ratios), usual = bench::median(times);
   std::vector<std::size_t> unusual;
   std::vector<Pose> poses;  // each after the one before it, so that caches are as they were
   for (std::size_t i = 0; i < tail.samples.size(); ++i)
-    if (us_per_test(tail.samples[i].answer).value_or(0) > limit) {
+    if (us_per_test(tail.samples[i].answer).value_or(0) > limit && tail.samples[i].answer.us > usual) {
       unusual.push_back(i);
       poses.push_back(tail.poses[i == 0 ? tail.poses.size() - 1 : i - 1]);
       poses.push_back(tail.poses[i]);

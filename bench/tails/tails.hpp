@@ -33,7 +33,8 @@ struct Tail {
 };
 
 inline constexpr int kRounds = 3;
-/// A pose whose time per test exceeds this multiple of the median is measured again.
+/// A pose that takes longer than the median, and per test longer than this multiple of the median, is
+/// measured again.
 inline constexpr double kNoiseFactor = 5;
 
 /// Asks every pose in kRounds separate rounds, so that a slow moment of the machine does not slow all repeats
