@@ -329,7 +329,7 @@ report::Series exceedance(const std::string& label, std::vector<double> values) 
 
 report::Chart distribution(const std::vector<Tail>& tails, const std::string& what, const std::string& title,
                            const std::string& label) {
-  report::Chart chart{title, {label, true}, {"share of poses that cost as much or more", true}};
+  report::Chart chart{title, {label, true}, {"share of poses", true}};
   for (const Tail& tail : tails)
     for (Quantity& q : quantities_of(tail))
       if (q.what == what) chart.series.push_back(exceedance(tail.engine, std::move(q.values)));
@@ -356,7 +356,8 @@ report::Table costliest_table(const Tail& tail, const TailsPage& page) {
                       kind(&methods::TestCounts::faces), std::to_string(s.answer.pairs),
                       s.noise ? "noise" : "", page.record_command(tail, i)});
   }
-  t.note = "By time. Noise: the time per test was over five times the median, and did not repeat.";
+  t.note =
+      "By time. Noise: the time was above the median, and per test over five times the median, and did not repeat.";
   return t;
 }
 
@@ -397,7 +398,8 @@ std::vector<std::string> write_tails_page(const std::vector<Tail>& tails, const 
         document.number({tail.engine, short_number(p.p50) + " \u00b5s",
                          "p50; p99 " + short_number(p.p99) + ", max " + short_number(p.max)});
   report::Chart times = distribution(tails, "us", "Time of a query", "\u00b5s");
-  times.note = "A curve that reaches far to the right has a long tail: few poses that cost much more.";
+  times.note =
+      "The share of poses that cost as much or more: a tail is where the curve goes on to the right below 1 %.";
   document.chart(times);
   if (const report::Chart tests = distribution(tails, "tests", "Tests of a query", "tests");
       !tests.series.empty())

@@ -268,7 +268,7 @@ std::string cost_map(const std::vector<Trial>& trials, const std::string& unit) 
       rect(i * kCell, y, colour(least * std::pow(most / least, i / static_cast<double>(kColumns - 1))), "");
     text(0, y + 26, cost_text(least));
     text(kMapWidth - 36, y + 26, cost_text(most));
-    text(kMapWidth + kGap, y + 10, unit + ", the highest of each cell; grey: no query");
+    text(kMapWidth + kGap, y + 10, unit);
   }
   return out + "</svg>\n";
 }
@@ -323,7 +323,8 @@ std::vector<std::string> write_worst_page(const Worst& worst, const WorstPage& p
   document.picture(
       "map.svg", cost_map(trials, unit), "Cost over direction and distance",
       "Direction from the centre of A's box to that of B's: longitude to the right, z upward, in "
-      "cells of equal area; distance in means of both boxes' diagonals.",
+      "cells of equal area; distance in means of both boxes' diagonals. Colours: the highest cost in a cell; grey: "
+      "no query.",
       true);
   if (!page.scenario.empty())
     document.file("worst.scenario.json", page.scenario,
