@@ -1,11 +1,7 @@
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 
 #include <poll.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include "bench/tails/engine.hpp"
 #include "bench/workers/child.hpp"
@@ -20,47 +16,6 @@ namespace lrb::tails {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// A file in memory, which other processes of this user can open by its path. Nothing is left of it when this
-/// process ends, however that happens.
-class MemoryFile {
- public:
-  explicit MemoryFile(const char* name) : file_(memfd_create(name, MFD_CLOEXEC)) {
-    if (file_ < 0)
-      throw EnvironmentError(std::string("cannot create a file in memory: ") + std::strerror(errno));
-  }
-  ~MemoryFile() { close(file_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  std::string path() const { return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(file_); }
-
-  void write(std::string_view text) const {
-    while (!text.empty()) {
-      const ssize_t n = ::write(file_, text.data(), text.size());
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0) throw EnvironmentError(std::string("cannot write to memory: ") + std::strerror(errno));
-      text.remove_prefix(static_cast<std::size_t>(n));
-    }
-  }
-
-  std::vector<std::byte> bytes() const {
-    std::vector<std::byte> out;
-    lseek(file_, 0, SEEK_SET);
-    constexpr std::size_t kPiece = std::size_t{1} << 20;
-    while (true) {
-      const std::size_t size = out.size();
-      out.resize(size + kPiece);
-      const ssize_t n = ::read(file_, out.data() + size, kPiece);
-      out.resize(size + static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
-      if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) return out;
-    }
-  }
-
- private:
-  int file_;
-};
 
 std::string how_it_ended(int status) {
   return status < 0 ? "was killed by signal " + std::to_string(-status)
@@ -87,7 +42,7 @@ class CommandEngine : public Engine {
 
   /// Runs the program once for these poses and returns its capture.
   std::vector<std::byte> recorded(std::span<const Pose> poses, bool events) const {
-    const MemoryFile requested("poses"), capture("capture");
+    const workers::MemoryFile requested("poses"), capture("capture");
     std::string text;
     for (const Pose& pose : poses) {
       for (const double x : io::rows_of(pose)) text.append(io::exact_text(x)).append(" ");

@@ -1,5 +1,6 @@
 #include "bench/workers/child.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -7,6 +8,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -112,6 +114,42 @@ std::vector<std::string> lines_of(const std::vector<std::string>& command, std::
   }
   if (child.wait() != 0) lines.clear();
   return lines;
+}
+
+MemoryFile::MemoryFile(const char* name) : file_(memfd_create(name, MFD_CLOEXEC)) {
+  if (file_ < 0)
+    throw EnvironmentError(std::string("cannot create a file in memory: ") + std::strerror(errno));
+}
+
+MemoryFile::~MemoryFile() {
+  close(file_);
+}
+
+std::string MemoryFile::path() const {
+  return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(file_);
+}
+
+void MemoryFile::write(std::string_view text) const {
+  while (!text.empty()) {
+    const ssize_t n = ::write(file_, text.data(), text.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw EnvironmentError(std::string("cannot write to memory: ") + std::strerror(errno));
+    text.remove_prefix(static_cast<std::size_t>(n));
+  }
+}
+
+std::vector<std::byte> MemoryFile::bytes() const {
+  std::vector<std::byte> out;
+  lseek(file_, 0, SEEK_SET);
+  constexpr std::size_t kPiece = std::size_t{1} << 20;
+  while (true) {
+    const std::size_t size = out.size();
+    out.resize(size + kPiece);
+    const ssize_t n = ::read(file_, out.data() + size, kPiece);
+    out.resize(size + static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return out;
+  }
 }
 
 }  // namespace lrb::workers

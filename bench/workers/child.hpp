@@ -1,8 +1,10 @@
 #pragma once
-/// Runs another program of lrbscope as a child process and reads its lines.
+/// Runs another program as a child process, reads its lines, and exchanges files with it.
 
 #include <chrono>
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <sys/types.h>
@@ -42,5 +44,24 @@ class Child {
 /// within `limit`. `given` as for Child.
 std::vector<std::string> lines_of(const std::vector<std::string>& command, std::chrono::seconds limit,
                                   int given = -1);
+
+/// A file in memory that children of this process can open by its path. Nothing is left of it when this
+/// process ends, however that happens (Linux). Throws EnvironmentError if there is no memory for it.
+class MemoryFile {
+ public:
+  explicit MemoryFile(const char* name);
+  ~MemoryFile();
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  std::string path() const;
+  int descriptor() const { return file_; }
+  void write(std::string_view text) const;
+  /// Returns the whole content, and sets the position to the end.
+  std::vector<std::byte> bytes() const;
+
+ private:
+  int file_;
+};
 
 }  // namespace lrb::workers

@@ -1,18 +1,13 @@
 #include "bench/xray/foreign_walk.hpp"
 
-#include <cstdio>
 #include <filesystem>
-#include <memory>
-#include <system_error>
-
-#include <stdlib.h>
-#include <unistd.h>
 
 #include "bench/rivals/triangles.hpp"
 #include "bench/workers/child.hpp"
 #include "bench/workers/workers.hpp"
 #include "scenarios/compare/side_by_side.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/poses.hpp"
 #include "scenarios/profile/captured_run.hpp"
 #include "scenarios/run/run_page.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -41,29 +36,8 @@ void append(std::string& text, const LrbRep& rep) {
 }
 
 void append(std::string& text, const Pose& pose) {
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 4; ++column) append(text, column < 3 ? pose.r(row, column) : pose.t[row]);
+  for (const double x : io::rows_of(pose)) append(text, x);
 }
-
-/// A file that is removed at the end.
-class TemporaryFile {
- public:
-  TemporaryFile() : path_((std::filesystem::temp_directory_path() / "lrbscope-XXXXXX").string()) {
-    const int file = mkstemp(path_.data());
-    if (file < 0) throw EnvironmentError("cannot write a temporary file; check the free disk space");
-    close(file);
-  }
-  ~TemporaryFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 }  // namespace
 
@@ -88,20 +62,17 @@ capture::Capture walk_of(const std::string& engine, const LrbRep& a, const LrbRe
       methods::check_rigid(*pose);
       append(text, *pose);
     }
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), &std::fclose);
-  if (!file || std::fputs(text.c_str(), file.get()) < 0 || std::fflush(file.get()) != 0)
-    throw EnvironmentError("cannot write a temporary file; check the free disk space");
-  std::rewind(file.get());
-  const TemporaryFile captured;
+  const workers::MemoryFile input("input"), captured("capture");
+  input.write(text);
   const std::vector<std::string> lines =
-      workers::lines_of({program, captured.path()}, kLimit, fileno(file.get()));
+      workers::lines_of({program, captured.path()}, kLimit, input.descriptor());
   if (lines.empty())
     throw EnvironmentError("--method " + engine + ": " + program + " failed, or took longer than " +
                            std::to_string(kLimit.count()) + " s");
   capture::Capture out = capture::read_capture(captured.path());
   if (out.cut_off || out.trees.size() != 2 || out.queries.size() != poses.size())
     throw EnvironmentError("--method " + engine + ": " + program +
-                           " wrote an incomplete capture; check the free disk space");
+                           " wrote an incomplete capture; check the free memory");
   return out;
 }
 
