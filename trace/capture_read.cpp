@@ -356,7 +356,7 @@ class Reader {
     if (kind < 1 || kind > 5)
       fail("expected a query of kind 1 (all pairs) to 5 (self), found " + text(kind) +
            "; see docs/capture.md");
-    query.kind = static_cast<QueryKind>(kind);
+    query.kind = static_cast<QueryKind>(kind - 1);  // kinds of a file begin with 1
     query.trees = {a == 0 ? kNull : index_of(trees_, a, "tree"),
                    b == 0 ? kNull : index_of(trees_, b, "tree")};
     for (const int side : {0, 1}) query.poses[side] = read_pose(side == 0 ? 'A' : 'B');

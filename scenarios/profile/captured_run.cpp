@@ -118,9 +118,8 @@ namespace {
 
 trace::EngineReport report_of(const capture::Query& query) {
   trace::EngineReport out;
-  // Both enumerations have the same order; the capture's begins with 1.
-  out.query = static_cast<trace::EngineQuery>(static_cast<std::uint32_t>(query.kind) - 1);
-  out.verdict = static_cast<trace::EngineVerdict>(query.verdict);
+  out.query = query.kind;
+  out.verdict = query.verdict;
   out.pairs = query.pairs;
   out.complete = query.complete();
   out.thread = query.thread;
@@ -145,12 +144,13 @@ std::uint32_t saturated(std::uint64_t value) {
 /// Reports an engine's queries to a recorder, as one of lrbscope's would.
 class QueryReplay {
  public:
-  QueryReplay(trace::Recorder& recorder, Descent descent, bool reports)
-      : recorder_(recorder), descent_(std::move(descent)), reports_(reports) {}
+  /// The indices of both trees must outlive this object.
+  QueryReplay(trace::Recorder& recorder, const TreeIndex& a, const TreeIndex& b, bool reports)
+      : recorder_(recorder), a_(a), b_(b), reports_(reports) {}
 
   /// Returns the engine's answer, and adds its counters and phases to `report`.
   CollideResult replay(const capture::Query& query, trace::EngineReport& report) {
-    const std::vector<Visit> visits = descent_.visits_of(query.events);
+    const std::vector<Visit> visits = visits_of(a_, b_, query.events);
     std::vector<std::uint32_t> reported(visits.size(), kNull);
     CollideResult result;
     recorder_.begin(Phase::walk, 0, 0);
@@ -206,7 +206,7 @@ class QueryReplay {
   }
 
   trace::Recorder& recorder_;
-  Descent descent_;
+  const TreeIndex &a_, &b_;
   bool reports_;
 };
 
@@ -240,7 +240,7 @@ run::Recording captured_run(const capture::Capture& capture, const TreePair& pai
     indices.emplace_back(tree, triangles);
   }
   trace::Recorder recorder(out.bodies[0].rep, out.bodies[1].rep, recorder_settings(capture, settings));
-  QueryReplay replay(recorder, Descent(indices[0], indices[1]), settings.reports);
+  QueryReplay replay(recorder, indices[0], indices[1], settings.reports);
   const bool is_known = !out.results.empty();
   // An engine that records no tests of triangles at all does not say which pairs it found.
   const bool records_triangles =

@@ -55,8 +55,8 @@ struct CapturedRunSettings {
 /// if the settings say so.
 ///
 /// A test of two bounding volumes becomes a node pair. Its `met` is the number of pairs that the engine
-/// descended to from there, and its predecessor is found by Descent. The results are the exact ones, so that
-/// pictures show the actual intersections; the engine's answer is in the trace.
+/// descended to from there, and its predecessor is found by visits_of(). The results are the exact ones, so
+/// that pictures show the actual intersections; the engine's answer is in the trace.
 run::Recording captured_run(const capture::Capture& capture, const TreePair& pair,
                             std::vector<bodies::LoadedBody> bodies, const CapturedRunSettings& settings,
                             std::vector<CollideResult> exact, const run::ProgressReport& progress);

@@ -47,20 +47,10 @@ void report(const QueryVerdict& v, const capture::Query& query, const capture::C
         .push_back(head + sentence(w, capture.trees[trees[0]], capture.trees[trees[1]]));
 }
 
-std::string kind_words(capture::QueryKind kind) {
-  switch (kind) {
-    case capture::QueryKind::all_pairs:
-      return "all pairs";
-    case capture::QueryKind::any:
-      return "any";
-    case capture::QueryKind::distance:
-      return "distance";
-    case capture::QueryKind::first_contact:
-      return "first contact";
-    case capture::QueryKind::self:
-      return "self";
-  }
-  return {};
+std::string kind_text(capture::QueryKind kind) {
+  std::string out(name_of(kind));
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
 }
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
@@ -73,7 +63,7 @@ std::string percent(std::uint64_t part, std::uint64_t whole) {
 template <class Row>
 void for_each_kind(std::span<const Check> checks, const Row& row) {
   for (const Check& c : checks)
-    for (const auto& [kind, sums] : c.kinds) row(c.engine, kind_words(kind), sums);
+    for (const auto& [kind, sums] : c.kinds) row(c.engine, kind_text(kind), sums);
 }
 
 report::Table owner_table(std::span<const Check> checks) {

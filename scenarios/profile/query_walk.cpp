@@ -41,8 +41,7 @@ std::optional<std::array<std::uint32_t, 2>> CapturedBodies::trees_of(const captu
 QueryWalk::QueryWalk(CapturedBodies& bodies, const capture::Query& query,
                      const std::array<std::uint32_t, 2>& trees)
     : query_(&query), trees_(trees), index_{&bodies.index(trees[0]), &bodies.index(trees[1])} {
-  Descent descent(*index_[0], *index_[1]);
-  visits_ = descent.visits_of(query.events);
+  visits_ = visits_of(*index_[0], *index_[1], query.events);
   for (std::uint32_t i = 0; i < query.events.size(); ++i) {
     const capture::Event& e = query.events[i];
     if (e.kind != capture::EventKind::nodes) continue;

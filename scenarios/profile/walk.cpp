@@ -2,15 +2,9 @@
 
 #include <limits>
 
+#include "scenarios/profile/pair_map.hpp"
+
 namespace lrb::profile {
-namespace {
-
-std::uint64_t key(std::uint32_t a, std::uint32_t b) {
-  return std::uint64_t{a} << 32 | b;
-}
-
-}  // namespace
-
 TreeIndex::TreeIndex(const capture::Tree& tree, std::size_t triangles)
     : parent(tree.size(), kNull),
       depth(tree.size(), kNull),
@@ -41,20 +35,13 @@ TreeIndex::TreeIndex(const capture::Tree& tree, std::size_t triangles)
   }
 }
 
-TreeIndex::TreeIndex(std::size_t triangles)
-    : parent{kNull},
-      depth{0},
-      from_root{0},
-      leaf(triangles, 0),
-      triangles_below{static_cast<std::uint32_t>(triangles)},
-      has_children{0} {}
-
-std::vector<Visit> Descent::visits_of(std::span<const capture::Event> events) {
+std::vector<Visit> visits_of(const TreeIndex& tree_a, const TreeIndex& tree_b,
+                             std::span<const capture::Event> events) {
   std::vector<Visit> out(events.size());
-  visited_.clear();
+  PairMap tests;  // the last test of each pair of nodes
   // Links visit i, of nodes a and b, to its predecessor. All children of a pair are reached by the same step.
-  const auto link = [&](std::uint32_t a, std::uint32_t b, std::size_t i) {
-    const std::uint32_t up_a = trees_[0]->parent[a], up_b = trees_[1]->parent[b];
+  const auto link = [&](std::uint32_t a, std::uint32_t b, std::uint32_t i) {
+    const std::uint32_t up_a = tree_a.parent[a], up_b = tree_b.parent[b];
     const struct {
       std::uint32_t a, b;
       NodeStep step;
@@ -62,37 +49,32 @@ std::vector<Visit> Descent::visits_of(std::span<const capture::Event> events) {
         {up_a, b, NodeStep::descend_a}, {a, up_b, NodeStep::descend_b}, {up_a, up_b, NodeStep::descend_both}};
     for (const auto& pair : above) {
       if (pair.a == kNull || pair.b == kNull) continue;
-      const auto found = visited_.find(key(pair.a, pair.b));
-      if (found == visited_.end()) continue;
-      Visit& from = out[found->second];
+      const std::uint32_t* const found = tests.find(pair.a, pair.b);
+      if (found == nullptr) continue;
+      Visit& from = out[*found];
       if (from.step && *from.step != pair.step) continue;
-      out[i].parent = found->second;
+      out[i].parent = *found;
       from.step = pair.step;
       if (from.children < std::numeric_limits<std::uint8_t>::max()) ++from.children;
       return;
     }
   };
-  for (std::size_t i = 0; i < events.size(); ++i) {
+  for (std::uint32_t i = 0; i < events.size(); ++i) {
     const capture::Event& e = events[i];
     if (e.kind == capture::EventKind::triangles) {
-      const std::uint32_t a = trees_[0]->leaf[e.a], b = trees_[1]->leaf[e.b];
+      const std::uint32_t a = tree_a.leaf[e.a], b = tree_b.leaf[e.b];
       if (a == kNull || b == kNull) continue;
-      if (const auto found = visited_.find(key(a, b)); found != visited_.end())
-        out[i].parent = found->second;
+      if (const std::uint32_t* const found = tests.find(a, b); found != nullptr)
+        out[i].parent = *found;
       else
         link(a, b, i);  // an engine without a test of the leaves' volumes
     } else if (e.kind == capture::EventKind::nodes) {
-      visited_[key(e.a, e.b)] = i;
-      if (trees_[0]->is_leaf(e.a) && trees_[1]->is_leaf(e.b)) out[i].step = NodeStep::leaves;
+      tests.insert(e.a, e.b, i) = i;
+      if (tree_a.is_leaf(e.a) && tree_b.is_leaf(e.b)) out[i].step = NodeStep::leaves;
       link(e.a, e.b, i);
     }
   }
   return out;
-}
-
-std::size_t Descent::test_of(std::uint32_t a, std::uint32_t b) const {
-  const auto found = visited_.find(key(a, b));
-  return found == visited_.end() ? Visit::kNone : found->second;
 }
 
 }  // namespace lrb::profile

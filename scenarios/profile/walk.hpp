@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include <lrbscope/ids.hpp>
@@ -25,8 +24,6 @@ struct TreeIndex {
 
   /// `triangles`: number of triangles of the tree's mesh.
   TreeIndex(const capture::Tree& tree, std::size_t triangles);
-  /// A side without a tree: one leaf, node 0, that contains all triangles.
-  explicit TreeIndex(std::size_t triangles);
 
   bool is_leaf(std::uint32_t node) const { return !has_children[node]; }
   std::vector<char> has_children;
@@ -40,22 +37,10 @@ struct Visit {
   std::uint8_t children = 0;     ///< number of pairs visited from here; saturates at 255
 };
 
-/// Finds the predecessor of each test: the test of the parents, or of one parent and the other node.
-class Descent {
- public:
-  /// The indices must outlive this object.
-  Descent(const TreeIndex& a, const TreeIndex& b) : trees_{&a, &b} {}
-
-  /// Returns a visit for each event; those of counters and phases are unused. The visit of a triangle test
-  /// has the test of its leaves as parent.
-  std::vector<Visit> visits_of(std::span<const capture::Event> events);
-
-  /// Returns the index of the last test of two nodes in the events given last, or Visit::kNone.
-  std::size_t test_of(std::uint32_t a, std::uint32_t b) const;
-
- private:
-  const TreeIndex* trees_[2];
-  std::unordered_map<std::uint64_t, std::size_t> visited_;
-};
+/// Returns a visit for each event of a query of two trees: finds the predecessor of each test, which is the
+/// test of the parents, or of one parent and the other node. The visit of a triangle test has the test of its
+/// leaves as parent; visits of counters and phases are unused.
+std::vector<Visit> visits_of(const TreeIndex& tree_a, const TreeIndex& tree_b,
+                             std::span<const capture::Event> events);
 
 }  // namespace lrb::profile

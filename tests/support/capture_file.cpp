@@ -69,7 +69,7 @@ void write_capture(const capture::Capture& capture, const std::string& path) {
     trees.push_back(write_tree(t, meshes[t.mesh], t.replaces == kNull ? 0 : trees[t.replaces]));
   for (const capture::Query& q : capture.queries) {
     const auto tree = [&](std::size_t side) { return q.trees[side] == kNull ? 0 : trees[q.trees[side]]; };
-    LRBCAP_BEGIN(static_cast<std::uint32_t>(q.kind), tree(0), numbers_of(q.poses[0]).data(), tree(1),
+    LRBCAP_BEGIN(static_cast<std::uint32_t>(q.kind) + 1, tree(0), numbers_of(q.poses[0]).data(), tree(1),
                  numbers_of(q.poses[1]).data());
     for (const capture::Event& e : q.events) write_event(e, names);
     LRBCAP_END(q.verdict, q.pairs);

@@ -21,6 +21,7 @@
 
 #include <lrbscope/ids.hpp>
 #include <lrbscope/pose.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::capture {
 
@@ -71,9 +72,9 @@ struct Tree {
   std::uint32_t id_of(std::uint32_t node) const { return ids.empty() ? node : ids[node]; }
 };
 
-enum class QueryKind : std::uint32_t { all_pairs = 1, any = 2, distance = 3, first_contact = 4, self = 5 };
-/// The engine's own answer.
-enum class Verdict : std::uint32_t { separate = 0, intersecting = 1, unreported = 2 };
+// The kind of a query, and the engine's own answer, as in traces.
+using QueryKind = trace::EngineQuery;
+using Verdict = trace::EngineVerdict;
 
 enum class EventKind : std::uint8_t {
   nodes = 0,      ///< bounding volumes of node a of tree A and node b of tree B were tested
