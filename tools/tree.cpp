@@ -98,7 +98,7 @@ std::string percent(double share) {
 
 std::string faults_text(const profile::TreeFaults& faults, const capture::Tree& tree,
                         const capture::Mesh& mesh) {
-  constexpr std::size_t kShown = 5;  // of each kind
+  constexpr std::size_t kShown = 5;  // maximum number listed for each kind
   if (faults.total() == 0) return "  faults: none\n";
   std::string out = "  faults: " + std::to_string(faults.total()) + "\n";
   for (std::size_t kind = 0; kind < profile::kTreeFaults; ++kind) {

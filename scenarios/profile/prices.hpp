@@ -39,7 +39,7 @@ inline constexpr std::array<std::uint32_t, 3> kLargerLeaves{2, 4, 8};
 struct Prices {
   std::uint64_t visits = 0;  ///< the sum of the following six
   std::uint64_t needed = 0, proof = 0, volumes = 0, order = 0, unsplit = 0, unattributed = 0;
-  std::uint64_t volume_tests = 0;  ///< of all visits; more than visits for wide nodes
+  std::uint64_t volume_tests = 0;  ///< sum over all visits; exceeds `visits` for wide nodes
   std::uint64_t triangle_tests = 0, triangle_tests_for_nothing = 0;
   /// Of those for nothing: tests in a pair of leaves with more than one pair of triangles, which smaller
   /// leaves might save. Not those of triangles whose own volumes were compared, as at leaves of wide nodes.

@@ -65,7 +65,7 @@ struct FoundFault {
 };
 
 struct TreeFaults {
-  static constexpr std::size_t kShown = 30;         ///< of each kind
+  static constexpr std::size_t kShown = 30;         ///< maximum number listed for each kind
   std::array<std::uint64_t, kTreeFaults> totals{};  ///< by kind; corner_outside: number of nodes
   std::vector<FoundFault> first;                    ///< by kind, kShown at most of each
 
