@@ -24,13 +24,15 @@ namespace {
 /// Returns the maximum number of steps of a search (first_contact.hpp). It is far more than needed, except
 /// along clearances that are small relative to the path.
 std::uint64_t max_steps(const LrbRep& a, const Motion& motion_a, const LrbRep& b, const Motion& motion_b) {
-  constexpr double kSteps = 8192, kStepsOfSimplex = 512, kMaxParts = 0x1p20, kMax = 0x1p40;
+  constexpr double kSteps = 8192, kStepsOfSimplex = 512, kMax = 0x1p40;
+  // A thousand revolutions must not take a thousand times as long to give up on as one.
+  constexpr double kMaxRevolutions = 16;
   double parts = 0;
   for (const Motion* motion : {&motion_a, &motion_b})
     for (const Motion::Piece& piece : motion->pieces())
       // Half a piece for each body, so that `parts` is the mean number of pieces plus the number of full
       // turns.
-      parts += 0.5 + std::min(piece.turn.stableNorm() / (2 * std::numbers::pi), kMaxParts);
+      parts += 0.5 + std::min(piece.turn.stableNorm() / (2 * std::numbers::pi), kMaxRevolutions);
   const double simplices = 1.0 * a.real_simplex_count() + b.real_simplex_count();
   return static_cast<std::uint64_t>(std::min((kSteps + kStepsOfSimplex * simplices) * parts, kMax));
 }

@@ -239,7 +239,8 @@ void ask_first_contact(Choices& choose, const LrbRep& a, const LrbRep& b, int di
   const FirstContactResult r = first_contact(a, of_a, b, of_b, request);
   double parts = 0, pairs = 1.0 * a.real_simplex_count() * b.real_simplex_count();
   for (const Motion* m : {&of_a, &of_b})
-    for (const Motion::Piece& p : m->pieces()) parts += 0.5 + p.turn.stableNorm() / (2 * std::numbers::pi);
+    for (const Motion::Piece& p : m->pieces())
+      parts += 0.5 + std::min(p.turn.stableNorm() / (2 * std::numbers::pi), 16.0);
   const FirstContactCounters& k = r.counters;
   const double most =
       (8192 + 512.0 * (a.real_simplex_count() + b.real_simplex_count())) * parts + 4 * pairs + 64;

@@ -20,11 +20,11 @@
 /// Every search terminates. Its steps count: a time interval, a pair found in it, an advancement of a pair,
 /// an exact query and each pair of simplices that it tests, a distance query and every 8 pairs that it
 /// measures, every 16 pairs of nodes of either; 16 for two simplices compared in integers. With n simplices
-/// in both bodies, p pieces of their motions (mean of A's and B's) and r revolutions in these, there are at
-/// most
+/// in both bodies, p pieces of their motions (mean of A's and B's) and r revolutions in these, of which at
+/// most 16 in a piece count, there are at most
 ///     (8192 + 512 n) (p + r)
 /// steps, plus the cost of one exact query or distance. If a search reaches this limit, the interval is
-/// reported as unresolved.
+/// reported as unresolved. Cut a motion of many revolutions along a small clearance into more pieces.
 
 #include <array>
 #include <cstdint>
