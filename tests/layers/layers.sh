@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# layers.sh [TREE]: checks every project #include in the tree's sources against rooms.txt. Fails on an include that its
+# layers.sh [TREE]: checks every project #include in the tree's sources against modules.txt. Fails on an include that its
 # module may not depend on, on a folder or public header that is not listed, and on a cyclic list.
 # layers.sh --self-test: reverses an include of each module, one at a time in a copy, and fails unless each is detected.
 set -euo pipefail
@@ -9,7 +9,7 @@ tops=(engine trace render scenarios bench tools python)
 check() { # the tree's root
   cd "$1"
   grep -rHE --include=*.hpp --include=*.cpp --include=*.inl '^#include ("(engine|trace|render|scenarios|bench|tools|python|tests)/|<lrbscope/)' "${tops[@]}" |
-    awk -v rooms="$here/rooms.txt" -v folders="$(find "${tops[@]}" '(' -name '*.[chi]pp' -o -name '*.inl' ')' -not -path '*/include/*' -printf '%h\n' | sort -u | tr '\n' ' ')" \
+    awk -v modules="$here/modules.txt" -v folders="$(find "${tops[@]}" '(' -name '*.[chi]pp' -o -name '*.inl' ')' -not -path '*/include/*' -printf '%h\n' | sort -u | tr '\n' ' ')" \
         -v headers="$(find engine/include -name '*.hpp' | sort | tr '\n' ' ')" '
       function sees(from, to, depth,   n, i, next_rooms) {
         if (depth > 50) return 0
@@ -25,7 +25,7 @@ check() { # the tree's root
         return path
       }
       BEGIN {
-        while ((getline line < rooms) > 0) {
+        while ((getline line < modules) > 0) {
           if (line ~ /^ *(#|$)/) continue
           if (split(line, part, / has +/) == 2) {
             count = split(part[2], listed, " ")
@@ -36,16 +36,16 @@ check() { # the tree's root
           known[part[1]] = 1
           seen[part[1]] = part[2]
         }
-        for (room in known) {
-          count = split(seen[room], listed, " ")
-          for (i = 1; i <= count; i++) if (!(listed[i] in known)) complain("rooms.txt: " room " may depend on " listed[i] ", which is not listed")
-          if (sees(room, room, 0)) complain("rooms.txt: " room " depends on itself: break the cycle")
+        for (module in known) {
+          count = split(seen[module], listed, " ")
+          for (i = 1; i <= count; i++) if (!(listed[i] in known)) complain("modules.txt: " module " may depend on " listed[i] ", which is not listed")
+          if (sees(module, module, 0)) complain("modules.txt: " module " depends on itself: break the cycle")
         }
         count = split(folders, there, " ")
-        for (i = 1; i <= count; i++) if (!(there[i] in known)) complain(there[i] ": a new folder: list it and its dependencies in tests/layers/rooms.txt")
+        for (i = 1; i <= count; i++) if (!(there[i] in known)) complain(there[i] ": a new folder: list it and its dependencies in tests/layers/modules.txt")
         count = split(headers, there, " ")
-        for (i = 1; i <= count; i++) if (!(there[i] in owner)) complain(there[i] ": a new public header: list it with the module that implements it in tests/layers/rooms.txt")
-        for (header in owner) if (index(" " headers, " " header " ") == 0) complain("rooms.txt: no such header: " header)
+        for (i = 1; i <= count; i++) if (!(there[i] in owner)) complain(there[i] ": a new public header: list it with the module that implements it in tests/layers/modules.txt")
+        for (header in owner) if (index(" " headers, " " header " ") == 0) complain("modules.txt: no such header: " header)
       }
       function complain(text) { print text; bad = 1 }
       {
@@ -59,15 +59,15 @@ check() { # the tree's root
         from = room_of(file); to = room_of(target); includes++
         key = from SUBSEP to
         if (!(key in verdict)) verdict[key] = from == to || sees(from, to, 0)
-        if (!verdict[key]) complain(file ": includes " target ", but " from " may not depend on " to " (tests/layers/rooms.txt)")
+        if (!verdict[key]) complain(file ": includes " target ", but " from " may not depend on " to " (tests/layers/modules.txt)")
       }
-      END { if (!bad) print includes " includes between modules, all allowed by tests/layers/rooms.txt"; exit bad }'
+      END { if (!bad) print includes " includes between modules, all allowed by tests/layers/modules.txt"; exit bad }'
 }
 
 # Prints the module of a file; for a public header of the engine, the module that implements it.
 room_of() {
   case "$1" in
-    engine/include/*) awk -v file="$1" '/^[^#].* has / { for (i = 3; i <= NF; i++) if (file == "engine/include/lrbscope/" $i ".hpp") print $1 }' "$here/rooms.txt" ;;
+    engine/include/*) awk -v file="$1" '/^[^#].* has / { for (i = 3; i <= NF; i++) if (file == "engine/include/lrbscope/" $i ".hpp") print $1 }' "$here/modules.txt" ;;
     */include/*) echo "${1%%/include/*}" ;;
     *) echo "${1%/*}" ;;
   esac

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# docs/rooms.sh [ROOMS]: draws the allowed dependencies of modules (tests/layers/rooms.txt) as SVG to stdout. The test `docs` compares
-# the result with docs/rooms.svg. A module is above all its dependencies; an arrow leads down to each, except to those implied by
+# docs/modules.sh [MODULES]: draws the allowed dependencies of modules (tests/layers/modules.txt) as SVG to stdout. The test `docs` compares
+# the result with docs/modules.svg. A module is above all its dependencies; an arrow leads down to each, except to those implied by
 # others (transitive reduction). Colours mark the top folders, and names omit them. Lines with "has" (owners of public headers) are
 # not drawn.
 set -euo pipefail
-rooms=${1:-$(dirname "${BASH_SOURCE[0]}")/../tests/layers/rooms.txt}
+modules=${1:-$(dirname "${BASH_SOURCE[0]}")/../tests/layers/modules.txt}
 awk '
   function floor_of(r,   i, n, part, best, f) {
     if (r in level) return level[r]
@@ -155,4 +155,4 @@ awk '
       printf "<rect x=\"%.0f\" y=\"%.0f\" width=\"%d\" height=\"%d\" rx=\"5\" fill=\"%s\" stroke=\"#55606c\"/><text x=\"%.0f\" y=\"%.0f\" text-anchor=\"middle\">%s</text>\n", x[r] - size[r] / 2, y[r], size[r], h, colour(r), x[r], y[r] + 18, label(r)
     }
     print "</svg>"
-  }' "$rooms"
+  }' "$modules"
