@@ -2,7 +2,7 @@
 #include <iterator>
 #include <memory>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include "bench/xray/foreign_walk.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/io/poses.hpp"

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include "bench/workers/child.hpp"
 #include "bench/workers/workers.hpp"
 #include "scenarios/bodies/body_figures.hpp"

@@ -6,8 +6,8 @@
 
 #include <unistd.h>
 
+#include "bench/methods/triangles.hpp"
 #include "bench/micro/poses.hpp"
-#include "bench/rivals/triangles.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/lrb_rep.hpp>

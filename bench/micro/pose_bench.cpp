@@ -2,8 +2,8 @@
 // compared with the body with the map applied to its vertices, under a rotation.
 #include <memory>
 
+#include "bench/methods/triangles.hpp"
 #include "bench/micro/poses.hpp"
-#include "bench/rivals/triangles.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/workspace.hpp>
 

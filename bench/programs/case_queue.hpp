@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include "bench/stability/judge.hpp"
 #include "bench/stability/outcome_grid.hpp"
 

@@ -25,8 +25,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bench/methods/method.hpp"
 #include "bench/programs/case_queue.hpp"
-#include "bench/rivals/method.hpp"
 #include "bench/speed/bench_runner.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/stability/stability_experiment.hpp"
@@ -107,7 +107,7 @@ int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries
 }  // namespace
 }  // namespace lrb::worker_programs
 
-// The main() of every worker program; programs differ in the linked methods (bench/rivals/rivals.cmake).
+// The main() of every worker program; programs differ in the linked methods (bench/methods/methods.cmake).
 
 int main(int argc, char** argv) {
   return lrb::worker_programs::worker_main(argc, argv, lrb::methods::registered_methods());

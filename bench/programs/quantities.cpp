@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "bench/methods/triangles.hpp"
 #include "bench/programs/case_queue.hpp"
 #include "bench/quantities/number_method.hpp"
-#include "bench/rivals/triangles.hpp"
 #include "bench/speed/bench_runner.hpp"
 #include "bench/speed/record.hpp"
 #include "bench/stability/outcome_grid.hpp"

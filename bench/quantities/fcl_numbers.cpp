@@ -10,7 +10,7 @@
 #include <fcl/narrowphase/continuous_collision.h>
 #include <fcl/narrowphase/distance.h>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include <lrbscope/error.hpp>
 
 namespace lrb::stability {

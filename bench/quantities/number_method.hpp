@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "bench/methods/method.hpp"
 #include "bench/quantities/truth.hpp"
-#include "bench/rivals/method.hpp"
 #include "bench/stability/outcome_grid.hpp"
 
 namespace lrb::stability {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "bench/methods/triangles.hpp"
 #include "bench/quantities/number_method.hpp"
-#include "bench/rivals/triangles.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "bench/methods/triangles.hpp"
 #include "bench/quantities/rational_oracles.hpp"
-#include "bench/rivals/triangles.hpp"
 #include <lrbscope/collide.hpp>
 
 namespace lrb::stability {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bench/cases/families.hpp"
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include "bench/stability/judge.hpp"
 #include <lrbscope/lrb_rep.hpp>
 

@@ -7,7 +7,7 @@
 
 #include <malloc.h>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "engine/mesh/face_pairs.hpp"
 #include <lrbscope/contact.hpp>

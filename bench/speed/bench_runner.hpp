@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include "bench/speed/record.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/lrb_rep.hpp>

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/enum_words.hpp>
 

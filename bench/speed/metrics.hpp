@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include "bench/speed/record.hpp"
 #include "engine/lrb/thickness.hpp"
 #include <lrbscope/workspace.hpp>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include "bench/speed/record.hpp"
 
 namespace lrb::bench {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/cases/families.hpp"
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include <lrbscope/collide.hpp>
 

@@ -15,7 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cases/families.hpp"
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include "bench/workers/workers.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/enum_words.hpp>

@@ -12,7 +12,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include "bench/stability/judge.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/workers/worker_json.hpp"

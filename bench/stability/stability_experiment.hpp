@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/cases/families.hpp"
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include "bench/stability/judge.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/workers/workers.hpp"

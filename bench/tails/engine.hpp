@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include "bench/workers/workers.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include <lrbscope/collide.hpp>

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include "bench/tails/engine.hpp"
 #include <lrbscope/workspace.hpp>
 

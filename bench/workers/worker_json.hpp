@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include "bench/workers/child.hpp"
 
 namespace lrb::workers {

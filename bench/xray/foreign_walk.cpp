@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include "bench/workers/child.hpp"
 #include "bench/workers/workers.hpp"
 #include "scenarios/compare/side_by_side.hpp"

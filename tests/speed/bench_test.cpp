@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 #include "bench/speed/bench_runner.hpp"
 #include "bench/speed/data_set.hpp"
 #include "bench/speed/make_sets.hpp"

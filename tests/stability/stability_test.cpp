@@ -9,7 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/cases/families.hpp"
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include "bench/stability/judge.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/stability/stability_experiment.hpp"

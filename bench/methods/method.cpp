@@ -1,4 +1,4 @@
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 
 #include <algorithm>
 

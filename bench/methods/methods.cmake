@@ -15,7 +15,7 @@ function(lrb_add_peer name)
   if(NOT peer_PROGRAM)
     set(peer_PROGRAM lrbscope-methods)
   endif()
-  add_library(lrb_peer_${name} STATIC rivals/${peer_SOURCE})
+  add_library(lrb_peer_${name} STATIC methods/${peer_SOURCE})
   target_link_libraries(lrb_peer_${name} PUBLIC lrb::methods PRIVATE ${peer_LIBRARIES})
   if(peer_LIBRARIES)
     target_compile_definitions(lrb_peer_${name} PRIVATE ${peer_HAS})
@@ -71,7 +71,7 @@ endif()
 lrb_add_peer(fcl HAS LRB_HAS_FCL LIBRARIES ${fcl_library})
 lrb_add_peer(fcl_solids HAS LRB_HAS_FCL LIBRARIES ${fcl_library})
 if(LRB_NATIVE)  # as packaged, and not half of it for another processor; the file's options come after the target's
-  set_source_files_properties(rivals/fcl.cpp rivals/fcl_solids.cpp PROPERTIES COMPILE_OPTIONS -march=x86-64)
+  set_source_files_properties(methods/fcl.cpp methods/fcl_solids.cpp PROPERTIES COMPILE_OPTIONS -march=x86-64)
 endif()
 # FCL built with lrbscope's flags has the symbols of FCL as packaged: a separate program.
 lrb_add_peer(fcl_headers PROGRAM lrbscope-methods-fcl HAS LRB_HAS_FCL LIBRARIES ${fcl_library})
@@ -87,7 +87,7 @@ lrb_add_peer(ode HAS LRB_HAS_ODE LIBRARIES ${ode_library})
 
 # lrbscope's own methods.
 set_property(GLOBAL PROPERTY lrb_own_methods ours plain_double spheres)
-add_library(lrb_own_methods STATIC rivals/ours.cpp rivals/approximations.cpp)
+add_library(lrb_own_methods STATIC methods/ours.cpp methods/approximations.cpp)
 target_link_libraries(lrb_own_methods PUBLIC lrb::methods)
 
 # lrb_register_methods(TARGET [PEER...]): links a program with the methods of the given engines and, unless it
@@ -102,7 +102,7 @@ function(lrb_register_methods target)
     list(APPEND names ${own})
     target_link_libraries(${target} PRIVATE lrb_own_methods)
   endif()
-  lrb_registry(${target} lrb::methods bench/rivals/method.hpp MethodEntry methods ${names})
+  lrb_registry(${target} lrb::methods bench/methods/method.hpp MethodEntry methods ${names})
 endfunction()
 
 add_library(lrb_case_queue STATIC programs/case_queue.cpp)

@@ -1,3 +1,3 @@
 // FCL again, with its templates instantiated here: see fcl_instantiated.hpp.
 #define LRB_FCL_HEADERS
-#include "bench/rivals/fcl.cpp"
+#include "bench/methods/fcl.cpp"

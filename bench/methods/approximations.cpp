@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include "bench/rivals/method.hpp"
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/method.hpp"
+#include "bench/methods/triangles.hpp"
 #include <lrbscope/error.hpp>
 
 namespace lrb::methods {

@@ -1,4 +1,4 @@
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 
 #include <algorithm>
 #include <array>

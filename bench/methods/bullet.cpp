@@ -1,6 +1,6 @@
 // Bullet's GImpact meshes in a collision world: contactPairTest() calls back for each contact point, with its
 // two triangles. Compiled for the precision of the linked library.
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 
 namespace lrb::methods {
 namespace {
@@ -21,7 +21,7 @@ constexpr int kRank = 50;
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletCollisionCommon.h>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include <lrbscope/error.hpp>
 
 namespace lrb::methods {

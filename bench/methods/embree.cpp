@@ -1,7 +1,7 @@
 // Embree's rtcCollide: a dual traversal of two trees of triangle boxes. A callback gets the contents of
 // overlapping leaves and tests the triangles, as in Embree's own example. Its boxes are in world coordinates,
 // so the tree of a moved body must be refitted or rebuilt before the query.
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 
 namespace lrb::methods {
 namespace {
@@ -14,7 +14,7 @@ constexpr int kRank = 60;
 
 #include <embree3/rtcore.h>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include <lrbscope/error.hpp>
 
 namespace lrb::methods {

@@ -1,6 +1,6 @@
 // FCL with other geometries than meshes: an octree against a mesh, with the cell size as parameter, and the
 // convex hulls of both by GJK (libccd).
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 
 namespace lrb::methods {
 namespace {
@@ -24,7 +24,7 @@ constexpr int kRank = 90;
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/narrowphase/collision.h>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/error.hpp>
 

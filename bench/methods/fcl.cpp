@@ -2,7 +2,7 @@
 // unlimited contacts, without their positions. It is compiled twice: against the packaged library, with the
 // packages' flags, and (LRB_FCL_HEADERS) with all of FCL's templates instantiated here, with lrbscope's
 // flags.
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 
 namespace lrb::methods {
 namespace {
@@ -18,7 +18,7 @@ constexpr int kRank = 30;
 #ifdef LRB_HAS_FCL
 
 #ifdef LRB_FCL_HEADERS
-#include "bench/rivals/fcl_instantiated.hpp"
+#include "bench/methods/fcl_instantiated.hpp"
 #endif
 
 #include <fcl/config.h>
@@ -26,7 +26,7 @@ constexpr int kRank = 30;
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include <lrbscope/error.hpp>
 
 namespace lrb::methods {

@@ -1,5 +1,5 @@
 // ODE's triangle meshes: dCollide() of two of them returns contact points, each with its two triangles.
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 
 namespace lrb::methods {
 namespace {
@@ -12,7 +12,7 @@ constexpr int kRank = 70;
 
 #include <ode/ode.h>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include <lrbscope/error.hpp>
 
 namespace lrb::methods {

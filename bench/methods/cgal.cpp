@@ -1,6 +1,6 @@
 // CGAL, with its kernel of exact predicates and inexact constructions, as in its manual: the collision
 // detection of rigid triangle meshes, and the AABB tree queried with each triangle of the other body.
-#include "bench/rivals/method.hpp"
+#include "bench/methods/method.hpp"
 
 namespace lrb::methods {
 namespace {
@@ -23,7 +23,7 @@ constexpr int kRank = 40;
 #include <CGAL/Rigid_triangle_mesh_collision_detection.h>
 #include <CGAL/Surface_mesh.h>
 
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/triangles.hpp"
 #include <lrbscope/error.hpp>
 
 namespace lrb::methods {

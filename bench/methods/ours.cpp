@@ -3,8 +3,8 @@
 
 #include <Eigen/Geometry>
 
-#include "bench/rivals/method.hpp"
-#include "bench/rivals/triangles.hpp"
+#include "bench/methods/method.hpp"
+#include "bench/methods/triangles.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/contact.hpp>
