@@ -101,8 +101,8 @@ std::string json_lines(const profile::Check& c) {
   }
   const profile::CheckSums sum = c.sum();
   ordered_json verdicts;
-  for (const auto& entry : kWords<profile::Judgement>)
-    verdicts[std::string(entry.word)] = sum.outcomes[static_cast<std::size_t>(entry.value)];
+  for (const auto& entry : kEnumNames<profile::Judgement>)
+    verdicts[std::string(entry.name)] = sum.outcomes[static_cast<std::size_t>(entry.value)];
   out += one_line({{"engine", c.engine},
                    {"queries", sum.queries},
                    {"precision", name_of(c.precision)},

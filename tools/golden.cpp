@@ -198,8 +198,8 @@ std::uintmax_t bytes_in(const std::string& folder) {
 
 std::string levels_text(const golden::GoldenSpec& spec) {
   std::string out;
-  for (const EnumWord<golden::Level>& w : kWords<golden::Level>)
-    if (spec.compares(w.value)) out.append(out.empty() ? "" : ", ").append(w.word);
+  for (const EnumName<golden::Level>& w : kEnumNames<golden::Level>)
+    if (spec.compares(w.value)) out.append(out.empty() ? "" : ", ").append(w.name);
   return out;
 }
 
@@ -305,7 +305,7 @@ CLI::App* add_part(CLI::App& golden, const std::string& name, const std::string&
 /// Comparison options: for a call of test, or stored by approve.
 void add_comparison(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
   std::vector<std::string> words;
-  for (const EnumWord<golden::Level>& w : kWords<golden::Level>) words.emplace_back(w.word);
+  for (const EnumName<golden::Level>& w : kEnumNames<golden::Level>) words.emplace_back(w.name);
   app.add_option_function<std::vector<std::string>>(
          "--compare",
          [o](const std::vector<std::string>& chosen) {

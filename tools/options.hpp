@@ -88,8 +88,8 @@ inline void add_quantity_option(CLI::App& app, methods::Quantity& quantity) {
 template <class Enum, class Target>
 void add_choice(CLI::App& app, const std::string& name, Target& target, const std::string& what) {
   std::vector<std::string> words;
-  words.reserve(kWords<Enum>.size());
-  for (const EnumWord<Enum>& entry : kWords<Enum>) words.emplace_back(entry.word);
+  words.reserve(kEnumNames<Enum>.size());
+  for (const EnumName<Enum>& entry : kEnumNames<Enum>) words.emplace_back(entry.name);
   app.add_option_function<std::string>(
          name, [&target](const std::string& word) { target = from_name<Enum>(word).value(); }, what)
       ->check(CLI::IsMember(words).description(""))

@@ -288,7 +288,7 @@ Chart chart_over_steps(const Trace& trace) {
 
 namespace {
 
-using Caps = std::array<std::uint32_t, kWords<CapVerdict>.size()>;
+using Caps = std::array<std::uint32_t, kEnumNames<CapVerdict>.size()>;
 
 PassSummary begin_pass(EventId id, const Event& e, std::uint32_t faces) {
   PassSummary p;

@@ -19,7 +19,7 @@
 #include <nlohmann/json.hpp>
 
 #include <lrbscope/core/fields.hpp>
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/trace.hpp>
@@ -124,8 +124,8 @@ class JsonNode {
   template <class Enum>
   Enum choice() const {
     std::vector<std::pair<std::string, Enum>> words;
-    words.reserve(kWords<Enum>.size());
-    for (const EnumWord<Enum>& entry : kWords<Enum>) words.emplace_back(entry.word, entry.value);
+    words.reserve(kEnumNames<Enum>.size());
+    for (const EnumName<Enum>& entry : kEnumNames<Enum>) words.emplace_back(entry.name, entry.value);
     return choice(words);
   }
 

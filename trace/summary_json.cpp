@@ -68,7 +68,7 @@ void write_work(JsonWriter& w, const Trace& trace) {
   w.end_array();
 }
 
-void write_caps(JsonWriter& w, const std::array<std::uint32_t, kWords<CapVerdict>.size()>& caps) {
+void write_caps(JsonWriter& w, const std::array<std::uint32_t, kEnumNames<CapVerdict>.size()>& caps) {
   w.begin_object();
   for (std::size_t v = 1; v < caps.size(); ++v)
     if (caps[v] > 0) w.member(name_of(static_cast<CapVerdict>(v)), caps[v]);

@@ -232,7 +232,7 @@ class Checker {
     // Check enumerators before use: a damaged file may contain any byte.
     if (static_cast<std::size_t>(e.kind) >= kEventKinds) bad("unknown kind");
     if (e.side != Side::a && e.side != Side::b) bad("unknown side");
-    if (static_cast<std::size_t>(e.meet) >= kWords<exact::Meet>.size()) bad("unknown meet");
+    if (static_cast<std::size_t>(e.meet) >= kEnumNames<exact::Meet>.size()) bad("unknown meet");
     if (e.cause != kNull && e.cause >= id) bad("its cause is not an earlier event");
     const std::size_t bodies = t_.header.bodies.size();
     // References to simplices and regions must exist in the recorded bodies: replay and pictures index by
@@ -244,7 +244,7 @@ class Checker {
         if (bodies < 2) bad("needs two bodies");
         if (e.a >= t_.header.bodies[0].simplices) bad("A has no such simplex");
         if (e.b >= t_.header.bodies[1].simplices) bad("B has no such simplex");
-        if (e.kind == EventKind::face_test && e.detail >= kWords<TestedBy>.size()) bad("unknown tester");
+        if (e.kind == EventKind::face_test && e.detail >= kEnumNames<TestedBy>.size()) bad("unknown tester");
         break;
       case EventKind::refine:
       case EventKind::coarsen:
@@ -252,21 +252,21 @@ class Checker {
         if (e.a >= t_.header.bodies[static_cast<std::size_t>(e.side)].regions) bad("no such region");
         break;
       case EventKind::result:
-        if (e.a >= kWords<Relation>.size()) bad("unknown relation");
+        if (e.a >= kEnumNames<Relation>.size()) bad("unknown relation");
         break;
       case EventKind::node_pair:
         if (bodies < 2) bad("needs two bodies");
-        if (static_cast<std::size_t>(e.node_end().step) >= kWords<NodeStep>.size()) bad("unknown step");
+        if (static_cast<std::size_t>(e.node_end().step) >= kEnumNames<NodeStep>.size()) bad("unknown step");
         if (e.work().rejected + e.work().certain > e.work().met)
           bad("more pairs are rejected or decided than intersect");
-        if (static_cast<std::size_t>(e.node_end().axis) >= kWords<BoxAxis>.size()) bad("unknown axis");
+        if (static_cast<std::size_t>(e.node_end().axis) >= kEnumNames<BoxAxis>.size()) bad("unknown axis");
         break;
       case EventKind::point:
-        if (static_cast<std::size_t>(e.detail) >= kWords<Where>.size()) bad("unknown place");
+        if (static_cast<std::size_t>(e.detail) >= kEnumNames<Where>.size()) bad("unknown place");
         break;
       case EventKind::begin:
       case EventKind::end:
-        if (e.a >= kWords<Phase>.size()) bad("unknown phase");
+        if (e.a >= kEnumNames<Phase>.size()) bad("unknown phase");
         break;
       case EventKind::pass:
       case EventKind::patch:
@@ -299,9 +299,9 @@ class Checker {
     if (names_region && e.a >= t_.header.bodies[0].regions) bad("no such region");
     if (names_region && !has_cause({EventKind::cap, EventKind::pass}))
       bad("its cause is neither a cap nor a pass");
-    if (e.kind == EventKind::pass && e.detail >= kWords<BuildStage>.size()) bad("unknown stage");
+    if (e.kind == EventKind::pass && e.detail >= kEnumNames<BuildStage>.size()) bad("unknown stage");
     if (e.kind == EventKind::pass && !(e.off() >= 0)) bad("its deviation is not a number of at least 0");
-    if (e.kind == EventKind::cap && e.detail >= kWords<CapVerdict>.size()) bad("unknown verdict");
+    if (e.kind == EventKind::cap && e.detail >= kEnumNames<CapVerdict>.size()) bad("unknown verdict");
     if (e.kind == EventKind::cap && !has_cause({EventKind::patch})) bad("its cause is not a patch");
     const bool in_pass = e.kind == EventKind::patch || e.kind == EventKind::pass_end;
     if (in_pass && !has_cause({EventKind::pass})) bad("its cause is not a pass");

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/explain.hpp>
 #include <lrbscope/trace/work.hpp>
@@ -309,8 +309,8 @@ namespace {
 
 /// The current tree traversal.
 enum class Walk : std::uint8_t { bodies, levels, recursion, cache, cached };
-constexpr auto words_of(Walk) {
-  return std::array<EnumWord<Walk>, 5>{{{Walk::bodies, "walk of the bodies"},
+constexpr auto enum_names(Walk) {
+  return std::array<EnumName<Walk>, 5>{{{Walk::bodies, "walk of the bodies"},
                                         {Walk::levels, "walk of levels"},
                                         {Walk::recursion, "recursion"},
                                         {Walk::cache, "cache making"},
@@ -337,7 +337,7 @@ class WalkFollower {
 };
 
 /// The chart's cells, one per traversal and part: by traversal, parts in order.
-constexpr std::size_t kCells = kWords<Walk>.size() * kParts.size();
+constexpr std::size_t kCells = kEnumNames<Walk>.size() * kParts.size();
 Walk walk_of_cell(std::size_t cell) {
   return static_cast<Walk>(cell / kParts.size());
 }

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include <lrbscope/collide.hpp>
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 
 namespace lrb::methods {
 
@@ -23,8 +23,8 @@ enum class Says : std::uint8_t {
   inside,    ///< whether one body is inside the other
   relation,  ///< all of Relation
 };
-constexpr auto words_of(Says) {
-  return std::to_array<EnumWord<Says>>(
+constexpr auto enum_names(Says) {
+  return std::to_array<EnumName<Says>>(
       {{Says::nothing, "nothing"}, {Says::inside, "inside"}, {Says::relation, "relation"}});
 }
 
@@ -45,8 +45,8 @@ enum class Trait : std::uint8_t {
   own_rep,                 ///< uses the given LRB-rep directly: building a body means building the LRB-rep
 };
 /// Names are JSON keys in lists of methods.
-constexpr auto words_of(Trait) {
-  return std::to_array<EnumWord<Trait>>({{Trait::loose, "loose"},
+constexpr auto enum_names(Trait) {
+  return std::to_array<EnumName<Trait>>({{Trait::loose, "loose"},
                                          {Trait::takes_2d, "plane"},
                                          {Trait::moves_exactly, "moves_exactly"},
                                          {Trait::hard_cases, "hard_cases"},
@@ -81,8 +81,8 @@ enum class Role : std::uint8_t {
   aim,          ///< the engine that the performance targets refer to
   no_peer,      ///< answers another query or takes minutes: in no table of engines
 };
-constexpr auto words_of(Role) {
-  return std::to_array<EnumWord<Role>>({{Role::peer, "peer"},
+constexpr auto enum_names(Role) {
+  return std::to_array<EnumName<Role>>({{Role::peer, "peer"},
                                         {Role::ours, "ours"},
                                         {Role::ours_double, "ours_double"},
                                         {Role::ours_other, "ours_other"},
@@ -200,8 +200,8 @@ enum class Quantity : std::uint8_t {
   first_contact,  ///< the time of first contact of B, which moves on a straight line, with A
   depth,          ///< length of the shortest translation that separates the bodies
 };
-constexpr auto words_of(Quantity) {
-  return std::to_array<EnumWord<Quantity>>({{Quantity::pairs, "pairs"},
+constexpr auto enum_names(Quantity) {
+  return std::to_array<EnumName<Quantity>>({{Quantity::pairs, "pairs"},
                                             {Quantity::distance, "distance"},
                                             {Quantity::first_contact, "first_contact"},
                                             {Quantity::depth, "depth"}});

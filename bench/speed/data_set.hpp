@@ -12,7 +12,7 @@
 
 #include "bench/methods/method.hpp"
 #include <lrbscope/collide.hpp>
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 
 namespace lrb::bench {
 
@@ -35,8 +35,8 @@ enum class PoseClass : std::uint8_t {
   graze,  ///< B passes A and penetrates it by a hundredth
   past,   ///< B passes A at a hundredth, along some direction
 };
-constexpr auto words_of(PoseClass) {
-  return std::to_array<EnumWord<PoseClass>>({{PoseClass::apart, "apart"},
+constexpr auto enum_names(PoseClass) {
+  return std::to_array<EnumName<PoseClass>>({{PoseClass::apart, "apart"},
                                              {PoseClass::shallow, "shallow"},
                                              {PoseClass::deep, "deep"},
                                              {PoseClass::identical, "identical"},

@@ -15,8 +15,8 @@
 namespace lrb::bench {
 
 enum class Outcome : std::uint8_t { answered, rejected, crashed, timed_out };
-constexpr auto words_of(Outcome) {
-  return std::to_array<EnumWord<Outcome>>({{Outcome::answered, "answered"},
+constexpr auto enum_names(Outcome) {
+  return std::to_array<EnumName<Outcome>>({{Outcome::answered, "answered"},
                                            {Outcome::rejected, "refused"},
                                            {Outcome::crashed, "crashed"},
                                            {Outcome::timed_out, "timed_out"}});

@@ -18,7 +18,7 @@
 #include "bench/methods/method.hpp"
 #include "bench/workers/workers.hpp"
 #include <lrbscope/collide.hpp>
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 
 namespace lrb::stability {
 
@@ -33,8 +33,8 @@ enum class Outcome : std::uint8_t {
   crashed,    ///< its process died
   timed_out,  ///< it did not answer in time
 };
-constexpr auto words_of(Outcome) {
-  return std::to_array<EnumWord<Outcome>>({{Outcome::right, "right"},
+constexpr auto enum_names(Outcome) {
+  return std::to_array<EnumName<Outcome>>({{Outcome::right, "right"},
                                            {Outcome::wrong, "wrong"},
                                            {Outcome::rejected, "refused"},
                                            {Outcome::crashed, "crashed"},

@@ -13,7 +13,7 @@
 #include "bench/tails/engine.hpp"
 #include "bench/tails/pose_space.hpp"
 #include "scenarios/record/recorded_run.hpp"
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 
 namespace lrb::tails {
 
@@ -25,8 +25,8 @@ enum class Goal : std::uint8_t {
   time,    ///< microseconds, the least of kRounds
   wrong,   ///< wrong pairs, which are not searched but tried: wrong_poses.hpp
 };
-constexpr auto words_of(Goal) {
-  return std::to_array<EnumWord<Goal>>({{Goal::tests_per_answer, "tests-per-answer"},
+constexpr auto enum_names(Goal) {
+  return std::to_array<EnumName<Goal>>({{Goal::tests_per_answer, "tests-per-answer"},
                                         {Goal::tests, "tests"},
                                         {Goal::wasted, "wasted"},
                                         {Goal::time, "time"},

@@ -137,7 +137,7 @@ std::vector<HardPose> hard_poses(const LrbRep& a, const LrbRep& b, const PoseSpa
   Maker maker(a, b, space, seed);
   std::vector<HardPose> out;
   for (std::size_t group = 0; out.size() < count; ++group) {
-    const Hard kind = kWords<Hard>[group % kWords<Hard>.size()].value;
+    const Hard kind = kEnumNames<Hard>[group % kEnumNames<Hard>.size()].value;
     const auto [pose, direction] = maker.make(kind);
     for (const int ulps : kUlps) {
       if (out.size() == count) break;
@@ -241,7 +241,7 @@ const std::vector<std::string> kKindColumns = {"poses",        "number",      "n
 /// Returns a row for each kind of poses.
 std::vector<std::vector<std::string>> rows_of(const WrongSearch& search) {
   std::vector<std::vector<std::string>> out;
-  for (const EnumWord<Hard>& kind : kWords<Hard>) {
+  for (const EnumName<Hard>& kind : kEnumNames<Hard>) {
     std::uint64_t number = 0, failed = 0, contacts = 0, missed = 0, extra = 0;
     double error = 0;
     for (const Judged& j : search.poses) {
@@ -253,7 +253,7 @@ std::vector<std::vector<std::string>> rows_of(const WrongSearch& search) {
       extra += j.extra;
       error = std::max(error, j.error);
     }
-    out.push_back({io::in_words(kind.word), std::to_string(number), std::to_string(failed),
+    out.push_back({io::in_words(kind.name), std::to_string(number), std::to_string(failed),
                    std::to_string(contacts), std::to_string(missed), std::to_string(extra),
                    io::number_text(error, 3)});
   }

@@ -12,7 +12,7 @@
 #include "bench/tails/engine.hpp"
 #include "bench/tails/pose_space.hpp"
 #include "scenarios/record/recorded_run.hpp"
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 
 namespace lrb::tails {
 
@@ -22,8 +22,8 @@ enum class Hard : std::uint8_t {
   parallel_edges,  ///< an edge of B along an edge of A, with a common midpoint
   vertices,        ///< a vertex of B on one of A; axes of B along axes of A
 };
-constexpr auto words_of(Hard) {
-  return std::to_array<EnumWord<Hard>>({{Hard::first_contact, "first_contact"},
+constexpr auto enum_names(Hard) {
+  return std::to_array<EnumName<Hard>>({{Hard::first_contact, "first_contact"},
                                         {Hard::coplanar_faces, "coplanar_faces"},
                                         {Hard::parallel_edges, "parallel_edges"},
                                         {Hard::vertices, "vertices"}});

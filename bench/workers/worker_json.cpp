@@ -40,7 +40,7 @@ nlohmann::ordered_json to_json(const methods::MethodInfo& info) {
     if (key == "says") add(methods::Trait::loose);
     out[key] = value;
     if (key != "says") continue;
-    for (const auto& entry : kWords<methods::Trait>)
+    for (const auto& entry : kEnumNames<methods::Trait>)
       if (entry.value != methods::Trait::loose) add(entry.value);
   }
   return out;
@@ -48,8 +48,8 @@ nlohmann::ordered_json to_json(const methods::MethodInfo& info) {
 
 methods::MethodInfo method_info_from(const nlohmann::json& value) {
   auto info = io::record_from_json<methods::MethodInfo>(value);
-  for (const auto& entry : kWords<methods::Trait>) {
-    const char* key = entry.word.data();
+  for (const auto& entry : kEnumNames<methods::Trait>) {
+    const char* key = entry.name.data();
     try {
       info.traits.set(entry.value, value.at(key).get<bool>());
     } catch (const nlohmann::json::exception& e) {

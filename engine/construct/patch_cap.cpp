@@ -278,7 +278,7 @@ CapVerdict PatchCap::verdict_on_edge(int u, int v) {
 CapVerdict PatchCap::what_holds_back() {
   // Count the verdicts of all remaining edges, then return the most frequent one of the first non-empty
   // class.
-  std::array<std::uint32_t, kWords<CapVerdict>.size()> edges{};
+  std::array<std::uint32_t, kEnumNames<CapVerdict>.size()> edges{};
   for (int u = cap_.ring_size(); u < cap_.vertex_count(); ++u) {
     if (!cap_.is_used(u)) continue;
     cap_.for_each_neighbour(u, [&](int v) {

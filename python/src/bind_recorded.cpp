@@ -93,7 +93,7 @@ py::object steps_of(const Recorded& r) {
 template <class Enum>
 py::list names() {
   py::list out;
-  for (const auto& entry : kWords<Enum>) out.append(py::str(std::string(entry.word)));
+  for (const auto& entry : kEnumNames<Enum>) out.append(py::str(std::string(entry.name)));
   return out;
 }
 

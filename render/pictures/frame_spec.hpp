@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/observe.hpp>
 #include <lrbscope/render/style.hpp>
@@ -94,22 +94,22 @@ struct FrameSpec : Look {
   std::uint32_t montage = 0;                ///< number of evenly chosen panels in the montage; 0: no montage
   std::uint32_t montage_columns = 0;        ///< 0: nearly square
 };
-constexpr auto words_of(FrameSpec::At) {
+constexpr auto enum_names(FrameSpec::At) {
   using Word = FrameSpec::At;
-  return std::to_array<EnumWord<Word>>({{Word::none, "none"},
+  return std::to_array<EnumName<Word>>({{Word::none, "none"},
                                         {Word::step, "step"},
                                         {Word::refinement, "refinement"},
                                         {Word::pass, "pass"},
                                         {Word::every, "event"}});
 }
-constexpr auto words_of(FrameSpec::Camera) {
+constexpr auto enum_names(FrameSpec::Camera) {
   using Word = FrameSpec::Camera;
-  return std::to_array<EnumWord<Word>>(
+  return std::to_array<EnumName<Word>>(
       {{Word::scene, "scene"}, {Word::contact, "contact"}, {Word::fixed, "fixed"}, {Word::orbit, "orbit"}});
 }
-constexpr auto words_of(FrameSpec::ColourBy) {
+constexpr auto enum_names(FrameSpec::ColourBy) {
   using Word = FrameSpec::ColourBy;
-  return std::to_array<EnumWord<Word>>({{Word::kind, "kind"},
+  return std::to_array<EnumName<Word>>({{Word::kind, "kind"},
                                         {Word::layer, "layer"},
                                         {Word::region, "region"},
                                         {Word::face_tests, "face_tests"},
@@ -120,14 +120,14 @@ constexpr auto words_of(FrameSpec::ColourBy) {
                                         {Word::box_tests, "box_tests"},
                                         {Word::plane_tests, "plane_tests"}});
 }
-constexpr auto words_of(FrameSpec::ColourPer) {
+constexpr auto enum_names(FrameSpec::ColourPer) {
   using Word = FrameSpec::ColourPer;
-  return std::to_array<EnumWord<Word>>(
+  return std::to_array<EnumName<Word>>(
       {{Word::face, "face"}, {Word::region, "region"}, {Word::level, "level"}});
 }
-constexpr auto words_of(StyleName) {
+constexpr auto enum_names(StyleName) {
   using Word = StyleName;
-  return std::to_array<EnumWord<Word>>(
+  return std::to_array<EnumName<Word>>(
       {{Word::screen, "screen"}, {Word::print, "print"}, {Word::dark, "dark"}});
 }
 /// Returns the event detail that a colouring requires.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <lrbscope/build.hpp>
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::bodies {
@@ -26,8 +26,8 @@ struct RegionFigures {
 };
 
 enum class RegionOrder : std::uint8_t { waste, thickness, volume, lids };
-constexpr auto words_of(RegionOrder) {
-  return std::to_array<EnumWord<RegionOrder>>({{RegionOrder::waste, "waste"},
+constexpr auto enum_names(RegionOrder) {
+  return std::to_array<EnumName<RegionOrder>>({{RegionOrder::waste, "waste"},
                                                {RegionOrder::thickness, "thickness"},
                                                {RegionOrder::volume, "volume"},
                                                {RegionOrder::lids, "lids"}});

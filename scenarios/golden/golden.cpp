@@ -256,8 +256,8 @@ void write_golden_spec(const std::string& goldens, const std::string& name, cons
       {"scenario", spec.scenario}, {"size", {spec.width, spec.height}}, {"frames", spec.frames}};
   if (spec.levels != GoldenSpec{}.levels) {
     json["compare"] = nlohmann::ordered_json::array();
-    for (const EnumWord<Level>& w : kWords<Level>)
-      if (spec.compares(w.value)) json["compare"].push_back(w.word);
+    for (const EnumName<Level>& w : kEnumNames<Level>)
+      if (spec.compares(w.value)) json["compare"].push_back(w.name);
   }
   if (!(spec.tolerance == render::ImageTolerance{}))
     json["tolerance"] = {{"large", spec.tolerance.large},

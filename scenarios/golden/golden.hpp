@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "scenarios/spec/scenario.hpp"
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/render/image.hpp>
@@ -29,8 +29,8 @@ enum class Level : std::uint8_t {
   events,    ///< bodies, request, poses, every event and every counter
   pictures,  ///< frames, within a tolerance
 };
-constexpr auto words_of(Level) {
-  return std::to_array<EnumWord<Level>>(
+constexpr auto enum_names(Level) {
+  return std::to_array<EnumName<Level>>(
       {{Level::answers, "answers"}, {Level::events, "events"}, {Level::pictures, "pictures"}});
 }
 inline constexpr int kLevels = 3;

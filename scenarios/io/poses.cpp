@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kBetween = " \t\r\v\f,";
 
-std::vector<std::string_view> words_of(std::string_view line) {
+std::vector<std::string_view> enum_names(std::string_view line) {
   line = line.substr(0, line.find('#'));
   std::vector<std::string_view> words;
   for (std::size_t at = line.find_first_not_of(kBetween); at != std::string_view::npos;
@@ -129,7 +129,7 @@ void read_lines(const std::string& text, const std::string& name, std::size_t co
   std::vector<double> x(count);
   std::size_t line_number = 0;
   for (std::size_t at = 0; at < text.size();) {
-    const std::vector<std::string_view> words = words_of(next_line(text, at));
+    const std::vector<std::string_view> words = enum_names(next_line(text, at));
     const std::string where = name + ":" + std::to_string(++line_number) + ": ";
     if (words.empty()) continue;
     for (std::size_t i = 0; i < words.size() && i < count; ++i)
@@ -220,7 +220,7 @@ std::vector<Pose> parse_pose_table(const std::string& text, const std::string& n
 }
 
 Eigen::Vector3d parse_vector(const std::string& text, const std::string& option) {
-  const std::vector<std::string_view> words = words_of(text);
+  const std::vector<std::string_view> words = enum_names(text);
   if (words.size() != 3)
     throw InputError(option + ": expected three numbers X,Y,Z, found " + std::to_string(words.size()) +
                      " in \"" + text + "\"");

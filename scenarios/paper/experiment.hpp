@@ -16,8 +16,8 @@ namespace lrb::paper {
 
 /// Parts of the report.
 enum class PaperPart : std::uint8_t { table1, table2, figure_3_1, figure_3_2, heat_maps, refinement_tree };
-constexpr auto words_of(PaperPart) {
-  return std::to_array<EnumWord<PaperPart>>({{PaperPart::table1, "table1"},
+constexpr auto enum_names(PaperPart) {
+  return std::to_array<EnumName<PaperPart>>({{PaperPart::table1, "table1"},
                                              {PaperPart::table2, "table2"},
                                              {PaperPart::figure_3_1, "figure3.1"},
                                              {PaperPart::figure_3_2, "figure3.2"},

@@ -34,7 +34,7 @@ struct CheckedQuery {
 /// Sums over queries of one kind.
 struct CheckSums {
   std::uint64_t queries = 0;
-  std::array<std::uint64_t, kWords<Judgement>.size()> outcomes{};  ///< number of queries, by Judgement
+  std::array<std::uint64_t, kEnumNames<Judgement>.size()> outcomes{};  ///< number of queries, by Judgement
   std::uint64_t exact_pairs = 0, right = 0, missed = 0, extra = 0, undecidable = 0;  ///< pairs of triangles
   Prices prices;
 

@@ -11,7 +11,7 @@
 
 #include "scenarios/profile/volumes.hpp"
 #include "scenarios/profile/walk.hpp"
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/trace/capture.hpp>
 
@@ -30,8 +30,8 @@ enum class TreeFault : std::uint8_t {
   inner_node_with_triangles,  ///
   leaf_without_triangles,
 };
-constexpr auto words_of(TreeFault) {
-  return std::array<EnumWord<TreeFault>, 11>{{
+constexpr auto enum_names(TreeFault) {
+  return std::array<EnumName<TreeFault>, 11>{{
       {TreeFault::two_parents, "two_parents"},
       {TreeFault::no_parent, "no_parent"},
       {TreeFault::cycle, "cycle"},
@@ -45,7 +45,7 @@ constexpr auto words_of(TreeFault) {
       {TreeFault::leaf_without_triangles, "leaf_without_triangles"},
   }};
 }
-inline constexpr std::size_t kTreeFaults = kWords<TreeFault>.size();
+inline constexpr std::size_t kTreeFaults = kEnumNames<TreeFault>.size();
 
 /// A fault. Nodes are numbered as in capture::Tree.
 struct FoundFault {

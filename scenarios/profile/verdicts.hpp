@@ -23,7 +23,7 @@
 #include <Eigen/Core>
 
 #include "scenarios/profile/query_walk.hpp"
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/trace/capture.hpp>
 #include <lrbscope/workspace.hpp>
 
@@ -31,8 +31,8 @@ namespace lrb::profile {
 
 /// The number format in which an engine computes.
 enum class Precision : std::uint8_t { float32, float64 };
-constexpr auto words_of(Precision) {
-  return std::to_array<EnumWord<Precision>>({{Precision::float32, "float"}, {Precision::float64, "double"}});
+constexpr auto enum_names(Precision) {
+  return std::to_array<EnumName<Precision>>({{Precision::float32, "float"}, {Precision::float64, "double"}});
 }
 /// Guesses the format: float32 if every number of every volume is a float.
 Precision precision_of(const capture::Capture& capture);
@@ -61,8 +61,8 @@ enum class Culprit : std::uint8_t {
   in_no_leaf,     ///< one of the triangles is in no leaf
   unrecorded,     ///< the events of the query are not complete
 };
-constexpr auto words_of(Culprit) {
-  return std::to_array<EnumWord<Culprit>>({{Culprit::none, "none"},
+constexpr auto enum_names(Culprit) {
+  return std::to_array<EnumName<Culprit>>({{Culprit::none, "none"},
                                            {Culprit::triangle_test, "triangle_test"},
                                            {Culprit::volumes, "volumes"},
                                            {Culprit::child_volumes, "child_volumes"},
@@ -88,8 +88,8 @@ struct WrongPair {
 
 /// From best to worst.
 enum class Judgement : std::uint8_t { unchecked, right, undecidable, wrong };
-constexpr auto words_of(Judgement) {
-  return std::to_array<EnumWord<Judgement>>({{Judgement::unchecked, "unchecked"},
+constexpr auto enum_names(Judgement) {
+  return std::to_array<EnumName<Judgement>>({{Judgement::unchecked, "unchecked"},
                                              {Judgement::right, "right"},
                                              {Judgement::undecidable, "undecidable"},
                                              {Judgement::wrong, "wrong"}});

@@ -242,9 +242,9 @@ json explanations_json(const RecordedRun& p, const Explained& what, const SceneF
     columns.add(static_cast<std::uint32_t>(here - what.steps.begin()), explainer.explain(compared.pair));
   }
   json by = json::array(), meets = json::array(), axes = json::array();
-  for (const auto& entry : kWords<DecidedBy>) by.push_back(to_text(entry.value));
-  for (const auto& entry : kWords<exact::Meet>) meets.push_back(entry.word);
-  for (const auto& entry : kWords<BoxAxis>) axes.push_back(entry.word);
+  for (const auto& entry : kEnumNames<DecidedBy>) by.push_back(to_text(entry.value));
+  for (const auto& entry : kEnumNames<exact::Meet>) meets.push_back(entry.name);
+  for (const auto& entry : kEnumNames<BoxAxis>) axes.push_back(entry.name);
   std::string cut;
   if (pairs.size() < all)
     cut = "This page explains " + render::group_digits(pairs.size()) + " of the " +

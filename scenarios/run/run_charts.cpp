@@ -20,7 +20,7 @@ using Passes = std::vector<trace::PassSummary>;
 constexpr const char* kLength = "length, mesh units";
 
 /// Descriptions of the verdicts, in the order of the enum.
-constexpr std::array<std::string_view, kWords<CapVerdict>.size()> kMeanings = {
+constexpr std::array<std::string_view, kEnumNames<CapVerdict>.size()> kMeanings = {
     "it became part of the front",
     "with fewer faces its deviation would exceed the limit of the pass",
     "with fewer faces it would add more space than a collapse may",

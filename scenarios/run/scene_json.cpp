@@ -297,7 +297,7 @@ json kinds_json() {
 template <class Enum>
 json words_json() {
   json out = json::array();
-  for (const auto& entry : kWords<Enum>) out.push_back(entry.word);
+  for (const auto& entry : kEnumNames<Enum>) out.push_back(entry.name);
   return out;
 }
 

@@ -44,8 +44,8 @@ struct Crowd {
 
   std::uint32_t body_count() const;
 };
-constexpr auto words_of(Crowd::Arrangement) {
-  return std::to_array<EnumWord<Crowd::Arrangement>>(
+constexpr auto enum_names(Crowd::Arrangement) {
+  return std::to_array<EnumName<Crowd::Arrangement>>(
       {{Crowd::Arrangement::grid, "grid"}, {Crowd::Arrangement::random, "random"}});
 }
 

@@ -15,7 +15,7 @@
 #include "trace/json_read.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/collide.hpp>
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/pose.hpp>
 #include <lrbscope/trace/trace.hpp>
 
@@ -31,8 +31,8 @@ enum class Show : std::uint8_t {
   construction,  ///< one body: construction of its regions by the builder, pass by pass, from the body
                  ///< outward
 };
-constexpr auto words_of(Show) {
-  return std::to_array<EnumWord<Show>>({{Show::collision, "collision"},
+constexpr auto enum_names(Show) {
+  return std::to_array<EnumName<Show>>({{Show::collision, "collision"},
                                         {Show::refinement, "refinement"},
                                         {Show::construction, "construction"}});
 }
@@ -71,9 +71,9 @@ struct Motion {
   bool exact = false;  ///< approach: a step is at the first contact itself, not at the first colliding one of
                        ///< equal steps
 };
-constexpr auto words_of(Motion::Kind) {
+constexpr auto enum_names(Motion::Kind) {
   using Kind = Motion::Kind;
-  return std::to_array<EnumWord<Kind>>({{Kind::poses, "poses"},
+  return std::to_array<EnumName<Kind>>({{Kind::poses, "poses"},
                                         {Kind::keyframes, "keyframes"},
                                         {Kind::sweep, "sweep"},
                                         {Kind::approach, "approach"},

@@ -187,7 +187,7 @@ std::size_t count(const std::vector<Reported>& reported, CapVerdict verdict) {
 TEST_CASE(
     "reports to the probe add up to the body and do not depend on 1, 2 or 4 threads; the body is the same without a probe" *
     doctest::test_suite("long")) {
-  std::array<std::size_t, kWords<CapVerdict>.size()> verdicts{};
+  std::array<std::size_t, kEnumNames<CapVerdict>.size()> verdicts{};
   std::size_t merged = 0;
   for (const Mesh& mesh : bodies()) {
     CAPTURE(mesh.name);

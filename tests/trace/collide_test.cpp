@@ -182,8 +182,8 @@ TEST_CASE("the same query twice gives the same trace, and the names agree with t
     CHECK_FALSE(first_divergence(once, again));
     CHECK(trace_to_json(once) == trace_to_json(again));
   }
-  for (std::size_t i = 0; i < kWords<Relation>.size(); ++i)
+  for (std::size_t i = 0; i < kEnumNames<Relation>.size(); ++i)
     CHECK(name_of(static_cast<Relation>(i)) == to_string(static_cast<Relation>(i)));
-  for (std::size_t i = 0; i < kWords<Answer>.size(); ++i)
+  for (std::size_t i = 0; i < kEnumNames<Answer>.size(); ++i)
     CHECK(name_of(static_cast<Answer>(i)) == to_string(static_cast<Answer>(i)));
 }

@@ -179,7 +179,7 @@ TEST_CASE("summaries contain reasons of rejected caps, and no refinements") {
 }
 
 TEST_CASE("reasons of rejection as text, most frequent first") {
-  std::array<std::uint32_t, kWords<CapVerdict>.size()> caps{};
+  std::array<std::uint32_t, kEnumNames<CapVerdict>.size()> caps{};
   CHECK(rejection_text(caps) == "");
   caps[static_cast<std::size_t>(CapVerdict::accepted)] = 7;
   caps[static_cast<std::size_t>(CapVerdict::too_thick)] = 3;
@@ -236,8 +236,8 @@ TEST_CASE("damaged constructions are rejected") {
 TEST_CASE("stages and verdicts agree with the schema") {
   const Json& schema = test::trace_schema();
   Json stages = Json::array(), verdicts = Json::array();
-  for (const auto& entry : kWords<BuildStage>) stages.push_back(entry.word);
-  for (const auto& entry : kWords<CapVerdict>) verdicts.push_back(entry.word);
+  for (const auto& entry : kEnumNames<BuildStage>) stages.push_back(entry.name);
+  for (const auto& entry : kEnumNames<CapVerdict>) verdicts.push_back(entry.name);
   CHECK(schema.at("/definitions/stage/enum"_json_pointer) == stages);
   CHECK(schema.at("/definitions/verdict/enum"_json_pointer) == verdicts);
 }

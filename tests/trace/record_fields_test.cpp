@@ -29,7 +29,7 @@ Json resolved(const Json& node) {
 template <class Enum>
 Json words() {
   Json out = Json::array();
-  for (const EnumWord<Enum>& entry : kWords<Enum>) out.push_back(entry.word);
+  for (const EnumName<Enum>& entry : kEnumNames<Enum>) out.push_back(entry.name);
   return out;
 }
 
@@ -111,13 +111,13 @@ Trace read_back(const Trace& trace) {
 template <class Enum>
 void check_words() {
   std::set<std::string_view> seen;
-  for (const EnumWord<Enum>& entry : kWords<Enum>) {
-    CHECK(name_of(entry.value) == entry.word);
-    CHECK(from_name<Enum>(entry.word) == entry.value);
-    CHECK(seen.insert(entry.word).second);
+  for (const EnumName<Enum>& entry : kEnumNames<Enum>) {
+    CHECK(name_of(entry.value) == entry.name);
+    CHECK(from_name<Enum>(entry.name) == entry.value);
+    CHECK(seen.insert(entry.name).second);
   }
   CHECK_FALSE(from_name<Enum>("nonsense"));
-  CHECK(name_of(static_cast<Enum>(kWords<Enum>.size())) == "?");
+  CHECK(name_of(static_cast<Enum>(kEnumNames<Enum>.size())) == "?");
 }
 
 Trace plain_box_run() {

@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/mesh.hpp>
@@ -33,8 +33,8 @@ enum class BuildStage : std::uint8_t {
   close,     ///< adds a convex wrapper of few faces around everything
   known,     ///< nothing was built: the body was loaded with its regions
 };
-constexpr auto words_of(BuildStage) {
-  return std::to_array<EnumWord<BuildStage>>({{BuildStage::fit, "fitting"},
+constexpr auto enum_names(BuildStage) {
+  return std::to_array<EnumName<BuildStage>>({{BuildStage::fit, "fitting"},
                                               {BuildStage::simplify, "simplifying"},
                                               {BuildStage::bridge, "bridging"},
                                               {BuildStage::fill, "filling voids"},
@@ -66,8 +66,8 @@ enum class CapVerdict : std::uint8_t {
   too_far_out,         ///< closing: coordinates are too large for a wrapper around them
   leaves_out,          ///< closing: the wrapper does not contain the entire front
 };
-constexpr auto words_of(CapVerdict) {
-  return std::to_array<EnumWord<CapVerdict>>({{CapVerdict::accepted, "stands"},
+constexpr auto enum_names(CapVerdict) {
+  return std::to_array<EnumName<CapVerdict>>({{CapVerdict::accepted, "stands"},
                                               {CapVerdict::too_thick, "too thick"},
                                               {CapVerdict::too_much_volume, "too much volume"},
                                               {CapVerdict::too_thin, "too thin faces"},

@@ -14,7 +14,7 @@
 
 #include <lrbscope/collide.hpp>
 #include <lrbscope/distance.hpp>
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
 
@@ -39,8 +39,8 @@ enum class ClashKind : std::uint8_t {
   undecided,  ///< the bodies are not apart, but the solids are ill-defined or the work exceeds a limit: see
               ///< ClashResult::reason
 };
-constexpr auto words_of(ClashKind) {
-  return std::to_array<EnumWord<ClashKind>>({{ClashKind::apart, "apart"},
+constexpr auto enum_names(ClashKind) {
+  return std::to_array<EnumName<ClashKind>>({{ClashKind::apart, "apart"},
                                              {ClashKind::within_clearance, "within_clearance"},
                                              {ClashKind::touching_point, "touching_point"},
                                              {ClashKind::touching_edge, "touching_edge"},
@@ -66,8 +66,8 @@ enum class ClashReason : std::uint8_t {
   many_cells,      ///< a face has more cells than kInteriorCellsPerFace, or they do not match along an edge
   faces_coincide,  ///< faces coincide, and no point beside them was proven to be inside both
 };
-constexpr auto words_of(ClashReason) {
-  return std::to_array<EnumWord<ClashReason>>(
+constexpr auto enum_names(ClashReason) {
+  return std::to_array<EnumName<ClashReason>>(
       {{ClashReason::none, ""},
        {ClashReason::a_open, "A bounds no solid"},
        {ClashReason::b_open, "B bounds no solid"},

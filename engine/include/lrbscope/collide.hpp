@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <lrbscope/contact.hpp>
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
 #include <lrbscope/wrapper.hpp>
@@ -30,8 +30,8 @@ enum class Mode : std::uint8_t {
   /// then refers to that pair only: others may cross.
   any_pair,
 };
-constexpr auto words_of(Mode) {
-  return std::to_array<EnumWord<Mode>>(
+constexpr auto enum_names(Mode) {
+  return std::to_array<EnumName<Mode>>(
       {{Mode::all_pairs, "all"}, {Mode::first_pair, "first"}, {Mode::any_pair, "any"}});
 }
 
@@ -42,8 +42,8 @@ enum class Recursion : std::uint8_t {
                  ///< regions it hit
 };
 
-constexpr auto words_of(Recursion) {
-  return std::to_array<EnumWord<Recursion>>({{Recursion::complete, "complete"},
+constexpr auto enum_names(Recursion) {
+  return std::to_array<EnumName<Recursion>>({{Recursion::complete, "complete"},
                                              {Recursion::paper, "paper"},
                                              {Recursion::paper_strict, "paper_strict"}});
 }
@@ -55,8 +55,8 @@ enum class Predicates : std::uint8_t {
   /// exactness.
   floating,
 };
-constexpr auto words_of(Predicates) {
-  return std::to_array<EnumWord<Predicates>>(
+constexpr auto enum_names(Predicates) {
+  return std::to_array<EnumName<Predicates>>(
       {{Predicates::exact, "exact"}, {Predicates::floating, "floating"}});
 }
 
@@ -121,8 +121,8 @@ enum class Relation : std::uint8_t {
   /// A query with limits did not decide: the bodies intersect, or their distance is at most the error bound.
   unresolved,
 };
-constexpr auto words_of(Relation) {
-  return std::to_array<EnumWord<Relation>>({{Relation::separate, "separate"},
+constexpr auto enum_names(Relation) {
+  return std::to_array<EnumName<Relation>>({{Relation::separate, "separate"},
                                             {Relation::crossing, "crossing"},
                                             {Relation::touching, "touching"},
                                             {Relation::a_inside_b, "a_inside_b"},
@@ -133,8 +133,8 @@ constexpr auto words_of(Relation) {
 const char* to_string(Relation r);
 
 enum class Answer : std::uint8_t { no, yes, unknown };
-constexpr auto words_of(Answer) {
-  return std::to_array<EnumWord<Answer>>(
+constexpr auto enum_names(Answer) {
+  return std::to_array<EnumName<Answer>>(
       {{Answer::no, "no"}, {Answer::yes, "yes"}, {Answer::unknown, "unknown"}});
 }
 const char* to_string(Answer a);

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/ids.hpp>
 
 namespace lrb::exact {
@@ -17,8 +17,8 @@ namespace lrb::exact {
 /// coplanar (2D: collinear), so that each passes through the other. `touch`: they share a point but do not
 /// cross.
 enum class Meet : std::uint8_t { disjoint = 0, touch = 1, cross = 2 };
-constexpr auto words_of(Meet) {
-  return std::to_array<EnumWord<Meet>>(
+constexpr auto enum_names(Meet) {
+  return std::to_array<EnumName<Meet>>(
       {{Meet::disjoint, "disjoint"}, {Meet::touch, "touch"}, {Meet::cross, "cross"}});
 }
 

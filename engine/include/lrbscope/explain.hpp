@@ -12,7 +12,7 @@
 #include <Eigen/Core>
 
 #include <lrbscope/collide.hpp>
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/obb_tree.hpp>
 #include <lrbscope/pose.hpp>
@@ -25,8 +25,8 @@ namespace lrb {
 /// The face normals of two boxes. The query tests boxes along these axes, and the OBBs of nodes also along
 /// cross products of their edges.
 enum class BoxAxis : std::uint8_t { a1, a2, a3, b1, b2, b3 };
-constexpr auto words_of(BoxAxis) {
-  return std::to_array<EnumWord<BoxAxis>>({{BoxAxis::a1, "axis 1 of A's box"},
+constexpr auto enum_names(BoxAxis) {
+  return std::to_array<EnumName<BoxAxis>>({{BoxAxis::a1, "axis 1 of A's box"},
                                            {BoxAxis::a2, "axis 2 of A's box"},
                                            {BoxAxis::a3, "axis 3 of A's box"},
                                            {BoxAxis::b1, "axis 1 of B's box"},
@@ -69,8 +69,8 @@ enum class DecidedBy : std::uint8_t {
   floats,      ///< other tests in floats with bounded errors
   exact,       ///< the exact test, because floats could not decide
 };
-constexpr auto words_of(DecidedBy) {
-  return std::to_array<EnumWord<DecidedBy>>({{DecidedBy::node_boxes, "node_boxes"},
+constexpr auto enum_names(DecidedBy) {
+  return std::to_array<EnumName<DecidedBy>>({{DecidedBy::node_boxes, "node_boxes"},
                                              {DecidedBy::node_edges, "node_edges"},
                                              {DecidedBy::face_boxes, "face_boxes"},
                                              {DecidedBy::planes, "planes"},

@@ -35,7 +35,7 @@
 
 #include <lrbscope/collide.hpp>
 #include <lrbscope/distance.hpp>
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/motion.hpp>
 
@@ -57,8 +57,8 @@ enum class MotionOutcome : std::uint8_t {
   never,      ///< proven: no contact at any t in [0, 1]
   undecided,  ///< the bodies come too close to each other to decide in doubles, or max_steps was reached
 };
-constexpr auto words_of(MotionOutcome) {
-  return std::to_array<EnumWord<MotionOutcome>>({{MotionOutcome::contact, "contact"},
+constexpr auto enum_names(MotionOutcome) {
+  return std::to_array<EnumName<MotionOutcome>>({{MotionOutcome::contact, "contact"},
                                                  {MotionOutcome::never, "never"},
                                                  {MotionOutcome::undecided, "undecided"}});
 }
@@ -69,8 +69,8 @@ enum class Unresolved : std::uint8_t {
   rounding,  ///< the distance of the bodies is within rounding
   steps,     ///< a limit on steps was reached: that of the request, or the built-in one
 };
-constexpr auto words_of(Unresolved) {
-  return std::to_array<EnumWord<Unresolved>>(
+constexpr auto enum_names(Unresolved) {
+  return std::to_array<EnumName<Unresolved>>(
       {{Unresolved::nothing, "nothing"}, {Unresolved::rounding, "rounding"}, {Unresolved::steps, "steps"}});
 }
 

@@ -12,7 +12,7 @@
 #include <functional>
 #include <limits>
 
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 
 namespace lrb {
 
@@ -95,8 +95,8 @@ constexpr bool is_region(CellId cell) {
 
 /// One of the two bodies of a query.
 enum class Side : std::uint8_t { a = 0, b = 1 };
-constexpr auto words_of(Side) {
-  return std::to_array<EnumWord<Side>>({{Side::a, "A"}, {Side::b, "B"}});
+constexpr auto enum_names(Side) {
+  return std::to_array<EnumName<Side>>({{Side::a, "A"}, {Side::b, "B"}});
 }
 
 constexpr Side other(Side s) {

@@ -6,7 +6,7 @@
 
 #include <lrbscope/collide.hpp>
 #include <lrbscope/contact.hpp>
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/ids.hpp>
 
 namespace lrb {
@@ -17,8 +17,8 @@ enum class EventLevel : std::uint8_t {
   nodes,  ///< pairs of tree nodes, located points, phases, and the method that decided each face test
   all,    ///< pairs of simplices separated by a plane
 };
-constexpr auto words_of(EventLevel) {
-  return std::to_array<EnumWord<EventLevel>>(
+constexpr auto enum_names(EventLevel) {
+  return std::to_array<EnumName<EventLevel>>(
       {{EventLevel::faces, "faces"}, {EventLevel::nodes, "nodes"}, {EventLevel::all, "all"}});
 }
 
@@ -34,8 +34,8 @@ enum class Phase : std::uint8_t {
   cached,  ///< coherent: tests the cached pairs that may intersect at this pose: cached pairs that need no
            ///< test
 };
-constexpr auto words_of(Phase) {
-  return std::to_array<EnumWord<Phase>>({{Phase::walk, "tree walk"},
+constexpr auto enum_names(Phase) {
+  return std::to_array<EnumName<Phase>>({{Phase::walk, "tree walk"},
                                          {Phase::sort, "sorting"},
                                          {Phase::relation, "relation"},
                                          {Phase::separation, "separation"},
@@ -57,8 +57,8 @@ enum class NodeStep : std::uint8_t {
   leaves,        ///< tests the simplices of two leaves: first their boxes, then their planes
   whole,         ///< rejects the pair by the OBBs of the two nodes
 };
-constexpr auto words_of(NodeStep) {
-  return std::to_array<EnumWord<NodeStep>>({{NodeStep::descend_both, "both"},
+constexpr auto enum_names(NodeStep) {
+  return std::to_array<EnumName<NodeStep>>({{NodeStep::descend_both, "both"},
                                             {NodeStep::descend_a, "A"},
                                             {NodeStep::descend_b, "B"},
                                             {NodeStep::leaves, "leaves"},
@@ -85,8 +85,8 @@ enum class TestedBy : std::uint8_t {
   filter,          ///< exact predicates, all decided by their floating-point filters
   expansions,      ///< exact predicates, at least one of them in exact arithmetic
 };
-constexpr auto words_of(TestedBy) {
-  return std::to_array<EnumWord<TestedBy>>({{TestedBy::unreported, "untold"},
+constexpr auto enum_names(TestedBy) {
+  return std::to_array<EnumName<TestedBy>>({{TestedBy::unreported, "untold"},
                                             {TestedBy::floats, "floats"},
                                             {TestedBy::shared_corners, "shared corners"},
                                             {TestedBy::filter, "filter"},
@@ -95,8 +95,8 @@ constexpr auto words_of(TestedBy) {
 
 /// The location of a point relative to a closed body.
 enum class Where : std::uint8_t { outside, inside, on_surface };
-constexpr auto words_of(Where) {
-  return std::to_array<EnumWord<Where>>(
+constexpr auto enum_names(Where) {
+  return std::to_array<EnumName<Where>>(
       {{Where::outside, "outside"}, {Where::inside, "inside"}, {Where::on_surface, "on the surface"}});
 }
 
@@ -173,9 +173,9 @@ enum class EventKind : std::uint8_t {
   LRB_EVENTS(LRB_EVENT)
 #undef LRB_EVENT
 };
-constexpr auto words_of(EventKind) {
+constexpr auto enum_names(EventKind) {
 #define LRB_EVENT(name, json, a, b) {EventKind::name, json},
-  return std::to_array<EnumWord<EventKind>>({LRB_EVENTS(LRB_EVENT)});
+  return std::to_array<EnumName<EventKind>>({LRB_EVENTS(LRB_EVENT)});
 #undef LRB_EVENT
 }
 

@@ -25,8 +25,8 @@ enum class WrapperMode : std::uint8_t {
   unregularised,  ///< refining a face discards that face alone and adds its region's floor; other lids of the
                   ///< region stay until they are refined themselves
 };
-constexpr auto words_of(WrapperMode) {
-  return std::to_array<EnumWord<WrapperMode>>(
+constexpr auto enum_names(WrapperMode) {
+  return std::to_array<EnumName<WrapperMode>>(
       {{WrapperMode::regularised, "regularised"}, {WrapperMode::unregularised, "unregularised"}});
 }
 

@@ -49,7 +49,7 @@ std::string with(const std::string& pointer, const json& value) {
 template <class Enum>
 json words() {
   json out = json::array();
-  for (const EnumWord<Enum>& entry : kWords<Enum>) out.push_back(entry.word);
+  for (const EnumName<Enum>& entry : kEnumNames<Enum>) out.push_back(entry.name);
   return out;
 }
 

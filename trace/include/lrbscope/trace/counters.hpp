@@ -111,7 +111,8 @@ struct PassSummary {
   std::uint32_t patches = 0;
   std::uint32_t retried = 0;  ///< patches whose first cap intersected something, so that a second was built
                               ///< with checks per collapse
-  std::array<std::uint32_t, kWords<CapVerdict>.size()> caps{};  ///< patches by the verdict on their last cap
+  std::array<std::uint32_t, kEnumNames<CapVerdict>.size()>
+      caps{};                                             ///< patches by the verdict on their last cap
   std::uint32_t lids = 0, covered = 0;                    ///< faces of accepted caps, and faces under them
   std::uint32_t excluded = 0, no_patch = 0, waiting = 0;  ///< see PassEnd
   bool given_up = false;                                  ///< see PassEnd
@@ -133,9 +134,9 @@ Chart chart_over_construction(const Trace& trace);
 Chart chart_over_passes(const Trace& trace);
 
 /// Returns the reasons for rejection, most frequent first: "9 met the hull, 3 too thick".
-std::string rejection_text(const std::array<std::uint32_t, kWords<CapVerdict>.size()>& caps);
+std::string rejection_text(const std::array<std::uint32_t, kEnumNames<CapVerdict>.size()>& caps);
 
 /// Returns the number of caps by verdict, over all given passes.
-std::array<std::uint32_t, kWords<CapVerdict>.size()> caps_of(const std::vector<PassSummary>& passes);
+std::array<std::uint32_t, kEnumNames<CapVerdict>.size()> caps_of(const std::vector<PassSummary>& passes);
 
 }  // namespace lrb::trace

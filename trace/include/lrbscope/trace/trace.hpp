@@ -17,7 +17,7 @@
 #include <lrbscope/build.hpp>
 #include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
-#include <lrbscope/enum_words.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/explain.hpp>
 #include <lrbscope/first_contact.hpp>
 #include <lrbscope/ids.hpp>
@@ -80,16 +80,16 @@ std::string to_text(const MeasuredApproach& m);
 
 /// The kind of query.
 enum class EngineQuery : std::uint8_t { all_pairs, any, distance, first_contact, self };
-constexpr auto words_of(EngineQuery) {
-  return std::to_array<EnumWord<EngineQuery>>({{EngineQuery::all_pairs, "all_pairs"},
+constexpr auto enum_names(EngineQuery) {
+  return std::to_array<EnumName<EngineQuery>>({{EngineQuery::all_pairs, "all_pairs"},
                                                {EngineQuery::any, "any"},
                                                {EngineQuery::distance, "distance"},
                                                {EngineQuery::first_contact, "first_contact"},
                                                {EngineQuery::self, "self"}});
 }
 enum class EngineVerdict : std::uint8_t { separate, intersecting, unreported };
-constexpr auto words_of(EngineVerdict) {
-  return std::to_array<EnumWord<EngineVerdict>>({{EngineVerdict::separate, "separate"},
+constexpr auto enum_names(EngineVerdict) {
+  return std::to_array<EnumName<EngineVerdict>>({{EngineVerdict::separate, "separate"},
                                                  {EngineVerdict::intersecting, "intersecting"},
                                                  {EngineVerdict::unreported, "unreported"}});
 }
@@ -397,8 +397,8 @@ enum class Clock : std::uint8_t {
   event,  ///< event numbers, so that equal runs give equal bytes
   wall,   ///< steady_clock, read once per event
 };
-constexpr auto words_of(Clock) {
-  return std::to_array<EnumWord<Clock>>({{Clock::event, "event"}, {Clock::wall, "wall"}});
+constexpr auto enum_names(Clock) {
+  return std::to_array<EnumName<Clock>>({{Clock::event, "event"}, {Clock::wall, "wall"}});
 }
 
 /// Identity of a recorded body, used to reject a different one.
@@ -514,6 +514,6 @@ constexpr EventFields fields_of(EventKind kind) {
 constexpr std::string_view pseudo_simplex(Side side) {
   return side == Side::a ? "pseudo simplex of A" : "pseudo simplex of B";
 }
-inline constexpr std::size_t kEventKinds = kWords<EventKind>.size();
+inline constexpr std::size_t kEventKinds = kEnumNames<EventKind>.size();
 
 }  // namespace lrb::trace
