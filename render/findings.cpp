@@ -386,14 +386,14 @@ CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind,
   // Step 1: the affected faces, and an average normal.
   const Parts parts = parts_of(mesh, kind, report[kind].first.front());
   const std::vector<FaceId> at = faces_at(mesh, parts);
-  const bool doubtful = kind == MeshFault::flipped_face || kind == MeshFault::duplicate_face;
+  const bool is_ambiguous = kind == MeshFault::flipped_face || kind == MeshFault::duplicate_face;
   CloseUp out;
   Vector3d n = Vector3d::Zero(), centroid = Vector3d::Zero();
   std::set<VertexId> own(parts.vertices.begin(), parts.vertices.end());
   for (const FaceId f : at) {
     const Vector3d m = normal(mesh, f);
     // Opposite normals would cancel: flip to agree with the sum so far.
-    n += doubtful && n.dot(m) < 0 ? -m : m;
+    n += is_ambiguous && n.dot(m) < 0 ? -m : m;
     if (!parts.faces.empty()) own.insert(mesh.face(f).begin(), mesh.face(f).end());
   }
   // Step 2: the neighbourhood, which gives context.
@@ -414,7 +414,7 @@ CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind,
   if (kind == MeshFault::inside_out || kind == MeshFault::unused_vertex) return out;
   // Step 3: look from outside, at an angle.
   if (!at.empty() && is_inside_out(mesh, report, at[0])) n = -n;
-  if (doubtful && n.dot(centroid) < 0) n = -n;
+  if (is_ambiguous && n.dot(centroid) < 0) n = -n;
   if (!(n.norm() > 0)) n = centroid;
   if (!(n.norm() > 0)) return out;
   out.view = tilted(n);

@@ -334,7 +334,7 @@ double DepthFinder::raise_lower(double known, double& best, Vector3d& best_n) {
     reported_lower_ = std::max(reported_lower_, bodies_.frame.length_to_world(proof.lower()));
     // Where the proof fails, a shorter translation may exist.
     const double before = best;
-    if (proof.doubtful().norm() > 0) improve(proof.doubtful().normalized(), best, best_n);
+    if (proof.undecided().norm() > 0) improve(proof.undecided().normalized(), best, best_n);
     if (best < before) refine(best, best_n);
     notify(best);
     // The proof cannot continue.

@@ -35,7 +35,7 @@ class OverlapProof {
   double lower() const { return lower_; }
   /// Returns a translation near the shortest one that is not proven, which may separate the bodies, or 0 if
   /// no cube is left.
-  Vector3d doubtful() const { return cubes_.empty() ? Vector3d(Vector3d::Zero()) : cubes_.front().centre; }
+  Vector3d undecided() const { return cubes_.empty() ? Vector3d(Vector3d::Zero()) : cubes_.front().centre; }
 
  private:
   /// A point of both bodies, for a translation.

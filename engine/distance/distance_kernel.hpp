@@ -44,11 +44,11 @@ struct FarNodes {
 };
 
 enum class KernelStop : std::uint8_t {
-  done,      ///< no waiting pair of nodes can be within the pruning distance
-  room,      ///< the buffers must grow
-  limit,     ///< max_node_pairs was reached
-  enough,    ///< `upper` is at most `enough`
-  doubtful,  ///< two simplices were not proven disjoint: the exact query must decide
+  done,       ///< no waiting pair of nodes can be within the pruning distance
+  room,       ///< the buffers must grow
+  limit,      ///< max_node_pairs was reached
+  enough,     ///< `upper` is at most `enough`
+  undecided,  ///< two simplices were not proven disjoint: the exact query must decide
 };
 
 /// State of one traversal. Lengths are in query units; see TreeKernel.
@@ -61,7 +61,7 @@ struct DistanceKernel {
   float enough;     ///< stop when `upper` is at most this; -1: never
   bool descend;     ///< descend to a pair of simplices first, because no good upper bound is known
   bool begun;       ///< set by the kernel
-  bool apart;       ///< the surfaces are known to be disjoint: do not stop as `doubtful`
+  bool apart;       ///< the surfaces are known to be disjoint: do not stop as `undecided`
 
   /// Direction of the slabs, from A to B, on A's axes and on B's: unit length, or 0 if unknown.
   float direction[2][3];

@@ -111,7 +111,7 @@ bool FloatWalk::descend_alone() {
   k_.waiting[0] = {-kNothing, 0, 0};
   k_.waiting_size = 1;
   context_.turn = k_.turn;
-  if (k_.stop == KernelStop::doubtful) {
+  if (k_.stop == KernelStop::undecided) {
     // Contact is possible: the exact query decides, once for the entire traversal.
     if (found_.surfaces_meet()) return true;
     k_.apart = true;
@@ -140,7 +140,7 @@ bool FloatWalk::run(BoundsProbeAdapter* adapter) {
       k_.tree.max_node_pairs = std::min(most, BoundsProbeAdapter::next_look(k_.tree.node_pairs));
     run_distance_kernel(k_);
     context_.turn = k_.turn;
-    if (k_.stop == KernelStop::doubtful) {
+    if (k_.stop == KernelStop::undecided) {
       // Contact is possible: decide it once, and continue if the surfaces are disjoint.
       if (found_.surfaces_meet()) return true;
       k_.apart = true;

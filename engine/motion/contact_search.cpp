@@ -8,7 +8,7 @@
 /// 3. Where pairs stop, run the exact query slightly later. If bodies intersect then, that is the contact.
 /// 4. Else advance by shorter steps, sample more densely, or prove by continuity that a pair has passed.
 /// 5. Else lengthen the interval until the bodies are proven to stay separate again. The time before that is
-///    reported as ambiguous (`doubtful`).
+///    reported as ambiguous.
 ///
 /// Bodies are reported as separate only if find_swept_pairs(), PairMotion::separated_for() or a distance
 /// proves it, and as in contact only if the exact query or PairMotion::has_passed() proves it. All other
@@ -315,14 +315,14 @@ double FirstContactSearch::look_further(double t, double end) {
 /// Returns the shortest interval, by bisection, after which the bodies are proven to stay separate. span: an
 /// interval after which they are, or that reaches the end. too_short: a length after which they are not.
 TimeSpan FirstContactSearch::shortened(TimeSpan span, double too_short) {
-  // Invariant: `doubtful` is too short, span.end is long enough.
-  double doubtful = std::min(span.begin + too_short, span.end);
-  while (span.end - doubtful > std::max(tolerance_, kNarrow * (span.end - span.begin)) && !is_over()) {
-    const double midpoint = doubtful + (span.end - doubtful) / 2;
-    if (!(midpoint > doubtful && midpoint < span.end)) break;
+  // Invariant: an interval that ends at `excluded` is too short, one that ends at span.end is long enough.
+  double excluded = std::min(span.begin + too_short, span.end);
+  while (span.end - excluded > std::max(tolerance_, kNarrow * (span.end - span.begin)) && !is_over()) {
+    const double midpoint = excluded + (span.end - excluded) / 2;
+    if (!(midpoint > excluded && midpoint < span.end)) break;
     // goes_on_from() uses the pairs found last.
     if (is_swept_ && !find_pairs({span.begin, midpoint}, kMaxStuckPairs)) break;
-    (goes_on_from({span.begin, midpoint}) ? span.end : doubtful) = midpoint;
+    (goes_on_from({span.begin, midpoint}) ? span.end : excluded) = midpoint;
   }
   return span;
 }
@@ -391,7 +391,7 @@ void FirstContactSearch::contact_in(TimeSpan span, SimplexPair pair) {
 }
 
 void FirstContactSearch::doubt(TimeSpan span) {
-  std::vector<TimeSpan>& list = result_.doubtful;
+  std::vector<TimeSpan>& list = result_.ambiguous;
   // Merge adjacent intervals.
   if (!list.empty() && list.back().end >= span.begin)
     list.back().end = span.end;

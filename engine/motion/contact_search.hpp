@@ -26,7 +26,7 @@ FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const 
                                  const Motion& motion_b, const FirstContactRequest& request,
                                  FirstContactContext& context, FirstContactProbe* probe = nullptr);
 
-/// One search. The bodies are proven separate from 0 to free_until_, except in the intervals of `doubtful`.
+/// One search. The bodies are proven separate from 0 to free_until_, except in the intervals of `ambiguous`.
 class FirstContactSearch {
  public:
   FirstContactSearch(const LrbRep& a, const Motion& motion_a, const LrbRep& b, const Motion& motion_b,

@@ -177,15 +177,15 @@ FirstContactResult FirstContactSearch::finish() {
     result_.finished = free_until_ >= 1;
     if (!result_.finished) doubt({free_until_, 1});
     if (!result_.finished) result_.unresolved = Unresolved::steps;
-    if (!result_.doubtful.empty()) {
+    if (!result_.ambiguous.empty()) {
       // No contact was found, but the ambiguous intervals may hide one.
       result_.outcome = MotionOutcome::undecided;
-      result_.t1 = result_.doubtful.back().end;
+      result_.t1 = result_.ambiguous.back().end;
     }
   }
   // The uninterrupted proof of separation ends at the first ambiguous interval.
-  if (!result_.doubtful.empty()) result_.t0 = result_.doubtful[0].begin;
-  result_.grazing = result_.grazing || (result_.finished && !result_.doubtful.empty());
+  if (!result_.ambiguous.empty()) result_.t0 = result_.ambiguous[0].begin;
+  result_.grazing = result_.grazing || (result_.finished && !result_.ambiguous.empty());
   if (result_.grazing && result_.unresolved == Unresolved::nothing) result_.unresolved = Unresolved::rounding;
   return std::move(result_);
 }

@@ -374,8 +374,8 @@ py::object pair_of(const FirstContact& f) {
   return py::make_tuple(f.result->pair.a.value(), f.result->pair.b.value());
 }
 
-py::array_t<double> doubtful_of(const FirstContact& f) {
-  const std::vector<TimeSpan>& spans = f.result->doubtful;
+py::array_t<double> ambiguous_of(const FirstContact& f) {
+  const std::vector<TimeSpan>& spans = f.result->ambiguous;
   static_assert(sizeof(TimeSpan) == 2 * sizeof(double));
   return py::array_t<double>({static_cast<py::ssize_t>(spans.size()), py::ssize_t{2}},
                              reinterpret_cast<const double*>(spans.data()));
@@ -433,7 +433,7 @@ void bind_single_contact(py::module_& m) {
   c.def_property_readonly(
       "at_begin", [](const FirstContact& f) { return word_of(f.result->at_begin); },
       "str: relation of the bodies at the start, as Result.relation.");
-  c.def_property_readonly("doubtful", &doubtful_of, "(d, 2) float64: time intervals that are undecided.");
+  c.def_property_readonly("ambiguous", &ambiguous_of, "(d, 2) float64: time intervals that are undecided.");
   c.def_property_readonly("pair", &pair_of,
                           "(int, int) or None: triangles of A and of B that intersect at t1.");
   c.def_property_readonly("points", &contact_points_of,

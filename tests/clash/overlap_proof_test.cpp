@@ -104,7 +104,7 @@ TEST_CASE("all translations shorter than the proven depth leave an overlap, slig
     for (int i = 0; i < 50; ++i)
       CHECK(overlap_after(pair.a, pair.b, pair.pose_b, 0.999999 * lower * shapes::random_direction(random)));
     // The rest is where the separation vector is.
-    const Vector3d out = proof.doubtful().normalized();
+    const Vector3d out = proof.undecided().normalized();
     CHECK_FALSE(overlap_after(pair.a, pair.b, pair.pose_b, 1.1 * pair.depth * out));
   }
 }

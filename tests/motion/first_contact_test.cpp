@@ -304,7 +304,7 @@ TEST_CASE("tangential contacts have a wider interval and are marked as grazing")
               Motion::linear(Pose::translation({3, 0.25, 1 + 1e-15}), {-13, 0.25, 1 + 1e-15}));
   REQUIRE(r.is_contact());
   CHECK(r.grazing);
-  CHECK(r.doubtful.size() == 1);
+  CHECK(r.ambiguous.size() == 1);
   CHECK(r.t0 == doctest::Approx(2.0 / 16));
   CHECK(r.t1 == doctest::Approx(12.0 / 16));
 }

@@ -48,7 +48,7 @@ auto content(const ClashResult& x) {
 }
 auto content(const FirstContactResult& x) {
   return std::tuple(x.outcome, x.t0, x.t1, x.at_start, x.grazing, x.passed, x.finished, x.unresolved,
-                    x.at_begin, x.doubtful, x.pair, content(x.witness[0]), content(x.witness[1]),
+                    x.at_begin, x.ambiguous, x.pair, content(x.witness[0]), content(x.witness[1]),
                     content(x.normal), x.speed, x.counters);
 }
 

@@ -95,7 +95,7 @@ struct FirstContactResult {
   /// in between. never: both 1.
   double t0 = 1, t1 = 1;
   bool at_start = false;  ///< in contact at t = 0; t0 = t1 = 0
-  /// The interval is wider than requested, because before t1 there are time intervals (`doubtful`) in which
+  /// The interval is wider than requested, because before t1 there are time intervals (`ambiguous`) in which
   /// the distance is within rounding and no contact was found: tangential contact.
   bool grazing = false;
   /// A contact by t1 is proven by continuity, but not at t1: the surfaces pass through each other between two
@@ -107,7 +107,7 @@ struct FirstContactResult {
   /// Mode::any_pair. `undefined` if not requested, or for bodies that are not closed.
   Relation at_begin = Relation::undefined;
   /// The ambiguous time intervals, ascending.
-  std::vector<TimeSpan> doubtful;
+  std::vector<TimeSpan> ambiguous;
 
   /// contact: a pair that intersects at t1 (passed: that has collided by then). kNull otherwise.
   SimplexPair pair{kNull, kNull};
