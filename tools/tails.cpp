@@ -39,7 +39,7 @@ Recordable recordable(const TailsOptions& o, const tails::Tail& tail, std::size_
   return {o.folder + "/poses/" + name + ".txt", o.folder + "/" + name};
 }
 
-std::vector<std::string> enum_names(const TailsOptions& o, const tails::Tail& tail, std::size_t pose) {
+std::vector<std::string> xray_words(const TailsOptions& o, const tails::Tail& tail, std::size_t pose) {
   if (!tail.queries.empty()) {
     const std::string query = std::to_string(tail.queries[pose]);
     return {"import", o.a, "--queries", query, "-o", o.folder + "/query-" + query};
@@ -57,7 +57,7 @@ void record(const TailsOptions& o, const tails::Tail& tail, std::size_t pose, co
       write_file(r.folder + ".lrbcap",
                  tails::record_capture(o.command, o.files(), o.limit(), tail.poses[pose]));
   }
-  run_command(enum_names(o, tail, pose), globals);
+  run_command(xray_words(o, tail, pose), globals);
 }
 
 void write_tails(const TailsOptions& o, const std::vector<tails::Tail>& tails, const std::string& title,
@@ -70,7 +70,7 @@ void write_tails(const TailsOptions& o, const std::vector<tails::Tail>& tails, c
   }
   const tails::TailsPage page = {
       title, purpose, globals.command_line, machine,
-      [&](const tails::Tail& tail, std::size_t pose) { return shell_line(enum_names(o, tail, pose)); }};
+      [&](const tails::Tail& tail, std::size_t pose) { return shell_line(xray_words(o, tail, pose)); }};
   note(globals, tails::write_tails_page(tails, page, o.folder));
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kBetween = " \t\r\v\f,";
 
-std::vector<std::string_view> enum_names(std::string_view line) {
+std::vector<std::string_view> words_in(std::string_view line) {
   line = line.substr(0, line.find('#'));
   std::vector<std::string_view> words;
   for (std::size_t at = line.find_first_not_of(kBetween); at != std::string_view::npos;
@@ -52,7 +52,7 @@ double number(std::string_view word, const std::string& where, const std::string
   if (error != std::errc() || end != digits.data() + digits.size())
     throw InputError(where + shown(word) + " is not a number: expected " + wanted);
   if (!std::isfinite(x))
-    throw InputError(where + shown(word) + " is not finite; every number of a pose must be finite");
+    throw InputError(where + shown(word) + " is not finite; every number must be finite");
   return x;
 }
 
@@ -129,7 +129,7 @@ void read_lines(const std::string& text, const std::string& name, std::size_t co
   std::vector<double> x(count);
   std::size_t line_number = 0;
   for (std::size_t at = 0; at < text.size();) {
-    const std::vector<std::string_view> words = enum_names(next_line(text, at));
+    const std::vector<std::string_view> words = words_in(next_line(text, at));
     const std::string where = name + ":" + std::to_string(++line_number) + ": ";
     if (words.empty()) continue;
     for (std::size_t i = 0; i < words.size() && i < count; ++i)
@@ -186,6 +186,22 @@ std::vector<PosePair> read_motions(const std::string& path) {
   return parse_motions(read_text(path), path);
 }
 
+std::vector<Eigen::Vector3d> parse_points(const std::string& text, const std::string& name) {
+  std::vector<Eigen::Vector3d> points;
+  // The names of the columns, as tables have them, become a comment: the lines keep their numbers.
+  std::size_t at = 0;
+  const std::vector<std::string_view> names = words_in(next_line(text, at));
+  const bool named = names == std::vector<std::string_view>{"x", "y", "z"};
+  read_lines(named ? "#" + text : text, name, 3, "x, y and z of a point",
+             [&](std::span<const double> x, std::size_t) { points.emplace_back(x[0], x[1], x[2]); });
+  if (points.empty()) throw InputError(name + ": no points: expected lines of 3 numbers (x, y, z)");
+  return points;
+}
+
+std::vector<Eigen::Vector3d> read_points(const std::string& path) {
+  return parse_points(read_text(path), path);
+}
+
 std::vector<Pose> parse_pose_table(const std::string& text, const std::string& name,
                                    std::vector<std::size_t>* lines) {
   std::vector<Pose> poses;
@@ -220,7 +236,7 @@ std::vector<Pose> parse_pose_table(const std::string& text, const std::string& n
 }
 
 Eigen::Vector3d parse_vector(const std::string& text, const std::string& option) {
-  const std::vector<std::string_view> words = enum_names(text);
+  const std::vector<std::string_view> words = words_in(text);
   if (words.size() != 3)
     throw InputError(option + ": expected three numbers X,Y,Z, found " + std::to_string(words.size()) +
                      " in \"" + text + "\"");

@@ -65,6 +65,11 @@ struct PosePair {
 std::vector<PosePair> parse_motions(const std::string& text, const std::string& name);
 std::vector<PosePair> read_motions(const std::string& path);
 
+/// Reads points: 3 numbers on each line; otherwise as parse_poses(). A first line with the names x, y and z
+/// is skipped. `name`: for messages.
+std::vector<Eigen::Vector3d> parse_points(const std::string& text, const std::string& name);
+std::vector<Eigen::Vector3d> read_points(const std::string& path);
+
 /// Reads three numbers "X,Y,Z"; `option` names them in the message. Throws InputError.
 Eigen::Vector3d parse_vector(const std::string& text, const std::string& option);
 

@@ -5,6 +5,7 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/faulty_meshes.hpp"
+#include "tests/support/hard_bodies.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/validate.hpp>
@@ -131,6 +132,13 @@ TEST_CASE("the thickness of a region whose lids are too far away for doubles is 
     if (std::abs(x.z()) < 1e299) x *= 1e-20;
   const LrbRep rep(data);
   for (const double t : region_thickness(rep)) CHECK(t > 1e200);
+}
+
+TEST_CASE("the embedding at a vertex of 3,000 faces is proven without testing all pairs of them") {
+  const LrbRep body = LrbRep::without_regions(hard::bipyramid(3000), true, false);
+  const ValidateReport report = validate(body);
+  CHECK(report.valid);
+  CHECK(report.embedding_pairs < 50 * body.simplex_count());
 }
 
 TEST_CASE("cells are proven by validate_cells() as by validate()") {

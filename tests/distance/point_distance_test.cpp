@@ -1,0 +1,220 @@
+// Signed distances of points, against rational brute force and winding numbers by solid angles.
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "bench/quantities/rational_oracles.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/closed_body.hpp"
+#include "tests/support/simplex_distance.hpp"
+#include <lrbscope/error.hpp>
+#include <lrbscope/point_distance.hpp>
+
+using namespace lrb;
+using Eigen::Vector3d;
+using oracle::Rational;
+using shapes::RandomEngine;
+
+namespace {
+
+using test::closed;
+
+std::vector<test::Points> simplices_of(const LrbRep& rep, const Pose& pose) {
+  std::vector<test::Points> out;
+  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) out.push_back(test::simplex_points(rep, pose, s));
+  return out;
+}
+
+/// The squared distance, exactly, of the simplices that are closest in doubles.
+Rational distance_sq(const std::vector<test::Points>& simplices, const Vector3d& p, double size) {
+  std::vector<double> apart;
+  for (const test::Points& s : simplices) apart.push_back(test::simplex_distance({p}, s));
+  const double least = *std::min_element(apart.begin(), apart.end());
+  std::optional<Rational> exact;
+  for (std::size_t i = 0; i < simplices.size(); ++i) {
+    if (apart[i] > least * (1 + 1e-7) + 1e-9 * size) continue;
+    oracle::Corners corners;
+    for (const Vector3d& x : simplices[i]) corners.push_back({x.x(), x.y(), x.z()});
+    const Rational d = oracle::distance_sq({{p.x(), p.y(), p.z()}}, corners);
+    if (!exact || d < *exact) exact = d;
+  }
+  return *exact;
+}
+
+/// The number of times that a closed surface winds around a point beside it.
+double winding(const std::vector<test::Points>& simplices, const Vector3d& p) {
+  double sum = 0;
+  for (const test::Points& s : simplices) {
+    const Vector3d a = s[0] - p, b = s[1] - p;
+    if (s.size() == 2) {
+      sum += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)) / (2 * std::numbers::pi);
+      continue;
+    }
+    // Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983.
+    const Vector3d c = s[2] - p;
+    const double l = a.norm(), m = b.norm(), n = c.norm();
+    sum += std::atan2(a.dot(b.cross(c)), l * m * n + a.dot(b) * n + b.dot(c) * l + c.dot(a) * m) /
+           (2 * std::numbers::pi);
+  }
+  return sum;
+}
+
+struct Seen {
+  int points = 0, inside = 0, outside = 0, on_surface = 0;
+};
+
+void check(const LrbRep& rep, const Pose& pose, const std::vector<Vector3d>& points, Seen& seen) {
+  const std::vector<test::Points> simplices = simplices_of(rep, pose);
+  Eigen::AlignedBox3d box;
+  for (const test::Points& s : simplices)
+    for (const Vector3d& x : s) box.extend(x);
+  const double size = box.diagonal().norm();
+  const std::vector<PointDistance> found = point_distances(rep, pose, points);
+  REQUIRE(found.size() == points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Vector3d p = points[i];
+    if (rep.dim() == 2) p.z() = 0;
+    CAPTURE(p);
+    const PointDistance& d = found[i];
+    const Rational truth = distance_sq(simplices, p, size + p.norm());
+    REQUIRE(oracle::square(d.lower) <= truth);
+    REQUIRE(truth <= oracle::square(d.upper));
+    REQUIRE(d.upper - d.lower <= 1e-12 * size + 2.3e-13 * d.upper + 1e-15 * d.upper);
+    REQUIRE((d.upper == 0) == (truth == 0));
+    REQUIRE((d.side == Where::on_surface) == (truth == 0));
+    REQUIRE(rep.face_of_simplex(d.closest.simplex) == d.closest.face);
+    REQUIRE(std::abs((d.closest.point - p).norm() - d.upper) <= 1e-9 * (size + p.norm()));
+    ++seen.points;
+    seen.on_surface += d.side == Where::on_surface;
+    if (truth == 0) continue;
+    if (!rep.closed()) {
+      REQUIRE_FALSE(d.side);
+      REQUIRE(d.signed_lower() == d.lower);
+      continue;
+    }
+    REQUIRE(d.side);
+    (d.side == Where::inside ? seen.inside : seen.outside) += 1;
+    REQUIRE(d.signed_upper() == (d.side == Where::inside ? -d.lower : d.upper));
+    // Solid angles are ill-conditioned next to the surface.
+    if (d.lower < 1e-6 * size || d.upper > 1e3 * size) continue;
+    const double turns = winding(simplices, p);
+    REQUIRE(std::abs(turns - std::round(turns)) < 1e-3);
+    REQUIRE((d.side == Where::inside) == (std::lround(turns) % 2 != 0));
+  }
+}
+
+/// Points in and around a body, on it, within rounding of it, and far away.
+std::vector<Vector3d> points_about(const LrbRep& rep, const Pose& pose, RandomEngine& random, int count) {
+  std::vector<Vector3d> out;
+  const std::vector<test::Points> simplices = simplices_of(rep, pose);
+  for (int i = 0; i < count; ++i) {
+    const test::Points& s = simplices[random() % simplices.size()];
+    Vector3d p = test::random_point_of(random, s);
+    Vector3d way = shapes::random_direction(random);
+    if (rep.dim() == 2) way.z() = 0;
+    switch (i % 6) {
+      case 0:
+        p = s[0];  // a vertex
+        break;
+      case 1:
+        p = (s[0] + s[1]) / 2;
+        break;
+      case 2:
+        p += way * std::ldexp(1.0, -static_cast<int>(random() % 60));
+        break;
+      case 3:
+        p += 1e6 * way;
+        break;
+      default:
+        p += way * shapes::uniform(random);
+    }
+    out.push_back(p);
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("signed distances of points agree with rational brute force and with winding numbers") {
+  RandomEngine random(1);
+  // Two boxes that overlap: their common part counts as outside.
+  const Mesh two =
+      shapes::several({shapes::quad_box(), shapes::translated(shapes::quad_box(), {0.5, 0.25, 0.125})});
+  const LrbRep bodies[] = {closed(shapes::quad_box()),
+                           closed(shapes::tetrahedron(1)),
+                           closed(shapes::icosphere(1)),
+                           closed(shapes::torus(8, 6)),
+                           closed(shapes::bowl(6, 3)),
+                           LrbRep::without_regions(two, true, true),
+                           LrbRep::without_regions(shapes::open_cylinder(8), false, false),
+                           closed(shapes::gear(8)),
+                           closed(shapes::ring_2d(12)),
+                           closed(shapes::star(5))};
+  Seen seen;
+  for (const LrbRep& body : bodies)
+    for (int round = 0; round < 3; ++round) {
+      CAPTURE(body.real_face_count());
+      Pose pose;
+      if (round > 0)
+        pose = body.dim() == 2 ? Pose::rotation(Vector3d(0, 0, 1), 1.0 * round, {0.3, -1.5, 0})
+                               : Pose{shapes::random_rotation(random), {0.3, -1.5, 1000.0 * (round - 1)}};
+      check(body, pose, points_about(body, pose, random, 60), seen);
+    }
+  CHECK(seen.points == 1800);
+  CHECK(seen.inside > 150);
+  CHECK(seen.outside > 600);
+  CHECK(seen.on_surface > 100);
+}
+
+TEST_CASE("signed distances do not depend on the number of threads, nor on the other points") {
+  RandomEngine random(2);
+  const LrbRep body = closed(shapes::bumpy_sphere(3, 1));
+  const std::vector<Vector3d> points = points_about(body, {}, random, 300);
+  const std::vector<PointDistance> one = point_distances(body, {}, points, {}, 1);
+  const std::vector<PointDistance> many = point_distances(body, {}, points, {}, 4);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PointDistance alone = point_distances(body, {}, std::span(points).subspan(i, 1))[0];
+    for (const PointDistance* other : {&many[i], &alone}) {
+      CHECK(one[i].lower == other->lower);
+      CHECK(one[i].upper == other->upper);
+      CHECK(one[i].side == other->side);
+      CHECK(one[i].closest.simplex == other->closest.simplex);
+    }
+  }
+}
+
+TEST_CASE("a tolerance widens the interval of a signed distance") {
+  const LrbRep ball = closed(shapes::icosphere(3));
+  const std::vector<Vector3d> points = {{0, 0, 0.5}};
+  PointDistanceRequest request;
+  request.tolerance = 0.1;
+  request.side = false;
+  const PointDistance d = point_distances(ball, {}, points, request)[0];
+  CHECK(d.lower <= 0.5);
+  CHECK(d.upper >= 0.48);
+  CHECK(d.upper - d.lower <= 0.1);
+  CHECK_FALSE(d.side);
+}
+
+TEST_CASE("signed distances to a body without faces are infinite") {
+  const LrbRep nothing = LrbRep::without_regions(Mesh{}, false, false);
+  const std::vector<Vector3d> points = {{0, 0, 0.5}};
+  const PointDistance d = point_distances(nothing, {}, points)[0];
+  CHECK(std::isinf(d.lower));
+  CHECK_FALSE(d.side);
+  CHECK(d.closest.simplex == kNull);
+  CHECK(point_distances(nothing, {}, {}).empty());
+}
+
+TEST_CASE("points and requests that are not finite are rejected") {
+  const LrbRep box = closed(shapes::quad_box());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Vector3d> points = {{0, 0, 0}, {0, nan, 0}};
+  CHECK_THROWS_WITH_AS(point_distances(box, {}, points),
+                       "point 1: expected finite coordinates, found a NaN or an infinity", InputError);
+  PointDistanceRequest request;
+  request.tolerance = -1;
+  CHECK_THROWS_AS(point_distances(box, {}, {}, request), InputError);
+}
