@@ -49,7 +49,7 @@ class BoundsProbeAdapter {
 struct DistanceContext {
   QueryContext query;
   std::vector<WaitingNodes> waiting;
-  std::vector<NearPair> near;
+  std::vector<FloatPair> near;
   std::vector<MeasuredPair> pairs;
   std::vector<NodeEnd> ends[2];
   std::uint32_t turn = 0;  ///< the last one used in `ends`

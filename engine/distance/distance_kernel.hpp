@@ -28,7 +28,7 @@ struct NodeEnd {
 };
 
 /// A pair of simplices that may be the closest.
-struct NearPair {
+struct FloatPair {
   SimplexId a, b;
   float lower;  ///< lower bound on its distance, query units
 };
@@ -78,7 +78,7 @@ struct DistanceKernel {
 
   WaitingNodes* waiting;  ///< a heap, the least bound first
   std::uint32_t waiting_size, waiting_capacity;
-  NearPair* near;
+  FloatPair* near;
   std::uint32_t near_size, near_capacity;
   SimplexId best_a, best_b;  ///< the pair that gave `upper`; kNull: none in this traversal
 

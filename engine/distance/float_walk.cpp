@@ -167,20 +167,20 @@ double FloatWalk::dropped() const {
 }
 
 double FloatWalk::measure() {
-  NearPair* const end = context_.near.data() + k_.near_size;
+  FloatPair* const end = context_.near.data() + k_.near_size;
   const float limit = dropped_from(k_);
   // The upper bound may have fallen since these pairs were collected: remove the ones beyond it.
-  NearPair* const last = std::partition(context_.near.data(), end,
-                                        [limit](const NearPair& pair) { return pair.lower <= limit; });
+  FloatPair* const last = std::partition(context_.near.data(), end,
+                                         [limit](const FloatPair& pair) { return pair.lower <= limit; });
   k_.near_size = static_cast<std::uint32_t>(last - context_.near.data());
   // Closest first; ties by index, so that the order does not depend on the traversal.
-  std::sort(context_.near.data(), last, [](const NearPair& x, const NearPair& y) {
+  std::sort(context_.near.data(), last, [](const FloatPair& x, const FloatPair& y) {
     return x.lower != y.lower ? x.lower < y.lower : x.a != y.a ? x.a < y.a : x.b < y.b;
   });
   // The pair that gave the kernel's upper bound is measured first: it tightens the pruning distance.
   if (k_.best_a != kNull) found_.measure(k_.best_a, k_.best_b, 0);
   double rest = dropped();
-  for (const NearPair* pair = context_.near.data(); pair != last; ++pair) {
+  for (const FloatPair* pair = context_.near.data(); pair != last; ++pair) {
     const double lower = static_cast<double>(pair->lower) * unit_;
     // The pairs are sorted: all remaining ones are at least this far.
     if (lower >= found_.dropped_from()) return std::min(rest, lower);

@@ -30,6 +30,7 @@ from ._core import (
     Meetings,
     Outcome,
     PairExplanation,
+    PointDistances,
     Result,
     Results,
     Scenario,
@@ -49,6 +50,7 @@ from ._core import (
     first_contact,
     render,
     scenarios,
+    signed_distance,
     trace,
 )
 from ._picture import Picture
@@ -79,6 +81,7 @@ __all__ = [
     "Outcome",
     "PairExplanation",
     "Picture",
+    "PointDistances",
     "Result",
     "Results",
     "Scenario",
@@ -97,5 +100,6 @@ __all__ = [
     "first_contact",
     "render",
     "scenarios",
+    "signed_distance",
     "trace",
 ]

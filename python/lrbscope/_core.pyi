@@ -237,6 +237,19 @@ class Clash:
     @property
     def volume(self) -> tuple[float, float] | None: ...
 
+class PointDistances:
+    @property
+    def lower(self) -> _Floats: ...
+    @property
+    def upper(self) -> _Floats: ...
+    @property
+    def side(self) -> npt.NDArray[np.int8]: ...
+    @property
+    def points(self) -> _Floats: ...
+    @property
+    def faces(self) -> _Ids: ...
+    def __len__(self) -> int: ...
+
 class FirstContact:
     @property
     def outcome(self) -> Literal["contact", "never", "undecided"]: ...
@@ -583,6 +596,15 @@ def distance(
     relation: bool | None = None,
     threads: int | None = None,
 ) -> Any: ...
+def signed_distance(
+    body: Body,
+    points: npt.ArrayLike,
+    pose: npt.ArrayLike | None = None,
+    *,
+    tolerance: float | None = None,
+    relative_tolerance: float | None = None,
+    threads: int | None = None,
+) -> PointDistances: ...
 @overload
 def clash(
     a: Body,

@@ -50,19 +50,20 @@ Pose read_pose(const double* m, py::ssize_t rows, const char* what) {
   return out;
 }
 
-void add_vertices(py::handle given, Mesh& mesh) {
-  const Numbers v = numbers(given, "vertices", "numbers of shape (n, 3)");
+/// Reads points of shape (n, 3), or (n, 2) in 2D. Returns their number of coordinates.
+int read_points(py::handle given, const char* what, std::vector<Eigen::Vector3d>& points) {
+  const Numbers v = numbers(given, what, "numbers of shape (n, 3)");
   const bool empty = v.ndim() == 1 && v.size() == 0;  // an empty list
   if (!empty && (v.ndim() != 2 || (v.shape(1) != 3 && v.shape(1) != 2)))
-    reject_shape("vertices", "shape (n, 3), or (n, 2) in 2D", v);
+    reject_shape(what, "shape (n, 3), or (n, 2) in 2D", v);
   const py::ssize_t n = empty ? 0 : v.shape(0), width = empty ? 3 : v.shape(1);
-  mesh.dim = static_cast<int>(width);
-  mesh.vertices.resize(static_cast<std::size_t>(n));
+  points.resize(static_cast<std::size_t>(n));
   const double* x = v.data();
-  for (Eigen::Vector3d& p : mesh.vertices) {
+  for (Eigen::Vector3d& p : points) {
     p = {x[0], x[1], width == 3 ? x[2] : 0};
     x += width;
   }
+  return static_cast<int>(width);
 }
 
 /// Appends a face. Checks corners here, because ids are narrower than numpy's integers.
@@ -240,7 +241,7 @@ Pose pose(py::handle given, const char* what) {
 Mesh mesh_of_arrays(py::handle vertices, py::handle faces, const std::string& name) {
   Mesh mesh;
   mesh.name = name;
-  add_vertices(vertices, mesh);
+  mesh.dim = read_points(vertices, "vertices", mesh.vertices);
   if (const py::array found = any_array(faces); found && found.dtype().kind() != 'O')
     add_equal_faces(found, mesh);
   else if (py::isinstance<py::sequence>(faces) && !py::isinstance<py::str>(faces))
@@ -248,6 +249,15 @@ Mesh mesh_of_arrays(py::handle vertices, py::handle faces, const std::string& na
   else
     throw InputError("faces: expected integers of shape (m, 3), got " + described(faces));
   return mesh;
+}
+
+std::vector<Eigen::Vector3d> points(py::handle given, const char* what, int dim) {
+  std::vector<Eigen::Vector3d> out;
+  const int width = read_points(given, what, out);
+  if (!out.empty() && width < dim)
+    throw InputError(std::string(what) + ": expected 3 coordinates of each point, found " +
+                     std::to_string(width));
+  return out;
 }
 
 py::array_t<double> array_of(std::span<const Eigen::Vector3d> points) {

@@ -63,6 +63,9 @@ Poses poses(py::handle given, const char* what);
 /// Reads one pose; throws for many.
 Pose pose(py::handle given, const char* what);
 
+/// Reads points (n, 3); for a body in 2D also (n, 2).
+std::vector<Eigen::Vector3d> points(py::handle given, const char* what, int dim);
+
 /// Makes a mesh from arrays: vertices (n, 3) and faces (m, k) with k >= 3, or a sequence of sequences; in 2D
 /// vertices (n, 2) and segments (m, 2).
 Mesh mesh_of_arrays(py::handle vertices, py::handle faces, const std::string& name);

@@ -2,6 +2,7 @@
 #include "python/src/bind.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/first_contact.hpp>
+#include <lrbscope/point_distance.hpp>
 #include <lrbscope/workspace.hpp>
 
 namespace lrb::python {
@@ -298,6 +299,114 @@ Returns a Distance, or for (k, 4, 4) a Distances.
 >>> d = distance(cube, cube, shifted(3, 0, 0))
 >>> d.lower <= 2 <= d.upper, d.points[:, 0].tolist()
 (True, [1.0, 3.0]))");
+}
+
+namespace {
+
+struct PointDistances {
+  std::vector<PointDistance> all;
+};
+
+py::object signed_distance(py::handle of, py::handle points, py::handle at, py::handle tolerance,
+                           py::handle relative_tolerance, py::handle threads) {
+  const Body& given = body(of, "body");
+  const Pose placed = pose(at, "pose");
+  const std::vector<Eigen::Vector3d> all = python::points(points, "points", given.rep().dim());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (!all[i].allFinite())
+      throw InputError("points: point " + std::to_string(i) + " is not finite; expected finite coordinates");
+  PointDistanceRequest request;
+  request.tolerance = size(tolerance, "tolerance");
+  request.relative_tolerance = size(relative_tolerance, "relative_tolerance");
+  PointDistances found;
+  found.all.resize(all.size());
+  // Batches, because Ctrl-C is noticed between two of them.
+  constexpr std::size_t kBatch = 256;
+  run_batch(
+      (all.size() + kBatch - 1) / kBatch, threads_of(count(threads, "threads")),
+      [&](std::size_t i, unsigned) {
+        const auto batch = std::span(all).subspan(i * kBatch, std::min(kBatch, all.size() - i * kBatch));
+        const std::vector<PointDistance> of_batch = point_distances(given.rep(), placed, batch, request, 1);
+        std::copy(of_batch.begin(), of_batch.end(),
+                  found.all.begin() + static_cast<std::ptrdiff_t>(i * kBatch));
+      });
+  return py::cast(std::move(found));
+}
+
+/// Returns an array with get(distance) for each point.
+template <class T, class Get>
+py::array_t<T> each_of(const PointDistances& d, Get&& get) {
+  py::array_t<T> out(static_cast<py::ssize_t>(d.all.size()));
+  std::transform(d.all.begin(), d.all.end(), out.mutable_data(), get);
+  return out;
+}
+
+void bind_point_distances(py::module_& m) {
+  py::class_<PointDistances> c(m, "PointDistances",
+                               "Signed distances of n points to a body, as proven intervals. Made by "
+                               "signed_distance().");
+  c.def("__len__", [](const PointDistances& d) { return d.all.size(); });
+  c.def_property_readonly(
+      "lower",
+      [](const PointDistances& d) {
+        return each_of<double>(d, [](const PointDistance& p) { return p.signed_lower(); });
+      },
+      "(n,) float64: lower ends of the signed distances; negative inside.");
+  c.def_property_readonly(
+      "upper",
+      [](const PointDistances& d) {
+        return each_of<double>(d, [](const PointDistance& p) { return p.signed_upper(); });
+      },
+      "(n,) float64: upper ends.");
+  c.def_property_readonly(
+      "side",
+      [](const PointDistances& d) {
+        return each_of<std::int8_t>(d, [](const PointDistance& p) -> std::int8_t {
+          if (!p.side) return 2;
+          return p.side == Where::inside ? -1 : p.side == Where::outside ? 1 : 0;
+        });
+      },
+      "(n,) int8: -1 inside, 0 on the surface, 1 outside; 2 unknown, because the body is not closed.");
+  c.def_property_readonly(
+      "points",
+      [](const PointDistances& d) {
+        std::vector<Eigen::Vector3d> closest;
+        for (const PointDistance& p : d.all) closest.push_back(p.closest.point);
+        return array_of(closest);
+      },
+      "(n, 3) float64: the closest points of the surface, world frame.");
+  c.def_property_readonly(
+      "faces",
+      [](const PointDistances& d) {
+        return each_of<std::uint32_t>(d, [](const PointDistance& p) { return p.closest.face.value(); });
+      },
+      "(n,) uint32: the faces of these points; 4294967295 for a body without faces.");
+  c.def("__repr__", [](const PointDistances& d) {
+    return "<lrbscope.PointDistances of " + std::to_string(d.all.size()) + " points>";
+  });
+}
+
+}  // namespace
+
+void bind_signed_distance(py::module_& m) {
+  bind_point_distances(m);
+  const py::none no;
+  m.def("signed_distance", &signed_distance, py::arg("body"), py::arg("points"), py::arg("pose") = no,
+        py::kw_only(), py::arg("tolerance") = no, py::arg("relative_tolerance") = no, py::arg("threads") = no,
+        R"(signed_distance(body, points, pose=None, *, tolerance=0, relative_tolerance=0, threads=0)
+
+Finds the signed distance of points to the surface of a body, as proven intervals, negative inside.
+
+points: (n, 3) float, world frame; (n, 2) for a body in 2D. pose: (4, 4), of the body; None: the identity.
+tolerance (the world's unit), relative_tolerance: maximum width of the intervals. 0, 0: about 1e-12 of the
+body's size. A point is inside if a ray from it crosses the surface an odd number of times; a body that is not
+closed has no inside.
+
+Returns PointDistances.
+
+>>> d = signed_distance(cube, [[0.5, 0.5, 0.75], [2, 0.5, 0.5]])
+>>> d.side.tolist(), d.upper.round(9).tolist()
+([-1, 1], [-0.25, 1.0]))");
 }
 
 namespace {

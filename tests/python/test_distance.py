@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import lrbscope
-from lrbscope import Body, InputError, distance
+from lrbscope import Body, InputError, distance, signed_distance
 from shapes import cube_arrays, placed, random_poses, shifted
 
 
@@ -66,3 +66,32 @@ def test_faces_and_counters(ball):
         assert d.faces[side] == d.triangles[side] < ball.real_face_count
     assert d.counters["box_tests"] > 0
     assert lrbscope.Distance.__module__ == "lrbscope"
+
+
+def test_signed_distances_of_points(cube, ball, rng):
+    d = signed_distance(cube, [[0.5, 0.5, 0.75], [2, 0.5, 0.5], [1, 0.5, 0.25]])
+    assert len(d) == 3 and d.side.tolist() == [-1, 1, 0]
+    assert np.allclose(d.lower, [-0.25, 1, 0]) and np.all(d.lower <= d.upper)
+    assert d.points.shape == (3, 3) and d.points[1].tolist() == [1, 0.5, 0.5]
+    assert d.lower[2] == d.upper[2] == 0
+    points = rng.uniform(-2, 2, (2000, 3))
+    found = signed_distance(ball, points, threads=2)
+    alone = signed_distance(ball, points, threads=1)
+    assert np.array_equal(found.lower, alone.lower) and np.array_equal(found.faces, alone.faces)
+    gap = np.linalg.norm(found.points - points, axis=1)
+    assert np.allclose(gap, np.abs(found.upper)) and {-1, 1} == set(found.side)
+    moved = signed_distance(ball, points + [3, 0, 0], shifted(3, 0, 0))
+    assert np.allclose(moved.upper, found.upper)
+
+
+def test_signed_distances_without_a_sign_and_bad_points(cube):
+    vertices, faces = cube_arrays()
+    sheet = Body(vertices, faces[2:])
+    d = signed_distance(sheet, [[0.5, 0.5, 0.75]])
+    assert d.side.tolist() == [2] and d.lower[0] > 0
+    for points, text in (([[0, 0]], "3 coordinates"), ([[0, 0, np.nan]], "point 0"), ([0, 0, 0], "shape")):
+        with pytest.raises(InputError, match=text):
+            signed_distance(cube, points)
+    with pytest.raises(InputError, match="tolerance"):
+        signed_distance(cube, [[0, 0, 0]], tolerance=-1)
+    assert len(signed_distance(cube, [])) == 0

@@ -1,0 +1,213 @@
+// The pairs of triangles within a distance, against all pairs measured one after the other, in rationals
+// where doubles are close to the limit.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "bench/quantities/rational_oracles.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/closed_body.hpp"
+#include "tests/support/simplex_distance.hpp"
+#include <lrbscope/distance.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/near_pairs.hpp>
+
+using namespace lrb;
+using Eigen::Vector3d;
+using shapes::RandomEngine;
+
+namespace {
+
+using test::closed;
+
+struct PairsSeen {
+  int queries = 0, pairs = 0, meet = 0, close_calls = 0;
+};
+
+exact::Meet meet_of(const test::Points& s, const test::Points& t) {
+  const double *x[3], *y[3];
+  for (std::size_t k = 0; k < s.size(); ++k) x[k] = s[k].data(), y[k] = t[k].data();
+  return s.size() == 3 ? exact::meet_triangles(x, y) : exact::meet_segments(x, y);
+}
+
+oracle::Corners exact_corners(const test::Points& points) {
+  oracle::Corners out;
+  for (const Vector3d& x : points) out.push_back({x.x(), x.y(), x.z()});
+  return out;
+}
+
+/// Checks the answer for each pair of two bodies.
+void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, double within,
+           PairsSeen& seen) {
+  CAPTURE(within);
+  NearPairsRequest request;
+  request.within = within;
+  const NearPairsResult result = near_pairs(a, pose_a, b, pose_b, request);
+  REQUIRE(result.found == result.pairs.size());
+  std::vector<test::Points> of_a, of_b;
+  Eigen::AlignedBox3d box;
+  for (SimplexId s = 0; s < a.real_simplex_count(); ++s) of_a.push_back(test::simplex_points(a, pose_a, s));
+  for (SimplexId s = 0; s < b.real_simplex_count(); ++s) of_b.push_back(test::simplex_points(b, pose_b, s));
+  for (const auto* all : {&of_a, &of_b})
+    for (const test::Points& s : *all)
+      for (const Vector3d& x : s) box.extend(x);
+  const double rough = 1e-6 * box.diagonal().norm();
+  std::size_t next = 0;
+  for (SimplexId s = 0; s < a.real_simplex_count(); ++s)
+    for (SimplexId t = 0; t < b.real_simplex_count(); ++t) {
+      const exact::Meet meet = meet_of(of_a[s], of_b[t]);
+      const double apart = meet != exact::Meet::disjoint ? 0 : test::simplex_distance(of_a[s], of_b[t]);
+      bool is_near = apart <= within;
+      if (meet == exact::Meet::disjoint && std::abs(apart - within) <= rough) {
+        is_near =
+            oracle::distance_sq(exact_corners(of_a[s]), exact_corners(of_b[t])) <= oracle::square(within);
+        ++seen.close_calls;
+      }
+      const bool is_listed =
+          next < result.pairs.size() && result.pairs[next].a == s && result.pairs[next].b == t;
+      CAPTURE(s);
+      CAPTURE(t);
+      CAPTURE(apart);
+      REQUIRE(is_listed == is_near);
+      if (!is_listed) continue;
+      const NearPair& pair = result.pairs[next++];
+      REQUIRE(pair.meet == meet);
+      REQUIRE((pair.upper == 0) == (meet != exact::Meet::disjoint));
+      REQUIRE(pair.upper <= within);
+      REQUIRE(pair.lower <= apart + rough);
+      REQUIRE(pair.upper >= apart - rough);
+      REQUIRE(pair.upper - pair.lower <= 1e-12 * (box.diagonal().norm() + box.min().norm()));
+      REQUIRE(std::abs((pair.point[0] - pair.point[1]).norm() - pair.upper) <= rough);
+      REQUIRE(test::simplex_distance({pair.point[0]}, of_a[s]) <= rough);
+      REQUIRE(test::simplex_distance({pair.point[1]}, of_b[t]) <= rough);
+      ++seen.pairs;
+      seen.meet += meet != exact::Meet::disjoint;
+    }
+  REQUIRE(next == result.pairs.size());
+  ++seen.queries;
+}
+
+}  // namespace
+
+TEST_CASE("near pairs are those that brute force finds, for all kinds of bodies, poses and distances") {
+  RandomEngine random(1);
+  const LrbRep solids[] = {
+      closed(shapes::quad_box()), closed(shapes::icosphere(1)), closed(shapes::torus(8, 6)),
+      LrbRep::without_regions(shapes::open_cylinder(8), false, false),
+      LrbRep::without_regions(
+          shapes::several({shapes::quad_box(), shapes::translated(shapes::quad_box(), {0.5, 0.25, 0.125})}),
+          true, true)};
+  PairsSeen seen;
+  for (const LrbRep& a : solids)
+    for (const LrbRep& b : solids)
+      for (int round = 0; round < 6; ++round) {
+        CAPTURE(round);
+        const Pose pose_a{shapes::random_rotation(random), 3 * shapes::random_direction(random)};
+        Pose pose_b{shapes::random_rotation(random),
+                    pose_a.t + shapes::uniform(random, 0, 3) * shapes::random_direction(random)};
+        if (round == 4) pose_b.r *= 0.5;  // not a rotation
+        if (round == 5) pose_b.r.col(1) += 0.75 * pose_b.r.col(0);
+        const double distances[] = {0, 0.01, 0.1, shapes::uniform(random), 0.5, 4};
+        check(a, pose_a, b, pose_b, distances[round], seen);
+      }
+  CHECK(seen.queries == 150);
+  CHECK(seen.pairs > 20'000);
+  CHECK(seen.meet > 500);
+}
+
+TEST_CASE("near pairs are exact for flush bodies and at the distance itself") {
+  const LrbRep box = closed(shapes::quad_box()), cut = closed(shapes::box());
+  PairsSeen seen;
+  for (const LrbRep* b : {&box, &cut})
+    for (const double gap : {0.0, 0.25, 0.1}) {
+      const Pose pose = Pose::translation({1 + gap, 0.5, 0});
+      // The gap itself, and the doubles beside it, as B's faces are placed.
+      const double at = pose.t.x() - 1;
+      for (const double within : {at, std::nextafter(at, 0), std::nextafter(at, 2)})
+        if (within >= 0) check(box, {}, *b, pose, within, seen);
+      check(box, Pose::translation({1e9, 0, 0}), *b, Pose::translation({1e9 + 1 + gap, 0.5, 0}), gap, seen);
+    }
+  check(box, {}, box, {}, 0, seen);  // identical
+  check(box, {}, box, {}, 2, seen);  // all pairs
+  CHECK(seen.close_calls > 100);
+}
+
+TEST_CASE("near pairs of bodies in the plane, of needles, and of degenerate faces") {
+  RandomEngine random(2);
+  PairsSeen seen;
+  const LrbRep flat[] = {closed(shapes::gear(6)), closed(shapes::star(5)), closed(shapes::ring_2d(8))};
+  for (const LrbRep& a : flat)
+    for (const LrbRep& b : flat)
+      for (const double within : {0.0, 0.05, 0.5})
+        check(a, {}, b,
+              Pose::rotation({0, 0, 1}, shapes::uniform(random, 0, 6),
+                             {shapes::uniform(random, 0, 3), shapes::uniform(random, 0, 1), 0}),
+              within, seen);
+  Mesh needles;  // long and thin, and without area
+  for (int i = 0; i < 12; ++i) {
+    const Vector3d p = shapes::random_direction(random), d = shapes::random_direction(random);
+    const auto first = static_cast<std::uint32_t>(needles.vertices.size());
+    needles.vertices.push_back(p);
+    needles.vertices.push_back(p + d);
+    needles.vertices.push_back(i % 3 == 0   ? p
+                               : i % 3 == 1 ? Vector3d(p + d)
+                                            : Vector3d(p + 1e-6 * d.cross(p)));
+    needles.add_face(std::array{VertexId(first), VertexId(first + 1), VertexId(first + 2)});
+  }
+  const LrbRep loose = LrbRep::without_regions(needles, false, false);
+  for (const double within : {0.0, 1e-12, 0.1, 0.5})
+    for (int i = 0; i < 3; ++i)
+      check(loose, {}, loose, Pose{shapes::random_rotation(random), 0.1 * shapes::random_direction(random)},
+            within, seen);
+  CHECK(seen.pairs > 300);
+}
+
+TEST_CASE("near pairs do not depend on threads; the nearest ones come first") {
+  const LrbRep ball = closed(shapes::bumpy_sphere(4, 1));
+  const Pose pose = Pose::translation({2.05, 0.1, 0.2});
+  NearPairsRequest request;
+  request.within = 0.3;
+  const NearPairsResult one = near_pairs(ball, {}, ball, pose, request, 1);
+  const NearPairsResult many = near_pairs(ball, {}, ball, pose, request, 3);
+  REQUIRE(one.pairs.size() > 1000);
+  REQUIRE(one.pairs.size() == many.pairs.size());
+  for (std::size_t i = 0; i < one.pairs.size(); ++i) {
+    CHECK(one.pairs[i].a == many.pairs[i].a);
+    CHECK(one.pairs[i].b == many.pairs[i].b);
+    CHECK(one.pairs[i].lower == many.pairs[i].lower);
+    CHECK(one.pairs[i].upper == many.pairs[i].upper);
+  }
+  CHECK(one.counters == many.counters);
+  std::vector<double> lower;
+  for (const NearPair& pair : one.pairs) lower.push_back(pair.lower);
+  std::sort(lower.begin(), lower.end());
+  request.nearest = 10;
+  const NearPairsResult few = near_pairs(ball, {}, ball, pose, request);
+  REQUIRE(few.pairs.size() == 10);
+  CHECK(few.found == one.found);
+  for (std::size_t i = 0; i < 10; ++i) CHECK(few.pairs[i].lower == lower[i]);
+  const DistanceResult least = distance(ball, {}, ball, pose);
+  CHECK(few.pairs[0].lower <= least.upper);
+  CHECK(few.pairs[0].upper >= least.lower);
+}
+
+TEST_CASE("near pairs: limits and bad requests are rejected in one line") {
+  const LrbRep box = closed(shapes::quad_box());
+  NearPairsRequest request;
+  for (const double within : {-1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    request.within = within;
+    CHECK_THROWS_AS(near_pairs(box, {}, box, {}, request), InputError);
+  }
+  request.within = 10;
+  request.max_pairs = 143;
+  CHECK_THROWS_WITH_AS(near_pairs(box, {}, box, {}, request), doctest::Contains("more than 143 pairs"),
+                       InputError);
+  request.max_pairs = 144;
+  CHECK(near_pairs(box, {}, box, {}, request).pairs.size() == 144);
+  CHECK_THROWS_AS(near_pairs(box, {}, closed(shapes::star(5)), {}, request), InputError);
+  CHECK(near_pairs(box, {}, LrbRep::without_regions(Mesh{}, false, false), {}, request).pairs.empty());
+  request.within = 1e300;  // beyond the range of the traversal's floats
+  CHECK(near_pairs(box, {}, box, {}, request).pairs.size() == 144);
+}
