@@ -1,24 +1,21 @@
 /// The pairs within a distance; near_pairs.hpp lists the steps.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <string>
 #include <tuple>
 
 #include "engine/collide/candidate_cache.hpp"
-#include "engine/collide/query_context.hpp"
 #include "engine/collide/tree_query.hpp"
 #include "engine/core/tolerances.hpp"
+#include "engine/distance/near_pairs_context.hpp"
 #include "engine/distance/pair_bounds.hpp"
 #include "engine/exact/pair_distance.hpp"
 #include "engine/tree/kernel_setup.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/near_pairs.hpp>
-#include <lrbscope/parallel.hpp>
 
 namespace lrb {
 namespace {
@@ -26,8 +23,9 @@ namespace {
 /// Maximum deviation of poses from rotations for which the trees of the bodies are traversed. The margin
 /// below grows with it.
 constexpr double kMaxDefect = 0x1p-6;
-/// Number of candidates that are found before they are measured, and that one thread measures at a time.
-constexpr std::size_t kCandidatesAtOnce = 1U << 16, kCandidatesOfChunk = 512;
+/// Capacity of the kernel's buffer, number of candidates that are found before they are measured, which
+/// bounds the memory, and number that one thread measures at a time.
+constexpr std::size_t kBuffered = 4096, kCandidatesAtOnce = 1U << 22, kCandidatesOfChunk = 512;
 
 /// Returns the body with its world coordinates as the coordinates of its vertices.
 LrbRep in_world(const LrbRep& rep, const Pose& pose) {
@@ -41,62 +39,60 @@ LrbRep in_world(const LrbRep& rep, const Pose& pose) {
 /// Measures pairs; one for each thread.
 class PairMeter {
  public:
-  PairMeter(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, double within)
-      : dim_(a.dim()), within_(within) {
-    world_[0].begin(a, pose_a);
-    world_[1].begin(b, pose_b);
-  }
+  PairMeter(WorldVertices& a, WorldVertices& b, double within)
+      : dim_(a.rep().dim()), within_(within), world_{&a, &b} {}
 
-  /// Returns the pair, or nullopt if its distance exceeds `within`.
-  std::optional<NearPair> measure(SimplexPair pair) {
+  /// Writes the pair to `out`. Returns false if its distance exceeds `within`.
+  bool measure(SimplexPair pair, NearPair& out) {
     const double *of_a[3], *of_b[3];
-    world_[0].corners(pair.a, of_a);
-    world_[1].corners(pair.b, of_b);
+    world_[0]->corners(pair.a, of_a);
+    world_[1]->corners(pair.b, of_b);
     // Neighbouring candidates often have the same separating slab.
-    if (distance_along(direction_, within_, of_a, of_b, dim_) > within_) return std::nullopt;
+    if (distance_along(direction_, within_, of_a, of_b, dim_) > within_) return false;
     const PairBounds bounds = bound_distance(of_a, of_b, dim_);
     const bool is_measured = std::isfinite(bounds.upper) && bounds.lower > 0;
     if (is_measured && bounds.lower > within_) {
       direction_ = bounds.direction;
-      return std::nullopt;
+      return false;
     }
-    NearPair out{pair.a,       pair.b,       exact::Meet::disjoint,
-                 bounds.lower, bounds.upper, {bounds.point[0], bounds.point[1]}};
-    if (is_measured && bounds.upper <= within_) return out;
-    ++pairs_exact_;
-    if (!is_measured) {
-      // Doubles do not exclude contact.
-      out.meet = dim_ == 3 ? exact::meet_triangles(of_a, of_b) : exact::meet_segments(of_a, of_b);
-      if (out.meet != exact::Meet::disjoint) return met(out, of_a, of_b);
-    }
-    if (exact::compare_distance(of_a, of_b, dim_, within_) > 0) return std::nullopt;
-    if (is_measured) {
-      out.upper = within_;
-    } else {
-      const exact::PairDistance exact = exact::distance_of_simplices(of_a, of_b, dim_);
-      out.lower = exact.lower;
-      out.upper = exact.upper;
-      out.point[0] = exact.point[0];
-      out.point[1] = exact.point[1];
-    }
-    return out;
+    out = {pair.a,       pair.b,       exact::Meet::disjoint,
+           bounds.lower, bounds.upper, {bounds.point[0], bounds.point[1]}};
+    return (is_measured && bounds.upper <= within_) || decide(of_a, of_b, is_measured, out);
   }
 
   std::uint64_t pairs_exact() const { return pairs_exact_; }
 
  private:
-  /// Completes a pair that intersects: both closest points are a corner of the intersection.
-  NearPair met(NearPair& out, const double* const* of_a, const double* const* of_b) const {
-    const exact::PairContact contact =
-        dim_ == 3 ? exact::contact_of_triangles(of_a, of_b) : exact::contact_of_segments(of_a, of_b);
-    out.lower = out.upper = 0;
-    out.point[0] = out.point[1] = contact.corners[0].x;
-    return out;
+  /// Decides a pair in integers, and completes it. is_measured: the bounds exclude contact.
+  bool decide(const double* const* of_a, const double* const* of_b, bool is_measured, NearPair& out) {
+    ++pairs_exact_;
+    if (!is_measured) {
+      out.meet = dim_ == 3 ? exact::meet_triangles(of_a, of_b) : exact::meet_segments(of_a, of_b);
+      if (out.meet != exact::Meet::disjoint) {
+        // Both closest points are a corner of the intersection.
+        const exact::PairContact contact =
+            dim_ == 3 ? exact::contact_of_triangles(of_a, of_b) : exact::contact_of_segments(of_a, of_b);
+        out.lower = out.upper = 0;
+        out.point[0] = out.point[1] = contact.corners[0].x;
+        return true;
+      }
+    }
+    if (exact::compare_distance(of_a, of_b, dim_, within_) > 0) return false;
+    if (is_measured) {
+      out.upper = within_;
+      return true;
+    }
+    const exact::PairDistance exact = exact::distance_of_simplices(of_a, of_b, dim_);
+    out.lower = exact.lower;
+    out.upper = std::min(exact.upper, within_);
+    out.point[0] = exact.point[0];
+    out.point[1] = exact.point[1];
+    return true;
   }
 
   int dim_;
   double within_;
-  WorldVertices world_[2];
+  WorldVertices* world_[2];
   Eigen::Vector3d direction_{0, 0, 0};  ///< normal of a slab that was wide enough
   std::uint64_t pairs_exact_ = 0;
 };
@@ -110,25 +106,47 @@ bool is_nearer(const NearPair& x, const NearPair& y) {
 class NearPairsSearch {
  public:
   NearPairsSearch(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                  const NearPairsRequest& request, unsigned threads)
-      : a_(a), b_(b), pose_a_(pose_a), pose_b_(pose_b), request_(request), workers_(threads) {
-    meters_.assign(workers_.count(), PairMeter(a, pose_a, b, pose_b, request.within));
+                  const NearPairsRequest& request, Workers& workers, QueryContext& query,
+                  NearPairsContext& context, NearPairsResult& result)
+      : a_(a),
+        b_(b),
+        pose_a_(pose_a),
+        pose_b_(pose_b),
+        request_(request),
+        workers_(workers),
+        query_(query),
+        context_(context),
+        result_(result) {
+    // Wrappers are not needed: only the poses and the trees of the bodies are set.
+    for (int side = 0; side < 2; ++side) {
+      query.body[side].world.begin(side == 0 ? a : b, side == 0 ? pose_a : pose_b);
+      query.body[side].query_body();
+    }
+    // The calling thread uses the vertices of the query.
+    context.worlds.resize(2 * (workers.count() - 1));
+    for (std::size_t i = 0; i < context.worlds.size(); ++i)
+      context.worlds[i].begin(i % 2 == 0 ? a : b, i % 2 == 0 ? pose_a : pose_b);
+    meters_.emplace_back(query.body[0].world, query.body[1].world, request.within);
+    for (std::size_t i = 0; i < context.worlds.size(); i += 2)
+      meters_.emplace_back(context.worlds[i], context.worlds[i + 1], request.within);
   }
 
-  NearPairsResult run() {
-    context_.body[0].begin(a_, pose_a_, WrapperMode::regularised);
-    context_.body[1].begin(b_, pose_b_, WrapperMode::regularised);
-    TreeKernel k = start_rigid_kernel(context_, pose_a_, pose_b_, kCandidatesAtOnce);
+  void run() {
+    context_.candidates.clear();
+    TreeKernel k = start_rigid_kernel(query_, pose_a_, pose_b_, kBuffered);
     aim(k);
     // An infinite margin would cull nothing, and a NaN would be ignored.
     k.margin < std::numeric_limits<float>::infinity() ? traverse(k) : take_all();
+    measure();
     for (const PairMeter& meter : meters_) result_.counters.pairs_exact += meter.pairs_exact();
     const auto by_ids = [](const NearPair& x, const NearPair& y) {
       return x.a != y.a ? x.a < y.a : x.b < y.b;
     };
-    request_.nearest > 0 ? std::sort_heap(result_.pairs.begin(), result_.pairs.end(), is_nearer)
-                         : std::sort(result_.pairs.begin(), result_.pairs.end(), by_ids);
-    return std::move(result_);
+    std::vector<NearPair>& pairs = result_.pairs;
+    if (request_.nearest > 0)
+      std::sort_heap(pairs.begin(), pairs.end(), is_nearer);
+    else if (!std::is_sorted(pairs.begin(), pairs.end(), by_ids))
+      std::sort(pairs.begin(), pairs.end(), by_ids);
   }
 
  private:
@@ -147,40 +165,54 @@ class NearPairsSearch {
   }
 
   void traverse(TreeKernel& k) {
-    std::vector<SimplexPair> found;
     while (!is_done(k)) {
       k.out_size = 0;
       run_tree_kernel(k);
-      found.clear();
-      for (std::uint32_t i = 0; i < k.out_size; ++i) found.push_back({k.out[i].a, k.out[i].b});
-      measure(found);
+      for (std::uint32_t i = 0; i < k.out_size; ++i) take({k.out[i].a, k.out[i].b});
     }
     result_.counters.node_pairs = k.node_pairs;
     result_.counters.box_tests = k.box_tests;
   }
 
   void take_all() {
-    std::vector<SimplexPair> found;
-    for (SimplexId s = 0; s < a_.real_simplex_count(); ++s) {
-      found.clear();
-      for (SimplexId t = 0; t < b_.real_simplex_count(); ++t) found.push_back({s, t});
-      measure(found);
-    }
+    for (SimplexId s = 0; s < a_.real_simplex_count(); ++s)
+      for (SimplexId t = 0; t < b_.real_simplex_count(); ++t) take({s, t});
   }
 
-  /// Measures candidates on all threads and adds those that are near, in their order.
-  void measure(const std::vector<SimplexPair>& candidates) {
+  void take(SimplexPair candidate) {
+    context_.candidates.push_back(candidate);
+    if (context_.candidates.size() == kCandidatesAtOnce) measure();
+  }
+
+  /// Measures the candidates in ascending order, on all threads, and adds those that are near.
+  void measure() {
+    std::vector<SimplexPair>& candidates = context_.candidates;
     result_.counters.candidates += candidates.size();
+    context_.order.sort(candidates);
+    if (workers_.count() == 1) {
+      NearPair pair;
+      for (const SimplexPair& candidate : candidates)
+        if (meters_[0].measure(candidate, pair)) add(pair);
+    } else {
+      measure_in_chunks();
+    }
+    candidates.clear();
+  }
+
+  void measure_in_chunks() {
+    const std::vector<SimplexPair>& candidates = context_.candidates;
     const std::size_t chunks = (candidates.size() + kCandidatesOfChunk - 1) / kCandidatesOfChunk;
-    if (near_.size() < chunks) near_.resize(chunks);
+    std::vector<std::vector<NearPair>>& near = context_.near;
+    if (near.size() < chunks) near.resize(chunks);
     workers_.for_each(chunks, [&](std::size_t i, unsigned worker) {
-      near_[i].clear();
+      near[i].clear();
+      NearPair pair;
       const std::size_t end = std::min(candidates.size(), (i + 1) * kCandidatesOfChunk);
       for (std::size_t c = i * kCandidatesOfChunk; c < end; ++c)
-        if (const auto pair = meters_[worker].measure(candidates[c])) near_[i].push_back(*pair);
+        if (meters_[worker].measure(candidates[c], pair)) near[i].push_back(pair);
     });
     for (std::size_t i = 0; i < chunks; ++i)
-      for (const NearPair& pair : near_[i]) add(pair);
+      for (const NearPair& pair : near[i]) add(pair);
   }
 
   void add(const NearPair& pair) {
@@ -206,13 +238,13 @@ class NearPairsSearch {
   }
 
   const LrbRep &a_, &b_;
-  const Pose pose_a_, pose_b_;
+  const Pose &pose_a_, &pose_b_;
   const NearPairsRequest& request_;
-  Workers workers_;
-  std::vector<PairMeter> meters_;            ///< (threads)
-  std::vector<std::vector<NearPair>> near_;  ///< (chunks)
-  QueryContext context_;
-  NearPairsResult result_;
+  Workers& workers_;
+  QueryContext& query_;
+  NearPairsContext& context_;
+  NearPairsResult& result_;
+  std::vector<PairMeter> meters_;  ///< (threads)
 };
 
 }  // namespace
@@ -223,16 +255,34 @@ void check_request(const NearPairsRequest& request) {
                      std::to_string(request.within));
 }
 
-NearPairsResult near_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                           const NearPairsRequest& request, unsigned threads) {
+void near_pairs_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                     const NearPairsRequest& request, Workers& workers, QueryContext& query,
+                     NearPairsContext& context, NearPairsResult& result) {
   check_query(a, pose_a, b, pose_b);
   check_request(request);
-  if (a.tree().empty() || b.tree().empty()) return {};
+  result.pairs.clear();
+  result.found = 0;
+  result.counters = {};
+  if (a.tree().empty() || b.tree().empty()) return;
+  if (rotation_defect(pose_a.r) <= kMaxDefect &&
+      rotation_defect(pose_a.r.transpose() * pose_b.r) <= kMaxDefect) {
+    NearPairsSearch(a, pose_a, b, pose_b, request, workers, query, context, result).run();
+    return;
+  }
   // Scaled or sheared bodies: the kernel has no margin for their poses.
-  if (!(rotation_defect(pose_a.r) <= kMaxDefect &&
-        rotation_defect(pose_a.r.transpose() * pose_b.r) <= kMaxDefect))
-    return NearPairsSearch(in_world(a, pose_a), Pose{}, in_world(b, pose_b), Pose{}, request, threads).run();
-  return NearPairsSearch(a, pose_a, b, pose_b, request, threads).run();
+  const LrbRep world_a = in_world(a, pose_a), world_b = in_world(b, pose_b);
+  const Pose identity;
+  NearPairsSearch(world_a, identity, world_b, identity, request, workers, query, context, result).run();
+}
+
+NearPairsResult near_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                           const NearPairsRequest& request, unsigned threads) {
+  Workers workers(threads);
+  QueryContext query;
+  NearPairsContext context;
+  NearPairsResult result;
+  near_pairs_into(a, pose_a, b, pose_b, request, workers, query, context, result);
+  return result;
 }
 
 }  // namespace lrb

@@ -5,6 +5,7 @@
 #include "engine/clash/clash_parts.hpp"
 #include "engine/collide/collide_into.hpp"
 #include "engine/collide/contact_regions.hpp"
+#include "engine/distance/near_pairs_context.hpp"
 #include "engine/motion/contact_search.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/parallel.hpp>
@@ -14,11 +15,14 @@ namespace lrb {
 
 struct Workspace::Memory {
   FirstContactContext context;
+  NearPairsContext near;
+  Workers alone;  ///< the calling thread
   // The last answers.
   CollideResult collision;
   DistanceResult distance;
   ClashResult clash;
   FirstContactResult contact;
+  NearPairsResult pairs;
 
   // One context serves all queries: each query initialises what it reads, so that only memory is reused.
   DistanceContext& of_distance() { return context.distance; }
@@ -61,6 +65,17 @@ Expected<DistanceResult&> distance(const LrbRep& a, const Pose& pose_a, const Lr
   Workspace::Memory& memory = workspace.memory();
   memory.distance = distance(a, pose_a, b, pose_b, request, memory.of_distance(), nullptr, probe);
   return memory.distance;
+} catch (const InputError& e) {
+  return Error{e.what()};
+}
+
+Expected<NearPairsResult&> near_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                                      const Pose& pose_b, const NearPairsRequest& request,
+                                      Workspace& workspace) try {
+  Workspace::Memory& memory = workspace.memory();
+  near_pairs_into(a, pose_a, b, pose_b, request, memory.alone, memory.of_collision(), memory.near,
+                  memory.pairs);
+  return memory.pairs;
 } catch (const InputError& e) {
   return Error{e.what()};
 }

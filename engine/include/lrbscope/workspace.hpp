@@ -13,6 +13,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/first_contact.hpp>
 #include <lrbscope/motion.hpp>
+#include <lrbscope/near_pairs.hpp>
 #include <lrbscope/observe.hpp>
 #include <lrbscope/pose.hpp>
 
@@ -75,7 +76,7 @@ DistanceAnswers distance(std::span<const PosedPair> pairs, const DistanceRequest
                          unsigned threads = 0);
 
 /// Memory that queries reuse, and the last answer of each kind of query. Use one per thread. It serves all
-/// four kinds of queries for any bodies, 3D and 2D, and is fastest if successive queries are about the same
+/// kinds of queries for any bodies, 3D and 2D, and is fastest if successive queries are about the same
 /// two bodies. A moved-from workspace may only be assigned to or destroyed.
 class Workspace {
  public:
@@ -91,7 +92,7 @@ class Workspace {
   std::unique_ptr<Memory> memory_;
 };
 
-// The four queries with a workspace. Each returns the same answer, to the last bit, as the function of the
+// The queries with a workspace. Each returns the same answer, to the last bit, as the function of the
 // same name and arguments without a workspace. Poses and motions map body to world coordinates. Lengths in
 // requests and answers are in world units unless the request states otherwise.
 //
@@ -125,6 +126,12 @@ Expected<CollideResult&> describe_contact(const LrbRep& a, const Pose& pose_a, c
 Expected<DistanceResult&> distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                                    const DistanceRequest& request, Workspace& workspace,
                                    BoundsProbe* probe = nullptr);
+
+/// See near_pairs() in <lrbscope/near_pairs.hpp>, on one thread. Also returns an error for a negative or
+/// non-finite distance and for more pairs than NearPairsRequest::max_pairs.
+Expected<NearPairsResult&> near_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                                      const Pose& pose_b, const NearPairsRequest& request,
+                                      Workspace& workspace);
 
 /// See clash() in <lrbscope/clash.hpp>. Also returns an error for 2D bodies, a negative or non-finite
 /// clearance, and a direction of length zero.
