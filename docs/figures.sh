@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # docs/figures.sh [LRBSCOPE]: makes the pictures of bodies in README and docs: figure2.png, collision.png, crowd.png,
-# figure.png, distance.png, first_contact.png and clash.png. (chart.png and xray.png are measurements: docs/measurements.md, docs/profiling.md.)
+# figure.png, distance.png, near.png, first_contact.png and clash.png. (chart.png and xray.png are measurements: docs/measurements.md, docs/profiling.md.)
 set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 program=${1:-$docs/../build/release/bin/lrbscope}
@@ -11,11 +11,12 @@ run figure figure2 --width 160mm --title --no-legend --font-size 10 --line-width
 run run collision --size 1000x562 -o "$work/collision"
 run crowd -o "$work/crowd"
 run figure figure2_mesh --width 85mm --dpi 300 -o "$work/figure.png"
-answer() { # NAME COMMAND POSES-OPTION NUMBERS SIZE: a picture of one answer, for the bodies of `collision`
+answer() { # NAME COMMAND POSES-OPTION NUMBERS SIZE OPTION...: a picture of one answer, for the bodies of `collision`
   echo "$4" >"$work/poses.txt"
-  run "$2" "$work/collision/a.lrb" "$work/collision/b.lrb" "$3" "$work/poses.txt" --draw "$docs/$1.png" --size "$5"
+  run "$2" "$work/collision/a.lrb" "$work/collision/b.lrb" "$3" "$work/poses.txt" --draw "$docs/$1.png" --size "$5" "${@:6}"
 }
 answer distance distance --poses "0.8 0 0.6 3.1  0 1 0 0.9  -0.6 0 0.8 0.5" 640x400
+answer near near --poses "0.8 0 0.6 2.2  0 1 0 0.6  -0.6 0 0.8 0.25" 640x400 --within 0.25
 answer clash clash --poses "0.8 0 0.6 1.5  0 1 0 0.2  -0.6 0 0.8 0.3" 760x475
 answer first_contact sweep --motions "1 0 0 7  0 1 0 0.6  0 0 1 0.5   0 0 1 -3  0 1 0 -0.3  -1 0 0 0.1" 760x475
 frames=("$work"/collision/frames/*.png)

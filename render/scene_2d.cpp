@@ -99,7 +99,7 @@ class Scene2dBuilder {
     for (FaceId f = 0; f < rep_.real_face_count(); ++f)
       if (c_.in_contact(f)) real.push_back(f);
     add_lines(real, style_.contact, 3.5F, 0);
-    if (!real.empty()) c_.add_key(Mark::line, style_.contact, "intersecting real faces");
+    if (!real.empty()) c_.add_key(Mark::line, style_.contact, c_.body.contact_name);
     if (c_.body.wrapper == nullptr) return;
     const std::vector<FaceId> pseudo = c_.pseudo_in_contact();
     add_lines(pseudo, style_.contact, 3.5F, 7);

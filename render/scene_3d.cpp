@@ -139,7 +139,7 @@ class Scene3dBuilder {
       any_in_contact |= c_.in_contact(f);
       add_face(f, t);
     }
-    if (any_in_contact) c_.add_key(Mark::solid, style_.contact, "intersecting real faces");
+    if (any_in_contact) c_.add_key(Mark::solid, style_.contact, c_.body.contact_name);
     if (c_.options.colour_by == ColourBy::value) {
       c_.add_key(Mark::solid, style_.pale(c_.colour(), palette::kNoValuePale),
                  c_.name() + (c_.value_low > 0 ? ", faces with fewer " : ", faces without ") +

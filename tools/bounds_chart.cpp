@@ -54,11 +54,15 @@ render::Look look_of(const DrawOptions& options) {
   return look;
 }
 
-void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture, bool with_history) {
+void add_picture_options(CLI::App& app, DrawOptions& options, const std::string& picture) {
   app.add_option("--draw", options.picture, picture + "; for several poses, one numbered file each")
       ->type_name("PNG");
   app.add_option("--size", options.look.size, "Picture size, in pixels [1200x750]")->type_name("WxH");
   add_up_option(app, options.look.camera.up);
+}
+
+void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture, bool with_history) {
+  add_picture_options(app, options, picture);
   app.add_option("--chart", options.chart,
                  "Chart the convergence of the bounds over the work done, as .svg, .png or .pdf (needs "
                  "gnuplot)")

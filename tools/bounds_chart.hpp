@@ -30,8 +30,9 @@ struct DrawOptions {
 };
 /// Returns the style of the pictures. Throws InputError for an unsupported size.
 render::Look look_of(const DrawOptions& options);
-/// Adds --draw, --size, --up, --chart and, if `with_history`, --convergence. `picture`: content of the
-/// picture that --draw writes.
+/// Adds --draw, --size and --up. `picture`: content of the picture that --draw writes.
+void add_picture_options(CLI::App& app, DrawOptions& options, const std::string& picture);
+/// Adds these, --chart and, if `with_history`, --convergence.
 void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture,
                       bool with_history = true);
 

@@ -237,6 +237,25 @@ class Clash:
     @property
     def volume(self) -> tuple[float, float] | None: ...
 
+class NearPairs:
+    @property
+    def found(self) -> int: ...
+    @property
+    def triangles(self) -> _Ids: ...
+    @property
+    def faces(self) -> _Ids: ...
+    @property
+    def meet(self) -> npt.NDArray[np.uint8]: ...
+    @property
+    def lower(self) -> _Floats: ...
+    @property
+    def upper(self) -> _Floats: ...
+    @property
+    def points(self) -> _Floats: ...
+    @property
+    def counters(self) -> dict[str, int]: ...
+    def __len__(self) -> int: ...
+
 class PointDistances:
     @property
     def lower(self) -> _Floats: ...
@@ -596,6 +615,17 @@ def distance(
     relation: bool | None = None,
     threads: int | None = None,
 ) -> Any: ...
+def near_pairs(
+    a: Body,
+    b: Body,
+    pose_b: npt.ArrayLike | None = None,
+    pose_a: npt.ArrayLike | None = None,
+    *,
+    within: float,
+    nearest: int | None = None,
+    max_pairs: int | None = None,
+    threads: int | None = None,
+) -> NearPairs: ...
 def signed_distance(
     body: Body,
     points: npt.ArrayLike,

@@ -16,6 +16,7 @@ void bind_coherent(py::module_& m);
 void bind_collide(py::module_& m);
 void bind_distance(py::module_& m);
 void bind_signed_distance(py::module_& m);
+void bind_near_pairs(py::module_& m);
 void bind_explain(py::module_& m);
 void bind_first_contact(py::module_& m);
 void bind_recorded(py::module_& m);

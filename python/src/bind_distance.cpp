@@ -2,6 +2,7 @@
 #include "python/src/bind.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/first_contact.hpp>
+#include <lrbscope/near_pairs.hpp>
 #include <lrbscope/point_distance.hpp>
 #include <lrbscope/workspace.hpp>
 
@@ -299,6 +300,141 @@ Returns a Distance, or for (k, 4, 4) a Distances.
 >>> d = distance(cube, cube, shifted(3, 0, 0))
 >>> d.lower <= 2 <= d.upper, d.points[:, 0].tolist()
 (True, [1.0, 3.0]))");
+}
+
+namespace {
+
+struct NearPairs {
+  NearPairsResult result;
+  std::vector<std::array<FaceId, 2>> faces;
+};
+
+py::object near_pairs(py::handle a, py::handle b, py::handle pose_b, py::handle pose_a, py::handle within,
+                      py::handle nearest, py::handle max_pairs, py::handle threads) {
+  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
+  const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
+  if (within.is_none()) throw InputError("within: expected a finite number of at least 0, got None");
+  NearPairsRequest request;
+  request.within = size(within, "within");
+  request.nearest = count(nearest, "nearest");
+  request.max_pairs = count(max_pairs, "max_pairs");
+  const unsigned n = threads_of(count(threads, "threads"));
+  NearPairs found;
+  {
+    const py::gil_scoped_release unlocked;
+    found.result = lrb::near_pairs(body_a.rep(), at_a, body_b.rep(), at_b, request, n);
+  }
+  for (const NearPair& pair : found.result.pairs)
+    found.faces.push_back({body_a.rep().face_of_simplex(pair.a), body_b.rep().face_of_simplex(pair.b)});
+  return py::cast(std::move(found));
+}
+
+/// Returns an array (n, width) with get(pair, j) for each pair and column j; of shape (n,) if width is 1.
+template <class T, class Get>
+py::array_t<T> columns_of(std::size_t n, py::ssize_t width, Get&& get) {
+  const auto rows = static_cast<py::ssize_t>(n);
+  py::array_t<T> out = width == 1 ? py::array_t<T>(rows) : py::array_t<T>({rows, width});
+  T* to = out.mutable_data();
+  for (std::size_t i = 0; i < n; ++i)
+    for (py::ssize_t j = 0; j < width; ++j) *to++ = get(i, j);
+  return out;
+}
+
+void bind_near_pairs_result(py::module_& m) {
+  py::class_<NearPairs> c(m, "NearPairs",
+                          "Pairs of triangles (2D: segments) within a distance: arrays with a row for each "
+                          "pair. Made by near_pairs().");
+  c.def("__len__", [](const NearPairs& p) { return p.result.pairs.size(); });
+  c.def_property_readonly(
+      "found", [](const NearPairs& p) { return p.result.found; },
+      "int: number of all pairs within the distance; more than len() if `nearest` was given.");
+  c.def_property_readonly(
+      "triangles",
+      [](const NearPairs& p) {
+        return columns_of<std::uint32_t>(p.result.pairs.size(), 2, [&](std::size_t i, py::ssize_t j) {
+          const NearPair& pair = p.result.pairs[i];
+          return (j == 0 ? pair.a : pair.b).value();
+        });
+      },
+      "(n, 2) uint32: a triangle of A and one of B.");
+  c.def_property_readonly(
+      "faces",
+      [](const NearPairs& p) {
+        return columns_of<std::uint32_t>(p.faces.size(), 2, [&](std::size_t i, py::ssize_t j) {
+          return p.faces[i][static_cast<std::size_t>(j)].value();
+        });
+      },
+      "(n, 2) uint32: the faces of these triangles.");
+  c.def_property_readonly(
+      "meet",
+      [](const NearPairs& p) {
+        return columns_of<std::uint8_t>(p.result.pairs.size(), 1, [&](std::size_t i, py::ssize_t) {
+          return static_cast<std::uint8_t>(p.result.pairs[i].meet);
+        });
+      },
+      "(n,) uint8: 0 disjoint, 1 touch, 2 cross.");
+  c.def_property_readonly(
+      "lower",
+      [](const NearPairs& p) {
+        return columns_of<double>(p.result.pairs.size(), 1,
+                                  [&](std::size_t i, py::ssize_t) { return p.result.pairs[i].lower; });
+      },
+      "(n,) float64: lower ends of the distances; 0 for pairs that intersect.");
+  c.def_property_readonly(
+      "upper",
+      [](const NearPairs& p) {
+        return columns_of<double>(p.result.pairs.size(), 1,
+                                  [&](std::size_t i, py::ssize_t) { return p.result.pairs[i].upper; });
+      },
+      "(n,) float64: upper ends.");
+  c.def_property_readonly(
+      "points",
+      [](const NearPairs& p) {
+        const auto rows = static_cast<py::ssize_t>(p.result.pairs.size());
+        return columns_of<double>(
+                   p.result.pairs.size(), 6,
+                   [&](std::size_t i, py::ssize_t j) { return p.result.pairs[i].point[j / 3][j % 3]; })
+            .reshape({rows, py::ssize_t{2}, py::ssize_t{3}});
+      },
+      "(n, 2, 3) float64: the closest points of A and of B, world frame; equal if the pair intersects.");
+  c.def_property_readonly(
+      "counters",
+      [](const NearPairs& p) {
+        const NearPairsCounters& n = p.result.counters;
+        py::dict d;
+        d["node_pairs"] = n.node_pairs;
+        d["box_tests"] = n.box_tests;
+        d["candidates"] = n.candidates;
+        d["pairs_exact"] = n.pairs_exact;
+        return d;
+      },
+      "dict: the work, in numbers of operations.");
+  c.def("__repr__", [](const NearPairs& p) {
+    return "<lrbscope.NearPairs of " + std::to_string(p.result.pairs.size()) + " pairs>";
+  });
+}
+
+}  // namespace
+
+void bind_near_pairs(py::module_& m) {
+  bind_near_pairs_result(m);
+  const py::none no;
+  m.def("near_pairs", &near_pairs, py::arg("a"), py::arg("b"), py::arg("pose_b") = no, py::arg("pose_a") = no,
+        py::kw_only(), py::arg("within"), py::arg("nearest") = no, py::arg("max_pairs") = no,
+        py::arg("threads") = no,
+        R"(near_pairs(a, b, pose_b=None, pose_a=None, *, within, nearest=0, max_pairs=0, threads=0)
+
+Finds all pairs of triangles (2D: segments) whose distance is at most `within`, exactly.
+
+pose_b, pose_a: (4, 4). None: the identity. within: the world's unit; 0: the pairs that intersect.
+nearest: return only this many pairs, in ascending order of the lower ends of their distances; 0: all, in
+ascending order of their triangles. max_pairs: a query that finds more is an InputError; 0: 33554432.
+
+Returns NearPairs.
+
+>>> pairs = near_pairs(cube, cube, shifted(3, 0, 0), within=2)
+>>> len(pairs), pairs.upper.max(), pairs.points[0, :, 0].tolist()
+(62, 2.0, [1.0, 3.0]))");
 }
 
 namespace {

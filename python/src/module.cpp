@@ -63,6 +63,7 @@ PYBIND11_MODULE(_core, m) {
   bind_answers(m);
   bind_collide(m);
   bind_distance(m);
+  bind_near_pairs(m);
   bind_signed_distance(m);
   bind_first_contact(m);
   bind_clash(m);

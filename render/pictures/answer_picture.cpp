@@ -46,7 +46,8 @@ std::string digits(double value) {
 /// The picture of an answer: the whole and, if its subject is small, a close-up to the right.
 struct AnswerPicture {
   AnswerPicture(const PosedBodies& posed, std::span<const ContactRegion> contacts = {})
-      : bodies(posed), scene(scene_of(posed, contacts)) {
+      : AnswerPicture(posed, scene_of(posed, contacts)) {}
+  AnswerPicture(const PosedBodies& posed, Scene drawn) : bodies(posed), scene(std::move(drawn)) {
     overlay.title = posed.title();
     add_points(posed.a, posed.pose_a);
     add_points(posed.b, posed.pose_b);
@@ -157,6 +158,51 @@ Image picture_of(const DistanceResult& result, const PosedBodies& bodies, const 
     p.overlay.event = "undecided";
   }
   p.add_interval("distance", result.lower, result.upper);
+  return p.draw(look);
+}
+
+Image picture_of(const NearPairsResult& result, double within, const PosedBodies& bodies, const Look& look) {
+  constexpr std::size_t kMaxSegments = 1000;
+  std::vector<std::uint8_t> near[2] = {std::vector<std::uint8_t>(bodies.a.real_face_count()),
+                                       std::vector<std::uint8_t>(bodies.b.real_face_count())};
+  for (const NearPair& pair : result.pairs) {
+    near[0][bodies.a.face_of_simplex(pair.a)] = 1;
+    near[1][bodies.b.face_of_simplex(pair.b)] = 1;
+  }
+  std::vector<SceneBody> marked = bodies.in_scene();
+  for (std::size_t side = 0; side < 2; ++side) {
+    marked[side].in_contact = near[side];
+    marked[side].contact_name = "faces at most " + short_number(within) + " apart";
+  }
+  SceneOptions options;
+  options.contact_rims = true;
+  AnswerPicture p(bodies, build_scene(marked, {}, options));
+
+  std::vector<NearPair> drawn(std::min(kMaxSegments, result.pairs.size()));
+  std::partial_sort_copy(result.pairs.begin(), result.pairs.end(), drawn.begin(), drawn.end(),
+                         [](const NearPair& x, const NearPair& y) { return x.lower < y.lower; });
+  for (const NearPair& pair : drawn) {
+    DrawLine segment;
+    segment.points = {pair.point[0], pair.point[1]};
+    segment.colour = kGapColour;
+    segment.width = 0.8F;
+    segment.layer = Layer::on_top;
+    if (pair.upper > 0)
+      p.scene.list.lines.push_back(segment);
+    else
+      add_mark(p.scene.list, pair.point[0], palette::kContact, 2);
+    p.detail.insert(p.detail.end(), {pair.point[0], pair.point[1]});
+    p.across += pair.point[1] - pair.point[0];
+  }
+  if (!drawn.empty() && drawn.back().upper > 0)
+    p.scene.key.push_back(
+        {Mark::line, kGapColour,
+         drawn.size() < result.pairs.size() ? "closest points of the nearest pairs" : "closest points"});
+  p.overlay.event_colour = palette::kContact;
+  p.overlay.event = group_digits(result.found) + (result.found == 1 ? " pair" : " pairs") +
+                    " of triangles at most " + short_number(within) + " apart";
+  if (drawn.size() < result.found)
+    p.overlay.counters.push_back({"segments of the nearest", group_digits(drawn.size())});
   return p.draw(look);
 }
 

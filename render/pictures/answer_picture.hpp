@@ -1,5 +1,6 @@
 #pragma once
-/// Pictures of answers: distance, first contact, clash, intersecting faces, separating plane, separation.
+/// Pictures of answers: distance, near pairs, first contact, clash, intersecting faces, separating plane,
+/// separation.
 
 #include "render/pictures/panel.hpp"
 #include <lrbscope/clash.hpp>
@@ -7,6 +8,7 @@
 #include <lrbscope/distance.hpp>
 #include <lrbscope/explain.hpp>
 #include <lrbscope/first_contact.hpp>
+#include <lrbscope/near_pairs.hpp>
 
 namespace lrb::run {
 
@@ -15,6 +17,11 @@ namespace lrb::run {
 /// Draws both bodies with the segment between their closest points and its length, and a close-up of the
 /// segment if it is short.
 render::Image picture_of(const DistanceResult& result, const PosedBodies& bodies, const render::Look& look);
+
+/// Draws both bodies with the faces of the pairs in the colour of contacts and segments between closest
+/// points, at most those of the 1000 nearest pairs. `within`: the distance that was requested.
+render::Image picture_of(const NearPairsResult& result, double within, const PosedBodies& bodies,
+                         const render::Look& look);
 
 /// Draws both bodies at their first contact, B at earlier times as ghosts, and the path of B's centre.
 /// Without a contact it draws the entire motion.

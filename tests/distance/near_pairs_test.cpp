@@ -13,6 +13,7 @@
 #include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/near_pairs.hpp>
+#include <lrbscope/workspace.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;
@@ -191,6 +192,71 @@ TEST_CASE("near pairs do not depend on threads; the nearest ones come first") {
   const DistanceResult least = distance(ball, {}, ball, pose);
   CHECK(few.pairs[0].lower <= least.upper);
   CHECK(few.pairs[0].upper >= least.lower);
+}
+
+TEST_CASE("near pairs with a workspace are those without, also after errors") {
+  RandomEngine random(3);
+  const LrbRep ball = closed(shapes::icosphere(2)), box = closed(shapes::quad_box()),
+               star = closed(shapes::star(5));
+  Workspace workspace;
+  for (int i = 0; i < 30; ++i) {
+    const LrbRep& a = i % 3 == 0 ? ball : box;
+    NearPairsRequest request;
+    request.within = shapes::uniform(random);
+    request.nearest = i % 4 == 0 ? 5 : 0;
+    const Pose pose{shapes::random_rotation(random), 2 * shapes::random_direction(random)};
+    const NearPairsResult expected = near_pairs(a, {}, ball, pose, request);
+    const NearPairsResult& found = near_pairs(a, {}, ball, pose, request, workspace).value();
+    REQUIRE(found.pairs.size() == expected.pairs.size());
+    for (std::size_t k = 0; k < found.pairs.size(); ++k) {
+      REQUIRE(found.pairs[k].a == expected.pairs[k].a);
+      REQUIRE(found.pairs[k].b == expected.pairs[k].b);
+      REQUIRE(found.pairs[k].upper == expected.pairs[k].upper);
+    }
+    CHECK(found.counters == expected.counters);
+    request.within = -1;
+    CHECK(!near_pairs(a, {}, ball, pose, request, workspace));
+    CHECK(!near_pairs(a, {}, star, pose, {}, workspace));
+  }
+}
+
+namespace {
+
+/// Triangles between points of a grid: many are degenerate, touch, or are equally far from each other.
+LrbRep grid_triangles(RandomEngine& random, int count) {
+  Mesh mesh;
+  const auto coordinate = [&] { return std::floor(shapes::uniform(random, 0, 4)); };
+  for (std::uint32_t i = 0; i < 3 * static_cast<std::uint32_t>(count); ++i)
+    mesh.vertices.push_back({coordinate(), coordinate(), coordinate()});
+  for (std::uint32_t i = 0; i < mesh.vertices.size(); i += 3)
+    mesh.add_face(std::array{VertexId(i), VertexId(i + 1), VertexId(i + 2)});
+  return LrbRep::without_regions(mesh, false, false);
+}
+
+/// Queries of small sets of such triangles, at distances that many pairs have exactly.
+PairsSeen check_grids(int queries) {
+  RandomEngine random(4);
+  PairsSeen seen;
+  for (int i = 0; i < queries; ++i) {
+    const LrbRep a = grid_triangles(random, 3), b = grid_triangles(random, 3);
+    const double squared = std::floor(shapes::uniform(random, 0, 9));
+    check(a, {}, b, Pose::translation({std::floor(shapes::uniform(random, 0, 4)), 0, 0}), std::sqrt(squared),
+          seen);
+  }
+  return seen;
+}
+
+}  // namespace
+
+TEST_CASE("near pairs of triangles on a grid, at distances that they have exactly") {
+  const PairsSeen seen = check_grids(1000);
+  CHECK(seen.close_calls > 100);
+  CHECK(seen.meet > 500);
+}
+
+TEST_CASE("near pairs of 100,000 sets of triangles on a grid" * doctest::test_suite("long")) {
+  const PairsSeen seen = check_grids(100'000);
+  CHECK(seen.close_calls > 10'000);
 }
 
 TEST_CASE("near pairs: limits and bad requests are rejected in one line") {

@@ -129,6 +129,8 @@ def stand_ins(page, run):
         f.writelines(pose(2.2 - 0.15 * i, 0.1 * i) + "\n" for i in range(9))
     with open("motions.txt", "w") as f:
         f.write(pose(4) + " " + pose(0, 0.5) + "\n" + pose(4) + " " + pose(5) + "\n")
+    with open("points.csv", "w") as f:
+        f.writelines("0.1,%r,2\n" % (0.25 * i) for i in range(9))
     run("lrbscope export poses.txt --what poses -o poses.csv")
     if page in ("README.md",):
         run("lrbscope export a.obj -o a.ply")

@@ -62,6 +62,20 @@ def check_distance(line, step, size):
     expect((high == 0) == bool(step["pairs"]), "0 only where they meet")
 
 
+def check_near(line, step):
+    """Pairs at distance 0: those that intersect."""
+    expect(line["found"] == len(step["pairs"]), f"{line['found']} pairs at distance 0, brute force has {len(step['pairs'])}")
+    expect([pair["triangles"] for pair in line["pairs"]] == step["pairs"], "other pairs at distance 0")
+
+
+def check_nearest(line, step, size, within):
+    """The nearest of the pairs within a distance."""
+    found = line["pairs"][:1]
+    if found:
+        check_distance(found[0], step, size)
+    expect(bool(found) or step["distance"] > within * (1 - 1e-7), "no pair, but one is near")
+
+
 OVERLAP = ("protrudes", "pierces", "cuts_through")
 INSIDE = ("a_inside_b", "b_inside_a")
 TOUCH = ("touching_point", "touching_edge", "touching_face", "equal")
@@ -170,6 +184,9 @@ class Matrix:
         self.run(["clash"] + poses + along, each(check_clash, cell), (0,) if cell["dim"] == 3 else (2,))
         self.run(["sweep", a, b, "--motions", f"{name}.motion.txt"], lambda lines: check_sweep(lines[0], cell))
         self.run(["why"] + poses + ["--json"])
+        self.run(["near"] + poses + ["--within", "0"], each(check_near))
+        nearest = ["--within", repr(size), "--nearest", "1"]
+        self.run(["near"] + poses + nearest, each(check_nearest, size, size))
         if not every:
             return
         self.run(query + ["--mode", "first"], each(check_one, True))
@@ -196,6 +213,8 @@ class Matrix:
         self.run(["figure", f"{out}-2", "-o", f"{out}.pdf", "--dpi", "100"], made=f"{out}.pdf")
         self.run(["export", f"{out}-2", "-o", f"{out}.glb"], made=f"{out}.glb")
         self.run(["distance"] + poses + ["--draw", f"{out}-d.png"], made=f"{out}-d-0.png")
+        near = ["near"] + poses + ["--within", repr(cell["size"] / 20)]
+        self.run(near + ["--draw", f"{out}-n.png"], made=f"{out}-n-0.png")
         self.run(["clash"] + poses + ["--draw", f"{out}-c.png"], None, (0,) if in_space else (2,), f"{out}-c-0.png")
         self.run(["sweep", a, b, "--motions", f"{name}.motion.txt", "--draw", f"{out}-s.png"], made=f"{out}-s.png")
         self.run(["why"] + poses + ["--pose", apart, "-o", f"{out}-w.png"], made=f"{out}-w.png")
@@ -272,6 +291,8 @@ def ask_python(matrix, name):
 
     def ask(a, b, cell):
         size, steps = cell["size"], cell["steps"]
+        on = lrbscope.signed_distance(a, a.vertices[np.unique(a.triangles)])
+        expect(not on.lower.any() and not on.upper.any() and not (on.side % 2).any(), "corners off the surface")
         poses = np.array([np.vstack([np.reshape(step["pose"], (3, 4)), [0, 0, 0, 1]]) for step in steps])
         coherent = lrbscope.CoherentQuery(a, b)
         batch = lrbscope.collide(a, b, poses)
@@ -284,6 +305,8 @@ def ask_python(matrix, name):
             check_coarse(words_of(lrbscope.collide(a, b, pose, tolerance=size / 20)), step)
             check_limited(words_of(lrbscope.collide(a, b, pose, max_tests=40)), step)
             check_some(words_of(lrbscope.collide(a, b, pose, recursion="paper")), step)
+            near = lrbscope.near_pairs(a, b, pose, within=0)
+            expect(near.triangles.tolist() == step["pairs"] and near.found == len(near), "other pairs at distance 0")
             d = lrbscope.distance(a, b, pose)
             check_distance({"lower": d.lower, "upper": d.upper}, step, size)
             shared = sum(len(region.pairs) for region in lrbscope.contacts(a, b, pose))

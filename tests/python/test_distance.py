@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import lrbscope
-from lrbscope import Body, InputError, distance, signed_distance
+from lrbscope import Body, InputError, collide, distance, near_pairs, signed_distance
 from shapes import cube_arrays, placed, random_poses, shifted
 
 
@@ -95,3 +95,34 @@ def test_signed_distances_without_a_sign_and_bad_points(cube):
     with pytest.raises(InputError, match="tolerance"):
         signed_distance(cube, [[0, 0, 0]], tolerance=-1)
     assert len(signed_distance(cube, [])) == 0
+
+
+def test_near_pairs(cube, ball):
+    pairs = near_pairs(cube, cube, shifted(3, 0, 0), within=2)
+    assert len(pairs) == pairs.found == 62 and not pairs.meet.any()
+    assert np.allclose(pairs.lower, 2) and (pairs.upper == 2).all()
+    assert pairs.points.shape == (62, 2, 3) and (pairs.points[:, :, 0] == [1, 3]).all()
+    assert pairs.triangles.dtype == np.uint32 and pairs.faces.tolist() == pairs.triangles.tolist()
+    at = shifted(2.05, 0.1, 0.2)
+    alone, all_cores = (near_pairs(ball, ball, at, within=0.3, threads=n) for n in (1, 2))
+    assert len(alone) > 10 and np.array_equal(alone.points, all_cores.points)
+    gap = np.linalg.norm(alone.points[:, 1] - alone.points[:, 0], axis=1)
+    assert np.all(alone.lower <= gap + 1e-12) and np.all(gap <= alone.upper + 1e-12) and np.all(alone.lower <= 0.3)
+    nearest = near_pairs(ball, ball, at, within=0.3, nearest=5)
+    assert len(nearest) == 5 and nearest.found == len(alone) and np.all(np.diff(nearest.lower) >= 0)
+    assert np.array_equal(np.sort(alone.lower)[:5], nearest.lower)
+    assert nearest.upper[0] >= distance(ball, ball, at).lower
+    through = shifted(0.3, 0.1, 0.2)
+    met = near_pairs(ball, ball, through, within=0)
+    assert np.array_equal(met.triangles, collide(ball, ball, through).pairs) and met.meet.all()
+    assert not met.upper.any() and np.array_equal(met.points[:, 0], met.points[:, 1])
+    assert repr(pairs) == "<lrbscope.NearPairs of 62 pairs>" and pairs.counters["candidates"] >= 62
+
+
+def test_near_pairs_reject_bad_requests(cube):
+    for more, text in (({"within": -1}, "within"), ({"within": np.nan}, "within"), ({"within": None}, "within"),
+                       ({"within": 2, "max_pairs": 3}, "max_pairs|--max-pairs")):
+        with pytest.raises(InputError, match=text):
+            near_pairs(cube, cube, shifted(3, 0, 0), **more)
+    with pytest.raises(TypeError):
+        near_pairs(cube, cube)

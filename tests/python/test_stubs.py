@@ -18,6 +18,8 @@ PACKAGE = os.path.dirname(lrbscope.__file__)
 NUMBERS = {
     "np.float64": "f8",
     "np.uint32": "u4",
+    "np.int8": "i1",
+    "np.uint8": "u1",
     "np.int64": "i8",
     "np.bool_": "b1",
     "np.str_": "U",
@@ -154,6 +156,8 @@ def samples(tmp_path_factory, ball, cube):
         scene.collide(),
         lrbscope.distance(ball, ball, far, within=1.0),
         lrbscope.distance(ball, ball, [near, far]),
+        lrbscope.near_pairs(ball, ball, far, within=1.0),
+        lrbscope.signed_distance(ball, np.eye(3)),
         *clashes,
         lrbscope.first_contact(ball, ball, motion),
         lrbscope.first_contact(ball, ball, np.array([motion])),
