@@ -8,7 +8,7 @@
 #include <glm/common.hpp>
 
 #include "render/depth_order.hpp"
-#include "render/edge_room.hpp"
+#include "render/edge_spacing.hpp"
 #include <lrbscope/render/rasterize.hpp>
 
 namespace lrb::render {
@@ -23,7 +23,7 @@ constexpr double kSnap = 256;
 constexpr double kHaloNudge = 0.25;
 /// Corners farther outside than this many picture sizes are clipped, so that float coordinates stay precise.
 constexpr double kGuard = 8;
-/// Edges fade where faces are too small for them (see edge_room.hpp): they are full if the altitude is at
+/// Edges fade where faces are too small for them (see edge_spacing.hpp): they are full if the altitude is at
 /// least the first number of edge widths, and invisible at the second, ...
 constexpr double kEdgesFull = 9, kEdgesGone = 1.5;
 /// ... where their width is reduced to this share.
@@ -47,7 +47,7 @@ class ScreenMeshBuilder {
   ScreenMeshBuilder(const DrawList& list, const Projection& projection, double scale,
                     const Lighting& lighting, bool even_edges)
       : list_(list), p_(projection), scale_(scale), lighting_(lighting), soft_(lighting) {
-    room_ = even_edges ? even_edge_room(list, projection) : edge_room(list, projection);
+    spacing_ = even_edges ? even_edge_spacing(list, projection) : edge_spacing(list, projection);
     // Softer lighting: part of each directional light moves to the ambient one.
     soft_.ambient = lighting.ambient + kSoften * (1 - lighting.ambient);
     for (double* share : {&soft_.head, &soft_.key, &soft_.fill}) *share *= 1 - kSoften;
@@ -220,8 +220,9 @@ class ScreenMeshBuilder {
     if (t.edges == 0) return lines;
     const EdgeStyle& style = list_.edge_styles[t.edge_style];
     // Fade colour and width where the face is small on the screen.
-    const double room = room_[static_cast<std::size_t>(&t - list_.triangles.data())] / (style.width * scale_);
-    const double fade = fade_between(room, kEdgesGone, kEdgesFull), back = shows_back(t) ? style.back : 1;
+    const double spacing =
+        spacing_[static_cast<std::size_t>(&t - list_.triangles.data())] / (style.width * scale_);
+    const double fade = fade_between(spacing, kEdgesGone, kEdgesFull), back = shows_back(t) ? style.back : 1;
     const double width = style.width * (kMinWidth + (1 - kMinWidth) * fade) * (0.5 + 0.5 * back);
     v.half_width = to_float(0.5 * width * scale_);
     v.edge_colour =
@@ -354,8 +355,8 @@ class ScreenMeshBuilder {
   const Projection& p_;
   double scale_;
   const Lighting& lighting_;
-  Lighting soft_;             ///< of translucent faces: they should tint, not darken
-  std::vector<double> room_;  ///< see edge_room(): by triangle
+  Lighting soft_;                ///< of translucent faces: they should tint, not darken
+  std::vector<double> spacing_;  ///< see edge_spacing(): by triangle
   ScreenMesh mesh_;
   std::vector<FaceVertex> corners_;
 };

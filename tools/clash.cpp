@@ -134,14 +134,14 @@ int run_clash(ClashOptions o, const Globals& globals) {
   std::vector<Row> rows{headings(o)};
   Progress progress("clash", list.poses.size(), globals.quiet);
   for (std::size_t i = 0; i < list.poses.size(); ++i) {
-    const auto ask = [&](ClashProbe* probe) {
+    const auto run_query = [&](ClashProbe* probe) {
       return clash(a.rep, Pose{}, b.rep, list.poses[i], o.request, workspace, probe).value();
     };
     ClashHistory reported;
-    const ClashResult result = ask(o.draw.is_watched() ? &reported : nullptr);
+    const ClashResult result = run_query(o.draw.is_watched() ? &reported : nullptr);
     const bool has_depth = !reported.of_depth.empty();
     const std::vector<Bounds>& history = has_depth ? reported.of_depth : reported.of_distance;
-    const double us = o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0;
+    const double us = o.repeat > 0 ? median_us(o.repeat, [&] { run_query(nullptr); }) : 0;
     if (o.table)
       rows.push_back(row_of(i, result, o));
     else

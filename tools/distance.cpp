@@ -66,13 +66,13 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
   Workspace workspace;
   Progress progress("distance", list.poses.size(), globals.quiet);
   for (std::size_t i = 0; i < list.poses.size(); ++i) {
-    const auto ask = [&](BoundsProbe* probe) {
+    const auto run_query = [&](BoundsProbe* probe) {
       return distance(a.rep, Pose{}, b.rep, list.poses[i], o.request, workspace, probe).value();
     };
     BoundsHistory reported;
-    const DistanceResult result = ask(o.draw.is_watched() ? &reported : nullptr);
+    const DistanceResult result = run_query(o.draw.is_watched() ? &reported : nullptr);
     print(line_of(i, result, reported.history, o,
-                  o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0));
+                  o.repeat > 0 ? median_us(o.repeat, [&] { run_query(nullptr); }) : 0));
     if (!o.draw.picture.empty())
       run::write_picture(run::picture_of(result, {a.rep, Pose{}, b.rep, list.poses[i]}, look),
                          picture_name(o.draw.picture, i, list.poses.size()));

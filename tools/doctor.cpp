@@ -4,9 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/workers/workers.hpp"
 #include "render/gl.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/frames/animation.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/gnuplot.hpp"
 #include "tools/commands.hpp"
@@ -22,7 +24,7 @@ using Level = render::Finding::Level;
 
 /// Runs a check that returns a short result or throws.
 template <class Check>
-render::Finding look(const std::string& what, const Check& check) {
+render::Finding finding_of(const std::string& what, const Check& check) {
   try {
     return {Level::ok, what, check()};
   } catch (const std::exception& e) {
@@ -30,7 +32,7 @@ render::Finding look(const std::string& what, const Check& check) {
   }
 }
 
-std::string draw_something() {
+std::string check_drawing() {
   render::DrawList list;
   render::DrawTriangle triangle;
   triangle.x = {Eigen::Vector3d(-9, -9, 0), Eigen::Vector3d(9, -9, 0), Eigen::Vector3d(0, 9, 0)};
@@ -48,7 +50,7 @@ std::string draw_something() {
   return "a test triangle was drawn correctly";
 }
 
-std::string ask_something() {
+std::string check_query() {
   const bodies::LoadedBody ball = bodies::body_of_mesh(generators::generate("ball", {{"frequency", 3}}));
   const CollideResult apart = collide(ball.rep, Pose{}, ball.rep, Pose::translation({3, 0, 0}));
   const CollideResult meet = collide(ball.rep, Pose{}, ball.rep, Pose::translation({1.5, 0.1, 0.2}));
@@ -59,7 +61,7 @@ std::string ask_something() {
   return "two balls: separate, then crossing in " + std::to_string(meet.pairs.size()) + " pairs";
 }
 
-std::string write_something() {
+std::string check_output() {
   const std::filesystem::path folder = std::filesystem::exists("out") ? "out" : ".";
   const std::string path = (folder / ".doctor").string();
   io::write_text(path, "written by lrbscope doctor\n");
@@ -67,20 +69,52 @@ std::string write_something() {
   return "writable: " + std::filesystem::absolute(folder).lexically_normal().string();
 }
 
+render::Finding optional(const std::string& what, bool is_found, const std::string& use) {
+  return is_found ? render::Finding{Level::ok, what, "found"}
+                  : render::Finding{Level::warning, what, "not found; " + use};
+}
+
+/// Returns a finding for each worker program and each method of other engines.
+std::vector<render::Finding> check_engines() {
+  std::vector<render::Finding> out;
+  const auto add_program = [&](const std::string& name, const std::string& use) {
+    out.push_back(optional(
+        name, !workers::program_beside(name).empty(),
+        "needed by " + use + "; build it: cmake --build --preset release --target lrbscope-workers"));
+  };
+  add_program("lrbscope-methods", "bench, chart, stability, and other engines in tails and worst");
+  add_program("lrbscope-quantities", "chart --quantity and stability --quantity");
+  add_program("lrbscope-xray-fcl", "xray --method fcl");
+  add_program("lrbscope-xray-cgal", "xray --method cgal");
+  add_program("lrbscope-simplify", "the curve of free simplification of levels -o");
+  try {
+    for (const workers::WorkerMethod& m : workers::find_all_methods()) {
+      const bool is_own = m.info.name.starts_with("ours");
+      if (!is_own)
+        out.push_back({m.info.present ? Level::ok : Level::warning, "method " + m.info.name,
+                       m.info.present ? m.info.title : m.info.title + ": " + m.info.remark});
+    }
+  } catch (const EnvironmentError&) {
+    // No worker program: reported above.
+  }
+  return out;
+}
+
 int run_doctor(bool json) {
   std::vector<render::Finding> findings = {{Level::ok, "lrbscope", trace::lrbscope_version()}};
-  findings.push_back(look("query", ask_something));
+  findings.push_back(finding_of("query", check_query));
   for (render::Finding& f : render::check_rendering()) findings.push_back(std::move(f));
-  findings.push_back(look("drawing", draw_something));
-  findings.push_back(look("output", write_something));
-  findings.push_back(look("page", [] {
+  findings.push_back(finding_of("drawing", check_drawing));
+  findings.push_back(finding_of("output", check_output));
+  findings.push_back(finding_of("page", [] {
     return std::to_string(io::embedded_file("chart.min.js").size() / 1000) +
            " kB of charting library compiled in";
   }));
-  findings.push_back(report::has_gnuplot()
-                         ? render::Finding{Level::ok, "gnuplot", "found"}
-                         : render::Finding{Level::warning, "gnuplot",
-                                           "not found, so print charts are disabled; install gnuplot-nox"});
+  findings.push_back(optional("gnuplot", report::has_gnuplot(),
+                              "needed by charts in print (--chart, chart, paper); install gnuplot-nox"));
+  findings.push_back(
+      optional("ffmpeg", run::has_ffmpeg(), "needed by --animate; install ffmpeg or set LRB_FFMPEG"));
+  for (render::Finding& f : check_engines()) findings.push_back(std::move(f));
   bool well = true;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   std::string text;
@@ -99,7 +133,9 @@ int run_doctor(bool json) {
 
 Command add_doctor(CLI::App& root, const Globals&) {
   CLI::App* app = root.add_subcommand(
-      "doctor", "Check this machine for everything lrbscope needs; exit code 3 if something is missing");
+      "doctor",
+      "Check this machine for everything lrbscope needs, and list the optional programs and engines; exit code "
+      "3 if something required is missing");
   const auto json = std::make_shared<bool>(false);
   app->add_flag("--json", *json, "Print one JSON object");
   return {app, [json] { return run_doctor(*json); }};

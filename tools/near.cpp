@@ -57,11 +57,11 @@ int run_near(const NearOptions& o, const Globals& globals) {
   Workspace workspace;
   Progress progress("near", list.poses.size(), globals.quiet);
   for (std::size_t i = 0; i < list.poses.size(); ++i) {
-    const auto ask = [&]() -> NearPairsResult& {
+    const auto run_query = [&]() -> NearPairsResult& {
       return near_pairs(a.rep, Pose{}, b.rep, list.poses[i], o.request, workspace).value();
     };
-    const NearPairsResult result = list.at(i, ask);
-    print(line_of(i, result, a.rep, b.rep, o, o.repeat > 0 ? median_us(o.repeat, ask) : 0));
+    const NearPairsResult result = list.at(i, run_query);
+    print(line_of(i, result, a.rep, b.rep, o, o.repeat > 0 ? median_us(o.repeat, run_query) : 0));
     if (!o.draw.picture.empty())
       run::write_picture(
           run::picture_of(result, o.request.within, {a.rep, Pose{}, b.rep, list.poses[i]}, look),

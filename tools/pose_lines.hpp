@@ -31,13 +31,13 @@ inline void write_feature_of(trace::JsonWriter& w, const Witness& witness) {
   w.end_array();
 }
 
-/// Returns the median time in microseconds of `repeat` calls of ask(); repeat > 0.
-template <class Ask>
-double median_us(std::uint32_t repeat, const Ask& ask) {
+/// Returns the median time in microseconds of `repeat` calls of run_query(); repeat > 0.
+template <class Query>
+double median_us(std::uint32_t repeat, const Query& run_query) {
   std::vector<double> us;
   for (std::uint32_t i = 0; i < repeat; ++i) {
     const auto begin = std::chrono::steady_clock::now();
-    ask();
+    run_query();
     us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
   }
   const std::size_t median = us.size() / 2;
@@ -50,11 +50,11 @@ struct PoseLines {
   explicit PoseLines(const std::string& path) : PoseLines(io::open_poses(path)) {}
   explicit PoseLines(io::PoseList list) : poses(std::move(list.poses)), places(std::move(list.places)) {}
 
-  /// Calls ask(), and prefixes the message of an InputError with the location of the pose.
-  template <class Ask>
-  auto at(std::size_t i, const Ask& ask) const {
+  /// Calls run_query(), and prefixes the message of an InputError with the location of the pose.
+  template <class Query>
+  auto at(std::size_t i, const Query& run_query) const {
     try {
-      return ask();
+      return run_query();
     } catch (const InputError& e) {
       throw InputError(places[i] + ": " + e.what());
     }

@@ -26,8 +26,8 @@ struct QueryOptions {
 };
 
 /// Answers a query with its own memory.
-CollideResult ask(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
-                  Workspace& workspace) {
+CollideResult answer(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
+                     Workspace& workspace) {
   return std::move(collide(a, Pose{}, b, pose, o.request, workspace).value());
 }
 
@@ -35,7 +35,7 @@ CollideResult ask(const LrbRep& a, const LrbRep& b, const Pose& pose, const Quer
 double repeated_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
                    Workspace& workspace) {
   return median_us(o.repeat, [&] {
-    const CollideResult result = ask(a, b, pose, o, workspace);
+    const CollideResult result = answer(a, b, pose, o, workspace);
     if (result.mode != o.request.mode) throw std::logic_error("the query changed its mode");
   });
 }
@@ -149,7 +149,7 @@ int run_query(const QueryOptions& o, const Globals& globals) {
   Workspace workspace;
   Progress progress("query", poses.size(), globals.quiet);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    CollideResult result = list.at(i, [&] { return ask(a.rep, b.rep, poses[i], o, workspace); });
+    CollideResult result = list.at(i, [&] { return answer(a.rep, b.rep, poses[i], o, workspace); });
     if (tells_overlap(o.request)) decide_overlap(a.rep, b.rep, poses[i], o.request, workspace, result);
     const double us = o.repeat > 0 ? repeated_us(a.rep, b.rep, poses[i], o, workspace) : 0;
     print(line_of(i, result, extra_answers(a.rep, b.rep, poses[i], o, workspace), o, us, a.rep, b.rep));

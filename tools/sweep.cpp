@@ -110,13 +110,13 @@ int run_sweep(const SweepOptions& o, const Globals& globals) {
   Workspace workspace;
   Progress progress("sweep", motions.size(), globals.quiet);
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    const auto ask = [&](FirstContactProbe* probe) {
+    const auto run_query = [&](FirstContactProbe* probe) {
       return std::move(first_contact(a.rep, still, b.rep, motions[i], o.request, workspace, probe).value());
     };
     FirstContactHistory reported;
-    const FirstContactResult result = ask(o.draw.is_watched() ? &reported : nullptr);
+    const FirstContactResult result = run_query(o.draw.is_watched() ? &reported : nullptr);
     print(line_of(i, result, reported.history, o,
-                  o.repeat > 0 ? median_us(o.repeat, [&] { ask(nullptr); }) : 0));
+                  o.repeat > 0 ? median_us(o.repeat, [&] { run_query(nullptr); }) : 0));
     if (!o.draw.picture.empty())
       run::write_picture(run::picture_of(result, a.rep, b.rep, motions[i], look),
                          picture_name(o.draw.picture, i, motions.size()));

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t kEvents = 1'000'000;
 
-/// The loop of an engine that does nothing but count; `event` reports a test.
+/// The loop of an engine that only counts its tests; `event` reports a test.
 template <class Event>
 void run(benchmark::State& state, const Event& event) {
   for (auto _ : state) {

@@ -98,8 +98,8 @@ inline Rational square(double x) {
   return r * r;
 }
 
-// The time of first contact of two sets of triangles, one of which translates at constant velocity, in
-// rational arithmetic. Triangles first intersect when a corner enters the plane of the other's face, or two
+// The time of first contact of two sets of triangles in rational arithmetic. One set translates at constant
+// velocity. Triangles first intersect when a corner enters the plane of the other's face, or two
 // edges become coplanar. Each such time is a rational number, and rational distances decide whether the
 // triangles intersect at that time. Triangles must not slide within the plane of a face that they intersect.
 // Shares no code with the engine.

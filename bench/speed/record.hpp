@@ -27,8 +27,8 @@ struct Reply {
   bool contact = false;
   std::uint64_t count = 0;              ///< number of pairs
   std::uint64_t missed = 0, extra = 0;  ///< compared with the exact list
-  double cold_us = 0;                   ///< time of the first query, after caches were swept
-  double hot_us = 0;                    ///< minimum time of some repetitions
+  double cold_us = 0;  ///< time of the first query, after the processor's caches were flushed
+  double hot_us = 0;   ///< minimum time of some repetitions
   std::uint64_t face_tests = 0;
   std::optional<double> error_bound;    ///< as in methods::MethodAnswer; of a number: width of its interval
   std::optional<double> lower, upper;   ///< the number, if that is the quantity; equal: no interval

@@ -1,6 +1,6 @@
 #pragma once
-/// Collision engines behind one interface that asks for all intersecting pairs of two bodies at many poses:
-/// lrbscope itself, methods in worker programs, and programs of others that record captures.
+/// One interface to collision engines, which finds all intersecting pairs of two bodies at many poses:
+/// lrbscope itself, methods in worker programs, and other programs that record captures.
 
 #include <chrono>
 #include <cstdint>
@@ -23,7 +23,7 @@
 
 namespace lrb::tails {
 
-/// Requested results besides time and number of pairs.
+/// Results requested in addition to the time and the number of pairs.
 struct Wanted {
   bool tests = false;
   bool list = false;  ///< the pairs themselves
@@ -104,7 +104,7 @@ EngineAnswer answer_of(const capture::Query& query, const std::vector<std::strin
 
 std::string request_line(const Pose& pose, Wanted wanted);
 std::string reply_line(const EngineAnswer& answer);
-/// Reads a reply. Throws InputError if it is none.
+/// Reads a reply. Throws InputError if the line is not a reply.
 EngineAnswer reply_from(const std::string& line);
 
 /// The worker's side: answers requests, a line each, until there are no more. Throws InputError for a line

@@ -116,7 +116,7 @@ Search search(const SearchOptions& options, const CostsOf& costs, const SearchPr
 
 Search random_search(const SearchOptions& options, const CostsOf& costs, const SearchProgress& progress) {
   Search out;
-  // Other numbers than those of search() with this seed.
+  // search() with this seed uses other random numbers.
   Random random(options.seed ^ 0x72616e646f6d0000);
   ask_at_random(out, options.budget, random, costs, progress);
   return out;

@@ -37,9 +37,9 @@ inline constexpr int kRounds = 3;
 /// measured again.
 inline constexpr double kNoiseFactor = 5;
 
-/// Asks every pose in kRounds separate rounds, so that a slow moment of the machine does not slow all repeats
-/// of a pose. Then asks the poses with an unusual time per test again, in as many rounds: one that takes less
-/// than half as long is marked as noise. Keeps the least time.
+/// Queries every pose in kRounds separate rounds, so that a slow moment of the machine does not affect all
+/// repeats of a pose. Then repeats the poses with an unusual time per test in as many rounds: a pose that now
+/// takes less than half the time is marked as noise. Keeps the least time.
 Tail measure(Engine& engine, std::span<const Pose> poses, const run::ProgressReport& progress);
 
 /// Returns the queries of a capture that ended, with their times as captured. Equal queries (trees and poses)
@@ -55,7 +55,8 @@ struct Percentiles {
 /// Returns the percentiles of each quantity that the engine reported at every answered pose.
 std::vector<Percentiles> percentiles(const Tail& tail);
 
-/// Returns the share that a word denotes: "p99", "max". Throws InputError for other words.
+/// Returns the share of poses below a percentile, given by its name: 0.99 for "p99", 1 for "max". Throws
+/// InputError for other names.
 double percentile_share(const std::string& word);
 /// Returns the index of the pose at a percentile of time, by nearest rank. Throws InputError if no pose was
 /// answered.

@@ -63,8 +63,8 @@ class Maker {
     while (true) {
       Placement at = random_placement(random_);
       const Vector3d direction = at.offset.normalized();
-      // From outside to the centre. The search ends at an interval that has the first contact; halving it
-      // leads to neighbouring doubles, of which the second is in contact.
+      // From outside to the centre. The search ends at an interval that contains the first contact. Halving
+      // it leads to two neighbouring doubles, with contact at the second.
       at.offset = 1.5 * direction;
       const Pose start = space_.pose(at);
       at.offset = Vector3d::Zero();
@@ -304,7 +304,7 @@ std::vector<std::string> write_wrong_page(const WrongSearch& search, const std::
       {"Kinds of poses", kKindColumns, rows_of(search),
        "Error: the gap of triangles that were reported but do not intersect, or the depth of those that "
        "were missed, over the mean of both bodies' diagonals. An error near the engine's rounding "
-       "(1e-16 of the coordinates in double, 6e-8 in single precision) is none that it could avoid."});
+       "(1e-16 of the coordinates in double, 6e-8 in single precision) is unavoidable."});
   report::Table worst{"The worst poses",
                       {"poses", "ulps", "pairs", "exact pairs", "missed", "false", "error", "recorded by"}};
   const std::vector<Judged> judged = search.worst();

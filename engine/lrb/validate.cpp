@@ -164,8 +164,8 @@ class Validator {
     judge(soup, pairs);
   }
 
-  /// Returns true if the bounds of simplices with a common vertex overlap in so many pairs that the plain
-  /// search takes longer than the search that omits most of these pairs.
+  /// Returns true if many bounds of simplices with a common vertex overlap. The plain search then takes
+  /// longer than the search that omits most of these pairs.
   bool has_hubs() const {
     if (rep_.dim() == 2) return false;
     std::vector<std::uint64_t> degree(rep_.vertices().size(), 0);

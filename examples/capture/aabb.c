@@ -135,7 +135,7 @@ static void load(body* m, const char* path) {
   describe(m, path);
 }
 
-/* Returns the axis on which two boxes are apart: 0-2 of A, 3-5 of B, 6-14 products of edges; or 255. After
+/* Returns an axis that separates two boxes: 0-2 of A, 3-5 of B, 6-14 products of edges; or 255. After
  * Gottschalk, Lin and Manocha 1996, section 5. */
 static uint8_t separating_axis(const node* p, const node* q) {
   float h[3], g[3], d[3]; /* half axes of both, and from the centre of A's box to that of B's */

@@ -87,11 +87,15 @@ std::vector<std::string> animation_command(const std::string& folder, const std:
 
 }  // namespace
 
+bool has_ffmpeg() {
+  return is_installed(program());
+}
+
 void check_animation(const std::string& file) {
   const std::string ending = ending_of(file);
   if (ending != ".mp4" && ending != ".gif" && ending != ".webp")
     throw InputError("--animate: expected a .mp4, .gif or .webp file, found \"" + file + "\"");
-  if (!is_installed(program()))
+  if (!has_ffmpeg())
     throw EnvironmentError("--animate: cannot find the program " + program() +
                            "; install ffmpeg, set LRB_FFMPEG to its path, or leave --animate out");
 }

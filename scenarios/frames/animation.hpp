@@ -6,8 +6,10 @@
 
 namespace lrb::run {
 
-/// Throws InputError unless the name ends in .mp4, .gif or .webp, and EnvironmentError if ffmpeg is missing
-/// ($LRB_FFMPEG names another program).
+/// Returns true if ffmpeg, or the program named by $LRB_FFMPEG, is installed.
+bool has_ffmpeg();
+/// Throws InputError unless the name ends in .mp4, .gif or .webp, and EnvironmentError if ffmpeg is
+/// missing.
 void check_animation(const std::string& file);
 
 /// Makes an animation of the frames in folder/frames, 12 per second. Throws EnvironmentError if ffmpeg fails;

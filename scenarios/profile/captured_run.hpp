@@ -61,7 +61,7 @@ run::Recording captured_run(const capture::Capture& capture, const TreePair& pai
                             std::vector<bodies::LoadedBody> bodies, const CapturedRunSettings& settings,
                             std::vector<CollideResult> exact, const run::ProgressReport& progress);
 
-/// Returns sentences on what the pictures of a pair's run show: volumes drawn as boxes, queries of one body
+/// Returns sentences about the pictures of a pair's run: volumes drawn as boxes, queries of one body
 /// with itself, queries that were not kept or not compared. Empty if there is nothing to say.
 std::string captured_words(const capture::Capture& capture, const TreePair& pair);
 

@@ -17,8 +17,8 @@
 namespace lrb::profile {
 
 /// Captures with at most this many visits are split into volumes and order unless CheckSettings::split
-/// decides otherwise: that takes about 1 to 5 microseconds a visit and the same for each pair that it would
-/// save.
+/// decides otherwise. The split takes about 1 to 5 microseconds for each visit and for each pair that it
+/// would save.
 inline constexpr std::uint64_t kMaxVisitsToSplit = 2'000'000;
 
 struct CheckSettings {

@@ -58,7 +58,7 @@ class Search {
     const std::span<const std::uint32_t> all_b = opens_b ? trees_[1]->children(b) : std::span(only_b);
     std::uint32_t sum = 1;
     for (const std::uint32_t x : all_a) {
-      if (opens_a && walk_.index(0).parent[x] != a) continue;  // another node's child, too
+      if (opens_a && walk_.index(0).parent[x] != a) continue;  // also another node's child
       for (const std::uint32_t y : all_b) {
         if (opens_b && walk_.index(1).parent[y] != b) continue;
         if (walk_.wide() && !is_visited(x, y, recorded)) continue;

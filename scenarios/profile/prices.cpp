@@ -38,7 +38,7 @@ std::vector<TrianglePair> found_early(const QueryWalk& walk, std::span<const Tri
   return found;
 }
 
-/// Returns true if a query descended until nothing was left, and its events tell of all that.
+/// Returns true if a query descended until no pair was left, and its events are complete.
 bool is_exhaustive(const capture::Query& query) {
   return query.complete() && (query.kind == QueryKind::all_pairs ||
                               (query.kind == QueryKind::any && query.verdict == capture::Verdict::separate));

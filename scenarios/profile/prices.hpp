@@ -7,10 +7,9 @@
 /// - proof: the first pair beneath a needed one beneath which nothing intersects. Volumes that fit perfectly
 ///   would end the descent here. Together with the needed visits it is a proof of the answer.
 /// - volumes: visits beneath a pair of proof that no order of descent avoids with these volumes:
-///   least_visits() less the needed visits and those of proof.
-/// - order: the rest of the visits beneath a pair of proof. Another choice of the node to open, or none at
-/// all
-///   if the visit is a repetition, would have saved them. The choice is that of an oracle: this is a bound.
+///   least_visits() minus the needed visits and the visits of proof.
+/// - order: the rest of the visits beneath a pair of proof. Another choice of the node to open would have
+///   saved them; a repeated visit was not necessary at all. An oracle makes this choice, so this is a bound.
 /// - unsplit: volumes and order together, if least_visits() was not requested or has no answer.
 /// - unattributed: the visit does not descend from a start (QueryWalk::is_start()).
 ///   All visits of queries of distance and first contact, whose tests have another meaning, and of queries
@@ -19,8 +18,8 @@
 /// A query of kind any that found an intersection needs the visits above the pairs that it found, and nothing
 /// else: all other visits are of order. An oracle would go straight to a pair.
 ///
-/// Tests of triangles are counted beside the visits: those for nothing are of triangles that do not
-/// intersect.
+/// Tests of triangles are counted separately. A test of triangles that do not intersect is a test for
+/// nothing.
 
 #include <array>
 #include <cstdint>
@@ -41,8 +40,8 @@ struct Prices {
   std::uint64_t needed = 0, proof = 0, volumes = 0, order = 0, unsplit = 0, unattributed = 0;
   std::uint64_t volume_tests = 0;  ///< sum over all visits; exceeds `visits` for wide nodes
   std::uint64_t triangle_tests = 0, triangle_tests_for_nothing = 0;
-  /// Of those for nothing: tests in a pair of leaves with more than one pair of triangles, which smaller
-  /// leaves might save. Not those of triangles whose own volumes were compared, as at leaves of wide nodes.
+  /// Tests for nothing in pairs of leaves with more than one pair of triangles, which smaller leaves might
+  /// save. Excludes triangles whose own volumes were compared, as at leaves of wide nodes.
   std::uint64_t crowded_tests = 0;
   /// An estimate of the visits and tests of triangles that leaves of up to kLargerLeaves triangles would
   /// save: for each first visited pair of nodes of that size whose volumes overlap, the visits and tests

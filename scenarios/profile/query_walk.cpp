@@ -51,7 +51,7 @@ QueryWalk::QueryWalk(CapturedBodies& bodies, const capture::Query& query,
     if (depth_of(i) != kNone) order_.push_back(i);
   }
   visits_roots_ = visit_of(0, 0) != kNone;
-  // Of repeated visits the first one is the parent.
+  // If a pair was visited repeatedly, its first visit is the parent.
   parent_.assign(visits_.size(), kNone);
   for (std::size_t i = 0; i < visits_.size(); ++i)
     if (visits_[i].parent != Visit::kNone) parent_[i] = first_visit(visits_[i].parent);
@@ -61,7 +61,7 @@ QueryWalk::QueryWalk(CapturedBodies& bodies, const capture::Query& query,
                    [&](std::uint32_t x, std::uint32_t y) { return depth_of(x) < depth_of(y); });
 }
 
-/// Links visits whose parents come later in the list of events, as those of another thread may.
+/// Links visits whose parents come later in the list of events, as events of other threads may.
 void QueryWalk::link_strays() {
   for (const std::uint32_t i : order_) {
     if (parent_[i] != kNone || visit_of(0, 0) == i) continue;

@@ -153,8 +153,8 @@ void Finder::find_in_volumes(const NodeMeasures& measures, double tolerance) {
   const double diagonal = diagonal_of(mesh_), most = tolerance * diagonal;
   const Subtrees subtrees(tree_, index_, mesh_.triangles.size());
   const auto& order = index_.from_root;
-  // A volume contains a subtree if it contains volumes that do: then no corner need be looked at. Distances
-  // from convex volumes do not grow outward, so this holds with the tolerance, too. From the leaves upward.
+  // From the leaves upward: a volume contains a subtree if it contains volumes that do, and then no corner is
+  // tested. This also holds with the tolerance, because distances from convex volumes do not grow outward.
   std::vector<char> contains(tree_.size(), 0), children_do(tree_.size(), 1);
   std::vector<FoundFault> outside;
   for (auto i = order.rbegin(); i != order.rend(); ++i) {

@@ -180,7 +180,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
   double largest = 0;
   if (figures.epo)
     for (const double epo : figures.epo->by_node) largest = std::max(largest, epo);
-  // Parents come before children: each node leaves its left end, and that of its next child.
+  // Parents come before children: each node stores its left end and the left end of its next child.
   std::vector<double> left(tree.size(), kMargin);
   const double unit = (kWidth - 2 * kMargin) / std::max(1U, index.triangles_below[0]);
   std::uint32_t depths = 0;

@@ -55,7 +55,7 @@ enum class Culprit : std::uint8_t {
   none,           ///< nothing is missing: the pair was reported wrongly
   triangle_test,  ///< the triangles were tested and called disjoint
   volumes,        ///< the volumes of two nodes above them were called disjoint
-  child_volumes,  ///< the same for a pair of children of two wide nodes
+  child_volumes,  ///< the volumes of two children of wide nodes above them were called disjoint
   traversal,      ///< the volumes of two nodes above them overlap, and the pair beneath was never visited
   not_visited,    ///< no pair of nodes above them was visited
   in_no_leaf,     ///< one of the triangles is in no leaf

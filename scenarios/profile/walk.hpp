@@ -13,8 +13,8 @@
 
 namespace lrb::profile {
 
-/// The parents of a captured tree's nodes and the leaves of its triangles. Valid for broken trees, too: of
-/// several parents or leaves the first one counts, and nodes that the root does not reach have no depth.
+/// The parents of a captured tree's nodes and the leaves of its triangles. Also valid for broken trees:
+/// the first of several parents or leaves counts, and nodes that the root does not reach have no depth.
 struct TreeIndex {
   std::vector<std::uint32_t> parent;           ///< by node; kNull: the root, or no parent
   std::vector<std::uint32_t> depth;            ///< by node; kNull: not below the root

@@ -187,7 +187,7 @@ std::vector<SimplexId> compared_simplices(const RecordedRun& p, Side side) {
 /// Boxes of nodes: all down to some depth, and below it those on the paths to compared faces.
 struct ShownBoxes {
   std::vector<TreeBox> boxes;
-  std::uint32_t whole = 0;              ///< all boxes down to this depth are there
+  std::uint32_t whole = 0;              ///< all boxes down to this depth are included
   std::vector<std::uint32_t> by_depth;  ///< number of nodes at each depth
 };
 

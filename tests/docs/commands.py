@@ -134,6 +134,7 @@ def stand_ins(page, run):
     run("lrbscope export poses.txt --what poses -o poses.csv")
     if page in ("README.md",):
         run("lrbscope export a.obj -o a.ply")
+        run("lrbscope golden approve --goldens goldens my.scenario.json")
     if page == "docs/formats.md":
         run("lrbscope build cow.obj -o cow.lrb")
         run("lrbscope collide cow.obj man.stl --poses poses.csv -o out/cow")

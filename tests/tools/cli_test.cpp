@@ -440,3 +440,21 @@ TEST_CASE("list, help and version go to stdout") {
   CHECK(run(folder, {"query", "--help"}).out.find("--poses") != std::string::npos);
   CHECK(run(folder, {"--version"}).out.rfind("lrbscope ", 0) == 0);
 }
+
+TEST_CASE("doctor: optional programs and engines, with what needs them") {
+  const Folder folder;
+  setenv("LRBSCOPE_METHODS", folder.path.c_str(), 1);  // a folder without programs
+  setenv("LRB_FFMPEG", "/no/such/program", 1);
+  const json found = json::parse(run(folder, {"doctor", "--json"}).out);
+  unsetenv("LRB_FFMPEG");
+  unsetenv("LRBSCOPE_METHODS");
+  std::map<std::string, json> by_name;
+  for (const json& f : found["findings"]) by_name[f["what"]] = f;
+  const std::pair<const char*, const char*> missing[] = {
+      {"ffmpeg", "--animate"}, {"lrbscope-methods", "stability"}, {"lrbscope-xray-fcl", "xray --method fcl"}};
+  for (const auto& [name, use] : missing) {
+    CAPTURE(std::string(name));
+    CHECK(by_name[name]["level"] == "warning");
+    CHECK(by_name[name]["detail"].get<std::string>().find(use) != std::string::npos);
+  }
+}

@@ -714,7 +714,7 @@ void lrbcap_end(uint32_t verdict, uint64_t pairs) {
   p = lrbcap_u64(p, s->seen);
   lrbcap_u64(p, 0);
   lrbcap_write(bytes, sizeof bytes);
-  /* What a crash would lose, and a reader of a FIFO would wait for. */
+  /* Flush from time to time: a crash would lose these bytes, and a reader of a FIFO would wait for them. */
   if (lrbcap_g.file && now - lrbcap_load(&lrbcap_g.flushed) > lrbcap_g.soon && lrbcap_load(&lrbcap_g.on)) {
     lrbcap_sync("SYNC");
     fflush(lrbcap_g.file); /* the next write notices a failure */

@@ -5,7 +5,7 @@
 /// The body consists of the simplices whose corners are the doubles given by Pose::apply(), exactly, as in
 /// collide(). A point is at distance 0 if and only if it is on the surface. The side is decided exactly, by
 /// the parity of the crossings of a ray, as the relation of two bodies is:
-/// - a void of a body is outside, and what lies inside the void is inside again;
+/// - a void of a body is outside; a component inside the void is inside again;
 /// - where a body that crosses itself, or several overlapping components, enclose a point an even number of
 ///   times, the point is outside;
 /// - a body that is not closed has no inside: the side is unknown, and the distance has no sign.

@@ -89,7 +89,7 @@ struct RasterOptions {
   Lighting lighting;
   bool labels = true;       ///< draws the list's labels (needs the font if the list has any)
   double unit = 1;          ///< pixels per unit of the list's widths and radii
-  bool even_edges = false;  ///< edges of faces fade by style, not individually: see even_edge_room()
+  bool even_edges = false;  ///< edges of faces fade by style, not individually: see even_edge_spacing()
 };
 
 /// The id of the visible primitive at each pixel, row by row from the top.

@@ -1,4 +1,4 @@
-#include "render/edge_room.hpp"
+#include "render/edge_spacing.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,7 +27,7 @@ std::optional<OnScreen> on_screen(const DrawTriangle& t, const Projection& proje
   }
   const Eigen::Vector2d u = at[1] - at[0], v = at[2] - at[0];
   const double twice_area = std::abs(u.x() * v.y() - u.y() * v.x());
-  // The smallest altitude is that on the longest edge.
+  // The altitude on the longest edge is the smallest.
   const double longest = std::max({u.norm(), v.norm(), (v - u).norm()});
   return OnScreen{longest > 0 ? twice_area / longest : 0, twice_area / 2};
 }
@@ -48,8 +48,8 @@ bool before(const Corner& a, const Corner& b) {
 
 }  // namespace
 
-std::vector<double> edge_room(const DrawList& list, const Projection& projection) {
-  std::vector<double> own(list.triangles.size(), 0), room(list.triangles.size(), 0);
+std::vector<double> edge_spacing(const DrawList& list, const Projection& projection) {
+  std::vector<double> own(list.triangles.size(), 0), spacing(list.triangles.size(), 0);
   // Step 1: the altitude of each triangle, and its corners with their exact coordinates.
   std::vector<Corner> corners;
   for (std::uint32_t i = 0; i < list.triangles.size(); ++i) {
@@ -71,19 +71,19 @@ std::vector<double> edge_room(const DrawList& list, const Projection& projection
       sum += own[corners[end].triangle];
     }
     const double share = sum / static_cast<double>(end - first) / 3;
-    for (std::size_t i = first; i < end; ++i) room[corners[i].triangle] += share;
+    for (std::size_t i = first; i < end; ++i) spacing[corners[i].triangle] += share;
   }
-  return room;
+  return spacing;
 }
 
-std::vector<double> even_edge_room(const DrawList& list, const Projection& projection) {
+std::vector<double> even_edge_spacing(const DrawList& list, const Projection& projection) {
   // Step 1: the visible triangles of each style.
   std::vector<std::vector<OnScreen>> styles(list.edge_styles.size());
   for (const DrawTriangle& t : list.triangles) {
     if (t.edges == 0) continue;
     if (const std::optional<OnScreen> seen = on_screen(t, projection)) styles[t.edge_style].push_back(*seen);
   }
-  std::vector<double> room;
+  std::vector<double> spacing;
   for (std::vector<OnScreen>& parts : styles) {
     std::sort(parts.begin(), parts.end(),
               [](const OnScreen& x, const OnScreen& y) { return x.altitude > y.altitude; });
@@ -94,11 +94,11 @@ std::vector<double> even_edge_room(const DrawList& list, const Projection& proje
       half = p.altitude;
       if ((sum += p.area) >= 0.5 * all) break;
     }
-    room.push_back(half);
+    spacing.push_back(half);
   }
   std::vector<double> out;
   out.reserve(list.triangles.size());
-  for (const DrawTriangle& t : list.triangles) out.push_back(t.edges == 0 ? 0 : room[t.edge_style]);
+  for (const DrawTriangle& t : list.triangles) out.push_back(t.edges == 0 ? 0 : spacing[t.edge_style]);
   return out;
 }
 

@@ -1,4 +1,4 @@
-#include "render/edge_room.hpp"
+#include "render/edge_spacing.hpp"
 
 #include <algorithm>
 
@@ -22,8 +22,8 @@ double altitude(const render::DrawTriangle& t, const render::Projection& project
 }
 
 /// Every triangle with every other.
-double brute_room(const render::DrawList& list, const render::DrawTriangle& t,
-                  const render::Projection& projection) {
+double brute_spacing(const render::DrawList& list, const render::DrawTriangle& t,
+                     const render::Projection& projection) {
   double sum = 0;
   for (const Vector3d& x : t.x) {
     double here = 0;
@@ -41,7 +41,7 @@ double brute_room(const render::DrawList& list, const render::DrawTriangle& t,
 
 }  // namespace
 
-TEST_CASE("the room of edges is the local mean altitude of triangles of one style") {
+TEST_CASE("the spacing of edges is the local mean altitude of triangles of one style") {
   render::DrawList list;
   render::DrawTriangle t;
   t.edges = 7;
@@ -52,16 +52,16 @@ TEST_CASE("the room of edges is the local mean altitude of triangles of one styl
   test::add(list, test::sphere_triangles(1, 1.5), t);
   const auto points = render::extent_points(list);
   const render::Projection projection(render::fit_camera(points, 640, 480), 640, 480, render::bounds(list));
-  const std::vector<double> room = render::edge_room(list, projection);
-  REQUIRE(room.size() == list.triangles.size());
-  for (std::size_t i = 0; i < room.size(); ++i) {
+  const std::vector<double> spacing = render::edge_spacing(list, projection);
+  REQUIRE(spacing.size() == list.triangles.size());
+  for (std::size_t i = 0; i < spacing.size(); ++i) {
     const render::DrawTriangle& triangle = list.triangles[i];
-    const double expected = triangle.edges == 0 ? 0 : brute_room(list, triangle, projection);
-    CHECK(room[i] == doctest::Approx(expected).epsilon(1e-6));
+    const double expected = triangle.edges == 0 ? 0 : brute_spacing(list, triangle, projection);
+    CHECK(spacing[i] == doctest::Approx(expected).epsilon(1e-6));
   }
 }
 
-TEST_CASE("triangles close to the camera have room") {
+TEST_CASE("triangles close to the camera have full spacing") {
   render::DrawList list;
   render::DrawTriangle t;
   t.edges = 7;
@@ -70,7 +70,7 @@ TEST_CASE("triangles close to the camera have room") {
   render::Camera camera;
   camera.eye = Vector3d::Zero();
   camera.target = {0, 0, -1};
-  CHECK(render::edge_room(list, render::Projection(camera, 300, 200, render::bounds(list)))[0] ==
+  CHECK(render::edge_spacing(list, render::Projection(camera, 300, 200, render::bounds(list)))[0] ==
         doctest::Approx(200));
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("fading is smooth between its ends") {
   CHECK(render::fade_between(2.01, 2, 4) < 0.001);
 }
 
-TEST_CASE("the uniform room of edges is one number per style, weighted by covered area") {
+TEST_CASE("the uniform spacing of edges is one number per style, weighted by covered area") {
   render::DrawList list;
   render::DrawTriangle t;
   t.edges = 7;
@@ -97,10 +97,10 @@ TEST_CASE("the uniform room of edges is one number per style, weighted by covere
   list.triangles.push_back(t);
   const auto points = render::extent_points(list);
   const render::Projection projection(render::fit_top(points, 640, 480), 640, 480, render::bounds(list));
-  const std::vector<double> room = render::even_edge_room(list, projection);
-  REQUIRE(room.size() == list.triangles.size());
+  const std::vector<double> spacing = render::even_edge_spacing(list, projection);
+  REQUIRE(spacing.size() == list.triangles.size());
   for (std::size_t i = 0; i < 10; ++i)
-    CHECK(room[i] == doctest::Approx(altitude(list.triangles[0], projection)));
-  CHECK(room[10] == doctest::Approx(altitude(list.triangles[10], projection)));
-  CHECK(room[11] == 0);
+    CHECK(spacing[i] == doctest::Approx(altitude(list.triangles[0], projection)));
+  CHECK(spacing[10] == doctest::Approx(altitude(list.triangles[10], projection)));
+  CHECK(spacing[11] == 0);
 }

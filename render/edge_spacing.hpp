@@ -13,11 +13,11 @@ namespace lrb::render {
 /// its corners of the mean over the triangles that share the corner and the edge style. (A triangle's
 /// altitude is its smallest.) Altitudes of single triangles vary abruptly, and edges that fade by them look
 /// patchy; these means vary gradually. 0 for triangles without edges.
-std::vector<double> edge_room(const DrawList& list, const Projection& projection);
+std::vector<double> edge_spacing(const DrawList& list, const Projection& projection);
 
-/// Returns, for each triangle with edges, the median of edge_room() over its style, weighted by area on the
-/// screen, so that all edges of a style fade together.
-std::vector<double> even_edge_room(const DrawList& list, const Projection& projection);
+/// Returns, for each triangle with edges, the median of edge_spacing() over its style, weighted by area on
+/// the screen, so that all edges of a style fade together.
+std::vector<double> even_edge_spacing(const DrawList& list, const Projection& projection);
 
 /// Rises smoothly from 0 at `gone` to 1 at `full`.
 double fade_between(double x, double gone, double full);
