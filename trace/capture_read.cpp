@@ -95,11 +95,34 @@ class Reader {
     return std::move(out_);
   }
 
+  // Reads a stream. `base`: the offset of `bytes` in it.
+
+  /// Reads the header, of which all bytes are known.
+  void begin_stream(std::span<const std::byte> bytes) {
+    bytes_ = bytes;
+    streaming_ = out_.cut_off = true;
+    read_header();
+  }
+  /// Reads a chunk, and returns the query that it ends.
+  std::optional<Query> read_part(std::span<const std::byte> chunk, std::uint64_t base) {
+    bytes_ = chunk, base_ = base, at_ = 0;
+    read_chunk();
+    if (ended_ == 0) return std::nullopt;
+    const auto found = queries_.find(std::exchange(ended_, 0));
+    out_.ns_per_tick = ns_per_tick();
+    Query query = completed(found->second);
+    queries_.erase(found);
+    return query;
+  }
+  const Capture& out() const { return out_; }
+  std::size_t unfinished() const { return queries_.size(); }
+
  private:
   /// Throws an InputError: the name, the location and the fault.
   [[noreturn]] void fail(const std::string& what) const {
     std::string where = name_ + ":";
-    if (chunk_ != 0) where += " chunk " + text(chunk_) + " (" + kind_ + " at byte " + text(begin_) + ")";
+    if (chunk_ != 0)
+      where += " chunk " + text(chunk_) + " (" + kind_ + " at byte " + text(base_ + begin_) + ")";
     if (query_ != 0) where += (chunk_ != 0 ? ", query " : " query ") + text(query_);
     if (event_ != 0) where += ", event " + text(event_);
     throw InputError(where + (chunk_ != 0 || query_ != 0 ? ": " : " ") + what);
@@ -363,6 +386,7 @@ class Reader {
     query.thread = thread;
     growing.begin_ticks = ticks_;
     growing.parts.push_back({thread, {}, false});
+    last_begun_ = std::max(last_begun_, query_);
     if (!queries_.try_emplace(query_, std::move(growing)).second)
       fail("begins a second time; the file is damaged, or two programs wrote to it");
   }
@@ -413,6 +437,7 @@ class Reader {
     query.pairs = u64();
     query.events_seen = u64();
     u64();  // reserved
+    ended_ = query_;
     if (is_wanted() && query.events_seen < growing.parts[0].events.size())
       fail("expected at least the " + text(growing.parts[0].events.size()) + " events stored, found " +
            text(query.events_seen) + "; the file is damaged");
@@ -444,6 +469,11 @@ class Reader {
     const std::uint64_t first = u64();
     const std::uint32_t count = u32();
     u32();  // number of this chunk among those of the thread
+    // A stream no longer has its ended queries.
+    if (streaming_ && query_ <= last_begun_ && !queries_.contains(query_)) {
+      at_ = end_;
+      return;
+    }
     Growing& growing = begun();
     if (!is_wanted()) {
       at_ = end_;
@@ -548,25 +578,31 @@ class Reader {
     }
   }
 
-  /// Converts ticks to time, and orders queries and parts.
+  /// Orders queries and their parts, with times.
   void finish() {
-    const double ticks = static_cast<double>(last_ticks_) - static_cast<double>(first_ticks_);
-    const double wall = static_cast<double>(last_wall_) - static_cast<double>(first_wall_);
-    if (ticks > 0 && wall > 0) out_.ns_per_tick = wall / ticks;
+    out_.ns_per_tick = ns_per_tick();
     std::vector<std::uint32_t> order;
     for (const auto& [number, growing] : queries_)
       if (number >= first_ && number <= last_) order.push_back(number);
     std::sort(order.begin(), order.end());
     out_.queries.reserve(order.size());
     for (const std::uint32_t number : order) {
-      Growing& growing = queries_.find(number)->second;
-      Query& query = growing.query;
-      query.begin_ns =
-          (static_cast<double>(growing.begin_ticks) - static_cast<double>(first_ticks_)) * out_.ns_per_tick;
-      query.duration_ns = static_cast<double>(growing.took_ticks) * out_.ns_per_tick;
-      join_parts(growing);
-      out_.queries.push_back(std::move(query));
+      out_.queries.push_back(completed(queries_.find(number)->second));
     }
+  }
+  /// Returns the length of a tick by the clock readings so far; 0 if they do not determine it.
+  double ns_per_tick() const {
+    const double ticks = static_cast<double>(last_ticks_) - static_cast<double>(first_ticks_);
+    const double wall = static_cast<double>(last_wall_) - static_cast<double>(first_wall_);
+    return ticks > 0 && wall > 0 ? wall / ticks : 0;
+  }
+  Query completed(Growing& growing) const {
+    Query& query = growing.query;
+    query.begin_ns =
+        (static_cast<double>(growing.begin_ticks) - static_cast<double>(first_ticks_)) * out_.ns_per_tick;
+    query.duration_ns = static_cast<double>(growing.took_ticks) * out_.ns_per_tick;
+    join_parts(growing);
+    return std::move(query);
   }
   static void join_parts(Growing& growing) {
     std::vector<Growing::Stored>& parts = growing.parts;
@@ -602,6 +638,12 @@ class Reader {
   /// By tree: (id, node), sorted; empty if ids are our numbers.
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> node_of_;
   std::unordered_map<std::uint32_t, Growing> queries_;
+
+  // Of a stream.
+  bool streaming_ = false;
+  std::uint64_t base_ = 0;        ///< offset of bytes_
+  std::uint32_t last_begun_ = 0;  ///< greatest number of a query that began
+  std::uint32_t ended_ = 0;       ///< the query that the current chunk ends; 0: none
 };
 
 }  // namespace
@@ -627,6 +669,67 @@ Capture read_capture(const std::string& path, std::uint32_t first, std::uint32_t
                      "and run with LRBCAP_OUT");
   const std::string bytes = read_file(path);
   return parse_capture(std::as_bytes(std::span(bytes)), path, first, last);
+}
+
+class Stream::Chunks {
+ public:
+  explicit Chunks(const std::string& name) : reader(std::span<const std::byte>(), name, 1, kNull) {}
+
+  Reader reader;
+  std::vector<std::byte> waiting;  ///< bytes that are not a whole chunk yet
+  std::uint64_t offset = 0;        ///< of these
+  bool has_begun = false;
+};
+
+Stream::Stream(const std::string& name) : chunks_(std::make_unique<Chunks>(name)) {}
+Stream::~Stream() = default;
+Stream::Stream(Stream&&) noexcept = default;
+Stream& Stream::operator=(Stream&&) noexcept = default;
+
+void Stream::feed(std::span<const std::byte> bytes, const std::function<void(Query query)>& on_query) {
+  Chunks& c = *chunks_;
+  if (bytes.empty()) return;
+  c.waiting.insert(c.waiting.end(), bytes.begin(), bytes.end());
+  std::size_t at = 0;
+  // Bytes that do not begin as a capture are rejected at once: there may be fewer than a header's.
+  const std::size_t known = std::min(c.waiting.size(), kMagic.size());
+  const bool is_other = std::memcmp(c.waiting.data(), kMagic.data(), known) != 0;
+  if (!c.has_begun && (is_other || c.waiting.size() >= kFileHeader)) {
+    c.reader.begin_stream(c.waiting);
+    c.has_begun = true;
+    at = kFileHeader;
+  }
+  while (c.has_begun && c.waiting.size() - at >= kChunkHeader) {
+    const std::span<const std::byte> rest = std::span(c.waiting).subspan(at);
+    std::uint64_t size = 0;
+    std::memcpy(&size, rest.data() + 8, sizeof size);
+    // A chunk with a damaged name, or another capture, is also rejected at once: it has no size to wait for.
+    const auto is_letter = [](std::byte b) {
+      const char x = static_cast<char>(b);
+      return (x >= 'A' && x <= 'Z') || (x >= '0' && x <= '9');
+    };
+    const bool is_chunk = std::all_of(rest.begin(), rest.begin() + 4, is_letter) &&
+                          std::memcmp(rest.data(), kMagic.data(), 4) != 0;
+    if (is_chunk && size > rest.size() - kChunkHeader) break;
+    const std::size_t used =
+        kChunkHeader + static_cast<std::size_t>(std::min<std::uint64_t>(size, rest.size()));
+    if (std::optional<Query> query =
+            c.reader.read_part(rest.first(std::min(used, rest.size())), c.offset + at))
+      on_query(std::move(*query));
+    at += used;
+  }
+  c.waiting.erase(c.waiting.begin(), c.waiting.begin() + static_cast<std::ptrdiff_t>(at));
+  c.offset += at;
+}
+
+const Capture& Stream::descriptions() const {
+  return chunks_->reader.out();
+}
+bool Stream::has_begun() const {
+  return chunks_->has_begun;
+}
+std::size_t Stream::unfinished() const {
+  return chunks_->reader.unfinished();
 }
 
 }  // namespace lrb::capture

@@ -48,13 +48,35 @@ Capture read(const Bytes& bytes, std::uint32_t first = 1, std::uint32_t last = k
   return parse_capture(bytes, "run.lrbcap", first, last);
 }
 
+/// Reads a capture as a stream, in pieces of the given size. Returns its ended queries.
+std::vector<Query> stream_queries(const Bytes& bytes, std::size_t piece, Stream& stream) {
+  std::vector<Query> out;
+  for (std::size_t at = 0; at < bytes.size(); at += piece)
+    stream.feed(std::span(bytes).subspan(at, std::min(piece, bytes.size() - at)),
+                [&](Query query) { out.push_back(std::move(query)); });
+  return out;
+}
+
+/// Returns the message with which a capture is refused. A stream must refuse it with the same one, except
+/// that it waits for the rest of a header, and no longer has the queries that ended.
 std::string refusal(const Bytes& bytes) {
+  std::string in_stream = "accepted", out = "accepted";
+  try {
+    Stream stream("run.lrbcap");
+    stream_queries(bytes, 7, stream);
+  } catch (const InputError& e) {
+    in_stream = e.what();
+  }
   try {
     read(bytes);
   } catch (const InputError& e) {
-    return e.what();
+    out = e.what();
   }
-  return "accepted";
+  bool excused = bytes.size() < 16;
+  for (const char* of_ended : {"a second time", "after the end of their query"})
+    excused = excused || out.find(of_ended) != std::string::npos;
+  if (!excused) CHECK(in_stream == out);
+  return out;
 }
 
 // A mesh of four triangles and two trees of it: 0 has the children 1 and 2, each with two triangles.
@@ -299,6 +321,40 @@ TEST_CASE("a capture that does not exist is refused with the two ways to record 
       "/nowhere/run.lrbcap: no such file; check the path, and that the engine was compiled with "
       "-DLRBCAP_ENABLE and run with LRBCAP_OUT",
       InputError);
+}
+
+TEST_CASE("a stream has the same queries as the file, whatever its pieces, and needs their ends") {
+  const Bytes bytes = record([] {
+    for (int i = 0; i < 3; ++i) a_query();
+  });
+  const Capture whole = read(bytes);
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{7}, std::size_t{1000}, bytes.size()}) {
+    CAPTURE(piece);
+    Stream stream("pipe");
+    CHECK(!stream.has_begun());
+    const std::vector<Query> found = stream_queries(bytes, piece, stream);
+    CHECK(stream.has_begun());
+    CHECK(!stream.descriptions().cut_off);
+    CHECK(stream.unfinished() == 0);
+    CHECK(stream.descriptions().engine == whole.engine);
+    CHECK(stream.descriptions().trees.size() == whole.trees.size());
+    CHECK(stream.descriptions().names == whole.names);
+    REQUIRE(found.size() == whole.queries.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      CHECK(found[i].number == whole.queries[i].number);
+      CHECK(found[i].trees == whole.queries[i].trees);
+      CHECK(found[i].events == whole.queries[i].events);
+      CHECK(found[i].pairs == whole.queries[i].pairs);
+      CHECK(found[i].complete());
+    }
+  }
+  Stream stream("pipe");
+  CHECK(stream_queries(
+            Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(find_chunk(bytes, "QRYE"))), 100,
+            stream)
+            .empty());
+  CHECK(stream.unfinished() == 1);
+  CHECK(stream.descriptions().cut_off);
 }
 
 TEST_CASE("a capture cut off anywhere is read up to its last whole chunk") {

@@ -12,6 +12,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -142,5 +144,33 @@ Capture parse_capture(std::span<const std::byte> bytes, const std::string& name,
                       std::uint32_t last = kNull);
 /// Returns true if the bytes begin as a capture does.
 bool is_capture(std::span<const std::byte> bytes);
+
+/// Reads a capture while it is written, for example from a pipe.
+///
+///   capture::Stream stream("my_program");
+///   for (std::span<const std::byte> bytes = ...) stream.feed(bytes, [&](capture::Query query) { ... });
+class Stream {
+ public:
+  /// `name` is used in messages.
+  explicit Stream(const std::string& name);
+  ~Stream();
+  Stream(Stream&&) noexcept;
+  Stream& operator=(Stream&&) noexcept;
+
+  /// Reads the next bytes, and calls `on_query` for each query that ends in them. Events that helping threads
+  /// write after the end of their query are left out. Throws InputError as read_capture() does; then the
+  /// stream cannot be continued.
+  void feed(std::span<const std::byte> bytes, const std::function<void(Query query)>& on_query);
+
+  /// The engine, names, meshes and trees read so far; without queries. The reference stays valid, those to
+  /// elements become invalid with the next feed(). `cut_off` is false once the last chunk was read.
+  const Capture& descriptions() const;
+  bool has_begun() const;          ///< the header was read
+  std::size_t unfinished() const;  ///< number of queries that began and did not end
+
+ private:
+  class Chunks;
+  std::unique_ptr<Chunks> chunks_;
+};
 
 }  // namespace lrb::capture
