@@ -103,13 +103,14 @@ std::string json_lines(const profile::Check& c) {
   ordered_json verdicts;
   for (const auto& entry : kEnumNames<profile::Judgement>)
     verdicts[std::string(entry.name)] = sum.outcomes[static_cast<std::size_t>(entry.value)];
-  out += one_line({{"engine", c.engine},
-                   {"queries", sum.queries},
-                   {"precision", name_of(c.precision)},
-                   {"verdicts", std::move(verdicts)},
-                   {"prices", json_of(sum.prices)},
-                   {"advice", profile::advice(sum.prices)}});
-  return out;
+  ordered_json last{{"engine", c.engine},
+                    {"queries", sum.queries},
+                    {"precision", name_of(c.precision)},
+                    {"verdicts", std::move(verdicts)},
+                    {"prices", json_of(sum.prices)},
+                    {"advice", profile::advice(sum.prices)}};
+  if (!c.pose_error.empty()) last["pose_error"] = c.pose_error;
+  return out + one_line(std::move(last));
 }
 
 /// Returns the number of characters of UTF-8 text.
@@ -153,7 +154,10 @@ std::string text_of(const std::vector<profile::Check>& checks) {
       if (!lines->empty())
         out += c.engine + ": " + std::to_string(lines->size()) + " " + head + "\n" + first_lines(*lines);
   out += columns_of(profile::verdict_table(checks)) + "\n" + columns_of(profile::price_table(checks)) + "\n";
-  for (const profile::Check& c : checks) out += c.engine + ": " + profile::advice(c.sum().prices) + "\n";
+  for (const profile::Check& c : checks) {
+    if (!c.pose_error.empty()) out += c.engine + ": " + c.pose_error + "\n";
+    out += c.engine + ": " + profile::advice(c.sum().prices) + "\n";
+  }
   return out;
 }
 

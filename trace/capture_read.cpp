@@ -66,6 +66,8 @@ std::string text(std::uint64_t number) {
   return std::to_string(number);
 }
 
+}  // namespace
+
 /// A query while its events arrive. Chunks of several threads alternate.
 struct Growing {
   struct Stored {
@@ -645,8 +647,6 @@ class Reader {
   std::uint32_t last_begun_ = 0;  ///< greatest number of a query that began
   std::uint32_t ended_ = 0;       ///< the query that the current chunk ends; 0: none
 };
-
-}  // namespace
 
 std::size_t Tree::numbers() const {
   return numbers_of(static_cast<std::uint32_t>(volume), directions.size());

@@ -163,6 +163,42 @@ CheckSums Check::sum() const {
   return out;
 }
 
+namespace {
+
+/// Finds an error of the recorded poses that explains wrong answers.
+class PoseErrors {
+ public:
+  void add(const CheckedQuery& checked, const capture::Query& query, const QueryWalk* walk,
+           Checker& checker) {
+    const bool has_pairs = query.kind == capture::QueryKind::all_pairs && checked.verdict.found > 0;
+    if (walk == nullptr || !has_pairs) return;
+    // A few wrong pairs have another cause.
+    const bool mostly_wrong = checked.verdict.extra > checked.verdict.found / 2;
+    ++(mostly_wrong ? wrong_ : right_);
+    if (!mostly_wrong || tried_ == kTries) return;
+    ++tried_;
+    const auto explains = checker.explaining_errors(query, *walk);
+    for (std::size_t i = 0; i < kPoseErrors; ++i) possible_[i] = possible_[i] && explains[i];
+  }
+  std::string sentence() const {
+    if (tried_ == 0 || wrong_ < right_) return {};
+    std::string out;
+    for (std::size_t i = 0; i < kPoseErrors; ++i)
+      if (possible_[i]) out += (out.empty() ? "" : "; or ") + std::string(words(static_cast<PoseError>(i)));
+    return out.empty()
+               ? out
+               : "The poses are probably recorded wrongly, because then the pairs are right: " + out + ".";
+  }
+
+ private:
+  static constexpr int kTries = 8;
+  std::array<bool, kPoseErrors> possible_{true, true, true, true};
+  int tried_ = 0;
+  std::uint64_t wrong_ = 0, right_ = 0;
+};
+
+}  // namespace
+
 Check check(const capture::Capture& capture, const CheckSettings& settings,
             const run::ProgressReport& progress) {
   Check out;
@@ -172,17 +208,20 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
   CapturedBodies bodies(capture);
   Checker checker(bodies, out.precision);
   PriceBook book(bodies);
+  PoseErrors pose_errors;
   for (const capture::Query& query : capture.queries) {
     const auto trees = CapturedBodies::trees_of(query);
     const auto walk = trees ? std::make_unique<QueryWalk>(bodies, query, *trees) : nullptr;
     CheckedQuery checked{checker.check(query, walk.get()), {}};
     checked.prices = book.add(query, walk.get(), checked.verdict.exact, split);
     checked.verdict.exact = {};
+    pose_errors.add(checked, query, walk.get(), checker);
     report(checked.verdict, query, capture, out);
     out.kinds[query.kind] += sums_of(checked);
     out.queries.push_back(std::move(checked));
     progress("check", out.queries.size(), capture.queries.size());
   }
+  out.pose_error = pose_errors.sentence();
   out.by_depth = book.by_depth();
   out.owners = book.worst_owners(kOwners);
   for (const OwnerWaste& o : out.owners)
@@ -237,7 +276,10 @@ report::Table verdict_table(std::span<const Check> checks) {
 }
 
 void add_checks(report::Document& page, std::span<const Check> checks) {
-  for (const Check& c : checks) page.text({"Advice for " + c.engine, advice(c.sum().prices)});
+  for (const Check& c : checks) {
+    if (!c.pose_error.empty()) page.text({"Poses of " + c.engine, c.pose_error});
+    page.text({"Advice for " + c.engine, advice(c.sum().prices)});
+  }
   for (const Check& c : checks) {
     const CheckSums sum = c.sum();
     page.number({"Wrong queries of " + c.engine,

@@ -52,6 +52,9 @@ struct Check {
   std::vector<std::string> wrong;        ///< a line for each wrong pair or answer that was kept
   std::vector<std::string> undecidable;  ///< the same, for those within the error bound
 
+  /// A sentence if most reported pairs are wrong, but right after the reversal of a PoseError.
+  std::string pose_error;
+
   CheckSums sum() const;
   /// Returns true if an answer is wrong beyond the error bound.
   bool is_wrong() const { return sum().outcomes[static_cast<std::size_t>(Judgement::wrong)] > 0; }

@@ -224,6 +224,9 @@ std::vector<double> PriceBook::waste_by_triangle(std::uint32_t tree) {
 std::string advice(const Prices& sum) {
   const std::uint64_t tests = sum.visits + sum.triangle_tests;
   if (tests == 0) return "No tests were recorded.";
+  if (sum.visits == 0)
+    return "No tests of volumes were recorded (LRBCAP_NODE), so nothing can be said about volumes, order and "
+           "leaves.";
   struct Gain {
     double tests;
     std::string change;
@@ -247,6 +250,7 @@ std::string advice(const Prices& sum) {
     const double percent = 100 * gain.tests / static_cast<double>(tests);
     return std::to_string(std::max(0L, std::lround(percent))) + " %";
   };
+  if (!(gains[0].tests > 0)) return "Nothing to gain: every visit was needed.";
   return "Most to gain: " + gains[0].change + ", at most " + share(gains[0]) + " of " +
          render::group_digits(tests) + " tests of volumes and triangles; next: " + gains[1].change +
          ", at most " + share(gains[1]) + ".";

@@ -144,6 +144,15 @@ double overlap_depth(const Triangle& a, const Triangle& b) {
   return least;
 }
 
+namespace {
+
+bool tests_triangles(const Query& query) {
+  return std::any_of(query.events.begin(), query.events.end(),
+                     [](const Event& e) { return e.kind == EventKind::triangles; });
+}
+
+}  // namespace
+
 struct Checker::Posed {
   const Query& query;
   std::array<std::uint32_t, 2> trees;
@@ -156,9 +165,65 @@ struct Checker::Posed {
 
 Checker::Checker(CapturedBodies& bodies, Precision precision) : bodies_(bodies), precision_(precision) {
   for (const Query& q : bodies.capture().queries)
-    records_triangles_ =
-        records_triangles_ || std::any_of(q.events.begin(), q.events.end(),
-                                          [](const Event& e) { return e.kind == EventKind::triangles; });
+    records_triangles_ = records_triangles_ || tests_triangles(q);
+}
+
+std::string_view words(PoseError error) {
+  switch (error) {
+    case PoseError::inverted:
+      return "poses map the world to the body: record their inverse";
+    case PoseError::transposed:
+      return "rotations are transposed: record matrices row by row";
+    case PoseError::exchanged:
+      return "the poses of A and B are exchanged";
+    case PoseError::rotated_last:
+      return "translations are not rotated: record R x + t, not R (x + t)";
+  }
+  return "";
+}
+
+namespace {
+
+/// Returns the poses without the error.
+std::array<Pose, 2> corrected(const std::array<Pose, 2>& poses, PoseError error) {
+  std::array<Pose, 2> out = poses;
+  if (error == PoseError::exchanged) std::swap(out[0], out[1]);
+  for (Pose& pose : out) {
+    if (error == PoseError::inverted) pose = {pose.r.transpose(), -(pose.r.transpose() * pose.t)};
+    if (error == PoseError::transposed) pose.r.transposeInPlace();
+    if (error == PoseError::rotated_last) pose.t = pose.r * pose.t;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::array<bool, kPoseErrors> Checker::explaining_errors(const Query& query, const QueryWalk& walk) {
+  std::array<bool, kPoseErrors> out{};
+  Posed posed = posed_bodies(query, walk);
+  const std::vector<TrianglePair> found = tested_pairs(query, *posed.meshes[0]).met;
+  if (found.empty()) return out;
+  for (std::size_t i = 0; i < kPoseErrors; ++i) {
+    posed.poses = corrected(query.poses, static_cast<PoseError>(i));
+    const std::vector<TrianglePair> exact = exact_pairs(posed);
+    std::vector<TrianglePair> other;
+    std::set_symmetric_difference(found.begin(), found.end(), exact.begin(), exact.end(),
+                                  std::back_inserter(other));
+    constexpr std::size_t kTolerated = 100;  // one pair of these may be undecidable
+    out[i] = other.size() <= found.size() / kTolerated;
+  }
+  return out;
+}
+
+Checker::Posed Checker::posed_bodies(const Query& query, const QueryWalk& walk) {
+  const std::array<std::uint32_t, 2>& trees = walk.trees();
+  Posed posed{query, trees, {}, {}, query.poses};
+  for (std::size_t side = 0; side < 2; ++side) {
+    posed.meshes[side] = &bodies_.mesh_of(trees[side]);
+    posed.bodies[side] = bodies_.body(bodies_.tree(trees[side]).mesh);
+  }
+  if (posed.is_self()) posed.poses[1] = posed.poses[0];
+  return posed;
 }
 
 QueryVerdict Checker::check(const Query& query, const QueryWalk* walk) {
@@ -173,13 +238,8 @@ QueryVerdict Checker::check(const Query& query, const QueryWalk* walk) {
     out.remark = "the capture was cut off within this query";
     return out;
   }
-  const std::array<std::uint32_t, 2>& trees = walk->trees();
-  Posed posed{query, trees, {}, {}, query.poses};
-  for (std::size_t side = 0; side < 2; ++side) {
-    posed.meshes[side] = &bodies_.mesh_of(trees[side]);
-    posed.bodies[side] = bodies_.body(bodies_.tree(trees[side]).mesh);
-  }
-  if (posed.is_self()) posed.poses[1] = posed.poses[0];
+  records_triangles_ = records_triangles_ || tests_triangles(query);  // of a query beside the capture
+  const Posed posed = posed_bodies(query, *walk);
   out.exact = exact_pairs(posed);
   out.exact_pairs = out.exact.size();
   if (query.kind == QueryKind::all_pairs || query.kind == QueryKind::any || posed.is_self())

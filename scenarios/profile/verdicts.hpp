@@ -113,6 +113,12 @@ struct QueryVerdict {
   std::vector<TrianglePair> exact;      ///< all intersecting pairs, ascending
 };
 
+/// A frequent error in recorded poses.
+enum class PoseError : std::uint8_t { inverted, transposed, exchanged, rotated_last };
+inline constexpr std::size_t kPoseErrors = 4;
+/// Returns the error as a clause: "the poses of A and B are exchanged".
+std::string_view words(PoseError error);
+
 class Checker {
  public:
   /// `bodies` must outlive this object.
@@ -122,9 +128,14 @@ class Checker {
   /// checked. Throws InputError as collide() does.
   QueryVerdict check(const capture::Query& query, const QueryWalk* walk);
 
+  /// Returns true for each error whose reversal makes the reported pairs of a query the exact ones, up to 1 %
+  /// of them. All false if the query reports no pairs.
+  std::array<bool, kPoseErrors> explaining_errors(const capture::Query& query, const QueryWalk& walk);
+
  private:
   struct Posed;  ///< the bodies of a query
 
+  Posed posed_bodies(const capture::Query& query, const QueryWalk& walk);
   std::vector<TrianglePair> exact_pairs(const Posed& posed);
   WrongPair describe(const Posed& posed, const TrianglePair& pair, bool missed) const;
   void blame(const Posed& posed, const QueryWalk& walk, bool tested, WrongPair& wrong);

@@ -89,6 +89,50 @@ TEST_CASE("A capture's sums are those of its queries") {
   CHECK(check(c.engine.capture, settings).sum().prices.unsplit == prices.wasted());
 }
 
+TEST_CASE("Poses that are recorded wrongly are named, and only these") {
+  Captures c;
+  const Pose pose_a = Pose::rotation({0.2, 1, 0.4}, 0.7, {0.3, -0.2, 0.5});
+  for (int i = 0; i < 4; ++i)
+    c.engine.ask(c.a, pose_a, c.b,
+                 {pose_a.r * c.pose.r, pose_a.apply(c.pose.t + Eigen::Vector3d(0.02 * i, 0, 0.01 * i))});
+  CHECK(check(c.engine.capture, {}).pose_error.empty());
+  using Wrong = Pose (*)(const Pose&);
+  const std::pair<PoseError, Wrong> errors[] = {{PoseError::inverted,
+                                                 [](const Pose& p) {
+                                                   return Pose{p.r.transpose(), -(p.r.transpose() * p.t)};
+                                                 }},
+                                                {PoseError::transposed,
+                                                 [](const Pose& p) {
+                                                   return Pose{p.r.transpose(), p.t};
+                                                 }},
+                                                {PoseError::rotated_last, [](const Pose& p) {
+                                                   return Pose{p.r, p.r.transpose() * p.t};
+                                                 }}};
+  const auto checked_with = [&](const auto& change) {
+    capture::Capture wrong = c.engine.capture;
+    for (capture::Query& q : wrong.queries) change(q.poses);
+    return check(wrong, {});
+  };
+  for (const auto& [error, wrong] : errors) {
+    const Check found = checked_with([wrong = wrong](auto& poses) {
+      for (Pose& p : poses) p = wrong(p);
+    });
+    CAPTURE(static_cast<int>(error));
+    CHECK(found.is_wrong());
+    CHECK(found.pose_error.find(words(error)) != std::string::npos);
+    for (const auto& [other, unused] : errors)
+      if (other != error) CHECK(found.pose_error.find(words(other)) == std::string::npos);
+  }
+  const Check exchanged = checked_with([](auto& poses) { std::swap(poses[0], poses[1]); });
+  CHECK(exchanged.pose_error.find("exchanged") != std::string::npos);
+  // Another error, and a single wrong pair.
+  const Check shifted = checked_with([](auto& poses) { poses[1].t.x() += 0.1; });
+  CHECK(shifted.is_wrong());
+  CHECK(shifted.pose_error.empty());
+  c.lie();
+  CHECK(check(c.engine.capture, {}).pose_error.empty());
+}
+
 TEST_CASE("A recording of lrbscope is a capture whose answers are right and whose visits are the counters'") {
   for (const Mode mode : {Mode::all_pairs, Mode::any_pair}) {
     const run::Recording recorded = recorded_tori(EventLevel::nodes, mode);

@@ -386,6 +386,12 @@ TEST_CASE("The advice names the change with most to gain, and the next") {
   p.volumes = 0, p.unsplit = 600;
   CHECK(advice(p).find("Most to gain: tighter volumes or another order of descent, at most 60 %") == 0);
   CHECK(advice({}) == "No tests were recorded.");
+  Prices triangles;
+  triangles.triangle_tests = 100, triangles.triangle_tests_for_nothing = 90;
+  CHECK(advice(triangles).find("No tests of volumes were recorded (LRBCAP_NODE)") == 0);
+  Prices needed;
+  needed.visits = needed.needed = 10;
+  CHECK(advice(needed) == "Nothing to gain: every visit was needed.");
 }
 
 }  // namespace lrb::profile

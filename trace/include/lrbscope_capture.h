@@ -317,6 +317,7 @@ static struct {
   uint64_t slower, soon;                    /* ticks: of queries whose events are kept, and between flushes */
   lrbcap_shared on, lock, written, flushed; /* flushed: ticks */
   lrbcap_shared threads, queries, meshes, trees, names;
+  lrbcap_shared full; /* not 0: the limit was reported */
 } lrbcap_g;
 
 /* ---- Writing. */
@@ -490,6 +491,7 @@ void lrbcap_open(const char* engine, const char* path, lrbcap_sink sink, void* u
   lrbcap_g.limit = megabytes && megabytes < (UINT64_MAX >> 22) ? megabytes * 1000000u : UINT64_MAX / 2;
   lrbcap_store(&lrbcap_g.written, 0);
   lrbcap_store(&lrbcap_g.queries, 0);
+  lrbcap_store(&lrbcap_g.full, 0);
   lrbcap_store(&lrbcap_g.meshes, 0);
   lrbcap_store(&lrbcap_g.trees, 0);
   lrbcap_store(&lrbcap_g.names, 0);
@@ -675,7 +677,11 @@ uint32_t lrbcap_begin(uint32_t kind, uint32_t tree_a, const double* pose_a, uint
   lrbcap_state* s;
   uint32_t query;
   lrbcap_leave(); /* a query that was not ended */
-  if (lrbcap_writes() == LRBCAP_WRITES_NOTHING) return 0;
+  if (lrbcap_writes() == LRBCAP_WRITES_NOTHING) {
+    if (lrbcap_load(&lrbcap_g.on) && lrbcap_add(&lrbcap_g.full, 1) == 0)
+      lrbcap_warn("the limit is reached; from here on queries are not recorded", "LRBCAP_MAX_MB");
+    return 0;
+  }
   query = LRBCAP_CAST(uint32_t, lrbcap_add(&lrbcap_g.queries, 1)) + 1;
   if (query < lrbcap_g.first || query > lrbcap_g.last) return 0;
   s = lrbcap_enter(query);
