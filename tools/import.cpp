@@ -1,3 +1,5 @@
+#include "tools/import.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
@@ -218,6 +220,15 @@ int run_import(const ImportOptions& o, const Globals& globals) {
 }
 
 }  // namespace
+
+void write_query_page(const capture::Capture& capture, const std::string& source, const std::string& folder,
+                      const Globals& globals) {
+  const profile::TreePairs found = profile::tree_pairs(capture);
+  if (found.pairs.empty()) throw InputError(source + ": " + without_tree_words(found.without_tree));
+  ImportOptions options;
+  options.file = source;
+  import_pair(options, globals, capture, found.pairs[0], folder);
+}
 
 Command add_import(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(

@@ -1,5 +1,6 @@
 #include "tools/terminal.hpp"
 
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -11,10 +12,13 @@
 #include <system_error>
 #include <thread>
 
+#include <poll.h>
+#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include "tools/commands.hpp"
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
 
 namespace lrb::cli {
 namespace {
@@ -114,10 +118,17 @@ std::string farewell(int signal) {
          ": files written so far are complete, the others are missing; run it again\n";
 }
 
+/// The descriptor of a StopSignal; -1: none.
+std::atomic<int> noted_by{-1};
+
 /// Runs on a thread, which may lock and allocate, unlike a signal handler.
 void wait_for(const sigset_t& signals) {
   int signal = 0;
-  if (sigwait(&signals, &signal) != 0) return;
+  while (true) {
+    if (sigwait(&signals, &signal) != 0) return;
+    const int descriptor = noted_by.exchange(-1);
+    if (descriptor < 0 || eventfd_write(descriptor, 1) != 0) break;
+  }
   abandon_atomic_files();
   const std::string line = farewell(signal);
   if (write(STDERR_FILENO, line.data(), line.size()) < 0) {
@@ -162,6 +173,21 @@ void end_cleanly_on_signals() {
   } catch (const std::system_error&) {  // no thread: the signals then end the process immediately
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
   }
+}
+
+StopSignal::StopSignal() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (descriptor_ < 0) throw EnvironmentError("too many open files; raise the limit (ulimit -n)");
+  noted_by = descriptor_;
+}
+
+StopSignal::~StopSignal() {
+  noted_by = -1;
+  close(descriptor_);
+}
+
+bool StopSignal::has_arrived() const {
+  pollfd waiting{descriptor_, POLLIN, 0};
+  return poll(&waiting, 1, 0) == 1;
 }
 
 void end_as_by_closed_pipe() {

@@ -37,6 +37,24 @@ run::ProgressReport progress_report(bool quiet);
 /// caller ignores stay ignored. Call it once, before any thread is started.
 void end_cleanly_on_signals();
 
+/// While an object of this class exists, the first of these signals is noted instead of ending the program;
+/// the next one ends it. At most one object exists at a time.
+class StopSignal {
+ public:
+  /// Throws EnvironmentError if the system has no more file descriptors.
+  StopSignal();
+  ~StopSignal();
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+
+  /// Returns a descriptor that can be read once a signal has arrived.
+  int descriptor() const { return descriptor_; }
+  bool has_arrived() const;
+
+ private:
+  int descriptor_;
+};
+
 /// Installs a handler for an exception that cannot be caught: it removes unfinished files and ends the
 /// program with a line and code 3. (The known case is a std::bad_alloc in a destructor of nlohmann-json;
 /// these allocate.)

@@ -21,7 +21,7 @@ const bytesOf = (array) => new Uint8Array(array.buffer, array.byteOffset, array.
 const u32 = (...numbers) => bytesOf(new Uint32Array(numbers));
 const u64 = (...numbers) => bytesOf(new BigUint64Array(numbers.map(BigInt)));
 const f64 = (numbers) => bytesOf(new Float64Array(numbers));
-const wallClock = () => u64(BigInt(Date.now()) * 1000000n);
+const wallClock = () => u64(BigInt(Math.round((performance.timeOrigin + performance.now()) * 1000)) * 1000n);
 const utf8 = (text) => new TextEncoder().encode(text);
 
 export class Capture {
@@ -32,6 +32,8 @@ export class Capture {
   constructor(engine) {
     this.#parts.push(utf8("LRBCAP\r\n"), u32(1, 0x01020304));
     this.#chunk("HEAD", utf8(engine));
+    this.#chunk("SYNC", wallClock());
+    for (const begin = performance.now(); performance.now() - begin < 1; ) {} // two readings give the length of a tick
     this.#chunk("SYNC", wallClock());
   }
 

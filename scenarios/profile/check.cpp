@@ -22,19 +22,6 @@ std::uint64_t visits_in(const capture::Capture& capture) {
   return out;
 }
 
-CheckSums sums_of(const CheckedQuery& q) {
-  CheckSums out;
-  out.queries = 1;
-  ++out.outcomes[static_cast<std::size_t>(q.verdict.outcome)];
-  out.exact_pairs = q.verdict.exact_pairs;
-  out.right = q.verdict.right;
-  out.missed = q.verdict.missed;
-  out.extra = q.verdict.extra;
-  out.undecidable = q.verdict.undecidable;
-  out.prices = q.prices;
-  return out;
-}
-
 /// Adds the lines about a query.
 void report(const QueryVerdict& v, const capture::Query& query, const capture::Capture& capture, Check& out) {
   const std::string head = "query " + std::to_string(v.number) + ": ";
@@ -144,6 +131,19 @@ report::Chart chart_by_depth(const Check& c) {
 }
 
 }  // namespace
+
+CheckSums sums_of(const CheckedQuery& q) {
+  CheckSums out;
+  out.queries = 1;
+  ++out.outcomes[static_cast<std::size_t>(q.verdict.outcome)];
+  out.exact_pairs = q.verdict.exact_pairs;
+  out.right = q.verdict.right;
+  out.missed = q.verdict.missed;
+  out.extra = q.verdict.extra;
+  out.undecidable = q.verdict.undecidable;
+  out.prices = q.prices;
+  return out;
+}
 
 CheckSums& CheckSums::operator+=(const CheckSums& other) {
   queries += other.queries;

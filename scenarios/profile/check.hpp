@@ -41,6 +41,9 @@ struct CheckSums {
   CheckSums& operator+=(const CheckSums& other);
 };
 
+/// Returns the sums over one query.
+CheckSums sums_of(const CheckedQuery& query);
+
 struct Check {
   std::string engine;
   Precision precision = Precision::float64;

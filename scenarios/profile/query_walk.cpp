@@ -7,11 +7,18 @@
 
 namespace lrb::profile {
 
-CapturedBodies::CapturedBodies(const capture::Capture& capture)
-    : capture_(&capture),
-      bodies_(capture.meshes.size()),
-      indices_(capture.trees.size()),
-      volumes_(capture.trees.size()) {}
+CapturedBodies::CapturedBodies(const capture::Capture& capture) : capture_(&capture) {
+  update();
+}
+
+void CapturedBodies::update() {
+  // Bodies do not refer to the capture; indices and volumes refer to its trees.
+  bodies_.resize(capture_->meshes.size());
+  indices_.clear();
+  indices_.resize(capture_->trees.size());
+  volumes_.clear();
+  volumes_.resize(capture_->trees.size());
+}
 
 const LrbRep* CapturedBodies::body(std::uint32_t mesh) {
   const capture::Mesh& m = capture_->meshes[mesh];

@@ -29,6 +29,9 @@ class CapturedBodies {
  public:
   explicit CapturedBodies(const capture::Capture& capture);
 
+  /// Call it when meshes or trees were added to the capture. References to trees become invalid.
+  void update();
+
   const capture::Capture& capture() const { return *capture_; }
   /// Returns captured_body() of a mesh, whose simplices are the mesh's triangles under their own numbers;
   /// nullptr if the mesh has no triangles.

@@ -62,4 +62,37 @@ awk -v fcl=$(($# - 1)) '/^```/ { if (inside && plain && (fcl || block !~ /FCL/))
 while IFS= read -r line; do
   grep -qxF -- "$line" shown || fail "$page: no command prints, and aabb.c does not contain: $line"
 done <blocks
+# The page of `live`, its events and the page of a query, while the server runs; then its end by a signal.
+"$program" live -- ./aabb tests/data/gear.obj tests/data/l_block.obj poses.txt >said 2>address &
+live=$!
+cat >fetch.py <<'END'
+import json, sys, time, urllib.error, urllib.request
+while not (text := open("address").read()).endswith("\n"):
+    time.sleep(0.05)
+url = text.split()[-1]
+page = urllib.request.urlopen(url).read().decode()
+assert "<title>Live" in page and "EventSource" in page, page[:200]
+events = urllib.request.urlopen(url + "events", timeout=60)
+queries = {}
+while len(queries) < 3 or any(q["verdict"] == "not checked" for q in queries.values()):
+    line = events.readline().decode()
+    if line.startswith("data: "):
+        queries.update((q["number"], q) for q in json.loads(line[6:])["queries"])
+assert [queries[n]["pairs"] for n in (1, 2, 3)] == [43, 98, 0], queries
+assert all(q["verdict"] == "right" and q["us"] > 0 for q in queries.values()), queries
+run = urllib.request.urlopen(url + "queries/2/", timeout=60).read().decode()
+assert "AABB trees in C99" in run, run[:200]
+assert json.load(urllib.request.urlopen(url + "queries/2/summary.json")), "no summary"
+for path, headers, status in (("queries/9/", {}, 404), ("queries/2/../capture", {}, 404), ("", {"Host": "example.com"}, 403)):
+    try:
+        urllib.request.urlopen(urllib.request.Request(url + path, headers=headers))
+        sys.exit(path + ": expected " + str(status))
+    except urllib.error.HTTPError as e:
+        assert e.code == status, (path, e.code)
+END
+timeout 120 python3 fetch.py || { kill -9 $live; fail "the page of live: $(cat address said)"; }
+kill -TERM $live
+code=0
+wait $live || code=$?
+[ $code = 0 ] && grep -qF 'AABB trees in C99: 3 queries: 3 right' said || fail "live, ended by a signal: exit code $code: $(cat said address)"
 echo "example_capture: as expected, with $ran commands of the page"

@@ -483,9 +483,6 @@ void lrbcap_open(const char* engine, const char* path, lrbcap_sink sink, void* u
   lrbcap_g.sink = sink;
   lrbcap_g.user = user;
   lrbcap_setting_queries();
-  ms = lrbcap_ticks_per_ms();
-  lrbcap_g.soon = ms * LRBCAP_FLUSH_MS;
-  lrbcap_g.slower = lrbcap_setting_number("LRBCAP_SLOWER_US", 0) * ms / 1000u;
   lrbcap_g.events = lrbcap_setting_number("LRBCAP_EVENTS", 1) != 0;
   megabytes = lrbcap_setting_number("LRBCAP_MAX_MB", 4096);
   lrbcap_g.limit = megabytes && megabytes < (UINT64_MAX >> 22) ? megabytes * 1000000u : UINT64_MAX / 2;
@@ -504,7 +501,12 @@ void lrbcap_open(const char* engine, const char* path, lrbcap_sink sink, void* u
   parts[0] = engine ? engine : "";
   sizes[0] = engine ? strlen(engine) : 0;
   lrbcap_gather("HEAD", parts, sizes, 1);
+  /* Two readings of the clock: a reader of a FIFO knows the length of a tick from the first query on. */
   lrbcap_sync("SYNC");
+  ms = lrbcap_ticks_per_ms();
+  lrbcap_sync("SYNC");
+  lrbcap_g.soon = ms * LRBCAP_FLUSH_MS;
+  lrbcap_g.slower = lrbcap_setting_number("LRBCAP_SLOWER_US", 0) * ms / 1000u;
 }
 
 void lrbcap_close(void) {
