@@ -168,7 +168,7 @@ void write_page(const std::vector<profile::Check>& checks, const std::string& pa
   const bool wrong =
       std::any_of(checks.begin(), checks.end(), [](const profile::Check& c) { return c.is_wrong(); });
   page.verdict(wrong ? "wrong answers" : "no wrong answers", !wrong).command(globals.command_line);
-  profile::add_checks(page, checks);
+  note(globals, profile::add_checks(page, checks));
   page.write(folder);
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
+#include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
 
 namespace lrb::profile {
@@ -165,6 +167,21 @@ CheckSums Check::sum() const {
 
 namespace {
 
+/// Returns the waste on the meshes of the two trees with most of it.
+std::vector<WasteMap> most_wasted(const capture::Capture& capture, PriceBook& book) {
+  constexpr std::size_t kMaps = 2;
+  std::vector<std::pair<double, WasteMap>> all;
+  for (std::uint32_t tree = 0; tree < capture.trees.size(); ++tree) {
+    std::vector<double> waste = book.waste_by_triangle(tree);
+    const double sum = std::accumulate(waste.begin(), waste.end(), 0.0);
+    if (sum > 0) all.push_back({sum, {capture.meshes[capture.trees[tree].mesh], std::move(waste)}});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+  std::vector<WasteMap> out;
+  for (std::size_t i = 0; i < std::min(kMaps, all.size()); ++i) out.push_back(std::move(all[i].second));
+  return out;
+}
+
 /// Finds an error of the recorded poses that explains wrong answers.
 class PoseErrors {
  public:
@@ -221,6 +238,7 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
     out.queries.push_back(std::move(checked));
     progress("check", out.queries.size(), capture.queries.size());
   }
+  out.waste = most_wasted(capture, book);
   out.pose_error = pose_errors.sentence();
   out.by_depth = book.by_depth();
   out.owners = book.worst_owners(kOwners);
@@ -275,7 +293,8 @@ report::Table verdict_table(std::span<const Check> checks) {
   return t;
 }
 
-void add_checks(report::Document& page, std::span<const Check> checks) {
+std::vector<std::string> add_checks(report::Document& page, std::span<const Check> checks) {
+  std::vector<std::string> notes;
   for (const Check& c : checks) {
     if (!c.pose_error.empty()) page.text({"Poses of " + c.engine, c.pose_error});
     page.text({"Advice for " + c.engine, advice(c.sum().prices)});
@@ -290,10 +309,20 @@ void add_checks(report::Document& page, std::span<const Check> checks) {
     page.chart(chart_by_query(c));
     page.chart(chart_by_depth(c));
   }
+  for (std::size_t i = 0; i < checks.size(); ++i) try {
+      if (!checks[i].waste.empty())
+        page.picture(
+            "waste_" + std::to_string(i + 1) + ".png", draw_waste(checks[i].waste),
+            "Where visits are wasted, " + checks[i].engine,
+            "Wasted visits, by volumes or order, shared evenly by the triangles beneath both nodes.");
+    } catch (const EnvironmentError& e) {
+      notes.push_back(std::string("the waste was not drawn: ") + e.what());
+    }
   page.table(price_table(checks));
   page.table(verdict_table(checks));
   if (const report::Table t = wrong_table(checks); !t.rows.empty()) page.table(t);
   if (const report::Table t = owner_table(checks); !t.rows.empty()) page.table(t);
+  return notes;
 }
 
 }  // namespace lrb::profile

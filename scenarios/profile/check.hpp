@@ -10,6 +10,7 @@
 
 #include "scenarios/profile/prices.hpp"
 #include "scenarios/profile/verdicts.hpp"
+#include "scenarios/profile/waste_picture.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/report/document.hpp"
 #include <lrbscope/trace/capture.hpp>
@@ -52,6 +53,7 @@ struct Check {
   std::vector<DepthPrices> by_depth;
   std::vector<OwnerWaste> owners;                       ///< the ten worst
   std::vector<std::array<std::string, 2>> owner_names;  ///< (|owners|) nodes by the engine's numbers
+  std::vector<WasteMap> waste;                          ///< of the two trees with most waste
   std::vector<std::string> wrong;        ///< a line for each wrong pair or answer that was kept
   std::vector<std::string> undecidable;  ///< the same, for those within the error bound
 
@@ -71,7 +73,8 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
 report::Table price_table(std::span<const Check> checks);
 /// Returns the verdicts by engine and kind of query.
 report::Table verdict_table(std::span<const Check> checks);
-/// Adds verdicts, prices, advice, and the charts of prices by query and by depth to a page.
-void add_checks(report::Document& page, std::span<const Check> checks);
+/// Adds verdicts, prices, advice, the charts of prices by query and by depth, and pictures of the waste to a
+/// page. Returns notes on pictures that could not be drawn.
+std::vector<std::string> add_checks(report::Document& page, std::span<const Check> checks);
 
 }  // namespace lrb::profile
