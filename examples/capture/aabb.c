@@ -164,10 +164,10 @@ static void cross(float* c, const float* u, const float* v) {
   for (int k = 0; k < 3; ++k) c[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
 }
 
-/* Returns 1 unless a plane along both normals' or two edges' product has the triangles on its two sides. In
- * floats. */
+/* Returns 1 unless an axis separates the triangles: a normal, a product of two edges, or, for triangles in one
+ * plane, a normal of an edge in that plane. In floats. */
 static int triangles_meet(uint32_t f, uint32_t g) {
-  float x[2][3][3], edge[2][3][3], on[3];
+  float x[2][3][3], edge[2][3][3], normal[2][3], on[3];
   for (int i = 0; i < 3; ++i) {
     const double *v = a->vertices + 3 * a->triangles[3 * f + i],
                  *w = b->vertices + 3 * b->triangles[3 * g + i];
@@ -179,12 +179,15 @@ static int triangles_meet(uint32_t f, uint32_t g) {
   for (int side = 0; side < 2; ++side)
     for (int i = 0; i < 3; ++i)
       for (int k = 0; k < 3; ++k) edge[side][i][k] = x[side][(i + 1) % 3][k] - x[side][i][k];
-  for (int test = 0; test < 11; ++test) {
+  for (int side = 0; side < 2; ++side) cross(normal[side], edge[side][0], edge[side][1]);
+  for (int test = 0; test < 17; ++test) {
     float low[2] = {FLT_MAX, FLT_MAX}, high[2] = {-FLT_MAX, -FLT_MAX};
     if (test < 2)
-      cross(on, edge[test][0], edge[test][1]);
-    else
+      memcpy(on, normal[test], sizeof on);
+    else if (test < 11)
       cross(on, edge[0][(test - 2) / 3], edge[1][(test - 2) % 3]);
+    else
+      cross(on, normal[(test - 11) / 3], edge[(test - 11) / 3][(test - 11) % 3]);
     for (int i = 0; i < 6; ++i) {
       const float *y = x[i / 3][i % 3], s = on[0] * y[0] + on[1] * y[1] + on[2] * y[2];
       low[i / 3] = fminf(low[i / 3], s);
