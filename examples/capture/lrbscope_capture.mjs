@@ -79,13 +79,17 @@ export class Capture {
     this.#chunk("QRYE", u64(took), u32(q.number, verdict), u64(pairs, q.count, 0));
   }
 
-  // Returns the bytes of the file.
-  close() {
-    this.#chunk("STOP", wallClock());
+  // Return the bytes since the last call: take() to write them while the program runs, close() at the end.
+  take() {
     const out = new Uint8Array(this.#parts.reduce((size, part) => size + part.length, 0));
     let at = 0;
     for (const part of this.#parts) out.set(part, at), (at += part.length);
+    this.#parts = [];
     return out;
+  }
+  close() {
+    this.#chunk("STOP", wallClock());
+    return this.take();
   }
 
   #chunk(letters, ...content) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# capture_js.sh TREE: the same recording by lrbscope_capture.h and by examples/capture/lrbscope_capture.mjs has the same bytes, but for
-# times. The tree of a bounding volume hierarchy with the interface of three-mesh-bvh is among them. Skipped (77) without node or gcc.
+# capture_js.sh TREE LRBSCOPE: the same recording by lrbscope_capture.h and by examples/capture/lrbscope_capture.mjs has the same bytes, but for
+# times. A program that writes it piece by piece is followed by `lrbscope live`. The tree of a bounding volume hierarchy with the interface of three-mesh-bvh is among them. Skipped (77) without node or gcc.
 set -euo pipefail
 tree=$(cd "$1" && pwd)
 for program in node gcc; do command -v $program >/dev/null || { echo "skipped: needs $program" && exit 77; }; done
@@ -110,3 +110,24 @@ END
 gcc -std=c99 -I "$tree/trace/include" record.c -o record
 env -u LRBCAP_EVENTS -u LRBCAP_QUERIES -u LRBCAP_SLOWER_US -u LRBCAP_MAX_MB ./record
 node record.mjs "$tree/examples/capture/lrbscope_capture.mjs"
+
+cat >pieces.mjs <<'END'
+import fs from "fs";
+const { Capture, ALL_PAIRS, ANY, MEET, APART, AABB } = await import(process.argv[2]);
+const file = fs.openSync(process.env.LRBCAP_OUT, "w"), capture = new Capture("pieces");
+const mesh = capture.mesh("a", [0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 2]);
+const tree = capture.tree({ mesh, volume: AABB, firstChild: [0, 0], child: [], firstPrim: [0, 1], prim: [0], volumes: Float32Array.from([0, 0, 0, 1, 1, 0]) });
+for (let i = 0; i < 3; ++i) {
+  capture.begin(ALL_PAIRS, tree, null, tree, [1, 0, 0, i, 0, 1, 0, 0, 0, 0, 1, 0]);
+  capture.node(0, 0, i < 2);
+  if (i < 2) capture.prim(0, 0, true);
+  capture.end(i < 2 ? MEET : APART, i < 2 ? 1 : 0);
+  fs.writeSync(file, capture.take());
+}
+capture.begin(ANY, tree, null, 0, null); // with a shape: listed, but not checked
+capture.node(0, 0, false);
+capture.end(APART, 0);
+fs.writeSync(file, capture.close());
+END
+"$2" --quiet live --exit -- node pieces.mjs "$tree/examples/capture/lrbscope_capture.mjs" >said
+grep -q '^pieces: 4 queries: 3 right, 1 not checked' said || { echo "capture_js: live: $(cat said)" && exit 1; }
