@@ -177,7 +177,8 @@ std::string scenario_text(const std::string& purpose, std::span<const Pose> pose
     expect.push_back({{"step", list.size()},
                       {"relation", name_of(exact.relation)},
                       {"pairs", exact.pairs.size()},
-                      {"fingerprint", trace::to_hex(fingerprint(exact.pairs))}});
+                      {"fingerprint", trace::to_hex(fingerprint(exact.pairs))},
+                      {"max_tests", exact.counters.box_tests + exact.counters.face_tests}});
     list.push_back(bench::pose_json(pose));
   }
   const ordered_json value = {{"name", "worst"},

@@ -386,6 +386,10 @@ std::vector<std::string> mismatches(const spec::Scenario& scenario, const Record
     if (e.fingerprint && *e.fingerprint != print)
       out.push_back(where + "expected fingerprint " + trace::to_hex(*e.fingerprint) + ", found " +
                     trace::to_hex(print));
+    const std::uint64_t tests = result.counters.box_tests + result.counters.face_tests;
+    if (e.max_tests && tests > *e.max_tests)
+      out.push_back(where + "expected at most " + std::to_string(*e.max_tests) +
+                    " tests of boxes and faces, found " + std::to_string(tests));
   }
   return out;
 }

@@ -123,12 +123,13 @@ void read_trace(const io::JsonNode& node, Scenario& s) {
 }
 
 Expectation read_expectation(const io::JsonNode& node, const io::JsonText& text) {
-  node.object({"step", "relation", "pairs", "fingerprint"});
+  node.object({"step", "relation", "pairs", "fingerprint", "max_tests"});
   Expectation e;
   e.step = static_cast<std::uint32_t>(node.at("step").integer(0, kMaxId));
   e.place = text.where(node.pointer());
   if (const auto n = node.get("relation")) e.relation = n->choice<Relation>();
   if (const auto n = node.get("pairs")) e.pairs = n->integer(0, kAnySeed);
+  if (const auto n = node.get("max_tests")) e.max_tests = n->integer(0, kAnySeed);
   if (const auto n = node.get("fingerprint")) {
     e.fingerprint = trace::from_hex(n->string());
     if (!e.fingerprint) n->fail("expected 16 lower-case hexadecimal digits");

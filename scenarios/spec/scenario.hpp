@@ -94,7 +94,8 @@ struct Expectation {
   std::optional<Relation> relation;
   std::optional<std::uint64_t> pairs;
   std::optional<std::uint64_t> fingerprint;
-  std::string place;  ///< file:line:column, for the message
+  std::optional<std::uint64_t> max_tests;  ///< of boxes and faces, at this step
+  std::string place;                       ///< file:line:column, for the message
 };
 
 struct Scenario {

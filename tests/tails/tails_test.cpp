@@ -548,6 +548,13 @@ TEST_CASE("worst: the page has a scenario whose expectations are met") {
       run(two.folder, {"run", "out/worst.scenario.json", "-o", "again", "--frames", "none", "-q"});
   CAPTURE(ran.err);
   CHECK(ran.code == 0);
+  auto tighter = scenario;
+  auto& budget = tighter["expect"][0]["max_tests"];
+  budget = budget.get<int>() - 1;
+  two.folder.write("out/tighter.scenario.json", tighter.dump());
+  CHECK(
+      run(two.folder, {"run", "out/tighter.scenario.json", "-o", "tighter", "--frames", "none", "-q"}).code ==
+      1);
   CHECK(slurp(two.folder / "out/index.html").find("map.svg") != std::string::npos);
   CHECK(slurp(two.folder / "out/poses/1.txt").size() > 20);
 }

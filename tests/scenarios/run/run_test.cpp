@@ -66,12 +66,17 @@ TEST_CASE("only expectations that are not met are reported") {
   e.relation = Relation::crossing;
   e.pairs = r.results[3].pairs.size();
   e.fingerprint = fingerprint(r.results[3].pairs);
+  e.max_tests = r.results[3].counters.box_tests + r.results[3].counters.face_tests;
   s.expect = {e};
   CHECK(run::mismatches(s, r).empty());
+  s.expect[0].max_tests = *e.max_tests - 1;
+  REQUIRE(run::mismatches(s, r).size() == 1);
+  CHECK(run::mismatches(s, r)[0].find("expected at most " + std::to_string(*e.max_tests - 1) + " tests") !=
+        std::string::npos);
   s.expect[0].pairs = *e.pairs + 1;
   s.expect[0].relation = Relation::touching;
   s.expect[0].fingerprint = *e.fingerprint + 1;
-  CHECK(run::mismatches(s, r).size() == 3);
+  CHECK(run::mismatches(s, r).size() == 4);
   s.expect[0].step = 99;
   CHECK(run::mismatches(s, r).size() == 1);
 }

@@ -163,9 +163,12 @@ TEST_CASE("schema and reader agree on valid and invalid files") {
       with("/frames", json{{"size", {32, 200}}}),
       with("/frames", json{{"colour_by", "colour"}}),
       with("/frames", json{{"views", json::array()}}),
-      with("/expect",
-           json::array(
-               {{{"step", 3}, {"relation", "crossing"}, {"pairs", 4}, {"fingerprint", "cbf29ce484222325"}}})),
+      with("/expect", json::array({{{"step", 3},
+                                    {"relation", "crossing"},
+                                    {"pairs", 4},
+                                    {"fingerprint", "cbf29ce484222325"},
+                                    {"max_tests", 100}}})),
+      with("/expect", json::array({{{"step", 3}, {"max_tests", -1}}})),
       with("/expect", json::array({{{"step", 3}, {"relation", "cross"}}})),
       with("/expect", json::array({{{"step", 3}, {"fingerprint", "CBF29CE484222325"}}})),
   };
