@@ -6,6 +6,7 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
@@ -28,6 +29,8 @@
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/mesh_repair.hpp>
 #include <lrbscope/render/overlay.hpp>
+#include <lrbscope/self_intersections.hpp>
+#include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/validate.hpp>
 
 namespace lrb::cli {
@@ -127,10 +130,41 @@ struct InspectOptions {
   std::string file, picture, drawing;
   PictureOptions pictures;
   bool validate = false, render = false, json = false;
-  bool regions = false, tried = false;
+  bool regions = false, tried = false, self_intersections = false;
   bodies::RegionOrder sort = bodies::RegionOrder::waste;
   unsigned threads = 0;
 };
+
+/// Prints a JSON line for each pair of faces that intersect.
+int list_self_intersections(const InspectOptions& o, const Globals& globals) {
+  std::vector<std::string> notes;
+  const SelfIntersections found =
+      bodies::is_lrb_file(o.file)
+          ? self_intersections(load_lrb(o.file))
+          : self_intersections(check(bodies::read_body(o.file, o.corners, notes), MeshFinding::kShown));
+  note(globals, notes);
+  std::string lines;
+  for (const SelfIntersection& pair : found.pairs) {
+    lines += trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
+      w.begin_object().key("faces").begin_array().value(pair.a.value()).value(pair.b.value()).end_array();
+      w.member("kind", name_of(pair.kind)).member("shared", std::uint64_t{pair.shared});
+      w.member("curve", std::uint64_t{pair.curve}).key("segments").begin_array();
+      for (std::uint32_t i = 0; i < pair.segments; ++i) {
+        w.begin_array();
+        for (const Eigen::Vector3d& x : found.segments[pair.first_segment + i])
+          w.begin_array().value(x.x()).value(x.y()).value(x.z()).end_array();
+        w.end_array();
+      }
+      w.end_array().end_object();
+    });
+    constexpr std::size_t kAtOnce = 1 << 20;
+    if (lines.size() > kAtOnce) print(std::exchange(lines, {}));
+  }
+  print(lines);
+  note(globals, {render::counted(found.pairs.size(), "pair", "pairs") + " of faces, " +
+                 render::counted(found.curves, "curve", "curves")});
+  return found.pairs.empty() ? kOk : kMismatch;
+}
 
 Json box_json(const std::vector<Eigen::Vector3d>& vertices) {
   Eigen::AlignedBox3d box;
@@ -325,6 +359,7 @@ std::string as_text(const Json& j) {
 }
 
 int run_inspect(const InspectOptions& o, const Globals& globals) {
+  if (o.self_intersections) return list_self_intersections(o, globals);
   render::Look look = sheet_look(o, false);
   Json j;
   std::unique_ptr<LrbRep> rep;
@@ -404,7 +439,14 @@ Command add_inspect(CLI::App& root, const Globals& globals) {
   app->add_option("-o,--output", o->picture, "Picture to write [out/NAME.png]")->type_name("FILE.png");
   add_size_options(*app, o->pictures);
   add_camera_options(*app, o->pictures.camera);
-  app->add_flag("--json", o->json, "Print one JSON object");
+  auto* json = app->add_flag("--json", o->json, "Print one JSON object");
+  auto* pairs =
+      app->add_flag("--self-intersections", o->self_intersections,
+                    "Only list the pairs of faces that intersect, one JSON line each, with kind, segments "
+                    "and curve; exit code 1 if there are any");
+  for (CLI::Option* other : {json, regions, app->get_option("--validate"), app->get_option("--render"),
+                             app->get_option("--draw"), app->get_option("--output")})
+    pairs->excludes(other);
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_inspect(*o, globals); }};
 }

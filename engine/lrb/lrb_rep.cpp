@@ -149,16 +149,31 @@ std::uint64_t LrbRep::hash() const {
   return hash_->value;
 }
 
+Mesh LrbRep::real_mesh() const {
+  Mesh out;
+  out.dim = d_.dim;
+  out.name = d_.name;
+  const auto faces = d_.face_offsets.begin();
+  out.face_offsets.assign(faces, faces + d_.real_face_count + 1);
+  out.face_vertices.assign(d_.face_vertices.begin(), d_.face_vertices.begin() + out.face_offsets.back());
+  std::uint32_t used = 0;
+  for (const VertexId v : out.face_vertices) used = std::max(used, v + 1u);
+  out.vertices.assign(d_.vertices.begin(), d_.vertices.begin() + used);
+  return out;
+}
+
+SelfIntersections self_intersections(const LrbRep& rep, unsigned threads, std::uint64_t max_pairs) {
+  const Mesh mesh = rep.real_mesh();
+  MeshReport report;
+  Workers workers(threads);
+  return self_intersections(mesh, check_faces(mesh, report), workers, max_pairs);
+}
+
 bool LrbRep::overlaps_itself() const {
   // For bodies with regions the builder has determined the flag.
   if (region_count() > 0) return d_.self_intersecting;
   std::call_once(overlap_->once, [this] {
-    // Without regions there are no pseudo faces, so the face arrays equal the mesh's.
-    Mesh mesh;
-    mesh.dim = d_.dim;
-    mesh.vertices = d_.vertices;
-    mesh.face_offsets = d_.face_offsets;
-    mesh.face_vertices = d_.face_vertices;
+    const Mesh mesh = real_mesh();
     MeshReport unused;
     overlap_->value = lrb::overlaps_itself(mesh, check_faces(mesh, unused));
   });

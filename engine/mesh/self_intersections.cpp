@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <iterator>
 #include <map>
+#include <mutex>
 #include <optional>
 
 #include <Eigen/Geometry>
@@ -18,6 +20,8 @@
 #include "engine/mesh/hubs.hpp"
 #include "engine/mesh/polygon_shape.hpp"
 #include <lrbscope/contact.hpp>
+#include <lrbscope/core/disjoint_sets.hpp>
+#include <lrbscope/error.hpp>
 
 namespace lrb {
 namespace {
@@ -127,13 +131,25 @@ class Pieces {
       const double* const pb[2] = {point(b[0]), point(b[1])};
       return !exact::meet_only_in_shared_2d(pa, a.data(), pb, b.data());
     }
-    // A triangle of a large face may share a chord of that face with the other face, which the index test
-    // would permit.
-    const bool large = pairs_.is_large(f) || pairs_.is_large(g);
-    return any_pair(f, g, [&](const Triangle& s, const Triangle& t) {
-      const auto a = points(s), b = points(t);
-      return !exact::meet_only_in_shared(a.data(), s.data(), b.data(), t.data()) ||
-             (large && share_a_chord(f, s, g, t));
+    return any_pair(f, g,
+                    [&](const Triangle& s, const Triangle& t) { return meet_outside_shared(f, s, g, t); });
+  }
+
+  /// Calls visit(s, t, contact) for each pair of triangles (2D: of the segments) of two faces that intersect
+  /// outside what they share. In 2D the third corners are kNull.
+  template <class Visit>
+  void for_each_contact(FaceId f, FaceId g, const Visit& visit) const {
+    if (mesh_.dim == 2) {
+      const auto a = mesh_.face(f), b = mesh_.face(g);
+      const double* const pa[2] = {point(a[0]), point(a[1])};
+      const double* const pb[2] = {point(b[0]), point(b[1])};
+      return visit(Triangle{a[0], a[1], kNull}, Triangle{b[0], b[1], kNull},
+                   exact::contact_of_segments(pa, pb));
+    }
+    any_pair(f, g, [&](const Triangle& s, const Triangle& t) {
+      if (meet_outside_shared(f, s, g, t))
+        visit(s, t, exact::contact_of_triangles(points(s).data(), points(t).data()));
+      return false;
     });
   }
 
@@ -162,6 +178,13 @@ class Pieces {
   }
 
  private:
+  bool meet_outside_shared(FaceId f, const Triangle& s, FaceId g, const Triangle& t) const {
+    // A triangle of a large face may share a chord of that face with the other face, which the index test
+    // would permit.
+    return !exact::meet_only_in_shared(points(s).data(), s.data(), points(t).data(), t.data()) ||
+           ((pairs_.is_large(f) || pairs_.is_large(g)) && share_a_chord(f, s, g, t));
+  }
+
   const double* point(VertexId v) const { return mesh_.vertices[v].data(); }
   std::array<const double*, 3> points(const Triangle& t) const {
     return {point(t[0]), point(t[1]), point(t[2])};
@@ -333,6 +356,143 @@ void find_overlaps(const Mesh& mesh, const std::vector<FaceUse>& use,
     return wanted(f, g) && pieces.overlap(f, g);
   };
   find_pairs(mesh, use, test, found);
+}
+
+// The pairs with kinds, segments and curves.
+
+namespace {
+
+/// A vertex, edge or triangle of the mesh: its vertices, ascending, then kNull.
+using MeshFeature = std::array<VertexId, 3>;
+/// A point of an intersection: the features of lowest dimension that it is on, ascending. The pairs on both
+/// sides of an edge have the same ones.
+using PointKey = std::array<MeshFeature, 2>;
+
+MeshFeature feature_of(const Triangle& t, const exact::Feature& feature) {
+  MeshFeature out{kNull, kNull, kNull};
+  const std::size_t corners = t[2] == kNull ? 2 : 3;
+  if (feature.dim == 2 || (corners == 2 && feature.dim == 1))
+    std::copy(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(corners), out.begin());
+  else
+    for (std::size_t i = 0; i <= feature.dim; ++i) out[i] = t[(feature.index + i) % corners];
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// The intersection of two faces.
+struct FoundPair {
+  FaceId f, g;
+  SelfContact kind = SelfContact::touch;
+  std::vector<std::array<PointKey, 2>> keys;  ///< of the ends of the segments
+  std::vector<std::array<Eigen::Vector3d, 2>> segments;
+
+  void add(const Triangle& s, const Triangle& t, const exact::PairContact& contact) {
+    const std::uint8_t n = contact.corner_count;
+    const bool overlap = contact.coplanar && n >= (s[2] == kNull ? 2 : 3);
+    kind = std::max(kind, overlap                              ? SelfContact::overlap
+                          : contact.meet == exact::Meet::cross ? SelfContact::cross
+                                                               : SelfContact::touch);
+    const auto key = [&](const exact::ContactCorner& corner) {
+      PointKey out{feature_of(s, corner.on_a), feature_of(t, corner.on_b)};
+      std::sort(out.begin(), out.end());
+      return out;
+    };
+    // A point is a segment of length 0, and a polygon its outline.
+    for (std::uint8_t i = 0; i < (n <= 2 ? 1 : n); ++i) {
+      const exact::ContactCorner &p = contact.corners[i], &q = contact.corners[(i + 1u) % n];
+      keys.push_back({key(p), key(q)});
+      segments.push_back({p.x, q.x});
+    }
+  }
+};
+
+std::uint32_t shared_corners(const Mesh& mesh, FaceId f, FaceId g) {
+  const auto a = mesh.face(f), b = mesh.face(g);
+  std::vector<VertexId> of_a(a.begin(), a.end()), of_b(b.begin(), b.end()), both;
+  std::sort(of_a.begin(), of_a.end());
+  std::sort(of_b.begin(), of_b.end());
+  std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), std::back_inserter(both));
+  return static_cast<std::uint32_t>(both.size());
+}
+
+/// Numbers the curves in the order of the pairs, and gives equal points equal coordinates: the pairs on both
+/// sides of an edge may round them differently.
+void find_curves(const std::vector<FoundPair>& found, SelfIntersections& out) {
+  std::vector<PointKey> points;
+  for (const FoundPair& pair : found)
+    for (const auto& ends : pair.keys) points.insert(points.end(), ends.begin(), ends.end());
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  const auto number = [&](const PointKey& key) {
+    return static_cast<std::uint32_t>(std::lower_bound(points.begin(), points.end(), key) - points.begin());
+  };
+  DisjointSets sets(points.size());
+  std::vector<const Eigen::Vector3d*> first(points.size(), nullptr);
+  // All segments of a pair are of one curve: faces are connected, though the segments of two polygons that
+  // are not convex may not be.
+  std::size_t segment = 0;
+  for (const FoundPair& pair : found) {
+    const std::uint32_t of_pair = number(pair.keys[0][0]);
+    for (std::size_t i = 0; i < pair.keys.size(); ++i, ++segment)
+      for (std::size_t end = 0; end < 2; ++end) {
+        const std::uint32_t point = number(pair.keys[i][end]);
+        sets.join(of_pair, point);
+        if (first[point] == nullptr) first[point] = &pair.segments[i][end];
+        out.segments[segment][end] = *first[point];
+      }
+  }
+  std::vector<std::uint32_t> curve_of(points.size(), kNull);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    std::uint32_t& curve = curve_of[sets.leader(number(found[i].keys[0][0]))];
+    if (curve == kNull) curve = out.curves++;
+    out.pairs[i].curve = curve;
+  }
+}
+
+}  // namespace
+
+SelfIntersections self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use, Workers& workers,
+                                     std::uint64_t max_pairs) {
+  const Pieces pieces(mesh, use);
+  std::vector<FoundPair> found;
+  std::mutex lock;
+  std::atomic<bool> is_full = false;
+  pieces.for_each_pair(
+      [&](FaceId f, FaceId g) {
+        if (is_full || !pieces.meet_outside_shared(f, g)) return;
+        const std::lock_guard<std::mutex> locked(lock);
+        if (found.size() == max_pairs)
+          is_full = true;
+        else
+          found.push_back({f, g, SelfContact::touch, {}, {}});
+      },
+      workers);
+  if (is_full)
+    throw InputError(mesh.name + ": more than " + std::to_string(max_pairs) +
+                     " pairs of faces intersect, the limit set by max_pairs; raise it, or repair the mesh");
+  std::sort(found.begin(), found.end(),
+            [](const FoundPair& x, const FoundPair& y) { return x.f != y.f ? x.f < y.f : x.g < y.g; });
+  workers.for_each(found.size(), [&](std::size_t i, unsigned) {
+    FoundPair& pair = found[i];
+    pieces.for_each_contact(pair.f, pair.g,
+                            [&](const Triangle& s, const Triangle& t, const exact::PairContact& contact) {
+                              pair.add(s, t, contact);
+                            });
+  });
+  SelfIntersections out;
+  for (const FoundPair& pair : found) {
+    out.pairs.push_back({pair.f, pair.g, pair.kind, shared_corners(mesh, pair.f, pair.g), 0,
+                         static_cast<std::uint32_t>(out.segments.size()),
+                         static_cast<std::uint32_t>(pair.segments.size())});
+    out.segments.insert(out.segments.end(), pair.segments.begin(), pair.segments.end());
+  }
+  find_curves(found, out);
+  return out;
+}
+
+SelfIntersections self_intersections(const CheckedMesh& mesh, unsigned threads, std::uint64_t max_pairs) {
+  Workers workers(threads);
+  return self_intersections(mesh.mesh(), mesh.use(), workers, max_pairs);
 }
 
 }  // namespace lrb

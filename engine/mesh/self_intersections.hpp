@@ -7,6 +7,7 @@
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/parallel.hpp>
+#include <lrbscope/self_intersections.hpp>
 
 namespace lrb {
 
@@ -41,5 +42,9 @@ void find_overlaps(const Mesh& mesh, const std::vector<FaceUse>& use,
 /// Returns true if find_overlaps() would find a pair; stops at the first. `wanted`: empty for all faces.
 bool overlaps_itself(const Mesh& mesh, const std::vector<FaceUse>& use,
                      const std::function<bool(FaceId, FaceId)>& wanted = {});
+
+/// Returns the pairs with their kinds and segments; see <lrbscope/self_intersections.hpp>.
+SelfIntersections self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use, Workers& workers,
+                                     std::uint64_t max_pairs);
 
 }  // namespace lrb

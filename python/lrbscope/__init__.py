@@ -36,6 +36,7 @@ from ._core import (
     Results,
     Scenario,
     Scene,
+    SelfIntersections,
     SweepAndPrune,
     Trace,
     WalkExplanation,
@@ -52,6 +53,7 @@ from ._core import (
     near_pairs,
     render,
     scenarios,
+    self_intersections,
     signed_distance,
     trace,
 )
@@ -89,6 +91,7 @@ __all__ = [
     "Results",
     "Scenario",
     "Scene",
+    "SelfIntersections",
     "SweepAndPrune",
     "Trace",
     "WalkExplanation",
@@ -104,6 +107,7 @@ __all__ = [
     "near_pairs",
     "render",
     "scenarios",
+    "self_intersections",
     "signed_distance",
     "trace",
 ]

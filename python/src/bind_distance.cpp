@@ -4,6 +4,7 @@
 #include <lrbscope/first_contact.hpp>
 #include <lrbscope/near_pairs.hpp>
 #include <lrbscope/point_distance.hpp>
+#include <lrbscope/self_intersections.hpp>
 #include <lrbscope/workspace.hpp>
 
 namespace lrb::python {
@@ -435,6 +436,89 @@ Returns NearPairs.
 >>> pairs = near_pairs(cube, cube, shifted(3, 0, 0), within=2)
 >>> len(pairs), pairs.upper.max(), pairs.points[0, :, 0].tolist()
 (62, 2.0, [1.0, 3.0]))");
+}
+
+namespace {
+
+py::object self_intersections(py::handle of, py::handle max_pairs, py::handle threads) {
+  const Body& given = body(of, "body");
+  const std::uint64_t most = count(max_pairs, "max_pairs");
+  const unsigned n = threads_of(count(threads, "threads"));
+  SelfIntersections found;
+  {
+    const py::gil_scoped_release unlocked;
+    found = lrb::self_intersections(given.rep(), n, most > 0 ? most : kMaxSelfIntersections);
+  }
+  return py::cast(std::move(found));
+}
+
+}  // namespace
+
+void bind_self_intersections(py::module_& m) {
+  py::class_<SelfIntersections> c(m, "SelfIntersections",
+                                  "Pairs of faces in which a body intersects itself: arrays with a row for "
+                                  "each pair. Made by self_intersections().");
+  const auto column = [&c](const char* name, const char* text, std::uint32_t SelfIntersection::*member) {
+    c.def_property_readonly(
+        name,
+        [member](const SelfIntersections& s) {
+          return columns_of<std::uint32_t>(s.pairs.size(), 1,
+                                           [&](std::size_t i, py::ssize_t) { return s.pairs[i].*member; });
+        },
+        text);
+  };
+  c.def("__len__", [](const SelfIntersections& s) { return s.pairs.size(); });
+  c.def_property_readonly(
+      "faces",
+      [](const SelfIntersections& s) {
+        return columns_of<std::uint32_t>(s.pairs.size(), 2, [&](std::size_t i, py::ssize_t j) {
+          return (j == 0 ? s.pairs[i].a : s.pairs[i].b).value();
+        });
+      },
+      "(n, 2) uint32: the faces, ascending.");
+  c.def_property_readonly(
+      "kind",
+      [](const SelfIntersections& s) {
+        return columns_of<std::uint8_t>(s.pairs.size(), 1, [&](std::size_t i, py::ssize_t) {
+          return static_cast<std::uint8_t>(s.pairs[i].kind);
+        });
+      },
+      "(n,) uint8: 0 touch, 1 cross, 2 overlap in an area of one plane.");
+  column("shared", "(n,) uint32: number of corners in common.", &SelfIntersection::shared);
+  column("curve", "(n,) uint32: connected component of the segments.", &SelfIntersection::curve);
+  column("first_segment", "(n,) uint32: index of the pair's first segment in `segments`.",
+         &SelfIntersection::first_segment);
+  column("segment_counts", "(n,) uint32: number of the pair's segments.", &SelfIntersection::segments);
+  c.def_property_readonly(
+      "segments",
+      [](const SelfIntersections& s) {
+        const auto rows = static_cast<py::ssize_t>(s.segments.size());
+        return columns_of<double>(s.segments.size(), 6,
+                                  [&](std::size_t i, py::ssize_t j) {
+                                    return s.segments[i][static_cast<std::size_t>(j / 3)][j % 3];
+                                  })
+            .reshape({rows, py::ssize_t{2}, py::ssize_t{3}});
+      },
+      "(m, 2, 3) float64: ends of the segments of all pairs, body frame; equal for points.");
+  c.def_property_readonly(
+      "curves", [](const SelfIntersections& s) { return s.curves; },
+      "int: number of connected components of the segments.");
+  c.def("__repr__", [](const SelfIntersections& s) {
+    return "<lrbscope.SelfIntersections of " + std::to_string(s.pairs.size()) + " pairs>";
+  });
+  const py::none no;
+  m.def("self_intersections", &self_intersections, py::arg("body"), py::kw_only(), py::arg("max_pairs") = no,
+        py::arg("threads") = no,
+        R"(self_intersections(body, *, max_pairs=0, threads=0)
+
+Finds all pairs of faces of a body that intersect beyond the corners and edges that they share, exactly.
+
+max_pairs: a body with more is an InputError; 0: 16777216.
+
+Returns SelfIntersections.
+
+>>> len(self_intersections(cube))
+0)");
 }
 
 namespace {

@@ -36,7 +36,7 @@ std::string body_cause(const Golden& golden, const GoldenRun& run, std::size_t i
   if (i >= golden.facts.meshes.size())
     return who + "its mesh or its LRB-rep changed: " + built +
            " (this golden does not record which; approve it again to record it)";
-  const Mesh mesh = kept_mesh(run.recording.bodies[i].rep);
+  const Mesh mesh = run.recording.bodies[i].rep.real_mesh();
   if (mesh_hash(mesh) == golden.facts.meshes[i])
     return who + "the mesh is unchanged, but its LRB-rep was built differently: " + built;
   if (i < golden.meshes.size() && golden.meshes[i])
@@ -338,7 +338,7 @@ class Approval {
       if (run_.scenario.bodies[i].file.empty()) continue;
       const LrbRep& rep = run_.recording.bodies[i].rep;
       const std::string file = kept_file(i, rep.dim());
-      write_mesh(kept_mesh(rep), folder_ + "/" + file);
+      write_mesh(rep.real_mesh(), folder_ + "/" + file);
       say("approved", file);
     }
   }

@@ -45,19 +45,6 @@ std::size_t other_faces(const Mesh& x, const Mesh& y) {
 
 }  // namespace
 
-Mesh kept_mesh(const LrbRep& rep) {
-  Mesh m;
-  m.dim = rep.dim();
-  m.name = rep.name();
-  std::uint32_t used = 0;
-  for (std::uint32_t f = 0; f < rep.real_face_count(); ++f) {
-    m.add_face(rep.face(FaceId(f)));
-    for (const VertexId v : rep.face(FaceId(f))) used = std::max(used, v + 1u);
-  }
-  m.vertices.assign(rep.vertices().begin(), rep.vertices().begin() + used);
-  return m;
-}
-
 std::uint64_t mesh_hash(const Mesh& mesh) {
   Fnv64 hash;
   hash.add_value(mesh.dim);

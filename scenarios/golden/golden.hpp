@@ -104,8 +104,6 @@ inline const char* const kGoldenTrace = "trace.json.gz";
 // Keeps the mesh of an approved body beside its golden, so that a later report can name the vertices that
 // moved, and their displacement.
 
-/// Returns the real faces of a body, with its vertex numbers.
-Mesh kept_mesh(const LrbRep& rep);
 /// Returns a hash of all fields but the name.
 std::uint64_t mesh_hash(const Mesh& mesh);
 

@@ -173,7 +173,7 @@ GoldenRun play_golden(spec::Scenario scenario, const GoldenSpec& spec, const run
 GoldenFacts facts_of(const GoldenRun& run) {
   GoldenFacts facts;
   for (const bodies::LoadedBody& body : run.recording.bodies)
-    facts.meshes.push_back(mesh_hash(kept_mesh(body.rep)));
+    facts.meshes.push_back(mesh_hash(body.rep.real_mesh()));
   facts.contact_lengths = contact_lengths(run.recording);
   return facts;
 }

@@ -228,6 +228,7 @@ class Matrix:
         self.run(["inspect", file, "--render", "-o", f"{out}-r.png", "--size", "640x480"], made=f"{out}-r.png")
         self.run(["inspect", file, "--draw", f"{out}-f.png"], None, (2,) if stored else (0,))
         self.run(["inspect", file, "--regions"], None, (0, 2))
+        self.run(["inspect", file, "--self-intersections"], lambda lines: expect(not lines, "pairs, with exit code 0"), (0, 1))
         self.run(["inspect", file, "--validate"], None, (0,) if stored or kind["builds"] else (0, 2))
         self.run(["figure", file, "-o", f"{out}.png", "--dpi", "100"], None, built)
         self.run(["levels", file], None, built)
@@ -291,6 +292,8 @@ def ask_python(matrix, name):
 
     def ask(a, b, cell):
         size, steps = cell["size"], cell["steps"]
+        crossing = len(lrbscope.self_intersections(a))
+        expect(not (crossing and matrix.kinds[cell["a"]]["simple"]), f"{crossing} self-intersections of a simple body")
         on = lrbscope.signed_distance(a, a.vertices[np.unique(a.triangles)])
         expect(not on.lower.any() and not on.upper.any() and not (on.side % 2).any(), "corners off the surface")
         poses = np.array([np.vstack([np.reshape(step["pose"], (3, 4)), [0, 0, 0, 1]]) for step in steps])

@@ -1,6 +1,7 @@
 #include "engine/mesh/self_intersections.hpp"
 
 #include <algorithm>
+#include <map>
 #include <random>
 #include <set>
 
@@ -8,7 +9,11 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/rational_oracle.hpp"
+#include "tests/support/simplex_distance.hpp"
+#include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
 #include <lrbscope/mesh_check.hpp>
+#include <lrbscope/self_intersections.hpp>
 
 namespace lrb::test {
 
@@ -35,8 +40,58 @@ Pairs meeting_strangers(const Mesh& m) {
   return found;
 }
 
+/// Returns the pairs with kinds, segments and curves, the same for any number of threads.
+SelfIntersections found_in(const Mesh& m) {
+  const CheckedMesh checked = check(m);
+  const SelfIntersections one = self_intersections(checked, 1), many = self_intersections(checked, 3);
+  CHECK(one.segments == many.segments);
+  CHECK(one.curves == many.curves);
+  REQUIRE(one.pairs.size() == many.pairs.size());
+  for (std::size_t i = 0; i < one.pairs.size(); ++i) {
+    CHECK(one.pairs[i].a == many.pairs[i].a);
+    CHECK(one.pairs[i].b == many.pairs[i].b);
+    CHECK(one.pairs[i].kind == many.pairs[i].kind);
+    CHECK(one.pairs[i].curve == many.pairs[i].curve);
+  }
+  return one;
+}
+
+/// Checks kinds by the oracle's classification of two simplices, and that ends of segments are on both.
+void check_kinds(const Mesh& m, const SelfIntersections& found, const Pairs& expected) {
+  REQUIRE(found.pairs.size() == expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const SelfIntersection& pair = found.pairs[i];
+    CAPTURE(pair.a);
+    CAPTURE(pair.b);
+    REQUIRE(std::array<std::uint32_t, 2>{pair.a, pair.b} == expected[i]);
+    CHECK(pair.shared == 0);
+    REQUIRE(pair.segments > 0);
+    CHECK(pair.curve < found.curves);
+    const double *pa[3], *pb[3];
+    Points of_a, of_b;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(m.dim); ++k) {
+      of_a.push_back(m.vertices[m.face(pair.a)[k]]);
+      of_b.push_back(m.vertices[m.face(pair.b)[k]]);
+    }
+    for (std::size_t k = 0; k < of_a.size(); ++k) pa[k] = of_a[k].data(), pb[k] = of_b[k].data();
+    // 2: their interiors cross. An overlap has an area (2D: a length).
+    const bool crosses = oracle::meet_of_simplices(pa, pb, of_a.size()) == 2;
+    CHECK((pair.kind == SelfContact::cross) == crosses);
+    const bool has_area =
+        m.dim == 3 ? pair.segments >= 3
+                   : found.segments[pair.first_segment][0] != found.segments[pair.first_segment][1];
+    CHECK((pair.kind == SelfContact::overlap) == (!crosses && has_area));
+    for (std::uint32_t s = 0; s < pair.segments; ++s)
+      for (const Eigen::Vector3d& x : found.segments[pair.first_segment + s]) {
+        CHECK(simplex_distance({x}, of_a) < 1e-12);
+        CHECK(simplex_distance({x}, of_b) < 1e-12);
+      }
+  }
+}
+
 void check_against_oracle(const Mesh& m) {
   const Pairs expected = meeting_strangers(m);
+  check_kinds(m, found_in(m), expected);
   const MeshFinding finding = check_mesh(m)[MeshFault::self_intersection];
   CHECK(finding.count == expected.size());
   std::set<FaceId> faces;
@@ -187,6 +242,79 @@ TEST_CASE("overlapping and touching solids") {
     CHECK(overlaps(several({c.b, c.a})) == c.overlap);
   }
   for (const Mesh& clean : {comb(4), torus(12, 8), box_with_void(), gear(9)}) CHECK_FALSE(overlaps(clean));
+}
+
+TEST_CASE(
+    "the self-intersections of two bodies in one mesh are the pairs of the exact query, in closed curves") {
+  const Mesh a = icosphere(2);
+  for (const Point3& by : {Point3{0.9, 0.2, 0.1}, Point3{0.05, 0.02, 1.9}}) {
+    const Mesh both = several({a, translated(a, by)});
+    const LrbRep rep = LrbRep::without_regions(a, true, false);
+    const CollideResult expected =
+        collide(rep, {}, LrbRep::without_regions(translated(a, by), true, false), {});
+    const SelfIntersections found = found_in(both);
+    REQUIRE(found.pairs.size() == expected.pairs.size());
+    REQUIRE(!found.pairs.empty());
+    for (std::size_t i = 0; i < found.pairs.size(); ++i) {
+      CHECK(found.pairs[i].a.value() == expected.pairs[i].a.value());
+      CHECK(found.pairs[i].b.value() == expected.pairs[i].b.value() + a.face_count());
+      CHECK(found.pairs[i].kind == SelfContact::cross);
+    }
+    // Two spheres intersect in one closed curve: each end belongs to two segments.
+    CHECK(found.curves == 1);
+    std::map<std::array<double, 3>, int> ends;
+    for (const auto& segment : found.segments)
+      for (const Eigen::Vector3d& x : segment) ++ends[{x.x(), x.y(), x.z()}];
+    for (const auto& [x, count] : ends) CHECK(count == 2);
+    const SelfIntersections of_body = self_intersections(LrbRep::without_regions(both, true, true));
+    CHECK(of_body.segments == found.segments);
+  }
+  CHECK(found_in(several({a, translated(a, {1, 0, 0}), translated(a, {9, 0, 0}), translated(a, {10, 0, 0})}))
+            .curves == 2);
+}
+
+TEST_CASE("self-intersections of faces with common corners: a fold, a spike, a duplicate") {
+  Mesh m;
+  m.vertices = {{0, 0, 0},      {1, 0, 0},       {0, 1, 0},   {0.25, 0.25, 0},
+                {0.25, 0.5, 1}, {0.5, 0.25, -1}, {0.5, -1, 0}};
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    m.add_face(std::array{VertexId(a), VertexId(b), VertexId(c)});
+  };
+  add(0, 1, 2);
+  add(1, 0, 3);  // folded onto the first along their edge
+  SelfIntersections found = found_in(m);
+  REQUIRE(found.pairs.size() == 1);
+  CHECK(found.pairs[0].kind == SelfContact::overlap);
+  CHECK(found.pairs[0].shared == 2);
+  m.face_offsets = {0}, m.face_vertices = {};
+  add(0, 1, 2);
+  add(0, 4, 5);  // shares a corner, and passes through the interior
+  found = found_in(m);
+  REQUIRE(found.pairs.size() == 1);
+  CHECK(found.pairs[0].kind == SelfContact::cross);
+  CHECK(found.pairs[0].shared == 1);
+  REQUIRE(found.pairs[0].segments == 1);
+  CHECK(found.segments[0][0].norm() * found.segments[0][1].norm() == 0);  // from the corner
+  m.face_offsets = {0}, m.face_vertices = {};
+  add(0, 1, 2);
+  add(1, 2, 0);
+  add(0, 1, 6);  // beside the first: shares an edge only
+  found = found_in(m);
+  REQUIRE(found.pairs.size() == 1);
+  CHECK(found.pairs[0].kind == SelfContact::overlap);
+  CHECK(found.pairs[0].shared == 3);
+}
+
+TEST_CASE("self-intersections: no pairs, no faces, and too many pairs") {
+  CHECK(found_in(icosphere(2)).pairs.empty());
+  CHECK(found_in(quad_box()).curves == 0);
+  CHECK(found_in(Mesh{}).pairs.empty());
+  const Mesh soup = random_soup(5, 40, 3);
+  const std::size_t all = found_in(soup).pairs.size();
+  REQUIRE(all > 10);
+  CHECK(self_intersections(check(soup), 2, all).pairs.size() == all);
+  CHECK_THROWS_WITH_AS(self_intersections(check(soup), 2, all - 1),
+                       doctest::Contains("limit set by max_pairs"), InputError);
 }
 
 }  // namespace lrb::test

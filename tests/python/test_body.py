@@ -220,3 +220,17 @@ def test_options_are_checked():
         Body(*arrays, threads=-1)
     with pytest.raises(TypeError, match="seed: expected an integer, got float"):
         Body(*arrays, seed=0.5)
+
+
+def test_self_intersections(cube, ball):
+    assert len(lrbscope.self_intersections(cube)) == 0
+    v, f = ball_arrays(2)
+    both = Body(np.vstack([v, v + [0.9, 0.2, 0.1]]), np.vstack([f, f + len(v)]))
+    found = lrbscope.self_intersections(both)
+    expected = lrbscope.collide(Body(v, f), Body(v + [0.9, 0.2, 0.1], f)).pairs
+    assert np.array_equal(found.faces, expected + [0, len(f)]) and len(found) > 10
+    assert (found.kind == 1).all() and not found.shared.any() and found.curves == 1 and not found.curve.any()
+    assert found.segments.shape == (found.segment_counts.sum(), 2, 3)
+    assert np.array_equal(found.first_segment, np.cumsum(found.segment_counts) - found.segment_counts)
+    with pytest.raises(InputError, match="more than 3 pairs"):
+        lrbscope.self_intersections(both, max_pairs=3)

@@ -158,6 +158,7 @@ def samples(tmp_path_factory, ball, cube):
         lrbscope.distance(ball, ball, [near, far]),
         lrbscope.near_pairs(ball, ball, far, within=1.0),
         lrbscope.signed_distance(ball, np.eye(3)),
+        lrbscope.self_intersections(ball),
         *clashes,
         lrbscope.first_contact(ball, ball, motion),
         lrbscope.first_contact(ball, ball, np.array([motion])),

@@ -74,6 +74,9 @@ class LrbRep {
   /// Creates a body without regions from the real faces of another. Faces and vertices keep their numbers.
   static LrbRep without_regions(const LrbRep& rep);
 
+  /// Returns the mesh: the real faces and the vertices up to the last one that they use, with their numbers.
+  Mesh real_mesh() const;
+
   int dim() const { return d_.dim; }
   bool closed() const { return d_.closed; }
   /// Returns LrbData::self_intersecting, which is determined when regions are built. It may be unset for a
