@@ -4,8 +4,6 @@
 #include <cerrno>
 #include <cstring>
 #include <deque>
-#include <filesystem>
-#include <fstream>
 #include <list>
 #include <map>
 #include <memory>
@@ -21,8 +19,7 @@
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "bench/workers/workers.hpp"
-#include "scenarios/io/files.hpp"
-#include <lrbscope/core/file.hpp>
+#include "scenarios/io/unfinished.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace.hpp>
 
@@ -96,16 +93,15 @@ struct FamilyWork {
   std::size_t methods_begun = 0, methods_done = 0;
 };
 
-/// The records of an experiment while it runs, in a file. The first line is that of the run that wrote them.
+/// The records of an experiment while it runs.
 class Unfinished {
  public:
-  Unfinished(std::string path, const std::string& head) : path_(std::move(path)) {
-    if (path_.empty()) return;
-    read(head);
-    std::string text = head + "\n";
-    for (const auto& [key, record] : known_) text += to_json(record).dump() + "\n";
-    io::write_text(path_, text);  // without a line that was cut off
-    out_.open(path_, std::ios::app);
+  Unfinished(const std::string& path, const std::string& head) : file_(path, head) {
+    for (const std::string& line : file_.lines()) {
+      Record r = record_from(nlohmann::json::parse(line, nullptr, false));
+      RecordKey key{r.family, r.method, r.difficulty, r.case_index};
+      known_[std::move(key)] = std::move(r);
+    }
   }
 
   /// Returns the record of an earlier run, or null.
@@ -115,36 +111,13 @@ class Unfinished {
     return it == known_.end() ? nullptr : &it->second;
   }
 
-  void add(const Record& r) {
-    if (path_.empty()) return;
-    if (!(out_ << to_json(r).dump() << "\n" << std::flush))
-      throw EnvironmentError(printable_name(path_) + ": cannot write the file: " + std::strerror(errno));
-  }
-
-  void remove() const {
-    std::error_code error;
-    if (!path_.empty()) std::filesystem::remove(path_, error);
-  }
+  void add(const Record& r) { file_.add(to_json(r).dump()); }
+  void remove() const { file_.remove(); }
 
  private:
   using RecordKey = std::tuple<std::string, std::string, int, std::uint64_t>;
-
-  void read(const std::string& head) {
-    std::ifstream in(path_);
-    std::string line;
-    if (!std::getline(in, line) || line != head) return;
-    while (std::getline(in, line)) {
-      const nlohmann::json value = nlohmann::json::parse(line, nullptr, false);
-      if (value.is_discarded()) continue;
-      Record r = record_from(value);
-      RecordKey key{r.family, r.method, r.difficulty, r.case_index};
-      known_[std::move(key)] = std::move(r);
-    }
-  }
-
-  std::string path_;
+  io::UnfinishedFile file_;
   std::map<RecordKey, Record> known_;
-  std::ofstream out_;
 };
 
 /// Describes the run whose records can be continued: the version, and what else their outcomes depend on.
