@@ -97,7 +97,6 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   if (const auto n = root.get("arrangement")) c.arrangement = n->choice<Crowd::Arrangement>();
   c.kinds = read_kinds(root.at("bodies"), std::filesystem::path(file).parent_path(), c.seed);
   read_motion(root.at("motion"), c);
-  c.request.contacts = true;
   if (const auto n = root.get("query")) {
     for (const char* key : {"tolerance", "max_tests", "separation"})
       if (n->has(key)) n->fail_key(key, "queries of a crowd are exact; remove it, or use a scenario");
@@ -105,6 +104,7 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
       if (n->has(key)) n->fail_key(key, "not supported for a crowd; remove it, or use a scenario");
     n->object(crowd_query_keys());
     c.request = read_query(*n);
+    if (!n->has("contacts")) c.request.contacts = false;  // they take most of the time of a step
   }
   if (const auto trace = root.get("trace")) {
     trace->object({"clock", "max_events"});

@@ -404,6 +404,16 @@ TEST_CASE("schema and reader agree on every key of a query") {
         std::string::npos);
 }
 
+TEST_CASE("the geometry of contacts is computed only on request") {
+  json crowd = good();
+  crowd.erase("query");
+  CHECK_FALSE(crowd_of(crowd).request.contacts);
+  crowd["query"] = {{"max_pairs", 1000}};
+  CHECK_FALSE(crowd_of(crowd).request.contacts);
+  crowd["query"] = {{"contacts", true}};
+  CHECK(crowd_of(crowd).request.contacts);
+}
+
 TEST_CASE("commands for runs of two bodies name the trace of a crowd as such") {
   const test::Folder folder;
   const spec::Crowd crowd = crowd_of(good());
