@@ -2,6 +2,9 @@
 #include <array>
 #include <vector>
 
+#include <Eigen/Geometry>
+
+#include "render/hairs.hpp"
 #include "render/scene_parts.hpp"
 #include <lrbscope/render/style.hpp>
 
@@ -135,8 +138,33 @@ class Scene2dBuilder {
       for (const FaceId f : boundary) add_lines({f}, c_.colour_of(f, kSolid), 4, 0);
       return;
     }
-    add_lines(boundary, colour, 3, 0);
+    add_outline(boundary, colour, 3);
     c_.add_key(Mark::line, colour, c_.name() + (c_.building() ? ", front" : ", wrapper"));
+  }
+
+  /// Draws the faces of a boundary without hairs, which would seem to be edges that end outside the body.
+  void add_outline(const std::vector<FaceId>& boundary, Rgba colour, float width) {
+    std::vector<Segment2d> lids;
+    Eigen::AlignedBox3d box;
+    for (const FaceId f : boundary) {
+      const std::vector<Vector3d> x = c_.corners(f, Vector3d::Zero());
+      for (const Vector3d& p : x) box.extend(p);
+      if (!rep_.is_real(f)) lids.push_back({x[0], x[1]});
+    }
+    constexpr double kHair = 2e-4;  // of the body's diagonal: a fraction of a pixel
+    const std::vector<Segment2d> rest = without_hairs(lids, kHair * box.diagonal().norm());
+    if (rest == lids) return add_lines(boundary, colour, width, 0);
+    std::vector<FaceId> real;
+    for (const FaceId f : boundary)
+      if (rep_.is_real(f)) real.push_back(f);
+    add_lines(real, colour, width, 0);
+    for (const Segment2d& s : rest) {
+      DrawLine line;
+      line.points = {s[0], s[1]};
+      line.colour = colour;
+      line.width = width * scale_;
+      c_.out.list.lines.push_back(std::move(line));
+    }
   }
 
   void add_segment(DrawFill& fill, FaceId f, const Vector3d& by) const {

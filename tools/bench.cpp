@@ -30,7 +30,7 @@ bool is_peer(const workers::WorkerMethod& m) {
 int run_bench(const BenchOptions& o, const Globals& globals) {
   std::vector<workers::WorkerMethod> methods = workers::find_all_methods();
   std::erase_if(methods, [](const workers::WorkerMethod& m) { return !is_peer(m); });
-  methods = chosen(methods, o.methods, "method", [](const workers::WorkerMethod& m) { return m.info.name; });
+  methods = chosen_methods(methods, o.methods);
   make_folder(o.folder);
   const io::FolderLock lock(o.folder);
   std::vector<bench::BodyPair> pairs;

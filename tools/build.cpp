@@ -45,8 +45,8 @@ std::string as_text(const nlohmann::ordered_json& j, const ValidateReport* repor
       << " pseudo = " << figure("total_faces") << " (" << figure("total_per_real") << " per real face), "
       << figure("outer_faces") << " outermost\n"
       << "  regions  " << figure("regions") << " in " << figure("layers") << " layers\n"
-      << "  volume   solid " << figure("volume_solid") << ", outermost wrapper " << figure("volume_outer")
-      << ", convex hull " << figure("volume_hull") << "\n"
+      << (j["dim"] == 2 ? "  area     solid " : "  volume   solid ") << figure("volume_solid")
+      << ", outermost wrapper " << figure("volume_outer") << ", convex hull " << figure("volume_hull") << "\n"
       << "  memory   " << figure("bytes_per_real_face") << " bytes per real face; peak of the process "
       << for_people(j["peak_bytes"].get<double>() / kMega, 3) << " MB\n"
       << "  built in " << figure("seconds") << " s\n";

@@ -26,6 +26,7 @@ struct ChartOptions : MeasureOptions {
     set.poses = 8;
   }
   std::uint32_t faces = 2000;
+  unsigned rounds = 3;
   bool scenes = true;
 };
 
@@ -49,12 +50,16 @@ void measure(const ChartOptions& o, const std::vector<workers::WorkerMethod>& me
   bench::SurveyOptions options;
   options.folder = o.folder;
   options.timeout = o.timeout;
-  options.keep = true;
+  options.judges = true;
+  options.rounds = o.rounds;
   options.contestants = bench::contestants(methods);
   std::vector<bench::BodyPair> pairs;
   if (!o.models.empty()) pairs = bench::pairs_of_models(o.models);
   if (o.faces > 0)
     for (bench::BodyPair& p : bench::generated_pairs(o.faces)) pairs.push_back(std::move(p));
+  std::vector<std::string> names;
+  for (const bench::BodyPair& p : pairs) names.push_back(bench::set_name(p, o.set.quantity));
+  bench::write_plan(options, names);
   for (const bench::BodyPair& p : pairs) options.sets.push_back(bench::make_data_set(p, o.set, o.folder));
   Progress bar("measure", 0, globals.quiet);
   bench::survey(options, [&](std::uint64_t done, std::uint64_t total, const std::string& what) {
@@ -70,28 +75,24 @@ void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& metho
   std::vector<methods::MethodInfo> infos;
   std::transform(methods.begin(), methods.end(), std::back_inserter(infos),
                  [](const workers::WorkerMethod& m) { return m.info; });
-  std::vector<bench::Point> points;
-  {
-    Progress bar("errors", 0, globals.quiet);
-    points = bench::measure_points(sets, infos, bench::read_records(o.folder + "/records.jsonl"),
-                                   [&](std::size_t done, std::size_t total) {
-                                     bar.set_total(total);
-                                     bar.set(done);
-                                   });
-  }
+  const std::vector<bench::Record> records = bench::read_records(o.folder + "/records.jsonl");
+  const std::vector<bench::Missing> missing = bench::missing_answers(o.folder, sets, records);
+  const std::string unfinished = bench::missing_text(missing);
+  if (!unfinished.empty()) note(globals, {unfinished});
+  const std::vector<bench::Point> points = bench::measure_points(sets, infos, records);
   std::map<bench::SceneKey, std::string> scenes;
   if (o.scenes) scenes = bench::write_scenes(sets, points, o.folder, progress_report(globals.quiet));
   const auto charts = bench::accuracy_charts(sets, points, infos, [&](const bench::Point& p) {
     const auto it = scenes.find({p.set, p.pose_class});
     return it == scenes.end() ? std::string() : it->second;
   });
-  report::Document page = bench::accuracy_page(o.set.quantity, points, infos, charts);
+  report::Document page = bench::accuracy_page(o.set.quantity, points, infos, charts, unfinished);
   page.number({"Machine", bench::machine(), bench::build_flags()}).command(globals.command_line);
   page.link({"records.jsonl", "every answer of every method"});
   page.file("points.jsonl", bench::to_lines(points), "computed from them");
   for (const auto& [key, target] : scenes)
     page.link({target, "scene, trace and pictures", key.first + ", " + bench::title(key.second)});
-  page.print("chart", "for print", bench::accuracy_print(o.set.quantity, charts));
+  page.print("chart", "for print", bench::accuracy_print(o.set.quantity, sets, missing, charts));
   page.write(folder);
   for (const std::string& line : page.notes()) std::cerr << "lrbscope: " << line << "\n";
   for (const std::string& file : page.written()) print(o.folder + "/" + file + "\n");
@@ -102,8 +103,7 @@ int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals)
   const bool pairs = quantity == methods::Quantity::pairs;
   if (o.folder.empty()) o.folder = pairs ? "out/chart" : "out/chart-" + std::string(name_of(quantity));
   const std::vector<workers::WorkerMethod> methods =
-      chosen(pairs ? workers::find_all_methods() : workers::find_number_methods(quantity), o.methods,
-             "method", [](const workers::WorkerMethod& m) { return m.info.name; });
+      chosen_methods(pairs ? workers::find_all_methods() : workers::find_number_methods(quantity), o.methods);
   const report::Folder folder(o.folder);
   if (measures) measure(o, methods, globals);
   if (draws) draw(o, methods, folder, globals);
@@ -126,6 +126,12 @@ Command add_chart(CLI::App& root, const Globals& globals) {
   add_quantity_option(*app, o->set.quantity);
   app->add_option("--faces", o->faces, "Face count of the generated bodies; 0: none [2000]")
       ->check(CLI::Range(0, 200000))
+      ->type_name("N");
+  app->add_option(
+         "--rounds", o->rounds,
+         "Number of times that each method is timed, after all others; points on the frontier differ "
+         "by more than the span of rounds [3]")
+      ->check(CLI::Range(1, 100))
       ->type_name("N");
   app->add_flag("!--no-scenes", o->scenes, "Do not run the scenarios that the chart's points link to");
   return {app, [o, &globals, measures, draws] {

@@ -87,7 +87,9 @@ int run_close(const CloseOptions& o, const Globals& globals) {
   const CheckedMesh mesh = check(bodies::read_body(o.mesh, o.corners, notes));
   note(globals, notes);
   if (mesh.mesh().dim == 2)
-    throw InputError(mesh.mesh().name + ": expected a 3D body, found a 2D body; close it with a segment (l)");
+    throw InputError(
+        mesh.mesh().name +
+        ": expected a 3D body, found a 2D body; close it with segments (l) between its ends, which lrbscope inspect lists");
   if (!mesh.report().queryable())
     throw InputError(mesh.mesh().name + ": has faults that must be fixed first; lrbscope inspect lists them");
   if (const MeshReport& report = mesh.report(); report.sheets > 0 && report.sheets == report.open_components)

@@ -90,7 +90,11 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
     Eigen::Vector3d direction(1, 0.35, 0.25);
     if (!o.approach.empty()) direction = io::parse_vector(o.approach, "--approach");
     if (!(direction.squaredNorm() > 0)) throw InputError("--approach: expected a direction other than zero");
-    if (bodies[0].rep.dim() == 2) direction.z() = 0;
+    if (bodies[0].rep.dim() == 2) {
+      if (!o.approach.empty() && direction.z() != 0)
+        throw InputError("--approach: expected z = 0 because the bodies are 2D, found " + o.approach);
+      direction.z() = 0;
+    }
     s.motion = approach_from(direction, bodies[0].rep, bodies[1].rep);
   }
   Fnv64 hash;

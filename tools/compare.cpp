@@ -55,14 +55,15 @@ int run_compare(const CompareOptions& o, const Globals& globals) {
   const std::optional<std::string> difference =
       compare::write_comparison(runs, globals.command_line, folder, progress_report(globals.quiet));
   print(difference.value_or("the runs are identical") + "\n" + folder + "/index.html\n");
-  return kOk;
+  return difference ? kMismatch : kOk;
 }
 
 }  // namespace
 
 Command add_compare(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("compare", "Show two recorded runs side by side, with their first difference");
+  CLI::App* app = root.add_subcommand(
+      "compare",
+      "Show two recorded runs side by side, with their first difference; exit code 1 if they differ");
   const auto o = std::make_shared<CompareOptions>();
   app->add_option("RUN1", o->first, "Folder or trace of a run, as written by run, collide or xray")
       ->required();

@@ -47,9 +47,7 @@ Contest make_contest(const EngineOptions& o) {
       engines.push_back(tails::our_engine(a, b));
       continue;
     }
-    const workers::WorkerMethod method =
-        chosen(known, {name}, "method", [](const workers::WorkerMethod& m) { return m.info.name; }).front();
-    if (!method.info.present) throw InputError("method '" + name + "': " + method.info.remark);
+    const workers::WorkerMethod method = chosen_methods(known, {name}).front();
     if (!method.info.pairs)
       throw InputError("method '" + name + "': expected one that lists all pairs, found one that does not");
     engines.push_back(tails::worker_engine(method, o.files(), o.limit()));

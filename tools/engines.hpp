@@ -33,8 +33,8 @@ struct Contest {
   std::vector<std::unique_ptr<tails::Engine>> engines;
 };
 
-/// Reads the bodies and prepares the engines. Throws InputError for bodies that are not 3D, and for an
-/// unknown or absent method.
+/// Reads the bodies and prepares the engines. Throws InputError for bodies that are not 3D and for an unknown
+/// method, and EnvironmentError for an absent one.
 Contest make_contest(const EngineOptions& options);
 
 /// The words of the command that records one pose of B, given in a file, into a folder: `xray` for engines

@@ -179,7 +179,7 @@ int export_run(const ExportOptions& given, Input kind, const Globals& globals) {
   const bool two = run.bodies.size() == 2;
   if (o.what.empty()) {
     o.what = {"wrapper"};
-    if (two) o.what.emplace_back("contacts");
+    if (two && !ends_with(o.out, ".stl")) o.what.emplace_back("contacts");  // STL has only triangles
   }
   reject(!two && o.asks_for("contacts"), "--what contacts", "the run has only one body");
   reject(!two && !o.of.empty(), "--of", "the run has only one body");
@@ -237,19 +237,19 @@ int run_export(const ExportOptions& given, const Globals& globals) {
 
 Command add_export(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
-      "export", "Export bodies, wrappers, contacts or poses to PLY, VTP, GLB, OBJ, CSV or JSON");
+      "export", "Export bodies, wrappers, contacts or poses to PLY, VTP, GLB, OBJ, STL, CSV or JSON");
   const auto o = std::make_shared<ExportOptions>();
   app->add_option(
          "INPUT", o->input,
          "Mesh or .lrb file; a run's folder or trace; a scenario; with --what poses also a file of poses")
       ->required();
   app->add_option("-o,--output", o->out,
-                  "File to write: .ply, .vtp, .glb or .obj; poses: .csv, .json or .txt")
+                  "File to write: .ply, .vtp, .glb, .obj or .stl (faces only); poses: .csv, .json or .txt")
       ->required()
       ->type_name("FILE");
   app->add_option("--what", o->what,
                   "Contents of the file [body file: body, or wrapper if one is selected; run: "
-                  "wrapper,contacts]")
+                  "wrapper,contacts; .stl: wrapper]")
       ->delimiter(',')
       ->check(CLI::IsMember({"body", "wrapper", "contacts", "poses"}).description(""))
       ->type_name("body|wrapper|contacts|poses");
@@ -274,7 +274,7 @@ Command add_export(CLI::App& root, const Globals& globals) {
       ->type_name("FILE")
       ->expected(1, 2);
   app->add_flag("--regions", o->file.regions, "One object per region (.glb, .obj)");
-  app->add_flag("--ascii", o->file.ascii, "Write numbers as text (.ply, .vtp)");
+  app->add_flag("--ascii", o->file.ascii, "Write numbers as text (.ply, .vtp, .stl)");
   app->add_option("--up", o->up, "Axis of the bodies that points up (.glb)")
       ->check(CLI::IsMember({"x", "y", "z"}).description(""))
       ->capture_default_str()

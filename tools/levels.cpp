@@ -22,11 +22,17 @@ struct LevelsOptions {
   bool json = false;
 };
 
-std::string as_table(const std::vector<bodies::LevelFigures>& levels, const LrbRep& rep) {
+/// `why_none`: why the body has no levels of detail, or empty if it has some.
+std::string as_table(const std::vector<bodies::LevelFigures>& levels, const LrbRep& rep,
+                     const std::string& why_none) {
   constexpr int kWidth = 12, kDigits = 4;
   std::ostringstream out;
   out << std::setprecision(kDigits);
   out << rep.name() << ": " << rep.real_face_count() << " faces\n";
+  if (!why_none.empty()) {
+    out << "no levels of detail, because " << why_none << "\n";
+    return out.str();
+  }
   for (const char* title : {"share", "tolerance", "faces", "deviation"}) out << std::setw(kWidth) << title;
   out << "\n";
   for (const bodies::LevelFigures& l : levels)
@@ -41,19 +47,22 @@ int run_levels(const LevelsOptions& o, const Globals& globals) {
   if (!o.up.empty()) report.view = turned_up(report.view, o.up[0] - 'x');
   if (!o.folder.empty()) levels::check_drawable(body.rep, report.shares);
   note(globals, body.notes);
-  if (const std::string why = note_no_levels(body.rep); !why.empty()) note(globals, {why});
+  const std::string why_none = why_no_levels(body.rep);
+  if (!why_none.empty()) note(globals, {note_no_levels(body.rep)});
   if (!o.folder.empty()) note(globals, levels::write_level_report(body.rep, report, o.folder));
   const std::string page = o.folder.empty() ? "" : o.folder + "/index.html";
-  const auto levels = bodies::level_figures(body.rep, o.shares, o.build.threads);
+  std::vector<bodies::LevelFigures> levels;
+  if (why_none.empty()) levels = bodies::level_figures(body.rep, o.shares, o.build.threads);
   if (o.json) {
     nlohmann::ordered_json j;
     j["name"] = body.rep.name();
     j["real_faces"] = body.rep.real_face_count();
     j["levels"] = bodies::level_json(levels);
+    if (!why_none.empty()) j["no_levels"] = why_none;
     if (!page.empty()) j["page"] = page;
     print(one_line(j));
   } else {
-    print(as_table(levels, body.rep) + (page.empty() ? "" : page + "\n"));
+    print(as_table(levels, body.rep, why_none) + (page.empty() ? "" : page + "\n"));
   }
   return kOk;
 }

@@ -97,11 +97,29 @@ void print(const std::string& text) {
 
 namespace {
 
-/// Prints CLI11's text for --help and --version.
+/// Breaks a line of CLI11's help at spaces. Descriptions of options and commands are continued in their
+/// column.
+std::string wrapped(std::string line) {
+  constexpr std::size_t kWidth = 100, kDescriptions = 30;  // kDescriptions: CLI11's default column
+  const bool has_column = line.size() > kDescriptions && line[0] == ' ' && line[kDescriptions - 1] == ' ';
+  const std::size_t indent = has_column ? kDescriptions : 0;
+  std::string out;
+  while (line.size() > kWidth) {
+    const std::size_t space = line.rfind(' ', kWidth);
+    if (space == std::string::npos || space <= indent) break;  // a word longer than the column
+    out += line.substr(0, space) + "\n";
+    line = std::string(indent, ' ') + line.substr(space + 1);
+  }
+  return out + line + "\n";
+}
+
+/// Prints CLI11's text for --help and --version, in lines of at most 100 columns.
 int print_help(CLI::App& app, const CLI::ParseError& request) {
-  std::ostringstream text;
+  std::stringstream text;
   app.exit(request, text, text);
-  print(text.str());
+  std::string out;
+  for (std::string line; std::getline(text, line);) out += wrapped(line);
+  print(out);
   return kOk;
 }
 

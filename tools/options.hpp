@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bench/speed/make_sets.hpp"
+#include "bench/workers/workers.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
@@ -38,6 +39,18 @@ std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::string>&
   std::vector<T> out;
   std::copy_if(all.begin(), all.end(), std::back_inserter(out),
                [&](const T& t) { return std::find(names.begin(), names.end(), name_of(t)) != names.end(); });
+  return out;
+}
+
+/// Returns the named methods, as chosen(). Throws EnvironmentError if one of those named is absent from this
+/// build.
+inline std::vector<workers::WorkerMethod> chosen_methods(const std::vector<workers::WorkerMethod>& all,
+                                                         const std::vector<std::string>& names) {
+  std::vector<workers::WorkerMethod> out =
+      chosen(all, names, "method", [](const workers::WorkerMethod& m) { return m.info.name; });
+  if (!names.empty())
+    for (const workers::WorkerMethod& m : out)
+      if (!m.info.present) throw EnvironmentError("method '" + m.info.name + "': " + m.info.remark);
   return out;
 }
 

@@ -1,18 +1,25 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/unfinished.hpp"
 #include "scenarios/paper/experiment.hpp"
 #include "scenarios/paper/paper_report.hpp"
 #include "scenarios/paper/protocol.hpp"
 #include "scenarios/paper/series.hpp"
 #include "scenarios/paper/sweep.hpp"
 #include "tools/commands.hpp"
+#include "tools/options.hpp"
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::cli {
 
@@ -62,12 +69,16 @@ std::vector<paper::SeriesObject> make_series(const PaperSeriesOptions& o, const 
 
 /// Runs the collisions.
 std::vector<paper::ContactStep> run_series(const LrbRep& a, std::span<const paper::SeriesObject> objects,
-                                           const paper::SweepOptions& sweep, const Globals& globals) {
+                                           const paper::SweepOptions& sweep, const paper::PartRunner& part,
+                                           const Globals& globals) {
   Progress progress("resolutions collide", 0, globals.quiet);
-  return paper::run_series(a, objects, sweep, [&](std::uint64_t done, std::uint64_t of) {
-    progress.set_total(of);
-    progress.set(done);
-  });
+  return paper::run_series(
+      a, objects, sweep,
+      [&](std::uint64_t done, std::uint64_t of) {
+        progress.set_total(of);
+        progress.set(done);
+      },
+      part);
 }
 
 /// Writes a shard's series, to be merged later: series.jsonl and series_times.jsonl.
@@ -103,7 +114,7 @@ struct PaperOptions {
   std::optional<std::uint32_t> collisions, steps_after;  ///< these override the experiment
   std::optional<double> step;
   std::optional<std::uint64_t> seed;
-  std::uint32_t jobs = 1;
+  std::uint32_t jobs = 0;  ///< 0: all cores
   PaperSeriesOptions series;
   bool json = false, print = false;
 };
@@ -156,6 +167,54 @@ std::vector<paper::ContactStep> sweep_objects(std::span<const paper::PaperObject
   });
 }
 
+/// The parts that an interrupted run had finished.
+class FinishedParts {
+ public:
+  /// An empty folder: nothing is kept.
+  FinishedParts(const std::string& folder, const std::string& head)
+      : path_(folder.empty() ? "" : folder + "/unfinished.jsonl"), file_(path_, head) {
+    for (const std::string& line : file_.lines()) {
+      const auto value = nlohmann::json::parse(line, nullptr, false);
+      if (!value.is_object()) continue;
+      std::vector<paper::ContactStep> steps = paper::read_json_lines(value.value("records", ""), path_);
+      paper::read_times(value.value("times", ""), path_, steps);
+      known_[value.value("part", "")] = std::move(steps);
+    }
+  }
+
+  /// Returns the steps of a part: those of the earlier run, or of run().
+  std::vector<paper::ContactStep> steps(const std::string& name,
+                                        const std::function<std::vector<paper::ContactStep>()>& run) {
+    if (const auto it = known_.find(name); it != known_.end()) return it->second;
+    std::vector<paper::ContactStep> steps = run();
+    file_.add(nlohmann::ordered_json{{"part", name},
+                                     {"records", paper::to_json_lines(steps)},
+                                     {"times", paper::times_to_json_lines(steps)}}
+                  .dump());
+    return steps;
+  }
+
+  void remove() const { file_.remove(); }
+
+ private:
+  std::string path_;
+  io::UnfinishedFile file_;
+  std::map<std::string, std::vector<paper::ContactStep>> known_;
+};
+
+/// Describes the run whose parts can be continued: the version, the protocol, the shard and the bodies.
+std::string head_of(const paper::SweepOptions& sweep, std::span<const paper::PaperObject> objects) {
+  nlohmann::ordered_json head = {{"lrbscope", trace::lrbscope_version()},
+                                 {"collisions", sweep.protocol.collisions},
+                                 {"steps_after", sweep.protocol.steps_after},
+                                 {"step", sweep.protocol.step},
+                                 {"seed", sweep.protocol.seed},
+                                 {"shard", {sweep.shard.index, sweep.shard.count}}};
+  for (const paper::PaperObject& o : objects)
+    head["objects"].push_back(o.name + " " + trace::to_hex(o.rep.hash()));
+  return head.dump();
+}
+
 /// Takes the protocol and the resolutions from the shards to be merged; drops the series if the experiment
 /// defines none. Throws InputError if there is nothing to divide into shards.
 void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
@@ -190,7 +249,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
   paper::PaperExperiment experiment = experiment_of(o);
   settle(o, experiment);
   const bool merging = !o.merge.empty();
-  paper::SweepOptions sweep{experiment.protocol, {}, o.jobs};
+  paper::SweepOptions sweep{experiment.protocol, {}, o.jobs > 0 ? o.jobs : all_cores()};
   if (!o.shard.empty()) sweep.shard = read_shard(o.shard);
   const bool with_series = o.series.resolutions.most > 0;
   std::vector<paper::ContactStep> steps = read_shards(o.merge), series_steps;
@@ -203,20 +262,36 @@ int run_paper(PaperOptions o, const Globals& globals) {
   if (merging) paper::check_records({objects, steps, experiment, globals.command_line});
   const report::Folder folder(o.folder);
   const LrbRep& a = objects[0].rep;
-  if (!merging && experiment.collides())
-    steps = clock.run("their collisions", [&] { return sweep_objects(objects, sweep, globals); });
+  const bool computes = !merging && experiment.collides();
+  FinishedParts parts(computes ? o.folder : "", head_of(sweep, objects));
+  if (computes)
+    steps = clock.run("their collisions", [&] {
+      return parts.steps("objects", [&] { return sweep_objects(objects, sweep, globals); });
+    });
+  if (computes && with_series &&
+      o.shard.empty()) {  // so that an interruption of the rest leaves these results
+    paper::write_paper_report({objects, steps, experiment, globals.command_line, nullptr, clock.taken},
+                              folder);
+    note(globals,
+         {"wrote " + o.folder + "/index.html; bodies at several resolutions follow (--resolutions 0: none)"});
+  }
   const std::vector<paper::SeriesObject> series =
       clock.run("bodies at several resolutions", [&] { return make_series(o.series, a, globals); });
   if (!merging && with_series)
-    series_steps = clock.run("their collisions", [&] { return run_series(a, series, sweep, globals); });
+    series_steps = clock.run("their collisions", [&] {
+      const auto part = [&](const std::string& name, const auto& run) { return parts.steps(name, run); };
+      return run_series(a, series, sweep, part, globals);
+    });
   if (!o.shard.empty()) {
     write_shard(o, sweep, steps, with_series ? &series_steps : nullptr);
+    parts.remove();
     return kOk;
   }
   const paper::SeriesReport series_report{a, series, series_steps, sweep.jobs};
   note(globals, paper::write_paper_report({objects, steps, experiment, globals.command_line,
                                            with_series ? &series_report : nullptr, clock.taken},
                                           folder));
+  parts.remove();
   print(o.json ? io::read_text(o.folder + "/tables.json") : o.folder + "/index.html\n");
   return kOk;
 }
@@ -245,10 +320,9 @@ Command add_paper(CLI::App& root, const Globals& globals) {
       ->check(CLI::Range(0u, paper::kMaxStepsAfter))
       ->type_name("N");
   app->add_option("--seed", o->seed, "Random seed for directions and rotations [1]")->type_name("N");
-  app->add_option("--jobs", o->jobs, "Number of threads; the result does not depend on it")
+  app->add_option("--jobs", o->jobs, "Number of threads [all cores]; the result does not depend on it")
       ->check(CLI::Range(1u, 1024u))
-      ->type_name("N")
-      ->capture_default_str();
+      ->type_name("N");
   CLI::Option* shard =
       app->add_option("--shard", o->shard,
                       "Run only part i of n (from 0) of the collisions, and write only its records")

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "bench/stability/outcome_grid.hpp"
+#include "bench/stability/saved_case.hpp"
 #include "bench/stability/stability_experiment.hpp"
 #include "bench/stability/stability_report.hpp"
 #include "bench/stability/worst_case.hpp"
@@ -22,7 +23,7 @@ namespace {
 using namespace lrb::stability;
 
 struct StabilityOptions {
-  std::string folder;
+  std::string folder, save;
   std::vector<std::string> families, methods;
   std::optional<int> difficulty;
   std::optional<std::uint64_t> only;
@@ -80,15 +81,22 @@ int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMetho
   if (families.size() != 1 || !o.difficulty)
     throw InputError("--only: expected exactly one --family and one --difficulty with it");
   bool all_right = true;
+  std::vector<Replay> replays;
   for (const workers::WorkerMethod& m : methods) {
     if (!m.column.present) {
       print(m.column.name + ": absent. " + m.column.remark + "\n");
       continue;
     }
-    const Replay r = replay(m, families[0].name, *o.difficulty, *o.only, o.seed, o.timeout, o.quantity);
+    replays.push_back(replay(m, families[0].name, *o.difficulty, *o.only, o.seed, o.timeout, o.quantity));
+    const Replay& r = replays.back();
     print(describe(r, o.quantity, o.pairs));
     all_right = all_right && (r.record.outcome == stability::Outcome::right ||
                               r.record.outcome == stability::Outcome::rejected);
+  }
+  if (!o.save.empty()) {
+    const cases::Family& family = *cases::find_family(families[0].name);
+    const cases::Case c = cases::make_case(family, o.seed, *o.difficulty, *o.only);
+    for (const std::string& file : save_case(c, replays, o.save)) print(o.save + "/" + file + "\n");
   }
   return all_right ? kOk : kMismatch;
 }
@@ -105,6 +113,7 @@ Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod
   experiment.difficulty = o.difficulty;
   experiment.jobs = o.jobs;
   experiment.timeout = o.timeout;
+  experiment.unfinished_file = o.folder + "/unfinished.jsonl";
   Progress bar("stability", 0, globals.quiet);
   const std::vector<stability::Record> records =
       run_experiment(experiment, [&](std::uint64_t done, std::uint64_t total, const std::string& what) {
@@ -193,8 +202,10 @@ int run_stability(StabilityOptions o, const Globals& globals) {
     o.folder =
         o.quantity == Quantity::pairs ? "out/stability" : "out/stability-" + std::string(name_of(o.quantity));
   const std::vector<FamilyRow> families = families_for(o);
-  const auto methods = chosen(methods_for(o.quantity), o.methods, "method",
-                              [](const workers::WorkerMethod& m) { return m.column.name; });
+  const std::vector<workers::WorkerMethod> methods = chosen_methods(methods_for(o.quantity), o.methods);
+  if (!o.save.empty() && !o.only) throw InputError("--save: expected --only CASE with it");
+  if (!o.save.empty() && o.quantity != Quantity::pairs)
+    throw InputError("--save: expected --quantity pairs, found " + std::string(name_of(o.quantity)));
   if (o.only) return replay_one(o, methods, families);
   const report::Folder folder(o.folder);
   const Grid grid = run_grid(o, methods, families, globals);
@@ -236,6 +247,11 @@ Command add_stability(CLI::App& root, const Globals& globals) {
   app->add_option("--only", o->only, "Rerun this case and print the result")
       ->check(CLI::NonNegativeNumber)
       ->type_name("CASE");
+  app->add_option(
+         "--save", o->save,
+         "With --only: write the case as meshes and poses, the right answer with its proof in fractions, "
+         "and what each engine answered")
+      ->type_name("DIR");
   app->add_flag("--pairs", o->pairs, "With --only: print the expected and the found pairs");
   return {app, [o, &globals] { return run_stability(*o, globals); }};
 }

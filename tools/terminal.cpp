@@ -36,26 +36,28 @@ bool colour_wanted() {
 Progress::Progress(std::string label, std::uint64_t total, bool quiet)
     : label_(std::move(label)),
       total_(total),
-      enabled_(!quiet && ::isatty(STDERR_FILENO) == 1),
+      enabled_(!quiet),
+      terminal_(::isatty(STDERR_FILENO) == 1),
       colour_(colour_wanted()),
       begin_(std::chrono::steady_clock::now()),
       last_(begin_) {}
 
 void Progress::set(std::uint64_t done, const std::string& detail) {
   if (!enabled_) return;
-  constexpr std::chrono::milliseconds kBetweenDrawings(80);
+  constexpr std::chrono::milliseconds kBetweenDrawings(80), kBetweenLines(10'000);
   const auto now = std::chrono::steady_clock::now();
+  if (!terminal_ && now - last_ < kBetweenLines) return;  // a file or a pipe: few whole lines
   if (now - last_ < kBetweenDrawings && done != total_) return;
   last_ = now;
-  drawn_ = true;
+  drawn_ = terminal_;
   std::string line = label_ + " ";
   if (total_ > 0) {
     constexpr std::uint64_t kWidth = 28;
     const std::uint64_t full = std::min(kWidth, kWidth * done / total_);
     std::string bar;
     for (std::uint64_t i = 0; i < kWidth; ++i) bar += i < full ? "#" : ".";
-    line += (colour_ ? "\033[36m" + bar + "\033[0m" : bar) + " " + std::to_string(done) + "/" +
-            std::to_string(total_);
+    if (terminal_) line += (colour_ ? "\033[36m" + bar + "\033[0m" : bar) + " ";
+    line += std::to_string(done) + "/" + std::to_string(total_);
     const double elapsed = std::chrono::duration<double>(now - begin_).count();
     if (done > 0 && elapsed > 1) {
       const double left =
@@ -66,7 +68,10 @@ void Progress::set(std::uint64_t done, const std::string& detail) {
     line += std::to_string(done);
   }
   if (!detail.empty()) line += ", " + detail;
-  std::cerr << "\r\033[K" << line << std::flush;
+  if (terminal_)
+    std::cerr << "\r\033[K" << line << std::flush;
+  else
+    std::cerr << "progress: " << line << std::endl;
 }
 
 void Progress::finish() {

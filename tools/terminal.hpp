@@ -1,5 +1,5 @@
 #pragma once
-/// Orderly termination of the program, and its progress bar.
+/// Orderly termination of the program, and its progress.
 
 #include <chrono>
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace lrb::cli {
 
-/// A progress bar on stderr, drawn on a terminal only, and removed when the work is done.
+/// A progress bar on stderr, removed when the work is done. If stderr is not a terminal, a line every ten
+/// seconds instead.
 class Progress {
  public:
   /// `total` 0: not known; a counter is drawn instead of a bar.
@@ -25,7 +26,7 @@ class Progress {
  private:
   std::string label_;
   std::uint64_t total_;
-  bool enabled_, colour_, drawn_ = false;
+  bool enabled_, terminal_, colour_, drawn_ = false;
   std::chrono::steady_clock::time_point begin_, last_;
 };
 

@@ -284,6 +284,7 @@ class Reader {
   Reader(std::string_view text, const std::string& name) : text_(text), name_(name) {}
 
   Trace run() {
+    reject_other_formats();
     // Events are consumed during parsing; only the rest of the document is kept as JSON.
     const nlohmann::json document =
         parse_events(text_, name_, [this](const TraceNode& event) { take_event(event); });
@@ -300,6 +301,19 @@ class Reader {
   }
 
  private:
+  /// Rejects the trace of a crowd by its format, before its events are read and taken for damaged ones.
+  void reject_other_formats() const {
+    // The metadata come last. Inside a string the quotes would be escaped.
+    constexpr std::size_t kNear = 256;
+    const std::size_t at = text_.rfind("\"metadata\"");
+    if (at == std::string_view::npos) return;
+    const std::string_view begin = text_.substr(at, kNear);
+    if (begin.find("\"lrbscope crowd\"") != std::string_view::npos)
+      throw InputError(name_ +
+                       ": expected a run of one or two bodies, found the trace of a crowd; lrbscope render "
+                       "draws it");
+  }
+
   void take_event(const TraceNode& node) {
     // Names, counters, flows and slices of another engine's queries can be derived from the rest.
     if (node.at("ph").string() != "X" || node.at("cat").string() == kEngineCategory) return;

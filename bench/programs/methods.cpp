@@ -9,8 +9,9 @@
 ///   ... --method M [--expected FILE] [--pairs]
 ///                         a record for each; the correct answers are read from the file (one line per
 ///                         case, from case 0 on) or computed; with --pairs also the lists of pairs
-///   --questions FILE --method M [--setting X] [--pairs] --begin K --end L
-///                         a bench::Record for each of a data set's queries K .. L - 1
+///   --questions FILE --method M [--setting X] [--errors] --begin K --end L
+///                         a bench::Record for each of a data set's queries K .. L - 1; with --errors also
+///                         the errors of its answers
 ///   --bodies A B --method M [--no-join]
 ///                         a reply for each request in file descriptor 3, until its end
 ///                         (bench/tails/engine.hpp)
@@ -41,7 +42,7 @@ using nlohmann::ordered_json;
 
 struct WorkerOptions {
   CaseQueue queue;
-  bool pairs = false;
+  bool pairs = false, errors = false;
   std::string questions;
   std::optional<double> setting;
   std::vector<std::string> bodies;
@@ -85,7 +86,7 @@ void work(const WorkerOptions& o, const std::vector<methods::MethodEntry>& entri
   }
   if (o.questions.empty()) return say_records(o, entry, out);
   const bench::DataSet set = bench::read_data_set(o.questions);
-  bench::BenchRunner runner(entry, o.setting, set, o.pairs);
+  bench::BenchRunner runner(entry, o.setting, set, o.errors);
   for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k) out.say(dump(to_json(runner.ask(k))));
 }
 
@@ -96,6 +97,7 @@ int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries
   CLI::App app("Runs cases on collision engines, for lrbscope stability; see bench/programs/methods.cpp.");
   add_options(app, o.queue);
   app.add_flag("--pairs", o.pairs);
+  app.add_flag("--errors", o.errors);
   app.add_option("--questions", o.questions);
   app.add_option("--setting", o.setting);
   app.add_option("--bodies", o.bodies)->expected(2);

@@ -140,7 +140,8 @@ int run(int argc, char** argv) {
   app.add_option("--quantity", o.quantity);
   app.add_option("--questions", o.questions);
   app.add_option("--setting", o.setting);
-  app.add_flag("--pairs");  // accepted by all workers; unused in this one
+  for (const char* flag : {"--pairs", "--errors"})
+    app.add_flag(flag);  // accepted by all workers; unused in this one
   CLI11_PARSE(app, argc, argv);
   return run_worker([&](Lines& out) { work(o, out); });
 }

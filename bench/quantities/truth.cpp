@@ -5,7 +5,7 @@
 #include <set>
 
 #include "bench/methods/triangles.hpp"
-#include "bench/quantities/rational_oracles.hpp"
+#include "bench/stability/rational_oracles.hpp"
 #include <lrbscope/collide.hpp>
 
 namespace lrb::stability {

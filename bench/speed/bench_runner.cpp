@@ -8,6 +8,7 @@
 #include <malloc.h>
 
 #include "bench/methods/triangles.hpp"
+#include "bench/speed/metrics.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "engine/mesh/face_pairs.hpp"
 #include <lrbscope/contact.hpp>
@@ -38,8 +39,8 @@ std::size_t difference(const std::vector<SimplexPair>& of, const std::vector<Sim
 }  // namespace
 
 BenchRunner::BenchRunner(const methods::MethodEntry& entry, std::optional<double> setting, const DataSet& set,
-                         bool keep)
-    : info_(entry.info), method_(entry.make()), setting_(setting), set_(set), keep_(keep) {
+                         bool judges)
+    : info_(entry.info), method_(entry.make()), setting_(setting), set_(set), judges_(judges) {
   if (setting_) method_->set(*setting_);
 }
 
@@ -68,8 +69,10 @@ Record BenchRunner::ask(std::uint64_t question) {
   r.question = question;
   r.pose_class = q.pose_class;
   workers::note_failures(r, [&] {
-    r.all = ask(q, Mode::all_pairs);
-    r.first = ask(q, Mode::first_pair);
+    Errors errors;
+    r.all = ask(q, Mode::all_pairs, judges_ ? &errors : nullptr);
+    if (judges_) r.errors = errors;
+    r.first = ask(q, Mode::first_pair, nullptr);
     const Built &a = built(q.a, 0), &b = built(q.b, 1);
     r.build_seconds = a.seconds + b.seconds;
     r.bytes = a.bytes + b.bytes;
@@ -77,7 +80,14 @@ Record BenchRunner::ask(std::uint64_t question) {
   return r;
 }
 
-Reply BenchRunner::ask(const Question& q, Mode mode) {
+const LrbRep& BenchRunner::rep(std::size_t body) {
+  auto it = reps_.find(body);
+  if (it == reps_.end())
+    it = reps_.emplace(body, load_lrb(set_.folder + "/" + set_.bodies.at(body).file)).first;
+  return it->second;
+}
+
+Reply BenchRunner::ask(const Question& q, Mode mode, Errors* errors) {
   const Built &a = built(q.a, 0), &b = built(q.b, 1);
   QueryTimes times;
   methods::MethodAnswer answer =
@@ -99,10 +109,7 @@ Reply BenchRunner::ask(const Question& q, Mode mode) {
     r.missed = !r.contact && !q.expected.empty();
     r.extra = r.contact && q.expected.empty();
   }
-  if (keep_) {
-    r.pairs = std::move(answer.pairs);
-    r.points = std::move(answer.points);
-  }
+  if (errors != nullptr) *errors = errors_of_answer(set_, q, rep(q.a), rep(q.b), info_, answer);
   return r;
 }
 

@@ -17,9 +17,10 @@ namespace lrb::bench {
 
 class BenchRunner {
  public:
-  /// The method must be present. `keep`: records contain pairs and points.
+  /// The method must be present. `judges`: records contain the errors of answers, which take longer to
+  /// compute than the answers.
   BenchRunner(const methods::MethodEntry& entry, std::optional<double> setting, const DataSet& set,
-              bool keep);
+              bool judges);
 
   /// Runs the method on a query. A rejection is a valid outcome. Throws InputError if there is no such query.
   Record ask(std::uint64_t question);
@@ -31,14 +32,16 @@ class BenchRunner {
   };
 
   const Built& built(std::size_t body, std::size_t side);
-  Reply ask(const Question& q, Mode mode);
+  Reply ask(const Question& q, Mode mode, Errors* errors);
+  const LrbRep& rep(std::size_t body);
 
   methods::MethodInfo info_;
   std::unique_ptr<methods::Method> method_;
   std::optional<double> setting_;
   const DataSet& set_;
-  bool keep_;
+  bool judges_;
   std::map<std::pair<std::size_t, std::size_t>, Built> built_;  ///< by body and side
+  std::map<std::size_t, LrbRep> reps_;                          ///< by body; for judging
 };
 
 /// Returns every intersecting pair of real triangles: by a sweep over world AABBs, and exact tests of the

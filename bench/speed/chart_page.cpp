@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <map>
 #include <utility>
 
@@ -12,8 +13,17 @@ namespace lrb::bench {
 namespace {
 
 constexpr const char* kHowToRead =
-    "Down is faster, left is more accurate; an error of 0 is at the left end. The Pareto frontier joins the points that "
-    "are beaten in both by none. The tooltip of a point has all of its numbers; a click leads to the panel's scene, with trace and pictures.";
+    "Down is faster, left is more accurate; an error of 0 is at the left end. The tooltip of a point has all of its numbers; a "
+    "click leads to the panel's scene, with trace and pictures.";
+constexpr const char* kTimes =
+    "The time of a query in a round is the shortest of up to 26 runs, with warm caches; cold times, in the table and in "
+    "tooltips, are of the first run, after caches were overwritten. Each round times all methods, one after the other. A point "
+    "is the median over rounds of the median over queries; its bar spans the rounds.";
+constexpr const char* kFrontier =
+    "The Pareto frontier joins the points that none beats: a point beats another if it is as accurate, and faster in every round "
+    "than the other in any. Points that are as accurate and whose bars overlap are too close to call; the line passes "
+    "through the best of them, and the table lists them. Methods that are wrong in every case are no points; those that answer "
+    "only yes or no, or that know earlier poses, are points, but not on the frontier. Each panel names what it leaves out.";
 
 ChartText of_pairs() {
   return {
@@ -21,17 +31,19 @@ ChartText of_pairs() {
       "Every method at every setting of its parameter, on the same bodies and poses: median time of a query, and deviation of "
       "the reported contact from the exact one.",
       "error of the contact region / diagonal",
-      "max deviation: proven",
+      "",
       {{"Axes", kHowToRead},
+       {"Times", kTimes},
+       {"Frontier", kFrontier},
        {"Error",
         "The Hausdorff distance between the exact and the reported contact region, over the larger body's diagonal, "
         "averaged over poses; for methods with boolean answers, the share of wrong ones. A false contact, a missed one and a "
         "missing answer count as one diagonal each."},
        {"Proof",
-        "Only lrbscope proves its answers. Exact ones have no deviation; approximate ones come with a bound (a cross at the "
-        "same height) on the sum of the distances from both bodies where listed faces intersect. It differs from the error on "
-        "the axis: at a tangential contact, a small deviation moves the contact far. Column \"off\" is the "
-        "measured deviation."}}};
+        "Only lrbscope proves its answers. Exact ones have no deviation; approximate ones come with a bound on "
+        "the sum of the distances from both bodies where listed faces intersect: column \"proven bound\", beside the measured "
+        "deviation, column \"off\". It does not bound the error on the axis: at a tangential contact, a small deviation "
+        "moves the contact far."}}};
 }
 
 /// Purpose, definition of the error, and proof for one quantity.
@@ -74,6 +86,8 @@ ChartText of_number(Quantity quantity) {
       n.error,
       "width of the interval: proven",
       {{"Axes", kHowToRead},
+       {"Times", kTimes},
+       {"Frontier", kFrontier},
        {"Error",
         std::string(n.judged) +
             " The true number is lrbscope's certified interval at its finest setting, which `lrbscope stability "
@@ -103,10 +117,28 @@ std::string percent_or_dash(const std::optional<double>& x) {
   return x ? render::short_number(*x) : "\u2013";
 }
 
+/// Returns a time with the span of its rounds: "4.2 (4.1 to 4.6)".
+std::string span_text(double time, double least, double most) {
+  std::string out = render::short_number(time);
+  if (least < most) out += " (" + render::short_number(least) + " to " + render::short_number(most) + ")";
+  return out;
+}
+
+/// Returns the point's place on the frontier: "yes", "too close to ours-floating", "no" or why it is left
+/// out.
+std::string frontier_text(const Point& p) {
+  if (!p.left_out.empty()) return "left out: " + p.left_out;
+  if (p.frontier) return "yes";
+  std::string out;
+  for (const std::string& name : p.ties) out += (out.empty() ? "too close to " : ", ") + name;
+  return out.empty() ? "no" : out;
+}
+
 /// Returns the tooltip of a point, with its line breaks.
 std::string note_of(const Point& p) {
-  std::string out = name_of(p.method, p.setting) + "\nmedian " + render::short_number(p.median) +
-                    " \u00b5s, p95 " + render::short_number(p.p95) + ", p99 " + render::short_number(p.p99);
+  std::string out = name_of(p.method, p.setting) + "\nmedian " + span_text(p.median, p.least, p.most) +
+                    " \u00b5s, p95 " + render::short_number(p.p95) + ", p99 " + render::short_number(p.p99) +
+                    "\ncold " + span_text(p.cold, p.cold_least, p.cold_most) + " \u00b5s";
   for (std::size_t m = 0; m < kMetrics; ++m)
     if (p.errors[m] && *p.errors[m] > 0)
       out += std::string("\n") + metric_info(static_cast<Metric>(m)).name + " " +
@@ -119,7 +151,7 @@ std::string note_of(const Point& p) {
   if (p.build_seconds > 0)
     out += "\nbuild " + render::short_number(p.build_seconds) + " s, " + render::short_number(p.bytes / 1e6) +
            " MB";
-  return out + "\nworst: question " + std::to_string(p.worst_question);
+  return out + "\nfrontier: " + frontier_text(p) + "\nworst: question " + std::to_string(p.worst_question);
 }
 
 struct Spare {
@@ -182,14 +214,37 @@ double slowest_of(const std::vector<Point>& points, const std::string& set) {
   return slowest;
 }
 
-/// Returns a panel's frontier, from exact to coarse.
+/// Returns a panel's frontier, from exact to coarse. Of points that are too close to call, it contains those
+/// whose medians are beaten by none.
 std::vector<const Point*> frontier(const std::vector<const Point*>& panel) {
-  std::vector<const Point*> out;
+  std::vector<const Point*> all, out;
   for (const Point* p : panel)
-    if (p->frontier) out.push_back(p);
-  std::sort(out.begin(), out.end(), [](const Point* p, const Point* q) {
+    if (p->frontier || !p->ties.empty()) all.push_back(p);
+  std::sort(all.begin(), all.end(), [](const Point* p, const Point* q) {
     return p->error() != q->error() ? p->error() < q->error() : p->median < q->median;
   });
+  for (const Point* p : all)
+    if (out.empty() || p->median < out.back()->median) out.push_back(p);
+  return out;
+}
+
+/// Returns true if the point is drawn: methods that are always wrong are named, not drawn.
+bool is_drawn(const Point& p) {
+  return !p.always_wrong;
+}
+
+/// Returns a sentence that names the points that are not drawn, and those left out of the frontier.
+std::string left_out_text(const std::vector<const Point*>& panel) {
+  std::map<std::string, std::string> by_reason;
+  for (const Point* p : panel)
+    if (!p->left_out.empty()) {
+      std::string& names = by_reason[p->left_out];
+      names += (names.empty() ? "" : ", ") + name_of(p->method, p->setting);
+    }
+  std::string out;
+  for (const auto& [reason, names] : by_reason)
+    out += (out.empty() ? "Not on the frontier. " : " ") +
+           std::string(1, static_cast<char>(std::toupper(reason[0]))) + reason.substr(1) + ": " + names + ".";
   return out;
 }
 
@@ -209,9 +264,12 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
   report::Chart chart{set.name + ", " + title(c),
                       error_axis(set.quantity, words.error),
                       {"median, \u00b5s", true, 0.05, 6 * slowest}};
+  chart.note = left_out_text(here);
   const auto add = [&](report::Series& series, const Point& p, double error) {
     series.x.push_back(drawn_error(error, set.quantity));
     series.y.push_back(drawn_time(p, slowest));
+    series.low.push_back(p.median > 0 ? p.least : series.y.back());
+    series.high.push_back(p.median > 0 ? p.most : series.y.back());
     series.notes.push_back(note_of(p));
     series.targets.push_back(scene_of(p));
   };
@@ -229,6 +287,7 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
     std::string last;
     for (const Point* p : here) {
       if (const auto it = series_of.find(p->method); it == series_of.end() || it->second != i) continue;
+      if (!is_drawn(*p)) continue;
       const report::Line line = p->setting ? report::Line::straight : report::Line::none;
       const std::string label = last.empty() ? style.title : "";
       if (p->method != last || !p->setting)
@@ -240,11 +299,14 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
   report::Series proved{words.proved, {}, {}, {report::Line::none, "#0072b2", "cross"}};
   report::Series failed{"crash, refusal or time-out", {}, {}, {report::Line::none, "#d00000", "crossRot"}};
   for (const Point* p : here) {
+    if (!is_drawn(*p)) continue;
     if (p->failed() > 0) add(failed, *p, p->error());
-    if (p->proven_deviation.value_or(0) <= 0) continue;
+    if (words.proved.empty() || p->proven_deviation.value_or(0) <= 0) continue;
     add(proved, *p, *p->proven_deviation);
     proved.from.push_back(drawn_error(p->error(), set.quantity));
   }
+  for (report::Series* s : {&proved, &failed})
+    s->low.clear(), s->high.clear();  // those of the points are drawn
   for (report::Series* s : {&proved, &failed})
     if (!s->x.empty()) chart.series.push_back(std::move(*s));
   return chart;
@@ -260,7 +322,7 @@ std::vector<std::size_t> errors_in(const std::vector<Point>& points) {
 }
 
 report::Table table_of_points(const std::vector<Point>& points) {
-  report::Table t{"All points", {"bodies", "pose", "method", "median \u00b5s", "p95", "p99"}};
+  report::Table t{"All points", {"bodies", "pose", "method", "median \u00b5s", "p95", "p99", "cold \u00b5s"}};
   const std::vector<std::size_t> errors = errors_in(points);
   const bool built =
       std::any_of(points.begin(), points.end(), [](const Point& p) { return p.build_seconds > 0; });
@@ -271,13 +333,14 @@ report::Table table_of_points(const std::vector<Point>& points) {
     std::vector<std::string> row = {p.set,
                                     title(p.pose_class),
                                     name_of(p.method, p.setting),
-                                    render::short_number(p.median),
+                                    span_text(p.median, p.least, p.most),
                                     render::short_number(p.p95),
-                                    render::short_number(p.p99)};
+                                    render::short_number(p.p99),
+                                    span_text(p.cold, p.cold_least, p.cold_most)};
     for (const std::size_t m : errors) row.push_back(percent_or_dash(p.errors[m]));
     row.push_back(percent_or_dash(p.proven_deviation));
     row.push_back(std::to_string(p.failed()));
-    row.emplace_back(p.frontier ? "yes" : "");
+    row.push_back(frontier_text(p));
     if (built) {
       row.push_back(render::short_number(p.build_seconds));
       row.push_back(render::short_number(p.bytes / 1e6));
@@ -321,16 +384,34 @@ std::vector<report::Chart> accuracy_charts(const std::vector<DataSet>& sets, con
 
 report::Document accuracy_page(Quantity quantity, const std::vector<Point>& points,
                                const std::vector<methods::MethodInfo>& methods,
-                               const std::vector<report::Chart>& charts) {
+                               const std::vector<report::Chart>& charts, const std::string& unfinished) {
   const ChartText words = chart_text(quantity);
   report::Document doc(words.title, words.purpose);
+  if (!unfinished.empty()) doc.verdict("unfinished", false).purpose(unfinished);
   doc.each(words.texts, &report::Document::text).each(charts, &report::Document::chart);
   return doc.table(table_of_metrics(points)).table(table_of_methods(methods)).table(table_of_points(points));
 }
 
-report::Gnuplot accuracy_print(Quantity quantity, const std::vector<report::Chart>& charts) {
-  const int columns = static_cast<int>(classes_of(quantity).size());
-  return report::gnuplot(charts, {columns, 42, 40, 6.5, "", columns});
+report::Gnuplot accuracy_print(Quantity quantity, const std::vector<DataSet>& sets,
+                               const std::vector<Missing>& missing,
+                               const std::vector<report::Chart>& charts) {
+  const std::size_t columns = classes_of(quantity).size();
+  std::vector<report::Chart> rows;
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    const auto begin = charts.begin() + static_cast<std::ptrdiff_t>(s * columns);
+    const auto end = begin + static_cast<std::ptrdiff_t>(columns);
+    const auto has_points = [](const report::Chart& c) {
+      return std::any_of(c.series.begin(), c.series.end(), [](const auto& one) { return !one.x.empty(); });
+    };
+    if (std::none_of(begin, end, has_points)) continue;
+    const auto lacks = std::find_if(missing.begin(), missing.end(),
+                                    [&](const Missing& m) { return m.set == sets[s].name && m.missing > 0; });
+    rows.insert(rows.end(), begin, end);
+    const auto first =
+        std::find_if(rows.end() - static_cast<std::ptrdiff_t>(columns), rows.end(), has_points);
+    if (lacks != missing.end()) first->title += ", UNFINISHED";
+  }
+  return report::gnuplot(rows, {static_cast<int>(columns), 42, 40, 6.5, "", static_cast<int>(columns)});
 }
 
 }  // namespace lrb::bench

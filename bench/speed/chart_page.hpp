@@ -6,6 +6,7 @@
 
 #include "bench/speed/data_set.hpp"
 #include "bench/speed/metrics.hpp"
+#include "bench/speed/survey.hpp"
 #include "scenarios/report/document.hpp"
 
 namespace lrb::bench {
@@ -17,13 +18,15 @@ std::vector<report::Chart> accuracy_charts(const std::vector<DataSet>& sets, con
                                            const std::vector<methods::MethodInfo>& methods,
                                            const std::function<std::string(const Point&)>& scene_of);
 
-/// Returns the page of these charts.
+/// Returns the page of these charts. `unfinished`: a sentence on missing answers, or empty.
 report::Document accuracy_page(Quantity quantity, const std::vector<Point>& points,
                                const std::vector<methods::MethodInfo>& methods,
-                               const std::vector<report::Chart>& charts);
+                               const std::vector<report::Chart>& charts, const std::string& unfinished);
 
-/// Arranges the charts for print: a row per pair of bodies, a column per class of poses.
-report::Gnuplot accuracy_print(Quantity quantity, const std::vector<report::Chart>& charts);
+/// Arranges the charts for print: a row per pair of bodies, a column per class of poses. Rows without points
+/// are left out. `missing`: of an unfinished survey; the title of the first panel of its rows names it.
+report::Gnuplot accuracy_print(Quantity quantity, const std::vector<DataSet>& sets,
+                               const std::vector<Missing>& missing, const std::vector<report::Chart>& charts);
 
 /// Returns the points of a panel.
 std::vector<const Point*> panel(const std::vector<Point>& points, const std::string& set, PoseClass c);
@@ -33,7 +36,7 @@ std::vector<const Point*> panel(const std::vector<Point>& points, const std::str
 struct ChartText {
   std::string title, purpose;
   std::string error;   ///< for the axis
-  std::string proved;  ///< in the key: the meaning of a cross
+  std::string proved;  ///< in the key: the meaning of a cross; empty: no proof bounds the error on the axis
   std::vector<report::Text> texts;
 };
 

@@ -226,12 +226,16 @@ std::vector<BodyPair> pairs_of_models(const std::string& folder) {
   return pairs;
 }
 
+std::string set_name(const BodyPair& pair, Quantity quantity) {
+  return quantity == Quantity::pairs ? pair.name : pair.name + "-" + std::string(name_of(quantity));
+}
+
 DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder) {
   const std::string mark =
       " (" + std::to_string(options.poses) + " poses per class, seed " + std::to_string(options.seed) + ")";
   BodyPair marked = pair;
   marked.what += mark;
-  if (options.quantity != Quantity::pairs) marked.name += "-" + std::string(name_of(options.quantity));
+  marked.name = set_name(pair, options.quantity);
   const std::string path = folder + "/" + marked.name + ".set.json";
   if (fs::exists(path)) {
     DataSet set = read_data_set(path);

@@ -83,6 +83,8 @@ struct SetOptions {
 /// from the same bodies and options. Throws InputError if an LRB-rep of a body cannot be built, and the
 /// exceptions of find_numbers().
 DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder);
+/// Returns the name of that data set.
+std::string set_name(const BodyPair& pair, Quantity quantity);
 
 // Makes the targets of links in charts: a query as a scenario, run, with trace, pictures and page.
 

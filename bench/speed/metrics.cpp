@@ -1,11 +1,11 @@
 #include "bench/speed/metrics.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <map>
-#include <memory>
 #include <tuple>
 
 #include <Eigen/Geometry>
@@ -209,37 +209,34 @@ Errors errors_of_number(const DataSet& set, const Question& q, const Record& r) 
   return e;
 }
 
-/// Judges the pairs that all methods found for one query.
+/// Judges the answer to one query with all pairs.
 class Judge {
  public:
   Judge(const DataSet& set, const Question& q, const LrbRep& a, const LrbRep& b)
-      : diagonal_(set.diagonal),
-        q_(q),
-        maker_(a, q.pose_a, b, q.pose_b),
-        bodies_(a, q.pose_a, b, q.pose_b),
-        exact_(maker_.of_pairs(q.expected)) {}
+      : diagonal_(set.diagonal), q_(q), a_(a), b_(b) {}
 
-  Errors errors(const methods::MethodInfo& info, const Record& r) {
-    if (r.outcome != Outcome::answered) return worst_of(info);
+  Errors errors(const methods::MethodInfo& info, const methods::MethodAnswer& answer) const {
     Errors e;
-    at(e, Metric::contact) = r.all.contact == q_.expected.empty() ? metric_info(Metric::contact).worst : 0;
+    at(e, Metric::contact) = answer.contact == q_.expected.empty() ? metric_info(Metric::contact).worst : 0;
     if (lists_pairs(info)) {
-      at(e, Metric::precision) = share(without(r.all.pairs, q_.expected), r.all.pairs.size());
-      at(e, Metric::recall) = share(without(q_.expected, r.all.pairs), q_.expected.size());
-      if (r.all.pairs == q_.expected)
+      at(e, Metric::precision) = share(without(answer.pairs, q_.expected), answer.pairs.size());
+      at(e, Metric::recall) = share(without(q_.expected, answer.pairs), q_.expected.size());
+      if (answer.pairs == q_.expected)
         set_region(e, info, {}, 0);
       else
-        set_region(e, info, maker_.of_pairs(r.all.pairs));
+        set_region(e, info, maker().of_pairs(answer.pairs));
     } else if (gives_points(info)) {
-      set_region(e, info, of_points(r.all.points));
+      set_region(e, info, of_points(answer.points));
     }
     return e;
   }
 
  private:
-  void set_region(Errors& e, const methods::MethodInfo& info, const Region& found) {
-    set_region(e, info, region_error(exact_, found, diagonal_),
-               std::min(1.0, bodies_.off(found.points) / diagonal_));
+  RegionMaker maker() const { return {a_, q_.pose_a, b_, q_.pose_b}; }
+
+  void set_region(Errors& e, const methods::MethodInfo& info, const Region& found) const {
+    set_region(e, info, region_error(maker().of_pairs(q_.expected), found, diagonal_),
+               std::min(1.0, BodyDistance(a_, q_.pose_a, b_, q_.pose_b).off(found.points) / diagonal_));
   }
 
   static void set_region(Errors& e, const methods::MethodInfo& info, const RegionError& r, double off) {
@@ -253,20 +250,28 @@ class Judge {
 
   double diagonal_;
   const Question& q_;
-  RegionMaker maker_;
-  BodyDistance bodies_;
-  Region exact_;
+  const LrbRep &a_, &b_;
 };
 
 /// Data collected for a point.
 struct Gathered {
   Point point;
-  std::vector<double> us;
+  std::map<std::uint64_t, std::array<std::vector<double>, 2>> us;  ///< by round: warm and cold
+  bool any_right = false;  ///< an answer has less than the worst error
   Errors sums;
   std::optional<double> proved_sum = 0;  ///< nullopt as soon as an answer has no proof
   double worst = -1;
 };
 
+/// Adds the times of an answer.
+void add_times(Gathered& g, const Record& r) {
+  if (r.outcome != Outcome::answered) return;
+  auto& [warm, cold] = g.us[r.round];
+  warm.push_back(r.all.hot_us);
+  cold.push_back(r.all.cold_us);
+}
+
+/// Adds an answer of round 0.
 void add(Gathered& g, const Record& r, const Errors& e, double unit) {
   Point& p = g.point;
   ++p.questions;
@@ -277,6 +282,7 @@ void add(Gathered& g, const Record& r, const Errors& e, double unit) {
     if (e[m]) g.sums[m] = g.sums[m].value_or(0) + *e[m];
   Point one;
   one.errors = e;
+  g.any_right |= one.error() < 1;  // the worst of every error on a chart's axis
   if (one.error() > g.worst) {
     g.worst = one.error();
     p.worst_question = r.question;
@@ -286,10 +292,17 @@ void add(Gathered& g, const Record& r, const Errors& e, double unit) {
   else
     *g.proved_sum += std::min(1.0, *r.all.error_bound / unit);
   if (r.outcome != Outcome::answered) return;
-  g.us.push_back(r.all.hot_us);
   p.build_seconds = std::max(p.build_seconds, r.build_seconds);
   p.bytes = std::max(p.bytes, r.bytes);
   p.face_tests += static_cast<double>(r.all.face_tests);
+}
+
+/// Sets a time and its span from the medians of rounds.
+void set_span(const std::vector<double>& rounds, double& time, double& least, double& most) {
+  if (rounds.empty()) return;
+  time = median(rounds);
+  least = *std::min_element(rounds.begin(), rounds.end());
+  most = *std::max_element(rounds.begin(), rounds.end());
 }
 
 Point finished(Gathered g) {
@@ -298,32 +311,57 @@ Point finished(Gathered g) {
   for (std::size_t m = 0; m < kMetrics; ++m)
     if (g.sums[m]) p.errors[m] = *g.sums[m] / n;
   if (g.proved_sum) p.proven_deviation = *g.proved_sum / n;
-  p.median = median(g.us);
-  p.p95 = quantile(g.us, 0.95);
-  p.p99 = quantile(g.us, 0.99);
-  if (!g.us.empty()) p.face_tests /= static_cast<double>(g.us.size());
+  const std::size_t answered = p.questions - p.failed();
+  std::vector<double> warm, cold, all;
+  for (const auto& [round, us] : g.us) {
+    if (us[0].size() < answered) continue;  // a round that is not complete has another median
+    warm.push_back(median(us[0]));
+    cold.push_back(median(us[1]));
+    all.insert(all.end(), us[0].begin(), us[0].end());
+  }
+  p.rounds = warm.size();
+  set_span(warm, p.median, p.least, p.most);
+  set_span(cold, p.cold, p.cold_least, p.cold_most);
+  p.p95 = quantile(all, 0.95);
+  p.p99 = quantile(all, 0.99);
+  p.always_wrong = !g.any_right;
+  if (answered > 0) p.face_tests /= static_cast<double>(answered);
   return p;
 }
 
-/// Marks the Pareto frontier: a point is dominated if another one is at least as fast and as accurate, and
-/// better in one of the two. Points without an answer are excluded, and methods that return only a boolean or
-/// know the poses in advance, because they answer another query.
+/// Returns why a point cannot be on a frontier, or an empty string if it can.
+std::string why_left_out(const Point& p, const std::vector<methods::MethodInfo>& methods) {
+  if (!(p.median > 0)) return "no answer";
+  if (p.always_wrong) return "wrong in every case";
+  if (p.says_only_yes_or_no()) return "answers only yes or no";
+  const bool knew = std::any_of(methods.begin(), methods.end(), [&](const methods::MethodInfo& m) {
+    return m.name == p.method && m.has(methods::Trait::knows_poses_in_advance);
+  });
+  return knew ? "knows earlier poses" : "";
+}
+
+/// True if every round of one was faster than every round of the other.
+bool is_faster(const Point& p, const Point& other) {
+  return p.most < other.least;
+}
+
+/// Marks the Pareto frontiers, and points that measured times cannot tell from them.
 void mark_frontiers(std::vector<Point>& points, const std::vector<methods::MethodInfo>& methods) {
-  const auto reported_more = [&](const Point& p) {
-    return std::any_of(methods.begin(), methods.end(), [&](const methods::MethodInfo& m) {
-      return m.name == p.method && m.has(methods::Trait::knows_poses_in_advance);
-    });
-  };
+  for (Point& p : points) p.left_out = why_left_out(p, methods);
   for (Point& p : points) {
-    const auto takes_part = [&](const Point& x) {
-      return x.median > 0 && !x.says_only_yes_or_no() && !reported_more(x);
-    };
-    p.frontier = takes_part(p);
+    if (!p.left_out.empty()) continue;
+    bool is_beaten = false;
     for (const Point& other : points) {
-      if (other.set != p.set || other.pose_class != p.pose_class || !takes_part(other)) continue;
-      const bool no_worse = other.median <= p.median && other.error() <= p.error();
-      if (no_worse && (other.median < p.median || other.error() < p.error())) p.frontier = false;
+      if (&other == &p || other.set != p.set || other.pose_class != p.pose_class || !other.left_out.empty())
+        continue;
+      if (other.error() > p.error() || is_faster(p, other)) continue;
+      if (is_faster(other, p))
+        is_beaten = true;
+      else
+        p.ties.push_back(name_of(other.method, other.setting));
     }
+    if (is_beaten) p.ties.clear();
+    p.frontier = !is_beaten && p.ties.empty();
   }
 }
 
@@ -358,40 +396,36 @@ bool Point::says_only_yes_or_no() const {
 namespace {
 
 using RecordsByQuestion = std::map<std::pair<std::string, std::uint64_t>, std::vector<const Record*>>;
-using JudgeFunction = std::function<Errors(const methods::MethodInfo&, const Record&)>;
 
-/// Returns the function that judges the answers to a query.
-JudgeFunction judge_of(const DataSet& set, const Question& q, const std::vector<LrbRep>& bodies) {
-  if (set.quantity != Quantity::pairs)
-    return [&set, &q](const methods::MethodInfo&, const Record& r) { return errors_of_number(set, q, r); };
-  const auto judge = std::make_shared<Judge>(set, q, bodies.at(q.a), bodies.at(q.b));
-  return [judge](const methods::MethodInfo& info, const Record& r) { return judge->errors(info, r); };
+/// Returns the errors of a record, or nullopt if it was not judged.
+std::optional<Errors> errors_of(const DataSet& set, const Question& q, const methods::MethodInfo& info,
+                                const Record& r) {
+  if (set.quantity != Quantity::pairs) return errors_of_number(set, q, r);
+  if (r.outcome != Outcome::answered) return worst_of(info);
+  return r.errors;
 }
 
 /// Adds a data set's points.
 void add_points(const DataSet& set, const std::vector<methods::MethodInfo>& methods,
-                const RecordsByQuestion& by_question, const std::function<void()>& notify,
-                std::vector<Point>& points) {
-  std::vector<LrbRep> bodies;
-  if (set.quantity == Quantity::pairs)
-    for (const BodyFile& b : set.bodies) bodies.push_back(load_lrb(set.folder + "/" + b.file));
+                const RecordsByQuestion& by_question, std::vector<Point>& points) {
   std::map<std::tuple<PoseClass, std::string, std::optional<double>>, Gathered> gathered;
   for (std::uint64_t k = 0; k < set.questions.size(); ++k) {
     const Question& q = set.questions[k];
     const auto records = by_question.find({set.name, k});
     if (records == by_question.end()) continue;
-    const JudgeFunction judge = judge_of(set, q, bodies);
     for (const Record* r : records->second) {
       const auto info = std::find_if(methods.begin(), methods.end(),
                                      [&](const methods::MethodInfo& m) { return m.name == r->method; });
       if (info == methods.end()) continue;
+      const std::optional<Errors> errors = errors_of(set, q, *info, *r);
+      if (r->round == 0 && !errors) continue;
       Gathered& g = gathered[{q.pose_class, r->method, r->setting}];
       g.point.set = set.name;
       g.point.method = r->method;
       g.point.setting = r->setting;
       g.point.pose_class = q.pose_class;
-      add(g, *r, judge(*info, *r), unit_of(set));
-      notify();
+      if (r->round == 0) add(g, *r, *errors, unit_of(set));
+      add_times(g, *r);
     }
   }
   for (auto& [key, g] : gathered) points.push_back(finished(std::move(g)));
@@ -399,20 +433,18 @@ void add_points(const DataSet& set, const std::vector<methods::MethodInfo>& meth
 
 }  // namespace
 
+Errors errors_of_answer(const DataSet& set, const Question& question, const LrbRep& a, const LrbRep& b,
+                        const methods::MethodInfo& info, const methods::MethodAnswer& answer) {
+  return Judge(set, question, a, b).errors(info, answer);
+}
+
 std::vector<Point> measure_points(const std::vector<DataSet>& sets,
                                   const std::vector<methods::MethodInfo>& methods,
-                                  const std::vector<Record>& records, const MetricProgress& progress) {
+                                  const std::vector<Record>& records) {
   RecordsByQuestion by_question;
   for (const Record& r : records) by_question[{r.set, r.question}].push_back(&r);
   std::vector<Point> points;
-  std::size_t done = 0;
-  for (const DataSet& set : sets)
-    add_points(
-        set, methods, by_question,
-        [&] {
-          if (progress) progress(++done, records.size());
-        },
-        points);
+  for (const DataSet& set : sets) add_points(set, methods, by_question, points);
   mark_frontiers(points, methods);
   return points;
 }
@@ -429,11 +461,16 @@ std::string to_lines(const std::vector<Point>& points) {
     for (const MetricInfo& info : kMetricInfos)
       if (const auto& e = p.errors[static_cast<std::size_t>(info.metric)]) value["errors"][info.name] = *e;
     if (p.proven_deviation) value["proved_off"] = *p.proven_deviation;
-    value["us"] = {{"median", p.median}, {"p95", p.p95}, {"p99", p.p99}};
+    value["rounds"] = p.rounds;
+    value["us"] = {
+        {"median", p.median}, {"least", p.least}, {"most", p.most}, {"p95", p.p95}, {"p99", p.p99}};
+    value["cold_us"] = {{"median", p.cold}, {"least", p.cold_least}, {"most", p.cold_most}};
     value["build_s"] = p.build_seconds;
     value["bytes"] = p.bytes;
     value["face_tests"] = p.face_tests;
     value["frontier"] = p.frontier;
+    if (!p.ties.empty()) value["too_close_to"] = p.ties;
+    if (!p.left_out.empty()) value["left_out"] = p.left_out;
     value["worst_question"] = p.worst_question;
     out += value.dump() + "\n";
   }

@@ -12,73 +12,15 @@
 #include <vector>
 
 #include "bench/methods/method.hpp"
+#include "bench/speed/errors.hpp"
 #include "bench/speed/record.hpp"
 #include "engine/lrb/thickness.hpp"
 #include <lrbscope/workspace.hpp>
 
 namespace lrb::bench {
 
-/// An error measure, from 0 (exact) to its worst value, which is the score of an unanswered query.
-enum class Metric : std::uint8_t {
-  contact,    ///< reports contact of disjoint bodies, or the reverse
-  precision,  ///< share of the reported pairs that do not intersect (1 - precision)
-  recall,     ///< share of the intersecting pairs that were not reported (1 - recall)
-  hausdorff,  ///< distance of the contact regions
-  deviation,  ///< distance of the answer's points from both bodies
-  length,
-  area,
-  centroid,
-  normal,
-  depth,
-  distance,        ///< error of the distance, for methods compared on it
-  time_of_impact,  ///< error of the time of first contact, for methods compared on it
-  penetration,     ///< error of the penetration depth, for methods compared on it
-};
-
-struct MetricInfo {
-  Metric metric;
-  const char* name;  ///< in files and tables
-  const char* what;  ///< with its unit
-  double worst;
-};
-inline constexpr auto kMetricInfos = std::to_array<MetricInfo>({
-    {Metric::contact, "contact", "fraction of poses with a false or a missed contact", 1},
-    {Metric::precision, "precision", "1 - precision: fraction of the listed pairs that do not intersect", 1},
-    {Metric::recall, "recall", "1 - recall: fraction of the intersecting pairs that are not listed", 1},
-    {Metric::hausdorff, "hausdorff",
-     "Hausdorff distance of the contact regions, relative to the larger body's diagonal", 1},
-    {Metric::deviation, "off",
-     "largest sum of the distances of a point of the result from the two bodies, relative to the diagonal",
-     1},
-    {Metric::length, "length", "error of the length of the contact curves, relative to the larger length", 1},
-    {Metric::area, "area", "error of the contact area, relative to the larger area", 1},
-    {Metric::centroid, "centroid", "distance of the contacts' centroids, relative to the diagonal", 1},
-    {Metric::normal, "normal", "angle between the normals of the largest contact, relative to 180 degrees",
-     1},
-    {Metric::depth, "depth", "error of the largest estimated depth, relative to the diagonal", 1},
-    {Metric::distance, "distance", "error of the distance, relative to the larger body's diagonal", 1},
-    {Metric::time_of_impact, "time",
-     "error of the time of first contact, as a fraction of the motion; 1: a false or a missed contact", 1},
-    {Metric::penetration, "penetration",
-     "error of the penetration depth, relative to the larger body's diagonal", 1},
-});
-inline constexpr std::size_t kMetrics = kMetricInfos.size();
-
-/// Returns the row of a metric: row static_cast<std::size_t>(m) of the table.
-constexpr const MetricInfo& metric_info(Metric m) {
-  return kMetricInfos[static_cast<std::size_t>(m)];
-}
-consteval bool metrics_are_in_enum_order() {
-  for (std::size_t i = 0; i < kMetrics; ++i)
-    if (static_cast<std::size_t>(kMetricInfos[i].metric) != i) return false;
-  return true;
-}
-static_assert(metrics_are_in_enum_order());
 /// Returns the metric that the chart shows for a quantity.
 Metric chart_metric(Quantity quantity);
-
-/// The errors of the answer to one query; nullopt if the method does not provide it.
-using Errors = std::array<std::optional<double>, kMetrics>;
 
 struct Point {
   std::string set, method;
@@ -89,11 +31,22 @@ struct Point {
   /// Mean proven bound: of Metric::deviation, or, for a number, the width of its interval in the unit of its
   /// error. nullopt: not proven.
   std::optional<double> proven_deviation;
-  double median = 0, p95 = 0, p99 = 0;  ///< microseconds, hot, all pairs, over the answered queries
+  /// Microseconds for all pairs, with warm caches. Of each round the median over the answered queries is
+  /// taken; this is the median of these, with their least and largest. 0: no answer.
+  double median = 0, least = 0, most = 0;
+  double cold = 0, cold_least = 0, cold_most = 0;  ///< the same with cold caches
+  double p95 = 0, p99 = 0;                         ///< warm, over the queries of all rounds
+  std::size_t rounds = 0;
   double build_seconds = 0, bytes = 0;  ///< of both bodies
   double face_tests = 0;                ///< mean; 0: not counted
   std::uint64_t worst_question = 0;     ///< the one with the largest error
-  bool frontier = false;                ///< not dominated by another point of its data set
+  bool always_wrong = false;            ///< every answer has the worst error, or there is none
+  std::string left_out;                 ///< why it cannot be on the frontier; empty: it can
+  /// On the frontier: no other point is as accurate and faster beyond the spans of both times, and none as
+  /// accurate has a time that overlaps.
+  bool frontier = false;
+  /// Not on the frontier, but too close to call: names of points as accurate whose times overlap.
+  std::vector<std::string> ties;
 
   std::size_t failed() const { return rejected + crashed + timed_out; }
   /// Returns the error on the chart's axis: of the number or the contact region if the method provides one,
@@ -102,12 +55,15 @@ struct Point {
   bool says_only_yes_or_no() const;
 };
 
-using MetricProgress = std::function<void(std::size_t done, std::size_t total)>;
-
 /// Returns the points of all methods on all data sets, with their Pareto frontiers over time and error.
 std::vector<Point> measure_points(const std::vector<DataSet>& sets,
                                   const std::vector<methods::MethodInfo>& methods,
-                                  const std::vector<Record>& records, const MetricProgress& progress = {});
+                                  const std::vector<Record>& records);
+
+/// Returns the errors of an answer with all pairs to a query of a data set of pairs; `a` and `b` are its
+/// bodies.
+Errors errors_of_answer(const DataSet& set, const Question& question, const LrbRep& a, const LrbRep& b,
+                        const methods::MethodInfo& info, const methods::MethodAnswer& answer);
 
 /// Returns them as JSON, one per line.
 std::string to_lines(const std::vector<Point>& points);

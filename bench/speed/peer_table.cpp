@@ -1,5 +1,6 @@
 #include "bench/speed/peer_table.hpp"
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <fstream>
@@ -114,13 +115,21 @@ std::string padded(const std::string& word, std::size_t width, bool left = false
   return left ? word + room : room + word;
 }
 
+/// Returns the width of the column of bodies: of the longest name, and two spaces.
+std::size_t set_width(const PeerTable& t) {
+  std::size_t longest = 16;
+  for (const std::string& set : t.sets) longest = std::max(longest, set.size());
+  return longest + 2;
+}
+
 std::string ratios_of(const PeerTable& t, Mode mode) {
-  constexpr std::size_t kSet = 18, kClass = 16, kNumber = 10;
+  constexpr std::size_t kClass = 16, kNumber = 10;
+  const std::size_t width = set_width(t);
   std::string out =
       mode == Mode::all_pairs
           ? "ALL PAIRS. lrbscope's time in microseconds, hot; then the others' times relative to it, hot\n"
           : "FIRST PAIR (boolean). As above\n";
-  out += padded("bodies", kSet, true) + padded("pose", kClass, true) + padded("pairs", kNumber) +
+  out += padded("bodies", width, true) + padded("pose", kClass, true) + padded("pairs", kNumber) +
          padded("ours us", kNumber) + padded("p95", kNumber);
   for (const methods::MethodInfo& m : t.methods)
     if (m.role != Role::ours && m.present) out += "  " + m.name;
@@ -129,7 +138,7 @@ std::string ratios_of(const PeerTable& t, Mode mode) {
     for (const PoseClass c : classes_of(Quantity::pairs)) {
       const PeerCell* ours = t.find(set, method_in(t.methods, Role::ours), c, mode);
       if (ours == nullptr || ours->questions == 0) continue;
-      out += padded(set, kSet, true) + padded(title(c), kClass, true) +
+      out += padded(set, width, true) + padded(title(c), kClass, true) +
              padded(text("%.0f", ours->pairs), kNumber) + padded(text("%.1f", ours->hot), kNumber) +
              padded(text("%.1f", ours->hot_p95), kNumber);
       for (const methods::MethodInfo& m : t.methods) {
@@ -209,6 +218,7 @@ std::string ahead_of(const PeerTable& t) {
           out += "    " + set + ", " + title(c) +
                  (mode == Mode::all_pairs ? ", all pairs: " : ", boolean: ") + peers + "\n";
       }
+  if (compared == 0) return "  No other engine was measured.\n";
   if (out.empty()) return text("  No other engine is faster in any of %zu cells, hot or cold.\n", compared);
   return text("CELLS IN WHICH ANOTHER ENGINE IS FASTER (%zu of %zu), and by how much\n", behind, compared) +
          out;
@@ -217,8 +227,12 @@ std::string ahead_of(const PeerTable& t) {
 std::string targets_of(const PeerTable& t) {
   const std::string fcl = method_in(t.methods, Role::aim);
   std::string out = "AIMED AT, against FCL compiled with our flags, hot\n";
+  const auto is_present = [&](const methods::MethodInfo& m) { return m.name == fcl && m.present; };
+  const std::string why = fcl.empty() ? "the method is not among those of --method"
+                          : std::any_of(t.methods.begin(), t.methods.end(), is_present) ? "no such poses"
+                                                                                        : "FCL is absent";
   const auto line = [&](const char* what, double reached, double aim) {
-    out += reached <= 0 ? text("  %-42s not measured: FCL is absent\n", what)
+    out += reached <= 0 ? text("  %-42s not measured: %s\n", what, why.c_str())
                         : text("  %-42s %.2fx, aim %.0fx: %s\n", what, reached, aim,
                                reached >= aim ? "reached" : "NOT reached");
   };
@@ -280,13 +294,14 @@ std::string in_brief(const PeerTable& t) {
 }
 
 std::string in_full(const PeerTable& t) {
-  std::string out =
-      text("%-20s %-16s %-6s %-15s %9s %9s %9s %9s %8s %8s %9s %8s %8s\n", "bodies", "pose", "mode", "method",
-           "hot us", "p95", "cold us", "p95", "x ours", "cold", "pairs", "missed", "extra");
+  std::string out = padded("bodies", set_width(t), true) +
+                    text("%-16s %-6s %-15s %9s %9s %9s %9s %8s %8s %9s %8s %8s\n", "pose", "mode", "method",
+                         "hot us", "p95", "cold us", "p95", "x ours", "cold", "pairs", "missed", "extra");
   for (const PeerCell& c : t.cells) {
     if (c.questions == 0) continue;
-    out += text("%-20s %-16s %-6s %-15s ", c.set.c_str(), title(c.pose_class),
-                c.mode == Mode::all_pairs ? "all" : "first", c.method.c_str());
+    out += padded(c.set, set_width(t), true) + text("%-16s %-6s %-15s ", title(c.pose_class),
+                                                    c.mode == Mode::all_pairs ? "all" : "first",
+                                                    c.method.c_str());
     if (c.answered > 0)
       out += text("%9.1f %9.1f %9.1f %9.1f %8.2f %8.2f %9.1f %8llu %8llu", c.hot, c.hot_p95, c.cold,
                   c.cold_p95, c.ratio, c.cold_ratio, c.pairs, static_cast<unsigned long long>(c.missed),

@@ -9,16 +9,18 @@
 #include <lrbscope/error.hpp>
 
 template <>
-struct lrb::io::JsonOf<std::vector<Eigen::Vector3d>> {
-  static nlohmann::ordered_json write(const std::vector<Eigen::Vector3d>& points) {
-    nlohmann::ordered_json out = nlohmann::ordered_json::array();
-    for (const Eigen::Vector3d& p : points) out.push_back({p.x(), p.y(), p.z()});
+struct lrb::io::JsonOf<lrb::bench::Errors> {
+  static nlohmann::ordered_json write(const bench::Errors& errors) {
+    nlohmann::ordered_json out = nlohmann::ordered_json::object();
+    for (std::size_t m = 0; m < bench::kMetrics; ++m)
+      if (errors[m]) out[bench::kMetricInfos[m].name] = *errors[m];
     return out;
   }
-  static std::vector<Eigen::Vector3d> read(const nlohmann::json& value) {
-    std::vector<Eigen::Vector3d> out;
-    for (const nlohmann::json& p : value)
-      out.emplace_back(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>());
+  static bench::Errors read(const nlohmann::json& value) {
+    bench::Errors out;
+    for (std::size_t m = 0; m < bench::kMetrics; ++m)
+      if (const auto it = value.find(bench::kMetricInfos[m].name); it != value.end())
+        out[m] = it->get<double>();
     return out;
   }
 };
@@ -36,9 +38,7 @@ inline constexpr auto kFields<bench::Reply> =
                field("face_tests", &bench::Reply::face_tests),
                field("error_bound", &bench::Reply::error_bound, Kept::if_set),
                field("lower", &bench::Reply::lower, Kept::if_set),
-               field("upper", &bench::Reply::upper, Kept::if_set),
-               field("pairs", &bench::Reply::pairs, Kept::if_set),
-               field("points", &bench::Reply::points, Kept::if_set)};
+               field("upper", &bench::Reply::upper, Kept::if_set)};
 
 template <>
 inline constexpr auto kFields<bench::Record> =
@@ -46,13 +46,15 @@ inline constexpr auto kFields<bench::Record> =
                field("method", &bench::Record::method),
                field("setting", &bench::Record::setting, Kept::if_set),
                field("question", &bench::Record::question),
+               field("round", &bench::Record::round, Kept::if_set),
                field("class", &bench::Record::pose_class),
                field("outcome", &bench::Record::outcome),
                field("message", &bench::Record::message, Kept::if_set),
                field("all", &bench::Record::all, Kept::if_set),
                field("first", &bench::Record::first, Kept::if_set),
                field("build_s", &bench::Record::build_seconds, Kept::if_set),
-               field("bytes", &bench::Record::bytes, Kept::if_set)};
+               field("bytes", &bench::Record::bytes, Kept::if_set),
+               field("errors", &bench::Record::errors, Kept::if_set)};
 
 static_assert(covers_all_fields<bench::Reply>);
 static_assert(covers_all_fields<bench::Record>);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/speed/data_set.hpp"
+#include "bench/speed/errors.hpp"
 #include <lrbscope/collide.hpp>
 
 namespace lrb::bench {
@@ -30,10 +31,8 @@ struct Reply {
   double cold_us = 0;  ///< time of the first query, after the processor's caches were flushed
   double hot_us = 0;   ///< minimum time of some repetitions
   std::uint64_t face_tests = 0;
-  std::optional<double> error_bound;    ///< as in methods::MethodAnswer; of a number: width of its interval
-  std::optional<double> lower, upper;   ///< the number, if that is the quantity; equal: no interval
-  std::vector<SimplexPair> pairs;       ///< if kept
-  std::vector<Eigen::Vector3d> points;  ///< if kept, and the method provides them
+  std::optional<double> error_bound;   ///< as in methods::MethodAnswer; of a number: width of its interval
+  std::optional<double> lower, upper;  ///< the number, if that is the quantity; equal: no interval
   friend bool operator==(const Reply&, const Reply&) = default;
 };
 
@@ -41,12 +40,16 @@ struct Record {
   std::string set, method;
   std::optional<double> setting;
   std::uint64_t question = 0;
+  std::uint64_t round = 0;  ///< of timing; the answer is judged in round 0
   PoseClass pose_class = PoseClass::apart;
   Outcome outcome = Outcome::answered;
   std::string message;  ///< reason if there is no answer
   Reply all, first;
   double build_seconds = 0;  ///< for both bodies
   double bytes = 0;          ///< growth of the heap by both bodies
+  /// Errors of the answer with all pairs, if it was judged. Pairs and points themselves are not stored: those
+  /// of some meshes at one pose take 100 MB.
+  std::optional<Errors> errors;
 };
 
 nlohmann::ordered_json to_json(const Record& r);

@@ -1,20 +1,29 @@
 #include "bench/speed/survey.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "bench/workers/workers.hpp"
+#include "scenarios/io/files.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
 namespace lrb::bench {
 namespace {
 
-using Key = std::tuple<std::string, std::string, std::uint64_t>;  // set, method at its setting, question
+// set, method at its setting, question, round
+using RecordKey = std::tuple<std::string, std::string, std::uint64_t, std::uint64_t>;
+
+RecordKey key_of(const Record& r) {
+  return {r.set, name_of(r), r.question, r.round};
+}
 
 /// A file to which lines are appended; each is flushed at once.
 class Appender {
@@ -34,41 +43,69 @@ class Survey {
  public:
   Survey(const SurveyOptions& options, const SurveyProgress& progress)
       : o_(options), progress_(progress), file_(options.folder + "/records.jsonl") {
-    for (const DataSet& s : o_.sets) total_ += s.questions.size() * o_.contestants.size();
+    for (const DataSet& s : o_.sets) total_ += o_.rounds * s.questions.size() * o_.contestants.size();
   }
 
   std::vector<Record> run() {
-    for (Record& r : read_records(o_.folder + "/records.jsonl")) known_[key(r)] = std::move(r);
-    for (const DataSet& set : o_.sets) {
-      // The queries of a class are contiguous.
-      for (std::uint64_t begin = 0, end = 0; begin < set.questions.size(); begin = end) {
-        while (end < set.questions.size() && set.questions[end].pose_class == set.questions[begin].pose_class)
-          ++end;
-        for (const Contestant& c : o_.contestants) ask(set, c, begin, end);
+    for (Record& r : read_records(o_.folder + "/records.jsonl"))
+      if (!lacks_errors(r)) known_[key_of(r)] = std::move(r);
+    for (unsigned round = 0; round < o_.rounds; ++round)
+      for (const DataSet& set : o_.sets) {
+        // The queries of a class are contiguous.
+        for (std::uint64_t begin = 0, end = 0; begin < set.questions.size(); begin = end) {
+          while (end < set.questions.size() &&
+                 set.questions[end].pose_class == set.questions[begin].pose_class)
+            ++end;
+          for (const Contestant& c : o_.contestants) ask(set, c, round, begin, end);
+        }
       }
-    }
     return collect();
   }
 
  private:
-  static Key key(const Record& r) { return {r.set, name_of(r), r.question}; }
+  /// True for records without the errors that this survey needs; they are measured again.
+  bool lacks_errors(const Record& r) const {
+    return o_.judges && r.round == 0 && r.outcome == Outcome::answered && !r.errors && !r.all.upper;
+  }
 
-  void ask(const DataSet& set, const Contestant& c, std::uint64_t begin, std::uint64_t end) {
+  bool is_known(const RecordKey& k) const { return known_.count(k) != 0; }
+
+  /// True if a query need not be measured: it was, or its answer in round 0 failed.
+  bool is_done(const std::string& set, const std::string& name, std::uint64_t question,
+               unsigned round) const {
+    if (is_known({set, name, question, round})) return true;
+    const auto first = known_.find({set, name, question, 0});
+    return round > 0 && first != known_.end() && first->second.outcome != Outcome::answered;
+  }
+
+  void ask(const DataSet& set, const Contestant& c, unsigned round, std::uint64_t begin, std::uint64_t end) {
     const std::string name = name_of(c.method.column.name, c.setting);
-    for (; begin < end && known_.count({set.name, name, begin}) != 0; ++begin) notify(set.name + ", " + name);
-    if (begin == end) return;
+    const std::string what = set.name + ", " + name;
+    while (begin < end) {
+      for (; begin < end && is_done(set.name, name, begin, round); ++begin) notify(what);
+      std::uint64_t stop = begin;
+      while (stop < end && !is_done(set.name, name, stop, round)) ++stop;
+      if (begin < stop) run(set, c, round, begin, stop);
+      begin = stop;
+    }
+  }
+
+  void run(const DataSet& set, const Contestant& c, unsigned round, std::uint64_t begin, std::uint64_t end) {
+    const std::string what = set.name + ", " + name_of(c.method.column.name, c.setting);
     workers::Job::Task task;
     task.command = {c.method.program, "--questions", o_.folder + "/" + set.name + ".set.json", "--method",
                     c.method.column.name};
     if (c.setting) task.command.insert(task.command.end(), {"--setting", exactly(*c.setting)});
-    if (o_.keep) task.command.push_back("--pairs");
+    if (o_.judges && round == 0) task.command.push_back("--errors");
     task.begin = begin;
     task.end = end;
     task.limit =
         std::chrono::duration_cast<workers::Job::Clock::duration>(std::chrono::duration<double>(o_.timeout));
     task.on_line = [&](std::uint64_t, const std::string& line) {
-      keep(record_from(nlohmann::json::parse(line)), line);
-      notify(set.name + ", " + name);
+      Record r = record_from(nlohmann::json::parse(line));
+      r.round = round;
+      keep(std::move(r));
+      notify(what);
     };
     task.on_failure = [&](std::uint64_t k, const workers::WorkerFailure& failure) {
       Record r;
@@ -76,19 +113,19 @@ class Survey {
       r.method = c.method.column.name;
       r.setting = c.setting;
       r.question = k;
+      r.round = round;
       r.pose_class = set.questions[k].pose_class;
       r.outcome = failure.timed_out ? Outcome::timed_out : Outcome::crashed;
       r.message = failure.message;
-      const std::string line = to_json(r).dump();
-      keep(std::move(r), line);
-      notify(set.name + ", " + name);
+      keep(std::move(r));
+      notify(what);
     };
     workers::run_to_end(workers::Job(std::move(task)));
   }
 
-  void keep(Record r, const std::string& line) {
-    file_.add(line);
-    known_[key(r)] = std::move(r);
+  void keep(Record r) {
+    file_.add(to_json(r).dump());
+    known_[key_of(r)] = std::move(r);
   }
 
   /// Returns the requested records, in order.
@@ -97,7 +134,10 @@ class Survey {
     for (const DataSet& set : o_.sets)
       for (const Contestant& c : o_.contestants)
         for (std::uint64_t q = 0; q < set.questions.size(); ++q)
-          out.push_back(known_.at({set.name, name_of(c.method.column.name, c.setting), q}));
+          for (unsigned round = 0; round < o_.rounds; ++round)
+            if (const auto it = known_.find({set.name, name_of(c.method.column.name, c.setting), q, round});
+                it != known_.end())
+              out.push_back(it->second);
     return out;
   }
 
@@ -115,7 +155,7 @@ class Survey {
   const SurveyOptions& o_;
   const SurveyProgress& progress_;
   Appender file_;
-  std::map<Key, Record> known_;
+  std::map<RecordKey, Record> known_;
   std::uint64_t done_ = 0, total_ = 0;
 };
 
@@ -133,6 +173,102 @@ std::vector<Contestant> contestants(const std::vector<workers::WorkerMethod>& me
 
 std::vector<Record> survey(const SurveyOptions& options, const SurveyProgress& progress) {
   return Survey(options, progress).run();
+}
+
+namespace {
+
+std::string plan_file(const std::string& folder) {
+  return folder + "/survey.json";
+}
+
+/// Adds the words that a list does not have yet.
+void merge(nlohmann::ordered_json& list, const std::vector<std::string>& words) {
+  for (const std::string& word : words)
+    if (std::find(list.begin(), list.end(), word) == list.end()) list.push_back(word);
+}
+
+nlohmann::ordered_json read_plan(const std::string& folder) {
+  if (!std::filesystem::exists(plan_file(folder))) return nullptr;
+  const std::string text = io::read_text(plan_file(folder));
+  nlohmann::ordered_json plan = nlohmann::ordered_json::parse(text, nullptr, false);
+  const auto is_list = [&](const char* key) { return plan.contains(key) && plan[key].is_array(); };
+  const bool is_plan = plan.is_object() && is_list("sets") && is_list("methods") && plan.contains("rounds") &&
+                       plan["rounds"].is_number_unsigned();
+  if (!is_plan)
+    throw InputError(printable_name(plan_file(folder)) +
+                     ": expected the plan of a survey, found another text; delete it and measure again");
+  return plan;
+}
+
+}  // namespace
+
+void write_plan(const SurveyOptions& options, const std::vector<std::string>& sets) {
+  nlohmann::ordered_json plan = read_plan(options.folder);
+  if (plan.is_null())
+    plan = {{"sets", nlohmann::ordered_json::array()},
+            {"methods", nlohmann::ordered_json::array()},
+            {"rounds", 1}};
+  merge(plan["sets"], sets);
+  std::vector<std::string> names;
+  for (const Contestant& c : options.contestants) names.push_back(name_of(c.method.column.name, c.setting));
+  merge(plan["methods"], names);
+  plan["rounds"] = std::max(plan["rounds"].get<unsigned>(), options.rounds);
+  io::write_text(plan_file(options.folder), plan.dump() + "\n");
+}
+
+std::vector<Missing> missing_answers(const std::string& folder, const std::vector<DataSet>& sets,
+                                     const std::vector<Record>& records) {
+  const nlohmann::ordered_json plan = read_plan(folder);
+  if (plan.is_null()) return {};
+  std::set<RecordKey> known;
+  std::map<RecordKey, bool> failed;  // in round 0
+  for (const Record& r : records) {
+    known.insert(key_of(r));
+    if (r.round == 0) failed[key_of(r)] = r.outcome != Outcome::answered;
+  }
+  std::vector<Missing> out;
+  bool any = false;
+  for (const auto& name : plan["sets"]) {
+    const auto set = std::find_if(sets.begin(), sets.end(), [&](const DataSet& s) { return s.name == name; });
+    Missing m{name.get<std::string>(), 0, 0};
+    if (set == sets.end()) {  // its poses were not chosen yet
+      m.planned = m.missing = 1;
+    } else {
+      for (const auto& method : plan["methods"])
+        for (std::uint64_t q = 0; q < set->questions.size(); ++q)
+          for (std::uint64_t round = 0; round < plan["rounds"].get<unsigned>(); ++round) {
+            ++m.planned;
+            const auto first = failed.find({m.set, method, q, 0});
+            const bool gave_up = round > 0 && first != failed.end() && first->second;
+            m.missing += !gave_up && known.count({m.set, method, q, round}) == 0;
+          }
+    }
+    any = any || m.missing > 0;
+    out.push_back(std::move(m));
+  }
+  if (!any) out.clear();
+  return out;
+}
+
+std::string missing_text(const std::vector<Missing>& missing) {
+  std::string whole, parts;
+  std::size_t none = 0;
+  for (const Missing& m : missing) {
+    if (m.missing == m.planned) {
+      whole += (whole.empty() ? "" : ", ") + m.set;
+      ++none;
+    } else if (m.missing > 0) {
+      parts += (parts.empty() ? "" : ", ") + std::to_string(m.missing) + " of " + std::to_string(m.planned) +
+               " of " + m.set;
+    }
+  }
+  if (whole.empty() && parts.empty()) return "";
+  std::string out = "The survey is unfinished.";
+  if (none > 0)
+    out += " No answers yet for " + std::to_string(none) + " of " + std::to_string(missing.size()) +
+           " pairs of bodies: " + whole + ".";
+  if (!parts.empty()) out += " Missing answers: " + parts + ".";
+  return out + " The command that began it continues it.";
 }
 
 }  // namespace lrb::bench

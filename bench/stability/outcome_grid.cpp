@@ -74,7 +74,7 @@ std::string absent_text(const Grid& grid) {
   std::string names;
   std::size_t absent = 0;
   for (const workers::MethodColumn& m : grid.methods)
-    if (!m.present) names += (absent++ > 0 ? ", " : "") + m.title;
+    if (!m.present) names += (absent++ > 0 ? ", " : "") + m.name;
   if (absent == 0) return {};
   return std::to_string(absent) + (absent == 1 ? " method is" : " methods are") +
          " not installed here: " + names + ".";

@@ -5,7 +5,9 @@
 #include <cstring>
 #include <deque>
 #include <list>
+#include <map>
 #include <memory>
+#include <tuple>
 
 #include <nlohmann/json.hpp>
 #include <poll.h>
@@ -17,7 +19,9 @@
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "bench/workers/workers.hpp"
+#include "scenarios/io/unfinished.hpp"
 #include <lrbscope/error.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::stability {
 namespace {
@@ -89,10 +93,46 @@ struct FamilyWork {
   std::size_t methods_begun = 0, methods_done = 0;
 };
 
+/// The records of an experiment while it runs.
+class Unfinished {
+ public:
+  Unfinished(const std::string& path, const std::string& head) : file_(path, head) {
+    for (const std::string& line : file_.lines()) {
+      Record r = record_from(nlohmann::json::parse(line, nullptr, false));
+      RecordKey key{r.family, r.method, r.difficulty, r.case_index};
+      known_[std::move(key)] = std::move(r);
+    }
+  }
+
+  /// Returns the record of an earlier run, or null.
+  const Record* find(const std::string& family, const std::string& method, int difficulty,
+                     std::uint64_t case_index) const {
+    const auto it = known_.find({family, method, difficulty, case_index});
+    return it == known_.end() ? nullptr : &it->second;
+  }
+
+  void add(const Record& r) { file_.add(to_json(r).dump()); }
+  void remove() const { file_.remove(); }
+
+ private:
+  using RecordKey = std::tuple<std::string, std::string, int, std::uint64_t>;
+  io::UnfinishedFile file_;
+  std::map<RecordKey, Record> known_;
+};
+
+/// Describes the run whose records can be continued: the version, and what else their outcomes depend on.
+std::string head_of(const ExperimentOptions& o) {
+  return nlohmann::ordered_json{{"lrbscope", trace::lrbscope_version()},
+                                {"quantity", name_of(o.quantity)},
+                                {"seed", o.seed},
+                                {"timeout", o.timeout}}
+      .dump();
+}
+
 class Experiment {
  public:
   Experiment(const ExperimentOptions& options, const ProgressFunction& progress)
-      : o_(options), progress_(progress) {
+      : o_(options), progress_(progress), unfinished_(options.unfinished_file, head_of(options)) {
     std::erase_if(o_.methods, [](const workers::WorkerMethod& m) { return !m.column.present; });
     begin_ = o_.difficulty ? static_cast<std::uint64_t>(*o_.difficulty) * o_.cases : 0;
     end_ = o_.difficulty ? begin_ + o_.cases : cases::kDifficulties * o_.cases;
@@ -111,6 +151,7 @@ class Experiment {
         return r.job->done();
       });
     }
+    unfinished_.remove();
     return std::move(records_);
   }
 
@@ -164,6 +205,16 @@ class Experiment {
     task.command.insert(task.command.end(), {"--method", method.column.name, "--expected", kGivenFile});
     task.begin = begin_;
     task.end = end_;
+    while (const Record* known = earlier(family, m, task.begin)) {
+      family.records[m].push_back(*known);
+      notify(family.name + ", " + method.column.name);
+      ++task.begin;
+    }
+    const auto on_done = [this, &family] {
+      ++family.methods_done;
+      hand_over_finished();
+    };
+    if (task.begin == end_) return on_done();
     task.given = family.expected.descriptor();
     task.limit = seconds(o_.timeout);
     task.on_line = [this, &family, m](std::uint64_t, const std::string& line) {
@@ -174,13 +225,18 @@ class Experiment {
       r.expected = family.expected_pairs[k - begin_];
       keep(family, m, record_of_failure(r, failure));
     };
-    running_.push_back({std::make_unique<workers::Job>(std::move(task)), [this, &family] {
-                          ++family.methods_done;
-                          hand_over_finished();
-                        }});
+    running_.push_back({std::make_unique<workers::Job>(std::move(task)), on_done});
+  }
+
+  /// Returns the record of case k of an earlier run, or null.
+  const Record* earlier(const FamilyWork& family, std::size_t m, std::uint64_t k) const {
+    if (k >= end_) return nullptr;
+    return unfinished_.find(family.name, o_.methods[m].column.name, static_cast<int>(k / o_.cases),
+                            k % o_.cases);
   }
 
   void keep(FamilyWork& family, std::size_t m, Record record) {
+    unfinished_.add(record);
     family.records[m].push_back(std::move(record));
     notify(family.name + ", " + o_.methods[m].column.name);
   }
@@ -220,6 +276,7 @@ class Experiment {
 
   ExperimentOptions o_;
   const ProgressFunction& progress_;
+  Unfinished unfinished_;
   std::uint64_t begin_ = 0, end_ = 0, done_ = 0, total_ = 0;
   std::size_t next_family_ = 0;
   std::deque<std::unique_ptr<FamilyWork>> open_;

@@ -26,6 +26,9 @@ struct ExperimentOptions {
   std::optional<int> difficulty;  ///< only this difficulty; nullopt: all
   unsigned jobs = 2;              ///< number of concurrent workers
   double timeout = 5;             ///< time limit per case in seconds, after which a method counts as hanging
+  /// File to which records are appended as they come; those of an interrupted run of the same version are
+  /// taken from it, and it is removed at the end. Empty: no file.
+  std::string unfinished_file = {};
 };
 
 using ProgressFunction =

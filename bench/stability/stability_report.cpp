@@ -211,7 +211,7 @@ report::Document stability_page(const Grid& whole, const std::string& folder, co
           {"Methods", render::group_digits(grid.methods.size()),
            absent == 0 ? "all that are known" : render::group_digits(absent) + " more not installed here"})
       .number({"Answers judged", render::group_digits(answers), "one per case and method"})
-      .number({"Running time", render::short_number(grid.seconds) + " s"});
+      .number({"Time of the cases", render::short_number(grid.seconds) + " s"});
   report::Grid shown = page_grid(grid, options);
   shown.missing = absent_text(whole);
   return doc.grid(shown, folder).command(grid.command).each(options.links, &report::Document::link);

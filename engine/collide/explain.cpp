@@ -119,11 +119,12 @@ WorldBox box_of(const ObbTree& tree, std::uint32_t node, int child, const Pose& 
   return out;
 }
 
-void compare_boxes(const WorldBox& a, const WorldBox& b, BoxPair& out) {
+void compare_boxes(const WorldBox& a, const WorldBox& b, BoxPair& out, int dim) {
   out.gap = -std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 6; ++axis) {
     // Separating axis test along the six side normals: centre distance minus both half widths.
     const Vector3d& n = axis < 3 ? a.across[axis] : b.across[axis - 3];
+    if (dim == 2 && std::abs(n.z()) > 0.5) continue;  // across the plane
     double gap = std::abs(n.dot(a.centre - b.centre));
     for (int i = 0; i < 3; ++i) gap -= std::abs(n.dot(a.half[i])) + std::abs(n.dot(b.half[i]));
     if (gap > out.gap) out.gap = gap, out.axis = static_cast<BoxAxis>(axis);
@@ -213,6 +214,7 @@ class Way {
   }
 
   const ObbTree& tree(Side side) const { return ctx_[side].tree(); }
+  int dim() const { return ctx_[Side::a].rep().dim(); }
   std::uint32_t node(int s) const { return path_[s].nodes[at_[s]]; }
   std::uint32_t next(int s) const {
     return at_[s] + 1 < path_[s].nodes.size() ? path_[s].nodes[at_[s] + 1] : node(s);
@@ -229,7 +231,7 @@ class Way {
       box[s] = box_of(tree(side), child[s] == kWhole ? node(s) : path_[s].nodes[at_[s] - 1], child[s],
                       ctx_[side].world.pose());
     }
-    compare_boxes(box[0], box[1], pair);
+    compare_boxes(box[0], box[1], pair, dim());
     out_.nodes.push_back(pair);
   }
 
@@ -256,8 +258,8 @@ class Way {
     out_.reaches_faces = true;
     out_.face_boxes.node = {node(0), node(1)};
     compare_boxes(box_of(tree(Side::a), node(0), path_[0].place, ctx_[Side::a].world.pose()),
-                  box_of(tree(Side::b), node(1), path_[1].place, ctx_[Side::b].world.pose()),
-                  out_.face_boxes);
+                  box_of(tree(Side::b), node(1), path_[1].place, ctx_[Side::b].world.pose()), out_.face_boxes,
+                  dim());
     // The kernel returns only simplices that neither boxes nor planes separated.
     const auto found =
         std::find_if(outcome.candidates.begin(), outcome.candidates.end(),

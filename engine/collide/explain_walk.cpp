@@ -109,7 +109,7 @@ class NearestBoxes {
   void see(const Box& a, const Box& b, bool faces) {
     BoxPair pair;
     pair.node = {a.node, b.node};
-    compare_boxes(a.box, b.box, pair);
+    compare_boxes(a.box, b.box, pair, ctx_[Side::a].rep().dim());
     if (pair.gap > 0 && (!nearest_ || pair.gap < nearest_->pair.gap))
       nearest_ = SeparatingBoxes{pair, {a.box, b.box}, faces};
   }
@@ -206,7 +206,7 @@ WalkExplanation explain_walk(const LrbRep& a, const Pose& pose_a, const LrbRep& 
   // Then the traversal again, pair by pair.
   begin(ctx, a, pose_a, b, pose_b);
   if (a.tree().empty() || b.tree().empty()) return out;
-  compare_boxes(box_of(a.tree(), 0, kWhole, pose_a), box_of(b.tree(), 0, kWhole, pose_b), out.roots);
+  compare_boxes(box_of(a.tree(), 0, kWhole, pose_a), box_of(b.tree(), 0, kWhole, pose_b), out.roots, a.dim());
   Stepper stepper(ctx);
   NearestPairs nearest(ctx);
   NearestBoxes nearest_boxes(ctx, stepper);

@@ -206,7 +206,12 @@ struct Help {
   std::string_view advice;
 };
 
-Help help_for(MeshFault fault) {
+/// Returns the advice on a fault of a mesh of `dim` dimensions.
+Help help_for(MeshFault fault, int dim) {
+  if (dim == 2 && fault == MeshFault::open_edge)
+    return {ElementKind::edge, "add a segment (l) that joins it to another end"};
+  if (dim == 2 && fault == MeshFault::non_manifold_edge)
+    return {ElementKind::edge, "separate the parts: one copy of the vertex for each pair of segments"};
   switch (fault) {
     case MeshFault::no_faces:
       return {ElementKind::none, "export the mesh with its faces"};
@@ -311,7 +316,7 @@ std::string advice_on_openings(const MeshReport& report) {
   if (sheets > 0 && sheets == open)
     return sheets == 1 ? "this is a sheet, which does not bound a solid"
                        : "these are " + std::to_string(sheets) + " sheets, which do not bound a solid";
-  const std::string close(help_for(MeshFault::open_edge).advice);
+  const std::string close(help_for(MeshFault::open_edge, 3).advice);
   if (sheets == 0) return close;
   return close + ", but " + std::to_string(sheets) + " of the " + std::to_string(open) + " open components " +
          (sheets == 1 ? "is a sheet, which does" : "are sheets, which do") + " not bound a solid";
@@ -319,7 +324,7 @@ std::string advice_on_openings(const MeshReport& report) {
 
 std::string line_for(const Mesh& mesh, MeshFault fault, const MeshReport& report) {
   const MeshFinding& finding = report[fault];
-  const Help help = help_for(fault);
+  const Help help = help_for(fault, mesh.dim);
   std::string line = mesh.name.empty() ? "mesh" : mesh.name;
   line.append(": ").append(text_of(fault, mesh.dim));
   // Number of findings, then the first affected elements in file order.

@@ -1,6 +1,7 @@
 #include "scenarios/crowd/crowd_frames.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "render/pictures/panel.hpp"
@@ -179,7 +180,11 @@ run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const
   make_folder(folder + "/frames");
   run::remove_old_frames(folder);
   run::DrawnFrames out;
-  if (run.moments.empty()) return out;
+  if (run.moments.empty()) {
+    std::error_code not_empty;  // it then has files of the user
+    std::filesystem::remove(folder + "/frames", not_empty);
+    return out;
+  }
   const FrameState state(crowd, run, spec);
   std::vector<render::Overlay> overlays;
   for (const CrowdMoment& m : run.moments) overlays.push_back(state.overlay(m));

@@ -180,6 +180,23 @@ void redraw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::stri
   write_pictures_and_page(crowd, run, folder, command, {trace_link(crowd, file)}, progress);
 }
 
+namespace {
+
+/// Returns a time with a unit in which it is at least 1, if it is at least a microsecond: "1.6 ms".
+std::string time_text(double microseconds) {
+  constexpr double kThousand = 1000;
+  double value = microseconds;
+  const char* unit = " us";
+  for (const char* longer : {" ms", " s"}) {
+    if (value < kThousand) break;
+    value /= kThousand;
+    unit = longer;
+  }
+  return render::short_number(value) + unit;
+}
+
+}  // namespace
+
 std::string crowd_speed(const CrowdRun& run) {
   std::vector<double> broad_phases, queries;
   for (const CrowdStep& s : run.steps) {
@@ -189,7 +206,7 @@ std::string crowd_speed(const CrowdRun& run) {
   const auto median_text = [](std::vector<double>& x) {
     const auto median = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
     std::nth_element(x.begin(), median, x.end());
-    return render::short_number(*median) + " us";
+    return time_text(*median);
   };
   return "a step takes (medians): broad phase " + median_text(broad_phases) + ", queries " +
          median_text(queries) + ", on " + std::to_string(run.threads) +

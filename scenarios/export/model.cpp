@@ -84,7 +84,8 @@ struct Format {
 };
 constexpr std::array kFormats = {
     Format{".ply", ply_bytes, true, false}, Format{".vtp", vtp_bytes, true, false},
-    Format{".obj", obj_bytes, false, true}, Format{".glb", glb_bytes, false, true}};
+    Format{".obj", obj_bytes, false, true}, Format{".glb", glb_bytes, false, true},
+    Format{".stl", stl_bytes, true, false}};
 
 const Format& format_of(const std::string& path, const FileOptions& options) {
   std::string ending = std::filesystem::path(path).extension().string();
@@ -93,8 +94,8 @@ const Format& format_of(const std::string& path, const FileOptions& options) {
   const auto format =
       std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& f) { return f.ending == ending; });
   if (format == kFormats.end())
-    throw InputError(printable_name(path) + ": expected a name that ends in .ply, .vtp, .glb or .obj");
-  if (options.ascii && !format->ascii) throw InputError("--ascii: needs a .ply or .vtp file");
+    throw InputError(printable_name(path) + ": expected a name that ends in .ply, .vtp, .glb, .obj or .stl");
+  if (options.ascii && !format->ascii) throw InputError("--ascii: needs a .ply, .vtp or .stl file");
   if (options.regions && !format->regions) throw InputError("--regions: needs a .glb or .obj file");
   return *format;
 }

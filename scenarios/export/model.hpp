@@ -67,7 +67,7 @@ std::vector<Part> split_by_region(const Model& model);
 // Writes models in the formats of other programs. docs/formats.md describes their contents.
 
 struct FileOptions {
-  bool ascii = false;    ///< numbers as text: PLY, VTP
+  bool ascii = false;    ///< numbers as text: PLY, VTP, STL
   bool regions = false;  ///< a group or node for each region: OBJ, GLB
   int up = 2;            ///< the up axis of the model, for GLB, whose up axis is y
 };
@@ -77,9 +77,11 @@ std::string ply_bytes(const Model& model, const FileOptions& options);
 std::string vtp_bytes(const Model& model, const FileOptions& options);
 std::string obj_bytes(const Model& model, const FileOptions& options);
 std::string glb_bytes(const Model& model, const FileOptions& options);
+/// Throws InputError for parts without faces, and for coordinates beyond the range of floats (binary).
+std::string stl_bytes(const Model& model, const FileOptions& options);
 
-/// Writes a model to FILE.ply, .vtp, .obj or .glb, completely or not at all. Throws InputError for other
-/// names, and for options that the format does not support.
+/// Writes a model to FILE.ply, .vtp, .obj, .glb or .stl, completely or not at all. Throws InputError for
+/// other names, and for options that the format does not support.
 void save_model(const Model& model, const std::string& path, const FileOptions& options);
 /// Throws as save_model() does, before a model is made.
 void check_model_file(const std::string& path, const FileOptions& options);

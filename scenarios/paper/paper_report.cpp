@@ -207,6 +207,19 @@ std::vector<std::string> differences(const PaperReport& r, std::span<const Objec
       over.empty()
           ? "The averages of the paper's recursion are at or under the published ones for all objects."
           : "The averages of the paper's recursion are above the published ones for " + over + ".");
+  std::string ratios;
+  for (const ObjectRow& row : rows)
+    if (const PublishedRow* p = published(row.object)) {
+      const Spread& s = row.recursions[0].comparisons;
+      ratios += (ratios.empty() ? "" : "; ") + row.object + " " + fixed(s.min / p->min, 2) + ", " +
+                fixed(s.average / p->average, 2) + ", " + fixed(s.max / p->max, 2);
+    }
+  if (!ratios.empty() && all_as_published(r))
+    out.push_back("Measured over published, minimum, average and maximum: " + ratios +
+                  ". Minima and maxima are of single time steps, and differ from seed to seed (--seed).");
+  out.push_back(
+      "The length of a time step and the number of steps after the first contact are a choice of this "
+      "program, because the paper names neither: deeper contact has more comparisons (--step, --steps-after).");
   if (first.comparisons.max > 0 && rows.size() > 1)
     out.push_back("From " + rows.front().object + " to " + rows.back().object + " the average grows " +
                   fixed(last.comparisons.average / first.comparisons.average, 2) +

@@ -14,6 +14,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_check.hpp>
+#include <lrbscope/trace/json_write.hpp>
 
 namespace lrb::resolutions {
 
@@ -139,7 +140,8 @@ std::vector<SeriesObject> make_series(std::span<const Mesh> bodies,
 
 std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObject> objects,
                                     const SweepOptions& options,
-                                    const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+                                    const std::function<void(std::uint64_t, std::uint64_t)>& progress,
+                                    const PartRunner& part) {
   std::vector<ContactStep> steps;
   std::uint64_t sweeps = 0, done_before = 0;
   for (const SeriesPartner partner : kSeriesPartners) {
@@ -147,11 +149,15 @@ std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObjec
       const LrbRep& first = partner == SeriesPartner::a ? a : object.rep;
       const PaperObject pair[] = {{"", first}, {series_name(object, partner), object.rep, object.body}};
       std::uint64_t last = 0;
-      for (ContactStep& s : run_sweep(pair, options, [&](std::uint64_t done, std::uint64_t of) {
-             last = of;  // about equal for all sweeps
-             if (progress) progress(done_before + done, done_before + of * (2 * objects.size() - sweeps));
-           }))
-        steps.push_back(std::move(s));
+      const auto run = [&] {
+        return run_sweep(pair, options, [&](std::uint64_t done, std::uint64_t of) {
+          last = of;  // about equal for all sweeps
+          if (progress) progress(done_before + done, done_before + of * (2 * objects.size() - sweeps));
+        });
+      };
+      const std::string name =
+          pair[1].name + " " + trace::to_hex(object.rep.hash()) + trace::to_hex(first.hash());
+      for (ContactStep& s : part(name, run)) steps.push_back(std::move(s));
       done_before += last;
       ++sweeps;
     }

@@ -59,10 +59,16 @@ std::vector<SeriesObject> make_series(std::span<const Mesh> bodies,
                                       const BuildOptions& building, double diagonal,
                                       const std::function<void()>& progress);
 
-/// Runs all collisions of the shard; returns them in the order of merged().
-std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObject> objects,
-                                    const SweepOptions& options,
-                                    const std::function<void(std::uint64_t, std::uint64_t)>& progress);
+/// Runs a part of an experiment, or returns the steps that an earlier run had of it. The name is unique to
+/// the part and its bodies.
+using PartRunner = std::function<std::vector<ContactStep>(
+    const std::string& name, const std::function<std::vector<ContactStep>()>& run)>;
+
+/// Runs all collisions of the shard, those of two bodies as a part; returns them in the order of merged().
+std::vector<ContactStep> run_series(
+    const LrbRep& a, std::span<const SeriesObject> objects, const SweepOptions& options,
+    const std::function<void(std::uint64_t, std::uint64_t)>& progress,
+    const PartRunner& part = [](const std::string&, const auto& run) { return run(); });
 
 /// Returns the times of the steps, which are not in their records: one JSON object on a line for each step.
 std::string times_to_json_lines(std::span<const ContactStep> steps);

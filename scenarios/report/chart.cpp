@@ -117,7 +117,8 @@ std::vector<std::pair<const Series*, std::size_t>> key_of(std::span<const Chart>
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
       const Series& s = panel.series[i];
       const auto same = [&](const auto& entry) { return entry.first->label == s.label; };
-      if (!s.label.empty() && std::none_of(out.begin(), out.end(), same)) out.emplace_back(&s, i);
+      if (!s.label.empty() && !s.x.empty() && std::none_of(out.begin(), out.end(), same))
+        out.emplace_back(&s, i);
     }
   return out;
 }
@@ -187,18 +188,22 @@ Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& layout) {
   const Sheet sheet{columns * column_width, rows * row_height + (lines > 0 ? 1.2 * line * lines + line : 0)};
   Gnuplot out{"", sheet.width, sheet.height, layout.font};
   std::string commands;
+  const auto is_empty = [](const Chart& panel) {
+    return std::all_of(panel.series.begin(), panel.series.end(), [](const Series& s) { return s.x.empty(); });
+  };
   for (int p = 0; p < count; ++p) {
     const Chart& panel = panels[static_cast<std::size_t>(p)];
-    if (std::all_of(panel.series.begin(), panel.series.end(), [](const Series& s) { return s.x.empty(); }))
-      continue;
+    if (is_empty(panel)) continue;
     const auto at = [&](int other) -> const Chart& { return panels[static_cast<std::size_t>(other)]; };
     const int column = p % columns, row = p / columns;
     const double x = column * column_width + left, y = row * row_height + top;
     commands +=
         sheet.margins(x, x + layout.panel_width, y, y + layout.panel_height) + "set title " +
         gnuplot_text(count > 1 ? panel.title : "") + " offset 0,-0.6\n" +
-        axis_commands("x", panel.x, p + columns >= count || at(p + columns).x.label != panel.x.label) +
-        axis_commands("y", panel.y, column == 0 || at(p - 1).y.label != panel.y.label);
+        axis_commands(
+            "x", panel.x,
+            p + columns >= count || is_empty(at(p + columns)) || at(p + columns).x.label != panel.x.label) +
+        axis_commands("y", panel.y, column == 0 || is_empty(at(p - 1)) || at(p - 1).y.label != panel.y.label);
     std::string plots;
     for (std::size_t i = 0; i < panel.series.size(); ++i)
       if (!panel.series[i].x.empty())

@@ -8,7 +8,7 @@
 
 namespace lrb::run {
 
-std::string_view to_text(DecidedBy by) {
+std::string_view to_text(DecidedBy by, int dim) {
   switch (by) {
     case DecidedBy::node_boxes:
       return "boxes of tree nodes, which are disjoint";
@@ -21,7 +21,9 @@ std::string_view to_text(DecidedBy by) {
     case DecidedBy::floats:
       return "floating point with error bounds";
     case DecidedBy::exact:
-      return "the exact test, because floating point could not decide";
+      // In 2D no test in floating point precedes it.
+      return dim == 2 ? "the exact test of the two segments"
+                      : "the exact test, because floating point could not decide";
   }
   return {};
 }
@@ -181,7 +183,7 @@ std::string explanation_text(const PairExplanation& e, const LrbRep& a, const Lr
   out << "simplex " << e.pair.a << " of A (face " << a.face_of_simplex(e.pair.a) << " of " << a.name()
       << ") and " << e.pair.b << " of B (face " << b.face_of_simplex(e.pair.b) << " of " << b.name()
       << "): " << name_of(e.meet) << "\n";
-  out << "decided by " << to_text(e.decided_by) << "\n\n";
+  out << "decided by " << to_text(e.decided_by, a.dim()) << "\n\n";
   write_way(out, e);
   out << "\n";
   write_regions(out, a, e.hidden_by[0], "A's");

@@ -20,7 +20,8 @@ nlohmann::ordered_json explanation_json(const WalkExplanation& e);
 
 // Phrases of explanations, common to the program and the pages.
 
-/// Names the test that decided about two faces, as a phrase that follows "decided by".
-std::string_view to_text(DecidedBy by);
+/// Names the test that decided about two faces of bodies of `dim` dimensions, as a phrase that follows
+/// "decided by".
+std::string_view to_text(DecidedBy by, int dim);
 
 }  // namespace lrb::run

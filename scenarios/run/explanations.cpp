@@ -242,7 +242,7 @@ json explanations_json(const RecordedRun& p, const Explained& what, const SceneF
     columns.add(static_cast<std::uint32_t>(here - what.steps.begin()), explainer.explain(compared.pair));
   }
   json by = json::array(), meets = json::array(), axes = json::array();
-  for (const auto& entry : kEnumNames<DecidedBy>) by.push_back(to_text(entry.value));
+  for (const auto& entry : kEnumNames<DecidedBy>) by.push_back(to_text(entry.value, p.reps[0]->dim()));
   for (const auto& entry : kEnumNames<exact::Meet>) meets.push_back(entry.name);
   for (const auto& entry : kEnumNames<BoxAxis>) axes.push_back(entry.name);
   std::string cut;

@@ -57,6 +57,14 @@ Eigen::Vector3d read_room(const io::JsonNode& node) {
   return room;
 }
 
+/// Returns the keys of a crowd's query: those of a scenario's exact queries of pairs.
+std::vector<std::string> crowd_query_keys() {
+  std::vector<std::string> keys;
+  for_each_field<CollideRequest>([&](const auto& field) { keys.emplace_back(field.name); });
+  for (const char* key : {"max_time", "tolerance", "max_tests", "separation"}) std::erase(keys, key);
+  return keys;
+}
+
 /// Reads frames of a crowd, which support part of the settings for two bodies.
 FrameSpec read_crowd_frames(const io::JsonNode& node) {
   FrameSpec frames = read_frames(node, {});
@@ -89,11 +97,14 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   if (const auto n = root.get("arrangement")) c.arrangement = n->choice<Crowd::Arrangement>();
   c.kinds = read_kinds(root.at("bodies"), std::filesystem::path(file).parent_path(), c.seed);
   read_motion(root.at("motion"), c);
-  c.request.contacts = true;
   if (const auto n = root.get("query")) {
     for (const char* key : {"tolerance", "max_tests", "separation"})
       if (n->has(key)) n->fail_key(key, "queries of a crowd are exact; remove it, or use a scenario");
+    for (const char* key : {"clash", "distance", "coherent"})
+      if (n->has(key)) n->fail_key(key, "not supported for a crowd; remove it, or use a scenario");
+    n->object(crowd_query_keys());
     c.request = read_query(*n);
+    if (!n->has("contacts")) c.request.contacts = false;  // they take most of the time of a step
   }
   if (const auto trace = root.get("trace")) {
     trace->object({"clock", "max_events"});

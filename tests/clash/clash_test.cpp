@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/quantities/rational_oracles.hpp"
+#include "bench/stability/rational_oracles.hpp"
 #include "engine/clash/surface_pieces.hpp"
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"

@@ -1,5 +1,6 @@
 // Explanations against the query itself, brute force and distances from another source.
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
 
@@ -170,6 +171,27 @@ TEST_CASE("separate bodies: the closest disjoint boxes, and a separating plane i
     }
   CHECK(planes > 10);
   CHECK(boxes > 10);
+}
+
+TEST_CASE("gaps of 2D boxes are those in the plane, not that of their thickness") {
+  bool any_thin = false;
+  for (const ExplainedScene& s : scenes()) {
+    if (s.a.dim() != 2) continue;
+    const std::array<WorldBox, 2> boxes = {box_of(s.a.tree(), 0, kWhole, {}),
+                                           box_of(s.b.tree(), 0, kWhole, s.pose)};
+    const auto is_across_plane = [&](BoxAxis axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      return std::abs(boxes[k / 3].across[k % 3].z()) > 0.5;
+    };
+    BoxPair thin;
+    compare_boxes(boxes[0], boxes[1], thin);
+    any_thin |= is_across_plane(thin.axis);
+    CHECK_FALSE(is_across_plane(explain_walk(s.a, {}, s.b, s.pose).roots.axis));
+    const BoxPair first = explain_pair(s.a, {}, s.b, s.pose, {SimplexId(0), SimplexId(0)}).nodes.front();
+    CHECK_FALSE(is_across_plane(first.axis));
+    CHECK(first.gap == explain_walk(s.a, {}, s.b, s.pose).roots.gap);
+  }
+  CHECK(any_thin);
 }
 
 TEST_CASE("linked rings are separate, but no plane separates them") {

@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/quantities/rational_oracles.hpp"
+#include "bench/stability/rational_oracles.hpp"
 #include "engine/distance/pair_bounds.hpp"
 #include "tests/support/random_simplices.hpp"
 

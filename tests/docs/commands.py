@@ -53,8 +53,8 @@ NOT_RUN = [
         "the approved pictures: golden tests; not to be rewritten",
     ),
 ]
-# Lines that may end with exit code 1: a finding about the mesh.
-FINDS = [r"^lrbscope inspect .*--draw"]
+# Lines that may end with exit code 1: a finding about the mesh, or runs that differ.
+FINDS = [r"^lrbscope inspect .*--draw", r"^lrbscope compare "]
 SECONDS = 300
 
 

@@ -297,6 +297,19 @@ TEST_CASE("coincident vertices, whatever the sign of their zeros") {
   CHECK(report.obstacles(m).empty());
 }
 
+TEST_CASE("advice on open 2D bodies does not name a command that rejects them") {
+  Mesh m;
+  m.dim = 2;
+  m.name = "line.obj";
+  for (const double x : {0.0, 1.0, 2.0}) m.vertices.emplace_back(x, 0.25 * x * x, 0);
+  for (std::uint32_t i = 0; i < 2; ++i) m.add_face(std::vector<VertexId>{VertexId(i), VertexId(i + 1)});
+  const std::vector<std::string> lines = check_mesh(m).lines(m);
+  REQUIRE(lines.size() == 1);
+  CHECK(lines[0] ==
+        "line.obj: a vertex has only one segment (2 times): vertex 0, 2, counted from 0 in file order; add a "
+        "segment (l) that joins it to another end");
+}
+
 TEST_CASE("findings report fault, count and location, in one line each") {
   Mesh m = without_face(box(), 0);
   m.name = "box.obj";

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/quantities/rational_oracles.hpp"
+#include "bench/stability/rational_oracles.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/closed_body.hpp"
 #include "tests/support/simplex_distance.hpp"

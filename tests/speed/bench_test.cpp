@@ -1,6 +1,8 @@
 /// Speed and accuracy: data sets, records, what is computed from them, and the commands.
 
 #include <cmath>
+#include <map>
+#include <sstream>
 
 #include <doctest/doctest.h>
 
@@ -128,14 +130,17 @@ TEST_CASE("a gap of a hundredth of the diagonal is placed accurately") {
 TEST_CASE("records are read back from their lines, and a partial line is skipped") {
   bench::Record r = answer("spheres", 3, bench::PoseClass::small, 1.5);
   r.setting = 4;
-  r.all.pairs = {{1, 2}, {3, 4}};
-  r.all.points = {{0.1, 0.2, 0.3}};
+  r.round = 2;
+  r.errors.emplace();
+  (*r.errors)[static_cast<std::size_t>(bench::Metric::hausdorff)] = 0.1;
+  (*r.errors)[static_cast<std::size_t>(bench::Metric::contact)] = 0;
   r.all.missed = 7;
   r.build_seconds = 0.25;
   const bench::Record same = bench::record_from(nlohmann::json::parse(to_json(r).dump()));
   CHECK(to_json(same).dump() == to_json(r).dump());
   CHECK(bench::name_of(same) == "spheres 4");
-  CHECK(same.all.pairs == r.all.pairs);
+  CHECK(same.errors == r.errors);
+  CHECK(same.round == 2);
   r.outcome = bench::Outcome::crashed;
   r.message = "died";
   CHECK(bench::record_from(to_json(r)).outcome == bench::Outcome::crashed);
@@ -166,6 +171,19 @@ TEST_CASE("ratios are medians over questions; faster engines are named") {
   CHECK(text.find("set, deep, 10 %, all pairs: fast 2.00x") != std::string::npos);
   CHECK(text.find("slow 0") == std::string::npos);
   CHECK(text.find("crash") != std::string::npos);
+}
+
+TEST_CASE("tables of bench: long names have their own column, and missing measurements are named") {
+  bench::DataSet set = made_up_set(1);
+  set.name = "a-body-with-a-long-name-and-another-one";
+  bench::Record r = answer("ours", 0, bench::PoseClass::deep, 10);
+  r.set = set.name;
+  const bench::PeerTable t = bench::peer_table({set}, {info("ours")}, {r});
+  CHECK(bench::in_brief(t).find(set.name + "  deep, 10 %") != std::string::npos);
+  CHECK(bench::in_full(t).find(set.name + "  deep, 10 %") != std::string::npos);
+  CHECK(bench::in_brief(t).find("No other engine was measured.") != std::string::npos);
+  CHECK(bench::in_brief(t).find("in any of 0 cells") == std::string::npos);
+  CHECK(bench::in_brief(t).find("FCL is absent") == std::string::npos);  // it was not requested
 }
 
 TEST_CASE("errors of a contact region: 0 for the exact list, 1 for an empty one, between for a part") {
@@ -235,23 +253,46 @@ TEST_CASE("an approximate answer deviates by at most its bound, and an intersect
   CHECK(any_off);
 }
 
+namespace {
+
+/// A data set with its errors, as workers judge the answers of methods.
+struct Judged {
+  Folder folder;
+  bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
+  std::vector<LrbRep> bodies;
+
+  Judged() {
+    for (const bench::BodyFile& b : set.bodies) bodies.push_back(load_lrb(folder / b.file));
+  }
+  /// Returns the record of a method that lists these pairs.
+  bench::Record record(const methods::MethodInfo& m, std::uint64_t q, double us,
+                       const std::vector<SimplexPair>& pairs) const {
+    const bench::Question& question = set.questions[q];
+    bench::Record r = answer(m.name, q, question.pose_class, us);
+    r.set = set.name;
+    methods::MethodAnswer said;
+    said.pairs = pairs;
+    said.contact = !pairs.empty();
+    r.all.contact = said.contact;
+    r.errors = bench::errors_of_answer(set, question, bodies[question.a], bodies[question.b], m, said);
+    return r;
+  }
+};
+
+}  // namespace
+
 TEST_CASE("points: failures score worst, and the Pareto frontier contains the undominated points") {
-  const Folder folder;
-  const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
+  const Judged judged;
+  const bench::DataSet& set = judged.set;
   std::vector<methods::MethodInfo> infos = {info("right"), info("blind"), info("dead"), info("slow"),
                                             info("told")};
   infos.back().traits.set(methods::Trait::knows_poses_in_advance);
   std::vector<bench::Record> records;
   for (std::uint64_t q = 0; q < set.questions.size(); ++q)
     for (const methods::MethodInfo& m : infos) {
-      bench::Record r = answer(m.name, q, set.questions[q].pose_class,
-                               m.name == "slow"    ? 9
-                               : m.name == "blind" ? 1
-                               : m.name == "told"  ? 0.5
-                                                   : 2);
-      r.set = set.name;
-      if (m.name != "blind") r.all.pairs = set.questions[q].expected;
-      r.all.contact = !r.all.pairs.empty();
+      const double us = m.name == "slow" ? 9 : m.name == "blind" ? 1 : m.name == "told" ? 0.5 : 2;
+      bench::Record r =
+          judged.record(m, q, us, m.name == "blind" ? std::vector<SimplexPair>{} : set.questions[q].expected);
       if (m.name == "right" || (m.name == "slow" && q > 0)) r.all.error_bound = 0.25 * set.diagonal;
       if (m.name == "dead") r.outcome = bench::Outcome::timed_out;
       records.push_back(r);
@@ -262,26 +303,115 @@ TEST_CASE("points: failures score worst, and the Pareto frontier contains the un
     const bool meets = p.pose_class != bench::PoseClass::apart;
     CHECK(p.proven_deviation.has_value() ==
           (p.method == "right" || (p.method == "slow" && p.pose_class != first_class)));
-    if (p.method == "told") CHECK_FALSE(p.frontier);  // it knew more
+    if (p.method == "told") {  // it knew more
+      CHECK_FALSE(p.frontier);
+      CHECK(p.left_out == "knows earlier poses");
+    }
     if (p.method == "right") {
       CHECK(*p.proven_deviation == doctest::Approx(0.25));
       CHECK(p.error() == 0);
       CHECK(p.frontier == meets);  // apart, to see nothing is as right, and faster
     }
     if (p.method == "slow") CHECK_FALSE(p.frontier);
-    if (p.method == "blind") {
+    if (p.method == "blind") {  // a point only where it is right
       CHECK(p.error() == (meets ? 1 : 0));
-      CHECK(p.frontier);
+      CHECK(p.always_wrong == meets);
+      CHECK(p.frontier == !meets);
+      CHECK(p.left_out == (meets ? "wrong in every case" : ""));
     }
     if (p.method == "dead") {
       CHECK(p.error() == 1);
       CHECK(p.failed() == p.questions);
       CHECK(*p.errors[static_cast<std::size_t>(bench::Metric::recall)] == 1);
       CHECK_FALSE(p.frontier);
+      CHECK(p.left_out == "no answer");
     }
     ++seen;
   }
   CHECK(seen == 5 * bench::classes_of(bench::Quantity::pairs).size());
+}
+
+TEST_CASE("a frontier needs times that differ by more than their rounds; others are too close to call") {
+  bench::DataSet set = made_up_set(2);
+  // Two of equal error whose rounds overlap, one that is faster than either in every round but less accurate,
+  // and one slower than all.
+  const std::vector<std::pair<const char*, std::vector<double>>> methods = {{"ours", {10, 10.4, 9.9}},
+                                                                            {"twin", {10.2, 9.8, 10.1}},
+                                                                            {"coarse", {5, 5.2, 6}},
+                                                                            {"late", {11, 12, 10.5}}};
+  const auto points_of = [&](double factor) {
+    std::vector<bench::Record> records;
+    std::vector<methods::MethodInfo> infos;
+    for (const auto& [name, rounds] : methods) {
+      infos.push_back(info(name));
+      for (std::uint64_t round = 0; round < rounds.size(); ++round)
+        for (std::uint64_t q = 0; q < 2; ++q) {
+          bench::Record r = answer(name, q, bench::PoseClass::deep, factor * rounds[round]);
+          r.round = round;
+          if (round == 0) {
+            r.errors.emplace();
+            (*r.errors)[static_cast<std::size_t>(Metric::hausdorff)] =
+                std::string(name) == "coarse" ? 0.1 : 0;
+          }
+          records.push_back(r);
+        }
+    }
+    std::map<std::string, bench::Point> out;
+    for (const bench::Point& p : bench::measure_points({set}, infos, records)) out[p.method] = p;
+    return out;
+  };
+  auto points = points_of(1);
+  CHECK(points["ours"].median == 10);
+  CHECK(points["ours"].least == 9.9);
+  CHECK(points["ours"].most == 10.4);
+  CHECK(points["ours"].cold == 20);
+  CHECK(points["ours"].rounds == 3);
+  CHECK_FALSE(points["ours"].frontier);
+  CHECK((points["ours"].ties == std::vector<std::string>{"twin"}));
+  CHECK((points["twin"].ties == std::vector<std::string>{"ours"}));
+  CHECK(points["coarse"].frontier);
+  CHECK_FALSE(points["late"].frontier);
+  CHECK(points["late"].ties.empty());
+  points = points_of(3);  // under load, which slows all alike
+  CHECK(points["coarse"].frontier);
+  CHECK((points["twin"].ties == std::vector<std::string>{"ours"}));
+  CHECK(bench::to_lines({points["ours"]}).find("\"too_close_to\":[\"twin\"]") != std::string::npos);
+}
+
+TEST_CASE("unfinished surveys: missing answers are named by page, picture and program") {
+  const Folder folder;
+  const auto chart = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "chart");
+    words.insert(words.end(), {"--faces", "80", "--poses", "1", "--method", "ours", "--method", "plain",
+                               "--rounds", "2", "--no-scenes", "-o", "c"});
+    return test::run(folder, words);
+  };
+  REQUIRE(chart({"measure"}).code == 0);
+  const std::string file = folder / "c/records.jsonl", whole = slurp(file);
+  REQUIRE(std::count(whole.begin(), whole.end(), '\n') == 3 * 5 * 2 * 2);
+  auto drawn = chart({"draw"});
+  CHECK(drawn.err.empty());
+  CHECK(slurp(folder / "c/index.html").find("unfinished") == std::string::npos);
+  // The first pair of bodies is complete, of the second 3 answers of a round remain, of the third none.
+  std::istringstream in(whole);
+  std::string some, line;
+  std::map<std::string, int> seen;
+  while (std::getline(in, line)) {
+    const bench::Record r = bench::record_from(nlohmann::json::parse(line));
+    if (seen.size() < 3 || seen.count(r.set) != 0) ++seen[r.set];
+    if (r.set == seen.begin()->first || (r.set == std::next(seen.begin())->first && seen[r.set] <= 3))
+      some += line + "\n";
+  }
+  folder.write("c/records.jsonl", some);
+  drawn = chart({"draw"});
+  CHECK(drawn.code == 0);
+  CHECK(drawn.err.find("note: The survey is unfinished. ") == 0);
+  CHECK(slurp(folder / "c/index.html").find("The survey is unfinished.") != std::string::npos);
+  CHECK(slurp(folder / "c/chart.svg").find("UNFINISHED") != std::string::npos);
+  CHECK(chart({"measure"}).code == 0);
+  const std::string again = slurp(file);
+  CHECK(std::count(again.begin(), again.end(), '\n') == 3 * 5 * 2 * 2);
+  CHECK(chart({"draw"}).err.empty());
 }
 
 TEST_CASE("a sphere tree misses no contact, and is more accurate at deeper levels") {
@@ -319,7 +449,7 @@ TEST_CASE("the commands: records, table, charts; existing records are reused") {
   CHECK(slurp(folder / "b/records.jsonl") == records);
 
   const auto chart = test::run(folder, {"chart", "--faces", "320", "--poses", "1", "--method", "ours",
-                                        "--method", "spheres", "--no-scenes", "-o", "c"});
+                                        "--method", "spheres", "--rounds", "1", "--no-scenes", "-o", "c"});
   CHECK(chart.code == 0);
   CHECK(slurp(folder / "c/index.html").find("sphere tree") != std::string::npos);
   const std::string points = slurp(folder / "c/points.jsonl");
@@ -383,7 +513,8 @@ TEST_CASE("a data set of numbers is read back unchanged, and complete if all num
 TEST_CASE("chart --quantity: correct answers, records, points and a page for each quantity") {
   const Folder folder;
   const auto chart = [&](const std::string& quantity, std::vector<std::string> more = {}) {
-    std::vector<std::string> words = {"chart", "--quantity", quantity, "--faces", "80", "--poses", "1"};
+    std::vector<std::string> words = {"chart",   "--quantity", quantity,   "--faces", "80",
+                                      "--poses", "1",          "--rounds", "1"};
     words.insert(words.end(), more.begin(), more.end());
     return test::run(folder, words);
   };

@@ -12,10 +12,13 @@
 #include "bench/methods/triangles.hpp"
 #include "bench/stability/judge.hpp"
 #include "bench/stability/outcome_grid.hpp"
+#include "bench/stability/rational_oracles.hpp"
+#include "bench/stability/saved_case.hpp"
 #include "bench/stability/stability_experiment.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 using namespace lrb;
 using namespace lrb::stability;
@@ -35,7 +38,7 @@ struct Environment {
 };
 
 /// The workers, with methods that misbehave among them.
-struct Workers {
+struct WorkerPrograms {
   Environment where{"LRBSCOPE_METHODS", LRBSCOPE_FOLDER};
   Environment fakes{"LRBSCOPE_FAKE_METHODS", "1"};
 };
@@ -80,7 +83,7 @@ Record some_record() {
 }  // namespace
 
 TEST_CASE("outcomes of methods that crash, hang or return garbage") {
-  const Workers workers;
+  const WorkerPrograms workers;
   const auto outcome_of_contact = [](const std::string& name, double timeout) {
     std::map<Outcome, int> with, without;
     for (const Record& r : ask({name}, 6, timeout)) {
@@ -100,7 +103,7 @@ TEST_CASE("outcomes of methods that crash, hang or return garbage") {
 }
 
 TEST_CASE("a method that hangs on three consecutive cases skips the rest of its family") {
-  const Workers workers;
+  const WorkerPrograms workers;
   std::map<std::string, int> in_a_row, runs;
   for (const Record& r : ask({"fake-hang"}, 12, 0.4)) {
     const bool given_up = in_a_row[r.family] == 3, hung = r.outcome == Outcome::timed_out;
@@ -117,7 +120,7 @@ TEST_CASE("a method that hangs on three consecutive cases skips the rest of its 
 }
 
 TEST_CASE("every case has its record, in order, despite crashes and parallel runs") {
-  const Workers workers;
+  const WorkerPrograms workers;
   const auto key = [](const Record& r) {
     return r.family + " " + r.method + " " + std::to_string(r.difficulty) + " " +
            std::to_string(r.case_index) + " " + std::string(name_of(r.outcome)) + " " +
@@ -140,7 +143,7 @@ TEST_CASE("every case has its record, in order, despite crashes and parallel run
 }
 
 TEST_CASE("a repeated case gives the same record, with its pairs") {
-  const Workers workers;
+  const WorkerPrograms workers;
   const std::vector<Record> all = ask({"fake-miss"}, 3);
   const Replay again = replay(method("fake-miss"), "shared", 10, 2, 1, 20);
   CHECK(again.record.missed == all[2].missed);
@@ -365,7 +368,7 @@ TEST_CASE("a textbook's test of distant triangles") {
 }
 
 TEST_CASE("lrbscope stability: table, records, exit code") {
-  const Workers workers;
+  const WorkerPrograms workers;
   const Folder folder;
   const std::vector<std::string> small = {"stability", "--cases", "2",        "--family", "touch",
                                           "--method",  "plain",   "--method", "ours"};
@@ -384,8 +387,27 @@ TEST_CASE("lrbscope stability: table, records, exit code") {
   CHECK(o.out.find("  found:") != std::string::npos);
 }
 
+TEST_CASE("a method that is named but absent ends commands with exit code 3, before anything is written") {
+  const WorkerPrograms workers;
+  const Folder folder;
+  folder.write("a.obj", test::kCube);
+  const std::vector<std::string> before = folder.tree();
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"stability"}, {"bench"}, {"chart"}, {"tails", "a.obj", "a.obj"}}) {
+    std::vector<std::string> all = command;
+    all.insert(all.end(), {"--method", "fake-absent"});
+    const test::Outcome o = run(folder, all);
+    CAPTURE(o.err);
+    CHECK(o.code == 3);
+    CHECK(o.out.empty());
+    CHECK(o.err ==
+          "lrbscope: method 'fake-absent': Not found when this was built; install Debian's nothing\n");
+    CHECK(folder.tree() == before);
+  }
+}
+
 TEST_CASE("lrbscope stability: invalid arguments") {
-  const Workers workers;
+  const WorkerPrograms workers;
   const Folder folder;
   const std::vector<std::vector<std::string>> wrong = {{"--family", "tuch"},
                                                        {"--method", "odd"},
@@ -413,8 +435,105 @@ TEST_CASE("lrbscope stability: invalid arguments") {
   }
 }
 
-TEST_CASE("lrbscope stability: an interruption leaves no file and no worker") {
-  const Workers workers;
+namespace {
+
+oracle::Rational fraction(const nlohmann::json& text) {
+  return oracle::Rational(text.get<std::string>());
+}
+
+oracle::RationalPoint fractions(const nlohmann::json& point) {
+  return {fraction(point[0]), fraction(point[1]), fraction(point[2])};
+}
+
+}  // namespace
+
+TEST_CASE("lrbscope stability --save: a case that other programs can read, and a proof by fractions") {
+  const WorkerPrograms workers;
+  const Folder folder;
+  for (const char* family : {"identical", "touch", "plane"}) {
+    CAPTURE(family);
+    const std::string where = std::string("saved-") + family;
+    const test::Outcome o = run(folder, {"stability", "--family", family, "--method", "fake-miss", "--method",
+                                         "ours", "--difficulty", "10", "--only", "1", "--save", where});
+    CAPTURE(o.err);
+    REQUIRE(o.code <= 1);
+    CHECK(o.out.find(where + "/case.json\n") != std::string::npos);
+    const auto saved = nlohmann::json::parse(slurp(folder / (where + "/case.json")));
+    REQUIRE(saved["engines"].size() == 2);
+    CHECK(saved["engines"][0]["pairs"] == saved["expected"]["pairs"]);  // ours
+    const bool any = !saved["expected"]["pairs"].empty();
+    if (any) CHECK(saved["engines"][1]["missed"] == 1);
+    // The query of the meshes at their poses has the same answer.
+    folder.write("identity.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+    const auto line =
+        nlohmann::json::parse(run(folder, {"-q", "query", where + "/a_world.obj", where + "/b_world.obj",
+                                           "--poses", "identity.txt", "--pairs"})
+                                  .out);
+    CHECK(line["list"] == saved["expected"]["pairs"]);
+    if (!any) continue;
+    const auto& proof = saved["proof"];
+    REQUIRE(proof["intersect"] == true);  // the pair that fake-miss left out
+    const oracle::RationalPoint p = fractions(proof["common_point"]);
+    for (const char* body : {"a", "b"}) {
+      oracle::RationalPoints corners;
+      for (const auto& corner : proof[body]) corners.push_back(fractions(corner));
+      if (corners.size() == 3)
+        CHECK(oracle::triangles_meet(corners, {p, p, p}));
+      else
+        CHECK(oracle::closest_of_features(corners, {p})->distance_sq == 0);
+    }
+  }
+  // Of a pair that does not intersect, a direction in which A is before B.
+  const cases::Case c = cases::make_case(*cases::find_family("touch"), 1, 0, 0);
+  const nlohmann::json proof = nlohmann::json(pair_proof(c, {SimplexId(0), SimplexId(0)}));
+  REQUIRE(proof["intersect"] == false);
+  CHECK(fraction(proof["largest_of_a"]) < fraction(proof["least_of_b"]));
+  for (const auto& corner : proof["a"])
+    CHECK(oracle::dot(fractions(proof["direction"]), fractions(corner)) <= fraction(proof["largest_of_a"]));
+  for (const auto& corner : proof["b"])
+    CHECK(oracle::dot(fractions(proof["direction"]), fractions(corner)) >= fraction(proof["least_of_b"]));
+  const test::Outcome alone = run(folder, {"stability", "--save", "x"});
+  CHECK(alone.code == 2);
+  CHECK(alone.err == "lrbscope: --save: expected --only CASE with it\n");
+}
+
+TEST_CASE("lrbscope stability: an interrupted run goes on where it stopped") {
+  const WorkerPrograms workers;
+  const Folder folder;
+  const std::vector<std::string> command = {"-q",       "stability", "--family", "shared",
+                                            "--family", "touch",     "--method", "plain",
+                                            "--cases",  "3",         "--jobs",   "1"};
+  REQUIRE(run(folder, command).code == 0);
+  const std::vector<Record> whole = read_records(folder / "out/stability/records.jsonl");
+  REQUIRE(whole.size() == 2 * 11 * 3);
+  CHECK(!std::filesystem::exists(folder / "out/stability/unfinished.jsonl"));
+  // The file of a run that was interrupted after 40 cases, within a line. Times show what is reused.
+  const auto leave = [&](const std::string& version) {
+    std::vector<Record> some(whole.begin(), whole.begin() + 40);
+    for (Record& r : some) r.microseconds = 12345;
+    const std::string half = to_lines({whole[40]});
+    folder.write("out/stability/unfinished.jsonl",
+                 "{\"lrbscope\":\"" + version + "\",\"quantity\":\"pairs\",\"seed\":1,\"timeout\":5.0}\n" +
+                     to_lines(some) + half.substr(0, half.size() / 2));
+    REQUIRE(run(folder, command).code == 0);
+    CHECK(!std::filesystem::exists(folder / "out/stability/unfinished.jsonl"));
+    std::size_t reused = 0;
+    const std::vector<Record> again = read_records(folder / "out/stability/records.jsonl");
+    REQUIRE(again.size() == whole.size());
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      CHECK(again[i].family == whole[i].family);
+      CHECK(again[i].outcome == whole[i].outcome);
+      CHECK(again[i].missed == whole[i].missed);
+      reused += again[i].microseconds == 12345;
+    }
+    return reused;
+  };
+  CHECK(leave(trace::lrbscope_version()) == 40);
+  CHECK(leave("0.1") == 0);  // of another version
+}
+
+TEST_CASE("lrbscope stability: an interruption leaves no result and no worker") {
+  const WorkerPrograms workers;
   const Folder folder;
   const std::string line =
       "cd '" + folder.path.string() +

@@ -39,7 +39,7 @@ TEST_CASE("compare: the same run, another recursion, other levels of events, and
   const int two = render::read_png(runs.folder / "same/compare.png").image.width();
 
   const Outcome paper = run(runs.folder, {"--quiet", "compare", "one", "paper", "-o", "out"});
-  CHECK(paper.code == 0);
+  CHECK(paper.code == 1);  // as diff
   CHECK(paper.out.find("recursion: expected complete, found paper") != std::string::npos);
   CHECK(paper.out.find("step 0, event 1 of the step: ") != std::string::npos);
   CHECK(slurp(runs.folder / "out/index.html").find("<h2>Steps</h2>") != std::string::npos);
@@ -58,17 +58,17 @@ TEST_CASE("compare: the same run, another recursion, other levels of events, and
 TEST_CASE("compare: both runs' views are shown side by side if both pages exist") {
   const Runs runs;
   const auto page = [&](const std::string& folder) { return slurp(runs.folder / (folder + "/index.html")); };
-  REQUIRE(run(runs.folder, {"--quiet", "compare", "one", "paper", "-o", "a b/out"}).code == 0);
+  REQUIRE(run(runs.folder, {"--quiet", "compare", "one", "paper", "-o", "a b/out"}).code == 1);
   const std::string both = page("a b/out");
   CHECK(both.find("<iframe src=\"../../one/index.html?alone\"") != std::string::npos);
   CHECK(both.find("<iframe src=\"../../paper/index.html?alone\"") != std::string::npos);
   CHECK(both.find("frame-src file:") != std::string::npos);
   CHECK(page("one").find("frame-src") == std::string::npos);  // nothing else may be framed
   std::filesystem::rename(runs.folder / "paper", runs.folder / "pa per#");
-  REQUIRE(run(runs.folder, {"--quiet", "compare", "one", "pa per#", "-o", "quoted"}).code == 0);
+  REQUIRE(run(runs.folder, {"--quiet", "compare", "one", "pa per#", "-o", "quoted"}).code == 1);
   CHECK(page("quoted").find("<iframe src=\"../pa%20per%23/index.html?alone\"") != std::string::npos);
   std::filesystem::remove(runs.folder / "pa per#/index.html");
-  REQUIRE(run(runs.folder, {"--quiet", "compare", "one", "pa per#", "-o", "alone"}).code == 0);
+  REQUIRE(run(runs.folder, {"--quiet", "compare", "one", "pa per#", "-o", "alone"}).code == 1);
   CHECK(page("alone").find("<iframe") == std::string::npos);
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("compare: two constructions of a body, pass by pass; one body with two
   for (const std::string name : {"few", "many"})
     REQUIRE(run(runs.folder, {"--quiet", "run", name + ".json", "-o", name}).code == 0);
   const Outcome differ = run(runs.folder, {"--quiet", "compare", "few", "many", "-o", "built"});
-  CHECK(differ.code == 0);
+  CHECK(differ.code == 1);
   CHECK(differ.out.find("step 0, event ") != std::string::npos);
   const std::string page = slurp(runs.folder / "built/index.html");
   for (const char* part : {"<h2>Passes</h2>", "regions, few", "The front by event", "outermost wrapper"})

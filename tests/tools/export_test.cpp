@@ -59,9 +59,10 @@ TEST_CASE("export: invalid requests are rejected, and nothing is written") {
   const Command command({"-q", "export"});
   command.folder.write("p.csv", "1,2\n");
   command.check_refusals(
-      {{{"cube.obj", "-o", "cube.stl"}, "expected a name that ends in .ply, .vtp, .glb or .obj"},
-       {{"cube.obj", "-o", "cube.obj2", "--ascii"}, ".ply, .vtp, .glb or .obj"},
-       {{"cube.obj", "-o", "c.glb", "--ascii"}, "--ascii: needs a .ply or .vtp file"},
+      {{{"cube.obj", "-o", "cube.3ds"}, "expected a name that ends in .ply, .vtp, .glb, .obj or .stl"},
+       {{"cube.obj", "-o", "cube.obj2", "--ascii"}, ".ply, .vtp, .glb, .obj or .stl"},
+       {{"islands", "-o", "flat.stl"}, "found lines, which STL cannot store"},
+       {{"cube.obj", "-o", "c.glb", "--ascii"}, "--ascii: needs a .ply, .vtp or .stl file"},
        {{"cube.obj", "-o", "c.ply", "--regions"}, "--regions: needs a .glb or .obj file"},
        {{"cube.obj", "-o", "c.ply", "--step", "1"}, "--step: needs a run"},
        {{"cube.obj", "-o", "c.ply", "--what", "contacts"}, "--what contacts: needs a run"},

@@ -39,6 +39,17 @@ double coloured_share(const lrb::render::Image& image) {
 
 }  // namespace
 
+TEST_CASE("levels: a body that has none says why, in place of a table") {
+  const Folder folder;
+  folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const Outcome o = run(folder, {"--quiet", "levels", "open.obj"});
+  CHECK(o.code == 0);
+  CHECK(o.out == "open.obj: 3 faces\nno levels of detail, because its surface does not bound a solid\n");
+  const json said = json::parse(run(folder, {"--quiet", "levels", "open.obj", "--json"}).out);
+  CHECK(said["levels"].empty());
+  CHECK(said["no_levels"] == "its surface does not bound a solid");
+}
+
 TEST_CASE("levels: distances in pictures and page are proven, and at least the measured ones") {
   const Folder folder;
   lrb::write_mesh(lrb::shapes::bumpy_sphere(3, 1), folder / "rock.obj");

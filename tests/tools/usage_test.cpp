@@ -1,5 +1,7 @@
 /// Errors of invalid command lines and of the machine's limits.
 
+#include <sstream>
+
 #include <doctest/doctest.h>
 
 #include "tests/support/program.hpp"
@@ -118,4 +120,41 @@ TEST_CASE("inspect reports picture options without --draw") {
 }
 
 }  // namespace
+TEST_CASE("usage: help of every command fits 100 columns, and no word is lost") {
+  const Folder folder;
+  const auto lines_of = [](const std::string& text) {
+    std::vector<std::string> out;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) out.push_back(line);
+    return out;
+  };
+  const std::string root = run(folder, {"--help"}).out;
+  std::vector<std::vector<std::string>> calls = {{}, {"golden", "approve"}, {"chart", "draw"}};
+  bool listed = false;
+  for (const std::string& line : lines_of(root)) {
+    listed |= line == "Subcommands:";
+    if (listed && line.size() > 3 && line.starts_with("  ") && line[2] != ' ')
+      calls.push_back({line.substr(2, line.find(' ', 2) - 2)});
+  }
+  CHECK(calls.size() > 25);
+  for (std::vector<std::string> call : calls) {
+    CAPTURE(call.empty() ? "" : call[0]);
+    call.emplace_back("--help");
+    const std::string help = run(folder, call).out;
+    CHECK(help.size() > 100);
+    for (const std::string& line : lines_of(help)) CHECK_MESSAGE(line.size() <= 100, line);
+  }
+  const std::string query = run(folder, {"query", "--help"}).out;
+  // A description that is continued begins in the column of descriptions.
+  CHECK(query.find("For separate bodies, add the coarsest pair of disjoint wrappers (a\n" +
+                   std::string(30, ' ') + "certificate of separation)\n") != std::string::npos);
+}
+
+TEST_CASE("collide: a 2D approach has no z") {
+  const Folder folder;
+  folder.write("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nl 1 2\nl 2 3\nl 3 4\nl 4 1\n");
+  CHECK(says(check_rejected(folder, {"collide", "square.obj", "square.obj", "--approach", "1,0.2,0.5"}),
+             "--approach: expected z = 0 because the bodies are 2D, found 1,0.2,0.5"));
+}
+
 }  // namespace lrb::test

@@ -57,8 +57,9 @@ constexpr int kWhole = -1;
 /// body to world.
 WorldBox box_of(const ObbTree& tree, std::uint32_t node, int child, const Pose& pose);
 
-/// Computes the gap of two boxes and its axis.
-void compare_boxes(const WorldBox& a, const WorldBox& b, BoxPair& out);
+/// Computes the gap of two boxes and its axis. With `dim` 2 only the axes in the plane are compared: boxes of
+/// 2D bodies have a small thickness.
+void compare_boxes(const WorldBox& a, const WorldBox& b, BoxPair& out, int dim = 3);
 
 /// The test that decided a pair of faces.
 enum class DecidedBy : std::uint8_t {

@@ -312,6 +312,19 @@ TEST_CASE("slices of a track do not overlap, and contain query and answer") {
   CHECK(cut["metadata"]["query_slices"]["stored"] == 3);
 }
 
+TEST_CASE("times of a crowd have units that people read") {
+  crowd::CrowdRun run{{}, {}, crowd::CrowdMotion(spec::Crowd{}, std::vector<std::vector<Pose>>{}), {}, {},
+                      {}, 2};
+  crowd::CrowdStep step;
+  step.broad_phase_ns = 1'600'000;
+  step.queries_ns = 1'150'000'000;
+  run.steps.push_back(step);
+  CHECK(crowd::crowd_speed(run) ==
+        "a step takes (medians): broad phase 1.6 ms, queries 1.15 s, on 2 threads");
+  run.steps[0].broad_phase_ns = 12'000;
+  CHECK(crowd::crowd_speed(run).find("broad phase 12 us,") != std::string::npos);
+}
+
 TEST_CASE("bodies stay in the arena if they fit") {
   for (const json& j : {good(), good_2d()}) {
     spec::Crowd crowd = crowd_of(j);
@@ -366,6 +379,51 @@ TEST_CASE("schema and reader agree on valid and invalid crowds") {
     CAPTURE(j.dump());
     CHECK(schema_accepts(j) == error_of(j).empty());
   }
+}
+
+TEST_CASE("schema and reader agree on every key of a query") {
+  const json scenario = json::parse(io::embedded_file("scenario.schema.json"));
+  const json& keys = scenario["properties"]["query"]["properties"];
+  REQUIRE(keys.size() > 10);
+  for (const auto& [key, about] : keys.items()) {
+    CAPTURE(key);
+    json value = true;
+    if (about.contains("enum"))
+      value = about["enum"][0];
+    else if (about.value("type", "") != "boolean")
+      value = about.value("minimum", 1);
+    json crowd = good();
+    crowd["query"] = {{key, value}};
+    CHECK(schema_accepts(crowd) == error_of(crowd).empty());
+  }
+  const std::string unknown = error_of(with("/query/clsh", true));
+  CHECK(unknown.find("/query/clsh") != std::string::npos);
+  for (const char* refused : {"tolerance", "separation", "coherent"})
+    CHECK(unknown.find(refused) == std::string::npos);
+  CHECK(error_of(with("/query/clash", true)).find("/query/clash: not supported for a crowd") !=
+        std::string::npos);
+}
+
+TEST_CASE("the geometry of contacts is computed only on request") {
+  json crowd = good();
+  crowd.erase("query");
+  CHECK_FALSE(crowd_of(crowd).request.contacts);
+  crowd["query"] = {{"max_pairs", 1000}};
+  CHECK_FALSE(crowd_of(crowd).request.contacts);
+  crowd["query"] = {{"contacts", true}};
+  CHECK(crowd_of(crowd).request.contacts);
+}
+
+TEST_CASE("commands for runs of two bodies name the trace of a crowd as such") {
+  const test::Folder folder;
+  const spec::Crowd crowd = crowd_of(good());
+  crowd::write_crowd(crowd, crowd::run_crowd(crowd, 1, run::kSilent), folder / "c", "command", run::kSilent);
+  const std::string expected =
+      (folder / "c/trace.json") +
+      ": expected a run of one or two bodies, found the trace of a crowd; lrbscope render "
+      "draws it";
+  CHECK_THROWS_WITH_AS(static_cast<void>(run::open_run(folder / "c")), expected.c_str(), InputError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(run::open_step(folder / "c", 0)), expected.c_str(), InputError);
 }
 
 TEST_CASE("errors in crowds are reported with their location") {

@@ -15,7 +15,7 @@
 #include "scenarios/record/moments.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/spec/shipped.hpp"
-#include "tests/support/folder.hpp"
+#include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_check.hpp>
@@ -300,6 +300,46 @@ TEST_CASE("GLB: lids are translucent, and a region's node has its number") {
     const std::string name = node["name"];
     if (name.find("_no_region") != std::string::npos) continue;
     CHECK(name == "A_wrapper_region_" + std::to_string(node["extras"]["region"].get<int>()));
+  }
+}
+
+TEST_CASE("STL: the faces' triangles, exact as text; other cells are rejected") {
+  const test::Folder folder;
+  const Model model = make_model(moment_of(ball(), nullptr), {true, false, false, {true, true}});
+  std::size_t triangles = 0;
+  for (std::size_t c = 0; c < model.parts[0].cell_count(); ++c)
+    triangles += model.parts[0].cell(c).size() - 2;
+  for (const bool ascii : {false, true}) {
+    CAPTURE(ascii);
+    FileOptions options;
+    options.ascii = ascii;
+    save_model(model, folder / "ball.stl", options);
+    const Mesh mesh = read_mesh(folder / "ball.stl");
+    CHECK(mesh.face_count() == triangles);
+    CHECK(check_mesh(mesh).bounds_solid);
+    const Eigen::Vector3d first = model.parts[0].vertices[model.parts[0].cell(0)[0]];
+    CHECK((mesh.vertices[mesh.face(FaceId(0))[0]] - first).norm() <= (ascii ? 0 : 1e-6));
+  }
+  Model lines = model;
+  lines.parts[0].shape = Shape::lines;
+  CHECK_THROWS_WITH_AS(
+      stl_bytes(lines, {}),
+      "A: expected faces, found lines, which STL cannot store; choose --what body or wrapper of 3D bodies, or "
+      "another format",
+      InputError);
+  Model huge = model;
+  huge.parts[0].vertices[model.parts[0].cell(0)[0]].x() = 1e200;
+  CHECK_THROWS_AS(stl_bytes(huge, {}), InputError);
+  CHECK(!stl_bytes(huge, {true, false, 2}).empty());
+}
+
+TEST_CASE("the page on formats has the names of all columns") {
+  const std::string page = test::slurp(LRB_SOURCE_DIR "/docs/formats.md");
+  const ShippedRun run("collision", {true, true, true, {true, true}});
+  CHECK(run.model.columns.size() > 14);
+  for (const Column& c : run.model.columns) {
+    CAPTURE(c.name);
+    CHECK(page.find("`" + std::string(c.name) + "`") != std::string::npos);
   }
 }
 

@@ -212,6 +212,50 @@ TEST_CASE("the series: rows and powers from records; records of other bodies are
   CHECK_THROWS_AS(paper::series_rows(a, objects, steps), InputError);
 }
 
+TEST_CASE("paper: an interrupted run keeps the results of the objects, and goes on with the resolutions") {
+  const test::Folder folder;
+  write_mesh(generators::generate("ball", {{"frequency", 4}}), folder / "ball.ply");
+  folder.write("few.json",
+               R"({"name": "few", "purpose": "Few.", "report": ["table2"], "protocol": {"collisions": 2},
+    "objects": [{"name": "A", "body": {"generator": "ball", "parameters": {"frequency": 3}}},
+                {"name": "B", "body": {"generator": "rock", "parameters": {"frequency": 4}}}]})");
+  const auto paper = [&](const std::string& out) {
+    return test::run(folder, {"paper", "--experiment", "few.json", "--meshes", "ball.ply", "--resolutions",
+                              "2", "-o", out});
+  };
+  REQUIRE(paper("whole").code == 0);
+  CHECK(!std::filesystem::exists(folder / "whole/unfinished.jsonl"));
+  // The run ends when it writes the series, because there is a folder of that name.
+  std::filesystem::create_directories(folder / "out/series.jsonl/in the way");
+  CHECK(paper("out").code != 0);
+  CHECK(test::slurp(folder / "out/index.html").find("Table 2") != std::string::npos);
+  const std::string records = test::slurp(folder / "whole/records.jsonl");
+  CHECK(test::slurp(folder / "out/records.jsonl") == records);
+  const std::string unfinished = test::slurp(folder / "out/unfinished.jsonl");
+  CHECK(std::count(unfinished.begin(), unfinished.end(), '\n') == 1 + 1 + 2);  // head, objects, series
+  // Without the last step of the objects, to see that the parts are those of the interrupted run.
+  std::istringstream in(unfinished);
+  std::string text;
+  for (std::string line; std::getline(in, line);) {
+    auto value = nlohmann::ordered_json::parse(line);
+    if (value.value("part", "") == "objects")
+      for (const char* key : {"records", "times"}) {
+        std::string lines = value[key];
+        lines.pop_back();
+        value[key] = lines.substr(0, lines.rfind('\n') + 1);
+      }
+    text += value.dump() + "\n";
+  }
+  folder.write("out/unfinished.jsonl", text);
+  std::filesystem::remove_all(folder / "out/series.jsonl");
+  REQUIRE(paper("out").code == 0);
+  CHECK(!std::filesystem::exists(folder / "out/unfinished.jsonl"));
+  const std::string again = test::slurp(folder / "out/records.jsonl");
+  CHECK(again.size() < records.size());
+  CHECK(records.compare(0, again.size(), again) == 0);
+  CHECK(test::slurp(folder / "out/series.jsonl") == test::slurp(folder / "whole/series.jsonl"));
+}
+
 TEST_CASE("paper: meshes at several resolutions, in shards and as a whole" * doctest::test_suite("long")) {
   const test::Folder folder;
   const auto paper = [&](const std::string& meshes, std::vector<std::string> more) {
@@ -230,7 +274,7 @@ TEST_CASE("paper: meshes at several resolutions, in shards and as a whole" * doc
   folder.write("meshes/open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const auto whole = run("meshes", {"-o", "whole"});
   CHECK(whole.code == 0);
-  CHECK(whole.err.find("open.obj: left out") != std::string::npos);
+  CHECK(whole.err.find("open.obj: skipped") != std::string::npos);
   for (const char* i : {"0/3", "1/3", "2/3"})
     CHECK(run("meshes", {"--shard", i, "-o", std::string("part") + i[0], "--jobs", "2"}).code == 0);
   CHECK(paper("meshes",
@@ -258,5 +302,5 @@ TEST_CASE("paper: meshes at several resolutions, in shards and as a whole" * doc
   std::filesystem::create_directory(folder.path / "other");
   write_mesh(ball, folder / "other/ball.ply");
   write_mesh(ball, folder / "other/ball.obj");
-  rejected("other", {"-o", "x"}, "another mesh is named ball");
+  rejected("other", {"-o", "x"}, "another mesh has the name ball");
 }

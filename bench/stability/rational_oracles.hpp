@@ -47,9 +47,14 @@ inline std::array<Rational, 3> minus(const std::array<Rational, 3>& x, const std
   return {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
 }
 
-/// Returns the squared distance of the planes of two features, or nullopt if the closest points are not in
-/// the features.
-inline std::optional<Rational> feature_distance_sq(const RationalPoints& f, const RationalPoints& g) {
+/// The closest points of two features, and their squared distance.
+struct RationalClosest {
+  std::array<Rational, 3> on_f, on_g;
+  Rational distance_sq;
+};
+
+/// Returns the closest points of the planes of two features, or nullopt if they are not in the features.
+inline std::optional<RationalClosest> closest_of_features(const RationalPoints& f, const RationalPoints& g) {
   std::vector<std::array<Rational, 3>> ways;  // along f, then against g
   for (std::size_t k = 1; k < f.size(); ++k) ways.push_back(minus(f[k], f[0]));
   for (std::size_t k = 1; k < g.size(); ++k) ways.push_back(minus(g[0], g[k]));
@@ -63,17 +68,26 @@ inline std::optional<Rational> feature_distance_sq(const RationalPoints& f, cons
   const auto share = solve(m, r);
   if (!share) return std::nullopt;
   Rational sum[2] = {0, 0};
-  std::array<Rational, 3> left = between;
+  RationalClosest out{f[0], g[0], 0};
   for (std::size_t i = 0; i < ways.size(); ++i) {
     if ((*share)[i] < 0) return std::nullopt;
-    sum[i + 1 < f.size() ? 0 : 1] += (*share)[i];
-    for (std::size_t x = 0; x < 3; ++x) left[x] -= (*share)[i] * ways[i][x];
+    const bool of_f = i + 1 < f.size();
+    sum[of_f ? 0 : 1] += (*share)[i];
+    for (std::size_t x = 0; x < 3; ++x) {
+      if (of_f)
+        out.on_f[x] += (*share)[i] * ways[i][x];
+      else
+        out.on_g[x] -= (*share)[i] * ways[i][x];
+    }
   }
   if (sum[0] > 1 || sum[1] > 1) return std::nullopt;
-  return dot(left, left);
+  const std::array<Rational, 3> left = minus(out.on_g, out.on_f);
+  out.distance_sq = dot(left, left);
+  return out;
 }
 
-inline Rational distance_sq(const Corners& a, const Corners& b) {
+/// Returns closest points of two simplices.
+inline RationalClosest closest_points(const Corners& a, const Corners& b) {
   const auto features = [](const Corners& c) {
     std::vector<RationalPoints> all;
     for (unsigned which = 1; which < 1U << c.size(); ++which) {
@@ -84,13 +98,17 @@ inline Rational distance_sq(const Corners& a, const Corners& b) {
     }
     return all;
   };
-  std::optional<Rational> least;
+  std::optional<RationalClosest> least;
   for (const RationalPoints& f : features(a))
     for (const RationalPoints& g : features(b)) {
-      const auto d = feature_distance_sq(f, g);
-      if (d && (!least || *d < *least)) least = d;
+      const auto d = closest_of_features(f, g);
+      if (d && (!least || d->distance_sq < least->distance_sq)) least = d;
     }
   return *least;
+}
+
+inline Rational distance_sq(const Corners& a, const Corners& b) {
+  return closest_points(a, b).distance_sq;
 }
 
 inline Rational square(double x) {
@@ -130,8 +148,8 @@ inline bool triangles_meet(const RationalPoints& a, const RationalPoints& b) {
   };
   for (const RationalPoints& f : features(a))
     for (const RationalPoints& g : features(b)) {
-      const auto d = feature_distance_sq(f, g);
-      if (d && *d == 0) return true;
+      const auto d = closest_of_features(f, g);
+      if (d && d->distance_sq == 0) return true;
     }
   return false;
 }

@@ -1,0 +1,140 @@
+#include "bench/stability/saved_case.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <optional>
+
+#include "bench/methods/triangles.hpp"
+#include "bench/stability/rational_oracles.hpp"
+#include "bench/workers/worker_json.hpp"
+#include "scenarios/io/files.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/mesh.hpp>
+
+namespace lrb::stability {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Returns the corners of a simplex in the world, as every exact method defines them: rounded to doubles.
+oracle::Corners world_corners(const LrbRep& rep, const Pose& pose, SimplexId s) {
+  VertexId v[3] = {};
+  rep.simplex(s, v);
+  oracle::Corners out;
+  for (int k = 0; k < rep.dim(); ++k) {
+    const Eigen::Vector3d x = pose.apply(rep.vertices()[v[k]]);
+    out.push_back({x.x(), x.y(), x.z()});
+  }
+  return out;
+}
+
+Json point_json(const std::array<oracle::Rational, 3>& x) {
+  return {x[0].str(), x[1].str(), x[2].str()};
+}
+
+Json corners_json(const oracle::Corners& corners) {
+  Json out = Json::array();
+  for (const auto& x : corners) out.push_back(point_json(oracle::rational(x)));
+  return out;
+}
+
+Json pose_json(const Pose& pose) {
+  Json out = Json::array();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) out.push_back(pose.r(i, j));
+    out.push_back(pose.t[i]);
+  }
+  return out;
+}
+
+/// Returns the pairs as [[a, b], ...].
+Json pairs_json(const std::vector<SimplexPair>& pairs) {
+  Json out = Json::array();
+  for (const SimplexPair& p : pairs) out.push_back({p.a.value(), p.b.value()});
+  return out;
+}
+
+Json engine_json(const Replay& r) {
+  Json out = {{"method", r.record.method}, {"outcome", name_of(r.record.outcome)}};
+  if (!r.record.message.empty()) out["message"] = r.record.message;
+  if (!r.record.relation.empty()) {
+    out["relation"] = r.record.relation;
+    out["expected_relation"] = r.record.expected_relation;
+  }
+  out["missed"] = r.record.missed;
+  out["extra"] = r.record.extra;
+  if (r.answered) out["pairs"] = pairs_json(*r.answered);
+  return out;
+}
+
+}  // namespace
+
+Json pair_proof(const cases::Case& c, const SimplexPair& pair) {
+  const oracle::Corners a = world_corners(*c.a, c.pose_a, pair.a), b = world_corners(*c.b, c.pose_b, pair.b);
+  const oracle::RationalClosest closest = oracle::closest_points(a, b);
+  Json out = {{"pair", {pair.a.value(), pair.b.value()}}, {"a", corners_json(a)}, {"b", corners_json(b)}};
+  out["intersect"] = closest.distance_sq == 0;
+  if (closest.distance_sq == 0) {
+    out["common_point"] = point_json(closest.on_f);
+    return out;
+  }
+  // The planes through the closest points, across the segment between them, separate convex sets.
+  const std::array<oracle::Rational, 3> way = oracle::minus(closest.on_g, closest.on_f);
+  out["closest_points"] = {point_json(closest.on_f), point_json(closest.on_g)};
+  out["direction"] = point_json(way);
+  out["largest_of_a"] = oracle::dot(way, closest.on_f).str();
+  out["least_of_b"] = oracle::dot(way, closest.on_g).str();
+  return out;
+}
+
+std::optional<SimplexPair> deciding_pair(const std::vector<Replay>& replays) {
+  for (const Replay& r : replays) {
+    if (!r.answered) continue;
+    std::vector<SimplexPair> expected = r.expected, answered = *r.answered, different;
+    std::sort(expected.begin(), expected.end());
+    std::sort(answered.begin(), answered.end());
+    std::set_symmetric_difference(expected.begin(), expected.end(), answered.begin(), answered.end(),
+                                  std::back_inserter(different));
+    if (!different.empty()) return different.front();
+  }
+  for (const Replay& r : replays)
+    if (!r.expected.empty()) return r.expected.front();
+  return std::nullopt;
+}
+
+std::vector<std::string> save_case(const cases::Case& c, const std::vector<Replay>& replays,
+                                   const std::string& folder) {
+  std::vector<std::string> files;
+  const auto write = [&](const LrbRep& rep, const std::string& name) {
+    write_mesh(methods::real_mesh(rep), folder + "/" + name);
+    files.push_back(name);
+  };
+  const Record& r = replays.front().record;
+  const RightAnswer right = expected_answer(c);
+  Json j = {{"family", r.family}, {"difficulty", r.difficulty}, {"case", r.case_index}, {"seed", r.seed}};
+  j["what"] =
+      "Do the simplices (triangles; segments in the plane) of A and of B intersect, each pair of them? They are numbered from "
+      "0 in file order, polygons as fans. A vertex is at the doubles next to pose * vertex, as in a_world.obj and b_world.obj.";
+  j["pose_a"] = pose_json(c.pose_a);
+  j["pose_b"] = pose_json(c.pose_b);
+  make_folder(folder);
+  write(*c.a, "a.obj");
+  write(*c.b, "b.obj");
+  if (right.rejection.empty()) {
+    write(methods::at_pose(*c.a, c.pose_a), "a_world.obj");
+    write(methods::at_pose(*c.b, c.pose_b), "b_world.obj");
+    j["expected"] = {{"relation", to_string(right.relation)}, {"pairs", pairs_json(right.pairs)}};
+    const std::optional<SimplexPair> pair = deciding_pair(replays);
+    j["proof"] = pair ? pair_proof(c, *pair) : Json(nullptr);
+  } else {
+    j["expected"] = {{"rejected", right.rejection}};
+  }
+  j["engines"] = Json::array();
+  for (const Replay& replay : replays) j["engines"].push_back(engine_json(replay));
+  io::write_text(folder + "/case.json", j.dump(1) + "\n");
+  files.emplace_back("case.json");
+  return files;
+}
+
+}  // namespace lrb::stability

@@ -1,0 +1,31 @@
+#pragma once
+/// The results of a long computation while it runs, so that an interrupted one can be continued.
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace lrb::io {
+
+/// A file to which lines are appended as results come. Its first line, the head, describes the computation.
+class UnfinishedFile {
+ public:
+  /// Reads the complete lines of an earlier computation with the same head, and drops those of others. `head`
+  /// and lines have no line breaks. An empty path: nothing is kept. Throws EnvironmentError if the file
+  /// cannot be written.
+  UnfinishedFile(std::string path, const std::string& head);
+
+  /// Returns the lines of the earlier computation.
+  const std::vector<std::string>& lines() const { return lines_; }
+  /// Appends a line, at once. Throws EnvironmentError if it cannot be written.
+  void add(const std::string& line);
+  /// Removes the file, because the computation is finished.
+  void remove() const;
+
+ private:
+  std::string path_;
+  std::vector<std::string> lines_;
+  std::ofstream out_;
+};
+
+}  // namespace lrb::io
