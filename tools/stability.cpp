@@ -250,7 +250,7 @@ Command add_stability(CLI::App& root, const Globals& globals) {
   app->add_option(
          "--save", o->save,
          "With --only: write the case as meshes and poses, the right answer with its proof in fractions, "
-         "and what each engine answered")
+         "and the answers of the engines")
       ->type_name("DIR");
   app->add_flag("--pairs", o->pairs, "With --only: print the expected and the found pairs");
   return {app, [o, &globals] { return run_stability(*o, globals); }};
