@@ -41,7 +41,7 @@ Pairs meeting_strangers(const Mesh& m) {
 }
 
 /// Returns the pairs with kinds, segments and curves, the same for any number of threads.
-SelfIntersections found_in(const Mesh& m) {
+SelfIntersections listed_in(const Mesh& m) {
   const CheckedMesh checked = check(m);
   const SelfIntersections one = self_intersections(checked, 1), many = self_intersections(checked, 3);
   CHECK(one.segments == many.segments);
@@ -91,7 +91,7 @@ void check_kinds(const Mesh& m, const SelfIntersections& found, const Pairs& exp
 
 void check_against_oracle(const Mesh& m) {
   const Pairs expected = meeting_strangers(m);
-  check_kinds(m, found_in(m), expected);
+  check_kinds(m, listed_in(m), expected);
   const MeshFinding finding = check_mesh(m)[MeshFault::self_intersection];
   CHECK(finding.count == expected.size());
   std::set<FaceId> faces;
@@ -252,7 +252,7 @@ TEST_CASE(
     const LrbRep rep = LrbRep::without_regions(a, true, false);
     const CollideResult expected =
         collide(rep, {}, LrbRep::without_regions(translated(a, by), true, false), {});
-    const SelfIntersections found = found_in(both);
+    const SelfIntersections found = listed_in(both);
     REQUIRE(found.pairs.size() == expected.pairs.size());
     REQUIRE(!found.pairs.empty());
     for (std::size_t i = 0; i < found.pairs.size(); ++i) {
@@ -269,7 +269,7 @@ TEST_CASE(
     const SelfIntersections of_body = self_intersections(LrbRep::without_regions(both, true, true));
     CHECK(of_body.segments == found.segments);
   }
-  CHECK(found_in(several({a, translated(a, {1, 0, 0}), translated(a, {9, 0, 0}), translated(a, {10, 0, 0})}))
+  CHECK(listed_in(several({a, translated(a, {1, 0, 0}), translated(a, {9, 0, 0}), translated(a, {10, 0, 0})}))
             .curves == 2);
 }
 
@@ -282,14 +282,14 @@ TEST_CASE("self-intersections of faces with common corners: a fold, a spike, a d
   };
   add(0, 1, 2);
   add(1, 0, 3);  // folded onto the first along their edge
-  SelfIntersections found = found_in(m);
+  SelfIntersections found = listed_in(m);
   REQUIRE(found.pairs.size() == 1);
   CHECK(found.pairs[0].kind == SelfContact::overlap);
   CHECK(found.pairs[0].shared == 2);
   m.face_offsets = {0}, m.face_vertices = {};
   add(0, 1, 2);
   add(0, 4, 5);  // shares a corner, and passes through the interior
-  found = found_in(m);
+  found = listed_in(m);
   REQUIRE(found.pairs.size() == 1);
   CHECK(found.pairs[0].kind == SelfContact::cross);
   CHECK(found.pairs[0].shared == 1);
@@ -299,18 +299,18 @@ TEST_CASE("self-intersections of faces with common corners: a fold, a spike, a d
   add(0, 1, 2);
   add(1, 2, 0);
   add(0, 1, 6);  // beside the first: shares an edge only
-  found = found_in(m);
+  found = listed_in(m);
   REQUIRE(found.pairs.size() == 1);
   CHECK(found.pairs[0].kind == SelfContact::overlap);
   CHECK(found.pairs[0].shared == 3);
 }
 
 TEST_CASE("self-intersections: no pairs, no faces, and too many pairs") {
-  CHECK(found_in(icosphere(2)).pairs.empty());
-  CHECK(found_in(quad_box()).curves == 0);
-  CHECK(found_in(Mesh{}).pairs.empty());
+  CHECK(listed_in(icosphere(2)).pairs.empty());
+  CHECK(listed_in(quad_box()).curves == 0);
+  CHECK(listed_in(Mesh{}).pairs.empty());
   const Mesh soup = random_soup(5, 40, 3);
-  const std::size_t all = found_in(soup).pairs.size();
+  const std::size_t all = listed_in(soup).pairs.size();
   REQUIRE(all > 10);
   CHECK(self_intersections(check(soup), 2, all).pairs.size() == all);
   CHECK_THROWS_WITH_AS(self_intersections(check(soup), 2, all - 1),
