@@ -13,7 +13,7 @@ make_pages() {
   cp "$here"/*.json "$here"/open.obj "$work"
   sed 's/0\.02,/0.021,/' "$work/meet.json" >"$work/later.json"
   for run in meet later build dent plane open near; do "$lrbscope" --quiet run "$work/$run.json" -o "$out/$run" >/dev/null; done
-  "$lrbscope" --quiet compare "$out/meet" "$out/later" -o "$out/compare" >/dev/null
+  "$lrbscope" --quiet compare "$out/meet" "$out/later" -o "$out/compare" >/dev/null || [ $? = 1 ] # the runs differ
   "$lrbscope" --quiet golden approve --goldens "$work/goldens" --size 320x240 "$work/meet.json" "$work/build.json" >/dev/null
   sed -i 's/0\.02,/0.021,/' "$work/meet.json"
   "$lrbscope" --quiet golden report --goldens "$work/goldens" -o "$out/golden" >/dev/null || true # the page shows a failure

@@ -463,14 +463,14 @@ TEST_CASE("inspect --self-intersections: a JSON line for each pair, and exit cod
   const Folder folder;
   folder.write("cube.obj", kCube);
   folder.write("cross.obj",
-               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.25 0.25 -1\nv 0.25 0.25 1\nv 0.75 1 0\nf 1 2 3\nf 4 5 6\n");
+               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.25 0.25 -1\nv 0.25 0.25 1\nv 0.75 0.75 0\nf 1 2 3\nf 4 5 6\n");
   const Outcome found = run(folder, {"inspect", "cross.obj", "--self-intersections", "-q"});
   CHECK(found.code == 1);
   CHECK(json::parse(found.out) == json({{"faces", {0, 1}},
                                         {"kind", "cross"},
                                         {"shared", 0},
                                         {"curve", 0},
-                                        {"segments", {{{0.4, 0.6, 0.0}, {0.25, 0.25, 0.0}}}}}));
+                                        {"segments", {{{0.5, 0.5, 0.0}, {0.25, 0.25, 0.0}}}}}));
   const Outcome none = run(folder, {"inspect", "cube.obj", "--self-intersections", "-q"});
   CHECK(none.code == 0);
   CHECK(none.out.empty());

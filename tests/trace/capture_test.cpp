@@ -426,7 +426,7 @@ TEST_CASE("descriptions of meshes and trees are checked") {
   const Bytes good = record(a_query);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   // MESH: id, vertices, triangles, length of the name, "wedge", coordinates, corners.
-  contains(refusal(twice(good, "MESH")), {"chunk 4 (MESH at byte ", "new id of a mesh", "found 1"});
+  contains(refusal(twice(good, "MESH")), {"chunk 5 (MESH at byte ", "new id of a mesh", "found 1"});
   contains(refusal(with(good, "MESH", 21 + 8 * 4, nan)), {"vertex 1: expected finite numbers"});
   contains(refusal(with(good, "MESH", 21 + 8 * 12 + 4 * 5, 4u)),
            {"triangle 1: expected a vertex below 4, found 4"});
