@@ -80,7 +80,8 @@ class NamedPipe {
   /// Returns true if the writer is ahead: more than half of the pipe waits to be read.
   bool is_filling() const { return waiting() > capacity_ / 2; }
   bool is_empty() const { return waiting() == 0; }
-  /// Reads the available bytes. Returns the number of bytes, 0 without a writer, and -1 if there is nothing yet.
+  /// Reads the available bytes. Returns the number of bytes, 0 without a writer, and -1 if there is nothing
+  /// yet.
   ssize_t read(std::vector<std::byte>& buffer) const {
     const ssize_t n = ::read(descriptor_, buffer.data(), buffer.size());
     return n < 0 ? -1 : n;
