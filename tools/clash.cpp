@@ -20,14 +20,12 @@
 namespace lrb::cli {
 namespace {
 
-struct ClashOptions {
-  std::string a, b, poses;
+struct ClashOptions : PosedFiles {
   ClashRequest request;
   std::vector<double> along;
   std::uint32_t repeat = 0;
   bool table = false;
   DrawOptions draw;
-  bodies::Corners corners = bodies::Corners::joined;
 };
 
 void write_interval(trace::JsonWriter& w, const char* name, const std::optional<ProvedInterval>& interval) {
@@ -167,9 +165,7 @@ Command add_clash(CLI::App& root, const Globals& globals) {
       "clash",
       "Classify the contact between two solids and compute its penetration depth, for each pose of B");
   const auto o = std::make_shared<ClashOptions>();
-  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
-  app->add_option("B", o->b, "Mesh or .lrb file; moved to each pose")->required();
-  app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
+  add_posed_files(*app, *o);
   app->add_option("--clearance", o->request.clearance,
                   "Distance up to which disjoint bodies are reported as \"within_clearance\"")
       ->type_name("D");

@@ -61,10 +61,15 @@ std::vector<Command> add_commands(CLI::App& root, const Globals& globals) {
   return commands;
 }
 
+std::string shell_line(const std::vector<std::string>& words) {
+  std::string out = "lrbscope";
+  for (const std::string& word : words) out += " " + shell_word(word);
+  return out;
+}
+
 int run_command(const std::vector<std::string>& words, const Globals& globals) {
   Globals own = globals;
-  own.command_line = "lrbscope";
-  for (const std::string& word : words) own.command_line += " " + shell_word(word);
+  own.command_line = shell_line(words);
   CLI::App app("", "lrbscope");
   const std::vector<Command> commands = add_commands(app, own);
   app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them from the back

@@ -39,6 +39,8 @@ int main(int argc, char** argv);
 void note(const Globals& globals, const std::vector<std::string>& lines);
 
 using io::shell_word;
+/// Returns the command line of lrbscope with these words, quoted for a shell.
+std::string shell_line(const std::vector<std::string>& words);
 
 /// Returns JSON on one line. Bytes that are not UTF-8, which file names may contain, become U+FFFD.
 std::string one_line(const nlohmann::ordered_json& value);

@@ -16,9 +16,7 @@
 namespace lrb::cli {
 namespace {
 
-struct DistanceOptions {
-  bodies::Corners corners = bodies::Corners::joined;
-  std::string a, b, poses;
+struct DistanceOptions : PosedFiles {
   DistanceRequest request;
   std::uint32_t repeat = 0;
   bool features = false;
@@ -58,10 +56,8 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
   const PoseLines list(o.poses);
   check_request(o.request);
   const render::Look look = look_of(o.draw);
-  const auto loaded = bodies::load_faces_of_two(o.a, o.b, o.corners);
+  const auto loaded = load_noted(o.a, o.b, o.corners, globals);
   const bodies::LoadedBody &a = loaded[0], &b = loaded[1];
-  note(globals, a.notes);
-  note(globals, b.notes);
   list.check(a.rep, b.rep);
   Workspace workspace;
   Progress progress("distance", list.poses.size(), globals.quiet);
@@ -93,9 +89,7 @@ Command add_distance(CLI::App& root, const Globals& globals) {
       "Compute the distance between two bodies, as a proven interval, for each pose of B; one JSON line "
       "per pose");
   const auto o = std::make_shared<DistanceOptions>();
-  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
-  app->add_option("B", o->b, "Mesh or .lrb file; moved to each pose")->required();
-  app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
+  add_posed_files(*app, *o);
   app->add_option("--within", o->request.within, "Only test whether the distance is at most D")
       ->type_name("D");
   app->add_option("--tolerance", o->request.tolerance,

@@ -66,12 +66,6 @@ std::vector<std::string> record_words(const EngineOptions& o, const std::string&
   return words;
 }
 
-std::string shell_line(const std::vector<std::string>& words) {
-  std::string out = "lrbscope";
-  for (const std::string& word : words) out += " " + shell_word(word);
-  return out;
-}
-
 std::string record_line(const EngineOptions& o, const std::string& engine, const std::string& pose_file,
                         const std::string& folder) {
   const std::string line = shell_line(record_words(o, engine, pose_file, folder));

@@ -42,9 +42,6 @@ Contest make_contest(const EngineOptions& options);
 std::vector<std::string> record_words(const EngineOptions& options, const std::string& engine,
                                       const std::string& pose_file, const std::string& folder);
 
-/// Returns words as a shell command.
-std::string shell_line(const std::vector<std::string>& words);
-
 /// Returns the shell command of record_words(); for a --command, after the one that writes the capture.
 std::string record_line(const EngineOptions& options, const std::string& engine, const std::string& pose_file,
                         const std::string& folder);

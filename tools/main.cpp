@@ -25,12 +25,6 @@ int main(int argc, char** argv) {
 namespace lrb::cli {
 namespace {
 
-std::string command_line(int argc, char** argv) {
-  std::string out = "lrbscope";
-  for (int i = 1; i < argc; ++i) out += " " + shell_word(argv[i]);
-  return out;
-}
-
 int complain(const char* kind, const std::string& message, int code) {
   std::cerr << "lrbscope: " << kind << printable_name(message)
             << std::endl;  // one line, no control characters
@@ -185,7 +179,7 @@ int parse_and_run(int argc, char** argv) {
       "Exit codes: 0 success, 1 mismatch, 2 usage or input error, 3 missing dependency or resource. See also "
       "`lrbscope COMMAND --help`.");
   Globals globals;
-  globals.command_line = command_line(argc, argv);
+  globals.command_line = shell_line({argv + std::min(argc, 1), argv + argc});
   app.add_flag("-q,--quiet", globals.quiet, "Print only errors to stderr");
   const std::vector<Command> commands = add_commands(app, globals);
   try {

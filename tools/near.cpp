@@ -14,9 +14,7 @@
 namespace lrb::cli {
 namespace {
 
-struct NearOptions {
-  bodies::Corners corners = bodies::Corners::joined;
-  std::string a, b, poses;
+struct NearOptions : PosedFiles {
   NearPairsRequest request;
   std::uint32_t repeat = 0;
   DrawOptions draw;
@@ -49,10 +47,8 @@ int run_near(const NearOptions& o, const Globals& globals) {
   const PoseLines list(o.poses);
   check_request(o.request);
   const render::Look look = look_of(o.draw);
-  const auto loaded = bodies::load_faces_of_two(o.a, o.b, o.corners);
+  const auto loaded = load_noted(o.a, o.b, o.corners, globals);
   const bodies::LoadedBody &a = loaded[0], &b = loaded[1];
-  note(globals, a.notes);
-  note(globals, b.notes);
   list.check(a.rep, b.rep);
   Workspace workspace;
   Progress progress("near", list.poses.size(), globals.quiet);
@@ -79,9 +75,7 @@ Command add_near(CLI::App& root, const Globals& globals) {
       "Find all pairs of triangles within a distance, exactly, with their distances and closest points, for "
       "each pose of B; one JSON line per pose");
   const auto o = std::make_shared<NearOptions>();
-  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
-  app->add_option("B", o->b, "Mesh or .lrb file; moved to each pose")->required();
-  app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
+  add_posed_files(*app, *o);
   app->add_option("--within", o->request.within, "Maximum distance, in mesh units; 0: pairs that intersect")
       ->required()
       ->type_name("D");

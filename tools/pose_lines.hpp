@@ -1,13 +1,16 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/io/poses.hpp"
+#include "tools/commands.hpp"
 #include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
@@ -66,6 +69,17 @@ struct PoseLines {
   std::vector<Pose> poses;
   std::vector<std::string> places;
 };
+
+/// The files of a command about A and poses of B.
+struct PosedFiles {
+  bodies::Corners corners = bodies::Corners::joined;
+  std::string a, b, poses;
+};
+/// Adds A, B and --poses.
+void add_posed_files(CLI::App& app, PosedFiles& files);
+/// Loads both bodies without regions, and prints their notes.
+std::array<bodies::LoadedBody, 2> load_noted(const std::string& a, const std::string& b,
+                                             bodies::Corners corners, const Globals& globals);
 
 /// Returns a picture's file: `path`, or with the number of the pose before its extension if there are several
 /// poses.

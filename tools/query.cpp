@@ -17,9 +17,8 @@
 namespace lrb::cli {
 namespace {
 
-struct QueryOptions {
-  bodies::Corners corners = bodies::Corners::joined;
-  std::string a, b, poses, draw;
+struct QueryOptions : PosedFiles {
+  std::string draw;
   CollideRequest request;
   bool pairs = false, kind = false, distance = false;
   std::uint32_t repeat = 0;
@@ -167,9 +166,7 @@ Command add_query(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "query", "Find all intersecting pairs of faces, exactly, for each pose of B; one JSON line per pose");
   const auto o = std::make_shared<QueryOptions>();
-  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
-  app->add_option("B", o->b, "Mesh or .lrb file; moved to each pose")->required();
-  app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
+  add_posed_files(*app, *o);
   add_request_options(*app, o->request);
   add_coarse_options(*app, o->request);
   auto* separation = app->add_flag("--separation", o->request.separation,

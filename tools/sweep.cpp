@@ -100,10 +100,8 @@ int run_sweep(const SweepOptions& o, const Globals& globals) {
   const std::vector<io::PosePair> list = io::read_motions(o.motions);
   check_request(o.request);
   const render::Look look = look_of(o.draw);
-  const auto loaded = bodies::load_faces_of_two(o.a, o.b, o.corners);
+  const auto loaded = load_noted(o.a, o.b, o.corners, globals);
   const bodies::LoadedBody &a = loaded[0], &b = loaded[1];
-  note(globals, a.notes);
-  note(globals, b.notes);
   check_query(a.rep, Pose{}, b.rep, Pose{});
   const std::vector<Motion> motions = motions_of(list, printable_name(o.motions), a.rep, b.rep);
   const Motion still = Motion::still({});

@@ -55,6 +55,11 @@ std::uint64_t numbers_of(std::uint32_t kind, std::uint64_t directions) {
   return 0;
 }
 
+bool is_chunk_name(std::string_view name) {
+  return std::all_of(name.begin(), name.end(),
+                     [](char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); });
+}
+
 /// Returns the largest error of r as a rotation: of the products of its columns, and of its determinant.
 double error_as_rotation(const Eigen::Matrix3d& r) {
   const double products = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
@@ -198,11 +203,10 @@ class Reader {
     kind_ = characters(4);
     if (kind_ == kMagic.substr(0, 4))
       fail("a second capture begins here; give each program a file of its own");
-    for (const char c : kind_)
-      if (!(c >= 'A' && c <= 'Z') && !(c >= '0' && c <= '9')) {
-        kind_ = in_quotes(kind_);
-        fail("expected a chunk name of four letters; the file is damaged");
-      }
+    if (!is_chunk_name(kind_)) {
+      kind_ = in_quotes(kind_);
+      fail("expected a chunk name of four letters; the file is damaged");
+    }
     const std::uint32_t version = u32();
     const std::uint64_t size = u64();
     ticks_ = u64();
@@ -677,7 +681,7 @@ class Stream::Chunks {
 
   Reader reader;
   std::vector<std::byte> waiting;  ///< bytes that are not a whole chunk yet
-  std::uint64_t offset = 0;        ///< of these
+  std::uint64_t offset = 0;        ///< of the first waiting byte in the stream
   bool has_begun = false;
 };
 
@@ -704,12 +708,8 @@ void Stream::feed(std::span<const std::byte> bytes, const std::function<void(Que
     std::uint64_t size = 0;
     std::memcpy(&size, rest.data() + 8, sizeof size);
     // A chunk with a damaged name, or another capture, is also rejected at once: it has no size to wait for.
-    const auto is_letter = [](std::byte b) {
-      const char x = static_cast<char>(b);
-      return (x >= 'A' && x <= 'Z') || (x >= '0' && x <= '9');
-    };
-    const bool is_chunk = std::all_of(rest.begin(), rest.begin() + 4, is_letter) &&
-                          std::memcmp(rest.data(), kMagic.data(), 4) != 0;
+    const std::string_view name(reinterpret_cast<const char*>(rest.data()), 4);
+    const bool is_chunk = is_chunk_name(name) && name != kMagic.substr(0, 4);
     if (is_chunk && size > rest.size() - kChunkHeader) break;
     const std::size_t used =
         kChunkHeader + static_cast<std::size_t>(std::min<std::uint64_t>(size, rest.size()));

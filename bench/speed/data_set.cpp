@@ -49,8 +49,8 @@ ordered_json question_json(const Question& q, Quantity quantity) {
   ordered_json out = {{"class", name_of(q.pose_class)},
                       {"a", q.a},
                       {"b", q.b},
-                      {"pose_a", pose_json(q.pose_a)},
-                      {"pose_b", pose_json(q.pose_b)}};
+                      {"pose_a", workers::pose_json(q.pose_a)},
+                      {"pose_b", workers::pose_json(q.pose_b)}};
   if (quantity == Quantity::pairs) out["expected"] = workers::PairsJson::write(q.expected);
   if (quantity == Quantity::first_contact) {
     out["from"] = vector_json(q.from);
@@ -78,15 +78,6 @@ Question question_from(const json& value, Quantity quantity) {
 }
 
 }  // namespace
-
-nlohmann::ordered_json pose_json(const Pose& p) {
-  ordered_json out = ordered_json::array();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) out.push_back(p.r(i, j));
-    out.push_back(p.t[i]);
-  }
-  return out;
-}
 
 std::span<const PoseClass> classes_of(Quantity quantity) {
   static constexpr PoseClass kPairs[] = {PoseClass::apart, PoseClass::shallow, PoseClass::deep,

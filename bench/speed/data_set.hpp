@@ -87,9 +87,6 @@ struct DataSet {
 /// Returns true if all queries have a right answer.
 bool is_complete(const DataSet& set);
 
-/// Returns the 3x4 matrix, row by row.
-nlohmann::ordered_json pose_json(const Pose& p);
-
 /// Writes folder/name.set.json and returns its path.
 std::string write_data_set(const DataSet& set, const std::string& folder);
 /// Reads a data set. Throws InputError that names the file.

@@ -287,12 +287,12 @@ std::string scenario_text(const DataSet& set, std::uint64_t k, const std::string
       {{"camera", "scene"}, {"title", "Overview with wrappers"}},
       {{"camera", "contact"}, {"draw", "body"}, {"title", "Contact without wrappers"}}};
   ordered_json poses = ordered_json::array();
-  for (const Pose& pose : poses_of(set, q)) poses.push_back(pose_json(pose));
+  for (const Pose& pose : poses_of(set, q)) poses.push_back(workers::pose_json(pose));
   ordered_json value = {
       {"name", name},
       {"purpose", set.what + ": " + title(q.pose_class) + ", question " + std::to_string(k) + "."},
       {"bodies",
-       {{"a", {{"file", "../" + set.bodies[q.a].file}, {"pose", pose_json(q.pose_a)}}},
+       {{"a", {{"file", "../" + set.bodies[q.a].file}, {"pose", workers::pose_json(q.pose_a)}}},
         {"b", {{"file", "../" + set.bodies[q.b].file}}}}},
       {"motion", {{"kind", "poses"}, {"poses", poses}}},
       {"trace", {{"gzip", true}}},

@@ -1,17 +1,15 @@
 #include "bench/speed/survey.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <set>
+#include <optional>
 #include <tuple>
 
 #include "bench/workers/workers.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/unfinished.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
@@ -25,19 +23,17 @@ RecordKey key_of(const Record& r) {
   return {r.set, name_of(r), r.question, r.round};
 }
 
-/// A file to which lines are appended; each is flushed at once.
-class Appender {
- public:
-  explicit Appender(const std::string& path) : path_(path), out_(path, std::ios::app) {}
-  void add(const std::string& line) {
-    if (!(out_ << line << "\n" << std::flush))
-      throw EnvironmentError(printable_name(path_) + ": cannot write the file: " + std::strerror(errno));
-  }
-
- private:
-  std::string path_;
-  std::ofstream out_;
-};
+/// Returns true if an answer need not be measured: it was, or the answer in round 0 failed.
+/// `outcome_of(key)`: of a known answer, or nullopt.
+template <class OutcomeOf>
+bool is_done(const OutcomeOf& outcome_of, RecordKey key) {
+  if (outcome_of(key)) return true;
+  std::uint64_t& round = std::get<3>(key);
+  if (round == 0) return false;
+  round = 0;
+  const std::optional<Outcome> first = outcome_of(key);
+  return first && *first != Outcome::answered;
+}
 
 class Survey {
  public:
@@ -68,14 +64,13 @@ class Survey {
     return o_.judges && r.round == 0 && r.outcome == Outcome::answered && !r.errors && !r.all.upper;
   }
 
-  bool is_known(const RecordKey& k) const { return known_.count(k) != 0; }
-
-  /// True if a query need not be measured: it was, or its answer in round 0 failed.
   bool is_done(const std::string& set, const std::string& name, std::uint64_t question,
                unsigned round) const {
-    if (is_known({set, name, question, round})) return true;
-    const auto first = known_.find({set, name, question, 0});
-    return round > 0 && first != known_.end() && first->second.outcome != Outcome::answered;
+    const auto outcome_of = [&](const RecordKey& key) -> std::optional<Outcome> {
+      const auto it = known_.find(key);
+      return it == known_.end() ? std::nullopt : std::optional(it->second.outcome);
+    };
+    return bench::is_done(outcome_of, {set, name, question, round});
   }
 
   void ask(const DataSet& set, const Contestant& c, unsigned round, std::uint64_t begin, std::uint64_t end) {
@@ -154,7 +149,7 @@ class Survey {
 
   const SurveyOptions& o_;
   const SurveyProgress& progress_;
-  Appender file_;
+  io::LineAppender file_;
   std::map<RecordKey, Record> known_;
   std::uint64_t done_ = 0, total_ = 0;
 };
@@ -220,12 +215,12 @@ std::vector<Missing> missing_answers(const std::string& folder, const std::vecto
                                      const std::vector<Record>& records) {
   const nlohmann::ordered_json plan = read_plan(folder);
   if (plan.is_null()) return {};
-  std::set<RecordKey> known;
-  std::map<RecordKey, bool> failed;  // in round 0
-  for (const Record& r : records) {
-    known.insert(key_of(r));
-    if (r.round == 0) failed[key_of(r)] = r.outcome != Outcome::answered;
-  }
+  std::map<RecordKey, Outcome> known;
+  for (const Record& r : records) known[key_of(r)] = r.outcome;
+  const auto outcome_of = [&](const RecordKey& key) -> std::optional<Outcome> {
+    const auto it = known.find(key);
+    return it == known.end() ? std::nullopt : std::optional(it->second);
+  };
   std::vector<Missing> out;
   bool any = false;
   for (const auto& name : plan["sets"]) {
@@ -238,9 +233,7 @@ std::vector<Missing> missing_answers(const std::string& folder, const std::vecto
         for (std::uint64_t q = 0; q < set->questions.size(); ++q)
           for (std::uint64_t round = 0; round < plan["rounds"].get<unsigned>(); ++round) {
             ++m.planned;
-            const auto first = failed.find({m.set, method, q, 0});
-            const bool gave_up = round > 0 && first != failed.end() && first->second;
-            m.missing += !gave_up && known.count({m.set, method, q, round}) == 0;
+            m.missing += !is_done(outcome_of, {m.set, method, q, round});
           }
     }
     any = any || m.missing > 0;

@@ -39,15 +39,6 @@ Json corners_json(const oracle::Corners& corners) {
   return out;
 }
 
-Json pose_json(const Pose& pose) {
-  Json out = Json::array();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) out.push_back(pose.r(i, j));
-    out.push_back(pose.t[i]);
-  }
-  return out;
-}
-
 /// Returns the pairs as [[a, b], ...].
 Json pairs_json(const std::vector<SimplexPair>& pairs) {
   Json out = Json::array();
@@ -116,8 +107,8 @@ std::vector<std::string> save_case(const cases::Case& c, const std::vector<Repla
   j["what"] =
       "Do the simplices (triangles; segments in the plane) of A and of B intersect, each pair of them? They are numbered from "
       "0 in file order, polygons as fans. A vertex is at the doubles next to pose * vertex, as in a_world.obj and b_world.obj.";
-  j["pose_a"] = pose_json(c.pose_a);
-  j["pose_b"] = pose_json(c.pose_b);
+  j["pose_a"] = workers::pose_json(c.pose_a);
+  j["pose_b"] = workers::pose_json(c.pose_b);
   make_folder(folder);
   write(*c.a, "a.obj");
   write(*c.b, "b.obj");

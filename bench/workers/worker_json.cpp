@@ -59,4 +59,13 @@ methods::MethodInfo method_info_from(const nlohmann::json& value) {
   return info;
 }
 
+nlohmann::ordered_json pose_json(const Pose& pose) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) out.push_back(pose.r(i, j));
+    out.push_back(pose.t[i]);
+  }
+  return out;
+}
+
 }  // namespace lrb::workers

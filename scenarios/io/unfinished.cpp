@@ -24,6 +24,11 @@ std::vector<std::string> complete_lines(const std::string& path) {
 
 }  // namespace
 
+void LineAppender::add(const std::string& line) {
+  if (!(out_ << line << "\n" << std::flush))
+    throw EnvironmentError(printable_name(path_) + ": cannot write the file: " + std::strerror(errno));
+}
+
 UnfinishedFile::UnfinishedFile(std::string path, const std::string& head) : path_(std::move(path)) {
   if (path_.empty()) return;
   lines_ = complete_lines(path_);
@@ -34,13 +39,11 @@ UnfinishedFile::UnfinishedFile(std::string path, const std::string& head) : path
   std::string text = head + "\n";
   for (const std::string& line : lines_) text += line + "\n";
   write_text(path_, text);  // without a line that was cut off
-  out_.open(path_, std::ios::app);
+  out_.emplace(path_);
 }
 
 void UnfinishedFile::add(const std::string& line) {
-  if (path_.empty()) return;
-  if (!(out_ << line << "\n" << std::flush))
-    throw EnvironmentError(printable_name(path_) + ": cannot write the file: " + std::strerror(errno));
+  if (out_) out_->add(line);
 }
 
 void UnfinishedFile::remove() const {

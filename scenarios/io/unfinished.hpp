@@ -2,10 +2,23 @@
 /// The results of a long computation while it runs, so that an interrupted one can be continued.
 
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace lrb::io {
+
+/// A file to which lines are appended; each is flushed at once.
+class LineAppender {
+ public:
+  explicit LineAppender(const std::string& path) : path_(path), out_(path, std::ios::app) {}
+  /// Throws EnvironmentError if the line cannot be written.
+  void add(const std::string& line);
+
+ private:
+  std::string path_;
+  std::ofstream out_;
+};
 
 /// A file to which lines are appended as results come. Its first line, the head, describes the computation.
 class UnfinishedFile {
@@ -25,7 +38,7 @@ class UnfinishedFile {
  private:
   std::string path_;
   std::vector<std::string> lines_;
-  std::ofstream out_;
+  std::optional<LineAppender> out_;
 };
 
 }  // namespace lrb::io

@@ -205,10 +205,10 @@ std::vector<OwnerWaste> PriceBook::worst_owners(std::size_t most) const {
 }
 
 std::vector<double> PriceBook::waste_by_triangle(std::uint32_t tree) {
-  const TreeIndex& index = bodies_.index(tree);
-  std::vector<double> out(index.leaf.size(), 0);
+  std::vector<double> out(bodies_.mesh_of(tree).triangles.size(), 0);
   const auto found = waste_of_nodes_.find(tree);
   if (found == waste_of_nodes_.end()) return out;
+  const TreeIndex& index = bodies_.index(tree);
   // The share of each triangle below a node, as a sum from the root.
   std::vector<double> share(index.parent.size(), 0);
   for (const std::uint32_t n : index.from_root) {

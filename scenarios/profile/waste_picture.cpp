@@ -1,7 +1,6 @@
 #include "scenarios/profile/waste_picture.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "render/pictures/panel.hpp"
@@ -14,11 +13,11 @@ namespace {
 /// Ratio of the ends of the scale: triangles with less than a thousandth of the maximum are pale.
 constexpr double kRange = 1000;
 
-run::Panel panel_of(const LrbRep& rep, const WasteMap& map, double most, bool from_behind) {
+run::Panel panel_of(const LrbRep& rep, const WasteMap& map, const render::ScaleBar& scale, bool from_behind) {
   run::Panel panel;
   panel.list.edge_styles[0] = {render::with_alpha(render::kWhite, 110), 0.8F};
   for (FaceId f = 0; f < rep.real_face_count(); ++f) {
-    const double share = 1 + std::log(map.waste[f] / most) / std::log(kRange);
+    const double share = render::place_on(scale, map.waste[f]);
     render::DrawTriangle t;
     t.colour = share > 0 ? render::palette::viridis(share) : render::palette::kPaleFront;
     t.edges = 7;
@@ -40,10 +39,12 @@ render::Image draw_waste(std::span<const WasteMap> maps) {
   double most = 0;
   for (const WasteMap& map : maps)
     most = std::max(most, *std::max_element(map.waste.begin(), map.waste.end()));
+  const render::ScaleBar scale{"wasted visits per triangle (log scale)", most / kRange, most, true};
   std::vector<run::Panel> panels;
   for (const WasteMap& map : maps) {
     const bodies::LoadedBody body = captured_body(map.mesh);
-    for (const bool from_behind : {false, true}) panels.push_back(panel_of(body.rep, map, most, from_behind));
+    for (const bool from_behind : {false, true})
+      panels.push_back(panel_of(body.rep, map, scale, from_behind));
   }
   render::Look look;
   look.width = 560;
@@ -51,7 +52,7 @@ render::Image draw_waste(std::span<const WasteMap> maps) {
   render::MontageOptions options;
   options.columns = 2;
   render::Overlay overlay;
-  overlay.scale = render::ScaleBar{"wasted visits per triangle (log scale)", most / kRange, most, true};
+  overlay.scale = scale;
   return run::with_overlay(run::draw_sheet(panels, look, options), overlay);
 }
 

@@ -93,7 +93,7 @@ struct SceneBody {
   /// (|real F|) or (|F|): faces with a nonzero entry have the contact colour; empty: none. Includes pseudo
   /// faces if a wrapper is shown, even if it has been refined beyond them.
   std::span<const std::uint8_t> in_contact = {};
-  std::string contact_name = "intersecting real faces";  ///< of these faces, in the legend
+  std::string contact_name = "intersecting real faces";  ///< legend text of `in_contact`
 };
 
 enum class ColourBy : std::uint8_t {

@@ -1,0 +1,332 @@
+// Near pairs, self-intersections and distances of points: answers with a row for each pair or point.
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "python/src/answers.hpp"
+#include "python/src/bind.hpp"
+#include <lrbscope/near_pairs.hpp>
+#include <lrbscope/point_distance.hpp>
+#include <lrbscope/self_intersections.hpp>
+
+namespace lrb::python {
+namespace {
+
+/// Returns an array with get(item) for each item.
+template <class T, class Item, class Get>
+py::array_t<T> each_of(const std::vector<Item>& items, const Get& get) {
+  py::array_t<T> out(static_cast<py::ssize_t>(items.size()));
+  std::transform(items.begin(), items.end(), out.mutable_data(), get);
+  return out;
+}
+
+/// Returns an array (n, width) with get(item, j) for each item and column j.
+template <class T, class Item, class Get>
+py::array_t<T> rows_of(const std::vector<Item>& items, std::size_t width, const Get& get) {
+  py::array_t<T> out({items.size(), width});
+  T* to = out.mutable_data();
+  for (const Item& item : items)
+    for (std::size_t j = 0; j < width; ++j) *to++ = get(item, j);
+  return out;
+}
+
+/// Returns an array (n, 2, 3) of two points of each item.
+template <class Item, class Get>
+py::object point_pairs_of(const std::vector<Item>& items, const Get& get) {
+  const auto rows = static_cast<py::ssize_t>(items.size());
+  return rows_of<double>(items, 6, [&](const Item& item, std::size_t j) { return get(item, j / 3)[j % 3]; })
+      .reshape({rows, py::ssize_t{2}, py::ssize_t{3}});
+}
+
+struct NearPairs {
+  NearPairsResult result;
+  std::vector<std::array<FaceId, 2>> faces;
+};
+
+py::object near_pairs(py::handle a, py::handle b, py::handle pose_b, py::handle pose_a, py::handle within,
+                      py::handle nearest, py::handle max_pairs, py::handle threads) {
+  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
+  const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
+  if (within.is_none()) throw InputError("within: expected a finite number of at least 0, got None");
+  NearPairsRequest request;
+  request.within = size(within, "within");
+  request.nearest = count(nearest, "nearest");
+  request.max_pairs = count(max_pairs, "max_pairs");
+  const unsigned n = threads_of(count(threads, "threads"));
+  NearPairs found;
+  {
+    const py::gil_scoped_release unlocked;
+    found.result = lrb::near_pairs(body_a.rep(), at_a, body_b.rep(), at_b, request, n);
+  }
+  for (const NearPair& pair : found.result.pairs)
+    found.faces.push_back({body_a.rep().face_of_simplex(pair.a), body_b.rep().face_of_simplex(pair.b)});
+  return py::cast(std::move(found));
+}
+
+void bind_near_pairs_result(py::module_& m) {
+  py::class_<NearPairs> c(m, "NearPairs",
+                          "Pairs of triangles (2D: segments) within a distance: arrays with a row for each "
+                          "pair. Made by near_pairs().");
+  c.def("__len__", [](const NearPairs& p) { return p.result.pairs.size(); });
+  c.def_property_readonly(
+      "found", [](const NearPairs& p) { return p.result.found; },
+      "int: number of all pairs within the distance; more than len() if `nearest` was given.");
+  c.def_property_readonly(
+      "triangles",
+      [](const NearPairs& p) {
+        return rows_of<std::uint32_t>(p.result.pairs, 2, [](const NearPair& pair, std::size_t j) {
+          return (j == 0 ? pair.a : pair.b).value();
+        });
+      },
+      "(n, 2) uint32: a triangle of A and one of B.");
+  c.def_property_readonly(
+      "faces",
+      [](const NearPairs& p) {
+        return rows_of<std::uint32_t>(
+            p.faces, 2, [](const std::array<FaceId, 2>& faces, std::size_t j) { return faces[j].value(); });
+      },
+      "(n, 2) uint32: the faces of these triangles.");
+  c.def_property_readonly(
+      "meet",
+      [](const NearPairs& p) {
+        return each_of<std::uint8_t>(
+            p.result.pairs, [](const NearPair& pair) { return static_cast<std::uint8_t>(pair.meet); });
+      },
+      "(n,) uint8: 0 disjoint, 1 touch, 2 cross.");
+  c.def_property_readonly(
+      "lower",
+      [](const NearPairs& p) {
+        return each_of<double>(p.result.pairs, [](const NearPair& pair) { return pair.lower; });
+      },
+      "(n,) float64: lower ends of the distances; 0 for pairs that intersect.");
+  c.def_property_readonly(
+      "upper",
+      [](const NearPairs& p) {
+        return each_of<double>(p.result.pairs, [](const NearPair& pair) { return pair.upper; });
+      },
+      "(n,) float64: upper ends.");
+  c.def_property_readonly(
+      "points",
+      [](const NearPairs& p) {
+        return point_pairs_of(p.result.pairs,
+                              [](const NearPair& pair, std::size_t j) { return pair.point[j]; });
+      },
+      "(n, 2, 3) float64: the closest points of A and of B, world frame; equal if the pair intersects.");
+  c.def_property_readonly(
+      "counters",
+      [](const NearPairs& p) {
+        const NearPairsCounters& n = p.result.counters;
+        py::dict d;
+        d["node_pairs"] = n.node_pairs;
+        d["box_tests"] = n.box_tests;
+        d["candidates"] = n.candidates;
+        d["pairs_exact"] = n.pairs_exact;
+        return d;
+      },
+      "dict: the work, in numbers of operations.");
+  c.def("__repr__", [](const NearPairs& p) {
+    return "<lrbscope.NearPairs of " + std::to_string(p.result.pairs.size()) + " pairs>";
+  });
+}
+
+}  // namespace
+
+void bind_near_pairs(py::module_& m) {
+  bind_near_pairs_result(m);
+  const py::none no;
+  m.def("near_pairs", &near_pairs, py::arg("a"), py::arg("b"), py::arg("pose_b") = no, py::arg("pose_a") = no,
+        py::kw_only(), py::arg("within"), py::arg("nearest") = no, py::arg("max_pairs") = no,
+        py::arg("threads") = no,
+        R"(near_pairs(a, b, pose_b=None, pose_a=None, *, within, nearest=0, max_pairs=0, threads=0)
+
+Finds all pairs of triangles (2D: segments) whose distance is at most `within`, exactly.
+
+pose_b, pose_a: (4, 4). None: the identity. within: the world's unit; 0: the pairs that intersect.
+nearest: return only this many pairs, in ascending order of the lower ends of their distances; 0: all, in
+ascending order of their triangles. max_pairs: a query that finds more is an InputError; 0: 33554432.
+
+Returns NearPairs.
+
+>>> pairs = near_pairs(cube, cube, shifted(3, 0, 0), within=2)
+>>> len(pairs), pairs.upper.max(), pairs.points[0, :, 0].tolist()
+(62, 2.0, [1.0, 3.0]))");
+}
+
+namespace {
+
+py::object self_intersections(py::handle of, py::handle max_pairs, py::handle threads) {
+  const Body& given = body(of, "body");
+  const std::uint64_t most = count(max_pairs, "max_pairs");
+  const unsigned n = threads_of(count(threads, "threads"));
+  SelfIntersections found;
+  {
+    const py::gil_scoped_release unlocked;
+    found = lrb::self_intersections(given.rep(), n, most > 0 ? most : kMaxSelfIntersections);
+  }
+  return py::cast(std::move(found));
+}
+
+}  // namespace
+
+void bind_self_intersections(py::module_& m) {
+  py::class_<SelfIntersections> c(m, "SelfIntersections",
+                                  "Pairs of faces in which a body intersects itself: arrays with a row for "
+                                  "each pair. Made by self_intersections().");
+  const auto column = [&c](const char* name, const char* text, std::uint32_t SelfIntersection::*member) {
+    c.def_property_readonly(
+        name,
+        [member](const SelfIntersections& s) {
+          return each_of<std::uint32_t>(s.pairs, [&](const SelfIntersection& pair) { return pair.*member; });
+        },
+        text);
+  };
+  c.def("__len__", [](const SelfIntersections& s) { return s.pairs.size(); });
+  c.def_property_readonly(
+      "faces",
+      [](const SelfIntersections& s) {
+        return rows_of<std::uint32_t>(s.pairs, 2, [](const SelfIntersection& pair, std::size_t j) {
+          return (j == 0 ? pair.a : pair.b).value();
+        });
+      },
+      "(n, 2) uint32: the faces, ascending.");
+  c.def_property_readonly(
+      "kind",
+      [](const SelfIntersections& s) {
+        return each_of<std::uint8_t>(
+            s.pairs, [](const SelfIntersection& pair) { return static_cast<std::uint8_t>(pair.kind); });
+      },
+      "(n,) uint8: 0 touch, 1 cross, 2 overlap in an area of one plane.");
+  column("shared", "(n,) uint32: number of corners in common.", &SelfIntersection::shared);
+  column("curve", "(n,) uint32: connected component of the segments.", &SelfIntersection::curve);
+  column("first_segment", "(n,) uint32: index of the pair's first segment in `segments`.",
+         &SelfIntersection::first_segment);
+  column("segment_counts", "(n,) uint32: number of the pair's segments.", &SelfIntersection::segments);
+  c.def_property_readonly(
+      "segments",
+      [](const SelfIntersections& s) {
+        return point_pairs_of(
+            s.segments, [](const std::array<Eigen::Vector3d, 2>& ends, std::size_t j) { return ends[j]; });
+      },
+      "(m, 2, 3) float64: ends of the segments of all pairs, body frame; equal for points.");
+  c.def_property_readonly(
+      "curves", [](const SelfIntersections& s) { return s.curves; },
+      "int: number of connected components of the segments.");
+  c.def("__repr__", [](const SelfIntersections& s) {
+    return "<lrbscope.SelfIntersections of " + std::to_string(s.pairs.size()) + " pairs>";
+  });
+  const py::none no;
+  m.def("self_intersections", &self_intersections, py::arg("body"), py::kw_only(), py::arg("max_pairs") = no,
+        py::arg("threads") = no,
+        R"(self_intersections(body, *, max_pairs=0, threads=0)
+
+Finds all pairs of faces of a body that intersect beyond the corners and edges that they share, exactly.
+
+max_pairs: a body with more is an InputError; 0: 16777216.
+
+Returns SelfIntersections.
+
+>>> len(self_intersections(cube))
+0)");
+}
+
+namespace {
+
+struct PointDistances {
+  std::vector<PointDistance> all;
+};
+
+py::object signed_distance(py::handle of, py::handle points, py::handle at, py::handle tolerance,
+                           py::handle relative_tolerance, py::handle threads) {
+  const Body& given = body(of, "body");
+  const Pose placed = pose(at, "pose");
+  const std::vector<Eigen::Vector3d> all = python::points(points, "points", given.rep().dim());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (!all[i].allFinite())
+      throw InputError("points: point " + std::to_string(i) + " is not finite; expected finite coordinates");
+  PointDistanceRequest request;
+  request.tolerance = size(tolerance, "tolerance");
+  request.relative_tolerance = size(relative_tolerance, "relative_tolerance");
+  PointDistances found;
+  found.all.resize(all.size());
+  // Batches, because Ctrl-C is noticed between two of them.
+  constexpr std::size_t kBatch = 256;
+  run_batch(
+      (all.size() + kBatch - 1) / kBatch, threads_of(count(threads, "threads")),
+      [&](std::size_t i, unsigned) {
+        const auto batch = std::span(all).subspan(i * kBatch, std::min(kBatch, all.size() - i * kBatch));
+        const std::vector<PointDistance> of_batch = point_distances(given.rep(), placed, batch, request, 1);
+        std::copy(of_batch.begin(), of_batch.end(),
+                  found.all.begin() + static_cast<std::ptrdiff_t>(i * kBatch));
+      });
+  return py::cast(std::move(found));
+}
+
+void bind_point_distances(py::module_& m) {
+  py::class_<PointDistances> c(m, "PointDistances",
+                               "Signed distances of n points to a body, as proven intervals. Made by "
+                               "signed_distance().");
+  c.def("__len__", [](const PointDistances& d) { return d.all.size(); });
+  c.def_property_readonly(
+      "lower",
+      [](const PointDistances& d) {
+        return each_of<double>(d.all, [](const PointDistance& p) { return p.signed_lower(); });
+      },
+      "(n,) float64: lower ends of the signed distances; negative inside.");
+  c.def_property_readonly(
+      "upper",
+      [](const PointDistances& d) {
+        return each_of<double>(d.all, [](const PointDistance& p) { return p.signed_upper(); });
+      },
+      "(n,) float64: upper ends.");
+  c.def_property_readonly(
+      "side",
+      [](const PointDistances& d) {
+        return each_of<std::int8_t>(d.all, [](const PointDistance& p) -> std::int8_t {
+          if (!p.side) return 2;
+          return p.side == Where::inside ? -1 : p.side == Where::outside ? 1 : 0;
+        });
+      },
+      "(n,) int8: -1 inside, 0 on the surface, 1 outside; 2 unknown, because the body is not closed.");
+  c.def_property_readonly(
+      "points",
+      [](const PointDistances& d) {
+        std::vector<Eigen::Vector3d> closest;
+        for (const PointDistance& p : d.all) closest.push_back(p.closest.point);
+        return array_of(closest);
+      },
+      "(n, 3) float64: the closest points of the surface, world frame.");
+  c.def_property_readonly(
+      "faces",
+      [](const PointDistances& d) {
+        return each_of<std::uint32_t>(d.all, [](const PointDistance& p) { return p.closest.face.value(); });
+      },
+      "(n,) uint32: the faces of these points; 4294967295 for a body without faces.");
+  c.def("__repr__", [](const PointDistances& d) {
+    return "<lrbscope.PointDistances of " + std::to_string(d.all.size()) + " points>";
+  });
+}
+
+}  // namespace
+
+void bind_signed_distance(py::module_& m) {
+  bind_point_distances(m);
+  const py::none no;
+  m.def("signed_distance", &signed_distance, py::arg("body"), py::arg("points"), py::arg("pose") = no,
+        py::kw_only(), py::arg("tolerance") = no, py::arg("relative_tolerance") = no, py::arg("threads") = no,
+        R"(signed_distance(body, points, pose=None, *, tolerance=0, relative_tolerance=0, threads=0)
+
+Finds the signed distance of points to the surface of a body, as proven intervals, negative inside.
+
+points: (n, 3) float, world frame; (n, 2) for a body in 2D. pose: (4, 4), of the body; None: the identity.
+tolerance (the world's unit), relative_tolerance: maximum width of the intervals. 0, 0: about 1e-12 of the
+body's size. A point is inside if a ray from it crosses the surface an odd number of times; a body that is not
+closed has no inside.
+
+Returns PointDistances.
+
+>>> d = signed_distance(cube, [[0.5, 0.5, 0.75], [2, 0.5, 0.5]])
+>>> d.side.tolist(), d.upper.round(9).tolist()
+([-1, 1], [-0.25, 1.0]))");
+}
+
+}  // namespace lrb::python
