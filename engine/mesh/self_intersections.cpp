@@ -106,7 +106,7 @@ struct LargeFace {
 /// The faces as triangles with area (2D: as segments), and the pairs of them that may intersect.
 class Pieces {
  public:
-  Pieces(const Mesh& mesh, const std::vector<FaceUse>& use) : mesh_(mesh), pairs_(mesh, use) {
+  Pieces(const Mesh& mesh, const std::vector<FaceUse>& use) : mesh_(mesh), use_(use), pairs_(mesh, use) {
     offsets_.reserve(mesh.face_count() + 1);
     triangles_.reserve(mesh.face_count());
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
@@ -179,10 +179,10 @@ class Pieces {
 
  private:
   bool meet_outside_shared(FaceId f, const Triangle& s, FaceId g, const Triangle& t) const {
-    // A triangle of a large face may share a chord of that face with the other face, which the index test
+    // A triangle of a polygon may share a chord of that polygon with the other face, which the index test
     // would permit.
     return !exact::meet_only_in_shared(points(s).data(), s.data(), points(t).data(), t.data()) ||
-           ((pairs_.is_large(f) || pairs_.is_large(g)) && share_a_chord(f, s, g, t));
+           ((mesh_.face(f).size() > 3 || mesh_.face(g).size() > 3) && share_a_chord(f, s, g, t));
   }
 
   const double* point(VertexId v) const { return mesh_.vertices[v].data(); }
@@ -261,11 +261,9 @@ class Pieces {
   /// Returns true if two corners of a triangle are adjacent in the face. (A face that is not planar and
   /// convex is its fan, and all sides of the fan count as its own.)
   bool is_side(FaceId f, VertexId v, VertexId w) const {
-    if (pairs_.is_large(f)) {
-      // Binary search in the sorted corners: a linear search for every triangle would be quadratic.
-      const auto& ring = large_.at(f).ring;
-      return !ring || ring->are_neighbours(v, w);
-    }
+    if (use_[f] != FaceUse::convex) return true;
+    // Binary search in the sorted corners: a linear search for every triangle would be quadratic.
+    if (pairs_.is_large(f)) return large_.at(f).ring->are_neighbours(v, w);
     const auto corners = mesh_.face(f);
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const VertexId a = corners[i], b = corners[(i + 1) % corners.size()];
@@ -275,6 +273,7 @@ class Pieces {
   }
 
   const Mesh& mesh_;
+  const std::vector<FaceUse>& use_;
   FacePairs pairs_;
   std::vector<std::uint32_t> offsets_;  ///< (|F| + 1), into triangles_
   std::vector<Triangle> triangles_;     ///< of faces that are not large
@@ -400,7 +399,13 @@ struct FoundPair {
     // A point is a segment of length 0, and a polygon its outline.
     for (std::uint8_t i = 0; i < (n <= 2 ? 1 : n); ++i) {
       const exact::ContactCorner &p = contact.corners[i], &q = contact.corners[(i + 1u) % n];
-      keys.push_back({key(p), key(q)});
+      const std::array<PointKey, 2> ends{key(p), key(q)};
+      // Triangles on both sides of a chord of their polygon can have a segment on it.
+      const auto is_same = [&](const std::array<PointKey, 2>& other) {
+        return other == ends || (other[0] == ends[1] && other[1] == ends[0]);
+      };
+      if (std::any_of(keys.begin(), keys.end(), is_same)) continue;
+      keys.push_back(ends);
       segments.push_back({p.x, q.x});
     }
   }
