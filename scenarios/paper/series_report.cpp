@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iomanip>
 #include <limits>
-#include <ranges>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -38,7 +37,8 @@ report::Chart chart(std::span<const SeriesRow> rows, std::span<const SeriesFit> 
     report::Series s{fit.body + (power ? ": " + power_text(*power) : ""), {}, {}, {report::Line::none}};
     s.style.colour = report::series_colour(c.series.size());
     // Rows begin with the finest resolution, charts with the coarsest.
-    for (const SeriesRow& row : rows | std::views::reverse) {
+    for (std::size_t i = rows.size(); i-- > 0;) {
+      const SeriesRow& row = rows[i];
       const Spread& n = row.counts.recursions[recursion].comparisons;
       const double y = time ? row.microseconds[recursion] : n.average;
       if (row.body != fit.body || row.partner != partner || !(y > 0)) continue;

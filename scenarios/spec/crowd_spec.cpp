@@ -8,6 +8,7 @@
 #include "trace/json_read.hpp"
 #include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/trace/record_fields.hpp>
 
 namespace lrb::spec {
 namespace {

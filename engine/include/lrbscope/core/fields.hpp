@@ -48,6 +48,8 @@ inline constexpr auto kFields = std::tuple{};
 /// Calls visit(field) for each line of a record's table.
 template <class Record, class Visit>
 constexpr void for_each_field(const Visit& visit) {
+  static_assert(std::tuple_size_v<std::remove_cv_t<decltype(kFields<Record>)>> > 0,
+                "no table of fields: include the header that specialises kFields for this record");
   std::apply([&](const auto&... fields) { (visit(fields), ...); }, kFields<Record>);
 }
 
