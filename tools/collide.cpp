@@ -46,29 +46,6 @@ spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, co
   return m;
 }
 
-/// Returns a direction beside the path of B, slightly on B's side and above, so that the gap between the
-/// bodies is visible; `otherwise` if B does not approach.
-Eigen::Vector3d beside(const spec::Motion& motion, const Eigen::Vector3d& up,
-                       const Eigen::Vector3d& otherwise) {
-  const Eigen::Vector3d side = motion.from.cross(up.normalized());
-  if (motion.kind != spec::Motion::Kind::approach || !(side.squaredNorm() > 0)) return otherwise;
-  return 0.8 * side.normalized() + 0.3 * motion.from.normalized() + 0.45 * up.normalized();
-}
-
-/// Selects the view direction that hides least of the contacts, and omits a close-up that would show almost
-/// everything.
-void choose_views(const CollideOptions& o, spec::Scenario& scenario, run::Recording& recording) {
-  const run::RecordedRun recorded = run::recorded_run_of(scenario, recording);
-  std::vector<render::FrameSpec::View>& views = scenario.frames.views;
-  const Eigen::Vector3d up = views[0].up;
-  if (o.picture.camera.from.empty()) {
-    const Eigen::Vector3d from = run::min_hidden(recorded, up, beside(scenario.motion, up, views[0].from));
-    for (render::FrameSpec::View& view : views) view.from = from;
-  }
-  run::widen_close_ups(recorded, views);
-  recording.trace.header.pictures = spec::pictures_text(scenario.frames);
-}
-
 spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::LoadedBody>& bodies) {
   spec::Scenario s;
   s.name = std::filesystem::path(o.a).stem().string() + "-" + std::filesystem::path(o.b).stem().string();
@@ -124,7 +101,7 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
   spec::Scenario scenario = make_scenario(o, bodies);
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   run::Recording recording = run::record(scenario, std::move(bodies), progress);
-  choose_views(o, scenario, recording);
+  choose_views(o.picture.camera, scenario, recording);
   const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress);
   animate_frames(o.picture, folder);
   return report_outcome(outcome, folder, o.json, globals);

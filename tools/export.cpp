@@ -5,7 +5,6 @@
 
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/export/body_parts.hpp"
 #include "scenarios/export/model.hpp"
 #include "scenarios/io/poses.hpp"
@@ -56,9 +55,6 @@ Input kind_of(const ExportOptions& o) {
   const bool json = ends_with(o.input, ".json");
   const std::string text =
       json || ends_with(o.input, ".gz") ? trace::load_trace_text(o.input) : std::string();
-  if (crowd::is_crowd_trace(text))
-    throw InputError(printable_name(o.input) +
-                     ": expected a run of one or two bodies, found the trace of a crowd");
   if (mentions(text, "traceEvents")) return Input::run;
   if (json && mentions(text, "bodies")) return Input::scenario;
   return o.asks_for("poses") ? Input::poses : Input::body;

@@ -5,7 +5,6 @@
 
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/recorded_run.hpp"
@@ -62,10 +61,6 @@ Source run_of_scenario(const std::string& name, const run::ProgressReport& progr
 
 Source open_trace(const std::string& path, const std::vector<std::string>& bodies) {
   const std::string json = trace::load_trace_text(path);
-  if (crowd::is_crowd_trace(json))
-    throw InputError(
-        printable_name(path) +
-        ": expected a run of one or two bodies, found the trace of a crowd; draw it with `lrbscope render`");
   Source out;
   out.recording = run::open_run(trace::trace_from_json(json, printable_name(path)), path, bodies);
   out.name = out.recording.trace.header.scenario;

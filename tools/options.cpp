@@ -6,7 +6,9 @@
 #include <type_traits>
 
 #include "scenarios/frames/animation.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/io/poses.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/record_fields.hpp>
@@ -304,6 +306,31 @@ std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render:
   contact.camera = render::FrameSpec::Camera::contact;
   contact.wrapper = false;
   return {whole, contact};
+}
+
+namespace {
+
+/// Returns a direction beside the path of B, slightly on B's side and above, so that the gap between the
+/// bodies is visible; `otherwise` if B does not approach.
+Eigen::Vector3d beside(const spec::Motion& motion, const Eigen::Vector3d& up,
+                       const Eigen::Vector3d& otherwise) {
+  const Eigen::Vector3d side = motion.from.cross(up.normalized());
+  if (motion.kind != spec::Motion::Kind::approach || !(side.squaredNorm() > 0)) return otherwise;
+  return 0.8 * side.normalized() + 0.3 * motion.from.normalized() + 0.45 * up.normalized();
+}
+
+}  // namespace
+
+void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Recording& recording) {
+  const run::RecordedRun recorded = run::recorded_run_of(scenario, recording);
+  std::vector<render::FrameSpec::View>& views = scenario.frames.views;
+  const Eigen::Vector3d up = views[0].up;
+  if (given.from.empty()) {
+    const Eigen::Vector3d from = run::min_hidden(recorded, up, beside(scenario.motion, up, views[0].from));
+    for (render::FrameSpec::View& view : views) view.from = from;
+  }
+  run::widen_close_ups(recorded, views);
+  recording.trace.header.pictures = spec::pictures_text(scenario.frames);
 }
 
 }  // namespace lrb::cli

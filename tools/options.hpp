@@ -178,6 +178,10 @@ render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
 /// Both use the direction of the first given view.
 std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as = {});
 
+/// Selects the view direction that hides least of the contacts unless one was given, and omits a close-up
+/// that would show almost everything.
+void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Recording& recording);
+
 /// Returns the number of hardware threads, at least 1.
 std::uint32_t all_cores();
 

@@ -1,6 +1,7 @@
 #include <iostream>
 #include <memory>
 
+#include "scenarios/crowd/crowd_pair.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -13,14 +14,38 @@ namespace lrb::cli {
 namespace {
 
 struct CrowdOptions {
-  std::string crowd, folder;
+  std::string crowd, folder, pair;
   std::uint32_t jobs = 0;  ///< 0: all cores
   std::optional<std::uint32_t> steps;
   std::optional<trace::Clock> clock;
   bool no_frames = false, json = false;
 };
 
+/// Records two bodies of a recorded crowd as a run of their own.
+int run_pair(const CrowdOptions& o, const Globals& globals) {
+  const std::string path = run::trace_of(o.crowd);
+  const std::string text = trace::load_trace_text(path);
+  if (!crowd::is_crowd_trace(text))
+    throw InputError(printable_name(o.crowd) + ": expected a recorded crowd (folder or trace) for --pair");
+  const crowd::CrowdTrace trace = crowd::read_crowd_trace(text, path);
+  const lrb::BodyPair pair = crowd::find_pair(trace, o.pair);
+  spec::Scenario scenario = crowd::scenario_of_pair(trace, pair, path);
+  scenario.frames.montage = 6;
+  scenario.frames.views = whole_and_contact();
+  if (o.no_frames) scenario.frames.at = render::FrameSpec::At::none;
+  const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  std::vector<bodies::LoadedBody> bodies =
+      run::find_bodies(path, {scenario.bodies[0].file, scenario.bodies[1].file}, {"A", "B"});
+  run::Recording recording = run::record(scenario, std::move(bodies), progress);
+  crowd::check_answers(trace, pair, recording);
+  choose_views({}, scenario, recording);
+  return report_outcome(run::write_run(scenario, recording, folder, globals.command_line, progress), folder,
+                        o.json, globals);
+}
+
 int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
+  if (!o.pair.empty()) return run_pair(o, globals);
   spec::Crowd crowd = spec::open_crowd(o.crowd);
   if (o.steps) crowd.steps = *o.steps;
   if (o.clock) crowd.clock = *o.clock;
@@ -33,6 +58,8 @@ int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
   note(globals, run.notes);
   note(globals, {crowd::crowd_speed(run)});
   const std::string summary = crowd::write_crowd(crowd, run, folder, globals.command_line, progress);
+  if (const crowd::CostliestPair pair = crowd::costliest_pair(run); !pair.names.empty())
+    note(globals, {pair.text + "; their run: " + shell_line({"crowd", folder, "--pair", pair.names})});
   if (o.folder.empty()) io::mark_run(folder, o.crowd);
   print(o.json ? summary : folder + "/index.html\n");
   return kOk;
@@ -44,8 +71,9 @@ Command add_crowd(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "crowd", "Move many bodies; per step, query each pair of bodies whose boxes overlap, on all cores");
   const auto o = std::make_shared<CrowdOptions>();
-  app->add_option("CROWD", o->crowd, "Shipped crowd (see lrbscope list) or JSON file")
-      ->type_name("NAME|FILE")
+  app->add_option("CROWD", o->crowd,
+                  "Shipped crowd (see lrbscope list), JSON file, or with --pair a recorded crowd")
+      ->type_name("NAME|FILE|DIR")
       ->default_val("crowd");
   app->add_option("-o,--output", o->folder, "Output folder [out/NAME]")->type_name("DIR");
   app->add_option("--jobs", o->jobs, "Number of threads [all cores]; the result does not depend on it")
@@ -58,6 +86,14 @@ Command add_crowd(CLI::App& root, const Globals& globals) {
       *app, "--clock", o->clock,
       "Time in the trace. event: independent of the number of threads, one track per body; wall: wall-clock "
       "time, one track per thread");
+  app->add_option(
+         "--pair", o->pair,
+         "Record these two bodies of a recorded crowd (CROWD is its folder or trace) as a run of two "
+         "bodies, for `why`, `export`, `figure` and `compare`")
+      ->type_name("BODY,BODY")
+      ->excludes("--jobs")
+      ->excludes("--steps")
+      ->excludes("--clock");
   app->add_flag("--no-frames", o->no_frames, "Do not draw frames");
   app->add_flag("--json", o->json, "Print the summary as JSON instead of the page's path");
   return {app, [o, &globals] { return run_crowd_command(*o, globals); }};

@@ -309,9 +309,10 @@ class Reader {
     if (at == std::string_view::npos) return;
     const std::string_view begin = text_.substr(at, kNear);
     if (begin.find("\"lrbscope crowd\"") != std::string_view::npos)
-      throw InputError(name_ +
-                       ": expected a run of one or two bodies, found the trace of a crowd; lrbscope render "
-                       "draws it");
+      throw InputError(
+          name_ +
+          ": expected a run of one or two bodies, found the trace of a crowd; draw it with lrbscope "
+          "render, or record two of its bodies with lrbscope crowd --pair");
   }
 
   void take_event(const TraceNode& node) {

@@ -126,6 +126,7 @@ class FrameState {
   /// Returns the edges of the arena.
   std::vector<std::array<Eigen::Vector3d, 2>> room() const {
     std::vector<std::array<Eigen::Vector3d, 2>> edges;
+    if (crowd_.room.isZero()) return edges;
     const Eigen::Vector3d half = crowd_.room / 2;
     const int axes = run_.rep(0).dim();
     for (int axis = 0; axis < axes; ++axis) {

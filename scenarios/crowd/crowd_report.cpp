@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <type_traits>
 #include <vector>
 
@@ -34,6 +35,36 @@ class FileSink final : public trace::ByteSink {
  private:
   AtomicFile file_;
 };
+
+/// The queries of two bodies over all steps.
+struct PairHistory {
+  BodyPair bodies{0, 0};
+  std::uint32_t first = 0, steps = 0;  ///< the first step at which they intersect, and the number of them
+  std::uint64_t most_pairs = 0;        ///< of faces at a step
+  std::uint32_t at = 0;                ///< that step
+  std::uint64_t face_tests = 0;        ///< of all steps
+  const trace::StepResult* last = nullptr;  ///< of the last step at which they intersect
+};
+
+/// Returns the pairs of bodies that were queried, those with most face tests first.
+std::vector<PairHistory> pair_histories(const CrowdRun& run) {
+  std::map<BodyPair, PairHistory> of;
+  for (std::uint32_t step = 0; step < run.steps.size(); ++step)
+    for (const CrowdQuery& q : run.steps[step].queries) {
+      PairHistory& p = of[q.bodies];
+      p.bodies = q.bodies;
+      p.face_tests += q.result.counters.face_tests;
+      if (!q.meets()) continue;
+      if (p.steps++ == 0) p.first = step;
+      if (q.result.pair_count >= p.most_pairs) p.most_pairs = q.result.pair_count, p.at = step;
+      p.last = &q.result;
+    }
+  std::vector<PairHistory> out;
+  for (const auto& [bodies, history] : of) out.push_back(history);
+  std::stable_sort(out.begin(), out.end(),
+                   [](const PairHistory& x, const PairHistory& y) { return x.face_tests > y.face_tests; });
+  return out;
+}
 
 void add_numbers(report::Document& doc, const spec::Crowd& crowd, const CrowdRun& run) {
   const std::uint64_t n = run.motion.body_count(), all = n * (n - 1) / 2;
@@ -100,29 +131,25 @@ void add_charts(report::Document& doc, const CrowdRun& run) {
              {"swaps in the order", [](S s) { return s.broad_phase.swaps; }}});
 }
 
-report::Table last_queries(const spec::Crowd& crowd, const CrowdRun& run) {
+report::Table pair_table(const CrowdRun& run) {
   constexpr std::size_t kMaxRows = 200;
-  report::Table t{"Intersecting bodies at step " + std::to_string(run.steps.size() - 1),
-                  {"A", "B", "relation", "pairs of faces", "contact regions", "face tests", "refinements",
-                   "fingerprint"}};
-  const bool regions = crowd.request.contacts;
-  if (!regions) t.columns.erase(t.columns.begin() + 4);
-  std::size_t left_out = 0;
-  for (const CrowdQuery& q : run.steps.back().queries) {
-    if (!q.meets()) continue;
-    if (t.rows.size() == kMaxRows) {
-      ++left_out;
-      continue;
-    }
-    const trace::StepResult& r = q.result;
-    t.rows.push_back({run.names[q.bodies.i], run.names[q.bodies.j], io::in_words(name_of(r.relation)),
-                      render::group_digits(r.pair_count), render::group_digits(q.contact_regions),
-                      render::group_digits(r.counters.face_tests),
-                      render::group_digits(r.counters.refinements), trace::to_hex(r.fingerprint)});
-    if (!regions) t.rows.back().erase(t.rows.back().begin() + 4);
+  report::Table t{"Pairs of bodies that intersect",
+                  {"A", "B", "first step", "steps", "last relation", "most pairs of faces", "at step",
+                   "face tests in all steps", "fingerprint at the last of the steps"}};
+  std::vector<PairHistory> pairs = pair_histories(run);
+  std::erase_if(pairs, [](const PairHistory& p) { return p.steps == 0; });
+  for (std::size_t i = 0; i < std::min(pairs.size(), kMaxRows); ++i) {
+    const PairHistory& p = pairs[i];
+    t.rows.push_back({run.names[p.bodies.i], run.names[p.bodies.j], std::to_string(p.first),
+                      render::group_digits(p.steps), io::in_words(name_of(p.last->relation)),
+                      render::group_digits(p.most_pairs), std::to_string(p.at),
+                      render::group_digits(p.face_tests), trace::to_hex(p.last->fingerprint)});
   }
-  t.note = "Pairs with disjoint boxes are not queried: they have no point in common.";
-  if (left_out > 0) t.note += " " + std::to_string(left_out) + " more are left out here.";
+  t.note =
+      "The pairs with most face tests first. lrbscope crowd DIR --pair \"A,B\" records two bodies as a run of "
+      "their own. Pairs with disjoint boxes are not queried: they have no point in common.";
+  if (pairs.size() > kMaxRows)
+    t.note += " " + std::to_string(pairs.size() - kMaxRows) + " more pairs are left out here.";
   return t;
 }
 
@@ -148,7 +175,7 @@ void write_pictures_and_page(const spec::Crowd& crowd, const CrowdRun& run, cons
   add_numbers(doc, crowd, run);
   run::add_frames(doc, drawn, folder);
   add_charts(doc, run);
-  doc.table(last_queries(crowd, run)).write(folder);
+  doc.table(pair_table(run)).write(folder);
 }
 
 }  // namespace
@@ -196,6 +223,19 @@ std::string time_text(double microseconds) {
 }
 
 }  // namespace
+
+CostliestPair costliest_pair(const CrowdRun& run) {
+  const std::vector<PairHistory> pairs = pair_histories(run);
+  if (pairs.empty()) return {};
+  const PairHistory& p = pairs.front();
+  const std::string &a = run.names[p.bodies.i], &b = run.names[p.bodies.j];
+  CostliestPair out{a + "," + b, "most face tests: " + render::group_digits(p.face_tests) + " for " + a +
+                                     " and " + b + " in all steps"};
+  if (p.steps > 0)
+    out.text +=
+        "; most pairs of faces: " + render::group_digits(p.most_pairs) + " at step " + std::to_string(p.at);
+  return out;
+}
 
 std::string crowd_speed(const CrowdRun& run) {
   std::vector<double> broad_phases, queries;

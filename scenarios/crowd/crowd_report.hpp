@@ -16,6 +16,13 @@ void redraw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::stri
                   const std::string& command, const std::string& trace_file,
                   const run::ProgressReport& progress);
 
+/// The pair of bodies with most face tests in all steps.
+struct CostliestPair {
+  std::string names;  ///< "gear 3,rock 5", as for find_pair(); empty if no pair was queried
+  std::string text;   ///< one line
+};
+CostliestPair costliest_pair(const CrowdRun& run);
+
 /// Returns one line of text with the duration of a step.
 std::string crowd_speed(const CrowdRun& run);
 

@@ -156,6 +156,13 @@ class Player {
 
 }  // namespace
 
+std::vector<std::string> body_names(const spec::Crowd& crowd) {
+  std::vector<std::string> names;
+  for (const spec::CrowdKind& kind : crowd.kinds)
+    for (std::uint32_t i = 1; i <= kind.count; ++i) names.push_back(kind.name + " " + std::to_string(i));
+  return names;
+}
+
 std::vector<std::uint32_t> drawn_steps(const render::FrameSpec& spec, std::uint32_t steps) {
   std::vector<std::uint32_t> all;
   if (spec.at == render::FrameSpec::At::none) return all;
@@ -175,11 +182,9 @@ CrowdRun run_crowd(const spec::Crowd& crowd, std::uint32_t threads, const run::P
 CrowdRun play_crowd(const spec::Crowd& crowd, std::vector<bodies::LoadedBody> kinds, CrowdMotion motion,
                     std::uint32_t threads, const run::ProgressReport& progress) {
   CrowdRun run{std::move(kinds), {}, std::move(motion), {}, {}, {}, threads};
-  for (std::size_t k = 0; k < run.kinds.size(); ++k) {
+  for (std::size_t k = 0; k < run.kinds.size(); ++k)
     for (const std::string& note : run.kinds[k].notes) run.notes.push_back(crowd.kinds[k].name + ": " + note);
-    for (std::uint32_t i = 1; i <= crowd.kinds[k].count; ++i)
-      run.names.push_back(crowd.kinds[k].name + " " + std::to_string(i));
-  }
+  run.names = body_names(crowd);
   const std::vector<std::uint32_t> drawn = drawn_steps(crowd.frames, crowd.steps);
   Player player(crowd, run);
   for (std::uint32_t step = 0; step < crowd.steps; ++step) {
@@ -252,10 +257,14 @@ std::vector<std::uint32_t> kinds_of_bodies(const spec::Crowd& crowd) {
 }  // namespace
 
 CrowdMotion::CrowdMotion(const spec::Crowd& crowd, std::vector<std::vector<Pose>> poses)
-    : kinds_(kinds_of_bodies(crowd)), recorded_(std::move(poses)) {}
+    : kinds_(kinds_of_bodies(crowd)), given_(std::move(poses)) {}
 
 CrowdMotion::CrowdMotion(const spec::Crowd& crowd, std::span<const LrbRep* const> reps)
-    : kinds_(kinds_of_bodies(crowd)) {
+    : kinds_(kinds_of_bodies(crowd)), given_(crowd.poses) {
+  for (std::vector<Pose>& step : given_)
+    for (std::size_t body = 0; body < step.size(); ++body)
+      step[body] = spec::then(crowd.kinds[kinds_[body]].body.pose, step[body]);
+  if (!given_.empty()) return;
   const int dim = reps[0]->dim();
   Random random(crowd.seed);
   for (std::uint32_t k = 0; k < crowd.kinds.size(); ++k) {
@@ -284,7 +293,7 @@ CrowdMotion::CrowdMotion(const spec::Crowd& crowd, std::span<const LrbRep* const
 }
 
 Pose CrowdMotion::pose(std::uint32_t body, std::uint32_t step) const {
-  if (!recorded_.empty()) return recorded_.at(step).at(body);
+  if (!given_.empty()) return given_.at(step).at(body);
   const Mover& m = movers_[body];
   Pose move;
   const Eigen::Vector3d straight = m.start + static_cast<double>(step) * m.speed;

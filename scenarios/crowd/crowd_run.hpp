@@ -15,9 +15,9 @@
 
 namespace lrb::crowd {
 
-/// Computes the pose of every body of a crowd at every step. Bodies have constant velocities and are
-/// reflected by the walls of the arena; this has a closed form, so that the steps can be evaluated in any
-/// order. Alternatively it returns the poses of a trace.
+/// Computes the pose of every body of a crowd at every step. Bodies have given poses, or constant velocities
+/// and are reflected by the walls of the arena; this has a closed form, so that the steps can be evaluated in
+/// any order. Alternatively it returns the poses of a trace.
 class CrowdMotion {
  public:
   /// `reps`: one for each kind, all of one dimension.
@@ -40,8 +40,8 @@ class CrowdMotion {
     Pose own;     ///< of its kind, applied first
   };
   std::vector<std::uint32_t> kinds_;  ///< the kind of each body
-  std::vector<Mover> movers_;         ///< one for each body; empty if poses were recorded
-  std::vector<std::vector<Pose>> recorded_;
+  std::vector<Mover> movers_;         ///< one for each body; empty if poses are given
+  std::vector<std::vector<Pose>> given_;
 };
 
 /// One query of two bodies; A is the one with the lower number.
@@ -89,6 +89,9 @@ struct CrowdRun {
 
   const LrbRep& rep(std::uint32_t body) const { return kinds[motion.kind(body)].rep; }
 };
+
+/// Returns the names of a crowd's bodies: "gear 1", "gear 2", ... of each kind.
+std::vector<std::string> body_names(const spec::Crowd& crowd);
 
 /// Returns the steps that `spec` selects for drawing.
 std::vector<std::uint32_t> drawn_steps(const render::FrameSpec& spec, std::uint32_t steps);

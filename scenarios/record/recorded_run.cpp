@@ -207,8 +207,7 @@ class StepQueries {
     if (s.more.coherent) coherent_.emplace(a, b, s.request, CoherentQuery::CacheUse::always);
   }
 
-  CollideResult ask(std::uint32_t step, const Pose& pose_b, trace::Recorder& recorder) {
-    const Pose& pose_a = s_.bodies[0].pose;
+  CollideResult ask(std::uint32_t step, const Pose& pose_a, const Pose& pose_b, trace::Recorder& recorder) {
     try {
       CollideResult result =
           coherent_ ? coherent_->collide(pose_a, pose_b, recorder)
@@ -247,8 +246,9 @@ void record_collision(const spec::Scenario& s, Recording& r, const ProgressRepor
   StepQueries queries(s, a, b);
   for (std::uint32_t step = 0; step < poses.size(); ++step) {
     progress("query", step, poses.size());
-    recorder.begin_step(step, s.bodies[0].pose, poses[step]);
-    r.results.push_back(queries.ask(step, poses[step], recorder));
+    const Pose& pose_a = s.motion.of_a.empty() ? s.bodies[0].pose : s.motion.of_a[step];
+    recorder.begin_step(step, pose_a, poses[step]);
+    r.results.push_back(queries.ask(step, pose_a, poses[step], recorder));
     recorder.end_step(r.results.back());
   }
   trace::Trace recorded = recorder.take();

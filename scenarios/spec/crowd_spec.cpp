@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "scenarios/io/poses.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "scenarios/spec/shipped.hpp"
 #include "trace/json_read.hpp"
+#include <lrbscope/core/file.hpp>
 #include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/record_fields.hpp>
@@ -45,8 +47,73 @@ std::array<double, 2> read_range(const io::JsonNode& node) {
   return {x[0], x[1]};
 }
 
-void read_motion(const io::JsonNode& node, Crowd& c) {
-  node.object({"steps", "speed", "spin"});
+/// Orders names by their letters and numbers: step_9 before step_10.
+bool is_before(const std::string& a, const std::string& b) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!is_digit(a[i]) || !is_digit(b[j])) {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i, ++j;
+      continue;
+    }
+    // Compare numbers of any length: without leading zeros, the longer one is larger.
+    const auto number = [&](const std::string& text, std::size_t& at) {
+      while (at + 1 < text.size() && text[at] == '0' && is_digit(text[at + 1])) ++at;
+      const std::size_t begin = at;
+      while (at < text.size() && is_digit(text[at])) ++at;
+      return text.substr(begin, at - begin);
+    };
+    const std::string x = number(a, i), y = number(b, j);
+    if (x != y) return x.size() != y.size() ? x.size() < y.size() : x < y;
+  }
+  return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
+}
+
+/// Reads the poses of all bodies at each step: from a folder with a pose file for each step, or from one pose
+/// file with the steps one after the other.
+std::vector<std::vector<Pose>> read_trajectories(const io::JsonNode& node,
+                                                 const std::filesystem::path& folder, std::uint32_t bodies) {
+  const std::filesystem::path path = folder / node.string();
+  std::error_code error;
+  std::vector<std::string> files = {path.string()};
+  const bool by_step = std::filesystem::is_directory(path, error);
+  if (by_step) {
+    files.clear();
+    for (const auto& entry : std::filesystem::directory_iterator(path))
+      if (entry.is_regular_file() && !entry.path().filename().string().starts_with('.'))
+        files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end(), is_before);
+    if (files.empty()) node.fail("expected a folder with a pose file for each step, found no file");
+  }
+  std::vector<std::vector<Pose>> steps;
+  for (const std::string& file : files) {
+    const std::vector<Pose> poses = io::open_poses(file).poses;
+    if (by_step ? poses.size() != bodies : poses.size() % bodies != 0)
+      throw InputError(printable_name(file) + ": expected " +
+                       (by_step ? "a pose for each of the " : "for each step, a pose for each of the ") +
+                       std::to_string(bodies) + " bodies, found " + std::to_string(poses.size()) + " poses");
+    for (std::size_t i = 0; i < poses.size(); i += bodies)
+      steps.emplace_back(poses.begin() + static_cast<std::ptrdiff_t>(i),
+                         poses.begin() + static_cast<std::ptrdiff_t>(i + bodies));
+    if (steps.size() > kMaxSteps || steps.size() * bodies > kMaxCrowdPoses)
+      node.fail("expected at most " + std::to_string(kMaxSteps) + " steps and " +
+                std::to_string(kMaxCrowdPoses) + " poses");
+  }
+  return steps;
+}
+
+void read_motion(const io::JsonNode& node, const std::filesystem::path& folder, Crowd& c) {
+  node.object({"steps", "speed", "spin", "poses"});
+  if (const auto n = node.get("poses")) {
+    for (const char* key : {"speed", "spin"})
+      if (node.has(key)) node.fail_key(key, "the bodies have given poses; remove it");
+    c.poses = read_trajectories(*n, folder, c.body_count());
+    if (const auto steps = node.get("steps"))
+      c.poses.resize(static_cast<std::size_t>(steps->integer(1, c.poses.size())));
+    c.steps = static_cast<std::uint32_t>(c.poses.size());
+    return;
+  }
   c.steps = static_cast<std::uint32_t>(node.at("steps").integer(1, kMaxSteps));
   if (const auto n = node.get("speed")) c.speed = read_range(*n);
   if (const auto n = node.get("spin")) c.spin = read_range(*n);
@@ -94,10 +161,14 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   c.name = read_name(root.at("name"));
   c.purpose = root.at("purpose").string();
   if (const auto n = root.get("seed")) c.seed = n->integer(0, kAnySeed);
-  c.room = read_room(root.at("room"));
-  if (const auto n = root.get("arrangement")) c.arrangement = n->choice<Crowd::Arrangement>();
-  c.kinds = read_kinds(root.at("bodies"), std::filesystem::path(file).parent_path(), c.seed);
-  read_motion(root.at("motion"), c);
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  c.kinds = read_kinds(root.at("bodies"), folder, c.seed);
+  read_motion(root.at("motion"), folder, c);
+  if (const auto n = root.get("arrangement")) {
+    if (!c.poses.empty()) root.fail_key("arrangement", "the bodies have given poses; remove it");
+    c.arrangement = n->choice<Crowd::Arrangement>();
+  }
+  if (c.poses.empty() || root.has("room")) c.room = read_room(root.at("room"));
   if (const auto n = root.get("query")) {
     for (const char* key : {"tolerance", "max_tests", "separation"})
       if (n->has(key)) n->fail_key(key, "queries of a crowd are exact; remove it, or use a scenario");
@@ -116,6 +187,11 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   if (const auto n = root.get("frames")) c.frames = read_crowd_frames(*n);
   Fnv64 hash;
   hash.add_bytes(text.data(), text.size());
+  for (const std::vector<Pose>& step : c.poses)
+    for (const Pose& pose : step) {
+      const std::array<double, 12> rows = io::rows_of(pose);
+      hash.add_bytes(rows.data(), sizeof rows);
+    }
   c.hash = hash.value();
   return c;
 }

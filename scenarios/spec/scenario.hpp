@@ -56,6 +56,7 @@ struct Motion {
   };
   Kind kind = Kind::poses;
   std::vector<Pose> poses;  ///< poses: one for each step, applied to B unchanged
+  std::vector<Pose> of_a;   ///< poses: one for each step, applied to A unchanged; empty: A does not move
   /// Keyframes: positions interpolated linearly, rotations along the shortest arc.
   std::vector<Keyframe> keyframes;
   /// Sweep: position of B; approach: initial position of B, relative to the target.

@@ -156,7 +156,7 @@ def scenario(tree):
     given["name"] = "my"
     given["motion"]["steps"] = 3
     for body in given["bodies"]:
-        body["count"] = 2
+        body["count"] = 2  # of each kind: the page records "knot 1" and "gear 2"
     with open("my.crowd.json", "w") as f:
         json.dump(given, f)
 

@@ -414,11 +414,14 @@ TEST_CASE("unknown chunks are skipped, newer and damaged ones are refused") {
   contains(refusal(with_chunk(good, "NAME", 1, "")), {"ends too early"});
   contains(refusal(with_chunk(good, "SYNC", 1, "123456789")), {"more content"});
   // Counts that the content does not have.
-  for (const auto& [kind, offset] :
-       {std::pair("MESH", 4), {"MESH", 8}, {"MESH", 12}, {"TREE", 12}, {"EVTS", 16}}) {
-    CAPTURE(kind);
-    CAPTURE(offset);
-    contains(refusal(with(good, kind, static_cast<std::size_t>(offset), 0xfffffffeu)), {kind, "damaged"});
+  struct Place {
+    const char* kind;
+    std::size_t offset;
+  };
+  for (const Place& p : {Place{"MESH", 4}, {"MESH", 8}, {"MESH", 12}, {"TREE", 12}, {"EVTS", 16}}) {
+    CAPTURE(p.kind);
+    CAPTURE(p.offset);
+    contains(refusal(with(good, p.kind, p.offset, 0xfffffffeu)), {p.kind, "damaged"});
   }
 }
 

@@ -10,9 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/crowd/crowd_frames.hpp"
+#include "scenarios/crowd/crowd_pair.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
 #include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/poses.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/json_schema.hpp"
 #include "tests/support/trace_schema.hpp"
@@ -381,6 +383,124 @@ TEST_CASE("schema and reader agree on valid and invalid crowds") {
   }
 }
 
+TEST_CASE("bodies of a crowd follow poses from files, one for all steps or one for each") {
+  const test::Folder folder;
+  json moved = good_2d();
+  moved["motion"] = {{"steps", 11}, {"speed", 0.1}, {"spin", 5}};
+  const spec::Crowd crowd = crowd_of(moved);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
+  std::vector<Pose> all;
+  std::filesystem::create_directory(folder / "steps");
+  for (std::uint32_t step = 0; step < crowd.steps; ++step) {
+    std::vector<Pose> of_step;
+    for (std::uint32_t body = 0; body < crowd.body_count(); ++body)
+      of_step.push_back(run.motion.pose(body, step));
+    // Without leading zeros, steps 9 and 10 would be exchanged in the order of letters.
+    io::save_poses(folder / ("steps/at" + std::to_string(step) + ".csv"), of_step);
+    all.insert(all.end(), of_step.begin(), of_step.end());
+  }
+  io::save_poses(folder / "all.txt", all);
+  folder.write("steps/.hidden", "not a pose");
+  json given = moved;
+  given.erase("room");
+  const auto parse = [&](const std::string& poses) {
+    given["motion"] = {{"poses", poses}};
+    CHECK(schema_accepts(given));
+    return spec::parse_crowd(given.dump(1), folder / "c.json");
+  };
+  const auto summary_of = [](spec::Crowd c, const crowd::CrowdRun& played) {
+    c.hash = 0;
+    return crowd::crowd_summary(c, played);
+  };
+  std::uint64_t hash = 0;
+  for (const char* poses : {"all.txt", "steps"}) {
+    CAPTURE(poses);
+    const spec::Crowd read = parse(poses);
+    CHECK(read.steps == 11);
+    CHECK(read.hash != hash);
+    hash = read.hash;
+    CHECK(summary_of(read, crowd::run_crowd(read, 2, run::kSilent)) == summary_of(crowd, run));
+  }
+  // A body's own pose comes first, and a part of the steps can be chosen.
+  given["bodies"][0]["body"]["pose"] = {{"position", {1, 0, 0}}};
+  given["motion"]["steps"] = 2;
+  const spec::Crowd read = spec::parse_crowd(given.dump(1), folder / "c.json");
+  CHECK(read.steps == 2);
+  const crowd::CrowdRun shifted = crowd::run_crowd(read, 1, run::kSilent);
+  const Pose& pose = all[crowd.body_count()];
+  CHECK(shifted.motion.pose(0, 1).t == pose.r * Eigen::Vector3d(1, 0, 0) + pose.t);
+  CHECK(shifted.motion.pose(10, 1).t == all[crowd.body_count() + 10].t);
+  CHECK_NOTHROW(crowd::write_crowd(read, shifted, folder / "out", "lrbscope crowd", run::kSilent));
+
+  const auto error = [&](const json& motion) -> std::string {
+    given["motion"] = motion;
+    try {
+      static_cast<void>(spec::parse_crowd(given.dump(1), folder / "c.json"));
+    } catch (const InputError& e) {
+      CHECK(std::string(e.what()).find('\n') == std::string::npos);
+      return e.what();
+    }
+    return {};
+  };
+  all.pop_back();
+  io::save_poses(folder / "all.txt", all);
+  CHECK(error({{"poses", "all.txt"}})
+            .find("all.txt: expected for each step, a pose for each of the 11 bodies, "
+                  "found 120 poses") != std::string::npos);
+  io::save_poses(folder / "steps/at3.csv", all);
+  CHECK(error({{"poses", "steps"}}).find("at3.csv: expected a pose for each of the 11 bodies") !=
+        std::string::npos);
+  CHECK(error({{"poses", "none.txt"}}).find("none.txt") != std::string::npos);
+  CHECK(error({{"poses", "all.txt"}, {"speed", 1}}).find("given poses; remove it") != std::string::npos);
+  CHECK_FALSE(schema_accepts(given));
+  std::filesystem::create_directory(folder / "empty");
+  CHECK(error({{"poses", "empty"}}).find("found no file") != std::string::npos);
+  given["arrangement"] = "grid";
+  CHECK_FALSE(schema_accepts(given));
+  given.erase("arrangement");
+  given["motion"] = {{"steps", 3}};
+  CHECK_FALSE(schema_accepts(given));  // neither poses nor a room
+  CHECK(error(given["motion"]).find("room") != std::string::npos);
+}
+
+TEST_CASE("two bodies of a recorded crowd are a run of their own, with the same answers") {
+  for (const json& j : {good(), good_2d()}) {
+    const test::Folder folder;
+    const spec::Crowd crowd = crowd_of(j);
+    const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
+    crowd::write_crowd(crowd, run, folder / "c", "lrbscope crowd", run::kSilent);
+    const std::string path = folder / "c/trace.json";
+    crowd::CrowdTrace trace = crowd::read_crowd_trace(io::read_text(path), path);
+    std::set<BodyPair> pairs = {{0, 1}};
+    for (const crowd::CrowdQuery& q : run.steps[0].queries) pairs.insert(q.bodies);
+    for (const BodyPair& pair : pairs) {
+      // The names in either order.
+      CHECK((crowd::find_pair(trace, run.names[pair.j] + "," + run.names[pair.i]) == pair));
+      spec::Scenario scenario = crowd::scenario_of_pair(trace, pair, path);
+      scenario.frames.at = render::FrameSpec::At::none;
+      run::Recording recording = run::record(scenario, run::kSilent);
+      CHECK_NOTHROW(crowd::check_answers(trace, pair, recording));
+      REQUIRE(recording.trace.steps.size() == crowd.steps);
+      CHECK(trace::equal(recording.trace.steps[1].pose_a, run.motion.pose(pair.i, 1)));
+      CHECK(trace::equal(recording.trace.steps[1].pose_b, run.motion.pose(pair.j, 1)));
+      recording.results.back().pairs.push_back({});
+      CHECK_THROWS_AS(crowd::check_answers(trace, pair, recording), InputError);
+    }
+    const auto error = [&](const char* names) -> std::string {
+      try {
+        static_cast<void>(crowd::find_pair(trace, names));
+      } catch (const InputError& e) {
+        return e.what();
+      }
+      return {};
+    };
+    CHECK(error("ball 1").find("expected the names of two bodies") != std::string::npos);
+    CHECK(error("").find("expected the names of two bodies") != std::string::npos);
+    CHECK(error((run.names[1] + "," + run.names[1]).c_str()).find("twice") != std::string::npos);
+    CHECK(error((run.names[1] + ",cat 1").c_str()).find("has no body cat 1") != std::string::npos);
+  }
+}
+
 TEST_CASE("schema and reader agree on every key of a query") {
   const json scenario = json::parse(io::embedded_file("scenario.schema.json"));
   const json& keys = scenario["properties"]["query"]["properties"];
@@ -420,8 +540,8 @@ TEST_CASE("commands for runs of two bodies name the trace of a crowd as such") {
   crowd::write_crowd(crowd, crowd::run_crowd(crowd, 1, run::kSilent), folder / "c", "command", run::kSilent);
   const std::string expected =
       (folder / "c/trace.json") +
-      ": expected a run of one or two bodies, found the trace of a crowd; lrbscope render "
-      "draws it";
+      ": expected a run of one or two bodies, found the trace of a crowd; draw it with lrbscope "
+      "render, or record two of its bodies with lrbscope crowd --pair";
   CHECK_THROWS_WITH_AS(static_cast<void>(run::open_run(folder / "c")), expected.c_str(), InputError);
   CHECK_THROWS_WITH_AS(static_cast<void>(run::open_step(folder / "c", 0)), expected.c_str(), InputError);
 }
