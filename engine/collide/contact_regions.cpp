@@ -65,22 +65,31 @@ Edge ordered(std::uint32_t p, std::uint32_t q) {
 }
 
 void number_corners(const QueryContext& context, const CollideResult& result, ContactGraph& graph) {
-  std::map<std::pair<SurfaceFeature, SurfaceFeature>, std::uint32_t> number;
+  const auto hash = [](const std::pair<SurfaceFeature, SurfaceFeature>& key) {
+    // Multiplicative hashing of the four numbers.
+    constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15;
+    const auto packed = [](const SurfaceFeature& f) { return std::uint64_t{f.first} << 32 | f.second; };
+    const std::uint64_t h = packed(key.first) * kOdd;
+    const std::uint64_t both = ((h ^ h >> 32) + packed(key.second)) * kOdd;
+    return static_cast<std::size_t>(both ^ both >> 32);
+  };
+  std::unordered_map<std::pair<SurfaceFeature, SurfaceFeature>, std::uint32_t, decltype(hash)> number(
+      2 * result.pairs.size(), hash);
   Places of_a(context.body[0].rep()), of_b(context.body[1].rep());
   for (std::uint32_t i = 0; i < result.pairs.size(); ++i) {
     const PairContactRecord& contact = result.contacts[i];
-    ContactGraph::Piece piece{i, {}};
-    for (int c = 0; c < contact.corner_count; ++c) {
-      const exact::ContactCorner& corner = contact.corners[static_cast<std::size_t>(c)];
+    ContactGraph::Piece piece{i, contact.corner_count, {}};
+    for (std::size_t c = 0; c < contact.corner_count; ++c) {
+      const exact::ContactCorner& corner = contact.corners[c];
       // Identified by features of both surfaces, so the pairs on both sides of an edge agree without
       // comparing coordinates.
       const auto key = std::pair{surface_feature(of_a, result.pairs[i].a, corner.on_a),
                                  surface_feature(of_b, result.pairs[i].b, corner.on_b)};
       const auto [it, is_new] = number.try_emplace(key, static_cast<std::uint32_t>(graph.points.size()));
       if (is_new) graph.points.push_back(corner.x);
-      piece.points.push_back(it->second);
+      piece.corners[c] = it->second;
     }
-    graph.pieces.push_back(std::move(piece));
+    graph.pieces.push_back(piece);
   }
 }
 
@@ -88,15 +97,15 @@ void find_curves_and_outlines(ContactGraph& graph) {
   std::map<Edge, std::uint32_t> polygon_sides;
   // Count the polygons at each side.
   for (const auto& piece : graph.pieces)
-    for (std::size_t c = 0; piece.points.size() >= 3 && c < piece.points.size(); ++c)
-      ++polygon_sides[ordered(piece.points[c], piece.points[(c + 1) % piece.points.size()])];
+    for (std::size_t c = 0; piece.count >= 3 && c < piece.count; ++c)
+      ++polygon_sides[ordered(piece.corners[c], piece.corners[(c + 1) % piece.count])];
   for (const auto& [edge, count] : polygon_sides)
     // A side of two polygons is interior to the contact area.
     if (count % 2 != 0) graph.outlines.push_back(edge);
   // Segments that are a side of a polygon belong to its outline, and segments of length 0 are points.
   for (const auto& piece : graph.pieces) {
-    if (piece.points.size() != 2) continue;
-    const Edge e = ordered(piece.points[0], piece.points[1]);
+    if (piece.count != 2) continue;
+    const Edge e = ordered(piece.corners[0], piece.corners[1]);
     if (e[0] != e[1] && !polygon_sides.contains(e)) graph.curves.push_back(e);
   }
   // A segment along an edge occurs in each pair at that edge: keep one.
@@ -113,8 +122,8 @@ void label_components(ContactGraph& graph) {
     return p;
   };
   for (const auto& piece : graph.pieces)
-    for (const std::uint32_t p : piece.points) {
-      const std::uint32_t x = find(piece.points[0]), y = find(p);
+    for (const std::uint32_t p : piece.points()) {
+      const std::uint32_t x = find(piece.corners[0]), y = find(p);
       leader[std::max(x, y)] = std::min(x, y);
     }
   graph.component.assign(graph.points.size(), kNull);
@@ -141,21 +150,38 @@ class Chainer {
   Chainer(std::span<const std::array<std::uint32_t, 2>> edges, const std::vector<Eigen::Vector3d>& points)
       : edges_(edges), points_(points), used_(edges.size(), false) {
     for (std::uint32_t e = 0; e < edges.size(); ++e)
-      for (const std::uint32_t p : edges[e]) edges_at_[p].push_back(e);
+      for (const std::uint32_t p : edges[e]) ends_.push_back({p, e});
+    std::sort(ends_.begin(), ends_.end());
   }
 
   std::vector<ContactLoop> run() {
     std::vector<ContactLoop> loops;
     // Follow open chains first, from their ends. The remaining ones are closed.
-    for (const auto& [p, at] : edges_at_)
-      for (const std::uint32_t e : at)
-        if (at.size() != 2 && !used_[e]) loops.push_back(walk(p, e));
+    for (std::size_t i = 0; i < ends_.size();) {
+      const std::span<const End> at = ends_at(ends_[i].point);
+      for (const End& end : at)
+        if (at.size() != 2 && !used_[end.edge]) loops.push_back(walk(end.point, end.edge));
+      i += at.size();
+    }
     for (std::uint32_t e = 0; e < edges_.size(); ++e)
       if (!used_[e]) loops.push_back(walk(edges_[e][0], e));
     return loops;
   }
 
  private:
+  /// An edge at a point.
+  struct End {
+    std::uint32_t point, edge;
+    friend auto operator<=>(const End&, const End&) = default;
+  };
+
+  std::span<const End> ends_at(std::uint32_t point) const {
+    const auto begin = std::lower_bound(ends_.begin(), ends_.end(), End{point, 0});
+    auto end = begin;
+    while (end != ends_.end() && end->point == point) ++end;
+    return {begin, end};
+  }
+
   ContactLoop walk(std::uint32_t from, std::uint32_t edge) {
     ContactLoop loop;
     loop.points.push_back(points_[from]);
@@ -164,14 +190,14 @@ class Chainer {
       used_[edge] = true;
       // Go to the other end of the edge.
       p = edges_[edge][0] == p ? edges_[edge][1] : edges_[edge][0];
-      const auto& at = edges_at_.at(p);
+      const std::span<const End> at = ends_at(p);
       loop.closed = p == from;
       if (loop.closed) break;
       loop.points.push_back(points_[p]);
       // An end or a branch point: the chain is open.
       if (at.size() != 2) break;
       // Two edges at this point: leave by the unused one.
-      edge = used_[at[0]] ? at[1] : at[0];
+      edge = used_[at[0].edge] ? at[1].edge : at[0].edge;
     }
     return loop;
   }
@@ -179,7 +205,7 @@ class Chainer {
   std::span<const std::array<std::uint32_t, 2>> edges_;
   const std::vector<Eigen::Vector3d>& points_;
   std::vector<bool> used_;
-  std::map<std::uint32_t, std::vector<std::uint32_t>> edges_at_;
+  std::vector<End> ends_;  ///< ascending
 };
 
 }  // namespace
@@ -285,10 +311,10 @@ class RegionMaker {
                                    0);  // 3: has polygons, 2: segments, 1: points only
     // Assign pairs to regions. Averages use only a region's pieces of the highest dimension.
     for (const auto& piece : graph_.pieces)
-      if (!piece.points.empty()) {
-        const std::uint32_t r = graph_.component[piece.points[0]];
+      if (piece.count > 0) {
+        const std::uint32_t r = graph_.component[piece.corners[0]];
         regions[r].pairs.push_back(piece.pair);
-        rank[r] = std::max(rank[r], static_cast<std::uint8_t>(std::min<std::size_t>(piece.points.size(), 3)));
+        rank[r] = std::max(rank[r], static_cast<std::uint8_t>(std::min(piece.count, 3U)));
       }
     for (std::uint32_t r = 0; r < regions.size(); ++r) average(regions[r], rank[r]);
     add_loops(regions);
@@ -314,7 +340,7 @@ class RegionMaker {
 
   std::vector<Vector3d> points_of(const ContactGraph::Piece& piece) const {
     std::vector<Vector3d> x;
-    for (const std::uint32_t p : piece.points) x.push_back(graph_.points[p]);
+    for (const std::uint32_t p : piece.points()) x.push_back(graph_.points[p]);
     return x;
   }
 
@@ -324,7 +350,7 @@ class RegionMaker {
     Vector3d centre = Vector3d::Zero(), normal = Vector3d::Zero();
     for (const std::uint32_t i : region.pairs) {
       const auto& piece = graph_.pieces[i];
-      if (std::min<std::size_t>(piece.points.size(), 3) != rank) continue;
+      if (std::min(piece.count, 3U) != rank) continue;
       const Weight w = weigh(points_of(piece));
       total += w.value;
       centre += w.value * w.centre;
@@ -333,7 +359,7 @@ class RegionMaker {
                            world_normal(ctx_[Side::b], result_.pairs[i].b, mirrored_[1]));
     }
     region.centroid =
-        total > 0 ? Vector3d(centre / total) : graph_.points[graph_.pieces[region.pairs[0]].points[0]];
+        total > 0 ? Vector3d(centre / total) : graph_.points[graph_.pieces[region.pairs[0]].corners[0]];
     // Normals that cancel (surfaces that intersect with the same orientation) leave no meaningful direction.
     if (normal.norm() > kContactNormalLeast * total) region.normal = normal.stableNormalized();
     if (rank == 3) region.area = total;
@@ -367,7 +393,7 @@ class RegionMaker {
     // both.
     double a_reaches = -std::numeric_limits<double>::infinity(), b_reaches = -a_reaches;
     for (const std::uint32_t i : region.pairs)
-      for (const std::uint32_t p : graph_.pieces[i].points) {
+      for (const std::uint32_t p : graph_.pieces[i].points()) {
         a_reaches = std::max(a_reaches, region.normal.dot(graph_.points[p]));
         b_reaches = std::min(b_reaches, region.normal.dot(graph_.points[p]));
       }

@@ -17,8 +17,10 @@ namespace lrb {
 /// features, so pieces are connected by comparing integers, never coordinates.
 struct ContactGraph {
   struct Piece {
-    std::uint32_t pair;                 ///< index into CollideResult::pairs
-    std::vector<std::uint32_t> points;  ///< 1: point, 2: segment, 3 or more: polygon
+    std::uint32_t pair;                    ///< index into CollideResult::pairs
+    std::uint32_t count;                   ///< 1: point, 2: segment, 3 or more: polygon
+    std::array<std::uint32_t, 6> corners;  ///< the first `count` are valid
+    std::span<const std::uint32_t> points() const { return {corners.data(), count}; }
   };
   std::vector<Eigen::Vector3d> points;                 ///< world frame
   std::vector<Piece> pieces;                           ///< one per pair

@@ -17,16 +17,34 @@
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/exact/predicates.hpp"
+#include "engine/lrb/surface_graph.hpp"
 #include <lrbscope/contact.hpp>
 
 namespace lrb {
 
+namespace {
+
+std::uint64_t edge_key(VertexId v, VertexId w) {
+  return std::uint64_t{std::min(v, w).value()} << 32 | std::max(v, w).value();
+}
+
+}  // namespace
+
 EnclosedVertices::EnclosedVertices(QueryContext& context, Side side, const CollideResult& result)
     : body_(context[side]), holder_(context[other(side)]), side_(side), result_(result) {
+  if (!holder_.rep().closed()) return;
   for (std::uint32_t i = 0; i < result.pairs.size(); ++i) {
     VertexId v[3];
     body_.rep().simplex(simplex(i), v);
-    near_.insert(v, v + body_.rep().simplex_size());
+    const std::size_t n = static_cast<std::size_t>(body_.rep().simplex_size());
+    near_.insert(v, v + n);
+    // An edge or a vertex meets the other surface if and only if it has a corner of some pair's contact.
+    const PairContactRecord& contact = result.contacts[i];
+    for (std::size_t c = 0; c < contact.corner_count; ++c) {
+      const exact::Feature& f = side == Side::a ? contact.corners[c].on_a : contact.corners[c].on_b;
+      if (f.dim == 0) on_.insert(v[f.index]);
+      if (f.dim == 1) cut_.insert(n == 3 ? edge_key(v[f.index], v[(f.index + 1) % 3]) : edge_key(v[0], v[1]));
+    }
   }
 }
 
@@ -37,7 +55,24 @@ SimplexId EnclosedVertices::simplex(std::uint32_t pair) const {
 bool EnclosedVertices::is_inside(VertexId v) {
   // Only edges of simplices in contact can cross the other surface, so that only their corners need to be
   // located. All other vertices reached from an inside vertex are inside.
-  return !near_.contains(v) || locate(holder_, body_.world(v)) == Where::inside;
+  if (!near_.contains(v)) return true;
+  if (on_.contains(v)) return false;
+  if (const auto known = inside_.find(v); known != inside_.end()) return known->second;
+  // Both ends of an edge that does not meet the other surface are on the same side of it: locate one vertex,
+  // and flood the near vertices that such edges connect.
+  const bool inside = locate(holder_, body_.world(v)) == Where::inside;
+  const SurfaceGraph& graph = body_.rep().surface_graph();
+  inside_.emplace(v, inside);
+  std::vector<VertexId> stack = {v};
+  while (!stack.empty()) {
+    const VertexId from = stack.back();
+    stack.pop_back();
+    for (const VertexId to : graph.neighbours(from))
+      if (near_.contains(to) && !on_.contains(to) && !cut_.contains(edge_key(from, to)) &&
+          inside_.emplace(to, inside).second)
+        stack.push_back(to);
+  }
+  return inside;
 }
 
 std::vector<VertexId> EnclosedVertices::from(std::span<const std::uint32_t> pairs) {
@@ -54,7 +89,7 @@ std::vector<VertexId> EnclosedVertices::from(std::span<const std::uint32_t> pair
     for (int k = 0; k < body_.rep().simplex_size(); ++k) visit(v[k]);
   }
   // Breadth-first search over surface edges; each vertex is visited once.
-  const SurfaceGraph& graph = body_.surface_graph();
+  const SurfaceGraph& graph = body_.rep().surface_graph();
   for (std::size_t next = 0; next < inside.size(); ++next)
     for (const VertexId v : graph.neighbours(inside[next])) visit(v);
   return inside;
@@ -179,7 +214,7 @@ class Decider {
       rep.simplex(s, v);
       for (int k = 0; k < dim_; ++k) touched[v[k]] = true;
     }
-    const SurfaceGraph& graph = body.surface_graph();
+    const SurfaceGraph& graph = body.rep().surface_graph();
     std::vector<VertexId> patch;
     for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
       if (partners_.contains(s)) continue;

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <span>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -17,7 +18,8 @@ namespace lrb {
 /// Finds the vertices of one body that are strictly inside the other and connected to given pairs.
 class EnclosedVertices {
  public:
-  /// Prepares the search for vertices of `side`. Every search is empty if the other body is not closed.
+  /// Prepares the search for vertices of `side`; `result` has the contact of each pair. Every search is empty
+  /// if the other body is not closed.
   EnclosedVertices(QueryContext& context, Side side, const CollideResult& result);
 
   /// Returns the vertices found by a search over the surface that starts at the simplices of some pairs
@@ -32,7 +34,10 @@ class EnclosedVertices {
   QueryBody& holder_;
   Side side_;
   const CollideResult& result_;
-  std::unordered_set<VertexId> near_;  ///< corners of simplices in contact
+  std::unordered_set<VertexId> near_;          ///< corners of simplices in contact
+  std::unordered_set<VertexId> on_;            ///< vertices on the other surface
+  std::unordered_set<std::uint64_t> cut_;      ///< edges whose interior meets the other surface
+  std::unordered_map<VertexId, bool> inside_;  ///< of near vertices, as far as known
 };
 
 /// Returns the side of the line p q on which r lies, as the sign of an orientation. All three points are in

@@ -16,20 +16,6 @@
 
 namespace lrb {
 
-/// The real vertices connected to each vertex by an edge of a real face. Built for an LRB-rep when a query
-/// first needs it.
-class SurfaceGraph {
- public:
-  explicit SurfaceGraph(const LrbRep& rep);
-  std::span<const VertexId> neighbours(VertexId v) const {
-    return {neighbours_.data() + offsets_[v], offsets_[v + 1] - offsets_[v]};
-  }
-
- private:
-  std::vector<std::uint32_t> offsets_;  ///< (|V| + 1)
-  std::vector<VertexId> neighbours_;
-};
-
 /// World coordinates of one body's vertices during one query. Each vertex is transformed at most once, when
 /// it is first needed.
 class WorldVertices {
@@ -117,15 +103,6 @@ struct QueryBody {
     return level_ == nullptr ? 0 : static_cast<std::uint32_t>(level_ - rep().levels().all().data()) + 1;
   }
 
-  /// Returns the body's surface graph. Built on the first call and kept while the body stays the same.
-  const SurfaceGraph& surface_graph() {
-    if (!graph_ || graph_serial_ != rep().serial()) {
-      graph_ = std::make_unique<SurfaceGraph>(rep());
-      graph_serial_ = rep().serial();
-    }
-    return *graph_;
-  }
-
   /// Returns the number of regions between a face and the outside, following parents.
   std::uint32_t depth_of(FaceId f) const {
     const CellId outer = rep().outer_cell(f);
@@ -136,8 +113,6 @@ struct QueryBody {
   const ObbTree* tree_ = nullptr;
   const WrapperLevel* level_ = nullptr;  ///< null: the body itself
   std::span<const VertexId> component_vertices_;
-  std::unique_ptr<SurfaceGraph> graph_;
-  std::uint64_t graph_serial_ = 0;
 };
 
 class QueryContext {

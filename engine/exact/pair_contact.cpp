@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "engine/exact/plane_side.hpp"
 #include "engine/exact/predicates.hpp"
@@ -21,7 +22,9 @@ namespace lrb::exact {
 // ends, it is p + t (q - p) with t = hp / (hp - hq).
 // 1. Compute both heights in doubles, each with a bound on its error.
 // 2. If the errors are small relative to hp - hq, interpolate in doubles.
-// 3. Otherwise compute the point in rational numbers and round it once.
+// 3. Otherwise compute the point exactly and round it once: in integers of a fixed size if the coordinates
+//    differ by few powers of two, which takes no memory allocation and no greatest common divisors; in
+//    rational numbers if not.
 
 namespace {
 
@@ -74,6 +77,82 @@ bool interpolate(const double* p, const double* q, double t, int dim, Eigen::Vec
   return r.allFinite();
 }
 
+// Points scaled by a common power of two, as integers. With coordinates of kCoordinateBits bits a determinant
+// has at most 3 (kCoordinateBits + 1) + 3 bits, and its product with a coordinate 4 (kCoordinateBits + 1)
+// + 4.
+
+constexpr int kCoordinateBits = 240;
+using Integer = boost::multiprecision::number<
+    boost::multiprecision::cpp_int_backend<1024, 1024, boost::multiprecision::signed_magnitude,
+                                           boost::multiprecision::unchecked, void>,
+    boost::multiprecision::et_off>;
+using IntegerVec = std::array<Integer, 3>;
+
+class ScaledPoints {
+ public:
+  /// Finds the scale of the first `dim` coordinates of some points.
+  ScaledPoints(std::initializer_list<const double*> points, int dim) : dim_(dim) {
+    int most = -kFar;
+    for (const double* p : points)
+      for (int k = 0; k < dim; ++k) {
+        if (p[k] == 0) continue;
+        const int exponent = std::ilogb(p[k]);
+        most = std::max(most, exponent);
+        least_ = std::min(least_, exponent - 52);  // the weight of the last bit of the mantissa
+      }
+    fits_ = most - least_ < kCoordinateBits && least_ > -kFar && most < kFar;
+  }
+  bool fits() const { return fits_; }
+
+  IntegerVec of(const double* p) const {
+    IntegerVec out;
+    for (int k = 0; k < dim_; ++k) {
+      if (p[k] == 0) continue;
+      const int exponent = std::ilogb(p[k]) - 52;
+      Integer& x = out[static_cast<std::size_t>(k)];
+      x = static_cast<std::int64_t>(std::ldexp(p[k], -exponent));
+      x <<= exponent - least_;
+    }
+    return out;
+  }
+
+  /// Returns the point p + hp / (hp - hq) (q - p), each coordinate rounded to the nearest double.
+  Eigen::Vector3d between(const IntegerVec& p, const IntegerVec& q, const Integer& hp,
+                          const Integer& hq) const {
+    Eigen::Vector3d out = Eigen::Vector3d::Zero();
+    const Integer rise = hp - hq;
+    for (int k = 0; k < dim_; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      const Integer numerator = p[i] * rise + hp * (q[i] - p[i]);
+      out[k] = quotient(numerator, rise);
+    }
+    return out;
+  }
+
+ private:
+  static constexpr int kFar = 900;  ///< exponents in which neither scaling nor the result leaves the range
+
+  /// Returns n / d scaled back, rounded to nearest, ties to even.
+  double quotient(Integer n, Integer d) const {
+    if (n.is_zero()) return 0;
+    const bool negative = (n.sign() < 0) != (d.sign() < 0);
+    n = abs(n);
+    d = abs(d);
+    // 56 or 57 bits of the quotient, the last of which is set if there is a remainder, round as all of it.
+    const int shift = 56 - (static_cast<int>(msb(n)) - static_cast<int>(msb(d)));
+    shift >= 0 ? n <<= shift : d <<= -shift;
+    Integer bits, remainder;
+    divide_qr(n, d, bits, remainder);
+    const auto mantissa = static_cast<std::uint64_t>(bits) | (remainder.is_zero() ? 0U : 1U);
+    const double x = std::ldexp(static_cast<double>(mantissa), least_ - shift);
+    return negative ? -x : x;
+  }
+
+  int dim_;
+  int least_ = kFar;
+  bool fits_ = false;
+};
+
 }  // namespace
 
 Eigen::Vector3d cut_by_plane(const double* p, const double* q, const double* const t[3]) {
@@ -82,6 +161,11 @@ Eigen::Vector3d cut_by_plane(const double* p, const double* q, const double* con
   // Fast path in doubles, then the exact path for nearly parallel segments and for overflow.
   if (parameter(volume(t[0], t[1], t[2], p), volume(t[0], t[1], t[2], q), s) && interpolate(p, q, s, 3, r))
     return r;
+  if (const ScaledPoints scaled({p, q, t[0], t[1], t[2]}, 3); scaled.fits()) {
+    const IntegerVec ip = scaled.of(p), iq = scaled.of(q);
+    const IntegerVec a = scaled.of(t[0]), b = scaled.of(t[1]), c = scaled.of(t[2]);
+    return scaled.between(ip, iq, volume_determinant(a, b, c, ip), volume_determinant(a, b, c, iq));
+  }
   const RationalVec rp = to_rational(p), rq = to_rational(q);
   const RationalVec a = to_rational(t[0]), b = to_rational(t[1]), c = to_rational(t[2]);
   const Rational hp = volume_determinant(a, b, c, rp), hq = volume_determinant(a, b, c, rq);
@@ -94,6 +178,10 @@ Eigen::Vector3d cut_by_line(const double* p, const double* q, const double* a, c
   Eigen::Vector3d r;
   // The same two paths, with areas instead of volumes.
   if (parameter(area(a, b, p, x, y), area(a, b, q, x, y), s) && interpolate(p, q, s, dim, r)) return r;
+  if (const ScaledPoints scaled({p, q, a, b}, dim); scaled.fits()) {
+    const IntegerVec ip = scaled.of(p), iq = scaled.of(q), ia = scaled.of(a), ib = scaled.of(b);
+    return scaled.between(ip, iq, area_determinant(ia, ib, ip, x, y), area_determinant(ia, ib, iq, x, y));
+  }
   const RationalVec rp = to_rational(p, dim), rq = to_rational(q, dim);
   const RationalVec ra = to_rational(a, dim), rb = to_rational(b, dim);
   const Rational hp = area_determinant(ra, rb, rp, x, y), hq = area_determinant(ra, rb, rq, x, y);

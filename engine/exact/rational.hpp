@@ -49,16 +49,19 @@ inline RationalVec between(const RationalVec& a, const RationalVec& b, const Rat
   return r;
 }
 
-/// Returns (b - a) x (c - a) in the coordinates x and y: the determinant of orient2d.
-inline Rational area_determinant(const RationalVec& a, const RationalVec& b, const RationalVec& c, int x,
-                                 int y) {
+/// Returns (b - a) x (c - a) in the coordinates x and y: the determinant of orient2d. Number: Rational, or an
+/// integer that can hold the terms.
+template <class Number>
+Number area_determinant(const std::array<Number, 3>& a, const std::array<Number, 3>& b,
+                        const std::array<Number, 3>& c, int x, int y) {
   const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
   return (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
 }
 
 /// Returns det[b - a; c - a; d - a]: the determinant of orient3d.
-inline Rational volume_determinant(const RationalVec& a, const RationalVec& b, const RationalVec& c,
-                                   const RationalVec& d) {
+template <class Number>
+Number volume_determinant(const std::array<Number, 3>& a, const std::array<Number, 3>& b,
+                          const std::array<Number, 3>& c, const std::array<Number, 3>& d) {
   return area_determinant(a, b, c, 1, 2) * (d[0] - a[0]) + area_determinant(a, b, c, 2, 0) * (d[1] - a[1]) +
          area_determinant(a, b, c, 0, 1) * (d[2] - a[2]);
 }

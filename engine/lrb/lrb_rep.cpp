@@ -3,10 +3,12 @@
 #include <map>
 #include <mutex>
 #include <numeric>
+#include <optional>
 
 #include <Eigen/Geometry>
 
 #include "engine/lrb/complex.hpp"
+#include "engine/lrb/surface_graph.hpp"
 #include "engine/mesh/self_intersections.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/hash.hpp>
@@ -97,6 +99,12 @@ struct LrbRep::FoundOverlap {
   bool value = false;
 };
 
+/// The result of surface_graph(), once built.
+struct LrbRep::FoundGraph {
+  std::once_flag once;
+  std::optional<SurfaceGraph> value;
+};
+
 /// The result of hash(), once computed.
 struct LrbRep::FoundHash {
   std::once_flag once;
@@ -141,6 +149,7 @@ void LrbRep::derive() {
   serial_ = next_serial++;
   levels_ = std::make_shared<MadeLevels>();
   overlap_ = std::make_shared<FoundOverlap>();
+  graph_ = std::make_shared<FoundGraph>();
   hash_ = std::make_shared<FoundHash>();
 }
 
@@ -178,6 +187,11 @@ bool LrbRep::overlaps_itself() const {
     overlap_->value = lrb::overlaps_itself(mesh, check_faces(mesh, unused));
   });
   return overlap_->value;
+}
+
+const SurfaceGraph& LrbRep::surface_graph() const {
+  std::call_once(graph_->once, [this] { graph_->value.emplace(*this); });
+  return *graph_->value;
 }
 
 const WrapperLevels& LrbRep::levels(unsigned threads) const {

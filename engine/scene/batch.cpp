@@ -204,6 +204,39 @@ void Batch::distance(std::span<const PosedPair> pairs, const DistanceRequest& re
   });
 }
 
+namespace {
+
+/// Calls run(poses, answers) for one chunk of poses after the other, and visit() for its answers.
+template <class Answer, class Run>
+std::size_t visit_chunks(std::span<const Pose> poses, std::size_t chunk, const Batch::Visit<Answer>& visit,
+                         const Run& run) {
+  std::vector<Expected<Answer>> answers;
+  for (std::size_t first = 0; first < poses.size(); first += answers.size()) {
+    run(poses.subspan(first, std::min(std::max<std::size_t>(chunk, 1), poses.size() - first)), answers);
+    for (std::size_t i = 0; i < answers.size(); ++i)
+      if (!visit(first + i, answers[i])) return first + i + 1;
+  }
+  return poses.size();
+}
+
+}  // namespace
+
+std::size_t Batch::collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                           std::span<const Pose> poses_b, const CollideRequest& request,
+                           const Visit<CollideResult>& visit, std::size_t chunk) {
+  return visit_chunks<CollideResult>(poses_b, chunk, visit, [&](std::span<const Pose> poses, auto& answers) {
+    collide(a, pose_a, b, poses, request, answers);
+  });
+}
+
+std::size_t Batch::distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                            std::span<const Pose> poses_b, const DistanceRequest& request,
+                            const Visit<DistanceResult>& visit, std::size_t chunk) {
+  return visit_chunks<DistanceResult>(poses_b, chunk, visit, [&](std::span<const Pose> poses, auto& answers) {
+    distance(a, pose_a, b, poses, request, answers);
+  });
+}
+
 CollideAnswers collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
                        const CollideRequest& request, unsigned threads) {
   CollideAnswers answers;

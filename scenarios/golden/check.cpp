@@ -316,20 +316,26 @@ void check_variant(const std::string& variant) {
   if (!plain) throw InputError("--variant: expected 1 to 64 letters, digits, - and _");
 }
 
-/// Writes into one golden's folder, and records what it wrote.
+/// Writes into one golden's folder, and records what it wrote. `dry`: only records it.
 class Approval {
  public:
-  Approval(const std::string& folder, const GoldenRun& run) : folder_(folder), run_(run) {}
+  Approval(const std::string& folder, const GoldenRun& run, bool dry)
+      : folder_(folder), run_(run), dry_(dry) {}
 
+  void spec(const GoldenSpec& spec, const GoldenFacts& facts) {
+    const std::filesystem::path folder(folder_);
+    if (!dry_) write_golden_spec(folder.parent_path().string(), folder.filename().string(), spec, facts);
+    say("approved", kGoldenSpec);
+  }
   void trace() {
-    trace::save_trace(run_.recording.trace, folder_ + "/" + kGoldenTrace);
+    if (!dry_) trace::save_trace(run_.recording.trace, folder_ + "/" + kGoldenTrace);
     say("approved", kGoldenTrace);
   }
   void frame(std::size_t i, const std::string& variant) {
     render::PngOptions png;
     png.text = golden_text(run_, i);
     const std::string file = golden_image_file(i, variant);
-    render::write_png(run_.frames[i].image, folder_ + "/" + file, png);
+    if (!dry_) render::write_png(run_.frames[i].image, folder_ + "/" + file, png);
     say("approved", file);
   }
   /// Keeps the meshes of bodies from files. Generated bodies are defined by their scenario.
@@ -338,25 +344,27 @@ class Approval {
       if (run_.scenario.bodies[i].file.empty()) continue;
       const LrbRep& rep = run_.recording.bodies[i].rep;
       const std::string file = kept_file(i, rep.dim());
-      write_mesh(rep.real_mesh(), folder_ + "/" + file);
+      if (!dry_) write_mesh(rep.real_mesh(), folder_ + "/" + file);
       say("approved", file);
     }
   }
   void remove(const std::vector<std::string>& files) {
     for (const std::string& file : files) {
       std::error_code error;
-      fs::remove(folder_ + "/" + file, error);
+      if (!dry_) fs::remove(folder_ + "/" + file, error);
       say("removed", file);
     }
-  }
-  void say(const std::string& what, const std::string& file) {
-    done.push_back(what + " " + (fs::path(folder_) / file).generic_string());
   }
   std::vector<std::string> done;
 
  private:
+  void say(const std::string& what, const std::string& file) {
+    done.push_back((dry_ ? "would be " : "") + what + " " + (fs::path(folder_) / file).generic_string());
+  }
+
   std::string folder_;
   const GoldenRun& run_;
+  bool dry_;
 };
 
 /// Loads a golden. With `may_fail`, returns nullopt if its files are missing or damaged: approving replaces
@@ -396,29 +404,29 @@ std::vector<std::string> approve_variant(Approval approval, const GoldenVerdict&
 }  // namespace
 
 std::vector<std::string> approve_golden(const std::string& goldens, const GoldenSpec& spec,
-                                        const GoldenRun& run, const std::string& variant) {
+                                        const GoldenRun& run, const std::string& variant, bool dry) {
   const std::string name = run.scenario.name, folder = (fs::path(goldens) / name).string();
   check_variant(variant);
   const bool known = has_golden(goldens, name);
   if (!known && !variant.empty())
     throw InputError(name + ": has no golden yet; approve it first, without --variant");
-  make_folder(folder);
-  const io::FolderLock lock(folder);
+  std::optional<io::FolderLock> lock;
+  if (!dry) {
+    make_folder(folder);
+    lock.emplace(folder);
+  }
   const GoldenFacts facts = facts_of(run);
   const std::optional<Golden> old = known ? load_if_sound(goldens, name, variant.empty()) : std::nullopt;
+  Approval approval(folder, run, dry);
   if (!old) {
-    write_golden_spec(goldens, name, spec, facts);
-    return approve_all({folder, run}, run, folder);
+    approval.spec(spec, facts);
+    return approve_all(std::move(approval), run, folder);
   }
   Golden golden = *old;
   if (variant.empty()) golden.spec.levels = GoldenSpec{}.levels;  // approves all differences
   const GoldenVerdict verdict = check_golden(golden, run);
-  if (!variant.empty()) return approve_variant({folder, run}, verdict, name, variant);
-  Approval approval(folder, run);
-  if (old->spec != spec || old->facts != facts) {
-    write_golden_spec(goldens, name, spec, facts);
-    approval.say("approved", kGoldenSpec);
-  }
+  if (!variant.empty()) return approve_variant(std::move(approval), verdict, name, variant);
+  if (old->spec != spec || old->facts != facts) approval.spec(spec, facts);
   if (verdict.divergence) approval.trace();
   if (old->facts.meshes != facts.meshes) approval.meshes();
   for (const ImageVerdict& image : verdict.images) {

@@ -14,9 +14,10 @@ namespace lrb::golden {
 
 /// Approves a run as the golden. Does not rewrite files with the same content; where a picture has changed,
 /// removes its old variants. With `variant` the trace must equal the approved one, and differing pictures are
-/// added beside the approved ones. Returns one line for each changed file. Throws InputError.
+/// added beside the approved ones. Returns one line for each changed file. `dry`: changes nothing, and
+/// returns the files that would change. Throws InputError.
 std::vector<std::string> approve_golden(const std::string& goldens, const GoldenSpec& spec,
-                                        const GoldenRun& run, const std::string& variant);
+                                        const GoldenRun& run, const std::string& variant, bool dry = false);
 
 struct ImageVerdict {
   std::string file;  ///< the nearest approved picture; for a frame without one, its own name

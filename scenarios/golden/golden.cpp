@@ -292,4 +292,18 @@ Golden load_golden(const std::string& goldens, const std::string& name) {
   return golden;
 }
 
+void remove_golden(const std::string& goldens, const std::string& name) {
+  if (!has_golden(goldens, name))
+    throw InputError(printable_name(name) + ": no golden of this name in " + printable_name(goldens));
+  const std::string folder = (fs::path(goldens) / name).string();
+  std::vector<std::string> files = image_files_from(folder, 0);
+  for (const int dim : {2, 3})
+    for (const std::size_t body : {0U, 1U}) files.push_back(kept_file(body, dim));
+  files.push_back(kGoldenTrace);
+  files.push_back(kGoldenSpec);  // last: until then it can be tried again
+  for (const std::string& file : files) fs::remove(fs::path(folder) / file);
+  std::error_code not_empty;  // it then has files of the user
+  fs::remove(folder, not_empty);
+}
+
 }  // namespace lrb::golden

@@ -82,6 +82,9 @@ GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name)
 /// Reads a golden. Throws InputError if a part of it is missing or damaged. Damaged pictures are kept with
 /// the reason.
 Golden load_golden(const std::string& goldens, const std::string& name);
+/// Removes a golden: the files that approving wrote, and its folder unless other files are in it. Throws
+/// InputError for a golden that does not exist.
+void remove_golden(const std::string& goldens, const std::string& name);
 /// Returns the scenario of a golden.
 spec::Scenario golden_scenario(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
 

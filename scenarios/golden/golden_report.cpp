@@ -221,6 +221,14 @@ std::string events_text(const GoldenResult& r) {
 }
 
 /// The differences by step, and their possible causes.
+/// Returns why a test failed, on one line; empty if it passed.
+std::string cause_text(const GoldenResult& r) {
+  const GoldenVerdict& v = r.verdict;
+  if (!v.rejection.empty()) return v.rejection;
+  if (!v.causes.empty()) return v.causes.front();
+  return v.divergence ? v.divergence->message() : std::string();
+}
+
 report::Table effects_table(const GoldenResult& r) {
   constexpr std::size_t kMaxRows = 200;
   report::Table t{r.name + ": differences", {"step", "quantity", "approved", "found"}};
@@ -303,16 +311,16 @@ void write_failures(const GoldenResult& result, const GoldenRun& run, const std:
 void write_golden_page(const std::vector<GoldenResult>& results, const report::Folder& folder,
                        const std::string& command) {
   std::size_t failed = 0, images = 0, images_failed = 0, events = 0;
-  report::Table scenarios{"Scenarios",
-                          {"scenario", "verdict", "answers", "events and counters", "images", "seconds"}};
+  report::Table scenarios{
+      "Scenarios", {"scenario", "verdict", "cause", "answers", "events and counters", "images", "seconds"}};
   for (const GoldenResult& r : results) {
     const GoldenVerdict& v = r.verdict;
     failed += v.passed() ? 0 : 1;
     images += v.images.size();
     for (const ImageVerdict& image : v.images) images_failed += image.passed ? 0 : 1;
     events += r.events;
-    scenarios.rows.push_back({r.name, v.passed() ? "passed" : "FAILED", answers_text(r), events_text(r),
-                              images_text(r), io::fixed_text(r.seconds, 1)});
+    scenarios.rows.push_back({r.name, v.passed() ? "passed" : "FAILED", cause_text(r), answers_text(r),
+                              events_text(r), images_text(r), io::fixed_text(r.seconds, 1)});
   }
   report::Document doc(
       kTitle,
@@ -346,6 +354,11 @@ std::string result_text(const GoldenResult& r) {
   std::string out =
       (v.passed() ? "ok    " : "FAIL  ") + r.name + ": " + head + "; images: " + images_text(r) + "\n";
   if (v.passed()) return out;
+  if (r.repeats > 0)
+    out += "      " + (r.passes > 0 ? "flaky: " + std::to_string(r.passes) + " of " +
+                                          std::to_string(r.repeats) + " repeats passed\n"
+                                    : "changed: none of " + std::to_string(r.repeats) + " repeats passed\n");
+  for (const std::string& cause : v.causes) out += "      cause: " + cause + "\n";
   std::size_t lines = 0;
   for (const Effect& e : v.effects)
     if (lines++ < kMaxLines)
@@ -353,7 +366,6 @@ std::string result_text(const GoldenResult& r) {
              ", found " + e.found + "\n";
   if (lines > kMaxLines)
     out += "      and " + std::to_string(lines - kMaxLines) + " more differences like these\n";
-  for (const std::string& cause : v.causes) out += "      cause: " + cause + "\n";
   if (v.divergence) out += "      first difference: " + v.divergence->message() + "\n";
   if (!v.diagnosis.empty()) out += "      " + v.diagnosis + "\n";
   for (const ImageVerdict& image : v.images)
@@ -384,6 +396,35 @@ std::string case_xml(const GoldenResult& r) {
 }
 
 }  // namespace
+
+std::string markdown(const std::vector<GoldenResult>& results) {
+  // A cell is one line without bars.
+  const auto cell = [](std::string text) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, 1, '\\');
+    return text;
+  };
+  std::vector<std::string> failed, passed;
+  for (const GoldenResult& r : results) {
+    const GoldenVerdict& v = r.verdict;
+    std::string why = cause_text(r);
+    if (r.passes > 0)
+      why = "flaky: " + std::to_string(r.passes) + " of " + std::to_string(r.repeats) + " repeats passed; " +
+            why;
+    const bool tested = v.rejection.empty();
+    (v.passed() ? passed : failed)
+        .push_back("| " + cell(r.name) + " | " + (v.passed() ? "passed" : "**failed**") + " | " +
+                   cell(tested ? answers_text(r) : "") + " | " + cell(tested ? events_text(r) : "") + " | " +
+                   cell(tested ? images_text(r) : "") + " | " + cell(v.passed() ? "" : why) + " |\n");
+  }
+  std::string out = "### Goldens: " + std::to_string(failed.size()) + " of " +
+                    std::to_string(results.size()) +
+                    " failed\n\n| scenario | verdict | answers | events and counters | images | cause |\n"
+                    "| --- | --- | --- | --- | --- | --- |\n";
+  for (const std::string& row : failed) out += row;
+  for (const std::string& row : passed) out += row;
+  return out;
+}
 
 std::string junit_xml(const std::vector<GoldenResult>& results) {
   std::size_t failures = 0, errors = 0;

@@ -18,9 +18,10 @@ struct GoldenResult {
   GoldenSpec spec;
   GoldenVerdict verdict;
   std::size_t steps = 0, events = 0;
-  double seconds = 0;   ///< duration of the test: the run, its pictures and the comparison
-  std::string approve;  ///< the command that approves the run
-  std::string page;     ///< path of the page that shows the result; may be empty
+  double seconds = 0;                     ///< duration of the test: the run, its pictures and the comparison
+  std::uint32_t repeats = 0, passes = 0;  ///< of a failed test that was repeated
+  std::string approve;                    ///< the command that approves the run
+  std::string page;                       ///< path of the page that shows the result; may be empty
   std::vector<report::Comparison> comparisons;
 };
 
@@ -51,6 +52,9 @@ std::string result_text(const GoldenResult& result);
 /// Returns a test suite with a case for each golden. A golden that could not be tested is an error; one that
 /// differs is a failure, with result_text().
 std::string junit_xml(const std::vector<GoldenResult>& results);
+
+/// Returns a table of the results in GitHub's Markdown, the failures first, for the summary of a CI job.
+std::string markdown(const std::vector<GoldenResult>& results);
 
 /// The two runs where they begin to differ: at the first differing event, or at the end of its step; as a
 /// whole and in a close-up, through the same cameras.

@@ -1,12 +1,17 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <string>
 #include <vector>
 
+#include <boost/multiprecision/cpp_int.hpp>
 #include <doctest/doctest.h>
 
+#include "engine/exact/predicates.hpp"
+#include "engine/exact/simplex_parts.hpp"
 #include "tests/support/contact_oracle.hpp"
 #include "tests/support/random_simplices.hpp"
 #include <lrbscope/contact.hpp>
@@ -171,4 +176,51 @@ TEST_CASE("coordinates keep their accuracy where the planes are nearly parallel"
   }
   CHECK_MESSAGE(fault.empty(), fault);
   CHECK(met > 0);
+}
+
+TEST_CASE("points of cuts that doubles cannot place are the exact ones, rounded once") {
+  using Rational = boost::multiprecision::cpp_rational;
+  std::mt19937_64 random(7);
+  std::size_t exact_ones = 0;
+  for (int i = 0; i < 4000; ++i) {
+    // A segment nearly in the plane of a triangle; coordinates of one size, of mixed sizes, and so far apart
+    // that integers of a fixed size do not hold them.
+    const int spread = std::array{0, 40, 400}[static_cast<std::size_t>(i % 3)];
+    const auto number = [&] {
+      const double x = static_cast<double>(static_cast<std::int64_t>(random())) * 0x1p-63;
+      return std::ldexp(x, spread == 0 ? 0 : static_cast<int>(random() % static_cast<unsigned>(spread)));
+    };
+    double t[3][3], p[3], q[3];
+    for (auto& corner : t)
+      for (double& x : corner) x = number();
+    for (int k = 0; k < 3; ++k) {
+      const double inside = t[0][k] + 0.25 * (t[1][k] - t[0][k]) + 0.5 * (t[2][k] - t[0][k]);
+      p[k] = inside * (1 + 0x1p-50 * static_cast<double>(random() % 9));
+      q[k] = (inside + 0.125 * (t[1][k] - t[0][k])) * (1 + 0x1p-50 * static_cast<double>(random() % 9));
+    }
+    const double* const corners[3] = {t[0], t[1], t[2]};
+    if (exact::orient3d(t[0], t[1], t[2], p) * exact::orient3d(t[0], t[1], t[2], q) >= 0) continue;
+    const auto height = [&](const double* x) {
+      Rational sum = 0;
+      for (int k = 0; k < 3; ++k) {
+        const int u = (k + 1) % 3, v = (k + 2) % 3;
+        const auto along = [&](int corner, int axis) {
+          return Rational(t[corner][axis]) - Rational(t[0][axis]);
+        };
+        sum += (along(1, u) * along(2, v) - along(1, v) * along(2, u)) * (Rational(x[k]) - Rational(t[0][k]));
+      }
+      return sum;
+    };
+    const Rational share = height(p) / (height(p) - height(q));
+    const Eigen::Vector3d found = exact::cut_by_plane(p, q, corners);
+    bool is_exact = true;
+    for (int k = 0; k < 3; ++k) {
+      const Rational x = Rational(p[k]) + share * (Rational(q[k]) - Rational(p[k]));
+      is_exact = is_exact && found[k] == x.convert_to<double>();
+      CHECK(std::abs(found[k] - x.convert_to<double>()) <=
+            1e-13 * std::abs(q[k] - p[k]) + 1e-15 * std::abs(p[k]));
+    }
+    exact_ones += is_exact;
+  }
+  CHECK(exact_ones > 1000);
 }

@@ -15,6 +15,7 @@ import pytest
 import lrbscope
 import lrbscope.collision
 import lrbscope.fcl
+import lrbscope.many
 from lrbscope import _core
 from shapes import ball_arrays, cube_arrays, shifted
 
@@ -25,7 +26,7 @@ PACKAGE = os.path.dirname(lrbscope.__file__)
 def documented():
     """Return (name, docstring) of the modules and of all public functions, classes and their members."""
     found = []
-    for module in (lrbscope, lrbscope.collision, lrbscope.fcl):
+    for module in (lrbscope, lrbscope.collision, lrbscope.fcl, lrbscope.many):
         found.append((module.__name__, module.__doc__))
         names = getattr(module, "__all__", [n for n in vars(module) if not n.startswith("_")])
         for name in names:

@@ -192,3 +192,37 @@ TEST_CASE("a reused workspace gives the answers of new ones, for any bodies") {
   CHECK(collide(bodies.box, Pose{}, bodies.box, Pose{}, {}, workspace).value().relation ==
         Relation::touching);
 }
+
+TEST_CASE("a visitor of a batch sees each answer once, in order, and can end it") {
+  const Bodies bodies;
+  const std::vector<Pose> poses = some_poses(bodies.ball, bodies.ring, 23, 4);
+  CollideAnswers collisions;
+  DistanceAnswers distances;
+  Batch batch(2);
+  batch.collide(bodies.ball, {}, bodies.ring, poses, {}, collisions);
+  batch.distance(bodies.ball, {}, bodies.ring, poses, {}, distances);
+  for (const std::size_t chunk : {0U, 1U, 7U, 23U, 1000U})  // 0 counts as 1
+    for (const std::size_t end : {1U, 7U, 8U, 23U}) {
+      CAPTURE(chunk);
+      std::size_t next = 0;
+      CHECK(batch.collide(
+                bodies.ball, {}, bodies.ring, poses, {},
+                [&](std::size_t i, Expected<CollideResult>& answer) {
+                  CHECK(i == next++);
+                  check_same(*answer, *collisions[i]);
+                  return next < end;
+                },
+                chunk) == end);
+      CHECK(next == end);
+      next = 0;
+      CHECK(batch.distance(
+                bodies.ball, {}, bodies.ring, poses, {},
+                [&](std::size_t i, Expected<DistanceResult>& answer) {
+                  CHECK(i == next++);
+                  check_same(*answer, *distances[i]);
+                  return next < end;
+                },
+                chunk) == end);
+    }
+  CHECK(batch.collide(bodies.ball, {}, bodies.ring, {}, {}, [](auto, auto&) { return true; }) == 0);
+}

@@ -54,6 +54,7 @@ struct LrbData {
   }
 };
 
+class SurfaceGraph;
 class WrapperLevels;
 
 /// Returns the FNV-1a hash (64 bits) of all members except the name.
@@ -165,6 +166,9 @@ class LrbRep {
   /// Returns hash_of(data()), which identifies this complex in traces and files. The first call computes it,
   /// unless it was stored, and concurrent calls wait.
   std::uint64_t hash() const;
+  /// Returns the edges of the real faces, for the engine itself. The first call collects them; concurrent
+  /// calls wait.
+  const SurfaceGraph& surface_graph() const;
   /// Returns a number that is unique among the LRB-reps created by this process (copies share it), so that
   /// caches detect a new body at an old address.
   std::uint64_t serial() const { return serial_; }
@@ -174,6 +178,7 @@ class LrbRep {
  private:
   struct MadeLevels;
   struct FoundOverlap;
+  struct FoundGraph;
   struct FoundHash;
 
   void derive();
@@ -196,6 +201,7 @@ class LrbRep {
   ObbTree tree_;
   std::shared_ptr<MadeLevels> levels_;
   std::shared_ptr<FoundOverlap> overlap_;
+  std::shared_ptr<FoundGraph> graph_;
   std::shared_ptr<FoundHash> hash_;
 };
 

@@ -3,6 +3,7 @@
 /// instead of thrown.
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -54,6 +55,18 @@ class Batch {
   void collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
                const CollideRequest& request, CollideAnswers& answers);
   void collide(std::span<const PosedPair> pairs, const CollideRequest& request, CollideAnswers& answers);
+
+  /// Run collide() or distance() for each pose of B, and call visit(i, answer) for each, in their order, on
+  /// the calling thread, as soon as the answers of `chunk` poses (at least 1) are known: only these are in
+  /// memory. Visitors may move from the answer. Ends if one returns false. Returns the number of visits.
+  template <class Answer>
+  using Visit = std::function<bool(std::size_t, Expected<Answer>&)>;
+  std::size_t collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
+                      const CollideRequest& request, const Visit<CollideResult>& visit,
+                      std::size_t chunk = 1024);
+  std::size_t distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
+                       const DistanceRequest& request, const Visit<DistanceResult>& visit,
+                       std::size_t chunk = 1024);
 
   /// Run distance() for each pose of B, or for each pair.
   void distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <regex>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -48,7 +50,15 @@ struct Approved : Folder {
     const Outcome o = test::run(*this, {"golden", "approve", "--frames", "2", "balls.scenario.json"});
     REQUIRE_MESSAGE(o.code == 0, o.err);
   }
-  Outcome test() const { return test::run(*this, {"golden", "test"}); }
+  Outcome test(const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> words = {"golden", "test"};
+    words.insert(words.end(), options.begin(), options.end());
+    return test::run(*this, words);
+  }
+  /// Moves the start of the second ball.
+  void change() const {
+    write("balls.scenario.json", std::regex_replace(two_balls(), std::regex("3, 0.2"), "3, 0.3"));
+  }
 };
 
 golden::GoldenSpec small_spec() {
@@ -119,6 +129,60 @@ TEST_CASE("goldens: approved runs pass and leave no files; approving again chang
   CHECK(folder.tree() == before);
   CHECK(test::run(folder, {"golden", "approve"}).out == "unchanged balls\n");
   CHECK(test::run(folder, {"golden", "test", "balls.scenario.json"}).code == 0);
+}
+
+TEST_CASE("goldens: a dry run changes nothing, and names what approving changes") {
+  const Approved folder;
+  folder.change();
+  const auto contents = [&] {
+    std::vector<std::string> out;
+    for (const std::string& file : folder.tree())
+      if (file.find('.') != std::string::npos) out.push_back(file + slurp(folder / file));
+    return out;
+  };
+  const std::vector<std::string> before = contents();
+  const Outcome dry = test::run(folder, {"golden", "approve", "--dry-run"});
+  CHECK(dry.code == 0);
+  CHECK(contents() == before);
+  const Outcome done = test::run(folder, {"golden", "approve"});
+  CHECK(contents() != before);
+  CHECK(dry.out == std::regex_replace(done.out, std::regex("(^|\n)(approved|removed)"), "$1would be $2"));
+  // A golden that does not exist yet is not begun.
+  CHECK(test::run(folder, {"golden", "approve", "--dry-run", "--goldens", "others", "balls.scenario.json"})
+            .out.find("would be approved others/balls/golden.json\n") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder.path / "others"));
+}
+
+TEST_CASE("goldens: remove deletes what approving wrote, and list names goldens without a scenario") {
+  const Approved folder;
+  const Outcome none = test::run(folder, {"golden", "remove", "balls", "bells"});
+  CHECK(none.code == 2);
+  CHECK(none.err.find("bells: no golden of this name in goldens; nothing was removed") != std::string::npos);
+  std::filesystem::rename(folder.path / "balls.scenario.json", folder.path / "other.scenario.json");
+  CHECK(test::run(folder, {"golden", "list"}).out.find("its scenario cannot be opened: ") !=
+        std::string::npos);
+  folder.write("goldens/balls/notes.txt", "kept");
+  CHECK(test::run(folder, {"golden", "remove", "balls"}).out == "removed balls\n");
+  CHECK(folder.tree() == std::vector<std::string>{"goldens", "goldens/balls", "goldens/balls/notes.txt",
+                                                  "other.scenario.json"});
+}
+
+TEST_CASE("goldens: a table for CI has failures first; a repeated failure is changed, not flaky") {
+  const Approved folder;
+  const Outcome ok = folder.test({"--markdown", "summary.md", "--repeat", "2"});
+  CHECK(ok.code == 0);
+  CHECK(slurp(folder / "summary.md").starts_with("### Goldens: 0 of 1 failed\n"));
+  folder.change();
+  const Outcome failed = folder.test({"--markdown", "summary.md", "--repeat", "2"});
+  CHECK(failed.code == 1);
+  // The cause is the line after the verdict and the repeats.
+  CHECK(std::regex_search(failed.out,
+                          std::regex("^FAIL  balls: [^\n]*\n      changed: none of 2 repeats passed\n"
+                                     "      cause: the scenario file changed")));
+  const std::string table = slurp(folder / "summary.md");
+  CHECK(table.find("### Goldens: 1 of 1 failed\n") == 0);
+  CHECK(table.find("| balls | **failed** | ") != std::string::npos);
+  CHECK(table.find("the scenario file changed") != std::string::npos);
 }
 
 TEST_CASE("goldens: approved twice, they are the same bytes") {
@@ -407,7 +471,7 @@ struct ApprovedFiles : Folder {
 
 }  // namespace
 
-TEST_CASE("goldens: effects are reported first, then the moved vertex and its distance") {
+TEST_CASE("goldens: a failure names the moved vertex and its distance first, then the effects") {
   ApprovedFiles folder;
   CHECK(fs::exists(folder / "goldens/tips/a.ply"));
   CHECK(test::run(folder, {"golden", "test"}).code == 0);
@@ -421,10 +485,11 @@ TEST_CASE("goldens: effects are reported first, then the moved vertex and its di
   CHECK(has(o.out, "cause: body A (a.obj): its mesh changed: vertex 3 moved by 0.5 ("));
   CHECK_FALSE(has(o.out, "cause: body B"));
   CHECK(o.out.find("relation: expected") < o.out.find("face tests: expected"));
-  CHECK(o.out.find("face tests: expected") < o.out.find("cause: "));
+  CHECK(o.out.find("cause: ") < o.out.find("relation: expected"));
   CHECK(has(o.out, "out/golden/index.html#tips-frame_1\n"));
   const std::string page = slurp(folder / "out/golden/index.html");
   CHECK(has(page, "tips: differences"));
+  CHECK(page.find("its mesh changed: vertex 3 moved by 0.5 (") < page.find("tips: differences"));
   CHECK(has(page, "id=\"tips-frame_1\""));
   const std::string junit = slurp(folder / "results.xml");
   CHECK(has(junit, "<testsuite name=\"lrbscope golden\" tests=\"1\" failures=\"1\" errors=\"0\""));
