@@ -218,6 +218,40 @@ inline constexpr double kVolumeRounding = 0x1p-33;
 /// average normal to be reported. Dimensionless. Smaller: normals that consist of rounding errors.
 inline constexpr double kContactNormalLeast = 0x1p-20;
 
+/// Contact manifolds. They affect normals and the choice of points, never the list of pairs.
+
+/// Cosine of the largest angle (20 degrees) between a manifold's normal and those of its pairs. Larger: a
+/// curved contact is divided into more manifolds. Smaller: the sides of a groove share a normal.
+inline constexpr double kManifoldAngle = 0.94;
+/// Height of a neighbour over a vertex that counts as an extreme one, relative to their distance. Larger:
+/// inner edges of slightly curved surfaces yield normals. Smaller: flat surfaces rounded to float are not
+/// recognised as flat.
+inline constexpr double kExtremeSlope = 1e-3;
+/// Advantage in depth, relative to the extent of the two triangles, that another axis must have over one
+/// found before. Smaller: rounding decides between axes of equal depth.
+inline constexpr double kAxisAdvantage = 1e-6;
+/// Cosine between a face's normal and the manifold's up to which the face carries contact points. Smaller:
+/// rounding across the face is enlarged by its inverse.
+inline constexpr double kSteepest = 0.3;
+/// Least cosine between the normal of two edges in contact and those of the faces beside them. Smaller: an
+/// edge on the far side of a body yields a normal. Larger: sharper edges have no normals.
+inline constexpr double kSteepestEdge = 0.05;
+/// Barycentric weight up to which a point is on the boundary of a projected triangle. Larger: points leave
+/// the triangle by this fraction of it. Smaller: rounding loses vertices on edges.
+inline constexpr double kOverlayRounding = 1e-9;
+/// Sine of the angle up to which projected edges count as parallel: their crossing would be ill-conditioned.
+inline constexpr double kParallelEdges = 1e-6;
+/// Factor of the spread of points that were chosen in the previous step.
+inline constexpr double kChosenBefore = 1.05;
+/// Least spread of the points of a manifold, relative to the smaller body's size or to the points' distance.
+inline constexpr double kSpreadLeast = 1e-6;
+/// Depth, relative to the smaller body's size, from which a point must be inside one of the bodies. Smaller:
+/// points on the surface are rejected because of rounding.
+inline constexpr double kDepthRounding = 1e-9;
+/// Distance, relative to the smaller body's size, by which a contact point moves at most in a step and keeps
+/// its id although its features change.
+inline constexpr double kContactMoves = 0.02;
+
 /// Distances from a coplanar contact at which interiors_overlap() searches for a point inside both bodies,
 /// relative to the contact's size. A point at any of them is a proof. Fewer distances: "unknown" for thinner
 /// wedges.

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "engine/clash/clash_parts.hpp"
 #include "engine/collide/collide_into.hpp"
 #include "engine/collide/contact_regions.hpp"
+#include "engine/distance/manifold_context.hpp"
 #include "engine/distance/near_pairs_context.hpp"
 #include "engine/motion/contact_search.hpp"
 #include <lrbscope/error.hpp>
@@ -16,6 +18,7 @@ namespace lrb {
 struct Workspace::Memory {
   FirstContactContext context;
   NearPairsContext near;
+  ManifoldContext manifold;
   Workers alone;  ///< the calling thread
   // The last answers.
   CollideResult collision;
@@ -23,6 +26,7 @@ struct Workspace::Memory {
   ClashResult clash;
   FirstContactResult contact;
   NearPairsResult pairs;
+  ManifoldResult manifolds, earlier_manifolds;
 
   // One context serves all queries: each query initialises what it reads, so that only memory is reused.
   DistanceContext& of_distance() { return context.distance; }
@@ -76,6 +80,19 @@ Expected<NearPairsResult&> near_pairs(const LrbRep& a, const Pose& pose_a, const
   near_pairs_into(a, pose_a, b, pose_b, request, memory.alone, memory.of_collision(), memory.near,
                   memory.pairs);
   return memory.pairs;
+} catch (const InputError& e) {
+  return Error{e.what()};
+}
+
+Expected<ManifoldResult&> contact_manifolds(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                                            const Pose& pose_b, const ManifoldRequest& request,
+                                            Workspace& workspace, const ManifoldResult* previous) try {
+  Workspace::Memory& memory = workspace.memory();
+  // The previous answer may be the one in the workspace: keep it until the next one is complete.
+  contact_manifolds_into(a, pose_a, b, pose_b, request, previous, memory.alone, memory.of_collision(),
+                         memory.near, memory.manifold, memory.earlier_manifolds);
+  std::swap(memory.manifolds, memory.earlier_manifolds);
+  return memory.manifolds;
 } catch (const InputError& e) {
   return Error{e.what()};
 }

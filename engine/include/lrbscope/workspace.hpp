@@ -10,6 +10,7 @@
 
 #include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
+#include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/first_contact.hpp>
@@ -145,6 +146,13 @@ Expected<DistanceResult&> distance(const LrbRep& a, const Pose& pose_a, const Lr
 Expected<NearPairsResult&> near_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
                                       const Pose& pose_b, const NearPairsRequest& request,
                                       Workspace& workspace);
+
+/// See contact_manifolds() in <lrbscope/contact_manifold.hpp>, on one thread. `previous` may be the answer of
+/// the previous step in this workspace. Also returns an error for a negative or non-finite margin and for
+/// more pairs than ManifoldRequest::max_pairs.
+Expected<ManifoldResult&> contact_manifolds(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                                            const Pose& pose_b, const ManifoldRequest& request,
+                                            Workspace& workspace, const ManifoldResult* previous = nullptr);
 
 /// See clash() in <lrbscope/clash.hpp>. Also returns an error for 2D bodies, a negative or non-finite
 /// clearance, and a direction of length zero.

@@ -1,0 +1,464 @@
+// Contact manifolds: known contacts, and the guarantees for all kinds of bodies.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "scenarios/bodies/shapes.hpp"
+#include "tests/support/closed_body.hpp"
+#include "tests/support/hard_bodies.hpp"
+#include "tests/support/simplex_distance.hpp"
+#include <lrbscope/contact_manifold.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/workspace.hpp>
+
+using namespace lrb;
+using Eigen::Vector3d;
+using shapes::RandomEngine;
+
+namespace {
+
+using test::closed;
+
+const double kPi = std::numbers::pi;
+
+ManifoldRequest with_margin(double margin) {
+  ManifoldRequest request;
+  request.margin = margin;
+  return request;
+}
+
+/// Returns the distance of a point from a feature of a body.
+double distance_to_feature(const LrbRep& rep, const Pose& pose, const SurfaceFeatureId& f,
+                           const Vector3d& p) {
+  const auto at = [&](std::uint32_t v) { return pose.apply(rep.vertices()[v]); };
+  if (f.kind == FeatureKind::vertex) return (p - at(f.first)).norm();
+  if (f.kind == FeatureKind::edge) return test::point_segment(p, at(f.first), at(f.second));
+  const test::Points s = test::simplex_points(rep, pose, SimplexId(f.first));
+  if (s.size() == 2) return test::point_segment(p, s[0], s[1]);
+  // A triangle without area is a segment.
+  return std::min({test::point_triangle(p, s), test::point_segment(p, s[0], s[1]),
+                   test::point_segment(p, s[1], s[2]), test::point_segment(p, s[2], s[0])});
+}
+
+double size_of(const LrbRep& rep, const Pose& pose) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& x : rep.vertices()) box.extend(pose.apply(x));
+  return std::max(box.sizes().norm(),
+                  box.corner(box.BottomLeftFloor).norm() + box.corner(box.TopRightCeil).norm());
+}
+
+struct ManifoldsSeen {
+  int manifolds = 0, points = 0, deep = 0, gaps = 0;
+};
+
+/// Checks what holds for all bodies.
+void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, double margin,
+           ManifoldsSeen& seen) {
+  CAPTURE(margin);
+  const ManifoldResult r = contact_manifolds(a, pose_a, b, pose_b, with_margin(margin));
+  NearPairsRequest request;
+  request.within = margin;
+  const NearPairsResult near = near_pairs(a, pose_a, b, pose_b, request);
+  // All pairs, each in one manifold.
+  REQUIRE(r.pairs.size() == near.pairs.size());
+  std::vector<int> times(r.pairs.size(), 0);
+  std::set<std::uint64_t> ids;
+  const double rounding = 1e-9 * std::max(size_of(a, pose_a), size_of(b, pose_b));
+  for (const ContactManifold& m : r.manifolds) {
+    bool intersects = false;
+    for (const std::uint32_t i : m.pairs) {
+      ++times[i];
+      CHECK(r.pairs[i].a == near.pairs[i].a);
+      CHECK(r.pairs[i].b == near.pairs[i].b);
+      intersects = intersects || r.pairs[i].meet != exact::Meet::disjoint;
+    }
+    CHECK(m.intersects == intersects);
+    CHECK(!m.points.empty());
+    CHECK(m.points.size() <= (a.dim() == 3 ? 4 : 2));
+    CHECK((m.normal.isZero() || std::abs(m.normal.norm() - 1) < 1e-12));
+    CHECK(std::is_sorted(m.points.begin(), m.points.end(),
+                         [](const ManifoldPoint& x, const ManifoldPoint& y) { return x.depth > y.depth; }));
+    for (const ManifoldPoint& p : m.points) {
+      ids.insert(p.id);
+      // On both surfaces, and apart along the normal by the depth.
+      CHECK(distance_to_feature(a, pose_a, p.on[0], p.point[0]) <= rounding);
+      CHECK(distance_to_feature(b, pose_b, p.on[1], p.point[1]) <= rounding);
+      CHECK((p.point[0] - p.point[1] - p.depth * m.normal).norm() <= rounding);
+      CHECK(p.depth >= -margin - rounding);
+      seen.deep += p.depth > rounding;
+      seen.gaps += p.depth < -rounding;
+      ++seen.points;
+    }
+    ++seen.manifolds;
+  }
+  for (const int n : times) CHECK(n == 1);
+  CHECK(ids.size() == r.next_id);
+}
+
+/// A plate [-2, 2]^2 below z = 0, with n x n squares on top, moved up and down by `bump`.
+Mesh fine_plate(std::uint32_t n, double bump = 0) {
+  Mesh mesh;
+  const auto height = [&](std::uint32_t i, std::uint32_t j) {
+    return i % n == 0 || j % n == 0 ? 0 : bump * std::sin(1.3 * i) * std::cos(0.9 * j);
+  };
+  for (int low = 0; low < 2; ++low)
+    for (std::uint32_t j = 0; j <= n; ++j)
+      for (std::uint32_t i = 0; i <= n; ++i)
+        mesh.vertices.push_back({-2 + 4.0 * i / n, -2 + 4.0 * j / n, low == 1 ? -0.5 : height(i, j)});
+  const auto at = [&](std::uint32_t low, std::uint32_t i, std::uint32_t j) {
+    return VertexId((low * (n + 1) + j) * (n + 1) + i);
+  };
+  const auto add = [&](VertexId p, VertexId q, VertexId r, VertexId s) {
+    mesh.add_face(std::array{p, q, r});
+    mesh.add_face(std::array{p, r, s});
+  };
+  for (std::uint32_t k = 0; k < n; ++k) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      add(at(0, i, k), at(0, i + 1, k), at(0, i + 1, k + 1), at(0, i, k + 1));
+      add(at(1, i, k), at(1, i, k + 1), at(1, i + 1, k + 1), at(1, i + 1, k));
+    }
+    add(at(0, k, 0), at(1, k, 0), at(1, k + 1, 0), at(0, k + 1, 0));
+    add(at(0, n, k), at(1, n, k), at(1, n, k + 1), at(0, n, k + 1));
+    add(at(0, k + 1, n), at(1, k + 1, n), at(1, k, n), at(0, k, n));
+    add(at(0, 0, k + 1), at(1, 0, k + 1), at(1, 0, k), at(0, 0, k));
+  }
+  return mesh;
+}
+
+const Mesh kPlate = shapes::box({-2, -2, -0.5}, {2, 2, 0}),
+           kBox = shapes::box({-0.5, -0.5, 0}, {0.5, 0.5, 1});
+
+/// Checks that B's corners at the given locations are the only points, all of one manifold.
+void check_corners(const ManifoldResult& r, std::vector<Vector3d> corners, const Vector3d& normal,
+                   double depth) {
+  CAPTURE(depth);
+  REQUIRE(r.manifolds.size() == 1);
+  const ContactManifold& m = r.manifolds[0];
+  CHECK((m.normal - normal).norm() <= 1e-15);
+  REQUIRE(m.points.size() == corners.size());
+  for (const ManifoldPoint& p : m.points) {
+    CHECK(p.on[1].kind == FeatureKind::vertex);
+    CHECK(p.depth == doctest::Approx(depth).epsilon(1e-12));
+    const auto nearest = std::min_element(corners.begin(), corners.end(), [&](const auto& x, const auto& y) {
+      return (x - p.point[1]).norm() < (y - p.point[1]).norm();
+    });
+    REQUIRE(nearest != corners.end());
+    CHECK((*nearest - p.point[1]).norm() < 1e-12);
+    corners.erase(nearest);
+  }
+}
+
+TEST_CASE("manifold of a box on a plate: its four corners, at any gap and depth, on coarse and fine plates") {
+  const LrbRep box = closed(kBox), plates[] = {closed(kPlate), closed(fine_plate(40))};
+  for (const LrbRep& plate : plates)
+    for (const double depth : {0.125, 0.0078125, 0.0, -0.0078125})
+      for (const double margin : {0.0, 0.015625}) {
+        CAPTURE(depth);
+        CAPTURE(margin);
+        const ManifoldResult r =
+            contact_manifolds(plate, {}, box, Pose::translation({0.1, 0.2, -depth}), with_margin(margin));
+        if (-depth > margin) {
+          CHECK(r.manifolds.empty());
+          continue;
+        }
+        check_corners(r, {{-0.4, -0.3, -depth}, {0.6, -0.3, -depth}, {-0.4, 0.7, -depth}, {0.6, 0.7, -depth}},
+                      {0, 0, 1}, depth);
+        CHECK(r.manifolds[0].intersects == (depth >= 0));
+      }
+}
+
+TEST_CASE("manifold of a tilted box: its deepest corner or edge, with the normal of the plate") {
+  const LrbRep box = closed(kBox), plate = closed(fine_plate(40));
+  for (const double margin : {0.0, 0.01}) {
+    const Pose on_edge = Pose::rotation({1, 0, 0}, 0.5, {0.1, 0.2, 0.5 * std::sin(0.5) - 0.005});
+    const ManifoldResult edge = contact_manifolds(plate, {}, box, on_edge, with_margin(margin));
+    REQUIRE(edge.manifolds.size() == 1);
+    CHECK((edge.manifolds[0].normal - Vector3d(0, 0, 1)).norm() < 1e-15);
+    std::set<std::uint32_t> corners;
+    for (int i = 0; i < 2; ++i) {
+      const ManifoldPoint& p = edge.manifolds[0].points[static_cast<std::size_t>(i)];
+      CHECK(p.depth == doctest::Approx(0.005));
+      if (p.on[1].kind == FeatureKind::vertex) corners.insert(p.on[1].first);
+    }
+    CHECK(corners.size() == 2);
+    Pose on_corner = Pose::rotation({1, -0.7, 0.1}, 0.6, {0.1, 0.2, 0});
+    double lowest = 1;
+    for (const Vector3d& x : box.vertices()) lowest = std::min(lowest, on_corner.apply(x).z());
+    on_corner.t.z() = -0.005 - lowest;
+    const ManifoldResult corner = contact_manifolds(plate, {}, box, on_corner, with_margin(margin));
+    REQUIRE(corner.manifolds.size() == 1);
+    CHECK((corner.manifolds[0].normal - Vector3d(0, 0, 1)).norm() < 1e-15);
+    CHECK(corner.manifolds[0].points[0].depth == doctest::Approx(0.005));
+    CHECK(corner.manifolds[0].points[0].on[1].kind == FeatureKind::vertex);
+  }
+}
+
+TEST_CASE("manifold of two crossing edges: their normal, and one point on each") {
+  const LrbRep cube = closed(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
+  const Pose pose_a = Pose::rotation({1, 0, 0}, kPi / 4);
+  for (const double angle : {0.0, 0.1, -0.2})
+    for (const double depth : {0.01, -0.01}) {
+      CAPTURE(angle);
+      CAPTURE(depth);
+      // B's lower edge is along y, turned by `angle` about z.
+      Pose pose_b = Pose::rotation({0, 0, 1}, angle);
+      pose_b.r = pose_b.r * Pose::rotation({0, 1, 0}, kPi / 4).r;
+      pose_b.t = {0.1, 0.05, std::sqrt(2.0) - depth};
+      const ManifoldResult r = contact_manifolds(cube, pose_a, cube, pose_b, with_margin(0.02));
+      REQUIRE(r.manifolds.size() == 1);
+      CHECK((r.manifolds[0].normal - Vector3d(0, 0, 1)).norm() < 1e-12);
+      const ManifoldPoint& p = r.manifolds[0].points[0];
+      CHECK(p.depth == doctest::Approx(depth));
+      CHECK(p.on[0].kind == FeatureKind::edge);
+      CHECK(p.on[1].kind == FeatureKind::edge);
+    }
+}
+
+TEST_CASE("manifolds of a ring on a peg: radial normals; of a box in an inner corner: one for each wall") {
+  const LrbRep peg = closed(shapes::revolve({{0, -2}, {0.5, -2}, {0.5, 2}, {0, 2}}, 24)),
+               ring = closed(shapes::torus(24, 12, 0.9, 0.38));
+  const ManifoldResult around =
+      contact_manifolds(peg, {}, ring, Pose::translation({0, 0, 0.1}), with_margin(0.03));
+  REQUIRE(around.manifolds.size() >= 6);
+  Vector3d sum = Vector3d::Zero();
+  for (const ContactManifold& m : around.manifolds) {
+    CHECK(std::abs(m.normal.z()) < 1e-12);
+    const Vector3d& p = m.points[0].point[0];
+    CHECK(m.normal.dot(Vector3d(p.x(), p.y(), 0).normalized()) > 0.9);
+    sum += m.normal;
+  }
+  CHECK(sum.norm() < 0.35 * static_cast<double>(around.manifolds.size()));
+  const ManifoldResult inner =
+      contact_manifolds(closed(shapes::l_shape()), {},
+                        closed(shapes::box({1.001, 1.001, 0.2}, {1.5, 1.5, 0.8})), {}, with_margin(0.01));
+  REQUIRE(inner.manifolds.size() == 2);
+  for (const ContactManifold& m : inner.manifolds) {
+    CHECK(m.points.size() == 4);
+    CHECK(m.normal.maxCoeff() == 1);
+    CHECK(m.region == 0);
+    for (const ManifoldPoint& p : m.points) CHECK(p.depth == doctest::Approx(-0.001));
+  }
+}
+
+TEST_CASE("manifolds have all pairs and points on both surfaces, for all kinds of bodies and poses") {
+  RandomEngine random(1);
+  const LrbRep bodies[] = {
+      closed(shapes::quad_box()),
+      closed(shapes::icosphere(2)),
+      closed(shapes::torus(12, 8)),
+      closed(shapes::box_with_void(), 0.3),
+      closed(hard::cog(12)),
+      closed(hard::nested(3)),
+      LrbRep::without_regions(shapes::open_cylinder(8), false, false),
+      LrbRep::without_regions(
+          shapes::several({shapes::quad_box(), shapes::translated(shapes::quad_box(), {0.5, 0.25, 0.125})}),
+          true, true)};
+  ManifoldsSeen seen;
+  for (const LrbRep& a : bodies)
+    for (const LrbRep& b : bodies)
+      for (int round = 0; round < 5; ++round) {
+        CAPTURE(a.real_face_count());
+        CAPTURE(b.real_face_count());
+        CAPTURE(round);
+        const Pose pose_a{shapes::random_rotation(random), 3 * shapes::random_direction(random)};
+        Pose pose_b{shapes::random_rotation(random),
+                    pose_a.t + shapes::uniform(random, 0, 2.5) * shapes::random_direction(random)};
+        if (round == 3) pose_b.r *= 0.5;
+        if (round == 4) pose_b.r.col(1) *= -1;  // mirrored
+        const double margins[] = {0, 0.02, 0.1, 0.05, 0};
+        check(a, pose_a, b, pose_b, margins[round], seen);
+      }
+  check(bodies[1], {}, bodies[1], {}, 0, seen);  // identical
+  CHECK(seen.manifolds > 300);
+  CHECK(seen.deep > 300);
+  CHECK(seen.gaps > 100);
+}
+
+TEST_CASE("manifolds of bodies in the plane and of degenerate faces") {
+  RandomEngine random(2);
+  ManifoldsSeen seen;
+  const LrbRep flat[] = {closed(shapes::gear(6)), closed(shapes::star(5)), closed(shapes::ring_2d(8))};
+  for (const LrbRep& a : flat)
+    for (const LrbRep& b : flat)
+      for (const double margin : {0.0, 0.05, 0.5})
+        check(a, {}, b,
+              Pose::rotation({0, 0, 1}, shapes::uniform(random, 0, 6),
+                             {shapes::uniform(random, 0, 3), shapes::uniform(random, 0, 1), 0}),
+              margin, seen);
+  CHECK(seen.points > 30);
+  const ManifoldResult square = contact_manifolds(
+      closed(shapes::polygon({{-2, -1}, {2, -1}, {2, 0}, {-2, 0}})), {},
+      closed(shapes::polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}})), Pose::translation({0, -0.25, 0}));
+  check_corners(square, {{0, -0.25, 0}, {1, -0.25, 0}}, {0, 1, 0}, 0.25);
+  Mesh needles;  // long and thin, and without area
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    const Vector3d p = shapes::random_direction(random), d = shapes::random_direction(random);
+    needles.vertices.insert(needles.vertices.end(), {p, p + d,
+                                                     i % 3 == 0   ? p
+                                                     : i % 3 == 1 ? Vector3d(p + d)
+                                                                  : Vector3d(p + 1e-6 * d.cross(p))});
+    needles.add_face(std::array{VertexId(3 * i), VertexId(3 * i + 1), VertexId(3 * i + 2)});
+  }
+  const LrbRep loose = LrbRep::without_regions(needles, false, false);
+  for (const double margin : {0.0, 0.1, 0.5})
+    for (int i = 0; i < 3; ++i)
+      check(loose, {}, loose, Pose{shapes::random_rotation(random), 0.1 * shapes::random_direction(random)},
+            margin, seen);
+}
+
+TEST_CASE("no points of a manifold's faces along its normal are deeper than its first point") {
+  RandomEngine random(3);
+  const LrbRep bodies[] = {closed(kBox), closed(shapes::icosphere(1)), closed(fine_plate(6, 0.05))};
+  int compared = 0;
+  for (const LrbRep& a : bodies)
+    for (const LrbRep& b : bodies)
+      for (int round = 0; round < 4; ++round) {
+        const Pose pose_b{shapes::random_rotation(random), 1.5 * shapes::random_direction(random)};
+        const ManifoldResult r = contact_manifolds(a, {}, b, pose_b, with_margin(0.05));
+        for (const ContactManifold& m : r.manifolds) {
+          if (m.normal.isZero()) continue;
+          for (const std::uint32_t i : m.pairs) {
+            const test::Points s = test::simplex_points(a, {}, r.pairs[i].a),
+                               t = test::simplex_points(b, pose_b, r.pairs[i].b);
+            const Vector3d n = (s[1] - s[0]).cross(s[2] - s[0]).normalized();
+            const Vector3d of_b = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+            if (n.dot(m.normal) < 0.31 || of_b.dot(m.normal) > -0.31) continue;
+            for (int k = 0; k < 20; ++k) {
+              const Vector3d x = test::random_point_of(random, t);
+              const double depth = n.dot(s[0] - x) / n.dot(m.normal);
+              if (test::point_triangle(x + depth * m.normal, s) > 1e-12) continue;
+              // Deep points on parts of the surface that only seem to overlap are left out.
+              if (depth > 0.5) continue;
+              CHECK(depth <= m.points[0].depth + 1e-9);
+              ++compared;
+            }
+          }
+        }
+      }
+  CHECK(compared > 1000);
+}
+
+bool are_equal(const ManifoldResult& x, const ManifoldResult& y) {
+  if (x.manifolds.size() != y.manifolds.size() || x.next_id != y.next_id) return false;
+  for (std::size_t m = 0; m < x.manifolds.size(); ++m) {
+    const ContactManifold &p = x.manifolds[m], &q = y.manifolds[m];
+    if (p.normal != q.normal || p.pairs != q.pairs || p.points.size() != q.points.size()) return false;
+    for (std::size_t k = 0; k < p.points.size(); ++k)
+      if (p.points[k].id != q.points[k].id || p.points[k].depth != q.points[k].depth ||
+          p.points[k].point[0] != q.points[k].point[0] || p.points[k].point[1] != q.points[k].point[1])
+        return false;
+  }
+  return true;
+}
+
+TEST_CASE("manifolds do not depend on threads or on a workspace") {
+  const LrbRep plate = closed(fine_plate(30, 0.02)), ball = closed(shapes::bumpy_sphere(3, 1)),
+               box = closed(kBox);
+  Workspace workspace;
+  for (const LrbRep* b : {&ball, &box, &ball}) {
+    ManifoldResult one, many;
+    const ManifoldResult* in_workspace = nullptr;
+    for (int step = 0; step < 5; ++step) {
+      const Pose pose = Pose::rotation({1, 0, 0.1}, 0.02 * step, {0.2, 0.1, b == &ball ? 0.9 : 0.01});
+      const ManifoldRequest request = with_margin(0.03);
+      one = contact_manifolds(plate, {}, *b, pose, request, step > 0 ? &one : nullptr, 1);
+      many = contact_manifolds(plate, {}, *b, pose, request, step > 0 ? &many : nullptr, 3);
+      in_workspace = &contact_manifolds(plate, {}, *b, pose, request, workspace, in_workspace).value();
+      CHECK(!one.manifolds.empty());
+      CHECK(are_equal(one, many));
+      CHECK(are_equal(one, *in_workspace));
+    }
+  }
+}
+
+using Ids = std::set<std::uint64_t>;
+
+Ids ids_of(const ManifoldResult& r) {
+  Ids ids;
+  for (const ContactManifold& m : r.manifolds)
+    for (const ManifoldPoint& p : m.points) ids.insert(p.id);
+  return ids;
+}
+
+TEST_CASE("ids of manifold points persist while bodies rock, sink, rise and slide") {
+  const LrbRep plate = closed(fine_plate(40)), box = closed(kBox);
+  RandomEngine random(4);
+  ManifoldResult r;
+  for (int step = 0; step < 300; ++step) {
+    const Vector3d axis = shapes::random_direction(random);
+    const Pose pose = Pose::rotation(axis, 1e-5, {0.1 + 0.002 * step, 0.2, 1e-4 * std::sin(0.1 * step)});
+    r = contact_manifolds(plate, {}, box, pose, with_margin(0.01), step > 0 ? &r : nullptr);
+    CHECK(ids_of(r) == Ids{0, 1, 2, 3});
+  }
+  // Bodies that move together.
+  const Pose both = Pose::rotation({1, 2, 3}, 1.1, {5, -7, 2});
+  const ManifoldResult moved = contact_manifolds(
+      plate, both, box, {both.r * r.pose[1].r, both.apply(r.pose[1].t)}, with_margin(0.01), &r);
+  CHECK(ids_of(moved) == ids_of(r));
+  CHECK((moved.manifolds[0].normal - both.r * r.manifolds[0].normal).norm() < 1e-9);
+  // On its other side, other corners are in contact.
+  const ManifoldResult over =
+      contact_manifolds(plate, {}, box, Pose::rotation({1, 0, 0}, kPi, {0, 0, 1}), with_margin(0.01), &r);
+  CHECK(ids_of(over) == Ids{4, 5, 6, 7});
+  // No contact, and the ids are not used again.
+  const ManifoldResult none = contact_manifolds(plate, {}, box, Pose::translation({0, 0, 1}), {}, &over);
+  CHECK(none.manifolds.empty());
+  CHECK(ids_of(contact_manifolds(plate, {}, box, {}, {}, &none)) == Ids{8, 9, 10, 11});
+}
+
+TEST_CASE("ids of a disk that rocks: at most one of four points changes in a step") {
+  const LrbRep plate = closed(kPlate), disk = closed(hard::drum(48));
+  ManifoldResult r;
+  int kept = 0;
+  for (int step = 0; step < 200; ++step) {
+    const Vector3d axis(std::cos(0.05 * step), std::sin(0.05 * step), 0);
+    const Pose pose = Pose::rotation(axis, 1e-3, {0, 0, 1e-4});
+    const Ids before = ids_of(r);
+    r = contact_manifolds(plate, {}, disk, pose, with_margin(0.01), step > 0 ? &r : nullptr);
+    for (const std::uint64_t id : ids_of(r)) kept += before.contains(id);
+  }
+  CHECK(kept >= 3 * 199);
+}
+
+TEST_CASE("manifolds of bodies of extreme size and location have the same shape") {
+  const LrbRep plate = closed(kPlate), box = closed(kBox);
+  const Pose pose = Pose::translation({0.125, 0.25, -0.0078125});
+  for (const double scale : {0x1p-300, 0x1p-40, 0x1p60, 0x1p300}) {
+    CAPTURE(scale);
+    const ManifoldResult r = contact_manifolds(closed(kPlate, scale), {}, closed(kBox, scale),
+                                               Pose::translation(scale * pose.t), with_margin(0.01 * scale));
+    REQUIRE(r.manifolds.size() == 1);
+    REQUIRE(r.manifolds[0].points.size() == 4);
+    CHECK(r.manifolds[0].normal == Vector3d(0, 0, 1));
+    for (const ManifoldPoint& p : r.manifolds[0].points)
+      CHECK(p.depth / scale == doctest::Approx(0.0078125).epsilon(1e-12));
+  }
+  const Pose far = Pose::translation({1e6, -1e6, 1e6});
+  const ManifoldResult r = contact_manifolds(plate, far, box, Pose::translation(far.t + pose.t));
+  REQUIRE(r.manifolds.size() == 1);
+  CHECK(r.manifolds[0].points.size() == 4);
+}
+
+TEST_CASE("manifolds: bad requests are rejected in one line, and bodies without faces have none") {
+  const LrbRep box = closed(kBox);
+  for (const double margin : {-1.0, std::numeric_limits<double>::infinity(), std::nan("")})
+    CHECK_THROWS_WITH_AS(contact_manifolds(box, {}, box, {}, with_margin(margin)),
+                         doctest::Contains("expected a finite margin of at least 0"), InputError);
+  ManifoldRequest few;
+  few.max_pairs = 10;
+  CHECK_THROWS_WITH_AS(contact_manifolds(box, {}, box, {}, few), doctest::Contains("more than 10 pairs"),
+                       InputError);
+  CHECK_THROWS_AS(contact_manifolds(box, {}, closed(shapes::star(5)), {}), InputError);
+  CHECK(contact_manifolds(box, {}, LrbRep::without_regions(Mesh{}, false, false), {}).manifolds.empty());
+  Pose infinite;
+  infinite.t.x() = std::numeric_limits<double>::infinity();
+  Workspace workspace;
+  CHECK(!contact_manifolds(box, {}, box, infinite, {}, workspace));
+}
+
+}  // namespace
