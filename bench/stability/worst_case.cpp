@@ -54,6 +54,24 @@ struct CloseUp {
   std::string caption;
 };
 
+/// Returns the smallest box around the place of a pair: its extent, or if it is a point the shortest edge of
+/// the two simplices.
+CloseUp close_up_of_place(const CasePicture& s, const Piece& place, const SimplexPair& pair,
+                          const char* kind) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& x : place.corners) box.extend(x);
+  double size = diagonal(box);
+  if (!(size > 0)) {
+    for (const Piece& p : {s.bodies[0].simplex(pair.a), s.bodies[1].simplex(pair.b)})
+      for (std::size_t k = 0; k < p.corners.size(); ++k) {
+        const double length = (p.corners[k] - p.corners[(k + 1) % p.corners.size()]).stableNorm();
+        if (length > 0 && (!(size > 0) || length < size)) size = length;
+      }
+  }
+  const Eigen::Vector3d centre = centre_of(box), half = Eigen::Vector3d::Constant(size / 2);
+  return {Eigen::AlignedBox3d(centre - half, centre + half), std::string("close-up, ") + kind};
+}
+
 std::optional<CloseUp> close_up(const CasePicture& s, const Verdict& verdict) {
   const double whole = diagonal(s.box);
   const Pairs& pairs = verdict.worst();
@@ -64,6 +82,11 @@ std::optional<CloseUp> close_up(const CasePicture& s, const Verdict& verdict) {
     return std::nullopt;
   }
   const char* kind = !verdict.missed.empty() ? "missed" : !verdict.extra.empty() ? "extra" : "expected";
+  if (!s.places.empty()) {
+    CloseUp close = close_up_of_place(s, s.places.front(), pairs.front(), kind);
+    if (diagonal(close.box) < kSmallShare * whole) return close;
+    return std::nullopt;
+  }
   Eigen::AlignedBox3d all;
   const Eigen::AlignedBox3d* smallest = nullptr;
   std::vector<Eigen::AlignedBox3d> places;
