@@ -60,14 +60,14 @@ std::string describe(const Replay& r, Quantity quantity, bool pairs) {
   out << record.method << ": " << name_of(record.outcome);
   if (!record.message.empty()) out << " (" << record.message << ")";
   out << "\n";
-  if (quantity == Quantity::pairs) {
+  if (methods::is_list(quantity)) {
     out << "  pairs: " << record.expected << " expected, ";
     if (r.answered)
       out << r.answered->size() << " found, " << record.missed << " missed, " << record.extra << " extra\n";
     else
       out << "no list returned\n";
   }
-  if (!record.relation.empty())
+  if (!record.relation.empty() && (quantity == Quantity::pairs || !methods::is_list(quantity)))
     out << "  " << (quantity == Quantity::pairs ? "relation" : name_of(quantity)) << ": "
         << record.expected_relation << " expected, " << record.relation << " found\n";
   if (pairs && r.answered) {
@@ -267,8 +267,9 @@ std::vector<FamilyRow> families_for(const StabilityOptions& o) {
       chosen(stability::family_rows(), o.families, "family", [](const FamilyRow& f) { return f.name; });
   if (o.quantity != Quantity::pairs && o.families.empty())
     std::erase_if(rows, [](const FamilyRow& f) {
-      static constexpr std::string_view kFamilies[] = {"touch",  "shared", "coplanar", "kiss",
-                                                       "sliver", "thin",   "far",      "scale"};
+      static constexpr std::string_view kFamilies[] = {"touch", "shared", "coplanar",  "stack",  "kiss",
+                                                       "slide", "tunnel", "drift",     "sliver", "thin",
+                                                       "far",   "scale",  "zero-area", "mixture"};
       return std::find(std::begin(kFamilies), std::end(kFamilies), f.name) == std::end(kFamilies);
     });
   return rows;
