@@ -19,7 +19,7 @@ struct Counterexample {
 /// Returns the failure in words: "misses a pair of triangles that cross".
 std::string failure_text(const Counterexample& c);
 
-/// Returns the text for the tracker, in Markdown: what was called, the meshes, the right answer with its
+/// Returns the text for the tracker, in Markdown: the function called, the meshes, the right answer with its
 /// proof, the engine's answer, and versions.
 std::string tracker_text(const Counterexample& c);
 

@@ -260,6 +260,7 @@ class Shrinking {
     calls_ += cost_of(answer);
     if (failure_of(case_of(c), answer) != kind_) return;
     now_ = c;
+    degenerate_ = degenerate_faces(c);  // also fans of polygons with corners in a line
     answer_ = answer;
   }
 

@@ -98,6 +98,10 @@ report::GridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, c
   if (answered) d.facts.emplace_back("Query", render::short_number(r.microseconds) + " \u00b5s");
   d.note = "This family, this method: " + sentence(s, family) + ".";
   if (options.command) d.command = options.command(r);
+  if (options.command && grid.quantity == Quantity::pairs)
+    d.note +=
+        " The command runs this case again; with --minimise --save DIR it shrinks it to a few triangles, and writes a "
+        "report.";
   return d;
 }
 

@@ -139,6 +139,30 @@ TEST_CASE("an engine that takes a body inside another for separate is shrunk to 
   CHECK(failure_of(case_of(m.meshes), ask(m.meshes)) == FailureKind::relation);
 }
 
+TEST_CASE("a polygon whose fan has triangles without area is shrunk") {
+  Mesh square = shapes::quad_box();  // with a corner more in the middle of an edge
+  square.vertices.emplace_back(
+      (square.vertices[square.face(FaceId(0))[0]] + square.vertices[square.face(FaceId(0))[1]]) / 2);
+  Mesh mesh;
+  mesh.vertices = square.vertices;
+  for (FaceId f = 0; f < square.face_count(); ++f) {
+    std::vector<VertexId> corners(square.face(f).begin(), square.face(f).end());
+    if (f == FaceId(0)) corners.insert(corners.begin() + 1, VertexId(square.vertices.size() - 1));
+    mesh.add_face(corners);
+  }
+  REQUIRE(check_mesh(mesh, false)[MeshFault::zero_area_face].count == 0);
+  const Minimised m =
+      minimise({mesh, mesh, {}, Pose::translation({0.5, 0.25, 0.125})}, [](const CaseMeshes& meshes) {
+        return spoilt_answer(meshes, [](Replay& answer, const RightAnswer& right) {
+          answer.answered->clear();
+          answer.record.missed = right.pairs.size();
+          if (!right.pairs.empty()) answer.record.outcome = Outcome::wrong;
+        });
+      });
+  CHECK(m.before.simplices == 26);
+  CHECK(m.after.simplices == 2);
+}
+
 TEST_CASE("the kind of a failure is kept, and calls are bounded") {
   const cases::Case c = cases::make_case(*cases::find_family("lattice"), 1, 10, 1);
   REQUIRE(expected_answer(c).pairs.size() > 4);
