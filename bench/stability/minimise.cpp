@@ -103,10 +103,17 @@ bool turns_grid(const Pose& pose) {
   return (pose.r.cwiseAbs().array() == 0 || pose.r.cwiseAbs().array() == 1).all();
 }
 
-/// Returns the number of faces without area (2D: length).
+/// Returns the mesh at its pose.
+Mesh in_world(Mesh mesh, const Pose& pose) {
+  for (Vector3d& v : mesh.vertices) v = pose.apply(v);
+  return mesh;
+}
+
+/// Returns the number of faces without area (2D: length) in the world.
 std::uint64_t degenerate_faces(const CaseMeshes& c) {
   std::uint64_t n = 0;
-  for (const Mesh* m : {&c.a, &c.b}) n += check_mesh(*m, false)[MeshFault::zero_area_face].count;
+  for (const Mesh& m : {in_world(c.a, c.pose_a), in_world(c.b, c.pose_b)})
+    n += check_mesh(m, false)[MeshFault::zero_area_face].count;
   return n;
 }
 
@@ -190,11 +197,11 @@ class Shrinking {
   Minimised run() {
     Minimised out;
     out.before = size_;
-    move_into_world();
     triangulate();
     CaseSize last;
     do {
       last = size_;
+      move_into_world();
       take_one_pair();
       drop_simplices();
       merge_vertices();
@@ -216,6 +223,13 @@ class Shrinking {
   }
   bool spent() const { return calls_ >= options_.max_calls; }
 
+  bool is_confirmed(const CaseMeshes& c) {
+    if (!options_.confirm) return true;
+    const Replay answer = options_.confirm(c);
+    calls_ += cost_of(answer);
+    return failure_of(case_of(c), answer) == kind_;
+  }
+
   /// Takes a case if it is smaller and fails in the same way. Faces that have area keep some: engines often
   /// reject faces without.
   bool attempt(const CaseMeshes& c) {
@@ -227,7 +241,7 @@ class Shrinking {
     const Replay answer = ask_(c);
     calls_ += cost_of(answer);
     if (options_.progress) options_.progress(calls_, size_);
-    if (failure_of(case_of(c), answer) != kind_) return false;
+    if (failure_of(case_of(c), answer) != kind_ || !is_confirmed(c)) return false;
     now_ = c;
     size_ = size;
     degenerate_ = degenerate;
@@ -244,7 +258,7 @@ class Shrinking {
       CaseMeshes c = now_;
       for (std::size_t side = 0; side < 2; ++side) {
         if (!(side == 0 ? of_a : of_b)) continue;
-        for (Vector3d& v : mesh(c, side).vertices) v = pose(c, side).apply(v);
+        mesh(c, side) = in_world(mesh(c, side), pose(c, side));
         pose(c, side) = Pose{};
       }
       return c;
@@ -258,7 +272,7 @@ class Shrinking {
     const CaseMeshes c = {simplices_of(now_.a), simplices_of(now_.b), now_.pose_a, now_.pose_b};
     const Replay answer = ask_(c);
     calls_ += cost_of(answer);
-    if (failure_of(case_of(c), answer) != kind_) return;
+    if (failure_of(case_of(c), answer) != kind_ || !is_confirmed(c)) return;
     now_ = c;
     degenerate_ = degenerate_faces(c);  // also fans of polygons with corners in a line
     answer_ = answer;

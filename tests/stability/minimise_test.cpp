@@ -195,6 +195,14 @@ TEST_CASE("the kind of a failure is kept, and calls are bounded") {
   CHECK(calls <= 20);
   CHECK(!late.complete);
   CHECK(late.after.simplices < late.before.simplices);
+  // An engine whose answer depends on the case before: none is taken that fails only then.
+  MinimiseOptions confirming;
+  confirming.confirm = [&](const CaseMeshes& meshes) {
+    return meshes.a.face_count() + meshes.b.face_count() > 9
+               ? missing_all(meshes)
+               : spoilt_answer(meshes, [](Replay&, const RightAnswer&) {});
+  };
+  CHECK(minimise(meshes_of(c), missing_all, confirming).after.simplices == 10);
   // A right answer.
   CHECK_THROWS_AS(minimise(meshes_of(c),
                            [](const CaseMeshes& meshes) {
