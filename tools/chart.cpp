@@ -101,6 +101,9 @@ void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& metho
 int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals) {
   const methods::Quantity quantity = o.set.quantity;
   const bool pairs = quantity == methods::Quantity::pairs;
+  if (methods::is_list(quantity) && !pairs)
+    throw InputError("--quantity: expected pairs, distance, first_contact or depth, found " +
+                     std::string(name_of(quantity)));
   if (o.folder.empty()) o.folder = pairs ? "out/chart" : "out/chart-" + std::string(name_of(quantity));
   const std::vector<workers::WorkerMethod> methods =
       chosen_methods(pairs ? workers::find_all_methods() : workers::find_number_methods(quantity), o.methods);

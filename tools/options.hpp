@@ -93,7 +93,7 @@ inline void add_quantity_option(CLI::App& app, methods::Quantity& quantity) {
                                         "'" + word + "': expected " + all_names<methods::Quantity>());
            quantity = *known;
          },
-         "Quantity to compute: pairs, distance, first_contact or depth [pairs]")
+         "Quantity to compute: " + all_names<methods::Quantity>() + " [pairs]")
       ->type_name("Q");
 }
 

@@ -5,6 +5,9 @@
 #include <memory>
 #include <sstream>
 
+#include "bench/stability/case_meshes.hpp"
+#include "bench/stability/counterexample.hpp"
+#include "bench/stability/minimise.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/stability/saved_case.hpp"
 #include "bench/stability/stability_experiment.hpp"
@@ -23,14 +26,14 @@ namespace {
 using namespace lrb::stability;
 
 struct StabilityOptions {
-  std::string folder, save;
+  std::string folder, save, saved;
   std::vector<std::string> families, methods;
   std::optional<int> difficulty;
   std::optional<std::uint64_t> only;
   std::uint64_t cases = 100, seed = 1;
   unsigned jobs = 2;
   double timeout = 5;
-  bool pairs = false;
+  bool pairs = false, minimise = false;
   Quantity quantity = Quantity::pairs;
 };
 
@@ -52,18 +55,19 @@ std::vector<SimplexPair> without(const std::vector<SimplexPair>& a, const std::v
 std::string describe(const Replay& r, Quantity quantity, bool pairs) {
   std::ostringstream out;
   const stability::Record& record = r.record;
-  out << record.family << ", difficulty " << record.difficulty << ", case " << record.case_index << ", "
-      << record.method << ": " << name_of(record.outcome);
+  if (!record.family.empty())
+    out << record.family << ", difficulty " << record.difficulty << ", case " << record.case_index << ", ";
+  out << record.method << ": " << name_of(record.outcome);
   if (!record.message.empty()) out << " (" << record.message << ")";
   out << "\n";
-  if (quantity == Quantity::pairs) {
+  if (methods::is_list(quantity)) {
     out << "  pairs: " << record.expected << " expected, ";
     if (r.answered)
       out << r.answered->size() << " found, " << record.missed << " missed, " << record.extra << " extra\n";
     else
       out << "no list returned\n";
   }
-  if (!record.relation.empty())
+  if (!record.relation.empty() && (quantity == Quantity::pairs || !methods::is_list(quantity)))
     out << "  " << (quantity == Quantity::pairs ? "relation" : name_of(quantity)) << ": "
         << record.expected_relation << " expected, " << record.relation << " found\n";
   if (pairs && r.answered) {
@@ -76,10 +80,43 @@ std::string describe(const Replay& r, Quantity quantity, bool pairs) {
   return out.str();
 }
 
-int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
-               const std::vector<FamilyRow>& families) {
+/// A single case, from a family or from a folder.
+struct OneCase {
+  cases::Case bodies;
+  stability::Record origin;  ///< family, difficulty, case and seed; an empty family if they are not known
+};
+
+OneCase one_case(const StabilityOptions& o, const std::vector<FamilyRow>& families) {
+  if (!o.saved.empty()) {
+    SavedCase saved = load_case(o.saved);
+    return {case_of(saved.meshes), saved.origin};
+  }
   if (families.size() != 1 || !o.difficulty)
     throw InputError("--only: expected exactly one --family and one --difficulty with it");
+  OneCase one;
+  one.origin.family = families[0].name;
+  one.origin.difficulty = *o.difficulty;
+  one.origin.case_index = *o.only;
+  one.origin.seed = o.seed;
+  one.bodies = cases::make_case(*cases::find_family(one.origin.family), o.seed, *o.difficulty, *o.only);
+  return one;
+}
+
+stability::Record with_origin(stability::Record r, const stability::Record& origin) {
+  r.family = origin.family;
+  r.difficulty = origin.difficulty;
+  r.case_index = origin.case_index;
+  r.seed = origin.seed;
+  return r;
+}
+
+bool is_right(const stability::Record& r) {
+  return r.outcome == stability::Outcome::right || r.outcome == stability::Outcome::rejected;
+}
+
+int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
+               const std::vector<FamilyRow>& families) {
+  const OneCase one = one_case(o, families);
   bool all_right = true;
   std::vector<Replay> replays;
   for (const workers::WorkerMethod& m : methods) {
@@ -87,18 +124,57 @@ int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMetho
       print(m.column.name + ": absent. " + m.column.remark + "\n");
       continue;
     }
-    replays.push_back(replay(m, families[0].name, *o.difficulty, *o.only, o.seed, o.timeout, o.quantity));
+    if (o.saved.empty()) {
+      replays.push_back(replay(m, one.origin.family, *o.difficulty, *o.only, o.seed, o.timeout, o.quantity));
+    } else {
+      replays.push_back(CaseWorker(m, o.timeout).ask(meshes_of(one.bodies)));
+      replays.back().record = with_origin(replays.back().record, one.origin);
+    }
     const Replay& r = replays.back();
     print(describe(r, o.quantity, o.pairs));
-    all_right = all_right && (r.record.outcome == stability::Outcome::right ||
-                              r.record.outcome == stability::Outcome::rejected);
+    all_right = all_right && is_right(r.record);
   }
-  if (!o.save.empty()) {
-    const cases::Family& family = *cases::find_family(families[0].name);
-    const cases::Case c = cases::make_case(family, o.seed, *o.difficulty, *o.only);
-    for (const std::string& file : save_case(c, replays, o.save)) print(o.save + "/" + file + "\n");
-  }
+  if (!o.save.empty() && !replays.empty())
+    for (const std::string& file : save_case(one.bodies, replays, o.save)) print(o.save + "/" + file + "\n");
   return all_right ? kOk : kMismatch;
+}
+
+std::string size_text(const CaseSize& s) {
+  return std::to_string(s.simplices) + " triangles, " + std::to_string(s.vertices) + " vertices, " +
+         std::to_string(s.bits) + " bits";
+}
+
+int minimise_one(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
+                 const std::vector<FamilyRow>& families, const Globals& globals) {
+  const OneCase one = one_case(o, families);
+  const workers::WorkerMethod& method = methods.front();
+  CaseMeshes start = meshes_of(one.bodies);
+  CaseWorker worker(method, o.timeout);
+  const cases::Family* family = cases::find_family(one.origin.family);
+  if (family != nullptr && family->both_ways &&
+      failure_of(case_of(start), worker.ask(start)) == FailureKind::none) {
+    std::swap(start.a, start.b);  // one of the two answers is wrong
+    std::swap(start.pose_a, start.pose_b);
+  }
+  Progress bar("minimise", 0, globals.quiet);
+  MinimiseOptions options;
+  // In a new process, so that no earlier case can be the cause.
+  options.confirm = [&](const CaseMeshes& c) { return CaseWorker(method, o.timeout).ask(c); };
+  options.progress = [&](std::uint64_t calls, const CaseSize& size) { bar.set(calls, size_text(size)); };
+  Counterexample found{minimise(
+                           start, [&](const CaseMeshes& c) { return worker.ask(c); }, options),
+                       method, globals.command_line};
+  bar.finish();
+  found.found.answer.record = with_origin(found.found.answer.record, one.origin);
+  if (failure_of(case_of(found.found.meshes), options.confirm(found.found.meshes)) != found.found.kind)
+    throw EnvironmentError("method '" + method.column.name +
+                           "': gives different answers to the same case, and none to write down");
+  print(describe(found.found.answer, o.quantity, o.pairs));
+  print("  before: " + size_text(found.found.before) + "\n  after: " + size_text(found.found.after) + " (" +
+        std::to_string(found.found.calls) + " calls" +
+        (found.found.complete ? "" : ", stopped at their maximum") + ")\n");
+  for (const std::string& file : save_counterexample(found, o.save)) print(o.save + "/" + file + "\n");
+  return kMismatch;
 }
 
 Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
@@ -190,11 +266,27 @@ std::vector<FamilyRow> families_for(const StabilityOptions& o) {
       chosen(stability::family_rows(), o.families, "family", [](const FamilyRow& f) { return f.name; });
   if (o.quantity != Quantity::pairs && o.families.empty())
     std::erase_if(rows, [](const FamilyRow& f) {
-      static constexpr std::string_view kFamilies[] = {"touch",  "shared", "coplanar", "kiss",
-                                                       "sliver", "thin",   "far",      "scale"};
+      static constexpr std::string_view kFamilies[] = {"touch", "shared", "coplanar",  "stack",  "kiss",
+                                                       "slide", "tunnel", "drift",     "sliver", "thin",
+                                                       "far",   "scale",  "zero-area", "mixture"};
       return std::find(std::begin(kFamilies), std::end(kFamilies), f.name) == std::end(kFamilies);
     });
   return rows;
+}
+
+void check_one_case(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods) {
+  const bool one = o.only || !o.saved.empty();
+  for (const auto& [name, given] : {std::pair{"--save", !o.save.empty()}, {"--minimise", o.minimise}})
+    if (given && !one) throw InputError(std::string(name) + ": expected --only CASE or --saved DIR with it");
+  for (const auto& [name, given] : {std::pair{"--save", !o.save.empty()}, {"--saved", !o.saved.empty()}})
+    if (given && o.quantity != Quantity::pairs)
+      throw InputError(std::string(name) + ": expected --quantity pairs, found " +
+                       std::string(name_of(o.quantity)));
+  if (o.only && !o.saved.empty()) throw InputError("--saved: expected no --only with it");
+  if (!o.minimise) return;
+  if (o.save.empty()) throw InputError("--minimise: expected --save DIR with it");
+  if (methods.size() != 1)
+    throw InputError("--minimise: expected exactly one --method, found " + std::to_string(methods.size()));
 }
 
 int run_stability(StabilityOptions o, const Globals& globals) {
@@ -203,10 +295,9 @@ int run_stability(StabilityOptions o, const Globals& globals) {
         o.quantity == Quantity::pairs ? "out/stability" : "out/stability-" + std::string(name_of(o.quantity));
   const std::vector<FamilyRow> families = families_for(o);
   const std::vector<workers::WorkerMethod> methods = chosen_methods(methods_for(o.quantity), o.methods);
-  if (!o.save.empty() && !o.only) throw InputError("--save: expected --only CASE with it");
-  if (!o.save.empty() && o.quantity != Quantity::pairs)
-    throw InputError("--save: expected --quantity pairs, found " + std::string(name_of(o.quantity)));
-  if (o.only) return replay_one(o, methods, families);
+  check_one_case(o, methods);
+  if (o.minimise) return minimise_one(o, methods, families, globals);
+  if (o.only || !o.saved.empty()) return replay_one(o, methods, families);
   const report::Folder folder(o.folder);
   const Grid grid = run_grid(o, methods, families, globals);
   print(table(grid));
@@ -249,10 +340,14 @@ Command add_stability(CLI::App& root, const Globals& globals) {
       ->type_name("CASE");
   app->add_option(
          "--save", o->save,
-         "With --only: write the case as meshes and poses, the right answer with its proof in fractions, "
-         "and the answers of the engines")
+         "With --only or --saved: write the case as meshes and poses, the right answer with its proof in "
+         "fractions, and the answers of the engines")
       ->type_name("DIR");
-  app->add_flag("--pairs", o->pairs, "With --only: print the expected and the found pairs");
+  app->add_option("--saved", o->saved, "Query the case of a folder that --save wrote")->type_name("DIR");
+  app->add_flag("--minimise", o->minimise,
+                "With --save and one --method: shrink a case that it fails on to the fewest triangles and "
+                "bits, and write that with a picture and a report for the engine's tracker");
+  app->add_flag("--pairs", o->pairs, "With --only or --saved: print the expected and the found pairs");
   return {app, [o, &globals] { return run_stability(*o, globals); }};
 }
 

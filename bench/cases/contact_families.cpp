@@ -243,6 +243,26 @@ Case make_quadratic(RandomEngine& random, double difficulty) {
   return c;
 }
 
+/// Plates of A and of B in turns, each on the one below, shifted, and off by up to the slack and an ulp.
+Case make_stack(RandomEngine& random, double difficulty) {
+  const int plates = pick(random, 2, 5);
+  std::vector<Mesh> of_a, of_b;
+  for (int i = 0; i < 2 * plates; ++i) {
+    const double x = pick(random, -2, 2) / 3.0, y = pick(random, -2, 2) / 3.0;
+    double z[2] = {static_cast<double>(i), i + 1.0};
+    for (double& side : z) {
+      if (i % 2 == 0) continue;  // of A
+      side += slack(difficulty) * uniform(random, -1, 1);
+      side = nudged(side, pick(random, -1, 1));
+    }
+    (i % 2 == 0 ? of_a : of_b).push_back(shapes::box({x, y, z[0]}, {x + 2, y + 2, z[1]}));
+  }
+  Case c{body(shapes::several(of_a)), body(shapes::several(of_b)), {}, {}, {}, {}};
+  loosen(random, c, slack(difficulty));
+  if (pick(random, 0, 2) == 0) move_both(c, any_pose(random));
+  return c;
+}
+
 }  // namespace
 
 std::vector<Family> contact_families() {
@@ -256,6 +276,8 @@ std::vector<Family> contact_families() {
        "in common exactly", false, 20, slack_value},
       {"coplanar", "face on face: shifted, rotated in the plane, tilted", make_coplanar,
        "0.1 off and tilted by 0.1", "in one plane, or an ulp off", false, 30, slack_value},
+      {"stack", "plates of both bodies in turns, all nearly flush", make_stack, "0.1 off and tilted by 0.1",
+       "flush, or an ulp off", false, 35, slack_value},
       {"identical", "the same body at the same pose, or under a symmetry", make_identical, "0.1 off",
        "the same pose, or an ulp off", false, 40, slack_value},
       {"hub", "many faces at a point; faces with many corners", make_hub, "3 faces, 0.1 off",

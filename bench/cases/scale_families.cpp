@@ -193,6 +193,32 @@ Case make_ratio(RandomEngine& random, double difficulty) {
   return c;
 }
 
+/// Bodies of three parts whose sizes differ; smaller parts are on the surface of larger ones.
+Case make_mixture(RandomEngine& random, double difficulty) {
+  const double by = deterministic::pow10(-6 * difficulty);
+  const auto mixed = [&] {
+    static const Mesh kParts[] = {shapes::box(), shapes::quad_box(), shapes::icosphere(0, 0.5),
+                                  shapes::l_shape()};
+    std::vector<Mesh> parts = {kParts[random() % 2]};
+    for (const double size : {deterministic::pow10(-3 * difficulty), by}) {
+      const double x = uniform(random), y = uniform(random);
+      const Vector3d at(x, y, random() % 2 ? 1 : 1 + size);
+      parts.push_back(shapes::translated(shapes::scaled(kParts[random() % std::size(kParts)], size), at));
+    }
+    return body(shapes::several(parts), true);
+  };
+  Case c;
+  c.a = mixed();
+  c.b = mixed();
+  c.pose_b.r = random() % 2 ? shapes::random_rotation(random) : grid_turn(random);
+  // A vertex of one close to a vertex of the other.
+  const Vector3d x = c.a->vertices()[random() % c.a->vertices().size()];
+  const Vector3d y = c.pose_b.r * c.b->vertices()[random() % c.b->vertices().size()];
+  c.pose_b.t = x - y + random_step(random, 0, 2 * by);
+  if (pick(random, 0, 2) == 0) move_both(c, any_pose(random));
+  return c;
+}
+
 Case make_matrix(RandomEngine& random, double difficulty) {
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   const double strength = deterministic::pow10(6 * difficulty - 3);
@@ -235,6 +261,8 @@ std::vector<Family> scale_families() {
        "size 4e-322 or 1.6e308", false, 120},
       {"ratio", "bodies of different sizes", make_ratio, "equal sizes", "sizes 1e12 or 1e60 apart", false,
        130, [](double difficulty) { return rounded_value(deterministic::pow10(12 * difficulty)); }},
+      {"mixture", "parts of different sizes in each body", make_mixture, "equal sizes", "sizes 1e6 apart",
+       false, 135, [](double difficulty) { return rounded_value(deterministic::pow10(6 * difficulty)); }},
       {"matrix", "poses that scale, shear, reflect or flatten", make_matrix, "by 1e-3", "by 1e3, or flat",
        false, 140, [](double difficulty) { return rounded_value(deterministic::pow10(6 * difficulty - 3)); }},
   };

@@ -195,16 +195,25 @@ const MethodEntry& find_method(const std::vector<MethodEntry>& methods, const st
 // The quantity that methods are compared on: intersecting pairs, or a number.
 
 enum class Quantity : std::uint8_t {
-  pairs,          ///< intersecting pairs, and the relation of the bodies
-  distance,       ///< of the surfaces
-  first_contact,  ///< the time of first contact of B, which moves on a straight line, with A
-  depth,          ///< length of the shortest translation that separates the bodies
+  pairs,               ///< intersecting pairs, and the relation of the bodies
+  distance,            ///< of the surfaces
+  first_contact,       ///< the time of first contact of B, which moves on a straight line, with A
+  depth,               ///< length of the shortest translation that separates the bodies
+  near_pairs,          ///< pairs of triangles within a distance
+  self_intersections,  ///< pairs of triangles of one mesh, made of both bodies
 };
 constexpr auto enum_names(Quantity) {
   return std::to_array<EnumName<Quantity>>({{Quantity::pairs, "pairs"},
                                             {Quantity::distance, "distance"},
                                             {Quantity::first_contact, "first_contact"},
-                                            {Quantity::depth, "depth"}});
+                                            {Quantity::depth, "depth"},
+                                            {Quantity::near_pairs, "near_pairs"},
+                                            {Quantity::self_intersections, "self_intersections"}});
+}
+
+/// Returns true if the answer is a list of pairs, not a number.
+constexpr bool is_list(Quantity q) {
+  return q == Quantity::pairs || q == Quantity::near_pairs || q == Quantity::self_intersections;
 }
 
 /// Value of a first contact that does not exist: motions end at 1.

@@ -12,6 +12,9 @@
 ///   --questions FILE --method M [--setting X] [--errors] --begin K --end L
 ///                         a bench::Record for each of a data set's queries K .. L - 1; with --errors also
 ///                         the errors of its answers
+///   --saved --method M    a record, with the list of pairs, for each case whose file is named by a line of
+///   file
+///                         descriptor 3, until its end (bench/stability/case_meshes.hpp)
 ///   --bodies A B --method M [--no-join]
 ///                         a reply for each request in file descriptor 3, until its end
 ///                         (bench/tails/engine.hpp)
@@ -29,6 +32,7 @@
 #include "bench/methods/method.hpp"
 #include "bench/programs/case_queue.hpp"
 #include "bench/speed/bench_runner.hpp"
+#include "bench/stability/case_meshes.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/stability/stability_experiment.hpp"
 #include "bench/tails/engine.hpp"
@@ -46,7 +50,7 @@ struct WorkerOptions {
   std::string questions;
   std::optional<double> setting;
   std::vector<std::string> bodies;
-  bool no_join = false;
+  bool no_join = false, saved = false;
 };
 
 void list_methods(const std::vector<methods::MethodEntry>& entries, Lines& out) {
@@ -78,6 +82,10 @@ void work(const WorkerOptions& o, const std::vector<methods::MethodEntry>& entri
   if (o.queue.list) return list_methods(entries, out);
   if (o.queue.method.empty()) return say_expected(o.queue, out);
   const methods::MethodEntry& entry = methods::find_method(entries, o.queue.method);
+  if (o.saved) {
+    std::ifstream requests("/proc/self/fd/3");
+    return stability::serve_cases(entry, requests, [&](const std::string& line) { out.say(line); });
+  }
   if (!o.bodies.empty()) {
     std::ifstream requests("/proc/self/fd/3");
     return tails::serve(
@@ -102,6 +110,7 @@ int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries
   app.add_option("--setting", o.setting);
   app.add_option("--bodies", o.bodies)->expected(2);
   app.add_flag("--no-join", o.no_join);
+  app.add_flag("--saved", o.saved);
   CLI11_PARSE(app, argc, argv);
   return run_worker([&](Lines& out) { work(o, entries, out); });
 }

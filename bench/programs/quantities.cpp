@@ -1,5 +1,6 @@
-/// lrbscope-quantities: a worker like methods.cpp, for methods that return a number. --quantity Q or the data
-/// set of --questions selects the quantity. Without --method it prints the correct answers.
+/// lrbscope-quantities: a worker like methods.cpp, for methods that return a number or another list than that
+/// of intersecting pairs. --quantity Q or the data set of --questions selects the quantity. Without --method
+/// it prints the correct answers.
 
 #include <algorithm>
 #include <optional>
@@ -83,6 +84,7 @@ struct Options {
   CaseQueue queue;
   std::string quantity = "distance", questions;
   std::optional<double> setting;
+  bool pairs = false;
 };
 
 Quantity quantity_of(const Options& o) {
@@ -105,8 +107,11 @@ void say_records(const Options& o, Lines& out) {
     const cases::Case c = make(family, o.queue, k);
     const std::optional<stability::RightAnswer> read = known.next();
     Record record = record_of(o.queue, k);
-    ask_number(method, c, read ? *read : true_number(method.quantity, c), record);
-    out.say(dump(to_json(record)));
+    const auto answer = ask_number(method, c, read ? *read : true_number(method.quantity, c), record);
+    nlohmann::ordered_json value = to_json(record);
+    if (o.pairs && answer && methods::is_list(method.quantity))
+      value["answered_pairs"] = workers::PairsJson::write(answer->pairs);
+    out.say(dump(value));
   }
 }
 
@@ -140,8 +145,8 @@ int run(int argc, char** argv) {
   app.add_option("--quantity", o.quantity);
   app.add_option("--questions", o.questions);
   app.add_option("--setting", o.setting);
-  for (const char* flag : {"--pairs", "--errors"})
-    app.add_flag(flag);  // accepted by all workers; unused in this one
+  app.add_flag("--pairs", o.pairs);
+  app.add_flag("--errors");  // accepted by all workers; unused in this one
   CLI11_PARSE(app, argc, argv);
   return run_worker([&](Lines& out) { work(o, out); });
 }

@@ -1,6 +1,8 @@
 #include "bench/quantities/number_method.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "bench/workers/worker_json.hpp"
 #include <lrbscope/core/strings.hpp>
@@ -54,15 +56,35 @@ void judge_number(Record& record, const NumberMethod& method, const NumberAnswer
   record.outcome = right ? Outcome::right : Outcome::wrong;
 }
 
-void ask_number(const NumberMethod& method, const cases::Case& c, const RightAnswer& expected,
-                Record& record) {
+void judge_list(Record& record, const NumberAnswer& answer, const RightAnswer& expected) {
+  std::vector<SimplexPair> missed, extra;
+  std::set_difference(expected.pairs.begin(), expected.pairs.end(), answer.pairs.begin(), answer.pairs.end(),
+                      std::back_inserter(missed));
+  std::set_difference(answer.pairs.begin(), answer.pairs.end(), expected.pairs.begin(), expected.pairs.end(),
+                      std::back_inserter(extra));
+  record.missed = missed.size();
+  record.extra = extra.size();
+  record.relation = std::to_string(answer.pairs.size()) + " pairs";
+  record.expected_relation = std::to_string(expected.pairs.size()) + " pairs";
+  record.outcome = missed.empty() && extra.empty() ? Outcome::right : Outcome::wrong;
+}
+
+std::optional<NumberAnswer> ask_number(const NumberMethod& method, const cases::Case& c,
+                                       const RightAnswer& expected, Record& record) {
+  std::optional<NumberAnswer> out;
+  record.expected = expected.pairs.size();
   workers::note_failures(record, [&] {
     if (!expected.rejection.empty()) throw InputError("skipped: " + expected.rejection);
     const NumberQuery question = query_of(c);
     const NumberAnswer answer = method.ask(question, std::nullopt);
     record.microseconds = answer.microseconds;
-    judge_number(record, method, answer, expected, question.size);
+    if (methods::is_list(method.quantity))
+      judge_list(record, answer, expected);
+    else
+      judge_number(record, method, answer, expected, question.size);
+    out = answer;
   });
+  return out;
 }
 
 }  // namespace lrb::stability

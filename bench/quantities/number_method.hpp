@@ -1,5 +1,5 @@
 #pragma once
-/// Methods that return a number: lrbscope and other engines.
+/// Methods that return a number, or another list than that of intersecting pairs: lrbscope and other engines.
 
 #include <functional>
 #include <optional>
@@ -12,8 +12,9 @@
 namespace lrb::stability {
 
 struct NumberAnswer {
-  double lower = 0, upper = 0;  ///< equal, unless the method gives an interval
-  double microseconds = 0;      ///< the time of the query alone
+  double lower = 0, upper = 0;          ///< equal, unless the method gives an interval
+  double microseconds = 0;              ///< the time of the query alone
+  std::vector<SimplexPair> pairs = {};  ///< ascending; if the quantity is a list
 };
 
 /// The value of a method's parameter. nullopt: the setting for tests of correctness.
@@ -37,14 +38,17 @@ std::vector<NumberMethod> number_methods();
 std::vector<NumberMethod> own_number_methods();
 std::vector<NumberMethod> fcl_number_methods();
 
-/// Runs a method on a case. Sets outcome, time and message of the record, and both numbers as relations.
-void ask_number(const NumberMethod& method, const cases::Case& c, const RightAnswer& expected,
-                Record& record);
+/// Runs a method on a case. Sets outcome, time and message of the record, and both numbers as relations; for
+/// lists the counts of pairs. Returns the answer, or nullopt if there is none.
+std::optional<NumberAnswer> ask_number(const NumberMethod& method, const cases::Case& c,
+                                       const RightAnswer& expected, Record& record);
 
 /// Sets the outcome of an answer. It is wrong if it is 0 (or never) and the true value is not, or the
 /// reverse; if a proven interval does not contain the number; or if the error exceeds a millionth of the
 /// bodies' size, or a thousandth of the motion.
 void judge_number(Record& record, const NumberMethod& method, const NumberAnswer& answer,
                   const RightAnswer& expected, double size);
+/// The same for a list: wrong if pairs are missed or in excess.
+void judge_list(Record& record, const NumberAnswer& answer, const RightAnswer& expected);
 
 }  // namespace lrb::stability

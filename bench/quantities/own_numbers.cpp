@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <limits>
+
+#include <Eigen/Geometry>
 
 #include "bench/methods/triangles.hpp"
 #include "bench/quantities/number_method.hpp"
@@ -7,10 +10,13 @@
 #include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/first_contact.hpp>
+#include <lrbscope/near_pairs.hpp>
+#include <lrbscope/self_intersections.hpp>
 
 namespace lrb::stability {
 namespace {
 
+using Eigen::Vector3d;
 using methods::Stopwatch;
 
 Motion motion_of(const NumberQuery& q) {
@@ -80,6 +86,127 @@ NumberAnswer sampled(const NumberQuery& q, int n) {
   return {kNever, kNever, watch.microseconds()};
 }
 
+NumberAnswer our_near_pairs(const NumberQuery& q, Setting) {
+  NearPairsRequest request;
+  request.within = q.within;
+  const Stopwatch watch;
+  const NearPairsResult r = near_pairs(q.a, Pose{}, q.b, Pose{}, request);
+  NumberAnswer out;
+  out.microseconds = watch.microseconds();
+  for (const NearPair& p : r.pairs) out.pairs.push_back({p.a, p.b});
+  return out;
+}
+
+NumberAnswer our_self_intersections(const NumberQuery& q, Setting) {
+  const LrbRep body = union_of(q);
+  const Stopwatch watch;
+  const SelfIntersections r = self_intersections(body, 1);
+  NumberAnswer out;
+  out.microseconds = watch.microseconds();
+  for (const SelfIntersection& p : r.pairs)  // all faces are triangles
+    out.pairs.push_back({static_cast<SimplexId>(p.a.value()), static_cast<SimplexId>(p.b.value())});
+  return out;
+}
+
+using Triangle = std::array<Vector3d, 3>;
+
+Triangle triangle(const LrbRep& rep, SimplexId s) {
+  VertexId v[3] = {};
+  rep.simplex(s, v);
+  return {rep.vertices()[v[0]], rep.vertices()[v[1]], rep.vertices()[v[2]]};
+}
+
+double point_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
+  const Vector3d d = b - a;
+  const double length_sq = d.squaredNorm();
+  return (a + (length_sq > 0 ? std::clamp((p - a).dot(d) / length_sq, 0.0, 1.0) : 0) * d - p).norm();
+}
+
+double point_to_triangle(const Vector3d& p, const Triangle& t) {
+  const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
+  double least = std::numeric_limits<double>::infinity();
+  bool above = n.norm() > 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3d &a = t[k], &b = t[(k + 1) % 3];
+    least = std::min(least, point_to_segment(p, a, b));
+    above = above && n.dot((b - a).cross(p - a)) >= 0;
+  }
+  return above ? std::abs(n.dot(p - t[0])) / n.norm() : least;
+}
+
+/// Of the lines' closest points, or of an end and the other segment if these are not on both segments.
+double segment_to_segment(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
+  const Vector3d u = b - a, v = d - c, w = a - c;
+  const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), uw = u.dot(w), vw = v.dot(w),
+               divisor = uu * vv - uv * uv;
+  if (divisor > 0) {
+    const double s = (uv * vw - vv * uw) / divisor, t = (uu * vw - uv * uw) / divisor;
+    if (s >= 0 && s <= 1 && t >= 0 && t <= 1) return (w + s * u - t * v).norm();
+  }
+  return std::min(std::min(point_to_segment(a, c, d), point_to_segment(b, c, d)),
+                  std::min(point_to_segment(c, a, b), point_to_segment(d, a, b)));
+}
+
+double triangle_to_triangle(const Triangle& s, const Triangle& t) {
+  if (methods::plain_triangles_meet(s.data(), t.data())) return 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 3; ++i) {
+    least = std::min({least, point_to_triangle(s[i], t), point_to_triangle(t[i], s)});
+    for (std::size_t j = 0; j < 3; ++j)
+      least = std::min(least, segment_to_segment(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]));
+  }
+  return least;
+}
+
+NumberAnswer plain_near_pairs(const NumberQuery& q, Setting) {
+  NumberAnswer out;
+  const Stopwatch watch;
+  for (SimplexId i = 0; i < q.a.real_simplex_count(); ++i)
+    for (SimplexId j = 0; j < q.b.real_simplex_count(); ++j)
+      if (triangle_to_triangle(triangle(q.a, i), triangle(q.b, j)) <= q.within) out.pairs.push_back({i, j});
+  out.microseconds = watch.microseconds();
+  return out;
+}
+
+NumberAnswer plain_self_intersections(const NumberQuery& q, Setting) {
+  const LrbRep body = union_of(q);
+  NumberAnswer out;
+  const Stopwatch watch;
+  for (SimplexId i = 0; i < body.real_simplex_count(); ++i)
+    for (SimplexId j(i + 1); j < body.real_simplex_count(); ++j) {
+      VertexId v[3] = {}, w[3] = {};
+      body.simplex(i, v);
+      body.simplex(j, w);
+      if (std::find_first_of(v, v + 3, w, w + 3) != v + 3) continue;
+      const Triangle s = triangle(body, i), t = triangle(body, j);
+      if (methods::plain_triangles_meet(s.data(), t.data())) out.pairs.push_back({i, j});
+    }
+  out.microseconds = watch.microseconds();
+  return out;
+}
+
+NumberMethod plain_list(Quantity quantity, const char* title, const char* remark,
+                        NumberAnswer (*ask)(const NumberQuery&, Setting)) {
+  NumberMethod m;
+  m.info.name = "plain";
+  m.info.title = title;
+  m.info.remark = remark;
+  m.info.role = methods::Role::no_peer;
+  m.info.style = {"brute force", "#6b6b6b", "crossRot"};
+  m.quantity = quantity;
+  m.ask = ask;
+  return m;
+}
+
+NumberMethod our_list(Quantity quantity, const char* title, const char* remark,
+                      NumberAnswer (*ask)(const NumberQuery&, Setting)) {
+  NumberMethod m = plain_list(quantity, title, remark, ask);
+  m.info.name = "ours";
+  m.info.role = methods::Role::ours;
+  m.info.style = {"lrbscope", "#0072b2", "circle"};
+  return m;
+}
+
 NumberMethod ours(Quantity quantity, const char* title, NumberAnswer (*ask)(const NumberQuery&, Setting)) {
   NumberMethod m;
   m.info.name = "ours";
@@ -122,22 +249,32 @@ NumberMethod sampled_method(int n) {
 }  // namespace
 
 std::vector<NumberMethod> own_number_methods() {
-  return {with_parameter(ours(Quantity::distance, "lrbscope, distance", our_distance), "tolerance",
-                         {0.1, 0.01, 1e-3, 1e-6, 0}),
-          with_parameter(less("ours-budget", "lrbscope, distance in N steps",
-                              "The interval after N steps (pairs of nodes expanded).",
-                              {"lrbscope, within a budget", "#56b4e9", "rect"}, distance_in_steps),
-                         "steps", {3, 10, 30, 100, 300}),
-          with_parameter(less("ours-within", "lrbscope, within 5 % of the diagonal?",
-                              "A proven yes or no; the interval is the bound known by then.",
-                              {"lrbscope, yes or no: within a distance?", "#0072b2", "rectRounded"}, within),
-                         "within", {0.05}),
-          with_parameter(ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact),
-                         "tolerance", {1e-6, 1e-9, 1e-12}),
-          ours(Quantity::depth, "lrbscope, clash", our_depth),
-          sampled_method(10),
-          sampled_method(100),
-          sampled_method(1000)};
+  return {
+      with_parameter(ours(Quantity::distance, "lrbscope, distance", our_distance), "tolerance",
+                     {0.1, 0.01, 1e-3, 1e-6, 0}),
+      with_parameter(less("ours-budget", "lrbscope, distance in N steps",
+                          "The interval after N steps (pairs of nodes expanded).",
+                          {"lrbscope, within a budget", "#56b4e9", "rect"}, distance_in_steps),
+                     "steps", {3, 10, 30, 100, 300}),
+      with_parameter(less("ours-within", "lrbscope, within 5 % of the diagonal?",
+                          "A proven yes or no; the interval is the bound known by then.",
+                          {"lrbscope, yes or no: within a distance?", "#0072b2", "rectRounded"}, within),
+                     "within", {0.05}),
+      with_parameter(ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact), "tolerance",
+                     {1e-6, 1e-9, 1e-12}),
+      ours(Quantity::depth, "lrbscope, clash", our_depth),
+      our_list(Quantity::near_pairs, "lrbscope, near pairs", "near_pairs(), all pairs.", our_near_pairs),
+      plain_list(Quantity::near_pairs, "brute force, double",
+                 "The distance of every pair by corners, edges and Moeller's test (1997).", plain_near_pairs),
+      our_list(Quantity::self_intersections, "lrbscope, self-intersections",
+               "self_intersections() of a mesh.", our_self_intersections),
+      plain_list(Quantity::self_intersections, "brute force, double",
+                 "Every pair without a common corner by Moeller's test (1997); others are left out, as "
+                 "usual.",
+                 plain_self_intersections),
+      sampled_method(10),
+      sampled_method(100),
+      sampled_method(1000)};
 }
 
 }  // namespace lrb::stability

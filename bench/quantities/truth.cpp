@@ -54,7 +54,28 @@ NumberQuery query_of(const cases::Case& c) {
   const Vector3d way = rounded(-4 * out.size * direction);
   out.from = -0.75 * way;
   out.to = 0.25 * way;
+  const std::uint64_t choice = out.a.hash() ^ out.b.hash();
+  const auto& p = out.a.vertices();
+  const auto& q = out.b.vertices();
+  const double distances[] = {0, (p[choice % p.size()] - q[choice / 5 % q.size()]).norm(), 1e-9 * out.size,
+                              0.1 * out.size, out.size};
+  out.within = distances[choice % std::size(distances)];
   return out;
+}
+
+LrbRep union_of(const NumberQuery& query) {
+  Mesh all;
+  for (const LrbRep* rep : {&query.a, &query.b}) {
+    const auto first = static_cast<std::uint32_t>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), rep->vertices().begin(), rep->vertices().end());
+    for (SimplexId s = 0; s < rep->real_simplex_count(); ++s) {
+      VertexId v[3] = {};
+      rep->simplex(s, v);
+      for (VertexId& corner : v) corner = VertexId(first + corner);
+      all.add_face(v);
+    }
+  }
+  return LrbRep::without_regions(all, query.a.closed() && query.b.closed(), true);
 }
 
 namespace {
@@ -239,7 +260,11 @@ RightAnswer true_number(Quantity quantity, const cases::Case& c) {
   e.rejection = why_unsupported(quantity, c);
   if (!e.rejection.empty()) return e;
   const NumberQuery q = query_of(c);
-  if (quantity == Quantity::distance) {
+  if (quantity == Quantity::near_pairs) {
+    e.pairs = true_near_pairs(q.a, q.b, q.within);
+  } else if (quantity == Quantity::self_intersections) {
+    e.pairs = true_self_intersections(union_of(q));
+  } else if (quantity == Quantity::distance) {
     const bool meet = !brute_force(q.a, Pose{}, q.b, Pose{}).pairs.empty();
     set_root(e, meet ? Rational(0) : distance_sq(q));
   } else if (quantity == Quantity::first_contact) {

@@ -94,6 +94,8 @@ std::span<const PoseClass> classes_of(Quantity quantity) {
     case Quantity::depth:
       return kDepths;
     case Quantity::pairs:
+    case Quantity::near_pairs:  // not measured
+    case Quantity::self_intersections:
       break;
   }
   return kPairs;

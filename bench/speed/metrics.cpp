@@ -376,6 +376,8 @@ Metric chart_metric(Quantity quantity) {
     case Quantity::depth:
       return Metric::penetration;
     case Quantity::pairs:
+    case Quantity::near_pairs:  // not measured
+    case Quantity::self_intersections:
       break;
   }
   return Metric::hausdorff;

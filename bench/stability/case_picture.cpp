@@ -8,6 +8,8 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
+#include "bench/stability/rational_oracles.hpp"
+#include <lrbscope/contact.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/style.hpp>
 
@@ -32,8 +34,13 @@ void add_outline(render::DrawList& list, const Piece& p, render::Rgba colour, fl
   }
 }
 
-void add_mark(render::DrawList& list, const Piece& p, Mark m, std::size_t body, bool see_through) {
-  const render::Rgba colour = colour_of(m);
+/// How marked simplices are filled.
+enum class Fill : std::uint8_t { opaque, see_through, in_colour_of_body };
+
+void add_mark(render::DrawList& list, const Piece& p, Mark m, std::size_t body, Fill fill) {
+  const render::Rgba colour =
+      fill == Fill::in_colour_of_body ? render::palette::body(side(body)) : colour_of(m);
+  const bool see_through = fill != Fill::opaque;
   // Of coplanar marks the more severe one is drawn in front.
   const auto nudge = static_cast<std::int8_t>(2 * static_cast<int>(m) + static_cast<int>(body));
   for (std::size_t k = 2; k < p.corners.size(); ++k) {
@@ -119,6 +126,38 @@ CasePicture::CasePicture(const cases::Case& c, const Verdict& verdict)
   mark(verdict.found, Mark::found);
   mark(verdict.extra, Mark::extra);
   mark(verdict.missed, Mark::missed);
+  if (!all_marked()) return;
+  worst = !verdict.missed.empty() ? Mark::missed : !verdict.extra.empty() ? Mark::extra : Mark::found;
+  for (const SimplexPair& p : verdict.worst()) add_place(p);
+}
+
+void CasePicture::add_place(const SimplexPair& pair) {
+  const Piece a = bodies[0].simplex(pair.a), b = bodies[1].simplex(pair.b);
+  const double *p[3], *q[3];
+  for (std::size_t k = 0; k < a.corners.size(); ++k) p[k] = a.corners[k].data(), q[k] = b.corners[k].data();
+  const exact::PairContact contact =
+      flat() ? exact::contact_of_segments(p, q) : exact::contact_of_triangles(p, q);
+  Piece piece;
+  for (std::size_t k = 0; k < contact.corner_count; ++k) piece.corners.push_back(contact.corners[k].x);
+  if (contact.corner_count == 0) {
+    const auto corners = [](const Piece& simplex) {
+      oracle::Corners out;
+      for (const Eigen::Vector3d& x : simplex.corners) out.push_back({x.x(), x.y(), x.z()});
+      return out;
+    };
+    const oracle::RationalClosest closest = oracle::closest_points(corners(a), corners(b));
+    for (const auto& x : {closest.on_f, closest.on_g})
+      piece.corners.emplace_back(x[0].convert_to<double>(), x[1].convert_to<double>(),
+                                 x[2].convert_to<double>());
+  }
+  piece.edges.assign(piece.corners.size(), true);
+  places.push_back(std::move(piece));
+}
+
+bool CasePicture::all_marked() const {
+  return std::none_of(marks.begin(), marks.end(), [](const auto& of) {
+    return of.empty() || std::find(of.begin(), of.end(), Mark::none) != of.end();
+  });
 }
 
 bool CasePicture::shows(Mark m) const {
@@ -148,7 +187,7 @@ void CasePicture::mark(const Pairs& pairs, Mark m) {
 
 render::DrawList draw_list(const CasePicture& s, const PictureFrame& frame, double reach) {
   render::DrawList list;
-  const bool see_through = s.crowded();
+  const Fill fill = s.all_marked() ? Fill::in_colour_of_body : s.crowded() ? Fill::see_through : Fill::opaque;
   for (std::size_t i = 0; i < 2; ++i) {
     if (s.flat()) add_fill(list, s.bodies[i], i, frame);
     const render::Rgba edge = render::palette::edge_of(render::palette::body(side(i)));
@@ -159,7 +198,20 @@ render::DrawList draw_list(const CasePicture& s, const PictureFrame& frame, doub
       if (s.marks[i][f] == Mark::none)
         add_body(list, p, i, style);
       else
-        add_mark(list, p, s.marks[i][f], i, see_through);
+        add_mark(list, p, s.marks[i][f], i, fill);
+    }
+  }
+  for (const Piece& whole : s.places) {
+    const Piece p = frame.cut(whole, reach);
+    constexpr std::int8_t kInFront = 12;
+    constexpr float kWidth = 4;
+    if (p.corners.size() > 1) add_outline(list, p, colour_of(s.worst), kWidth, kInFront);
+    for (std::size_t k = 0; k < p.corners.size() && p.corners.size() < 3; ++k) {
+      render::DrawPoint dot;
+      dot.x = p.corners[k];
+      dot.colour = colour_of(s.worst);
+      dot.radius = 4;
+      list.points.push_back(dot);
     }
   }
   return list;

@@ -86,6 +86,11 @@ struct CasePicture {
   std::array<PosedBody, 2> bodies;
   std::array<std::vector<Mark>, 2> marks;
   Eigen::AlignedBox3d box;
+  /// If a mark is on every simplex, as in minimised cases: the intersections of the worst pairs, or the
+  /// segments between their closest points. The bodies then have their own colours, because marks would not
+  /// distinguish anything.
+  std::vector<Piece> places;
+  Mark worst = Mark::none;
 
   /// Throws InputError if a pair refers to no real simplex, or the bodies cannot be drawn.
   CasePicture(const cases::Case& c, const Verdict& verdict);
@@ -94,9 +99,11 @@ struct CasePicture {
   bool shows(Mark m) const;
   /// Returns true if marks all over the bodies would hide one another.
   bool crowded() const;
+  bool all_marked() const;
 
  private:
   void mark(const Pairs& pairs, Mark m);
+  void add_place(const SimplexPair& pair);
 };
 
 /// Returns a draw list: bodies translucent, marks in their colours. Geometry outside [-reach, reach]^3 of the

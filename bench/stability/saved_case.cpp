@@ -5,11 +5,17 @@
 #include <iterator>
 #include <optional>
 
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
 #include "bench/methods/triangles.hpp"
+#include "bench/stability/minimise.hpp"
 #include "bench/stability/rational_oracles.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/poses.hpp"
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/core/strings.hpp>
+#include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 
 namespace lrb::stability {
@@ -76,26 +82,24 @@ Json pair_proof(const cases::Case& c, const SimplexPair& pair) {
   out["direction"] = point_json(way);
   out["largest_of_a"] = oracle::dot(way, closest.on_f).str();
   out["least_of_b"] = oracle::dot(way, closest.on_g).str();
+  // The square may be less than the least double.
+  using Wide = boost::multiprecision::cpp_bin_float_100;
+  const Wide distance_sq = Wide(boost::multiprecision::numerator(closest.distance_sq)) /
+                           Wide(boost::multiprecision::denominator(closest.distance_sq));
+  out["distance"] = io::number_text(sqrt(distance_sq).convert_to<double>(), 3);
   return out;
 }
 
-std::optional<SimplexPair> deciding_pair(const std::vector<Replay>& replays) {
-  for (const Replay& r : replays) {
-    if (!r.answered) continue;
-    std::vector<SimplexPair> expected = r.expected, answered = *r.answered, different;
-    std::sort(expected.begin(), expected.end());
-    std::sort(answered.begin(), answered.end());
-    std::set_symmetric_difference(expected.begin(), expected.end(), answered.begin(), answered.end(),
-                                  std::back_inserter(different));
-    if (!different.empty()) return different.front();
-  }
+std::optional<SimplexPair> deciding_pair(const cases::Case& c, const std::vector<Replay>& replays) {
+  for (const Replay& r : replays)
+    if (const auto pair = failing_pair(c, r)) return pair;
   for (const Replay& r : replays)
     if (!r.expected.empty()) return r.expected.front();
   return std::nullopt;
 }
 
 std::vector<std::string> save_case(const cases::Case& c, const std::vector<Replay>& replays,
-                                   const std::string& folder) {
+                                   const std::string& folder, const Json& minimised) {
   std::vector<std::string> files;
   const auto write = [&](const LrbRep& rep, const std::string& name) {
     write_mesh(methods::real_mesh(rep), folder + "/" + name);
@@ -103,7 +107,10 @@ std::vector<std::string> save_case(const cases::Case& c, const std::vector<Repla
   };
   const Record& r = replays.front().record;
   const RightAnswer right = expected_answer(c);
-  Json j = {{"family", r.family}, {"difficulty", r.difficulty}, {"case", r.case_index}, {"seed", r.seed}};
+  Json j = Json::object();
+  if (!r.family.empty())
+    j = {{"family", r.family}, {"difficulty", r.difficulty}, {"case", r.case_index}, {"seed", r.seed}};
+  if (!minimised.is_null()) j["minimised"] = minimised;
   j["what"] =
       "Do the simplices (triangles; segments in the plane) of A and of B intersect, each pair of them? They are numbered from "
       "0 in file order, polygons as fans. A vertex is at the doubles next to pose * vertex, as in a_world.obj and b_world.obj.";
@@ -116,7 +123,7 @@ std::vector<std::string> save_case(const cases::Case& c, const std::vector<Repla
     write(methods::at_pose(*c.a, c.pose_a), "a_world.obj");
     write(methods::at_pose(*c.b, c.pose_b), "b_world.obj");
     j["expected"] = {{"relation", to_string(right.relation)}, {"pairs", pairs_json(right.pairs)}};
-    const std::optional<SimplexPair> pair = deciding_pair(replays);
+    const std::optional<SimplexPair> pair = deciding_pair(c, replays);
     j["proof"] = pair ? pair_proof(c, *pair) : Json(nullptr);
   } else {
     j["expected"] = {{"rejected", right.rejection}};
@@ -126,6 +133,39 @@ std::vector<std::string> save_case(const cases::Case& c, const std::vector<Repla
   io::write_text(folder + "/case.json", j.dump(1) + "\n");
   files.emplace_back("case.json");
   return files;
+}
+
+SavedCase load_case(const std::string& folder) {
+  const std::string file = folder + "/case.json";
+  const auto value = nlohmann::json::parse(io::read_text(file), nullptr, false);
+  const auto fail = [&](const std::string& found) -> InputError {
+    return InputError(printable_name(file) + ": expected a case as `stability --save` writes it, found " +
+                      found);
+  };
+  if (!value.is_object()) throw fail("no JSON object");
+  SavedCase out;
+  const auto pose = [&](const char* key) {
+    try {
+      return io::pose_of(value.at(key).get<std::array<double, 12>>());
+    } catch (const nlohmann::json::exception&) {
+      throw fail(std::string("no 12 numbers under \"") + key + "\"");
+    }
+  };
+  out.meshes.pose_a = pose("pose_a");
+  out.meshes.pose_b = pose("pose_b");
+  out.meshes.a = read_mesh(folder + "/a.obj");
+  out.meshes.b = read_mesh(folder + "/b.obj");
+  if (out.meshes.a.dim != out.meshes.b.dim) throw fail("a 2D and a 3D mesh");
+  try {
+    if (!value.contains("family")) return out;
+    out.origin.family = value.at("family");
+    out.origin.difficulty = value.at("difficulty");
+    out.origin.case_index = value.at("case");
+    out.origin.seed = value.at("seed");
+  } catch (const nlohmann::json::exception&) {
+    throw fail("a family without difficulty, case and seed");
+  }
+  return out;
 }
 
 }  // namespace lrb::stability

@@ -1,6 +1,6 @@
 #pragma once
 /// Writes one case into a folder, so that it can be given to any program: meshes, poses, the right answer
-/// with a proof that needs only fractions, and the answers of engines.
+/// with a proof that needs only fractions, and the answers of engines. Reads such folders.
 
 #include <string>
 #include <vector>
@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cases/families.hpp"
+#include "bench/stability/case_meshes.hpp"
 #include "bench/stability/stability_experiment.hpp"
 
 namespace lrb::stability {
@@ -17,13 +18,23 @@ namespace lrb::stability {
 /// B.
 nlohmann::ordered_json pair_proof(const cases::Case& c, const SimplexPair& pair);
 
-/// Returns the pair that decides: the first that an engine missed or added, else the first of the right
-/// answer. Returns nullopt if there is none.
-std::optional<SimplexPair> deciding_pair(const std::vector<Replay>& replays);
+/// Returns the pair that decides: the worst that an engine missed or added (failing_pair()), else the first
+/// of the right answer. Returns nullopt if there is none.
+std::optional<SimplexPair> deciding_pair(const cases::Case& c, const std::vector<Replay>& replays);
 
 /// Writes a.obj and b.obj, a_world.obj and b_world.obj (at their poses, if those are representable as
-/// doubles) and case.json. `replays`: of the same case, at least one. Returns the names of the files.
+/// doubles) and case.json. `replays`: of the same case, at least one. `minimised`: how the case was made
+/// from another; null if it was not. Returns the names of the files.
 std::vector<std::string> save_case(const cases::Case& c, const std::vector<Replay>& replays,
-                                   const std::string& folder);
+                                   const std::string& folder, const nlohmann::ordered_json& minimised = {});
+
+/// A case of such a folder.
+struct SavedCase {
+  CaseMeshes meshes;
+  Record origin;  ///< family, difficulty, case and seed; an empty family if they are not known
+};
+
+/// Reads a.obj, b.obj and the poses in case.json. Throws InputError that names the file and its mistake.
+SavedCase load_case(const std::string& folder);
 
 }  // namespace lrb::stability

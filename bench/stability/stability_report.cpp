@@ -98,6 +98,10 @@ report::GridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, c
   if (answered) d.facts.emplace_back("Query", render::short_number(r.microseconds) + " \u00b5s");
   d.note = "This family, this method: " + sentence(s, family) + ".";
   if (options.command) d.command = options.command(r);
+  if (options.command && grid.quantity == Quantity::pairs)
+    d.note +=
+        " The command runs this case again; with --minimise --save DIR it shrinks it to a few triangles, and writes a "
+        "report.";
   return d;
 }
 
@@ -136,6 +140,12 @@ report::Grid page_grid(const Grid& grid, const ReportOptions& options) {
 std::vector<report::Text> texts_of_numbers(Quantity quantity) {
   const char* query =
       quantity == Quantity::distance ? "The distance between the surfaces of two bodies at two poses."
+      : quantity == Quantity::near_pairs
+          ? "The pairs of triangles of two bodies whose distance is at most d: 0, the distance of two corners, a billionth or a "
+            "tenth of the bodies' size, or their size."
+      : quantity == Quantity::self_intersections
+          ? "The pairs of triangles in which a mesh of both bodies intersects itself: that share more than the corners and edges "
+            "that they share by index."
       : quantity == Quantity::depth
           ? "The penetration depth of two convex bodies: the length of the shortest translation that separates them."
           : "The time of impact, from 0 to 1: B moves in a straight line to its pose and beyond.";
@@ -145,8 +155,8 @@ std::vector<report::Text> texts_of_numbers(Quantity quantity) {
       {"Verdicts",
        "By rational arithmetic on the same doubles: brute force over all pairs of triangles, or over all separating planes of "
        "convex bodies. An answer is wrong if it reports a false contact or misses one; if a certified interval "
-       "does not contain the number; or if any other answer has an error of more than a millionth of the bodies' size, or a "
-       "thousandth of the motion. Refused: 2D bodies, bodies of too many faces for rational arithmetic and, for depths, "
+       "does not contain the number; if any other answer has an error of more than a millionth of the bodies' size, or a "
+       "thousandth of the motion; or if pairs of a list are missed or in excess. Refused: 2D bodies, bodies of too many faces for rational arithmetic and, for depths, "
        "bodies that are not convex."},
       {"Limits",
        "The cases are made to be hard, and most methods do not promise exact answers. Families are samples: no failure among "

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <numbers>
 
 #include "bench/stability/case_picture.hpp"
@@ -27,6 +28,8 @@ constexpr double kSmallShare = 0.25;
 constexpr double kTiny = 0.04;
 /// Extent of a close-up, relative to its subject.
 constexpr double kContext = 2.4;
+/// A close-up of fewer times than this shows little more than the whole.
+constexpr double kLeastCloseUp = 4;
 /// Bodies are clipped beyond the view of close-ups, at this distance in extents of the close-up.
 constexpr double kReach = 6;
 
@@ -54,6 +57,24 @@ struct CloseUp {
   std::string caption;
 };
 
+/// Returns the smallest box around the place of a pair: its extent, or if it is a point the shortest edge of
+/// the two simplices.
+CloseUp close_up_of_place(const CasePicture& s, const Piece& place, const SimplexPair& pair,
+                          const char* kind) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& x : place.corners) box.extend(x);
+  double size = diagonal(box);
+  if (!(size > 0)) {
+    for (const Piece& p : {s.bodies[0].simplex(pair.a), s.bodies[1].simplex(pair.b)})
+      for (std::size_t k = 0; k < p.corners.size(); ++k) {
+        const double length = (p.corners[k] - p.corners[(k + 1) % p.corners.size()]).stableNorm();
+        if (length > 0 && (!(size > 0) || length < size)) size = length;
+      }
+  }
+  const Eigen::Vector3d centre = centre_of(box), half = Eigen::Vector3d::Constant(size / 2);
+  return {Eigen::AlignedBox3d(centre - half, centre + half), std::string("close-up, ") + kind};
+}
+
 std::optional<CloseUp> close_up(const CasePicture& s, const Verdict& verdict) {
   const double whole = diagonal(s.box);
   const Pairs& pairs = verdict.worst();
@@ -64,6 +85,11 @@ std::optional<CloseUp> close_up(const CasePicture& s, const Verdict& verdict) {
     return std::nullopt;
   }
   const char* kind = !verdict.missed.empty() ? "missed" : !verdict.extra.empty() ? "extra" : "expected";
+  if (!s.places.empty()) {
+    CloseUp close = close_up_of_place(s, s.places.front(), pairs.front(), kind);
+    if (diagonal(close.box) < kSmallShare * whole) return close;
+    return std::nullopt;
+  }
   Eigen::AlignedBox3d all;
   const Eigen::AlignedBox3d* smallest = nullptr;
   std::vector<Eigen::AlignedBox3d> places;
@@ -172,19 +198,85 @@ void frame_place(render::Image& image, const render::Camera& camera,
   image.stroke(r, render::palette::kInk, 2);
 }
 
+/// A wrong pair without the rest of the bodies.
+struct LonePair {
+  cases::Case bodies;  ///< the picture refers to them
+  CasePicture picture;
+  std::string caption;
+};
+
+/// Returns the pair whose smaller simplex is largest.
+SimplexPair best_visible(const CasePicture& s, const Pairs& pairs) {
+  const auto size = [&](const SimplexPair& p) {
+    return std::min(diagonal(s.bodies[0].box(p.a)), diagonal(s.bodies[1].box(p.b)));
+  };
+  return *std::max_element(pairs.begin(), pairs.end(),
+                           [&](const SimplexPair& p, const SimplexPair& q) { return size(p) < size(q); });
+}
+
+/// Returns a wrong pair, if marks are all over the bodies and show no place.
+std::optional<LonePair> lone_pair(const CasePicture& s, const Verdict& verdict) {
+  const Pairs& wrong = !verdict.missed.empty() ? verdict.missed : verdict.extra;
+  if (wrong.empty() || !s.crowded() || s.all_marked()) return std::nullopt;
+  const SimplexPair pair = best_visible(s, wrong);
+  const auto alone = [&](std::size_t side, SimplexId simplex) {
+    Mesh mesh;
+    mesh.dim = s.bodies[side].dim();
+    mesh.vertices = s.bodies[side].simplex(simplex).corners;
+    std::vector<VertexId> corners;
+    for (std::uint32_t k = 0; k < mesh.vertices.size(); ++k) corners.emplace_back(k);
+    mesh.add_face(corners);
+    return std::make_shared<LrbRep>(LrbRep::without_regions(mesh, false, false));
+  };
+  cases::Case c;
+  c.a = alone(0, pair.a);
+  c.b = alone(1, pair.b);
+  Verdict one;
+  one.listed = true;
+  (verdict.missed.empty() ? one.extra : one.missed) = {{SimplexId(0), SimplexId(0)}};
+  const char* what = s.flat() ? "segments " : "triangles ";
+  return LonePair{c, CasePicture(c, one),
+                  std::string("one pair, ") + (verdict.missed.empty() ? "extra: " : "missed: ") + what +
+                      std::to_string(pair.a) + " and " + std::to_string(pair.b)};
+}
+
+render::Image draw_lone_pair(const LonePair& pair, int width, int height, render::Rasterizer& rasterizer) {
+  const CasePicture& s = pair.picture;
+  const PictureFrame frame(s.box);
+  const View view{frame, 2, best_view(s, frame)};
+  render::Image image =
+      draw_view(s, view, camera_of(view, all_points(s, frame), s), width, height, rasterizer);
+  write_caption(image, pair.caption);
+  return image;
+}
+
+render::Image side_by_side(const render::Image& left, const render::Image& right, int width, int height) {
+  render::Image out(width, height, render::palette::kRule);
+  out.paste(left, 0, 0);
+  out.paste(right, left.width() + kGap, 0);
+  return out;
+}
+
 render::Image both_views(const CasePicture& s, const Verdict& verdict, int width, int height,
                          render::Rasterizer& rasterizer) {
-  const std::optional<CloseUp> close = close_up(s, verdict);
+  std::optional<CloseUp> close = close_up(s, verdict);
+  const bool shows_little = !close || kContext * diagonal(close->box) > diagonal(s.box) / kLeastCloseUp;
+  const std::optional<LonePair> pair = shows_little ? lone_pair(s, verdict) : std::nullopt;
+  if (pair) close.reset();
   const PictureFrame whole_frame(s.box);
   std::optional<PictureFrame> near_frame;
   if (close) near_frame.emplace(close->box);
   const render::ViewDirection direction = best_view(s, close ? *near_frame : whole_frame);
 
-  const int left = close ? (width - kGap) / 2 : width;
+  const int left = close || pair ? (width - kGap) / 2 : width;
   const View whole{whole_frame, 2, direction};
   const std::vector<Eigen::Vector3d> points = all_points(s, whole_frame);
   const run::CameraFit fit = camera_of(whole, points, s);
   render::Image image = draw_view(s, whole, fit, left, height, rasterizer);
+  if (pair) {
+    write_caption(image, "whole");
+    return side_by_side(image, draw_lone_pair(*pair, width - left - kGap, height, rasterizer), width, height);
+  }
   if (!close) return image;
 
   frame_place(image, fit(left, height), corners_of(whole_frame, close->box), render::bounds(points));
@@ -200,10 +292,7 @@ render::Image both_views(const CasePicture& s, const Verdict& verdict, int width
                     render::short_number(diagonal(s.box) / std::max(diagonal(close->box) * kContext,
                                                                     std::numeric_limits<double>::min())) +
                     " times as large");
-  render::Image out(width, height, render::palette::kRule);
-  out.paste(image, 0, 0);
-  out.paste(detail, left + kGap, 0);
-  return out;
+  return side_by_side(image, detail, width, height);
 }
 
 render::Overlay overlay_of(const CasePicture& s, const Verdict& verdict, const WorstCaseText& text) {

@@ -24,9 +24,10 @@ struct WorstCaseText {
 
 /// Draws both bodies translucent, and the simplices of all expected and answered pairs coloured by their mark
 /// (of several marks: missed before extra before found). A close-up of the wrong pairs is added if they are
-/// small compared to the bodies. `answered`: nullopt if the method returned no list; all expected pairs are
-/// then drawn as found. Pairs are of real simplices, in any order; 3D or 2D. Throws InputError if world
-/// coordinates are not finite or a pair refers to no real simplex.
+/// small compared to the bodies, or a wrong pair without the rest of the bodies if marks are all over them.
+/// `answered`: nullopt if the method returned no list; all expected pairs are then drawn as found. Pairs are
+/// of real simplices, in any order; 3D or 2D. Throws InputError if world coordinates are not finite or a pair
+/// refers to no real simplex.
 render::Image worst_case_picture(const cases::Case& c, std::span<const SimplexPair> expected,
                                  const std::optional<std::vector<SimplexPair>>& answered,
                                  const WorstCaseText& text, render::Rasterizer& rasterizer);

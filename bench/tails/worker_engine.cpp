@@ -1,14 +1,10 @@
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <istream>
 #include <sstream>
 
-#include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <poll.h>
-#include <unistd.h>
 
 #include "bench/tails/engine.hpp"
 #include "bench/workers/child.hpp"
@@ -24,35 +20,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kTests = 1, kList = 2;
 constexpr std::string_view kReady = "{\"ready\":true}\n";  // the worker's first line
-
-/// Both ends of a pipe. The reading end stays open, so that writing to a worker that has died does not end
-/// this process.
-class Pipe {
- public:
-  Pipe() {
-    if (pipe2(ends_, O_CLOEXEC) != 0)
-      throw EnvironmentError(std::string("cannot create a pipe: ") + std::strerror(errno));
-  }
-  ~Pipe() {
-    close(ends_[0]);
-    close(ends_[1]);
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-
-  int reading_end() const { return ends_[0]; }
-  void write(std::string_view text) const {
-    while (!text.empty()) {
-      const ssize_t n = ::write(ends_[1], text.data(), text.size());
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0) throw EnvironmentError(std::string("cannot write to a pipe: ") + std::strerror(errno));
-      text.remove_prefix(static_cast<std::size_t>(n));
-    }
-  }
-
- private:
-  int ends_[2] = {};
-};
 
 class WorkerEngine : public Engine {
  public:
@@ -145,7 +112,7 @@ class WorkerEngine : public Engine {
   std::string name_;
   Clock::duration limit_;
   std::vector<std::string> command_;
-  std::optional<Pipe> pipe_;
+  std::optional<workers::Pipe> pipe_;
   std::optional<workers::Child> child_;
 };
 

@@ -116,6 +116,25 @@ std::vector<std::string> lines_of(const std::vector<std::string>& command, std::
   return lines;
 }
 
+Pipe::Pipe() {
+  if (pipe2(ends_, O_CLOEXEC) != 0)
+    throw EnvironmentError(std::string("cannot create a pipe: ") + std::strerror(errno));
+}
+
+Pipe::~Pipe() {
+  close(ends_[0]);
+  close(ends_[1]);
+}
+
+void Pipe::write(std::string_view text) const {
+  while (!text.empty()) {
+    const ssize_t n = ::write(ends_[1], text.data(), text.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw EnvironmentError(std::string("cannot write to a pipe: ") + std::strerror(errno));
+    text.remove_prefix(static_cast<std::size_t>(n));
+  }
+}
+
 MemoryFile::MemoryFile(const char* name) : file_(memfd_create(name, MFD_CLOEXEC)) {
   if (file_ < 0)
     throw EnvironmentError(std::string("cannot create a file in memory: ") + std::strerror(errno));

@@ -45,6 +45,23 @@ class Child {
 std::vector<std::string> lines_of(const std::vector<std::string>& command, std::chrono::seconds limit,
                                   int given = -1);
 
+/// Both ends of a pipe to a child, whose `given` is the reading end. That end stays open here, so that
+/// writing to a child that has died does not end this process.
+class Pipe {
+ public:
+  Pipe();
+  ~Pipe();
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+  int reading_end() const { return ends_[0]; }
+  /// Waits if the child is more than a buffer (64 KiB) behind.
+  void write(std::string_view text) const;
+
+ private:
+  int ends_[2] = {};
+};
+
 /// A file in memory that children of this process can open by its path. Nothing is left of it when this
 /// process ends, however that happens (Linux). Throws EnvironmentError if there is no memory for it.
 class MemoryFile {

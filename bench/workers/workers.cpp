@@ -21,13 +21,6 @@ namespace {
 constexpr int kMaxTimeouts = 3;  // number of consecutive time-outs after which a method is abandoned
 constexpr int kBadInput = 2;     // an exit code that does not count as a crash
 
-std::string how_it_ended(int status) {
-  if (status >= 0) return "exited with code " + std::to_string(status);
-  const char* name = strsignal(-status);
-  return "killed by signal " + std::to_string(-status) +
-         (name != nullptr ? std::string(" (") + name + ")" : "");
-}
-
 /// Returns a worker's error message about its input, or an empty string.
 std::string complaint(const std::string& line) {
   if (line.compare(0, std::strlen("{\"error\""), "{\"error\"") != 0) return "";
@@ -36,6 +29,19 @@ std::string complaint(const std::string& line) {
 }
 
 }  // namespace
+
+std::string text_of_end(int status) {
+  if (status >= 0) return "exited with code " + std::to_string(status);
+  const char* name = strsignal(-status);
+  return "killed by signal " + std::to_string(-status) +
+         (name != nullptr ? std::string(" (") + name + ")" : "");
+}
+
+std::string text_of_timeout(double seconds) {
+  char text[64];
+  std::snprintf(text, sizeof text, "no answer in %g s", seconds);
+  return text;
+}
 
 void Job::start() {
   std::vector<std::string> command = task_.command;
@@ -60,19 +66,16 @@ void Job::receive() {
   if (more) return;
   const int status = child_->wait();
   if (status == kBadInput || status == kNoSuchProgram)
-    throw EnvironmentError(task_.command.front() + ": " + how_it_ended(status) + "; rebuild it");
+    throw EnvironmentError(task_.command.front() + ": " + text_of_end(status) + "; rebuild it");
   if (next_ == task_.end)
     child_.reset();  // its exit after the last line is ignored
   else
-    go_on({false, how_it_ended(status)});
+    go_on({false, text_of_end(status)});
 }
 
 void Job::expire() {
   child_->kill();
-  const double seconds = std::chrono::duration<double>(task_.limit).count();
-  char text[64];
-  std::snprintf(text, sizeof text, "no answer in %g s", seconds);
-  go_on({true, text});
+  go_on({true, text_of_timeout(std::chrono::duration<double>(task_.limit).count())});
 }
 
 void Job::go_on(const WorkerFailure& failure) {

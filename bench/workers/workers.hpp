@@ -22,6 +22,10 @@ struct WorkerFailure {
   std::string message;
 };
 
+/// Messages of failures: of the end of a child, as Child::wait() returns it, and of an answer that is late.
+std::string text_of_end(int status);
+std::string text_of_timeout(double seconds);
+
 class Job {
  public:
   using Clock = std::chrono::steady_clock;

@@ -1,5 +1,6 @@
 // Numbers in the stability experiment: what rational arithmetic says is right, how answers are judged, and
 // that ours are.
+#include <array>
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -8,6 +9,7 @@
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>
+#include <lrbscope/self_intersections.hpp>
 
 using namespace lrb;
 using namespace lrb::stability;
@@ -124,6 +126,102 @@ TEST_CASE("a needle that passes many triangles is decided") {
   }
 }
 
+namespace {
+
+LrbRep triangles(const std::vector<Eigen::Vector3d>& points, const std::vector<std::array<int, 3>>& faces) {
+  Mesh m;
+  m.vertices = points;
+  for (const auto& f : faces) {
+    const VertexId corners[3] = {VertexId(f[0]), VertexId(f[1]), VertexId(f[2])};
+    m.add_face(corners);
+  }
+  return LrbRep::without_regions(m, false, true);
+}
+
+}  // namespace
+
+TEST_CASE("rational lists: pairs within a distance, with the distance itself") {
+  const cases::Case c = boxes({1.25, 0, 0});
+  const NumberQuery q = query_of(c);
+  CHECK(true_near_pairs(q.a, q.b, std::nextafter(0.25, 0)).empty());
+  const std::size_t facing = true_near_pairs(q.a, q.b, 0.25).size();
+  CHECK(facing > 4);  // the two facing sides, and faces beside them
+  CHECK(true_near_pairs(q.a, q.b, 0).empty());
+  CHECK(true_near_pairs(q.a, q.b, 10).size() == 144);
+  // Tiny distances, whose squares are less than the least double.
+  const LrbRep a = triangles({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}),
+               b = triangles({{0, 0, 0x1p-600}, {1, 0, 0x1p-600}, {0, 1, 0x1p-600}}, {{0, 1, 2}});
+  CHECK(true_near_pairs(a, b, 0x1p-600).size() == 1);
+  CHECK(true_near_pairs(a, b, 0x1p-601).empty());
+}
+
+TEST_CASE("rational lists: self-intersections of triangles that share corners") {
+  const std::vector<Eigen::Vector3d> p = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},  {0, -1, 0},
+                                          {0, 2, 0}, {1, 1, 1}, {1, 1, -1}, {2, 0, 0}};
+  const auto pairs = [&](const std::vector<std::array<int, 3>>& faces) {
+    const LrbRep body = triangles(p, faces);
+    const std::size_t right = true_self_intersections(body).size();
+    CHECK(self_intersections(body, 1).pairs.size() == right);
+    return right;
+  };
+  CHECK(pairs({{0, 1, 2}, {0, 1, 3}}) == 0);  // an edge, on both sides of it
+  CHECK(pairs({{0, 1, 2}, {0, 1, 4}}) == 1);  // an edge, on one side
+  CHECK(pairs({{0, 1, 2}, {0, 1, 5}}) == 0);  // an edge, in two planes
+  CHECK(pairs({{0, 1, 4}, {0, 5, 6}}) == 1);  // a corner, and through each other
+  CHECK(pairs({{0, 2, 6}, {1, 5, 7}}) == 0);  // no corner
+  CHECK(pairs({{0, 1, 2}, {1, 0, 2}}) == 1);  // all corners
+  CHECK(pairs({{0, 1, 2}, {0, 1, 7}}) == 0);  // the second has no area
+}
+
+TEST_CASE("judging lists") {
+  RightAnswer right;
+  right.pairs = {{SimplexId(0), SimplexId(1)}, {SimplexId(2), SimplexId(2)}};
+  NumberAnswer answer;
+  answer.pairs = right.pairs;
+  Record r;
+  judge_list(r, answer, right);
+  CHECK(r.outcome == Outcome::right);
+  answer.pairs[1].b = SimplexId(3);
+  judge_list(r, answer, right);
+  CHECK(r.outcome == Outcome::wrong);
+  CHECK(r.missed == 1);
+  CHECK(r.extra == 1);
+}
+
+TEST_CASE("lrbscope's lists of near pairs and self-intersections are right from benign to degenerate") {
+  std::uint64_t right = 0, pairs = 0;
+  for (const Quantity quantity : {Quantity::near_pairs, Quantity::self_intersections})
+    for (const char* name : {"coplanar", "stack", "shared", "sliver", "far", "slide", "mixture", "zero-area"})
+      for (const int difficulty : {0, 6, 10})
+        for (const std::uint64_t index : {0, 1}) {
+          CAPTURE(name);
+          CAPTURE(difficulty);
+          CAPTURE(index);
+          CAPTURE(name_of(quantity));
+          const cases::Case c = cases::make_case(*cases::find_family(name), 5, difficulty, index);
+          Record r;
+          ask_number(ours(quantity), c, true_number(quantity, c), r);
+          CHECK((r.outcome == Outcome::right || r.outcome == Outcome::rejected));
+          right += r.outcome == Outcome::right;
+          pairs += r.expected;
+        }
+  CHECK(right > 30);
+  CHECK(pairs > 500);
+}
+
+TEST_CASE("contact does not flicker: 10,000 steps of a body that slides on a floor") {
+  const LrbRep floor = *cases::body(shapes::box({-4, -4, -1}, {4, 4, 0})), box = *cases::body(shapes::box());
+  Pose pose = Pose::translation({-2, 0.25, 0});
+  int contacts = 0;
+  CollideRequest request;
+  request.mode = Mode::first_pair;
+  for (int i = 0; i < 10'000; ++i) {
+    pose.t.x() += 4e-4;
+    contacts += collide(floor, {}, box, pose, request).relation == Relation::touching;
+  }
+  CHECK(contacts == 10'000);
+}
+
 TEST_CASE("lrbscope stability --quantity: table, records, a repeated case, an unknown quantity") {
   setenv("LRBSCOPE_METHODS", LRBSCOPE_FOLDER, 1);
   const test::Folder folder;
@@ -139,6 +237,14 @@ TEST_CASE("lrbscope stability --quantity: table, records, a repeated case, an un
   o = test::run(folder, again);
   CHECK(o.code == 0);
   CHECK(o.out.find("kiss, difficulty 3, case 0, ours: right\n  distance: ") == 0);
+  o = test::run(folder, {"stability", "--quantity", "near_pairs", "--family", "shared", "--method", "plain",
+                         "--difficulty", "10", "--only", "1", "--pairs"});
+  CHECK(o.out.find("  pairs: ") != std::string::npos);
+  CHECK(o.out.find("\n  found: ") != std::string::npos);
+  o = test::run(folder, {"chart", "--quantity", "self_intersections"});
+  CHECK(o.code == 2);
+  CHECK(o.err ==
+        "lrbscope: --quantity: expected pairs, distance, first_contact or depth, found self_intersections\n");
   o = test::run(folder, {"stability", "--quantity", "length"});
   CHECK(o.code == 2);
   CHECK(o.error_lines() == 1);

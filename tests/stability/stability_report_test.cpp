@@ -318,6 +318,58 @@ TEST_CASE("a missed pair is visible next to a body 1e60 times as large") {
   CHECK(red > 1000);
 }
 
+TEST_CASE("two triangles have the bodies' colours, and the place where they cross or come close") {
+  const auto triangle = [](const std::vector<Eigen::Vector3d>& corners) {
+    Mesh m;
+    m.vertices = corners;
+    const VertexId all[3] = {VertexId(0), VertexId(1), VertexId(2)};
+    m.add_face(all);
+    return made(m);
+  };
+  cases::Case c;
+  c.a = triangle({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  c.b = triangle({{0.25, 0.25, -1}, {0.25, 0.25, 1}, {2, 2, 1}});
+  const Pairs pair = {{SimplexId(0), SimplexId(0)}};
+  const CasePicture crossing(c, compare(pair, Pairs{}));
+  CHECK(crossing.all_marked());
+  REQUIRE(crossing.places.size() == 1);
+  REQUIRE(crossing.places[0].corners.size() == 2);
+  const Eigen::Vector3d end(0.25, 0.25, 0);
+  CHECK((crossing.places[0].corners[0] == end || crossing.places[0].corners[1] == end));
+  CHECK(crossing.worst == Mark::missed);
+  c.pose_b = Pose::translation({0, 0, 1.5});
+  const CasePicture apart(c, compare({}, pair));
+  REQUIRE(apart.places.size() == 1);
+  CHECK(apart.places[0].corners[0] == Eigen::Vector3d(0.25, 0.25, 0));  // closest points
+  CHECK(apart.places[0].corners[1] == Eigen::Vector3d(0.25, 0.25, 0.5));
+  CHECK(apart.worst == Mark::extra);
+  const CasePicture whole(boxes(), compare({}, Pairs{{SimplexId(0), SimplexId(0)}}));
+  CHECK(!whole.all_marked());
+  CHECK(whole.places.empty());
+}
+
+TEST_CASE("a wrong pair is drawn alone if marks are all over the bodies") {
+  cases::Case c;
+  c.a = c.b = made(shapes::icosphere(1));
+  c.pose_b = Pose::rotation({1, 2, 3}, 0.5, {0.1, 0, 0});
+  const Pairs pairs = brute_force(*c.a, c.pose_a, *c.b, c.pose_b).pairs;
+  REQUIRE(pairs.size() > 40);
+  render::Rasterizer rasterizer;
+  const render::Image all = worst_case_picture(c, pairs, Pairs{}, {"t", "", {}}, rasterizer),
+                      none = worst_case_picture(c, pairs, pairs, {"t", "", {}}, rasterizer);
+  const auto of_body_in_right_half = [](const render::Image& image) {
+    int n = 0;
+    for (int y = 90; y < image.height() - 90; ++y)
+      for (int x = image.width() / 2 + 10; x < image.width(); ++x) {
+        const render::Rgba p = image.at(x, y);
+        n += p.b > p.r + 50 && p.b > 150;  // of A: blue, which marks hide
+      }
+    return n;
+  };
+  CHECK(of_body_in_right_half(all) > 5000);
+  CHECK(of_body_in_right_half(none) < 1000);
+}
+
 TEST_CASE("cases that cannot be drawn are rejected") {
   render::Rasterizer rasterizer;
   cases::Case c = boxes();

@@ -494,7 +494,7 @@ TEST_CASE("lrbscope stability --save: a case that other programs can read, and a
     CHECK(oracle::dot(fractions(proof["direction"]), fractions(corner)) >= fraction(proof["least_of_b"]));
   const test::Outcome alone = run(folder, {"stability", "--save", "x"});
   CHECK(alone.code == 2);
-  CHECK(alone.err == "lrbscope: --save: expected --only CASE with it\n");
+  CHECK(alone.err == "lrbscope: --save: expected --only CASE or --saved DIR with it\n");
 }
 
 TEST_CASE("lrbscope stability: an interrupted run goes on where it stopped") {

@@ -1,0 +1,56 @@
+#pragma once
+/// A case as two meshes at two poses, and a method that is queried about such cases one after the other.
+
+#include <memory>
+#include <string>
+
+#include "bench/cases/families.hpp"
+#include "bench/methods/method.hpp"
+#include "bench/stability/stability_experiment.hpp"
+#include <lrbscope/mesh.hpp>
+#include <lrbscope/pose.hpp>
+
+namespace lrb::stability {
+
+struct CaseMeshes {
+  Mesh a, b;
+  Pose pose_a, pose_b;
+};
+
+/// Returns the meshes of a case: the real faces of its bodies.
+CaseMeshes meshes_of(const cases::Case& c);
+/// Returns the case of two meshes. A body is closed if its mesh bounds a solid; it has no regions. Throws
+/// InputError if a mesh cannot be queried.
+cases::Case case_of(const CaseMeshes& meshes);
+
+inline bool is_identity(const Pose& pose) {
+  return pose.r == Eigen::Matrix3d::Identity() && pose.t == Eigen::Vector3d::Zero();
+}
+
+/// A method in a worker, which is started again after a crash or a time-out.
+class CaseWorker {
+ public:
+  /// `timeout`: seconds per case. The method must be present.
+  CaseWorker(const workers::WorkerMethod& method, double timeout);
+  ~CaseWorker();
+  CaseWorker(const CaseWorker&) = delete;
+  CaseWorker& operator=(const CaseWorker&) = delete;
+
+  /// Returns the judged answer to a case. The right answer is computed in this process, by exact brute force.
+  /// The record names no family. Throws InputError if a number of the case is not finite, EnvironmentError if
+  /// the worker does not start.
+  Replay ask(const CaseMeshes& meshes);
+
+ private:
+  class Running;
+  workers::WorkerMethod method_;
+  double timeout_;
+  std::unique_ptr<Running> running_;
+};
+
+/// The worker's side: answers requests, a line each, until there are no more. A request is the path of a file
+/// with a case and its right answer.
+void serve_cases(const methods::MethodEntry& entry, std::istream& requests,
+                 const std::function<void(const std::string& line)>& say);
+
+}  // namespace lrb::stability
