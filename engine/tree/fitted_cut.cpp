@@ -30,15 +30,53 @@ using Eigen::Vector3d;
 /// needed: the radicand is the sum of the principal minors of the covariance.
 double ranked_cost(const Spread& spread) {
   // Covariance from raw moments. Cancellation is limited by measuring small ranges again (kMeasureAgain).
-  const double whole = 1 / spread.weight;
-  const Vector3d mean = spread.first * whole;
-  const Vector3d square = spread.squares * whole - mean.cwiseProduct(mean);
-  const Vector3d product =
-      spread.products * whole - Vector3d(mean.y() * mean.z(), mean.z() * mean.x(), mean.x() * mean.y());
+  const double whole = 1 / spread.sums[0];
+  const Vector3d mean = spread.sums.segment<3>(1) * whole;
+  const Vector3d square = Vector3d(spread.sums.segment<3>(4) * whole) - mean.cwiseProduct(mean);
+  const Vector3d product = Vector3d(spread.sums.segment<3>(7) * whole) -
+                           Vector3d(mean.y() * mean.z(), mean.z() * mean.x(), mean.x() * mean.y());
   const double minors =
       square.y() * square.z() + square.z() * square.x() + square.x() * square.y() - product.squaredNorm();
   // std::max(0.0, x), in this order, is 0 if x is NaN due to rounding.
   return std::sqrt(std::max(0.0, minors)) + kLengthCost * std::max(0.0, square.sum());
+}
+
+/// Returns the eigenvectors of a symmetric matrix as columns, in any order and direction. Takes a third of
+/// the time of eigenvectors_of_symmetric(), whose axes the nodes get; these here only rank cuts. The
+/// characteristic polynomial is solved by Newton's method without trigonometric functions, which differ
+/// between machines.
+Matrix3d estimated_eigenvectors(const Matrix3d& m) {
+  // With q a third of the trace and p^2 a sixth of the squares of M - q I, the eigenvalues of B = (M - q I) /
+  // p are the roots of x^3 - 3 x - det B.
+  const double q = m.trace() / 3;
+  Matrix3d b = m;
+  b.diagonal().array() -= q;
+  const double p = std::sqrt(b.squaredNorm() / 6);
+  if (!(p > 0)) return Matrix3d::Identity();
+  b *= 1 / p;
+  // B or -B has a root of [sqrt(3), 2], at a distance of at least sqrt(3) from the others: half of it is a
+  // root of 4 c^3 - 3 c - r for a half of the determinant, r, of [0, 1]. The polynomial in r is off by 0.001.
+  const double half = 0.5 * b.determinant(), r = std::min(std::abs(half), 1.0);
+  double c = 0.8661 + r * (0.1623 - 0.0286 * r);
+  for (int i = 0; i < 3; ++i) c -= (c * (4 * c * c - 3) - r) / (12 * c * c - 3);
+  b.diagonal().array() -= std::copysign(2 * c, half);
+  // Its eigenvector is perpendicular to all rows: the longest of their cross products is the most precise.
+  Vector3d single = b.row(0).cross(b.row(1));
+  for (int i = 0; i < 2; ++i) {
+    const Vector3d other = b.row(2).cross(b.row(i));
+    if (other.squaredNorm() > single.squaredNorm()) single = other;
+  }
+  single.normalize();
+  // The others are in the plane perpendicular to it, where the matrix is [x z; z y] on axes u and v.
+  const Vector3d u = single.unitOrthogonal(), v = single.cross(u);
+  const Vector3d mu = b * u, mv = b * v;
+  const double x = u.dot(mu), y = v.dot(mv), z = u.dot(mv), difference = 0.5 * (x - y);
+  const Eigen::Vector2d turned = Eigen::Vector2d(
+      std::abs(difference) + std::sqrt(difference * difference + z * z), std::copysign(z, z * difference));
+  const Eigen::Vector2d turn = turned.squaredNorm() > 0 ? turned.normalized() : Eigen::Vector2d(1, 0);
+  Matrix3d axes;
+  axes << single, turn.x() * u + turn.y() * v, turn.x() * v - turn.y() * u;
+  return axes;
 }
 
 /// A simplex with its position along a direction, as an integer sort key: the high bits increase with the
@@ -55,11 +93,56 @@ std::uint32_t number_at(std::uint64_t place) {
   return static_cast<std::uint32_t>(place);
 }
 
-/// Sorts keys by position. Equal positions: by number for few keys, otherwise in the order of the list. Radix
-/// sort, 11 bits of the position at a time; `buffer` is overwritten.
+/// Returns the position along a direction from its key.
+float position_at(std::uint64_t place) {
+  const auto growing = static_cast<std::uint32_t>(place >> 32);
+  return std::bit_cast<float>(growing >> 31 != 0 ? growing & 0x7fffffffu : ~growing);
+}
+
+/// Sorts keys by position if they are spread evenly enough, else returns false. Equal positions: by number,
+/// or in the order of the list.
+bool sort_by_parts(std::vector<std::uint64_t>& places, std::vector<std::uint64_t>& buffer, bool by_number) {
+  constexpr std::size_t kParts = 2048, kCrowded = 16;
+  const std::size_t parts = std::min(kParts, std::bit_ceil(places.size()));
+  const auto [least, most] = std::minmax_element(places.begin(), places.end());
+  const float from = position_at(*least),
+              per_unit = static_cast<float>(parts - 1) / (position_at(*most) - from);
+  if (!std::isfinite(per_unit)) return false;
+  // The part of a position grows with it, as rounding is monotone.
+  const auto part_of = [&](std::uint64_t place) {
+    return static_cast<std::uint32_t>((position_at(place) - from) * per_unit);
+  };
+  std::array<std::uint32_t, kParts> begin;
+  std::fill_n(begin.begin(), parts, 0u);
+  for (const std::uint64_t place : places) ++begin[part_of(place)];
+  std::uint32_t sum = 0, crowd = 0;
+  for (std::size_t i = 0; i < parts; ++i) {
+    crowd = std::max(crowd, begin[i]);
+    sum += std::exchange(begin[i], sum);
+  }
+  if (crowd > kCrowded) return false;
+  for (const std::uint64_t place : places) buffer[begin[part_of(place)]++] = place;
+  // Within a part by insertion, which moves a key past larger ones only: equal positions keep their order.
+  const std::uint64_t ignored = by_number ? 0 : 0xffffffffu;
+  for (std::size_t i = 1; i < buffer.size(); ++i) {
+    const std::uint64_t place = buffer[i];
+    std::size_t to = i;
+    for (; to > 0 && (buffer[to - 1] | ignored) > (place | ignored); --to) buffer[to] = buffer[to - 1];
+    buffer[to] = place;
+  }
+  places.swap(buffer);
+  return true;
+}
+
+/// Sorts keys by position. Equal positions: by number for few keys, otherwise in the order of the list. A
+/// counting sort into parts of equal width, then insertion; `buffer` is overwritten. If some part is crowded,
+/// by comparison or, for many keys, radix sort with 11 bits of the position at a time.
 void sort_places(std::vector<std::uint64_t>& places, std::vector<std::uint64_t>& buffer) {
-  constexpr std::size_t kFew = 256;  // clearing the counters would take longer
-  if (places.size() <= kFew) {
+  constexpr std::size_t kFew = 256;  // clearing the counters of the radix sort would take longer
+  const bool few = places.size() <= kFew;
+  buffer.resize(places.size());
+  if (sort_by_parts(places, buffer, few)) return;
+  if (few) {
     std::sort(places.begin(), places.end());
     return;
   }
@@ -68,7 +151,6 @@ void sort_places(std::vector<std::uint64_t>& places, std::vector<std::uint64_t>&
   std::array<std::array<std::uint32_t, kMask + 1>, kRounds> begin{};
   for (const std::uint64_t place : places)
     for (int round = 0; round < kRounds; ++round) ++begin[round][place >> (32 + kBits * round) & kMask];
-  buffer.resize(places.size());
   for (int round = 0; round < kRounds; ++round) {
     std::uint32_t sum = 0;
     for (std::uint32_t& count : begin[round]) sum += std::exchange(count, sum);
@@ -99,7 +181,11 @@ FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplice
   coordinate_[0].resize(n);
   std::iota(coordinate_[0].begin(), coordinate_[0].end(), 0u);
   spread_.reserve(n);
-  for (const std::uint32_t s : simplices_) spread_.push_back(soup_.spread[s]);
+  centre_.reserve(n);
+  for (const std::uint32_t s : simplices_) {
+    spread_.push_back(soup_.spread[s]);
+    centre_.push_back(soup_.centre[s]);
+  }
   local_.resize(n);
   is_left_.resize(n);
   localise();
@@ -176,9 +262,16 @@ void FittedCuts::localise() {
   origin_ = bounds.center();
   scale_ = 1 / bounds.sizes().norm();
   if (!std::isfinite(scale_)) scale_ = 1;
-  for (const std::uint32_t i : along(0))
-    for (int k = 0; k < 3; ++k)
-      local_[i][k] = four<float>(scale_ * (soup_.corners[simplices_[i]][k] - origin_));
+  for (const std::uint32_t i : along(0)) {
+    GrowingBox<float> box;
+    for (int k = 0; k < 4; ++k) {
+      const auto x = four<float>(scale_ * (soup_.corners[simplices_[i]][std::min(k, 2)] - origin_));
+      std::ranges::copy(x, local_[i].corner[k]);
+      box.extend(x);
+    }
+    std::ranges::copy(box.low, local_[i].box[0]);
+    std::ranges::copy(-box.high, local_[i].box[1]);
+  }
 }
 
 /// Measures the moments of the simplices of the range relative to the same centre and scale, which limits
@@ -190,10 +283,10 @@ void FittedCuts::measure() {
 /// Orders the range along a direction by the centres of boxes, rounded to float.
 void FittedCuts::order_along(const Vector3d& direction, std::vector<std::uint32_t>& order) {
   places_.resize(size_);
+  const std::span<const std::uint32_t> some = along(0);
   for (std::uint32_t k = 0; k < size_; ++k) {
-    const std::uint32_t i = along(0)[k];
-    const Vector3d seen = soup_.centre[simplices_[i]] - origin_;
-    places_[k] = place_at(static_cast<float>(scale_ * direction.dot(seen)), i);
+    const Vector3d seen = centre_[some[k]] - origin_;
+    places_[k] = place_at(static_cast<float>(scale_ * direction.dot(seen)), some[k]);
   }
   sort_places(places_, sorted_);
   order.resize(size_);
@@ -205,9 +298,8 @@ void FittedCuts::rank(int way) {
   // The moments of the left half grow by one simplex per step; those of the right half are the remainder.
   const std::span<const std::uint32_t> order = along(way);
   Spread left;
-  for (std::uint32_t i = 1; i < size_; ++i) {
-    left += spread_[order[i - 1]];
-    if (i % kTreeWidth != 0) continue;
+  for (std::uint32_t i = kTreeWidth; i < size_; i += kTreeWidth) {
+    for (std::uint32_t k = i - kTreeWidth; k < i; ++k) left += spread_[order[k]];
     const std::uint32_t right = size_ - i;
     const double cost = ranked_cost(left) * leaves_for(i) + ranked_cost(all_ - left) * leaves_for(right);
     cuts_.push_back({static_cast<float>(cost), larger_side(i, size_), way, i});
@@ -230,19 +322,18 @@ FittedCuts::Halves FittedCuts::measured(const Cut& cut, float most) const {
 
 /// Returns the cost of the tight box of some simplices.
 double FittedCuts::fitted_box_cost(std::span<const std::uint32_t> some, const Spread& spread) const {
-  // The candidates for a node's frame: the coordinate axes and the principal axes. The rotation maps x to the
-  // sum of x[k] * column[k].
-  const Matrix3d axes = eigenvectors_of_symmetric(spread.covariance());
-  Eigen::Array4f column[3];
-  for (int k = 0; k < 3; ++k) column[k] = four<float>(axes.row(k));
-  GrowingBox<float> straight, turned;
-  for (const std::uint32_t i : some)
-    for (const Eigen::Array4f& x : local_[i]) {
-      straight.extend(x);
-      turned.extend(x[0] * column[0] + x[1] * column[1] + x[2] * column[2]);
-    }
-  const double unit = 1 / scale_;
-  return std::min(box_cost(straight.sides() * unit), box_cost(turned.sides() * unit));
+  // The candidates for a node's frame: the coordinate axes and the principal axes.
+  const Matrix3d axes = estimated_eigenvectors(spread.covariance());
+  BoxKernel k;
+  k.which = some.data();
+  k.count = some.size();
+  k.local = local_.data();
+  for (int i = 0; i < 3; ++i) std::ranges::copy(four<float>(axes.row(i)), k.axes[i]);
+  run_box_kernel(k);
+  const auto cost = [&](const float(&sides)[4]) {
+    return box_cost(Vector3d(sides[0], sides[1], sides[2]) * (1 / scale_));
+  };
+  return std::min(cost(k.straight), cost(k.turned));
 }
 
 /// Cuts the range: partitions the order along each axis into left and right, stably.
@@ -250,15 +341,19 @@ void FittedCuts::part(const Cut& cut) {
   const std::span<const std::uint32_t> order = along(cut.way);
   // Mark the sides once, then partition each order in place; the right half goes through a buffer.
   for (std::uint32_t k = 0; k < size_; ++k) is_left_[order[k]] = k < cut.left;
-  for (std::vector<std::uint32_t>& all : coordinate_) {
-    right_.clear();
-    auto to = all.begin() + begin_;
-    for (auto from = to, end = to + size_; from != end; ++from)
-      if (is_left_[*from])
-        *to++ = *from;
-      else
-        right_.push_back(*from);
-    std::copy(right_.begin(), right_.end(), to);
+  right_.resize(size_);
+  for (int way = 0; way < 3; ++way) {
+    if (way == cut.way) continue;  // in two parts already
+    std::uint32_t* const range = coordinate_[way].data() + begin_;
+    std::uint32_t left = 0, right = 0;
+    // Each simplex is written to both sides, and only one of the ends moves: the sides cannot be predicted.
+    for (std::uint32_t k = 0; k < size_; ++k) {
+      const std::uint32_t i = range[k];
+      range[left] = right_[right] = i;
+      left += is_left_[i];
+      right += 1u - is_left_[i];
+    }
+    std::copy_n(right_.begin(), right, range + left);
   }
 }
 
@@ -275,7 +370,7 @@ bool is_orthonormal(const Matrix3d& axes) {
 }  // namespace
 
 Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, double unit)
-    : simplices(simplices_) {
+    : simplices(simplices_.begin(), simplices_.end()) {
   // The unit is a power of two: 2^(exponent - 1). Two factors, as its inverse may be out of range.
   int exponent = 0;
   std::frexp(unit, &exponent);
@@ -307,42 +402,62 @@ Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, doubl
   for (std::uint32_t s = 0; s < n; ++s) spread.emplace_back(corners[s], bounds.center(), scale);
 }
 
+void Soup::follow_order(Workers& workers) {
+  constexpr std::size_t kShare = 4096;
+  const auto follow = [&](auto& items) {
+    std::remove_reference_t<decltype(items)> moved(items.size());
+    workers.for_each((order.size() + kShare - 1) / kShare, [&](std::size_t share, unsigned) {
+      for (std::size_t i = share * kShare; i < std::min(order.size(), (share + 1) * kShare); ++i)
+        moved[i] = items[order[i]];
+    });
+    items = std::move(moved);
+  };
+  follow(simplices);
+  follow(corners);
+  follow(box);
+  std::iota(order.begin(), order.end(), 0u);
+  centre = {};
+  spread = {};
+}
+
 Spread::Spread(const std::array<Vector3d, 3>& corners, const Vector3d& origin, double scale) {
   const Vector3d p = scale * (corners[0] - origin), q = scale * (corners[1] - origin),
                  r = scale * (corners[2] - origin);
   // Exact integrals over the triangle: mean (p + q + r) / 3, and second moments (sum^2 + p^2 + q^2 + r^2) /
   // 12.
-  weight = (q - p).cross(r - p).norm() + kFrameCornerWeight;
+  const double weight = (q - p).cross(r - p).norm() + kFrameCornerWeight;
   const Vector3d sum = p + q + r;
-  first = weight / 3 * sum;
+  sums[0] = weight;
+  sums.segment<3>(1) = weight / 3 * sum;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    squares[i] = weight / 12 * (sum[i] * sum[i] + p[i] * p[i] + q[i] * q[i] + r[i] * r[i]);
-    products[i] = weight / 12 * (sum[j] * sum[k] + p[j] * p[k] + q[j] * q[k] + r[j] * r[k]);
+    sums[4 + i] = weight / 12 * (sum[i] * sum[i] + p[i] * p[i] + q[i] * q[i] + r[i] * r[i]);
+    sums[7 + i] = weight / 12 * (sum[j] * sum[k] + p[j] * p[k] + q[j] * q[k] + r[j] * r[k]);
   }
 }
 
 Matrix3d Spread::covariance() const {
   // E[x x^T] - mean mean^T.
-  const Vector3d mean = first / weight;
+  const Vector3d at = mean();
   Matrix3d c;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    c(i, i) = squares[i] / weight - mean[i] * mean[i];
-    c(j, k) = c(k, j) = products[i] / weight - mean[j] * mean[k];
+    c(i, i) = sums[4 + i] / sums[0] - at[i] * at[i];
+    c(j, k) = c(k, j) = sums[7 + i] / sums[0] - at[j] * at[k];
   }
   return c;
 }
 
 Box box_in_frame(const Soup& soup, std::span<const std::uint32_t> which, const Frame& frame) {
-  Eigen::Array4d column[3];
-  for (int k = 0; k < 3; ++k) column[k] = four<double>(frame.axes.col(k));
-  GrowingBox<double> box;
-  for (const std::uint32_t s : which)
-    for (const Vector3d& x : soup.corners[s])
-      box.extend((x[0] - frame.origin[0]) * column[0] + (x[1] - frame.origin[1]) * column[1] +
-                 (x[2] - frame.origin[2]) * column[2]);
-  return {Vector3d(box.low.head<3>()), Vector3d(box.high.head<3>())};
+  BoxKernel k;
+  k.which = which.data();
+  k.count = which.size();
+  k.local = nullptr;
+  k.corners = soup.corners.data()->data()->data();
+  for (int i = 0; i < 3; ++i) std::ranges::copy(four<double>(frame.axes.col(i)), k.columns[i]);
+  std::ranges::copy(frame.origin, k.origin);
+  run_box_kernel(k);
+  return {Vector3d(k.low), Vector3d(k.high)};
 }
 
 Frame principal_frame(const Soup& soup, std::span<const std::uint32_t> which, const Spread& spread,

@@ -12,8 +12,10 @@
 #include <Eigen/Geometry>
 
 #include "engine/core/tolerances.hpp"
+#include "engine/tree/box_kernel.hpp"
 #include <lrbscope/ids.hpp>
 #include <lrbscope/obb_tree.hpp>
+#include <lrbscope/parallel.hpp>
 #include <lrbscope/simplex_view.hpp>
 
 namespace lrb {
@@ -23,39 +25,32 @@ namespace lrb {
 /// Moments of the points of simplices: the integrals of 1, of the point, and of its outer product. A simplex
 /// has a weight of twice its area plus a small constant, so that segments and points count.
 struct Spread {
-  double weight = 0;
-  Eigen::Vector3d first = Eigen::Vector3d::Zero();
-  Eigen::Vector3d squares = Eigen::Vector3d::Zero();   ///< xx, yy, zz
-  Eigen::Vector3d products = Eigen::Vector3d::Zero();  ///< yz, zx, xy
+  /// The weight, the integral of the point (3), and of xx, yy, zz, yz, zx, xy: one array, so that sums take
+  /// few instructions.
+  Eigen::Array<double, 10, 1> sums = Eigen::Array<double, 10, 1>::Zero();
 
   Spread() = default;
   /// Measures one simplex relative to `origin`, with lengths scaled by `scale`.
   Spread(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Vector3d& origin, double scale);
 
-  void operator+=(const Spread& more) {
-    weight += more.weight;
-    first += more.first;
-    squares += more.squares;
-    products += more.products;
-  }
+  void operator+=(const Spread& more) { sums += more.sums; }
   Spread operator-(const Spread& part) const {
-    Spread rest = *this;
-    rest.weight -= part.weight;
-    rest.first -= part.first;
-    rest.squares -= part.squares;
-    rest.products -= part.products;
+    Spread rest;
+    rest.sums = sums - part.sums;
     return rest;
   }
 
+  /// Returns the mean of the points.
+  Eigen::Vector3d mean() const { return sums.segment<3>(1) / sums[0]; }
   /// Returns the covariance of the points.
   Eigen::Matrix3d covariance() const;
   /// Returns the mean squared distance of the points from their mean.
-  double variance() const { return squares.sum() / weight - (first / weight).squaredNorm(); }
+  double variance() const { return sums.segment<3>(4).sum() / sums[0] - mean().squaredNorm(); }
 };
 
 /// Simplices in the tree's units, in the given order.
 struct Soup {
-  std::span<const SimplexId> simplices;
+  std::vector<SimplexId> simplices;
   std::vector<std::array<Eigen::Vector3d, 3>> corners;
   std::vector<Eigen::AlignedBox3d> box;
   std::vector<Eigen::Vector3d> centre;  ///< of the box
@@ -63,6 +58,10 @@ struct Soup {
   std::vector<std::uint32_t> order;     ///< the simplices in the order of the tree's leaves
 
   Soup(const SimplexView& body, std::span<const SimplexId> simplices, double unit);
+
+  /// Moves the simplices, their corners and their boxes to the order of the leaves, in which they are read
+  /// from here on. Drops the rest.
+  void follow_order(Workers& workers);
 
   /// Returns the comparison of two simplices on an axis: by centre, then by number.
   auto order_on(int axis) const {
@@ -184,10 +183,6 @@ class FittedCuts {
     std::uint32_t left;    ///< number of simplices on its left
     bool operator<(const Cut& y) const;
   };
-  /// Corners of a simplex in float, for estimates of boxes. The fourth coordinate is 0: it fills a vector
-  /// register.
-  using Corners = std::array<Eigen::Array4f, 3>;
-
   std::span<const std::uint32_t> along(int way) const;
   Spread sum() const;
   void localise();
@@ -203,9 +198,10 @@ class FittedCuts {
   double whole_cost_ = 0;
   std::vector<std::uint32_t> simplices_;  ///< ascending; below, simplices are identified by their index here
   std::vector<Spread> spread_;  ///< moments of each simplex; within a range, relative to one origin and scale
-  std::vector<Corners> local_;  ///< corners of each simplex: local_ = scale_ (x - origin_) within a range
-  Eigen::Vector3d origin_{0, 0, 0};  ///< of `local_`
-  double scale_ = 1;                 ///< of `local_`
+  std::vector<LocalSimplex> local_;      ///< each simplex: local_ = scale_ (x - origin_) within a range
+  std::vector<Eigen::Vector3d> centre_;  ///< Soup::centre of each simplex
+  Eigen::Vector3d origin_{0, 0, 0};      ///< of `local_`
+  double scale_ = 1;                     ///< of `local_`
   /// Range by range, ordered along an axis within each.
   std::array<std::vector<std::uint32_t>, 3> coordinate_;
 

@@ -52,6 +52,7 @@ class ObbTreeBuilder {
  private:
   ObbTreeBuilder(ObbTree& tree, Soup& soup, Workers& workers, Splits splits)
       : tree_(tree), soup_(soup), binary_(build_binary_tree(soup, workers, splits)) {
+    soup_.follow_order(workers);
     tree_.nodes_.resize(1);
     binary_of_.resize(1);
     lay_out(Collapse(binary_), 0, 0, 1);
