@@ -29,7 +29,6 @@ class BinaryBuilder {
     const auto n = static_cast<std::uint32_t>(soup.order.size());
     nodes_.resize(nodes_for(n));
     build(0, 0, n);
-    measure();
   }
 
   std::vector<BinaryNode> take() { return std::move(nodes_); }
@@ -43,13 +42,15 @@ class BinaryBuilder {
   /// Returns true if ranges of this size are split by the tight boxes of their halves.
   bool is_fitted(std::uint32_t simplices) const { return simplices <= std::max(splits_.fitted, kTreeWidth); }
 
-  /// Builds a subtree, without its boxes.
+  /// Builds a subtree.
   void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
     // FittedCuts keeps the simplices sorted along all axes, so it handles the entire subtree.
     if (is_fitted(end - begin)) {
       FittedCuts cuts(soup_, soup_.listed(begin, end), splits_.effort);
       build_fitted(self, begin, end, cuts.whole_cost(), cuts, begin);
       std::ranges::copy(cuts.order(), soup_.order.begin() + begin);
+      // Children come after parents, so reverse order visits children first.
+      for (std::uint32_t node = self + nodes_for(end - begin); node-- > self;) measure(nodes_[node]);
       return;
     }
     // A large range: reorder the simplices around the cut, then build both halves, possibly in parallel.
@@ -57,6 +58,8 @@ class BinaryBuilder {
     const auto [left, right] = fork(self, begin, boundary, end, 0);
     workers_.both([&, left = left] { build(left, begin, boundary); },
                   [&, right = right] { build(right, boundary, end); });
+    measure(nodes_[self]);
+    nodes_[self].cost = box_cost(nodes_[self].box);
   }
 
   /// Builds a part of the subtree that `cuts` divides. cost: of its root; first: begin of the range of
@@ -76,7 +79,7 @@ class BinaryBuilder {
   }
 
   /// Creates an inner node. Its subtrees contain the simplices before `boundary` and the rest. cost: 0 if
-  /// measure() is to compute it. Returns the roots of the subtrees.
+  /// build() is to compute it. Returns the roots of the subtrees.
   std::pair<std::uint32_t, std::uint32_t> fork(std::uint32_t self, std::uint32_t begin,
                                                std::uint32_t boundary, std::uint32_t end, double cost) {
     // Preorder: the left subtree follows its parent, and its size follows from the number of its leaves.
@@ -85,22 +88,18 @@ class BinaryBuilder {
     return {left, right};
   }
 
-  /// Computes the boxes of all nodes bottom-up, and the costs of nodes that are not fitted.
-  void measure() {
-    // Children come after parents, so reverse order visits children first.
-    for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
-      if (node->is_leaf()) {
-        for (const std::uint32_t s : soup_.listed(node->begin, node->end)) {
-          node->box.extend(soup_.box[s]);
-          node->spread += soup_.spread[s];
-        }
-      } else {
-        node->box = nodes_[node->left].box.merged(nodes_[node->right].box);
-        node->spread = nodes_[node->left].spread;
-        node->spread += nodes_[node->right].spread;
+  /// Computes the box and the moments of a node from those of its children.
+  void measure(BinaryNode& node) {
+    if (node.is_leaf()) {
+      for (const std::uint32_t s : soup_.listed(node.begin, node.end)) {
+        node.box.extend(soup_.box[s]);
+        node.spread += soup_.spread(s);
       }
-      if (!is_fitted(node->end - node->begin)) node->cost = box_cost(node->box);
+      return;
     }
+    node.box = nodes_[node.left].box.merged(nodes_[node.right].box);
+    node.spread = nodes_[node.left].spread;
+    node.spread += nodes_[node.right].spread;
   }
 
   /// A split of a range: number of simplices on the left, in the order of their centres on an axis.
@@ -111,14 +110,24 @@ class BinaryBuilder {
   };
 
   std::uint32_t split(std::uint32_t begin, std::uint32_t end) {
-    const Split best = splits_.all_cuts ? best_of_all(begin, end) : best_binned(begin, end);
+    // `near`: simplices that are neighbours in the order on the axis, among them the first one on the right,
+    // which has `rank` of them before it.
+    std::vector<std::uint32_t> near;
+    std::uint32_t rank = 0;
+    Split best;
+    if (splits_.all_cuts) {
+      best = best_of_all(begin, end);
+      near.assign(soup_.order.begin() + begin, soup_.order.begin() + end);
+      rank = best.left;
+    } else {
+      best = best_binned(begin, end, near, rank);
+    }
     // A stable partition in linear time. The simplices of each half stay in the order of the mesh, in which
     // neighbours mostly are neighbours in memory.
-    const auto first = soup_.order.begin() + begin, last = soup_.order.begin() + end;
     const auto before = soup_.order_on(best.axis);
-    std::vector<std::uint32_t> listed(first, last);
-    std::nth_element(listed.begin(), listed.begin() + best.left, listed.end(), before);
-    std::stable_partition(first, last, [&](std::uint32_t s) { return before(s, listed[best.left]); });
+    std::nth_element(near.begin(), near.begin() + rank, near.end(), before);
+    std::stable_partition(soup_.order.begin() + begin, soup_.order.begin() + end,
+                          [&](std::uint32_t s) { return before(s, near[rank]); });
     return begin + best.left;
   }
 
@@ -127,39 +136,67 @@ class BinaryBuilder {
     double from = 0, per_unit = 0;  ///< where the first bin begins, and bins in a unit of length
     std::array<GrowingBox<double>, kBins> box;
     std::array<std::uint32_t, kBins> count{};
+
+    int bin_of(double centre) const {
+      return std::min(kBins - 1, static_cast<int>((centre - from) * per_unit));
+    }
   };
 
-  Split best_binned(std::uint32_t begin, std::uint32_t end) const {
-    GrowingBox<double> centres;
+  /// Returns the best split between two bins, and the simplices of the bin where it is, with the number of
+  /// those on the left.
+  Split best_binned(std::uint32_t begin, std::uint32_t end, std::vector<std::uint32_t>& near,
+                    std::uint32_t& rank) {
+    const std::uint32_t n = end - begin;
     // Bins divide the range of centres, not of boxes, so that every bin is on one side of each cut.
-    for (std::uint32_t i = begin; i < end; ++i) centres.extend(four<double>(soup_.centre[soup_.order[i]]));
-    std::array<Bins, 3> bins;
+    std::vector<GrowingBox<double>> centres(shares_of(n));
+    for_each_share(n, workers_, [&](std::uint32_t first, std::uint32_t last, std::size_t share) {
+      GrowingBox<double> some;
+      for (const std::uint32_t s : soup_.listed(begin + first, begin + last))
+        some.extend(four<double>(soup_.centre(s)));
+      centres[share] = some;
+    });
+    for (const GrowingBox<double>& some : centres) centres[0].extend(some);
+    std::array<Bins, 3> empty;
     for (int axis = 0; axis < 3; ++axis) {
-      bins[axis].from = centres.low[axis];
-      bins[axis].per_unit = kBins / (centres.high[axis] - centres.low[axis]);
+      empty[axis].from = centres[0].low[axis];
+      empty[axis].per_unit = kBins / (centres[0].high[axis] - centres[0].low[axis]);
       // The centres (nearly) coincide on this axis: no cut across it.
-      if (!std::isfinite(bins[axis].per_unit)) bins[axis].per_unit = 0;
+      if (!std::isfinite(empty[axis].per_unit)) empty[axis].per_unit = 0;
     }
     // Pass 1: the box and number of simplices of each bin, on all axes.
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const std::uint32_t s = soup_.order[i];
-      const GrowingBox<double> box{four<double>(soup_.box[s].min()), four<double>(soup_.box[s].max())};
-      for (int axis = 0; axis < 3; ++axis) {
-        Bins& of = bins[axis];
-        const int b = std::min(kBins - 1, static_cast<int>((soup_.centre[s][axis] - of.from) * of.per_unit));
-        of.box[b].extend(box);
-        ++of.count[b];
+    std::vector<std::array<Bins, 3>> filled(shares_of(n), empty);
+    for_each_share(n, workers_, [&](std::uint32_t first, std::uint32_t last, std::size_t share) {
+      for (const std::uint32_t s : soup_.listed(begin + first, begin + last)) {
+        const GrowingBox<double> box{four<double>(soup_.box[s].min()), four<double>(soup_.box[s].max())};
+        const auto centre = soup_.centre(s);
+        for (int axis = 0; axis < 3; ++axis) {
+          Bins& of = filled[share][axis];
+          const int b = of.bin_of(centre[axis]);
+          of.box[b].extend(box);
+          ++of.count[b];
+        }
       }
-    }
+    });
+    std::array<Bins, 3>& bins = filled[0];
+    for (const std::array<Bins, 3>& more : std::span(filled).subspan(1))
+      for (int axis = 0; axis < 3; ++axis)
+        for (int b = 0; b < kBins; ++b) {
+          bins[axis].box[b].extend(more[axis].box[b]);
+          bins[axis].count[b] += more[axis].count[b];
+        }
     Split best;
     for (int axis = 0; axis < 3; ++axis)
-      if (bins[axis].per_unit > 0) try_axis(bins[axis], end - begin, axis, best);
-    const std::uint32_t n = end - begin;
+      if (bins[axis].per_unit > 0) try_axis(bins[axis], n, axis, best);
     // Round the cut to a multiple of kTreeWidth, so that all leaves except the last are full. Keep both
     // halves nonempty.
     if (best.left == 0) best.left = n / 2;  // all centres coincide: any half is valid
     best.left = (best.left + kTreeWidth / 2) / kTreeWidth * kTreeWidth;
     best.left = std::clamp(best.left, kTreeWidth, (n - 1) / kTreeWidth * kTreeWidth);
+    const Bins& of = bins[best.axis];
+    int at = 0;
+    for (rank = best.left; rank >= of.count[at]; ++at) rank -= of.count[at];
+    for (const std::uint32_t s : soup_.listed(begin, end))
+      if (of.bin_of(soup_.centre(s)[best.axis]) == at) near.push_back(s);
     return best;
   }
 

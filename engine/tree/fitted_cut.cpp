@@ -25,57 +25,89 @@ using Box = Eigen::AlignedBox3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Estimates the cost of the tight box, up to a factor. Half the surface area of a box is about the root of
-/// the sum of the squared products of two standard deviations each, along principal axes. The axes are not
-/// needed: the radicand is the sum of the principal minors of the covariance.
-double ranked_cost(const Spread& spread) {
-  // Covariance from raw moments. Cancellation is limited by measuring small ranges again (kMeasureAgain).
-  const double whole = 1 / spread.sums[0];
-  const Vector3d mean = spread.sums.segment<3>(1) * whole;
-  const Vector3d square = Vector3d(spread.sums.segment<3>(4) * whole) - mean.cwiseProduct(mean);
-  const Vector3d product = Vector3d(spread.sums.segment<3>(7) * whole) -
-                           Vector3d(mean.y() * mean.z(), mean.z() * mean.x(), mean.x() * mean.y());
-  const double minors =
-      square.y() * square.z() + square.z() * square.x() + square.x() * square.y() - product.squaredNorm();
+/// Estimates the costs of the tight boxes of a part and of the rest, up to a factor. Half the surface area of
+/// a box is about the root of the sum of the squared products of two standard deviations each, along
+/// principal axes. The axes are not needed: the radicand is the sum of the principal minors of the
+/// covariance.
+std::array<double, 2> ranked_costs(const Spread& part, const Spread& all) {
+  // Both at a time. Covariance from raw moments: cancellation is limited by measuring small ranges again
+  // (kMeasureAgain).
+  const auto sums = [&](int i) { return Eigen::Array2d(part.sums[i], all.sums[i] - part.sums[i]); };
+  const Eigen::Array2d whole = 1 / sums(0);
+  const Eigen::Array2d x = sums(1) * whole, y = sums(2) * whole, z = sums(3) * whole;
+  const Eigen::Array2d xx = sums(4) * whole - x * x, yy = sums(5) * whole - y * y,
+                       zz = sums(6) * whole - z * z;
+  const Eigen::Array2d yz = sums(7) * whole - y * z, zx = sums(8) * whole - z * x,
+                       xy = sums(9) * whole - x * y;
+  const Eigen::Array2d minors = yy * zz + zz * xx + xx * yy - (yz * yz + (zx * zx + xy * xy));
+  const Eigen::Array2d variance = xx + (yy + zz);
+  std::array<double, 2> costs;
   // std::max(0.0, x), in this order, is 0 if x is NaN due to rounding.
-  return std::sqrt(std::max(0.0, minors)) + kLengthCost * std::max(0.0, square.sum());
+  for (int i = 0; i < 2; ++i)
+    costs[i] = std::sqrt(std::max(0.0, minors[i])) + kLengthCost * std::max(0.0, variance[i]);
+  return costs;
 }
 
-/// Returns the eigenvectors of a symmetric matrix as columns, in any order and direction. Takes a third of
-/// the time of eigenvectors_of_symmetric(), whose axes the nodes get; these here only rank cuts. The
-/// characteristic polynomial is solved by Newton's method without trigonometric functions, which differ
-/// between machines.
-Matrix3d estimated_eigenvectors(const Matrix3d& m) {
+/// Returns the principal axes of moments as columns, in any order and direction. Takes a third of the time of
+/// eigenvectors_of_symmetric(), whose axes the nodes get; these here only rank cuts. The characteristic
+/// polynomial is solved by Newton's method without trigonometric functions, which differ between machines.
+Matrix3d estimated_axes(const Spread& spread) {
+  const double whole = 1 / spread.sums[0];
+  const double mean[3] = {spread.sums[1] * whole, spread.sums[2] * whole, spread.sums[3] * whole};
+  double xx = spread.sums[4] * whole - mean[0] * mean[0], yy = spread.sums[5] * whole - mean[1] * mean[1],
+         zz = spread.sums[6] * whole - mean[2] * mean[2], yz = spread.sums[7] * whole - mean[1] * mean[2],
+         zx = spread.sums[8] * whole - mean[2] * mean[0], xy = spread.sums[9] * whole - mean[0] * mean[1];
   // With q a third of the trace and p^2 a sixth of the squares of M - q I, the eigenvalues of B = (M - q I) /
   // p are the roots of x^3 - 3 x - det B.
-  const double q = m.trace() / 3;
-  Matrix3d b = m;
-  b.diagonal().array() -= q;
-  const double p = std::sqrt(b.squaredNorm() / 6);
+  const double q = (xx + yy + zz) * (1.0 / 3);
+  xx -= q, yy -= q, zz -= q;
+  const double p = std::sqrt((xx * xx + yy * yy + zz * zz + 2 * (yz * yz + zx * zx + xy * xy)) * (1.0 / 6));
   if (!(p > 0)) return Matrix3d::Identity();
-  b *= 1 / p;
-  // B or -B has a root of [sqrt(3), 2], at a distance of at least sqrt(3) from the others: half of it is a
-  // root of 4 c^3 - 3 c - r for a half of the determinant, r, of [0, 1]. The polynomial in r is off by 0.001.
-  const double half = 0.5 * b.determinant(), r = std::min(std::abs(half), 1.0);
-  double c = 0.8661 + r * (0.1623 - 0.0286 * r);
-  for (int i = 0; i < 3; ++i) c -= (c * (4 * c * c - 3) - r) / (12 * c * c - 3);
-  b.diagonal().array() -= std::copysign(2 * c, half);
-  // Its eigenvector is perpendicular to all rows: the longest of their cross products is the most precise.
-  Vector3d single = b.row(0).cross(b.row(1));
-  for (int i = 0; i < 2; ++i) {
-    const Vector3d other = b.row(2).cross(b.row(i));
-    if (other.squaredNorm() > single.squaredNorm()) single = other;
-  }
-  single.normalize();
-  // The others are in the plane perpendicular to it, where the matrix is [x z; z y] on axes u and v.
-  const Vector3d u = single.unitOrthogonal(), v = single.cross(u);
-  const Vector3d mu = b * u, mv = b * v;
-  const double x = u.dot(mu), y = v.dot(mv), z = u.dot(mv), difference = 0.5 * (x - y);
-  const Eigen::Vector2d turned = Eigen::Vector2d(
-      std::abs(difference) + std::sqrt(difference * difference + z * z), std::copysign(z, z * difference));
-  const Eigen::Vector2d turn = turned.squaredNorm() > 0 ? turned.normalized() : Eigen::Vector2d(1, 0);
+  const double unit = 1 / p;
+  xx *= unit, yy *= unit, zz *= unit, yz *= unit, zx *= unit, xy *= unit;
+  // B or -B has a root of [sqrt(3), 2], at a distance of at least sqrt(3) from the others. Half of it, c, is
+  // a root of 4 c^3 - 3 c - r for a half of the determinant, r, of [0, 1]. The polynomial in r is off by
+  // 5e-5, and each step squares the error.
+  const double half = 0.5 * (xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * zx) + zx * (xy * yz - yy * zx));
+  const double r = std::min(std::abs(half), 1.0);
+  double c = 0.86607 + r * (0.16533 - r * (0.04069 - r * 0.00932));
+  for (int i = 0; i < 2; ++i) c -= (c * (4 * c * c - 3) - r) / (12 * c * c - 3);
+  const double root = std::copysign(2 * c, half);
+  xx -= root, yy -= root, zz -= root;
+  // Its eigenvector is perpendicular to all rows: the longest of their cross products is the most precise,
+  // with the largest component on the diagonal of the adjugate matrix.
+  const double x2 = yy * zz - yz * yz, y2 = zz * xx - zx * zx, z2 = xx * yy - xy * xy;
+  const double to_yz = xy * zx - xx * yz, to_zx = xy * yz - yy * zx, to_xy = yz * zx - zz * xy;
+  Vector3d single(x2, to_xy, to_zx);
+  if (std::abs(y2) > std::abs(single.x()) && std::abs(y2) >= std::abs(z2))
+    single = {to_xy, y2, to_yz};
+  else if (std::abs(z2) > std::abs(single.x()))
+    single = {to_zx, to_yz, z2};
+  const double length =
+      std::sqrt(single.x() * single.x() + single.y() * single.y() + single.z() * single.z());
+  if (!(length > 0)) return Matrix3d::Identity();
+  single *= 1 / length;
+  // The others are in the plane perpendicular to it, where the matrix is [a d; d b] on axes u and v, times
+  // the square of their common length.
+  const Vector3d u = std::abs(single.x()) > std::abs(single.y()) ? Vector3d(-single.z(), 0, single.x())
+                                                                 : Vector3d(0, single.z(), -single.y());
+  const Vector3d v(single.y() * u.z() - single.z() * u.y(), single.z() * u.x() - single.x() * u.z(),
+                   single.x() * u.y() - single.y() * u.x());
+  const auto product = [&](const Vector3d& s, const Vector3d& t) {
+    return s.x() * (xx * t.x() + xy * t.y() + zx * t.z()) + s.y() * (xy * t.x() + yy * t.y() + yz * t.z()) +
+           s.z() * (zx * t.x() + yz * t.y() + zz * t.z());
+  };
+  const double difference = 0.5 * (product(u, u) - product(v, v)), d = product(u, v);
+  // The half of the angle whose tangent is d / difference.
+  const double size = std::sqrt(difference * difference + d * d);
+  double cosine = std::abs(difference) + size, sine = std::copysign(1.0, difference) * d;
+  if (!(size > 0)) cosine = 1;
+  const double scale =
+      1 / std::sqrt((cosine * cosine + sine * sine) * (u.x() * u.x() + u.y() * u.y() + u.z() * u.z()));
+  cosine *= scale;
+  sine *= scale;
   Matrix3d axes;
-  axes << single, turn.x() * u + turn.y() * v, turn.x() * v - turn.y() * u;
+  axes << single, cosine * u + sine * v, cosine * v - sine * u;
   return axes;
 }
 
@@ -93,56 +125,12 @@ std::uint32_t number_at(std::uint64_t place) {
   return static_cast<std::uint32_t>(place);
 }
 
-/// Returns the position along a direction from its key.
-float position_at(std::uint64_t place) {
-  const auto growing = static_cast<std::uint32_t>(place >> 32);
-  return std::bit_cast<float>(growing >> 31 != 0 ? growing & 0x7fffffffu : ~growing);
-}
+constexpr std::size_t kFewPlaces = 256;  ///< clearing the counters of a radix sort would take longer
 
-/// Sorts keys by position if they are spread evenly enough, else returns false. Equal positions: by number,
-/// or in the order of the list.
-bool sort_by_parts(std::vector<std::uint64_t>& places, std::vector<std::uint64_t>& buffer, bool by_number) {
-  constexpr std::size_t kParts = 2048, kCrowded = 16;
-  const std::size_t parts = std::min(kParts, std::bit_ceil(places.size()));
-  const auto [least, most] = std::minmax_element(places.begin(), places.end());
-  const float from = position_at(*least),
-              per_unit = static_cast<float>(parts - 1) / (position_at(*most) - from);
-  if (!std::isfinite(per_unit)) return false;
-  // The part of a position grows with it, as rounding is monotone.
-  const auto part_of = [&](std::uint64_t place) {
-    return static_cast<std::uint32_t>((position_at(place) - from) * per_unit);
-  };
-  std::array<std::uint32_t, kParts> begin;
-  std::fill_n(begin.begin(), parts, 0u);
-  for (const std::uint64_t place : places) ++begin[part_of(place)];
-  std::uint32_t sum = 0, crowd = 0;
-  for (std::size_t i = 0; i < parts; ++i) {
-    crowd = std::max(crowd, begin[i]);
-    sum += std::exchange(begin[i], sum);
-  }
-  if (crowd > kCrowded) return false;
-  for (const std::uint64_t place : places) buffer[begin[part_of(place)]++] = place;
-  // Within a part by insertion, which moves a key past larger ones only: equal positions keep their order.
-  const std::uint64_t ignored = by_number ? 0 : 0xffffffffu;
-  for (std::size_t i = 1; i < buffer.size(); ++i) {
-    const std::uint64_t place = buffer[i];
-    std::size_t to = i;
-    for (; to > 0 && (buffer[to - 1] | ignored) > (place | ignored); --to) buffer[to] = buffer[to - 1];
-    buffer[to] = place;
-  }
-  places.swap(buffer);
-  return true;
-}
-
-/// Sorts keys by position. Equal positions: by number for few keys, otherwise in the order of the list. A
-/// counting sort into parts of equal width, then insertion; `buffer` is overwritten. If some part is crowded,
-/// by comparison or, for many keys, radix sort with 11 bits of the position at a time.
+/// Sorts keys by position. Equal positions: by number for few keys, otherwise in the order of the list. Radix
+/// sort, 11 bits of the position at a time; `buffer` is overwritten.
 void sort_places(std::vector<std::uint64_t>& places, std::vector<std::uint64_t>& buffer) {
-  constexpr std::size_t kFew = 256;  // clearing the counters of the radix sort would take longer
-  const bool few = places.size() <= kFew;
-  buffer.resize(places.size());
-  if (sort_by_parts(places, buffer, few)) return;
-  if (few) {
+  if (places.size() <= kFewPlaces) {
     std::sort(places.begin(), places.end());
     return;
   }
@@ -151,6 +139,7 @@ void sort_places(std::vector<std::uint64_t>& places, std::vector<std::uint64_t>&
   std::array<std::array<std::uint32_t, kMask + 1>, kRounds> begin{};
   for (const std::uint64_t place : places)
     for (int round = 0; round < kRounds; ++round) ++begin[round][place >> (32 + kBits * round) & kMask];
+  buffer.resize(places.size());
   for (int round = 0; round < kRounds; ++round) {
     std::uint32_t sum = 0;
     for (std::uint32_t& count : begin[round]) sum += std::exchange(count, sum);
@@ -159,6 +148,42 @@ void sort_places(std::vector<std::uint64_t>& places, std::vector<std::uint64_t>&
       buffer[begin[round][place >> (32 + kBits * round) & kMask]++] = place;
     places.swap(buffer);
   }
+}
+
+/// Sorts keys of these positions, in the same order, if they are spread evenly; otherwise returns false. A
+/// counting sort into parts of equal width, then insertion. The result is that of sort_places().
+bool sort_even_places(std::span<const float> positions, float low, float high,
+                      std::vector<std::uint64_t>& places, std::vector<std::uint64_t>& buffer) {
+  constexpr std::size_t kParts = 4096;
+  constexpr std::uint32_t kCrowded = 16;
+  const std::size_t n = places.size(), parts = std::min(kParts, 2 * std::bit_ceil(n));
+  const float per_unit = static_cast<float>(parts - 1) / (high - low);
+  if (!(high > low && std::isfinite(per_unit))) return false;
+  // The part grows with the position, as rounding is monotone.
+  const auto part_of = [&](float x) {
+    return static_cast<std::uint32_t>(static_cast<int>((x - low) * per_unit));
+  };
+  std::array<std::uint32_t, kParts> begin;
+  std::fill_n(begin.begin(), parts, 0u);
+  for (const float x : positions) ++begin[part_of(x)];
+  std::uint32_t sum = 0, crowd = 0;
+  for (std::size_t i = 0; i < parts; ++i) {
+    crowd = std::max(crowd, begin[i]);
+    sum += std::exchange(begin[i], sum);
+  }
+  if (crowd > kCrowded) return false;
+  buffer.resize(n);
+  for (std::size_t i = 0; i < n; ++i) buffer[begin[part_of(positions[i])]++] = places[i];
+  // A key moves past larger ones only, so equal ones keep their order.
+  const std::uint64_t ignored = n <= kFewPlaces ? 0 : 0xffffffffu;
+  for (std::size_t i = 1; i < n; ++i) {
+    const std::uint64_t place = buffer[i];
+    std::size_t to = i;
+    for (; to > 0 && (buffer[to - 1] | ignored) > (place | ignored); --to) buffer[to] = buffer[to - 1];
+    buffer[to] = place;
+  }
+  places.swap(buffer);
+  return true;
 }
 
 /// Returns the cost of a cut with these numbers of simplices on its left and right.
@@ -183,8 +208,8 @@ FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplice
   spread_.reserve(n);
   centre_.reserve(n);
   for (const std::uint32_t s : simplices_) {
-    spread_.push_back(soup_.spread[s]);
-    centre_.push_back(soup_.centre[s]);
+    spread_.push_back(soup_.spread(s));
+    centre_.push_back(soup_.centre(s));
   }
   local_.resize(n);
   is_left_.resize(n);
@@ -283,12 +308,17 @@ void FittedCuts::measure() {
 /// Orders the range along a direction by the centres of boxes, rounded to float.
 void FittedCuts::order_along(const Vector3d& direction, std::vector<std::uint32_t>& order) {
   places_.resize(size_);
+  positions_.resize(size_);
+  float low = std::numeric_limits<float>::infinity(), high = -low;
   const std::span<const std::uint32_t> some = along(0);
   for (std::uint32_t k = 0; k < size_; ++k) {
     const Vector3d seen = centre_[some[k]] - origin_;
-    places_[k] = place_at(static_cast<float>(scale_ * direction.dot(seen)), some[k]);
+    const float x = positions_[k] = static_cast<float>(scale_ * direction.dot(seen));
+    places_[k] = place_at(x, some[k]);
+    low = x < low ? x : low;
+    high = x > high ? x : high;
   }
-  sort_places(places_, sorted_);
+  if (!sort_even_places(positions_, low, high, places_, sorted_)) sort_places(places_, sorted_);
   order.resize(size_);
   for (std::uint32_t k = 0; k < size_; ++k) order[k] = number_at(places_[k]);
 }
@@ -301,7 +331,8 @@ void FittedCuts::rank(int way) {
   for (std::uint32_t i = kTreeWidth; i < size_; i += kTreeWidth) {
     for (std::uint32_t k = i - kTreeWidth; k < i; ++k) left += spread_[order[k]];
     const std::uint32_t right = size_ - i;
-    const double cost = ranked_cost(left) * leaves_for(i) + ranked_cost(all_ - left) * leaves_for(right);
+    const auto [left_cost, right_cost] = ranked_costs(left, all_);
+    const double cost = left_cost * leaves_for(i) + right_cost * leaves_for(right);
     cuts_.push_back({static_cast<float>(cost), larger_side(i, size_), way, i});
     left_spread_.push_back(left);
   }
@@ -323,7 +354,7 @@ FittedCuts::Halves FittedCuts::measured(const Cut& cut, float most) const {
 /// Returns the cost of the tight box of some simplices.
 double FittedCuts::fitted_box_cost(std::span<const std::uint32_t> some, const Spread& spread) const {
   // The candidates for a node's frame: the coordinate axes and the principal axes.
-  const Matrix3d axes = estimated_eigenvectors(spread.covariance());
+  const Matrix3d axes = estimated_axes(spread);
   BoxKernel k;
   k.which = some.data();
   k.count = some.size();
@@ -369,46 +400,43 @@ bool is_orthonormal(const Matrix3d& axes) {
 
 }  // namespace
 
-Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, double unit)
+Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, double unit, Workers& workers)
     : simplices(simplices_.begin(), simplices_.end()) {
   // The unit is a power of two: 2^(exponent - 1). Two factors, as its inverse may be out of range.
   int exponent = 0;
   std::frexp(unit, &exponent);
   const double once = std::ldexp(1.0, (1 - exponent) / 2),
                again = std::ldexp(1.0, 1 - exponent - (1 - exponent) / 2);
-  const auto n = static_cast<std::uint32_t>(simplices.size());
-  corners.resize(n);
-  box.resize(n);
-  centre.resize(n);
-  order.resize(n);
+  corners.resize(simplices.size());
+  box.resize(simplices.size());
+  order.resize(simplices.size());
   std::iota(order.begin(), order.end(), 0u);
-  Box bounds;
-  for (std::uint32_t s = 0; s < n; ++s) {
-    VertexId v[3];
-    body.simplex(simplices[s], v);
-    // A segment is a triangle whose last two corners coincide.
-    if (body.dim == 2) v[2] = v[1];
-    for (int k = 0; k < 3; ++k) {
-      corners[s][k] = body.vertices[v[k]] * once * again;
-      box[s].extend(corners[s][k]);
+  std::vector<Box> bounds_of(shares_of(simplices.size()));
+  for_each_share(simplices.size(), workers, [&](std::uint32_t begin, std::uint32_t end, std::size_t share) {
+    for (std::uint32_t s = begin; s < end; ++s) {
+      VertexId v[3];
+      body.simplex(simplices[s], v);
+      // A segment is a triangle whose last two corners coincide.
+      if (body.dim == 2) v[2] = v[1];
+      for (int k = 0; k < 3; ++k) {
+        corners[s][k] = body.vertices[v[k]] * once * again;
+        box[s].extend(corners[s][k]);
+      }
+      bounds_of[share].extend(box[s]);
     }
-    // The centre of the box, not the centroid: cuts are evaluated by boxes.
-    centre[s] = 0.5 * (box[s].min() + box[s].max());
-    bounds.extend(box[s]);
-  }
-  double scale = 1 / bounds.sizes().norm();
-  if (!std::isfinite(scale)) scale = 1;
-  spread.reserve(n);
-  for (std::uint32_t s = 0; s < n; ++s) spread.emplace_back(corners[s], bounds.center(), scale);
+  });
+  Box bounds;
+  for (const Box& some : bounds_of) bounds.extend(some);
+  origin_ = bounds.center();
+  scale_ = 1 / bounds.sizes().norm();
+  if (!std::isfinite(scale_)) scale_ = 1;
 }
 
 void Soup::follow_order(Workers& workers) {
-  constexpr std::size_t kShare = 4096;
   const auto follow = [&](auto& items) {
     std::remove_reference_t<decltype(items)> moved(items.size());
-    workers.for_each((order.size() + kShare - 1) / kShare, [&](std::size_t share, unsigned) {
-      for (std::size_t i = share * kShare; i < std::min(order.size(), (share + 1) * kShare); ++i)
-        moved[i] = items[order[i]];
+    for_each_share(items.size(), workers, [&](std::uint32_t begin, std::uint32_t end, std::size_t) {
+      for (std::uint32_t i = begin; i < end; ++i) moved[i] = items[order[i]];
     });
     items = std::move(moved);
   };
@@ -416,8 +444,6 @@ void Soup::follow_order(Workers& workers) {
   follow(corners);
   follow(box);
   std::iota(order.begin(), order.end(), 0u);
-  centre = {};
-  spread = {};
 }
 
 Spread::Spread(const std::array<Vector3d, 3>& corners, const Vector3d& origin, double scale) {

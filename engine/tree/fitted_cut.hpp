@@ -48,25 +48,29 @@ struct Spread {
   double variance() const { return sums.segment<3>(4).sum() / sums[0] - mean().squaredNorm(); }
 };
 
+/// The corners of a simplex. The constructor leaves them as they are: arrays are filled by several threads.
+struct SimplexCorners : std::array<Eigen::Vector3d, 3> {
+  SimplexCorners() {}
+};
+
 /// Simplices in the tree's units, in the given order.
 struct Soup {
   std::vector<SimplexId> simplices;
-  std::vector<std::array<Eigen::Vector3d, 3>> corners;
+  std::vector<SimplexCorners> corners;
   std::vector<Eigen::AlignedBox3d> box;
-  std::vector<Eigen::Vector3d> centre;  ///< of the box
-  std::vector<Spread> spread;           ///< relative to the centre of all simplices, scaled by their diagonal
-  std::vector<std::uint32_t> order;     ///< the simplices in the order of the tree's leaves
+  std::vector<std::uint32_t> order;  ///< the simplices in the order of the tree's leaves
 
-  Soup(const SimplexView& body, std::span<const SimplexId> simplices, double unit);
+  Soup(const SimplexView& body, std::span<const SimplexId> simplices, double unit, Workers& workers);
 
-  /// Moves the simplices, their corners and their boxes to the order of the leaves, in which they are read
-  /// from here on. Drops the rest.
-  void follow_order(Workers& workers);
+  /// Returns the centre of a simplex's box.
+  Eigen::Vector3d centre(std::uint32_t s) const { return 0.5 * (box[s].min() + box[s].max()); }
+  /// Returns the moments of a simplex relative to the centre of all simplices, scaled by their diagonal.
+  Spread spread(std::uint32_t s) const { return {corners[s], origin_, scale_}; }
 
   /// Returns the comparison of two simplices on an axis: by centre, then by number.
   auto order_on(int axis) const {
     return [this, axis](std::uint32_t s, std::uint32_t t) {
-      const double x = centre[s][axis], y = centre[t][axis];
+      const double x = centre(s)[axis], y = centre(t)[axis];
       return x != y ? x < y : s < t;
     };
   }
@@ -75,7 +79,30 @@ struct Soup {
   std::span<const std::uint32_t> listed(std::uint32_t begin, std::uint32_t end) const {
     return std::span(order).subspan(begin, end - begin);
   }
+
+  /// Moves the simplices, their corners and their boxes to the order of the leaves, in which they are read
+  /// from here on.
+  void follow_order(Workers& workers);
+
+ private:
+  Eigen::Vector3d origin_;
+  double scale_;
 };
+
+/// Number of simplices to be distributed to a thread at once.
+inline constexpr std::size_t kShare = 4096;
+inline std::size_t shares_of(std::size_t n) {
+  return (n + kShare - 1) / kShare;
+}
+
+/// Calls work(begin, end, share) for the ranges of kShare numbers that [0, n) consists of.
+template <class Work>
+void for_each_share(std::size_t n, Workers& workers, const Work& work) {
+  workers.for_each(shares_of(n), [&](std::size_t share, unsigned) {
+    work(static_cast<std::uint32_t>(share * kShare),
+         static_cast<std::uint32_t>(std::min(n, (share + 1) * kShare)), share);
+  });
+}
 
 /// Returns half the surface area of a box with sides of these lengths.
 inline double half_area(const Eigen::Vector3d& sides) {
@@ -199,7 +226,7 @@ class FittedCuts {
   std::vector<std::uint32_t> simplices_;  ///< ascending; below, simplices are identified by their index here
   std::vector<Spread> spread_;  ///< moments of each simplex; within a range, relative to one origin and scale
   std::vector<LocalSimplex> local_;      ///< each simplex: local_ = scale_ (x - origin_) within a range
-  std::vector<Eigen::Vector3d> centre_;  ///< Soup::centre of each simplex
+  std::vector<Eigen::Vector3d> centre_;  ///< of each simplex's box
   Eigen::Vector3d origin_{0, 0, 0};      ///< of `local_`
   double scale_ = 1;                     ///< of `local_`
   /// Range by range, ordered along an axis within each.
@@ -214,6 +241,7 @@ class FittedCuts {
   std::vector<std::uint8_t> is_left_;  ///< for each simplex
 
   // Memory that is kept from one use to the next.
+  std::vector<float> positions_;
   std::vector<std::uint64_t> places_, sorted_;
   std::vector<std::uint32_t> right_;
 };
