@@ -34,8 +34,6 @@ class BinaryBuilder {
   std::vector<BinaryNode> take() { return std::move(nodes_); }
 
  private:
-  static constexpr int kBins = 32;
-
   /// Returns the number of nodes of a subtree with this many simplices.
   static std::uint32_t nodes_for(std::uint32_t simplices) { return 2 * leaves_for(simplices) - 1; }
 
@@ -50,7 +48,17 @@ class BinaryBuilder {
       build_fitted(self, begin, end, cuts.whole_cost(), cuts, begin);
       std::ranges::copy(cuts.order(), soup_.order.begin() + begin);
       // Children come after parents, so reverse order visits children first.
-      for (std::uint32_t node = self + nodes_for(end - begin); node-- > self;) measure(nodes_[node]);
+      for (std::uint32_t i = self + nodes_for(end - begin); i-- > self;) {
+        BinaryNode& node = nodes_[i];
+        if (!node.is_leaf()) {
+          join(node);
+          continue;
+        }
+        for (std::uint32_t k = node.begin; k < node.end; ++k) {
+          node.box.extend(soup_.box[soup_.order[k]]);
+          node.spread += cuts.spread(k - begin);
+        }
+      }
       return;
     }
     // A large range: reorder the simplices around the cut, then build both halves, possibly in parallel.
@@ -58,7 +66,7 @@ class BinaryBuilder {
     const auto [left, right] = fork(self, begin, boundary, end, 0);
     workers_.both([&, left = left] { build(left, begin, boundary); },
                   [&, right = right] { build(right, boundary, end); });
-    measure(nodes_[self]);
+    join(nodes_[self]);
     nodes_[self].cost = box_cost(nodes_[self].box);
   }
 
@@ -89,14 +97,7 @@ class BinaryBuilder {
   }
 
   /// Computes the box and the moments of a node from those of its children.
-  void measure(BinaryNode& node) {
-    if (node.is_leaf()) {
-      for (const std::uint32_t s : soup_.listed(node.begin, node.end)) {
-        node.box.extend(soup_.box[s]);
-        node.spread += soup_.spread(s);
-      }
-      return;
-    }
+  void join(BinaryNode& node) {
     node.box = nodes_[node.left].box.merged(nodes_[node.right].box);
     node.spread = nodes_[node.left].spread;
     node.spread += nodes_[node.right].spread;
@@ -131,16 +132,9 @@ class BinaryBuilder {
     return begin + best.left;
   }
 
-  /// The boxes and numbers of the simplices in each bin of an axis.
-  struct Bins {
-    double from = 0, per_unit = 0;  ///< where the first bin begins, and bins in a unit of length
-    std::array<GrowingBox<double>, kBins> box;
-    std::array<std::uint32_t, kBins> count{};
-
-    int bin_of(double centre) const {
-      return std::min(kBins - 1, static_cast<int>((centre - from) * per_unit));
-    }
-  };
+  static int bin_of(const BoxBins& bins, int axis, double centre) {
+    return std::min(kBins - 1, static_cast<int>((centre - bins.from[axis]) * bins.per_unit[axis]));
+  }
 
   /// Returns the best split between two bins, and the simplices of the bin where it is, with the number of
   /// those on the left.
@@ -156,47 +150,39 @@ class BinaryBuilder {
       centres[share] = some;
     });
     for (const GrowingBox<double>& some : centres) centres[0].extend(some);
-    std::array<Bins, 3> empty;
+    BoxBins empty;
     for (int axis = 0; axis < 3; ++axis) {
-      empty[axis].from = centres[0].low[axis];
-      empty[axis].per_unit = kBins / (centres[0].high[axis] - centres[0].low[axis]);
+      empty.from[axis] = centres[0].low[axis];
+      empty.per_unit[axis] = kBins / (centres[0].high[axis] - centres[0].low[axis]);
       // The centres (nearly) coincide on this axis: no cut across it.
-      if (!std::isfinite(empty[axis].per_unit)) empty[axis].per_unit = 0;
+      if (!std::isfinite(empty.per_unit[axis])) empty.per_unit[axis] = 0;
     }
     // Pass 1: the box and number of simplices of each bin, on all axes.
-    std::vector<std::array<Bins, 3>> filled(shares_of(n), empty);
+    std::vector<BoxBins> filled(shares_of(n), empty);
     for_each_share(n, workers_, [&](std::uint32_t first, std::uint32_t last, std::size_t share) {
-      for (const std::uint32_t s : soup_.listed(begin + first, begin + last)) {
-        const GrowingBox<double> box{four<double>(soup_.box[s].min()), four<double>(soup_.box[s].max())};
-        const auto centre = soup_.centre(s);
-        for (int axis = 0; axis < 3; ++axis) {
-          Bins& of = filled[share][axis];
-          const int b = of.bin_of(centre[axis]);
-          of.box[b].extend(box);
-          ++of.count[b];
-        }
-      }
+      BoxKernel k;
+      k.which = soup_.order.data() + begin + first;
+      k.count = last - first;
+      k.bins = &filled[share];
+      k.boxes = soup_.box.data()->min().data();
+      run_box_kernel(k);
     });
-    std::array<Bins, 3>& bins = filled[0];
-    for (const std::array<Bins, 3>& more : std::span(filled).subspan(1))
+    BoxBins& bins = filled[0];
+    for (const BoxBins& more : std::span(filled).subspan(1))
       for (int axis = 0; axis < 3; ++axis)
-        for (int b = 0; b < kBins; ++b) {
-          bins[axis].box[b].extend(more[axis].box[b]);
-          bins[axis].count[b] += more[axis].count[b];
-        }
+        for (int b = 0; b < kBins; ++b) add_to(bins.bin[axis][b], more.bin[axis][b]);
     Split best;
     for (int axis = 0; axis < 3; ++axis)
-      if (bins[axis].per_unit > 0) try_axis(bins[axis], n, axis, best);
+      if (bins.per_unit[axis] > 0) try_axis(bins.bin[axis], n, axis, best);
     // Round the cut to a multiple of kTreeWidth, so that all leaves except the last are full. Keep both
     // halves nonempty.
     if (best.left == 0) best.left = n / 2;  // all centres coincide: any half is valid
     best.left = (best.left + kTreeWidth / 2) / kTreeWidth * kTreeWidth;
     best.left = std::clamp(best.left, kTreeWidth, (n - 1) / kTreeWidth * kTreeWidth);
-    const Bins& of = bins[best.axis];
     int at = 0;
-    for (rank = best.left; rank >= of.count[at]; ++at) rank -= of.count[at];
+    for (rank = best.left; rank >= bins.bin[best.axis][at].count; ++at) rank -= bins.bin[best.axis][at].count;
     for (const std::uint32_t s : soup_.listed(begin, end))
-      if (of.bin_of(soup_.centre(s)[best.axis]) == at) near.push_back(s);
+      if (bin_of(bins, best.axis, soup_.centre(s)[best.axis]) == at) near.push_back(s);
     return best;
   }
 
@@ -226,26 +212,34 @@ class BinaryBuilder {
     return best;
   }
 
+  static void add_to(Bin& bin, const Bin& more) {
+    for (int i = 0; i < 4; ++i) {
+      bin.low_and[i] = std::min(bin.low_and[i], more.low_and[i]);
+      bin.and_high[i] = std::max(bin.and_high[i], more.and_high[i]);
+    }
+    bin.count += more.count;
+  }
+
   /// Replaces `best` if a cut between two bins of an axis costs less.
-  static void try_axis(const Bins& bins, std::uint32_t count, int axis, Split& best) {
+  static void try_axis(const Bin (&bins)[kBins], std::uint32_t count, int axis, Split& best) {
     // Pass 2, from the right: the cost of everything right of each boundary.
     std::array<double, kBins> right_cost{};
-    GrowingBox<double> right;
-    std::uint32_t right_count = 0;
+    const auto cost_of = [](const Bin& part) {
+      return box_cost(Eigen::Vector3d(part.and_high[1] - part.low_and[0], part.and_high[2] - part.low_and[1],
+                                      part.and_high[3] - part.low_and[2])) *
+             leaves_for(part.count);
+    };
+    Bin right, left;
     for (int b = kBins - 1; b > 0; --b) {
-      right.extend(bins.box[b]);
-      right_count += bins.count[b];
-      right_cost[b] = right_count ? box_cost(right.sides()) * leaves_for(right_count) : 0;
+      add_to(right, bins[b]);
+      right_cost[b] = right.count ? cost_of(right) : 0;
     }
     // Pass 3, from the left: the cost of each cut, as box cost times number of leaves.
-    GrowingBox<double> left;
-    std::uint32_t left_count = 0;
     for (int b = 1; b < kBins; ++b) {
-      left.extend(bins.box[b - 1]);
-      left_count += bins.count[b - 1];
-      if (left_count == 0 || left_count == count) continue;
-      const double cost = box_cost(left.sides()) * leaves_for(left_count) + right_cost[b];
-      if (cost < best.cost) best = {cost, axis, left_count};
+      add_to(left, bins[b - 1]);
+      if (left.count == 0 || left.count == count) continue;
+      const double cost = cost_of(left) + right_cost[b];
+      if (cost < best.cost) best = {cost, axis, left.count};
     }
   }
 

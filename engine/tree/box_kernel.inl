@@ -6,6 +6,7 @@ namespace lrb {
 namespace {
 
 using Float8 = float __attribute__((vector_size(32)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
 using Double4 = double __attribute__((vector_size(32)));
 
 /// Half as wide.
@@ -78,6 +79,24 @@ void estimate(BoxKernel& k) {
   }
 }
 
+void add_to_bins(const BoxKernel& k) {
+  const Double4 from = loaded<Double4>(k.bins->from), per_unit = loaded<Double4>(k.bins->per_unit);
+  for (std::size_t i = 0; i < k.count; ++i) {
+    const double* const box = k.boxes + std::size_t{6} * k.which[i];
+    const Double4 low = loaded<Double4>(box), high = loaded<Double4>(box + 2);
+    const Double4 centre = 0.5 * (low + __builtin_shufflevector(high, high, 1, 2, 3, 3));
+    const Int4 bins = __builtin_convertvector((centre - from) * per_unit, Int4);
+    for (int axis = 0; axis < 3; ++axis) {
+      Bin& bin = k.bins->bin[axis][bins[axis] < kBins ? bins[axis] : kBins - 1];
+      const Double4 lowest = min_of(loaded<Double4>(bin.low_and), low),
+                    highest = max_of(loaded<Double4>(bin.and_high), high);
+      __builtin_memcpy(bin.low_and, &lowest, sizeof lowest);
+      __builtin_memcpy(bin.and_high, &highest, sizeof highest);
+      ++bin.count;
+    }
+  }
+}
+
 void measure(BoxKernel& k) {
   const Double4 column[3] = {loaded<Double4>(k.columns[0]), loaded<Double4>(k.columns[1]),
                              loaded<Double4>(k.columns[2])};
@@ -99,7 +118,10 @@ void measure(BoxKernel& k) {
 }  // namespace
 
 void LRB_BOX_KERNEL_NAME(BoxKernel& k) {
-  k.local != nullptr ? estimate(k) : measure(k);
+  if (k.bins != nullptr)
+    add_to_bins(k);
+  else
+    k.local != nullptr ? estimate(k) : measure(k);
 }
 
 }  // namespace lrb

@@ -302,6 +302,7 @@ void FittedCuts::localise() {
 /// Measures the moments of the simplices of the range relative to the same centre and scale, which limits
 /// cancellation.
 void FittedCuts::measure() {
+  if (first_spread_.empty()) first_spread_ = spread_;
   for (const std::uint32_t i : along(0)) spread_[i] = Spread(soup_.corners[simplices_[i]], origin_, scale_);
 }
 
@@ -358,6 +359,7 @@ double FittedCuts::fitted_box_cost(std::span<const std::uint32_t> some, const Sp
   BoxKernel k;
   k.which = some.data();
   k.count = some.size();
+  k.bins = nullptr;
   k.local = local_.data();
   for (int i = 0; i < 3; ++i) std::ranges::copy(four<float>(axes.row(i)), k.axes[i]);
   run_box_kernel(k);
@@ -478,6 +480,7 @@ Box box_in_frame(const Soup& soup, std::span<const std::uint32_t> which, const F
   BoxKernel k;
   k.which = which.data();
   k.count = which.size();
+  k.bins = nullptr;
   k.local = nullptr;
   k.corners = soup.corners.data()->data()->data();
   for (int i = 0; i < 3; ++i) std::ranges::copy(four<double>(frame.axes.col(i)), k.columns[i]);

@@ -199,6 +199,11 @@ class FittedCuts {
   /// Returns box_cost() of the tight box of all simplices.
   double whole_cost() const { return whole_cost_; }
 
+  /// Returns the moments of the simplex order()[k], as Soup::spread() does.
+  const Spread& spread(std::uint32_t k) const {
+    return (first_spread_.empty() ? spread_ : first_spread_)[coordinate_[0][k]];
+  }
+
   /// Returns the simplices, range by range.
   std::vector<std::uint32_t> order() const;
 
@@ -225,6 +230,7 @@ class FittedCuts {
   double whole_cost_ = 0;
   std::vector<std::uint32_t> simplices_;  ///< ascending; below, simplices are identified by their index here
   std::vector<Spread> spread_;  ///< moments of each simplex; within a range, relative to one origin and scale
+  std::vector<Spread> first_spread_;     ///< as Soup::spread(), if some were measured again
   std::vector<LocalSimplex> local_;      ///< each simplex: local_ = scale_ (x - origin_) within a range
   std::vector<Eigen::Vector3d> centre_;  ///< of each simplex's box
   Eigen::Vector3d origin_{0, 0, 0};      ///< of `local_`
