@@ -29,27 +29,36 @@ class BinaryBuilder {
     const auto n = static_cast<std::uint32_t>(soup.order.size());
     nodes_.resize(nodes_for(n));
     build(0, 0, n);
-    measure();
   }
 
   std::vector<BinaryNode> take() { return std::move(nodes_); }
 
  private:
-  static constexpr int kBins = 32;
-
   /// Returns the number of nodes of a subtree with this many simplices.
   static std::uint32_t nodes_for(std::uint32_t simplices) { return 2 * leaves_for(simplices) - 1; }
 
   /// Returns true if ranges of this size are split by the tight boxes of their halves.
   bool is_fitted(std::uint32_t simplices) const { return simplices <= std::max(splits_.fitted, kTreeWidth); }
 
-  /// Builds a subtree, without its boxes.
+  /// Builds a subtree.
   void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
     // FittedCuts keeps the simplices sorted along all axes, so it handles the entire subtree.
     if (is_fitted(end - begin)) {
       FittedCuts cuts(soup_, soup_.listed(begin, end), splits_.effort);
       build_fitted(self, begin, end, cuts.whole_cost(), cuts, begin);
       std::ranges::copy(cuts.order(), soup_.order.begin() + begin);
+      // Children come after parents, so reverse order visits children first.
+      for (std::uint32_t i = self + nodes_for(end - begin); i-- > self;) {
+        BinaryNode& node = nodes_[i];
+        if (!node.is_leaf()) {
+          join(node);
+          continue;
+        }
+        for (std::uint32_t k = node.begin; k < node.end; ++k) {
+          node.box.extend(soup_.box[soup_.order[k]]);
+          node.spread += cuts.spread(k - begin);
+        }
+      }
       return;
     }
     // A large range: reorder the simplices around the cut, then build both halves, possibly in parallel.
@@ -57,6 +66,8 @@ class BinaryBuilder {
     const auto [left, right] = fork(self, begin, boundary, end, 0);
     workers_.both([&, left = left] { build(left, begin, boundary); },
                   [&, right = right] { build(right, boundary, end); });
+    join(nodes_[self]);
+    nodes_[self].cost = box_cost(nodes_[self].box);
   }
 
   /// Builds a part of the subtree that `cuts` divides. cost: of its root; first: begin of the range of
@@ -76,7 +87,7 @@ class BinaryBuilder {
   }
 
   /// Creates an inner node. Its subtrees contain the simplices before `boundary` and the rest. cost: 0 if
-  /// measure() is to compute it. Returns the roots of the subtrees.
+  /// build() is to compute it. Returns the roots of the subtrees.
   std::pair<std::uint32_t, std::uint32_t> fork(std::uint32_t self, std::uint32_t begin,
                                                std::uint32_t boundary, std::uint32_t end, double cost) {
     // Preorder: the left subtree follows its parent, and its size follows from the number of its leaves.
@@ -85,22 +96,11 @@ class BinaryBuilder {
     return {left, right};
   }
 
-  /// Computes the boxes of all nodes bottom-up, and the costs of nodes that are not fitted.
-  void measure() {
-    // Children come after parents, so reverse order visits children first.
-    for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
-      if (node->is_leaf()) {
-        for (const std::uint32_t s : soup_.listed(node->begin, node->end)) {
-          node->box.extend(soup_.box[s]);
-          node->spread += soup_.spread[s];
-        }
-      } else {
-        node->box = nodes_[node->left].box.merged(nodes_[node->right].box);
-        node->spread = nodes_[node->left].spread;
-        node->spread += nodes_[node->right].spread;
-      }
-      if (!is_fitted(node->end - node->begin)) node->cost = box_cost(node->box);
-    }
+  /// Computes the box and the moments of a node from those of its children.
+  void join(BinaryNode& node) {
+    node.box = nodes_[node.left].box.merged(nodes_[node.right].box);
+    node.spread = nodes_[node.left].spread;
+    node.spread += nodes_[node.right].spread;
   }
 
   /// A split of a range: number of simplices on the left, in the order of their centres on an axis.
@@ -111,55 +111,78 @@ class BinaryBuilder {
   };
 
   std::uint32_t split(std::uint32_t begin, std::uint32_t end) {
-    const Split best = splits_.all_cuts ? best_of_all(begin, end) : best_binned(begin, end);
+    // `near`: simplices that are neighbours in the order on the axis, among them the first one on the right,
+    // which has `rank` of them before it.
+    std::vector<std::uint32_t> near;
+    std::uint32_t rank = 0;
+    Split best;
+    if (splits_.all_cuts) {
+      best = best_of_all(begin, end);
+      near.assign(soup_.order.begin() + begin, soup_.order.begin() + end);
+      rank = best.left;
+    } else {
+      best = best_binned(begin, end, near, rank);
+    }
     // A stable partition in linear time. The simplices of each half stay in the order of the mesh, in which
     // neighbours mostly are neighbours in memory.
-    const auto first = soup_.order.begin() + begin, last = soup_.order.begin() + end;
     const auto before = soup_.order_on(best.axis);
-    std::vector<std::uint32_t> listed(first, last);
-    std::nth_element(listed.begin(), listed.begin() + best.left, listed.end(), before);
-    std::stable_partition(first, last, [&](std::uint32_t s) { return before(s, listed[best.left]); });
+    std::nth_element(near.begin(), near.begin() + rank, near.end(), before);
+    std::stable_partition(soup_.order.begin() + begin, soup_.order.begin() + end,
+                          [&](std::uint32_t s) { return before(s, near[rank]); });
     return begin + best.left;
   }
 
-  /// The boxes and numbers of the simplices in each bin of an axis.
-  struct Bins {
-    double from = 0, per_unit = 0;  ///< where the first bin begins, and bins in a unit of length
-    std::array<GrowingBox<double>, kBins> box;
-    std::array<std::uint32_t, kBins> count{};
-  };
+  static int bin_of(const BoxBins& bins, int axis, double centre) {
+    return std::min(kBins - 1, static_cast<int>((centre - bins.from[axis]) * bins.per_unit[axis]));
+  }
 
-  Split best_binned(std::uint32_t begin, std::uint32_t end) const {
-    GrowingBox<double> centres;
+  /// Returns the best split between two bins, and the simplices of the bin where it is, with the number of
+  /// those on the left.
+  Split best_binned(std::uint32_t begin, std::uint32_t end, std::vector<std::uint32_t>& near,
+                    std::uint32_t& rank) {
+    const std::uint32_t n = end - begin;
     // Bins divide the range of centres, not of boxes, so that every bin is on one side of each cut.
-    for (std::uint32_t i = begin; i < end; ++i) centres.extend(four<double>(soup_.centre[soup_.order[i]]));
-    std::array<Bins, 3> bins;
+    std::vector<GrowingBox<double>> centres(shares_of(n));
+    for_each_share(n, workers_, [&](std::uint32_t first, std::uint32_t last, std::size_t share) {
+      GrowingBox<double> some;
+      for (const std::uint32_t s : soup_.listed(begin + first, begin + last))
+        some.extend(four<double>(soup_.centre(s)));
+      centres[share] = some;
+    });
+    for (const GrowingBox<double>& some : centres) centres[0].extend(some);
+    BoxBins empty;
     for (int axis = 0; axis < 3; ++axis) {
-      bins[axis].from = centres.low[axis];
-      bins[axis].per_unit = kBins / (centres.high[axis] - centres.low[axis]);
+      empty.from[axis] = centres[0].low[axis];
+      empty.per_unit[axis] = kBins / (centres[0].high[axis] - centres[0].low[axis]);
       // The centres (nearly) coincide on this axis: no cut across it.
-      if (!std::isfinite(bins[axis].per_unit)) bins[axis].per_unit = 0;
+      if (!std::isfinite(empty.per_unit[axis])) empty.per_unit[axis] = 0;
     }
     // Pass 1: the box and number of simplices of each bin, on all axes.
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const std::uint32_t s = soup_.order[i];
-      const GrowingBox<double> box{four<double>(soup_.box[s].min()), four<double>(soup_.box[s].max())};
-      for (int axis = 0; axis < 3; ++axis) {
-        Bins& of = bins[axis];
-        const int b = std::min(kBins - 1, static_cast<int>((soup_.centre[s][axis] - of.from) * of.per_unit));
-        of.box[b].extend(box);
-        ++of.count[b];
-      }
-    }
+    std::vector<BoxBins> filled(shares_of(n), empty);
+    for_each_share(n, workers_, [&](std::uint32_t first, std::uint32_t last, std::size_t share) {
+      BoxKernel k;
+      k.which = soup_.order.data() + begin + first;
+      k.count = last - first;
+      k.bins = &filled[share];
+      k.boxes = soup_.box.data()->min().data();
+      run_box_kernel(k);
+    });
+    BoxBins& bins = filled[0];
+    for (const BoxBins& more : std::span(filled).subspan(1))
+      for (int axis = 0; axis < 3; ++axis)
+        for (int b = 0; b < kBins; ++b) add_to(bins.bin[axis][b], more.bin[axis][b]);
     Split best;
     for (int axis = 0; axis < 3; ++axis)
-      if (bins[axis].per_unit > 0) try_axis(bins[axis], end - begin, axis, best);
-    const std::uint32_t n = end - begin;
+      if (bins.per_unit[axis] > 0) try_axis(bins.bin[axis], n, axis, best);
     // Round the cut to a multiple of kTreeWidth, so that all leaves except the last are full. Keep both
     // halves nonempty.
     if (best.left == 0) best.left = n / 2;  // all centres coincide: any half is valid
     best.left = (best.left + kTreeWidth / 2) / kTreeWidth * kTreeWidth;
     best.left = std::clamp(best.left, kTreeWidth, (n - 1) / kTreeWidth * kTreeWidth);
+    int at = 0;
+    for (rank = best.left; rank >= bins.bin[best.axis][at].count; ++at) rank -= bins.bin[best.axis][at].count;
+    for (const std::uint32_t s : soup_.listed(begin, end))
+      if (bin_of(bins, best.axis, soup_.centre(s)[best.axis]) == at) near.push_back(s);
     return best;
   }
 
@@ -189,26 +212,34 @@ class BinaryBuilder {
     return best;
   }
 
+  static void add_to(Bin& bin, const Bin& more) {
+    for (int i = 0; i < 4; ++i) {
+      bin.low_and[i] = std::min(bin.low_and[i], more.low_and[i]);
+      bin.and_high[i] = std::max(bin.and_high[i], more.and_high[i]);
+    }
+    bin.count += more.count;
+  }
+
   /// Replaces `best` if a cut between two bins of an axis costs less.
-  static void try_axis(const Bins& bins, std::uint32_t count, int axis, Split& best) {
+  static void try_axis(const Bin (&bins)[kBins], std::uint32_t count, int axis, Split& best) {
     // Pass 2, from the right: the cost of everything right of each boundary.
     std::array<double, kBins> right_cost{};
-    GrowingBox<double> right;
-    std::uint32_t right_count = 0;
+    const auto cost_of = [](const Bin& part) {
+      return box_cost(Eigen::Vector3d(part.and_high[1] - part.low_and[0], part.and_high[2] - part.low_and[1],
+                                      part.and_high[3] - part.low_and[2])) *
+             leaves_for(part.count);
+    };
+    Bin right, left;
     for (int b = kBins - 1; b > 0; --b) {
-      right.extend(bins.box[b]);
-      right_count += bins.count[b];
-      right_cost[b] = right_count ? box_cost(right.sides()) * leaves_for(right_count) : 0;
+      add_to(right, bins[b]);
+      right_cost[b] = right.count ? cost_of(right) : 0;
     }
     // Pass 3, from the left: the cost of each cut, as box cost times number of leaves.
-    GrowingBox<double> left;
-    std::uint32_t left_count = 0;
     for (int b = 1; b < kBins; ++b) {
-      left.extend(bins.box[b - 1]);
-      left_count += bins.count[b - 1];
-      if (left_count == 0 || left_count == count) continue;
-      const double cost = box_cost(left.sides()) * leaves_for(left_count) + right_cost[b];
-      if (cost < best.cost) best = {cost, axis, left_count};
+      add_to(left, bins[b - 1]);
+      if (left.count == 0 || left.count == count) continue;
+      const double cost = cost_of(left) + right_cost[b];
+      if (cost < best.cost) best = {cost, axis, left.count};
     }
   }
 

@@ -12,8 +12,10 @@
 #include <Eigen/Geometry>
 
 #include "engine/core/tolerances.hpp"
+#include "engine/tree/box_kernel.hpp"
 #include <lrbscope/ids.hpp>
 #include <lrbscope/obb_tree.hpp>
+#include <lrbscope/parallel.hpp>
 #include <lrbscope/simplex_view.hpp>
 
 namespace lrb {
@@ -23,51 +25,52 @@ namespace lrb {
 /// Moments of the points of simplices: the integrals of 1, of the point, and of its outer product. A simplex
 /// has a weight of twice its area plus a small constant, so that segments and points count.
 struct Spread {
-  double weight = 0;
-  Eigen::Vector3d first = Eigen::Vector3d::Zero();
-  Eigen::Vector3d squares = Eigen::Vector3d::Zero();   ///< xx, yy, zz
-  Eigen::Vector3d products = Eigen::Vector3d::Zero();  ///< yz, zx, xy
+  /// The weight, the integral of the point (3), and of xx, yy, zz, yz, zx, xy: one array, so that sums take
+  /// few instructions.
+  Eigen::Array<double, 10, 1> sums = Eigen::Array<double, 10, 1>::Zero();
 
   Spread() = default;
   /// Measures one simplex relative to `origin`, with lengths scaled by `scale`.
   Spread(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Vector3d& origin, double scale);
 
-  void operator+=(const Spread& more) {
-    weight += more.weight;
-    first += more.first;
-    squares += more.squares;
-    products += more.products;
-  }
+  void operator+=(const Spread& more) { sums += more.sums; }
   Spread operator-(const Spread& part) const {
-    Spread rest = *this;
-    rest.weight -= part.weight;
-    rest.first -= part.first;
-    rest.squares -= part.squares;
-    rest.products -= part.products;
+    Spread rest;
+    rest.sums = sums - part.sums;
     return rest;
   }
 
+  /// Returns the mean of the points.
+  Eigen::Vector3d mean() const { return sums.segment<3>(1) / sums[0]; }
   /// Returns the covariance of the points.
   Eigen::Matrix3d covariance() const;
   /// Returns the mean squared distance of the points from their mean.
-  double variance() const { return squares.sum() / weight - (first / weight).squaredNorm(); }
+  double variance() const { return sums.segment<3>(4).sum() / sums[0] - mean().squaredNorm(); }
+};
+
+/// The corners of a simplex. The constructor leaves them as they are: arrays are filled by several threads.
+struct SimplexCorners : std::array<Eigen::Vector3d, 3> {
+  SimplexCorners() {}
 };
 
 /// Simplices in the tree's units, in the given order.
 struct Soup {
-  std::span<const SimplexId> simplices;
-  std::vector<std::array<Eigen::Vector3d, 3>> corners;
+  std::vector<SimplexId> simplices;
+  std::vector<SimplexCorners> corners;
   std::vector<Eigen::AlignedBox3d> box;
-  std::vector<Eigen::Vector3d> centre;  ///< of the box
-  std::vector<Spread> spread;           ///< relative to the centre of all simplices, scaled by their diagonal
-  std::vector<std::uint32_t> order;     ///< the simplices in the order of the tree's leaves
+  std::vector<std::uint32_t> order;  ///< the simplices in the order of the tree's leaves
 
-  Soup(const SimplexView& body, std::span<const SimplexId> simplices, double unit);
+  Soup(const SimplexView& body, std::span<const SimplexId> simplices, double unit, Workers& workers);
+
+  /// Returns the centre of a simplex's box.
+  Eigen::Vector3d centre(std::uint32_t s) const { return 0.5 * (box[s].min() + box[s].max()); }
+  /// Returns the moments of a simplex relative to the centre of all simplices, scaled by their diagonal.
+  Spread spread(std::uint32_t s) const { return {corners[s], origin_, scale_}; }
 
   /// Returns the comparison of two simplices on an axis: by centre, then by number.
   auto order_on(int axis) const {
     return [this, axis](std::uint32_t s, std::uint32_t t) {
-      const double x = centre[s][axis], y = centre[t][axis];
+      const double x = centre(s)[axis], y = centre(t)[axis];
       return x != y ? x < y : s < t;
     };
   }
@@ -76,7 +79,30 @@ struct Soup {
   std::span<const std::uint32_t> listed(std::uint32_t begin, std::uint32_t end) const {
     return std::span(order).subspan(begin, end - begin);
   }
+
+  /// Moves the simplices, their corners and their boxes to the order of the leaves, in which they are read
+  /// from here on.
+  void follow_order(Workers& workers);
+
+ private:
+  Eigen::Vector3d origin_;
+  double scale_;
 };
+
+/// Number of simplices to be distributed to a thread at once.
+inline constexpr std::size_t kShare = 4096;
+inline std::size_t shares_of(std::size_t n) {
+  return (n + kShare - 1) / kShare;
+}
+
+/// Calls work(begin, end, share) for the ranges of kShare numbers that [0, n) consists of.
+template <class Work>
+void for_each_share(std::size_t n, Workers& workers, const Work& work) {
+  workers.for_each(shares_of(n), [&](std::size_t share, unsigned) {
+    work(static_cast<std::uint32_t>(share * kShare),
+         static_cast<std::uint32_t>(std::min(n, (share + 1) * kShare)), share);
+  });
+}
 
 /// Returns half the surface area of a box with sides of these lengths.
 inline double half_area(const Eigen::Vector3d& sides) {
@@ -173,6 +199,11 @@ class FittedCuts {
   /// Returns box_cost() of the tight box of all simplices.
   double whole_cost() const { return whole_cost_; }
 
+  /// Returns the moments of the simplex order()[k], as Soup::spread() does.
+  const Spread& spread(std::uint32_t k) const {
+    return (first_spread_.empty() ? spread_ : first_spread_)[coordinate_[0][k]];
+  }
+
   /// Returns the simplices, range by range.
   std::vector<std::uint32_t> order() const;
 
@@ -184,10 +215,6 @@ class FittedCuts {
     std::uint32_t left;    ///< number of simplices on its left
     bool operator<(const Cut& y) const;
   };
-  /// Corners of a simplex in float, for estimates of boxes. The fourth coordinate is 0: it fills a vector
-  /// register.
-  using Corners = std::array<Eigen::Array4f, 3>;
-
   std::span<const std::uint32_t> along(int way) const;
   Spread sum() const;
   void localise();
@@ -203,9 +230,11 @@ class FittedCuts {
   double whole_cost_ = 0;
   std::vector<std::uint32_t> simplices_;  ///< ascending; below, simplices are identified by their index here
   std::vector<Spread> spread_;  ///< moments of each simplex; within a range, relative to one origin and scale
-  std::vector<Corners> local_;  ///< corners of each simplex: local_ = scale_ (x - origin_) within a range
-  Eigen::Vector3d origin_{0, 0, 0};  ///< of `local_`
-  double scale_ = 1;                 ///< of `local_`
+  std::vector<Spread> first_spread_;     ///< as Soup::spread(), if some were measured again
+  std::vector<LocalSimplex> local_;      ///< each simplex: local_ = scale_ (x - origin_) within a range
+  std::vector<Eigen::Vector3d> centre_;  ///< of each simplex's box
+  Eigen::Vector3d origin_{0, 0, 0};      ///< of `local_`
+  double scale_ = 1;                     ///< of `local_`
   /// Range by range, ordered along an axis within each.
   std::array<std::vector<std::uint32_t>, 3> coordinate_;
 
@@ -218,6 +247,7 @@ class FittedCuts {
   std::vector<std::uint8_t> is_left_;  ///< for each simplex
 
   // Memory that is kept from one use to the next.
+  std::vector<float> positions_;
   std::vector<std::uint64_t> places_, sorted_;
   std::vector<std::uint32_t> right_;
 };

@@ -43,50 +43,47 @@ class ObbTreeBuilder {
     tree.measure(body, simplices);
     if (simplices.empty()) return;
     Workers workers(threads);
-    Soup soup(body, simplices, tree.unit_);
+    Soup soup(body, simplices, tree.unit_, workers);
     ObbTreeBuilder(tree, soup, workers, splits);
-    tree.nodes_.shrink_to_fit();
-    tree.blocks_.shrink_to_fit();
   }
 
  private:
   ObbTreeBuilder(ObbTree& tree, Soup& soup, Workers& workers, Splits splits)
       : tree_(tree), soup_(soup), binary_(build_binary_tree(soup, workers, splits)) {
-    tree_.nodes_.resize(1);
-    binary_of_.resize(1);
+    soup_.follow_order(workers);
+    places_.resize(1);
     lay_out(Collapse(binary_), 0, 0, 1);
+    tree_.nodes_.resize(places_.size());
     tree_.blocks_.resize(block_count_);
     // Nodes per task: enough simplices to be worth distributing.
-    constexpr std::size_t kShare = 32;
-    workers.for_each((tree_.nodes_.size() + kShare - 1) / kShare, [&](std::size_t i, unsigned) {
-      const std::size_t end = std::min(tree_.nodes_.size(), (i + 1) * kShare);
-      for (std::size_t n = i * kShare; n < end; ++n) fill(static_cast<std::uint32_t>(n));
+    constexpr std::size_t kNodes = 32;
+    workers.for_each((tree_.nodes_.size() + kNodes - 1) / kNodes, [&](std::size_t i, unsigned) {
+      const std::size_t end = std::min(tree_.nodes_.size(), (i + 1) * kNodes);
+      for (std::size_t n = i * kNodes; n < end; ++n) fill(static_cast<std::uint32_t>(n));
     });
   }
 
   /// Assigns the indices of children and blocks, depth first.
   void lay_out(const Collapse& collapse, std::uint32_t wide, std::uint32_t binary, std::uint32_t height) {
     tree_.height_ = std::max(tree_.height_, height);
-    binary_of_[wide] = binary;
     // A leaf: `first` is the number of its block.
     if (binary_[binary].is_leaf()) {
-      tree_.nodes_[wide].first = block_count_++;
+      places_[wide] = {binary, block_count_++, 0};
       return;
     }
     // Children are contiguous: their indices are reserved before those of any subtree.
     const std::vector<std::uint32_t> children = collapse.children(binary);
-    const auto first = static_cast<std::uint32_t>(tree_.nodes_.size());
-    tree_.nodes_.resize(first + children.size());
-    binary_of_.resize(tree_.nodes_.size());
-    tree_.nodes_[wide].first = first;
-    tree_.nodes_[wide].count = static_cast<std::uint8_t>(children.size());
+    const auto first = static_cast<std::uint32_t>(places_.size());
+    places_[wide] = {binary, first, static_cast<std::uint32_t>(children.size())};
+    places_.resize(first + children.size());
     for (std::uint32_t k = 0; k < children.size(); ++k) lay_out(collapse, first + k, children[k], height + 1);
   }
 
   void fill(std::uint32_t wide) {
-    const BinaryNode& b = binary_[binary_of_[wide]];
+    const BinaryNode& b = binary_[places_[wide].binary];
     TreeNode& node = tree_.nodes_[wide];
-    const std::uint32_t first = node.first, count = b.is_leaf() ? b.end - b.begin : node.count;
+    const std::uint32_t first = places_[wide].first,
+                        count = b.is_leaf() ? b.end - b.begin : places_[wide].count;
     // The boxes of children are recomputed from the simplices in the node's frame: a box of a box would be
     // looser.
     Frame frame = principal_frame(soup_, soup_.listed(b.begin, b.end), b.spread, b.box);
@@ -101,7 +98,7 @@ class ObbTreeBuilder {
       frame.axes.setIdentity();
       for (std::uint32_t k = 0; k < count; ++k) {
         const Box& box =
-            b.is_leaf() ? soup_.box[soup_.order[b.begin + k]] : binary_[binary_of_[first + k]].box;
+            b.is_leaf() ? soup_.box[soup_.order[b.begin + k]] : binary_[places_[first + k].binary].box;
         boxes[k] = Box(box.min() - frame.origin, box.max() - frame.origin);
       }
     }
@@ -116,12 +113,11 @@ class ObbTreeBuilder {
   std::pair<std::uint32_t, std::uint32_t> child_range(const BinaryNode& node, std::uint32_t first,
                                                       std::uint32_t k) const {
     if (node.is_leaf()) return {node.begin + k, node.begin + k + 1};
-    const BinaryNode& child = binary_[binary_of_[first + k]];
+    const BinaryNode& child = binary_[places_[first + k].binary];
     return {child.begin, child.end};
   }
 
   void fill_block(LeafBlock& block, const BinaryNode& b, const Frame& frame) const {
-    block = {};
     std::fill(std::begin(block.simplex), std::end(block.simplex), kNull);
     for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
       // Absent simplices repeat the last one, so that all eight lanes contain valid coordinates.
@@ -149,11 +145,12 @@ class ObbTreeBuilder {
       const double lo = all.min()[i] - 2 * margin, hi = all.max()[i] + 2 * margin;
       node.base[i] = std::nextafter(static_cast<float>(lo), -INFINITY);
       node.scale[i] = std::nextafter(static_cast<float>((hi - node.base[i]) / kQuantizedMost), INFINITY);
+      const double per_unit = 1 / static_cast<double>(node.scale[i]);
       for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
         // Absent children have lo > hi.
         node.lo[i][k] =
-            k < boxes.size() ? quantize_down(node, i, boxes[k].min()[i] - margin) : kQuantizedMost;
-        node.hi[i][k] = k < boxes.size() ? quantize_up(node, i, boxes[k].max()[i] + margin) : 0;
+            k < boxes.size() ? quantize_down(node, i, per_unit, boxes[k].min()[i] - margin) : kQuantizedMost;
+        node.hi[i][k] = k < boxes.size() ? quantize_up(node, i, per_unit, boxes[k].max()[i] + margin) : 0;
       }
     }
     node.count = static_cast<std::uint8_t>(boxes.size());
@@ -167,16 +164,16 @@ class ObbTreeBuilder {
   static float decode(const TreeNode& node, int axis, int q) {
     return node.base[axis] + node.scale[axis] * static_cast<float>(q);
   }
-  static std::uint8_t quantize_down(const TreeNode& node, int axis, double x) {
+  static std::uint8_t quantize_down(const TreeNode& node, int axis, double per_unit, double x) {
     // Start one code too high and step down until the decoded value is at or below x. The float decoding
     // itself decides, so its rounding need not be estimated.
-    int q = std::clamp(static_cast<int>((x - node.base[axis]) / node.scale[axis]) + 1, 0, kQuantizedMost);
+    int q = std::clamp(static_cast<int>((x - node.base[axis]) * per_unit) + 1, 0, kQuantizedMost);
     while (q > 0 && decode(node, axis, q) > x) --q;
     return static_cast<std::uint8_t>(q);
   }
-  static std::uint8_t quantize_up(const TreeNode& node, int axis, double x) {
+  static std::uint8_t quantize_up(const TreeNode& node, int axis, double per_unit, double x) {
     // The mirror image: the decoded value is at or above x.
-    int q = std::clamp(static_cast<int>((x - node.base[axis]) / node.scale[axis]) - 1, 0, kQuantizedMost);
+    int q = std::clamp(static_cast<int>((x - node.base[axis]) * per_unit) - 1, 0, kQuantizedMost);
     while (q < kQuantizedMost && decode(node, axis, q) < x) ++q;
     return static_cast<std::uint8_t>(q);
   }
@@ -184,7 +181,12 @@ class ObbTreeBuilder {
   ObbTree& tree_;
   Soup& soup_;
   const std::vector<BinaryNode> binary_;
-  std::vector<std::uint32_t> binary_of_;  ///< (|nodes|) node of the binary tree for each wide one
+  /// Where a wide node is.
+  struct Place {
+    std::uint32_t binary;        ///< the same node of the binary tree
+    std::uint32_t first, count;  ///< as in TreeNode; a leaf's count is 0 here
+  };
+  std::vector<Place> places_;  ///< (|nodes|)
   std::uint32_t block_count_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "engine/tree/tree_kernel.hpp"
 
+#include "engine/tree/box_kernel.hpp"
 #include "engine/tree/kernel_setup.hpp"
 #include "engine/tree/pair_kernel.hpp"
 
@@ -27,13 +28,16 @@ void for_each_self_pair(const ObbTree& tree, const std::function<void(SimplexId,
 void run_tree_kernel_baseline(TreeKernel& k);
 void run_affine_kernel_baseline(TreeKernel& k);
 void run_pair_kernel_baseline(const PairKernel& k);
+void run_box_kernel_baseline(BoxKernel& k);
 #if defined(__x86_64__)
 void run_tree_kernel_avx2(TreeKernel& k);
 void run_affine_kernel_avx2(TreeKernel& k);
 void run_pair_kernel_avx2(const PairKernel& k);
+void run_box_kernel_avx2(BoxKernel& k);
 void run_tree_kernel_avx512(TreeKernel& k);
 void run_affine_kernel_avx512(TreeKernel& k);
 void run_pair_kernel_avx512(const PairKernel& k);
+void run_box_kernel_avx512(BoxKernel& k);
 #endif
 
 namespace {
@@ -42,15 +46,17 @@ struct Kernels {
   void (*tree)(TreeKernel&) = run_tree_kernel_baseline;
   void (*affine)(TreeKernel&) = run_affine_kernel_baseline;
   void (*pairs)(const PairKernel&) = run_pair_kernel_baseline;
+  void (*boxes)(BoxKernel&) = run_box_kernel_baseline;
 };
 
 Kernels best_kernels() {
   switch (best_instruction_set()) {
 #if defined(__x86_64__)
     case InstructionSet::avx512:
-      return {run_tree_kernel_avx512, run_affine_kernel_avx512, run_pair_kernel_avx512};
+      return {run_tree_kernel_avx512, run_affine_kernel_avx512, run_pair_kernel_avx512,
+              run_box_kernel_avx512};
     case InstructionSet::avx2:
-      return {run_tree_kernel_avx2, run_affine_kernel_avx2, run_pair_kernel_avx2};
+      return {run_tree_kernel_avx2, run_affine_kernel_avx2, run_pair_kernel_avx2, run_box_kernel_avx2};
 #endif
     default:
       return {};
@@ -71,6 +77,10 @@ void run_tree_kernel(TreeKernel& k) {
 
 void run_pair_kernel(const PairKernel& k) {
   kernels().pairs(k);
+}
+
+void run_box_kernel(BoxKernel& k) {
+  kernels().boxes(k);
 }
 
 }  // namespace lrb

@@ -52,7 +52,7 @@ _ClashKind = Literal[
     "undecided",
 ]
 _Feature = Literal["corner", "edge", "inside"]
-_Progress = Callable[[str, int, int], object]
+_Progress = Callable[[str, int, int], object] | bool
 
 class InputError(ValueError): ...
 class EnvironmentError(OSError): ...
@@ -68,10 +68,17 @@ class Body:
         seed: int = 1,
         threads: int = 0,
         name: str = "body",
+        progress: _Progress | None = None,
     ) -> None: ...
     @staticmethod
     def load(
-        path: _Path, *, regions: bool = True, lean: bool = False, seed: int = 1, threads: int = 0
+        path: _Path,
+        *,
+        regions: bool = True,
+        lean: bool = False,
+        seed: int = 1,
+        threads: int = 0,
+        progress: _Progress | None = None,
     ) -> Body: ...
     def save(self, path: _Path) -> None: ...
     def __copy__(self) -> Body: ...

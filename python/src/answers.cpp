@@ -345,6 +345,31 @@ unsigned threads_of(std::size_t requested) {
   return all > 0 ? all : 1;
 }
 
+Progress::Progress(const py::object& progress) : callee_(progress), is_bar_(progress.is(py::bool_(true))) {
+  if (is_bar_)
+    callee_ = py::module_::import("lrbscope._progress").attr("Bar")();
+  else if (progress.is(py::bool_(false)))
+    callee_ = py::none();
+  else if (!progress.is_none() && !PyCallable_Check(progress.ptr()))
+    throw py::type_error("progress: expected a callable, True or None, got " + described(progress));
+}
+
+Progress::~Progress() {
+  if (!is_bar_) return;
+  // An exception that is being raised is kept; a fault of the bar itself has no effect on the result.
+  const py::error_scope kept;
+  try {
+    callee_.attr("close")();
+  } catch (const py::error_already_set&) {
+  }
+}
+
+void Progress::operator()(const std::string& what, std::uint64_t done, std::uint64_t total) const {
+  const py::gil_scoped_acquire lock;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  if (!callee_.is_none()) callee_(what, done, total);
+}
+
 void check_signals() {
   const py::gil_scoped_acquire lock;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();

@@ -67,6 +67,23 @@ Workspace& own_workspace();
 /// Throws exceptions raised by signal handlers, such as KeyboardInterrupt. Acquires the GIL.
 void check_signals();
 
+/// Reports progress to a callable, which gets (what, done, total); to a bar of tqdm for True; or not for
+/// None. The GIL must be held where this is made and destroyed.
+class Progress {
+ public:
+  explicit Progress(const py::object& progress);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Reports, and checks for signals in any case. Acquires the GIL. total: 0 if unknown.
+  void operator()(const std::string& what, std::uint64_t done, std::uint64_t total) const;
+
+ private:
+  py::object callee_;
+  bool is_bar_ = false;
+};
+
 /// Queries pairs of bodies without the GIL, as run_batch() does.
 std::vector<CollideResult> answers_of(std::span<const PosedPair> pairs, const CollideRequest& request,
                                       unsigned threads);

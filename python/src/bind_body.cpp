@@ -21,19 +21,23 @@ std::size_t used_vertices(const LrbRep& rep) {
   return n;
 }
 
-BuildOptions build_options(py::handle lean, py::handle seed, py::handle threads) {
+/// `progress` must outlive the options.
+BuildOptions build_options(py::handle lean, py::handle seed, py::handle threads, const Progress& progress) {
   BuildOptions options;
   options.lean = flag(lean, "lean");
   options.seed = count(seed, "seed", options.seed);
   options.threads = threads_of(count(threads, "threads"));
-  options.progress = [](std::uint32_t, std::uint32_t) { check_signals(); };
+  options.progress = [&progress](std::uint32_t pass, std::uint32_t front_faces) {
+    progress("building regions, front of " + std::to_string(front_faces) + " faces", pass, 0);
+  };
   return options;
 }
 
 BodyPtr body_of_arrays(py::handle vertices, py::handle faces, py::handle regions, py::handle lean,
-                       py::handle seed, py::handle threads, py::handle name) {
+                       py::handle seed, py::handle threads, py::handle name, const py::object& progress) {
   Mesh mesh = mesh_of_arrays(vertices, faces, text(name, "name", "body"));
-  const BuildOptions options = build_options(lean, seed, threads);
+  const Progress report(progress);
+  const BuildOptions options = build_options(lean, seed, threads, report);
   const bool with_regions = flag(regions, "regions", true);
   const std::size_t n = mesh.vertices.size();
   const py::gil_scoped_release unlocked;
@@ -42,9 +46,11 @@ BodyPtr body_of_arrays(py::handle vertices, py::handle faces, py::handle regions
                                 n);
 }
 
-BodyPtr load(py::handle file, py::handle regions, py::handle lean, py::handle seed, py::handle threads) {
+BodyPtr load(py::handle file, py::handle regions, py::handle lean, py::handle seed, py::handle threads,
+             const py::object& progress) {
   const std::string name = path(file, "path");
-  const BuildOptions options = build_options(lean, seed, threads);
+  const Progress report(progress);
+  const BuildOptions options = build_options(lean, seed, threads, report);
   const bool with_regions = flag(regions, "regions", true);
   const py::gil_scoped_release unlocked;
   return std::make_shared<Body>(with_regions
@@ -225,8 +231,8 @@ using BodyClass = py::class_<Body, BodyPtr>;
 void bind_making(BodyClass& c) {
   c.def(py::init(&body_of_arrays), py::arg("vertices"), py::arg("faces"), py::kw_only(),
         py::arg("regions") = true, py::arg("lean") = false, py::arg("seed") = 1, py::arg("threads") = 0,
-        py::arg("name") = "body",
-        R"(Body(vertices, faces, *, regions=True, lean=False, seed=1, threads=0, name='body')
+        py::arg("name") = "body", py::arg("progress") = py::none(),
+        R"(Body(vertices, faces, *, regions=True, lean=False, seed=1, threads=0, name='body', progress=None)
 
 Makes a body from arrays.
 
@@ -236,12 +242,15 @@ faces: (m, 3) int, corners counter-clockwise seen from outside; (m, k) or a list
 regions: build an LRB-rep with wrappers. Without regions, answers are the same and the body is made faster.
 lean: build a smaller LRB-rep whose wrappers fit less tightly.
 seed, threads: of the build. The result depends only on the seed. threads 0: all cores.
+progress: called with (what, done, total) after each pass of the build, total 0 for an unknown one; True: a
+    bar, where tqdm is installed.
 
 Raises InputError, which names the element, for a mesh that cannot be queried at all. A surface that cannot
 have regions (open, not manifold) gives a body without them.)");
   c.def_static("load", &load, py::arg("path"), py::kw_only(), py::arg("regions") = true,
                py::arg("lean") = false, py::arg("seed") = 1, py::arg("threads") = 0,
-               R"(load(path, *, regions=True, lean=False, seed=1, threads=0)
+               py::arg("progress") = py::none(),
+               R"(load(path, *, regions=True, lean=False, seed=1, threads=0, progress=None)
 
 Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the options.)");
   c.def("save", &save, py::arg("path"),

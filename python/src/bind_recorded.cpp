@@ -306,34 +306,18 @@ struct Outcome {
   run::RunOutcome run;
 };
 
-/// Returns a function that reports progress to `progress`, a callable or None. Ctrl-C is checked in any case.
-run::ProgressReport report_to(const py::object& progress) {
-  const bool reported = !progress.is_none();
-  if (reported && !PyCallable_Check(progress.ptr()))
-    throw py::type_error("progress: expected a callable, got " + described(progress));
-  // A plain pointer, because copies are made and destroyed without the GIL; the caller's argument keeps it
-  // alive.
-  PyObject* const callee = progress.ptr();
-  return [reported, callee](const std::string& what, std::uint64_t done, std::uint64_t total) {
-    check_signals();
-    if (!reported) return;
-    const py::gil_scoped_acquire lock;
-    const py::handle call(callee);
-    call(what, done, total);
-  };
-}
-
 std::shared_ptr<Recorded> record_scenario(const spec::Scenario& scenario, const py::object& progress) {
-  const run::ProgressReport report = report_to(progress);
+  const Progress report(progress);
   const py::gil_scoped_release unlocked;
-  return recorded_of(run::record(scenario, report), scenario);
+  return recorded_of(run::record(scenario, std::ref(report)), scenario);
 }
 
 Outcome run_into(const spec::Scenario& scenario, py::handle out, const py::object& progress) {
   Outcome outcome{path(out, "out"), {}};
-  const run::ProgressReport report = report_to(progress);
+  const Progress report(progress);
   const py::gil_scoped_release unlocked;
-  outcome.run = run::run_scenario(scenario, outcome.folder, "lrbscope run " + scenario.name, report);
+  outcome.run =
+      run::run_scenario(scenario, outcome.folder, "lrbscope run " + scenario.name, std::ref(report));
   return outcome;
 }
 

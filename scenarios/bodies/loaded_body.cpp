@@ -104,7 +104,8 @@ std::array<LoadedBody, 2> load_two(const std::string& a, const std::string& b, c
 }
 
 std::array<LoadedBody, 2> load_faces_of_two(const std::string& a, const std::string& b, Corners corners) {
-  return load_two(a, b, [=](const std::string& path) { return load_faces(path, corners); });
+  // The smaller file is ready first: the trees share all threads.
+  return load_two(a, b, [=](const std::string& path) { return load_faces(path, corners, 0); });
 }
 
 std::array<LoadedBody, 2> load_two_bodies(const std::string& a, const std::string& b,

@@ -2,6 +2,8 @@
 
 import copy
 import pickle
+import sys
+import types
 
 import numpy as np
 import pytest
@@ -234,3 +236,68 @@ def test_self_intersections(cube, ball):
     assert np.array_equal(found.first_segment, np.cumsum(found.segment_counts) - found.segment_counts)
     with pytest.raises(InputError, match="more than 3 pairs"):
         lrbscope.self_intersections(both, max_pairs=3)
+
+
+def test_builds_report_their_progress(tmp_path):
+    arrays = ball_arrays(3)
+    reports = []
+
+    def report(what, done, total):
+        reports.append((what, done, total))
+
+    body = Body(*arrays, progress=report)
+    passes = [done for _, done, _ in reports]
+    assert passes and passes == sorted(set(passes))
+    assert all("faces" in what and total == 0 for what, _, total in reports)
+    assert body.hash == Body(*arrays).hash
+    body.save(tmp_path / "ball.ply")
+    before, reports[:] = list(reports), []
+    Body.load(tmp_path / "ball.ply", progress=report)
+    assert reports == before
+    # Faces alone are made without passes.
+    reports.clear()
+    Body.load(tmp_path / "ball.ply", regions=False, progress=report)
+    assert reports == []
+
+
+def test_progress_that_is_refused():
+    with pytest.raises(TypeError, match="progress: expected a callable, True or None"):
+        Body(*cube_arrays(), progress="yes")
+    with pytest.raises(ZeroDivisionError):
+        Body(*ball_arrays(3), progress=lambda *_: 1 // 0)
+
+
+class Tqdm:
+    """Stands in for tqdm, which need not be installed."""
+
+    made: list["Tqdm"] = []
+
+    def __init__(self, leave):
+        self.n = self.total = None
+        self.refreshed = self.closed = 0
+        self.made.append(self)
+
+    def set_description_str(self, text, refresh):
+        self.text = text
+
+    def refresh(self):
+        self.refreshed += 1
+
+    def close(self):
+        self.closed += 1
+
+
+def test_progress_bar(monkeypatch):
+    module = types.ModuleType("tqdm.auto")
+    module.tqdm = Tqdm
+    monkeypatch.setitem(sys.modules, "tqdm", types.ModuleType("tqdm"))
+    monkeypatch.setitem(sys.modules, "tqdm.auto", module)
+    Tqdm.made.clear()
+    Body(*ball_arrays(3), progress=True)
+    (bar,) = Tqdm.made
+    assert bar.refreshed > 0 and bar.closed == 1 and bar.total is None and "faces" in bar.text
+    # Without tqdm: what to do instead.
+    monkeypatch.setitem(sys.modules, "tqdm", None)
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    with pytest.raises(ModuleNotFoundError, match="pass a function"):
+        Body(*ball_arrays(3), progress=True)

@@ -40,7 +40,10 @@ struct Triangles {
     return view;
   }
 
-  Soup soup() const { return {view(), ids, 1}; }
+  Soup soup() const {
+    Workers workers;
+    return {view(), ids, 1, workers};
+  }
 };
 
 double fitted_cost(const Soup& soup, std::span<const std::uint32_t> some) {
@@ -48,7 +51,7 @@ double fitted_cost(const Soup& soup, std::span<const std::uint32_t> some) {
   Spread spread;
   for (const std::uint32_t s : some) {
     box.extend(soup.box[s]);
-    spread += soup.spread[s];
+    spread += soup.spread(s);
   }
   return std::min(box_cost(box),
                   box_cost(box_in_frame(soup, some, principal_frame(soup, some, spread, box))));
@@ -65,7 +68,7 @@ double min_cost(const Soup& soup, std::vector<std::uint32_t> some) {
   double least = kInfinity;
   for (int axis = 0; axis < 3; ++axis) {
     std::sort(some.begin(), some.end(),
-              [&](std::uint32_t s, std::uint32_t t) { return soup.centre[s][axis] < soup.centre[t][axis]; });
+              [&](std::uint32_t s, std::uint32_t t) { return soup.centre(s)[axis] < soup.centre(t)[axis]; });
     for (std::size_t left = kTreeWidth; left < some.size(); left += kTreeWidth)
       least = std::min(least, cost(soup, some, left));
   }

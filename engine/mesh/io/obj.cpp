@@ -82,7 +82,8 @@ class ObjReader {
   void vertex() {
     static constexpr std::array<std::string_view, 3> kWhat = {"coordinate x", "coordinate y", "coordinate z"};
     Eigen::Vector3d& v = mesh_.vertices.emplace_back();
-    for (int i = 0; i < 3; ++i) v[i] = text_.number(kWhat[i]);
+    for (int i = 0; i < 3; ++i)
+      if (!text_.plain_number(v[i])) v[i] = text_.number(kWhat[i]);
     // Valid counts of extra numbers: 0, 1 (weight), 3 (colour), 4 (weight or alpha).
     int more = 0;
     for (std::string_view t = text_.token(); !t.empty(); t = text_.token(), ++more)
@@ -114,6 +115,7 @@ class ObjReader {
 
   void read_corners() {
     corners_.clear();
+    for (std::int64_t index = 0; text_.plain_index(index);) corners_.push_back(vertex_id({}, index));
     for (std::string_view t = text_.token(); !t.empty(); t = text_.token()) corners_.push_back(corner(t));
   }
 

@@ -84,6 +84,34 @@ std::string_view TextCursor::token() {
   return {start, static_cast<std::size_t>(stop - start)};
 }
 
+bool TextCursor::plain_number(double& value) {
+  const char* start = at_;
+  while (start != end_ && kind_of_byte(*start) == ByteKind::blank) ++start;
+  // from_chars does not depend on the locale and rounds to nearest.
+  const auto [stop, error] = std::from_chars(start, end_, value);
+  if (error != std::errc() || !ends_token(stop) || !std::isfinite(value)) return false;
+  at_ = stop;
+  return true;
+}
+
+bool TextCursor::plain_index(std::int64_t& value) {
+  constexpr int kDigits = 9;
+  const char* at = at_;
+  while (at != end_ && kind_of_byte(*at) == ByteKind::blank) ++at;
+  const char* const start = at;
+  value = 0;
+  for (; at != end_ && *at >= '0' && *at <= '9' && at - start < kDigits; ++at)
+    value = 10 * value + (*at - '0');
+  if (value == 0 || !ends_token(at)) return false;
+  at_ = at;
+  return true;
+}
+
+/// Returns true if a token that ends here is followed by a blank or ends its line.
+bool TextCursor::ends_token(const char* at) const {
+  return at == end_ || kind_of_byte(*at) == ByteKind::blank || is_newline(*at);
+}
+
 bool TextCursor::next_line() {
   // By tokens rather than characters, so that continuations are followed.
   while (!token().empty()) {

@@ -36,6 +36,12 @@ class TextCursor {
   TextCursor(std::string_view text, std::string_view name, TextRules rules, std::uint64_t first_line = 1)
       : at_(text.data()), end_(at_ + text.size()), line_(first_line), name_(name), rules_(rules) {}
 
+  /// Read a token that is a finite number written without a plus sign, or an index from 1 of at most nine
+  /// digits, before a blank or the end of the line. Otherwise return false and stay: integer() and number()
+  /// read all others and name the faults.
+  bool plain_number(double& value);
+  bool plain_index(std::int64_t& value);
+
   std::uint64_t line() const { return line_; }
   std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - at_); }
 
@@ -63,6 +69,7 @@ class TextCursor {
   std::string shown(std::string_view token) const;
 
  private:
+  bool ends_token(const char* at) const;
   bool skip_continuation();
   void skip_newline();
 
