@@ -354,7 +354,7 @@ Command add_tree(CLI::App& root, const Globals& globals) {
   app->add_flag("--exact", o->report.exact,
                 "Compute EPO by clipping triangles to volumes instead of sampling; not for spheres and RSS");
   app->add_option("--tolerance", o->report.tolerance,
-                  "How far a corner may lie outside a volume, relative to the mesh's diagonal [1e-7]")
+                  "Maximum distance of a corner outside a volume, relative to the mesh's diagonal [1e-7]")
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("T");
   app->add_option("--seed", o->report.seed, "Random seed for the points of the surface [1]")

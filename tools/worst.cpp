@@ -136,7 +136,7 @@ Command add_worst(CLI::App& root, const Globals& globals) {
   add_engine_options(*app, *o);
   add_choice<tails::Goal>(
       *app, "--goal", o->goal,
-      "What to raise: tests for each pair found, tests, time, or wrong: compare the pairs "
+      "Quantity to maximise: tests for each pair found, tests, time, or wrong: compare the pairs "
       "with the exact ones at poses that are hard in floating point [tests-per-answer]");
   app->add_option("--budget", o->search.budget, "Number of queries [3000]")
       ->check(CLI::Range(8, 10000000))

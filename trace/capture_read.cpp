@@ -104,7 +104,7 @@ class Reader {
 
   // Reads a stream. `base`: the offset of `bytes` in it.
 
-  /// Reads the header, of which all bytes are known.
+  /// Starts a stream. `bytes` is its complete header.
   void begin_stream(std::span<const std::byte> bytes) {
     bytes_ = bytes;
     streaming_ = out_.cut_off = true;

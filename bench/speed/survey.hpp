@@ -46,7 +46,7 @@ struct Missing {
   std::uint64_t planned = 0, missing = 0;
 };
 
-/// Writes the plan to the survey's folder, combined with that of an earlier part of the survey.
+/// Writes the plan to the survey's folder, merged with the plan of an earlier part of the survey.
 void write_plan(const SurveyOptions& options, const std::vector<std::string>& sets);
 /// Returns the missing answers of each data set of the plan, or an empty list for a finished survey and for
 /// one without a plan.

@@ -1,6 +1,6 @@
 /// Counts the pieces into which each of two surfaces is cut by the other; exact. Steps for each surface:
 /// 1. Cut the triangles that intersect the other body into cells: by the chains of intersection segments
-/// 1. Cut the triangles that intersect the other body into cells: by the chains of intersection segments
+///    in the simple case, otherwise in rational arithmetic.
 /// 2. Make a graph of the uncut triangles and the cells. Two nodes are connected if they share a part of an
 ///    edge that is not on the other surface. Its connected components, found by union-find, are the pieces.
 /// 3. Locate one point of each piece: inside the other solid, outside, or on its surface.
@@ -71,8 +71,8 @@ struct EdgeUse {
   bool reversed;  ///< the simplex traverses it from `to` to `from`
 };
 
-/// A triangle that intersects the other body. Its cells follow from the order along its border in the simple
-/// case, which is nearly always, otherwise from rational arithmetic.
+/// A triangle that intersects the other body. In the simple case, which is by far the most frequent, its
+/// cells follow from the order along its border, otherwise from rational arithmetic.
 struct TouchedFace {
   std::vector<std::uint32_t> pairs;  ///< into the result
   std::optional<SimpleCut> simple;

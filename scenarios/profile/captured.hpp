@@ -13,10 +13,9 @@ namespace lrb::profile {
 /// which
 ///   are other boxes; where it did, the comparison is taken as recorded.
 /// - Events: a visit of two wide nodes is one test of nodes, with its number of compared boxes. It was
-/// visited
-///   because the boxes of both in their parents overlap. At a pair of leaves the boxes of triangles are
-///   compared. Pairs of triangles that a plane separates are not among the tests of triangles.
-/// - Only the traversal of the bodies themselves is converted, not those of levels of detail.
+///   visited because the boxes of both in their parents overlap. At a pair of leaves the boxes of triangles
+///   are compared. Pairs of triangles that a plane separates are not among the tests of triangles.
+/// - Only the traversal of the bodies themselves is converted; traversals of levels of detail are not.
 ///
 /// Throws InputError for a recording of one body, of 2D bodies, or without pairs of nodes.
 capture::Capture captured(const run::Recording& recording);

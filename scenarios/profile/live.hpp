@@ -35,8 +35,8 @@ class RunningPercentile {
 };
 
 struct LiveSettings {
-  std::size_t last = 200;        ///< number of last queries that are kept
-  std::size_t remarkable = 200;  ///< number of wrong or slow queries that are kept besides, the newest ones
+  std::size_t last = 200;            ///< number of last queries that are kept
+  std::size_t remarkable = 200;      ///< maximum number of older queries kept because wrong or slow
   std::uint64_t events = 8'000'000;  ///< number of events that are kept, of the newest kept queries
 };
 

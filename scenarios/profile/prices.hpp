@@ -40,7 +40,7 @@ struct Prices {
   std::uint64_t needed = 0, proof = 0, volumes = 0, order = 0, unsplit = 0, unattributed = 0;
   std::uint64_t volume_tests = 0;  ///< sum over all visits; exceeds `visits` for wide nodes
   std::uint64_t triangle_tests = 0, triangle_tests_for_nothing = 0;
-  /// Tests for nothing in pairs of leaves with more than one pair of triangles, which smaller leaves might
+  /// Needless tests in pairs of leaves with more than one pair of triangles, which smaller leaves might
   /// save. Excludes triangles whose own volumes were compared, as at leaves of wide nodes.
   std::uint64_t crowded_tests = 0;
   /// An estimate of the visits and tests of triangles that leaves of up to kLargerLeaves triangles would

@@ -182,7 +182,7 @@ TEST_CASE("touching or crossing components: new faces intersect no other face") 
   CHECK_THROWS_WITH_AS(build_lrb(one_in_the_other), doctest::Contains("inside out"), InputError);
 }
 
-TEST_CASE("a vertex shared by two fans") {
+TEST_CASE("the builder accepts a vertex shared by two fans") {
   const Mesh mesh = voxels(2, 2, 2, [](int x, int y, int z) { return x == y && y == z; });
   const LrbRep rep = build_lrb(mesh);
   check_valid(rep);

@@ -205,7 +205,7 @@ TEST_CASE("duplicate faces, whatever their first corner and orientation") {
   CHECK_FALSE(report.buildable());
 }
 
-TEST_CASE("open edges") {
+TEST_CASE("check_mesh() reports open edges") {
   const Mesh m = without_face(quad_box(), 3);
   const MeshReport report = check_mesh(m);
   check_faults(report, {{MeshFault::open_edge, 4}});
@@ -276,7 +276,7 @@ TEST_CASE("faces flipped against their neighbours") {
   check_faults(check_mesh(flat), {{MeshFault::flipped_face, 2}});
 }
 
-TEST_CASE("unused vertices") {
+TEST_CASE("check_mesh() reports unused vertices") {
   Mesh m = box();
   m.vertices.emplace_back(5, 5, 5);
   const MeshReport report = check_mesh(m);

@@ -52,7 +52,7 @@ Outcome judged(Quantity quantity, double lower, double upper, double least, doub
 
 }  // namespace
 
-TEST_CASE("true numbers of two boxes") {
+TEST_CASE("stability: the true distance and depth of two boxes") {
   check_number(Quantity::distance, boxes({4, 5, 0.5}), 5);
   check_number(Quantity::distance, boxes({1, 0, 0}), 0);
   check_number(Quantity::distance, boxes({0.5, 0.5, 0.5}), 0);
@@ -77,7 +77,7 @@ TEST_CASE("B collides with A at the time found by exact queries") {
   CHECK(*e.most >= gap / way * (1 - 1e-15));
 }
 
-TEST_CASE("judging numbers") {
+TEST_CASE("stability: computed numbers are compared with the true ones") {
   const auto distance = [](double lower, double upper, double right, bool proves) {
     return judged(Quantity::distance, lower, upper, right, right, proves);
   };

@@ -214,7 +214,7 @@ TEST_CASE("an invalid file of records is rejected by line") {
   }
 }
 
-TEST_CASE("counting") {
+TEST_CASE("stability: failures are counted per method, family and difficulty") {
   std::vector<workers::MethodColumn> methods(2);
   methods[0].name = "ours";
   methods[1].name = "fcl";
@@ -254,7 +254,7 @@ TEST_CASE("counting") {
   CHECK(count_grid(methods, families, records).at(0, 1).worst->outcome == Outcome::crashed);
 }
 
-TEST_CASE("judging") {
+TEST_CASE("stability: judge() compares pairs and relation with the right answer") {
   methods::MethodInfo info;
   methods::MethodAnswer answer;
   RightAnswer expected;

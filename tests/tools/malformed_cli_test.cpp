@@ -64,7 +64,7 @@ const std::string kHtml = "<!DOCTYPE html>\n<html><body>404</body></html>\n";
 
 }  // namespace
 
-TEST_CASE("malformed OBJ") {
+TEST_CASE("malformed OBJ files are rejected in one line") {
   const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   check_all("m.obj", {"build", "FILE", "-o", "x.lrb"},
             {{"v 0 0 nan\n", "1: "},
@@ -87,7 +87,7 @@ TEST_CASE("malformed OBJ") {
              {"# nothing\n# at all\n", "1: "}});
 }
 
-TEST_CASE("malformed STL") {
+TEST_CASE("malformed STL files are rejected in one line") {
   const std::string ascii = to_stl_ascii(tetrahedron()), binary = to_stl_binary(tetrahedron());
   std::string nan = binary, many = binary;
   const std::uint32_t quiet_nan = 0x7fc00000, too_many = 4'000'000'000;
@@ -107,7 +107,7 @@ TEST_CASE("malformed STL") {
              {kHtml, "1: "}});
 }
 
-TEST_CASE("malformed PLY") {
+TEST_CASE("malformed PLY files are rejected in one line") {
   const std::string ascii = to_ply_ascii(tetrahedron()), binary = to_ply_binary(tetrahedron(), false);
   check_all("m.ply", {"query", "FILE", "FILE", "--poses", "apart.txt"},
             {{"ply\n", "2: "},
@@ -126,7 +126,7 @@ TEST_CASE("malformed PLY") {
              {"", "1: "}});
 }
 
-TEST_CASE("malformed OFF") {
+TEST_CASE("malformed OFF files are rejected in one line") {
   const std::string good = to_off(tetrahedron());
   check_all("m.off", {"collide", "FILE", "cube.obj", "-o", "out"},
             {{"OFF\n", "2: "},
@@ -162,7 +162,7 @@ const std::vector<std::string>& seeds(const std::string& format) {
 
 }  // namespace
 
-TEST_CASE("malformed .lrb") {
+TEST_CASE("malformed .lrb files are rejected in one line") {
   const std::string good = test::lrb_bytes(LrbRep(toy::dented_box()));
   const std::size_t name = 8 + 4UL * 4, vertices = name + 8 + std::strlen("dented box"),
                     offsets = vertices + 8 + 13UL * 24, corners = offsets + 8 + 16UL * 4,
@@ -186,7 +186,7 @@ TEST_CASE("malformed .lrb") {
              {"\x89LRB\n\x1a\n", ""}});
 }
 
-TEST_CASE("malformed poses") {
+TEST_CASE("malformed poses are rejected in one line") {
   const std::string good = kApart;
   check_all("p.txt", {"collide", "cube.obj", "cube.obj", "--poses", "FILE", "-o", "out"},
             {{good + "1 0 0 3 0 1 0 0 0 0 1\n", "2: expected 12 numbers"},
@@ -219,7 +219,7 @@ std::string scenario(const std::string& change, const std::string& to) {
 
 }  // namespace
 
-TEST_CASE("malformed scenarios") {
+TEST_CASE("malformed scenarios are rejected in one line") {
   const std::string q = "\"";
   check_all("s.json", {"run", "FILE", "-o", "out"},
             {{scenario("\"purpose\"", "\"porpose\""), "2:15: /porpose: unknown key"},
@@ -272,7 +272,7 @@ TEST_CASE("a scenario with a picture of a missing event writes nothing") {
   CHECK(folder.tree() == before);
 }
 
-TEST_CASE("malformed traces") {
+TEST_CASE("malformed traces are rejected in one line") {
   const std::string good = seeds("trace").at(2);
   const auto with = [&](const std::string& what, const std::string& to) { return replaced(good, what, to); };
   check_all("t.json", {"render", "FILE", "-o", "out"},

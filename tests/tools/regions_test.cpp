@@ -127,7 +127,7 @@ TEST_CASE("regions of a 2D body are listed and drawn") {
   CHECK(render::read_png(folder / "g.png").image.width() > 3 * 200);
 }
 
-TEST_CASE("suggested options were tried") {
+TEST_CASE("inspect --try: trials match build, and only better settings are advised") {
   const Folder folder;
   write_mesh(thin_disc(), folder / "disc.obj");
   const LrbRep disc = build_lrb(thin_disc());

@@ -459,7 +459,7 @@ TEST_CASE("a k-DOP of more directions than its content holds is refused") {
   contains(refusal(with(with(good, "TREE", 16, 5u), "TREE", 20, 0u)), {"found kind 5"});
 }
 
-TEST_CASE("queries are checked") {
+TEST_CASE("captures with invalid queries are rejected") {
   const Bytes good = record(a_query);
   // QRYB: 8 reserved, number, kind, trees, 8 reserved, thread, 4 reserved, poses.
   contains(refusal(twice(good, "QRYB")), {"(QRYB at byte ", "query 1: begins a second time"});
@@ -492,7 +492,7 @@ TEST_CASE("poses must be rigid, row by row") {
   contains(refusal(with_pose({inf, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0})), {"expected a rotation"});
 }
 
-TEST_CASE("events are checked") {
+TEST_CASE("captures with invalid events are rejected") {
   const auto reported = [](const std::function<void()>& events, int kind = LRBCAP_ALL_PAIRS) {
     return record([&] {
       const std::uint32_t a = a_tree(), b = a_tree_with_ids();

@@ -217,7 +217,7 @@ TEST_CASE("the file satisfies the rules of Perfetto and chrome://tracing") {
   }
 }
 
-TEST_CASE("flows follow causes") {
+TEST_CASE("flow events in trace JSON link each event to its cause") {
   RecorderSettings settings;
   settings.request.recursion = Recursion::paper;
   Recorder recorder(plate(), plate(), settings);

@@ -343,7 +343,7 @@ TEST_CASE("the page on formats has the names of all columns") {
   }
 }
 
-TEST_CASE("2D bodies are lines") {
+TEST_CASE("2D bodies are exported as lines") {
   const ShippedRun r("figure1", {false, true, false, {true, true}});
   REQUIRE(!r.model.parts.empty());
   for (const Part& part : r.model.parts) CHECK(part.shape == Shape::lines);

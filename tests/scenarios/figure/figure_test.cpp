@@ -53,7 +53,7 @@ LayoutOptions at_width(double width) {
 
 }  // namespace
 
-TEST_CASE("lengths on paper") {
+TEST_CASE("parse_length() accepts mm, cm, in and pt, and rejects other lengths") {
   CHECK(parse_length("85mm", "--width", 1, 1000) == doctest::Approx(240.945));
   CHECK(parse_length("8.5cm", "--width", 1, 1000) == doctest::Approx(240.945));
   CHECK(parse_length("2in", "--width", 1, 1000) == 144);

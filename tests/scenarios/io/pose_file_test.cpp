@@ -40,7 +40,7 @@ TEST_CASE("poses: errors report file and line") {
         "p.txt:1: \"?\" is not a number: expected 12 numbers per line");
 }
 
-TEST_CASE("vectors of options") {
+TEST_CASE("parse_vector() accepts three finite numbers only") {
   CHECK(io::parse_vector("1,-2,3.5", "--from") == Eigen::Vector3d(1, -2, 3.5));
   CHECK_THROWS_WITH_AS(io::parse_vector("1,2", "--from"),
                        "--from: expected three numbers X,Y,Z, found 2 in \"1,2\"", InputError);

@@ -123,7 +123,7 @@ TEST_CASE("charts for print: each panel has its series, and one legend has each 
   CHECK(count(report::gnuplot(panels).script, " title 'it''s'") == 2);
 }
 
-TEST_CASE("base64") {
+TEST_CASE("data URIs encode bytes in base64") {
   const auto encoded = [](const std::string& s) {
     return report::data_uri("t", reinterpret_cast<const std::uint8_t*>(s.data()), s.size());
   };
