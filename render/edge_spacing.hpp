@@ -1,6 +1,6 @@
 #pragma once
-/// Measures the space that the edges of triangles have on the screen. Where there is little, edges must fade,
-/// or dense meshes turn black.
+/// Measures the space that the edges of triangles have on the screen. Where there is little, edges must fade:
+/// otherwise dense meshes would turn black.
 
 #include <vector>
 

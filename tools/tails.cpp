@@ -26,8 +26,8 @@ struct TailsOptions : EngineOptions {
 };
 
 constexpr const char* kSampling =
-    "rotations are uniform, and the centre of B's box lies in a uniform direction from that of A's, at a "
-    "distance that is uniform up to the mean of both boxes' diagonals";
+    "rotations are uniform, and the direction from the centre of A's box to the centre of B's is uniform, and so is "
+    "their distance, up to the mean of both boxes' diagonals";
 
 /// A pose that can be recorded, its file, and the folder of its record.
 struct Recordable {

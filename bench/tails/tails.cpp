@@ -31,7 +31,7 @@ std::optional<double> us_per_test(const EngineAnswer& a) {
   return a.us / static_cast<double>(*a.tests);
 }
 
-/// Asks the poses with these indices in several rounds, and returns the least times.
+/// Queries the poses with these indices in several rounds, and returns the least times.
 std::vector<double> least_times(Engine& engine, std::span<const Pose> poses, int rounds,
                                 const std::function<void(std::size_t)>& progress) {
   std::vector<double> least(poses.size(), std::numeric_limits<double>::infinity());
@@ -45,7 +45,7 @@ std::vector<double> least_times(Engine& engine, std::span<const Pose> poses, int
   return least;
 }
 
-/// Asks poses with an unusual time per test again, and marks those whose time does not repeat.
+/// Queries poses with an unusual time per test again, and marks those whose time does not repeat.
 void find_noise(Engine& engine, Tail& tail, const run::ProgressReport& progress) {
   std::vector<double> ratios, times;
   for (const Sample& s : tail.samples)

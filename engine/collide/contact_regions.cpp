@@ -416,14 +416,6 @@ class RegionMaker {
                              is_reflection(ctx_[Side::b].world.pose(), ctx_[Side::b].rep().dim())};
 };
 
-exact::PairContact contact_of(QueryContext& ctx, SimplexPair pair) {
-  const double *ca[3], *cb[3];
-  ctx[Side::a].world.corners(pair.a, ca);
-  ctx[Side::b].world.corners(pair.b, cb);
-  return ctx[Side::a].rep().dim() == 3 ? exact::contact_of_triangles(ca, cb)
-                                       : exact::contact_of_segments(ca, cb);
-}
-
 }  // namespace
 
 void describe_contact(QueryContext& context, const CollideRequest& request, CollideResult& result) {

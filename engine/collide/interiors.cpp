@@ -30,6 +30,14 @@ std::uint64_t edge_key(VertexId v, VertexId w) {
 
 }  // namespace
 
+exact::PairContact contact_of(QueryContext& context, const SimplexPair& pair) {
+  const double *a[3], *b[3];
+  context[Side::a].world.corners(pair.a, a);
+  context[Side::b].world.corners(pair.b, b);
+  return context[Side::a].rep().dim() == 3 ? exact::contact_of_triangles(a, b)
+                                           : exact::contact_of_segments(a, b);
+}
+
 EnclosedVertices::EnclosedVertices(QueryContext& context, Side side, const CollideResult& result)
     : body_(context[side]), holder_(context[other(side)]), side_(side), result_(result) {
   if (!holder_.rep().closed()) return;
@@ -39,7 +47,8 @@ EnclosedVertices::EnclosedVertices(QueryContext& context, Side side, const Colli
     const std::size_t n = static_cast<std::size_t>(body_.rep().simplex_size());
     near_.insert(v, v + n);
     // An edge or a vertex meets the other surface if and only if it has a corner of some pair's contact.
-    const PairContactRecord& contact = result.contacts[i];
+    const PairContactRecord contact =
+        i < result.contacts.size() ? result.contacts[i] : contact_of(context, result.pairs[i]);
     for (std::size_t c = 0; c < contact.corner_count; ++c) {
       const exact::Feature& f = side == Side::a ? contact.corners[c].on_a : contact.corners[c].on_b;
       if (f.dim == 0) on_.insert(v[f.index]);

@@ -45,7 +45,7 @@ enum class VolumeKind : std::uint32_t {
 
 /// A tree of bounding volumes as the engine reported it. Nodes are numbered from 0, the root, in the order of
 /// the description; events are converted to these numbers. Indices of children are in range, but nothing else
-/// is sure: a node may have two parents or none, and a leaf may contain triangles that do not exist.
+/// is guaranteed: a node may have two parents or none, and a leaf may contain triangles that do not exist.
 struct Tree {
   std::uint32_t id = 0;            ///< the engine's number of the tree
   std::uint32_t mesh = 0;          ///< index in Capture::meshes
