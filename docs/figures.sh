@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # docs/figures.sh [LRBSCOPE]: makes the pictures of bodies in README and docs: figure2.png, collision.png, crowd.png,
-# figure.png, distance.png, near.png, first_contact.png and clash.png. (chart.png and xray.png are measurements: docs/measurements.md, docs/profiling.md.)
+# figure.png, distance.png, near.png, manifold.png, first_contact.png and clash.png. (chart.png and xray.png are measurements: docs/measurements.md, docs/profiling.md.)
 set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 program=${1:-$docs/../build/release/bin/lrbscope}
@@ -19,6 +19,11 @@ answer distance distance --poses "0.8 0 0.6 3.1  0 1 0 0.9  -0.6 0 0.8 0.5" 640x
 answer near near --poses "0.8 0 0.6 2.2  0 1 0 0.6  -0.6 0 0.8 0.25" 640x400 --within 0.25
 answer clash clash --poses "0.8 0 0.6 1.5  0 1 0 0.2  -0.6 0 0.8 0.3" 760x475
 answer first_contact sweep --motions "1 0 0 7  0 1 0 0.6  0 0 1 0.5   0 0 1 -3  0 1 0 -0.3  -1 0 0 0.1" 760x475
+mkdir "$work/rest"
+"${program%/bin/*}/examples/resting" ring 1000 "$work/rest" >/dev/null
+tail -n 1 "$work/rest/poses.txt" >"$work/poses.txt"
+mv "$work/rest/a.obj" "$work/rest/peg.obj" && mv "$work/rest/b.obj" "$work/rest/ring.obj"
+run manifold "$work/rest/peg.obj" "$work/rest/ring.obj" --poses "$work/poses.txt" --margin 0.02 --draw "$docs/manifold.png" --size 760x475
 frames=("$work"/collision/frames/*.png)
 cp "${frames[-1]}" "$docs/collision.png"
 frames=("$work"/crowd/frames/*.png)

@@ -16,6 +16,7 @@ Command add_near(CLI::App& root, const Globals& globals);
 Command add_points(CLI::App& root, const Globals& globals);
 Command add_why(CLI::App& root, const Globals& globals);
 Command add_clash(CLI::App& root, const Globals& globals);
+Command add_manifold(CLI::App& root, const Globals& globals);
 Command add_sweep(CLI::App& root, const Globals& globals);
 Command add_build(CLI::App& root, const Globals& globals);
 Command add_inspect(CLI::App& root, const Globals& globals);
@@ -46,11 +47,11 @@ namespace {
 
 /// The commands in the order of --help.
 constexpr auto kCommands = std::to_array<Command (*)(CLI::App&, const Globals&)>({
-    add_run,    add_collide, add_crowd, add_query,  add_distance,   add_near,    add_points,
-    add_why,    add_clash,   add_sweep, add_build,  add_inspect,    add_close,   add_levels,
-    add_xray,   add_import,  add_tree,  add_check,  add_live,       add_compare, add_render,
-    add_export, add_figure,  add_paper, add_golden, add_stability,  add_doctor,  add_list,
-    add_bench,  add_chart,   add_tails, add_worst,  add_completion, add_manual,
+    add_run,    add_collide, add_crowd,    add_query, add_distance, add_near,       add_points,
+    add_why,    add_clash,   add_manifold, add_sweep, add_build,    add_inspect,    add_close,
+    add_levels, add_xray,    add_import,   add_tree,  add_check,    add_live,       add_compare,
+    add_render, add_export,  add_figure,   add_paper, add_golden,   add_stability,  add_doctor,
+    add_list,   add_bench,   add_chart,    add_tails, add_worst,    add_completion, add_manual,
 });
 
 }  // namespace

@@ -233,6 +233,9 @@ inline constexpr double kAxisAdvantage = 1e-6;
 /// Cosine between a face's normal and the manifold's up to which the face carries contact points. Smaller:
 /// rounding across the face is enlarged by its inverse.
 inline constexpr double kSteepest = 0.3;
+/// Ratio of depths from which the deeper of two axes is on the far side of a body or of an overlap. Larger:
+/// solvers get normals across deep overlaps. Smaller: one of two walls is missing from a deep corner.
+inline constexpr double kFarAxis = 2;
 /// Least cosine between the normal of two edges in contact and those of the faces beside them. Smaller: an
 /// edge on the far side of a body yields a normal. Larger: sharper edges have no normals.
 inline constexpr double kSteepestEdge = 0.05;

@@ -38,7 +38,7 @@ struct PairAxis {
   Vector3d normal = Vector3d::Zero();
   double depth = 0;
   /// 0: no axis. 1: the touching features are extreme on their surfaces. 2: they are also on top of each
-  /// other.
+  /// other, and both faces are across the axis.
   int rank = 0;
 };
 
@@ -252,7 +252,11 @@ class ManifoldMaker {
       for (int m = 0; m < dim_; ++m) extent = std::max(extent, (a.x[k] - b.x[m]).cwiseAbs().maxCoeff());
     // The axis of least depth of each rank. The first of several that are nearly equal counts: faces first.
     PairAxis best[3];
-    const auto consider = [&](const PairAxis& axis) {
+    const auto consider = [&](PairAxis axis) {
+      // A face along the axis is beside the contact: that of a wall on the ground, or the end of a gear.
+      if (axis.rank == 2 &&
+          std::min(std::abs(a.normal.dot(axis.normal)), std::abs(b.normal.dot(axis.normal))) < kSteepestEdge)
+        axis.rank = 1;
       PairAxis& other = best[axis.rank];
       if (other.rank == 0 || axis.depth < other.depth - kAxisAdvantage * extent) other = axis;
     };
@@ -268,7 +272,7 @@ class ManifoldMaker {
         for (int m = 0; m < 3; ++m) consider(edge_axis(a, k, b, m));
     if (!meets(i)) consider(closest_axis(a, b, i));
     // Features that are on top of each other may be on opposite sides of a body.
-    const bool is_far = best[1].rank > 0 && best[1].depth > 0 && best[1].depth < best[2].depth / 2;
+    const bool is_far = best[1].rank > 0 && best[1].depth > 0 && kFarAxis * best[1].depth < best[2].depth;
     return best[2].rank > 0 && !is_far ? best[2] : best[1];
   }
 
@@ -367,9 +371,14 @@ class ManifoldMaker {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) {
       return rank == 2 ? axes[x].depth > axes[y].depth : axes[x].depth < axes[y].depth;
     });
+    // Of these, those that are much deeper than the least are axes across an overlap: the faces on either
+    // side of a corner that is inside the other body.
+    double far = std::numeric_limits<double>::infinity();
+    for (const std::size_t k : order)
+      if (rank == 1 && axes[k].depth > 0) far = std::min(far, kFarAxis * axes[k].depth);
     std::vector<std::size_t> group(region.size(), region.size());
     for (const std::size_t k : order) {
-      if (group[k] < region.size()) continue;
+      if (group[k] < region.size() || axes[k].depth > far) continue;
       for (const std::size_t other : order)
         if (group[other] == region.size() && axes[other].normal.dot(axes[k].normal) >= kManifoldAngle)
           group[other] = normals_.size();
@@ -453,14 +462,26 @@ class ManifoldMaker {
         overlay_corners(patch[0], patch[1], dim_, normal, -margin_ / unit_ - kDepthRounding * size);
     for (ManifoldCandidate& c : candidates) c.was_chosen = chosen_before_.contains({c.on[0], c.on[1]});
     return reduce_candidates(std::move(candidates), dim_, normal, size, [&](const ManifoldCandidate& c) {
-      // A point on another part of a surface may be far beyond the other body.
-      if (c.depth <= kDepthRounding * size || !(is_closed_[0] || is_closed_[1])) return true;
-      const auto is_inside = [&](int side) {
-        const Vector3d x = world(c.x[side]);
-        return is_closed_[1 - side] && locate(body(1 - side), x.data()) != Where::outside;
-      };
-      return is_inside(1) || is_inside(0);
+      return c.depth <= kDepthRounding * size || is_overlap(c);
     });
+  }
+
+  /// Returns true if the points of a candidate are the ends of a segment in one of the bodies. Otherwise they
+  /// are on parts of the surfaces that only seem to overlap, such as opposite sides of a ring.
+  bool is_overlap(const ManifoldCandidate& c) {
+    constexpr int kSamples = 16;
+    if (!is_closed_[0] && !is_closed_[1]) return true;
+    for (int side = 0; side < 2; ++side) {
+      bool is_inside = is_closed_[side];
+      // From B's point through A, or from A's through B.
+      const Vector3d step = (c.x[side] - c.x[1 - side]) / kSamples;
+      for (int k = 0; k < kSamples && is_inside; ++k) {
+        const Vector3d x = world(c.x[1 - side] + k * step);
+        is_inside = locate(body(side), x.data()) != Where::outside;
+      }
+      if (is_inside) return true;
+    }
+    return false;
   }
 
   /// Adds the closest points of the nearest pair to a manifold whose patches do not overlap.

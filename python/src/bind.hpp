@@ -17,6 +17,7 @@ void bind_collide(py::module_& m);
 void bind_distance(py::module_& m);
 void bind_signed_distance(py::module_& m);
 void bind_near_pairs(py::module_& m);
+void bind_contact_manifolds(py::module_& m);
 void bind_self_intersections(py::module_& m);
 void bind_explain(py::module_& m);
 void bind_first_contact(py::module_& m);

@@ -5,6 +5,7 @@
 
 #include "python/src/answers.hpp"
 #include "python/src/bind.hpp"
+#include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/near_pairs.hpp>
 #include <lrbscope/point_distance.hpp>
 #include <lrbscope/self_intersections.hpp>
@@ -150,6 +151,150 @@ Returns NearPairs.
 >>> pairs = near_pairs(cube, cube, shifted(3, 0, 0), within=2)
 >>> len(pairs), pairs.upper.max(), pairs.points[0, :, 0].tolist()
 (62, 2.0, [1.0, 3.0]))");
+}
+
+namespace {
+
+struct Manifolds {
+  ManifoldResult result;
+  std::vector<const ManifoldPoint*> points;
+  std::vector<std::uint32_t> manifold_of;  ///< (|points|)
+};
+
+py::object contact_manifolds(py::handle a, py::handle b, py::handle pose_b, py::handle pose_a,
+                             py::handle margin, py::handle previous, py::handle max_pairs,
+                             py::handle threads) {
+  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
+  const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
+  ManifoldRequest request;
+  request.margin = size(margin, "margin");
+  request.max_pairs = count(max_pairs, "max_pairs");
+  const unsigned n = threads_of(count(threads, "threads"));
+  const ManifoldResult* before = nullptr;
+  if (!previous.is_none()) {
+    if (!py::isinstance<Manifolds>(previous))
+      throw InputError("previous: expected the Manifolds of the previous step or None, got " +
+                       described(previous));
+    before = &previous.cast<const Manifolds&>().result;
+  }
+  Manifolds found;
+  {
+    const py::gil_scoped_release unlocked;
+    found.result = lrb::contact_manifolds(body_a.rep(), at_a, body_b.rep(), at_b, request, before, n);
+  }
+  // The vectors keep their memory when the result is moved.
+  for (std::uint32_t m = 0; m < found.result.manifolds.size(); ++m)
+    for (const ManifoldPoint& point : found.result.manifolds[m].points) {
+      found.points.push_back(&point);
+      found.manifold_of.push_back(m);
+    }
+  return py::cast(std::move(found));
+}
+
+void bind_contact_manifolds_result(py::module_& m) {
+  py::class_<Manifolds> c(m, "Manifolds",
+                          "Contact manifolds: arrays with a row for each manifold, point or pair. Made by "
+                          "contact_manifolds().");
+  c.def("__len__", [](const Manifolds& x) { return x.result.manifolds.size(); });
+  c.def_property_readonly(
+      "normals",
+      [](const Manifolds& x) {
+        return rows_of<double>(x.result.manifolds, 3,
+                               [](const ContactManifold& each, std::size_t j) { return each.normal[j]; });
+      },
+      "(m, 3) float64: unit vectors from A to B; zero if no face of the region has an area.");
+  c.def_property_readonly(
+      "regions",
+      [](const Manifolds& x) {
+        return each_of<std::uint32_t>(x.result.manifolds,
+                                      [](const ContactManifold& each) { return each.region; });
+      },
+      "(m,) uint32: the connected region of each manifold.");
+  c.def_property_readonly(
+      "intersects",
+      [](const Manifolds& x) {
+        return each_of<bool>(x.result.manifolds, [](const ContactManifold& each) { return each.intersects; });
+      },
+      "(m,) bool: a pair of the manifold intersects; otherwise all its contacts are speculative.");
+  c.def_property_readonly(
+      "manifold",
+      [](const Manifolds& x) { return each_of<std::uint32_t>(x.manifold_of, [](auto i) { return i; }); },
+      "(k,) uint32: the manifold of each point, ascending; the deepest point of each comes first.");
+  c.def_property_readonly(
+      "points",
+      [](const Manifolds& x) {
+        return point_pairs_of(x.points,
+                              [](const ManifoldPoint* p, std::size_t side) { return p->point[side]; });
+      },
+      "(k, 2, 3) float64: on A and on B, world frame.");
+  c.def_property_readonly(
+      "depths",
+      [](const Manifolds& x) {
+        return each_of<double>(x.points, [](const ManifoldPoint* p) { return p->depth; });
+      },
+      "(k,) float64: along the normal; positive if the surfaces overlap, negative for a gap.");
+  c.def_property_readonly(
+      "ids",
+      [](const Manifolds& x) {
+        return each_of<std::uint64_t>(x.points, [](const ManifoldPoint* p) { return p->id; });
+      },
+      "(k,) uint64: a point that continues one of the previous answer keeps its id.");
+  c.def_property_readonly(
+      "features",
+      [](const Manifolds& x) {
+        const auto points = static_cast<py::ssize_t>(x.points.size());
+        return py::object(
+            rows_of<std::uint32_t>(x.points, 6, [](const ManifoldPoint* p, std::size_t j) {
+              const SurfaceFeatureId& f = p->on[j / 3];
+              return j % 3 == 0 ? static_cast<std::uint32_t>(f.kind) : j % 3 == 1 ? f.first : f.second;
+            }).reshape({points, py::ssize_t{2}, py::ssize_t{3}}));
+      },
+      "(k, 2, 3) uint32: features of A and of B. 0, v, v: a vertex; 1, v, w: an edge; 2, t, t: a triangle.");
+  c.def_property_readonly(
+      "triangles",
+      [](const Manifolds& x) {
+        return rows_of<std::uint32_t>(x.result.pairs, 2, [](const NearPair& pair, std::size_t j) {
+          return (j == 0 ? pair.a : pair.b).value();
+        });
+      },
+      "(p, 2) uint32: all pairs of triangles that intersect or are at most `margin` apart.");
+  c.def_property_readonly(
+      "pairs",
+      [](const Manifolds& x) {
+        py::list out;
+        for (const ContactManifold& each : x.result.manifolds)
+          out.append(each_of<std::uint32_t>(each.pairs, [](auto i) { return i; }));
+        return out;
+      },
+      "list of (q,) uint32: the rows of `triangles` of each manifold; each row is in one of them.");
+  c.def("__repr__", [](const Manifolds& x) {
+    return "<lrbscope.Manifolds: " + std::to_string(x.result.manifolds.size()) + ", with " +
+           std::to_string(x.points.size()) + " points>";
+  });
+}
+
+}  // namespace
+
+void bind_contact_manifolds(py::module_& m) {
+  bind_contact_manifolds_result(m);
+  const py::none no;
+  m.def(
+      "contact_manifolds", &contact_manifolds, py::arg("a"), py::arg("b"), py::arg("pose_b") = no,
+      py::arg("pose_a") = no, py::kw_only(), py::arg("margin") = no, py::arg("previous") = no,
+      py::arg("max_pairs") = no, py::arg("threads") = no,
+      R"(contact_manifolds(a, b, pose_b=None, pose_a=None, *, margin=0, previous=None, max_pairs=0, threads=0)
+
+Finds a normal and at most 4 points (2D: 2) with depths for each region of contact, for a solver.
+
+pose_b, pose_a: (4, 4). None: the identity. margin: maximum distance of speculative contacts, pairs that do
+not intersect; the world's unit. previous: the Manifolds of the previous step; points that continue its
+points keep their ids. max_pairs: a query that finds more pairs is an InputError; 0: 2097152.
+
+Returns Manifolds.
+
+>>> m = contact_manifolds(cube, cube, shifted(0, 0, 0.875))
+>>> len(m), m.normals[0].tolist(), m.depths.tolist()
+(1, [0.0, 0.0, 1.0], [0.125, 0.125, 0.125, 0.125]))");
 }
 
 namespace {

@@ -64,6 +64,7 @@ PYBIND11_MODULE(_core, m) {
   bind_collide(m);
   bind_distance(m);
   bind_near_pairs(m);
+  bind_contact_manifolds(m);
   bind_self_intersections(m);
   bind_signed_distance(m);
   bind_first_contact(m);

@@ -257,6 +257,43 @@ Image picture_of(const ClashResult& result, const PosedBodies& bodies, const Loo
   return p.draw(look);
 }
 
+Image picture_of(const ManifoldResult& result, double margin, const PosedBodies& bodies, const Look& look) {
+  AnswerPicture p(bodies);
+  make_translucent(p.scene.list, 140);
+  // Arrows are as long as the contact is large, within limits set by the bodies.
+  Eigen::AlignedBox3d points;
+  std::size_t count = 0;
+  for (const ContactManifold& manifold : result.manifolds)
+    for (const ManifoldPoint& point : manifold.points) {
+      points.extend(point.point[1]);
+      ++count;
+    }
+  const double size = bounds(p.whole).diagonal().norm();
+  const double length = std::clamp(count > 0 ? 0.35 * points.diagonal().norm() : 0, 0.03 * size, 0.1 * size);
+  bool has_gaps = false, has_contacts = false;
+  for (const ContactManifold& manifold : result.manifolds)
+    for (const ManifoldPoint& point : manifold.points) {
+      const bool is_gap = point.depth < 0;
+      has_gaps = has_gaps || is_gap;
+      has_contacts = has_contacts || !is_gap;
+      add_arrow(p.scene.list, point.point[1], point.point[1] + length * manifold.normal, kSeparationColour);
+      add_mark(p.scene.list, point.point[1], is_gap ? kGapColour : palette::kContact, 4);
+      p.detail.push_back(point.point[1]);
+    }
+  if (count > 0) p.across = result.manifolds[0].normal;
+  if (has_contacts) p.scene.key.push_back({Mark::point, palette::kContact, "contact points"});
+  if (has_gaps)
+    p.scene.key.push_back(
+        {Mark::point, kGapColour, "speculative, at most " + short_number(margin) + " apart"});
+  if (count > 0) p.scene.key.push_back({Mark::line, kSeparationColour, "normals, from A to B"});
+  const std::size_t manifolds = result.manifolds.size();
+  p.overlay.event_colour = palette::kContact;
+  p.overlay.event = group_digits(manifolds) + (manifolds == 1 ? " manifold, " : " manifolds, ") +
+                    group_digits(count) + (count == 1 ? " point" : " points");
+  p.overlay.counters.push_back({"pairs of triangles", group_digits(result.pairs.size())});
+  return p.draw(look);
+}
+
 namespace {
 
 Look screen_of(int width, int height) {

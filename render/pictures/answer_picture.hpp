@@ -1,10 +1,11 @@
 #pragma once
-/// Pictures of answers: distance, near pairs, first contact, clash, intersecting faces, separating plane,
-/// separation.
+/// Pictures of answers: distance, near pairs, first contact, clash, contact manifolds, intersecting faces,
+/// separating plane, separation.
 
 #include "render/pictures/panel.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
+#include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/distance.hpp>
 #include <lrbscope/explain.hpp>
 #include <lrbscope/first_contact.hpp>
@@ -31,6 +32,11 @@ render::Image picture_of(const FirstContactResult& result, const LrbRep& a, cons
 /// Draws both solids with their contacts and the separation vector of B, and B translated by it as a ghost.
 /// The title is the kind of contact.
 render::Image picture_of(const ClashResult& result, const PosedBodies& bodies, const render::Look& look);
+
+/// Draws both bodies, translucent, with the points of the manifolds and their normals as arrows from A to B.
+/// `margin`: that of the request.
+render::Image picture_of(const ManifoldResult& result, double margin, const PosedBodies& bodies,
+                         const render::Look& look);
 
 /// Draws two faces and the bodies around them: their intersection, or the segment between their closest
 /// points and a separating plane perpendicular to it.

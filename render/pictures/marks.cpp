@@ -117,6 +117,16 @@ void add_barbs(render::DrawList& list, const MarkedSegment& way, const Vector3d&
 
 }  // namespace
 
+void add_arrow(render::DrawList& list, const Vector3d& from, const Vector3d& to, render::Rgba colour) {
+  const Vector3d along = to - from;
+  if (along.isZero()) return;
+  // In the plane of a 2D body, and otherwise as upright as possible.
+  Vector3d across = along.cross(Vector3d::UnitZ());
+  if (across.norm() < 0.1 * along.norm()) across = along.cross(Vector3d::UnitX());
+  outline(list, {from, to}, colour, kSegmentWidth);
+  add_barbs(list, {from, to, ""}, across.normalized(), colour);
+}
+
 std::string interval_text(double lower, double upper) {
   const std::string low = render::short_number(lower), high = render::short_number(upper);
   return low == high ? high : low + " to " + high;

@@ -105,6 +105,10 @@ void outline(render::DrawList& list, const std::vector<Eigen::Vector3d>& corners
 void add_mark(render::DrawList& list, const Eigen::Vector3d& x, render::Rgba colour, float radius,
               render::Rgba halo = render::kWhite);
 
+/// Adds an arrow.
+void add_arrow(render::DrawList& list, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+               render::Rgba colour);
+
 /// A wrong pair in another engine's answer: disjoint faces that were reported, or intersecting faces that
 /// were missed.
 struct WrongPair {

@@ -32,7 +32,9 @@ png() { head -c 8 "$1" | grep -qaF PNG || fail "$1 is not a PNG"; }
 pdf() { head -c 5 "$1" | grep -qaF %PDF- || fail "$1 is not a PDF"; }
 
 source=$(echo "$tree/examples/$name".*)
-[ "$(wc -l <"$source")" -le 40 ] || fail "expected at most 40 lines, found $(wc -l <"$source")"
+limit=40
+[ "$name" != resting ] || limit=150
+[ "$(wc -l <"$source")" -le "$limit" ] || fail "expected at most $limit lines, found $(wc -l <"$source")"
 case "$name" in
   collide)
     try "$gear" "$block" 0.7 0.1 -0.1
@@ -68,6 +70,23 @@ case "$name" in
     expect '^refine region 50 of A: 28 faces more$' '^test triangle 266 of A \(depth 7\) and 3 of B \(depth 0\): cross$' \
       '^crossing after 3 tests$'
     refuse "missing.obj: no such file" "$gear" missing.obj 0 0 0
+    ;;
+  resting)
+    # at_most VALUE BOUND WHAT
+    at_most() { awk -v x="$1" -v most="$2" 'BEGIN { exit !(x <= most && -x <= most) }' || fail "$3 $1, expected at most $2"; }
+    number() { sed -nE "s/^$1 (-?[0-9.e+-]+).*/\1/p" said; }
+    for scene in box ring; do
+      try "$scene" 2000
+      at_most "$(number 'depth at most')" 0.01 "$scene: depth"
+      at_most "$(number drift)" 1e-6 "$scene: drift"
+    done
+    try gears 2000 .
+    at_most "$(number 'depth at most')" 0.01 "gears: depth"
+    at_most "$(awk -v x="$(number 'B turns at')" 'BEGIN { print x + 12 / 18 }')" 0.02 "gears: error of the ratio"
+    [ "$(wc -l <poses.txt)" = 250 ] || fail "expected 250 poses"
+    "$lrbscope" -q manifold a.obj b.obj --poses poses.txt --margin 0.02 | tail -n 1 | grep -q '"manifolds":\[{' || fail "gears: no manifold"
+    refuse "usage: " ball 10
+    refuse "no/a.obj" box 10 no
     ;;
   record_and_draw)
     try "$gear" "$block" 0.7 0.1 -0.1 found

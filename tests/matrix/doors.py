@@ -76,6 +76,17 @@ def check_nearest(line, step, size, within):
     expect(bool(found) or step["distance"] > within * (1 - 1e-7), "no pair, but one is near")
 
 
+def check_manifold(line, step, size):
+    """Every pair is in one manifold, and points are apart along the normal by the depth."""
+    pairs = sorted(pair for m in line["manifolds"] for pair in m["list"])
+    expect(line["pairs"] == len(pairs) and pairs == step["pairs"], "other pairs in manifolds")
+    for m in line["manifolds"]:
+        expect(1 <= len(m["points"]) <= 4, f"{len(m['points'])} points")
+        for p in m["points"]:
+            off = [a - b - p["depth"] * n for a, b, n in zip(p["point_a"], p["point_b"], m["normal"])]
+            expect(all(abs(x) <= 1e-7 * size for x in off), "points that are not apart by the depth")
+
+
 OVERLAP = ("protrudes", "pierces", "cuts_through")
 INSIDE = ("a_inside_b", "b_inside_a")
 TOUCH = ("touching_point", "touching_edge", "touching_face", "equal")
@@ -187,6 +198,8 @@ class Matrix:
         self.run(["near"] + poses + ["--within", "0"], each(check_near))
         nearest = ["--within", repr(size), "--nearest", "1"]
         self.run(["near"] + poses + nearest, each(check_nearest, size, size))
+        self.run(["manifold"] + poses + ["--pairs"], each(check_manifold, size))
+        self.run(["manifold"] + poses + ["--margin", repr(size / 20)])
         if not every:
             return
         self.run(query + ["--mode", "first"], each(check_one, True))
@@ -215,6 +228,8 @@ class Matrix:
         self.run(["distance"] + poses + ["--draw", f"{out}-d.png"], made=f"{out}-d-0.png")
         near = ["near"] + poses + ["--within", repr(cell["size"] / 20)]
         self.run(near + ["--draw", f"{out}-n.png"], made=f"{out}-n-0.png")
+        manifold = ["manifold"] + poses + ["--margin", repr(cell["size"] / 20)]
+        self.run(manifold + ["--draw", f"{out}-m.png"], made=f"{out}-m-0.png")
         self.run(["clash"] + poses + ["--draw", f"{out}-c.png"], None, (0,) if in_space else (2,), f"{out}-c-0.png")
         self.run(["sweep", a, b, "--motions", f"{name}.motion.txt", "--draw", f"{out}-s.png"], made=f"{out}-s.png")
         self.run(["why"] + poses + ["--pose", apart, "-o", f"{out}-w.png"], made=f"{out}-w.png")
@@ -310,6 +325,9 @@ def ask_python(matrix, name):
             check_some(words_of(lrbscope.collide(a, b, pose, recursion="paper")), step)
             near = lrbscope.near_pairs(a, b, pose, within=0)
             expect(near.triangles.tolist() == step["pairs"] and near.found == len(near), "other pairs at distance 0")
+            manifolds = lrbscope.contact_manifolds(a, b, pose)
+            held = manifolds.triangles[np.concatenate([*manifolds.pairs, np.empty(0, int)]).astype(int)]
+            expect(sorted(held.tolist()) == step["pairs"], "manifolds do not share out the pairs")
             d = lrbscope.distance(a, b, pose)
             check_distance({"lower": d.lower, "upper": d.upper}, step, size)
             shared = sum(len(region.pairs) for region in lrbscope.contacts(a, b, pose))

@@ -14,6 +14,7 @@
 #include <lrbscope/body.hpp>
 #include <lrbscope/clash.hpp>
 #include <lrbscope/coherent.hpp>
+#include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/explain.hpp>
 #include <lrbscope/first_contact.hpp>
@@ -59,6 +60,7 @@ class Questions {
       doing("paper"), paper();
       doing("scene"), scene();
       doing("distance"), distances();
+      doing("manifolds"), manifolds();
       doing("why"), why();
       doing("clash"), a_.dim() == 3 ? clashes(kinds) : no_clash();
     }
@@ -167,6 +169,29 @@ class Questions {
       request.within = share * step_->distance;
       expect(distance(a_, {}, b_, step_->pose, request).within == (meet() || share > 1),
              "wrong about within");
+    }
+  }
+
+  void manifolds() {
+    for (const double margin : {0.0, 0.05 * cell_.size}) {
+      ManifoldRequest request;
+      request.margin = margin;
+      const ManifoldResult found = contact_manifolds(a_, {}, b_, step_->pose, request);
+      Pairs pairs;
+      std::size_t shared_out = 0;
+      for (const NearPair& pair : found.pairs)
+        if (pair.meet != exact::Meet::disjoint) pairs.push_back({pair.a, pair.b});
+      expect(pairs == step_->truth.pairs, "manifolds of other pairs");
+      for (const ContactManifold& manifold : found.manifolds) {
+        shared_out += manifold.pairs.size();
+        expect(!manifold.points.empty() && manifold.points.size() <= 4, "not 1 to 4 points");
+        for (const ManifoldPoint& p : manifold.points) {
+          const Eigen::Vector3d off = p.point[0] - p.point[1] - p.depth * manifold.normal;
+          expect(off.cwiseAbs().maxCoeff() <= kSlack * cell_.size, "points that are not apart by the depth");
+          expect(p.depth >= -margin - kSlack * cell_.size, "a gap beyond the margin");
+        }
+      }
+      expect(shared_out == found.pairs.size(), "manifolds do not share out the pairs");
     }
   }
 

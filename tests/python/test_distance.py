@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import lrbscope
-from lrbscope import Body, InputError, collide, distance, near_pairs, signed_distance
+from lrbscope import Body, InputError, collide, contact_manifolds, distance, near_pairs, signed_distance
 from shapes import cube_arrays, placed, random_poses, shifted
 
 
@@ -126,3 +126,29 @@ def test_near_pairs_reject_bad_requests(cube):
             near_pairs(cube, cube, shifted(3, 0, 0), **more)
     with pytest.raises(TypeError):
         near_pairs(cube, cube)
+
+
+def test_contact_manifolds(cube, ball):
+    sunk = contact_manifolds(cube, cube, shifted(0.125, 0.25, 0.875))
+    assert len(sunk) == 1 and sunk.intersects.tolist() == [True] and sunk.regions.tolist() == [0]
+    assert sunk.normals.tolist() == [[0, 0, 1]] and sunk.manifold.tolist() == [0, 0, 0, 0]
+    assert sunk.depths.tolist() == [0.125] * 4 and sunk.ids.tolist() == [0, 1, 2, 3]
+    gaps = sunk.points[:, 0] - sunk.points[:, 1] - sunk.depths[:, None] * sunk.normals[sunk.manifold]
+    assert np.abs(gaps).max() < 1e-15 and sunk.features.shape == (4, 2, 3)
+    assert sunk.triangles.tolist() == collide(cube, cube, shifted(0.125, 0.25, 0.875)).pairs.tolist()
+    moved = contact_manifolds(cube, cube, shifted(0.126, 0.25, 1.001), margin=0.01, previous=sunk)
+    assert sorted(moved.ids.tolist()) == [0, 1, 2, 3] and moved.intersects.tolist() == [False]
+    assert np.allclose(moved.depths, -0.001)
+    apart = contact_manifolds(cube, cube, shifted(3, 0, 0))
+    assert len(apart) == 0 and apart.points.shape == (0, 2, 3) and apart.pairs == []
+    at = shifted(1.5, 0.1, 0.2)
+    alone, all_cores = (contact_manifolds(ball, ball, at, margin=0.1, threads=n) for n in (1, 2))
+    assert (alone.points == all_cores.points).all() and (alone.ids == all_cores.ids).all()
+    assert sorted(np.concatenate(alone.pairs)) == list(range(len(alone.triangles)))
+
+
+def test_contact_manifolds_reject_bad_requests(cube):
+    for more in ({"margin": -1}, {"margin": np.nan}, {"margin": np.inf}, {"max_pairs": 1}, {"previous": 3}):
+        with pytest.raises(InputError) as e:
+            contact_manifolds(cube, cube, shifted(0.5, 0, 0), **more)
+        assert "\n" not in str(e.value)
