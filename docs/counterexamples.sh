@@ -49,6 +49,7 @@ while read -r method family difficulty case; do
     echo '```'
     printf '\n%s\n' "$(section Expected)"
     printf '\nFound: %s\n\n' "$(section Found | head -1)"
+    # shellcheck disable=SC2016
     printf '```sh\nlrbscope %s\n```\n' "$line"
   } >>sections.md
 done <<<"$cases"

@@ -139,9 +139,9 @@ int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMetho
   return all_right ? kOk : kMismatch;
 }
 
-std::string size_text(const CaseSize& s) {
-  return std::to_string(s.simplices) + " triangles, " + std::to_string(s.vertices) + " vertices, " +
-         std::to_string(s.bits) + " bits";
+std::string size_text(const CaseSize& s, int dim) {
+  return std::to_string(s.simplices) + (dim == 3 ? " triangles, " : " segments, ") +
+         std::to_string(s.vertices) + " vertices, " + std::to_string(s.bits) + " bits";
 }
 
 int minimise_one(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
@@ -160,7 +160,9 @@ int minimise_one(const StabilityOptions& o, const std::vector<workers::WorkerMet
   MinimiseOptions options;
   // In a new process, so that no earlier case can be the cause.
   options.confirm = [&](const CaseMeshes& c) { return CaseWorker(method, o.timeout).ask(c); };
-  options.progress = [&](std::uint64_t calls, const CaseSize& size) { bar.set(calls, size_text(size)); };
+  options.progress = [&](std::uint64_t calls, const CaseSize& size) {
+    bar.set(calls, size_text(size, start.a.dim));
+  };
   Counterexample found{minimise(
                            start, [&](const CaseMeshes& c) { return worker.ask(c); }, options),
                        method, globals.command_line};
@@ -170,9 +172,9 @@ int minimise_one(const StabilityOptions& o, const std::vector<workers::WorkerMet
     throw EnvironmentError("method '" + method.column.name +
                            "': gives different answers to the same case, and none to write down");
   print(describe(found.found.answer, o.quantity, o.pairs));
-  print("  before: " + size_text(found.found.before) + "\n  after: " + size_text(found.found.after) + " (" +
-        std::to_string(found.found.calls) + " calls" +
-        (found.found.complete ? "" : ", stopped at their maximum") + ")\n");
+  print("  before: " + size_text(found.found.before, start.a.dim) +
+        "\n  after: " + size_text(found.found.after, start.a.dim) + " (" + std::to_string(found.found.calls) +
+        " calls" + (found.found.complete ? "" : ", stopped at their maximum") + ")\n");
   for (const std::string& file : save_counterexample(found, o.save)) print(o.save + "/" + file + "\n");
   return kMismatch;
 }
@@ -211,7 +213,8 @@ std::string command_of(const stability::Record& r, Quantity quantity) {
   if (quantity != Quantity::pairs)
     return "lrbscope stability --quantity " + std::string(name_of(quantity)) + " --family " + r.family +
            " --method " + r.method + " --difficulty " + std::to_string(r.difficulty) + " --only " +
-           std::to_string(r.case_index) + " --seed " + std::to_string(r.seed);
+           std::to_string(r.case_index) + " --seed " + std::to_string(r.seed) +
+           (methods::is_list(quantity) ? " --pairs" : "");
   return "lrbscope stability --family " + r.family + " --method " + r.method + " --difficulty " +
          std::to_string(r.difficulty) + " --only " + std::to_string(r.case_index) + " --seed " +
          std::to_string(r.seed) + " --pairs";

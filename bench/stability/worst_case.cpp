@@ -355,6 +355,25 @@ void remove_old_pictures(const std::string& folder) {
     if (entry.path().extension() == ".png") std::filesystem::remove(entry.path(), error);
 }
 
+/// Returns the case to which a list of self-intersections refers: the mesh of both bodies, twice.
+cases::Case twice_joined(const cases::Case& c) {
+  Mesh joined;
+  joined.dim = c.a->dim();
+  for (const auto& [rep, pose] : {std::pair{c.a, c.pose_a}, std::pair{c.b, c.pose_b}}) {
+    const auto first = static_cast<std::uint32_t>(joined.vertices.size());
+    for (const Eigen::Vector3d& v : rep->vertices()) joined.vertices.push_back(pose.apply(v));
+    for (SimplexId s = 0; s < rep->real_simplex_count(); ++s) {
+      VertexId v[3] = {};
+      rep->simplex(s, v);
+      for (VertexId& corner : v) corner = VertexId(first + corner);
+      joined.add_face({v, static_cast<std::size_t>(joined.dim)});
+    }
+  }
+  cases::Case out;
+  out.a = out.b = cases::body(joined, true);
+  return out;
+}
+
 WorstCaseText text_of(const Record& r, const std::string& method) {
   WorstCaseText text;
   text.title = r.family + " \u00d7 " + method;
@@ -389,7 +408,8 @@ std::vector<std::string> draw_worst_cases(
     const std::string file = std::string(kFolder) + "/" + r.family + "-" + method.name + ".png";
     const AnsweredPairs pairs = ask(r);
     try {
-      draw_worst_case(cases::make_case(*family, r.seed, r.difficulty, r.case_index), pairs.expected,
+      const cases::Case c = cases::make_case(*family, r.seed, r.difficulty, r.case_index);
+      draw_worst_case(grid.quantity == Quantity::self_intersections ? twice_joined(c) : c, pairs.expected,
                       pairs.answered, text_of(r, method.title), folder + "/" + file, rasterizer);
       pictures[i] = file;
     } catch (const InputError&) {

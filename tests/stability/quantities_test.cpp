@@ -241,6 +241,13 @@ TEST_CASE("lrbscope stability --quantity: table, records, a repeated case, an un
                          "--difficulty", "10", "--only", "1", "--pairs"});
   CHECK(o.out.find("  pairs: ") != std::string::npos);
   CHECK(o.out.find("\n  found: ") != std::string::npos);
+  o = test::run(folder, {"stability", "--quantity", "self_intersections", "--family", "shared", "--cases",
+                         "2", "--difficulty", "10"});
+  CHECK(o.code == 0);
+  const std::string page = test::slurp(folder / "out/stability-self_intersections/index.html");
+  CHECK(page.find("in which a mesh of both bodies intersects itself") != std::string::npos);
+  CHECK(page.find("--quantity self_intersections --family shared --method plain") != std::string::npos);
+  CHECK(std::filesystem::exists(folder / "out/stability-self_intersections/worst/shared-plain.png"));
   o = test::run(folder, {"chart", "--quantity", "self_intersections"});
   CHECK(o.code == 2);
   CHECK(o.err ==
