@@ -9,6 +9,9 @@
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
+#include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 namespace lrb::cli {
 namespace {
