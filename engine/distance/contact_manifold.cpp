@@ -219,11 +219,14 @@ class ManifoldMaker {
   /// Writes the corners of the part to `part`, and their number to `count`.
   bool is_farthest_extreme(int side, const PatchSimplex& s, const Vector3d& direction, int part[3],
                            int& count) {
-    double farthest = -std::numeric_limits<double>::infinity();
-    for (int k = 0; k < dim_; ++k) farthest = std::max(farthest, direction.dot(s.x[k]));
+    double farthest = -std::numeric_limits<double>::infinity(), extent = 0;
+    for (int k = 0; k < dim_; ++k) {
+      farthest = std::max(farthest, direction.dot(s.x[k]));
+      extent = std::max(extent, (s.x[k] - s.x[0]).cwiseAbs().maxCoeff());
+    }
     count = 0;
     for (int k = 0; k < dim_; ++k)
-      if (direction.dot(s.x[k]) >= farthest - kAxisAdvantage) part[count++] = k;
+      if (direction.dot(s.x[k]) >= farthest - kAxisAdvantage * extent) part[count++] = k;
     return count == dim_ || is_feature_extreme(side, s, direction, part, count);
   }
 

@@ -217,10 +217,10 @@ class Overlay {
   }
 
   std::vector<ManifoldCandidate> merged() {
-    std::sort(candidates_.begin(), candidates_.end(),
-              [](const ManifoldCandidate& x, const ManifoldCandidate& y) {
-                return std::tie(x.on[0], x.on[1], y.depth) < std::tie(y.on[0], y.on[1], x.depth);
-              });
+    std::stable_sort(candidates_.begin(), candidates_.end(),
+                     [](const ManifoldCandidate& x, const ManifoldCandidate& y) {
+                       return std::tie(x.on[0], x.on[1], y.depth) < std::tie(y.on[0], y.on[1], x.depth);
+                     });
     const auto same = [](const ManifoldCandidate& x, const ManifoldCandidate& y) {
       return x.on[0] == y.on[0] && x.on[1] == y.on[1];
     };
@@ -283,9 +283,10 @@ std::vector<std::size_t> choose_candidates(const std::vector<ManifoldCandidate>&
     mean += across(c) / static_cast<double>(candidates.size());
   }
   const double least_depth = depth - kDepthRounding * size;
-  add(-1, [&](const ManifoldCandidate& c) {
-    return c.depth >= least_depth ? (across(c) - mean).squaredNorm() : -2;
-  });
+  if (!add(-1, [&](const ManifoldCandidate& c) {
+        return c.depth >= least_depth ? (across(c) - mean).squaredNorm() : -2;
+      }))
+    return chosen;  // coordinates overflowed
   const Vector3d p = across(candidates[chosen[0]]);
   const double tiny = kSpreadLeast * size;
   // The farthest from it.

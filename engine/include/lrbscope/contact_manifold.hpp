@@ -24,8 +24,9 @@
 ///
 /// Proven: no pair is missed or added; points named as vertices are the world coordinates of these vertices.
 /// Up to rounding: each point is on the triangles of its features, point[0] - point[1] = depth * normal, and
-/// no two points of a manifold's two patches along its normal have a larger depth. Heuristic: the normals,
-/// the division into manifolds, and the choice of points.
+/// no two points of the patches that overlap along the normal have a larger depth. Heuristic: the normals,
+/// the division into manifolds, the parts that count as overlapping (faces steeper than kSteepest do not, nor
+/// do points between which the segment leaves both bodies), and the choice of points.
 
 #include <array>
 #include <compare>
