@@ -127,6 +127,8 @@ Command add_chart(CLI::App& root, const Globals& globals) {
           ->fallthrough();
   add_measure_options(*app, *o);
   add_quantity_option(*app, o->set.quantity);
+  app->get_option("--quantity")
+      ->description("Quantity to compute: pairs, distance, first_contact or depth [pairs]");
   app->add_option("--faces", o->faces, "Face count of the generated bodies; 0: none [2000]")
       ->check(CLI::Range(0, 200000))
       ->type_name("N");
