@@ -42,7 +42,6 @@ NOT_RUN = [
     ),
     ("docs/figures.md", r"out/mine", "tests/docs/figures.sh, with their widths"),
     ("docs/packages.md", r"man -l|completion", "tests/completion"),
-    ("docs/capture.md", r"^LRBCAP_OUT=.*/aabb ", "tests/examples/capture.sh"),
     ("docs/golden.md", r"\b(bolt|hinge|lid|valve)\b", "tests/docs/goldens.sh, with their output"),
     (
         "CONTRIBUTING.md",
