@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <span>
 #include <unordered_map>
 
@@ -18,6 +17,7 @@
 
 #include "engine/collide/interiors.hpp"
 #include "engine/core/tolerances.hpp"
+#include <lrbscope/core/disjoint_sets.hpp>
 
 namespace lrb {
 namespace {
@@ -114,21 +114,12 @@ void find_curves_and_outlines(ContactGraph& graph) {
 }
 
 void label_components(ContactGraph& graph) {
-  std::vector<std::uint32_t> leader(graph.points.size());
-  // Union-find with path halving. The smallest index is the root, so that labels follow the order of points.
-  std::iota(leader.begin(), leader.end(), 0u);
-  const auto find = [&](std::uint32_t p) {
-    while (leader[p] != p) p = leader[p] = leader[leader[p]];
-    return p;
-  };
+  DisjointSets sets(graph.points.size());
   for (const auto& piece : graph.pieces)
-    for (const std::uint32_t p : piece.points()) {
-      const std::uint32_t x = find(piece.corners[0]), y = find(p);
-      leader[std::max(x, y)] = std::min(x, y);
-    }
+    for (const std::uint32_t p : piece.points()) sets.join(piece.corners[0], p);
   graph.component.assign(graph.points.size(), kNull);
   for (std::uint32_t p = 0; p < graph.points.size(); ++p) {
-    const std::uint32_t root = find(p);  // root <= p: its label is set already unless it is p
+    const std::uint32_t root = sets.leader(p);  // root <= p: its label is set already unless it is p
     graph.component[p] = root == p ? graph.component_count++ : graph.component[root];
   }
 }

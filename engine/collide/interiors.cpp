@@ -47,8 +47,7 @@ EnclosedVertices::EnclosedVertices(QueryContext& context, Side side, const Colli
     const std::size_t n = static_cast<std::size_t>(body_.rep().simplex_size());
     near_.insert(v, v + n);
     // An edge or a vertex meets the other surface if and only if it has a corner of some pair's contact.
-    const PairContactRecord contact =
-        i < result.contacts.size() ? result.contacts[i] : contact_of(context, result.pairs[i]);
+    const PairContactRecord& contact = result.contacts[i];
     for (std::size_t c = 0; c < contact.corner_count; ++c) {
       const exact::Feature& f = side == Side::a ? contact.corners[c].on_a : contact.corners[c].on_b;
       if (f.dim == 0) on_.insert(v[f.index]);

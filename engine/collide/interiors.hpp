@@ -21,7 +21,8 @@ exact::PairContact contact_of(QueryContext& context, const SimplexPair& pair);
 /// Finds the vertices of one body that are strictly inside the other and connected to given pairs.
 class EnclosedVertices {
  public:
-  /// Prepares the search for vertices of `side`. Every search is empty if the other body is not closed.
+  /// Prepares the search for vertices of `side`; `result` has the contact of each pair. Every search is empty
+  /// if the other body is not closed.
   EnclosedVertices(QueryContext& context, Side side, const CollideResult& result);
 
   /// Returns the vertices found by a search over the surface that starts at the simplices of some pairs

@@ -20,6 +20,7 @@
 #include "engine/distance/manifold_context.hpp"
 #include "engine/tree/kernel_setup.hpp"
 #include <lrbscope/contact_manifold.hpp>
+#include <lrbscope/core/disjoint_sets.hpp>
 #include <lrbscope/error.hpp>
 
 namespace lrb {
@@ -103,12 +104,7 @@ class ManifoldMaker {
   /// Returns the connected groups of pairs, each ascending, by their first pairs.
   std::vector<std::vector<std::uint32_t>> connected() {
     const auto count = static_cast<std::uint32_t>(result_.pairs.size());
-    std::vector<std::uint32_t> leader(count);
-    std::iota(leader.begin(), leader.end(), 0U);
-    const auto find = [&](std::uint32_t i) {
-      while (leader[i] != i) i = leader[i] = leader[leader[i]];
-      return i;
-    };
+    DisjointSets sets(count);
     // Pairs with the same vertex of A and the same vertex of B are connected.
     std::unordered_map<std::uint64_t, std::uint32_t> first_at;
     first_at.reserve(std::size_t{4} * count);
@@ -119,15 +115,13 @@ class ManifoldMaker {
         for (int m = 0; m < dim_; ++m) {
           const std::uint64_t key = std::uint64_t{v[0][k]} << 32 | v[1][m];
           const auto [at, is_new] = first_at.try_emplace(key, i);
-          if (is_new) continue;
-          const std::uint32_t x = find(i), y = find(at->second);
-          leader[std::max(x, y)] = std::min(x, y);
+          if (!is_new) sets.join(i, at->second);
         }
     }
     std::vector<std::vector<std::uint32_t>> regions;
     std::vector<std::uint32_t> region(count);
     for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t root = find(i);  // root <= i: its region is set already unless it is i
+      const std::uint32_t root = sets.leader(i);  // root <= i: its region is set already unless it is i
       if (root == i) {
         region[i] = static_cast<std::uint32_t>(regions.size());
         regions.emplace_back();
@@ -374,8 +368,8 @@ class ManifoldMaker {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) {
       return rank == 2 ? axes[x].depth > axes[y].depth : axes[x].depth < axes[y].depth;
     });
-    // Of these, those that are much deeper than the least are axes across an overlap: the faces on either
-    // side of a corner that is inside the other body.
+    // Axes much deeper than the least one are axes across an overlap: the faces on either side of a corner
+    // that is inside the other body.
     double far = std::numeric_limits<double>::infinity();
     for (const std::size_t k : order)
       if (rank == 1 && axes[k].depth > 0) far = std::min(far, kFarAxis * axes[k].depth);
@@ -411,6 +405,8 @@ class ManifoldMaker {
         pairs.push_back(static_cast<std::uint32_t>(std::lower_bound(meeting_.begin(), meeting_.end(), i) -
                                                    meeting_.begin()));
     if (pairs.empty()) return out;
+    if (collision_.contacts.empty())
+      for (const SimplexPair& p : collision_.pairs) collision_.contacts.push_back(contact_of(query_, p));
     for (int side = 0; side < 2; ++side) {
       if (!is_closed_[1 - side]) continue;
       if (!enclosed_[side]) enclosed_[side].emplace(query_, static_cast<Side>(side), collision_);
@@ -519,7 +515,7 @@ class ManifoldMaker {
   std::unordered_map<SimplexId, PatchSimplex> simplices_[2];  ///< used in the current region
   std::vector<Vector3d> normals_;                             ///< of the groups of the current region
   std::vector<std::uint32_t> meeting_;                        ///< pairs that intersect, ascending
-  CollideResult collision_;                                   ///< these pairs
+  CollideResult collision_;                                   ///< these pairs, and their contacts once needed
   std::optional<EnclosedVertices> enclosed_[2];
   std::set<std::array<SurfaceFeatureId, 2>> chosen_before_;
 };
@@ -546,7 +542,7 @@ double moved_on_bodies(const ManifoldPoint& now, const ManifoldResult& result, c
   return least;
 }
 
-/// Gives the points their ids.
+/// Sets the ids of the points.
 void number_points(ManifoldResult& result, const ManifoldResult* previous, double reach) {
   result.next_id = previous != nullptr ? previous->next_id : 0;
   std::vector<Match> matches;
