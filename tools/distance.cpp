@@ -56,28 +56,23 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
   const PoseLines list(o.poses);
   check_request(o.request);
   const render::Look look = look_of(o.draw);
-  const auto loaded = load_noted(o.a, o.b, o.corners, globals);
-  const bodies::LoadedBody &a = loaded[0], &b = loaded[1];
-  list.check(a.rep, b.rep);
   Workspace workspace;
-  Progress progress("distance", list.poses.size(), globals.quiet);
-  for (std::size_t i = 0; i < list.poses.size(); ++i) {
+  for_each_pose(o, list, "distance", globals, [&](const run::PosedBodies& bodies, std::size_t i) {
     const auto run_query = [&](BoundsProbe* probe) {
-      return distance(a.rep, Pose{}, b.rep, list.poses[i], o.request, workspace, probe).value();
+      return distance(bodies.a, bodies.pose_a, bodies.b, bodies.pose_b, o.request, workspace, probe).value();
     };
     BoundsHistory reported;
     const DistanceResult result = run_query(o.draw.is_watched() ? &reported : nullptr);
     print(line_of(i, result, reported.history, o,
                   o.repeat > 0 ? median_us(o.repeat, [&] { run_query(nullptr); }) : 0));
     if (!o.draw.picture.empty())
-      run::write_picture(run::picture_of(result, {a.rep, Pose{}, b.rep, list.poses[i]}, look),
+      run::write_picture(run::picture_of(result, bodies, look),
                          picture_name(o.draw.picture, i, list.poses.size()));
     if (!o.draw.chart.empty())
       report::draw(
           bounds_chart(reported.history, "distance", "pairs of boxes expanded, pairs of faces measured"),
           picture_name(o.draw.chart, i, list.poses.size()));
-    progress.set(i + 1);
-  }
+  });
   return kOk;
 }
 

@@ -70,27 +70,21 @@ int run_manifold(const ManifoldOptions& o, const Globals& globals) {
   const PoseLines list(o.poses);
   check_request(o.request);
   const render::Look look = look_of(o.draw);
-  const auto loaded = load_noted(o.a, o.b, o.corners, globals);
-  const bodies::LoadedBody &a = loaded[0], &b = loaded[1];
-  list.check(a.rep, b.rep);
   Workspace workspace;
   std::optional<ManifoldResult> previous;
-  Progress progress("manifold", list.poses.size(), globals.quiet);
-  for (std::size_t i = 0; i < list.poses.size(); ++i) {
+  for_each_pose(o, list, "manifold", globals, [&](const run::PosedBodies& bodies, std::size_t i) {
     const auto run_query = [&]() -> ManifoldResult& {
-      return contact_manifolds(a.rep, Pose{}, b.rep, list.poses[i], o.request, workspace,
+      return contact_manifolds(bodies.a, bodies.pose_a, bodies.b, bodies.pose_b, o.request, workspace,
                                previous ? &*previous : nullptr)
           .value();
     };
     ManifoldResult result = list.at(i, run_query);
     print(line_of(i, result, o, o.repeat > 0 ? median_us(o.repeat, run_query) : 0));
     if (!o.draw.picture.empty())
-      run::write_picture(
-          run::picture_of(result, o.request.margin, {a.rep, Pose{}, b.rep, list.poses[i]}, look),
-          picture_name(o.draw.picture, i, list.poses.size()));
+      run::write_picture(run::picture_of(result, o.request.margin, bodies, look),
+                         picture_name(o.draw.picture, i, list.poses.size()));
     previous = std::move(result);
-    progress.set(i + 1);
-  }
+  });
   return kOk;
 }
 

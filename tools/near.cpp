@@ -47,23 +47,17 @@ int run_near(const NearOptions& o, const Globals& globals) {
   const PoseLines list(o.poses);
   check_request(o.request);
   const render::Look look = look_of(o.draw);
-  const auto loaded = load_noted(o.a, o.b, o.corners, globals);
-  const bodies::LoadedBody &a = loaded[0], &b = loaded[1];
-  list.check(a.rep, b.rep);
   Workspace workspace;
-  Progress progress("near", list.poses.size(), globals.quiet);
-  for (std::size_t i = 0; i < list.poses.size(); ++i) {
+  for_each_pose(o, list, "near", globals, [&](const run::PosedBodies& bodies, std::size_t i) {
     const auto run_query = [&]() -> NearPairsResult& {
-      return near_pairs(a.rep, Pose{}, b.rep, list.poses[i], o.request, workspace).value();
+      return near_pairs(bodies.a, bodies.pose_a, bodies.b, bodies.pose_b, o.request, workspace).value();
     };
     const NearPairsResult result = list.at(i, run_query);
-    print(line_of(i, result, a.rep, b.rep, o, o.repeat > 0 ? median_us(o.repeat, run_query) : 0));
+    print(line_of(i, result, bodies.a, bodies.b, o, o.repeat > 0 ? median_us(o.repeat, run_query) : 0));
     if (!o.draw.picture.empty())
-      run::write_picture(
-          run::picture_of(result, o.request.within, {a.rep, Pose{}, b.rep, list.poses[i]}, look),
-          picture_name(o.draw.picture, i, list.poses.size()));
-    progress.set(i + 1);
-  }
+      run::write_picture(run::picture_of(result, o.request.within, bodies, look),
+                         picture_name(o.draw.picture, i, list.poses.size()));
+  });
   return kOk;
 }
 

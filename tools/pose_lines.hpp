@@ -8,9 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "render/pictures/panel.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/io/poses.hpp"
 #include "tools/commands.hpp"
+#include "tools/terminal.hpp"
 #include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
@@ -80,6 +82,19 @@ void add_posed_files(CLI::App& app, PosedFiles& files);
 /// Loads both bodies without regions, and prints their notes.
 std::array<bodies::LoadedBody, 2> load_noted(const std::string& a, const std::string& b,
                                              bodies::Corners corners, const Globals& globals);
+
+/// Loads both bodies, checks them at every pose, and calls visit(bodies, i) for each pose, in order.
+template <class Visit>
+void for_each_pose(const PosedFiles& files, const PoseLines& list, const char* what, const Globals& globals,
+                   const Visit& visit) {
+  const std::array<bodies::LoadedBody, 2> both = load_noted(files.a, files.b, files.corners, globals);
+  list.check(both[0].rep, both[1].rep);
+  Progress progress(what, list.poses.size(), globals.quiet);
+  for (std::size_t i = 0; i < list.poses.size(); ++i) {
+    visit(run::PosedBodies{both[0].rep, Pose{}, both[1].rep, list.poses[i]}, i);
+    progress.set(i + 1);
+  }
+}
 
 /// Returns a picture's file: `path`, or with the number of the pose before its extension if there are several
 /// poses.

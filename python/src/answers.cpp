@@ -366,7 +366,7 @@ Progress::~Progress() {
 
 void Progress::operator()(const std::string& what, std::uint64_t done, std::uint64_t total) const {
   const py::gil_scoped_acquire lock;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  check_signals();
   if (!callee_.is_none()) callee_(what, done, total);
 }
 

@@ -72,11 +72,8 @@ void check_answers(const CrowdTrace& trace, const BodyPair& pair, const run::Rec
                                        [&](const CrowdTrace::Answer& a) { return a.bodies == pair; });
     const CollideResult& found = recording.results[step];
     // A pair that was not queried has disjoint boxes.
-    const bool is_same = recorded == answers.end() ? found.pairs.empty()
-                                                   : recorded->relation == found.relation &&
-                                                         recorded->pairs == found.pairs.size() &&
-                                                         recorded->fingerprint == fingerprint(found.pairs);
-    if (!is_same)
+    const CrowdTrace::Answer answer{pair, found.relation, found.pairs.size(), fingerprint(found.pairs)};
+    if (recorded == answers.end() ? !found.pairs.empty() : *recorded != answer)
       throw InputError(trace.file + ": step " + std::to_string(step) +
                        ": the two bodies have another answer than the recorded one; the trace is damaged; "
                        "record it again");
