@@ -14,6 +14,7 @@
 #include "bench/stability/saved_case.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/workers.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh_check.hpp>
 
@@ -22,29 +23,10 @@ using namespace lrb::stability;
 using lrb::test::Folder;
 using lrb::test::run;
 using lrb::test::slurp;
+using lrb::test::worker_method;
+using lrb::test::WorkerPrograms;
 
 namespace {
-
-/// The workers, with methods that misbehave among them.
-struct MinimiseWorkers {
-  MinimiseWorkers() {
-    setenv("LRBSCOPE_METHODS", LRBSCOPE_FOLDER, 1);
-    setenv("LRBSCOPE_FAKE_METHODS", "1", 1);
-  }
-  ~MinimiseWorkers() {
-    unsetenv("LRBSCOPE_METHODS");
-    unsetenv("LRBSCOPE_FAKE_METHODS");
-  }
-  MinimiseWorkers(const MinimiseWorkers&) = delete;
-  MinimiseWorkers& operator=(const MinimiseWorkers&) = delete;
-};
-
-workers::WorkerMethod worker_method(const std::string& name) {
-  for (const workers::WorkerMethod& m : workers::find_methods())
-    if (m.column.name == name) return m;
-  FAIL("no method " << name);
-  return {};
-}
 
 /// The answer of an engine that is right, except that `spoil` changes it.
 template <class Spoil>
@@ -212,7 +194,7 @@ TEST_CASE("the kind of a failure is kept, and calls are bounded") {
 }
 
 TEST_CASE("a minimised case of every family fails again when it is loaded") {
-  const MinimiseWorkers workers;
+  const WorkerPrograms workers;
   const workers::WorkerMethod plain = worker_method("plain");
   int minimised = 0, flat = 0;
   for (const cases::Family& f : cases::all_families()) {
@@ -251,7 +233,7 @@ TEST_CASE("a minimised case of every family fails again when it is loaded") {
 }
 
 TEST_CASE("lrbscope stability --minimise: the folder, its proof, the same bytes twice, and the case again") {
-  const MinimiseWorkers workers;
+  const WorkerPrograms workers;
   const bool has_fcl = worker_method("fcl").column.present;
   for (const auto& [name, family, difficulty, index] : {std::array{"plain", "touch", "8", "4"},
                                                         {"fake-miss", "identical", "10", "0"},
@@ -296,7 +278,7 @@ TEST_CASE("lrbscope stability --minimise: the folder, its proof, the same bytes 
 }
 
 TEST_CASE("lrbscope stability --minimise, --saved: invalid arguments and folders") {
-  const MinimiseWorkers workers;
+  const WorkerPrograms workers;
   const Folder folder;
   std::filesystem::create_directories(folder.path / "broken");
   folder.write("broken/case.json", "{\"pose_a\":[1,2]}");

@@ -17,44 +17,26 @@
 #include "bench/stability/stability_experiment.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/workers.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace.hpp>
 
 using namespace lrb;
 using namespace lrb::stability;
+using lrb::test::Environment;
 using lrb::test::Folder;
 using lrb::test::run;
 using lrb::test::slurp;
+using lrb::test::worker_method;
+using lrb::test::WorkerPrograms;
 
 namespace {
-
-/// Set while it lives.
-struct Environment {
-  Environment(const char* n, const std::string& value) : name(n) { setenv(name, value.c_str(), 1); }
-  ~Environment() { unsetenv(name); }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
-  const char* name;
-};
-
-/// The workers, with methods that misbehave among them.
-struct WorkerPrograms {
-  Environment where{"LRBSCOPE_METHODS", LRBSCOPE_FOLDER};
-  Environment fakes{"LRBSCOPE_FAKE_METHODS", "1"};
-};
-
-workers::WorkerMethod method(const std::string& name) {
-  for (const workers::WorkerMethod& m : workers::find_methods())
-    if (m.column.name == name) return m;
-  FAIL("no method " << name);
-  return {};
-}
 
 std::vector<Record> ask(const std::vector<std::string>& methods, std::uint64_t cases, double timeout = 20,
                         unsigned jobs = 2) {
   ExperimentOptions o;
   o.families = {"shared", "identical"};
-  for (const std::string& name : methods) o.methods.push_back(method(name));
+  for (const std::string& name : methods) o.methods.push_back(worker_method(name));
   o.cases = cases;
   o.difficulty = 10;
   o.jobs = jobs;
@@ -145,13 +127,13 @@ TEST_CASE("every case has its record, in order, despite crashes and parallel run
 TEST_CASE("a repeated case gives the same record, with its pairs") {
   const WorkerPrograms workers;
   const std::vector<Record> all = ask({"fake-miss"}, 3);
-  const Replay again = replay(method("fake-miss"), "shared", 10, 2, 1, 20);
+  const Replay again = replay(worker_method("fake-miss"), "shared", 10, 2, 1, 20);
   CHECK(again.record.missed == all[2].missed);
   CHECK(again.record.expected == all[2].expected);
   CHECK(again.expected.size() == all[2].expected);
   REQUIRE(again.answered);
   CHECK(again.answered->size() + all[2].missed == again.expected.size());
-  const Replay died = replay(method("fake-crash"), "shared", 10, 2, 1, 20);
+  const Replay died = replay(worker_method("fake-crash"), "shared", 10, 2, 1, 20);
   CHECK(died.record.outcome == Outcome::crashed);
   CHECK(died.record.message.find("signal 6") != std::string::npos);
   CHECK(died.expected == again.expected);

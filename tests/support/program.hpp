@@ -17,6 +17,15 @@
 
 namespace lrb::test {
 
+/// Sets an environment variable while it lives.
+struct Environment {
+  Environment(const char* n, const std::string& value) : name(n) { setenv(name, value.c_str(), 1); }
+  ~Environment() { unsetenv(name); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+  const char* name;
+};
+
 inline std::string slurp(const std::string& path) {
   std::ostringstream out;
   out << std::ifstream(path, std::ios::binary).rdbuf();

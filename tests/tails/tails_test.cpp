@@ -480,17 +480,6 @@ struct Two {
   }
 };
 
-/// Sets an environment variable while it lives.
-struct Environment {
-  std::string name;
-  Environment(const std::string& n, const std::string& value) : name(n) {
-    setenv(n.c_str(), value.c_str(), 1);
-  }
-  ~Environment() { unsetenv(name.c_str()); }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
-};
-
 }  // namespace
 
 TEST_CASE("tails: a table, the same as JSON, and a page with what records the costliest poses") {
