@@ -1,6 +1,6 @@
 """cluster.py A B [HOST:PORT]: how many of 100,000 random poses of B meet A, on a dask.distributed cluster.
 
-HOST:PORT is that of `dask-scheduler`; each machine runs `dask-worker HOST:PORT`, and can read the files A and B.
+HOST:PORT is the address of `dask-scheduler`; each machine runs `dask-worker HOST:PORT`, and can read the files A and B.
 Without it, two processes of this machine are the cluster.
 """
 

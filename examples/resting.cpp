@@ -97,7 +97,7 @@ int main(int argc, char** argv) try {
   std::ofstream poses(argc > 3 ? folder + "poses.txt" : "");
   lrb::Workspace workspace;
   const lrb::ManifoldResult* now = nullptr;
-  std::map<std::uint64_t, std::array<double, 3>> impulses;  // of each point: along the normal, across it
+  std::map<std::uint64_t, std::array<double, 3>> impulses;  // by point id: along the normal, across it
   Moving rested = b;
   for (int step = 0; step < steps; ++step) {
     const Pose pose_a = Pose::rotation({0, 0, 1}, kStep * step * turning);

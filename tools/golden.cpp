@@ -358,7 +358,7 @@ void add_output(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
                  "Also write the results as a Markdown table, for the summary of a CI job")
       ->type_name("FILE");
   app.add_option("--repeat", o->repeat,
-                 "Repeat a failed test N times, to tell a scenario that changed from one that is flaky")
+                 "Repeat a failed test N times, to distinguish a changed scenario from a flaky one")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
   app.add_option("--jobs", o->jobs,

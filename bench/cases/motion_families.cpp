@@ -1,5 +1,5 @@
-// Families of bodies that move in steps, each of which rounds: sliding and resting contact, passing through a
-// thin sheet, moving away and back.
+// Families of bodies that move in steps, with rounding in each step: sliding and resting contact, passing
+// through a thin sheet, moving away and back.
 #include <Eigen/Geometry>
 
 #include "bench/cases/families.hpp"
@@ -66,7 +66,7 @@ Case make_tunnel(RandomEngine& random, double difficulty) {
   return c;
 }
 
-/// Bodies in contact, of which B makes up to 1,000 moves, and then their inverses in reverse order.
+/// Bodies in contact. B makes up to 1,000 moves, and then their inverses in reverse order.
 Case make_drift(RandomEngine& random, double difficulty) {
   static constexpr int kMoves = 1000;
   Case c;

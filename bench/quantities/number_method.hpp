@@ -1,5 +1,5 @@
 #pragma once
-/// Methods that return a number, or another list than that of intersecting pairs: lrbscope and other engines.
+/// Methods that return a number, near pairs or self-intersections: lrbscope and other engines.
 
 #include <functional>
 #include <optional>

@@ -23,8 +23,8 @@ std::string failure_text(const Counterexample& c);
 /// proof, the engine's answer, and versions.
 std::string tracker_text(const Counterexample& c);
 
-/// Returns a program in C++ that shows the failure with the engine alone, or an empty string if there is none
-/// for this method.
+/// Returns a program in C++ that shows the failure with the engine alone, or an empty string for
+/// other methods than FCL's.
 std::string program_text(const Counterexample& c);
 
 /// Writes the files of save_case(), report.md, picture.png and, for FCL, fcl.cpp. Returns their names.

@@ -119,7 +119,8 @@ std::uint64_t degenerate_faces(const CaseMeshes& c) {
 
 // ---- Numbers
 
-/// Returns x rounded to a number of significant bits; `step`: by so many units up (away from 0) or down.
+/// Returns x rounded to a number of significant bits; `step`: number of units further up (away from 0) or
+/// down.
 double rounded_to_bits(double x, int bits, int step) {
   int exponent = 0;
   const double fraction = std::frexp(x, &exponent);
@@ -339,7 +340,7 @@ class Shrinking {
     }
   }
 
-  /// Rounds rotations to those of the grid, and shortens translations.
+  /// Rounds rotations to rotations of the grid, and shortens translations.
   void shorten_poses() {
     for (std::size_t side = 0; side < 2; ++side) {
       if (is_identity(pose(now_, side))) continue;

@@ -46,7 +46,7 @@ struct CaseSize {
   int poses = 0;                ///< number of poses that are not the identity
   std::uint64_t simplices = 0;  ///< of both bodies
   std::uint64_t vertices = 0;   ///< of both bodies
-  std::uint64_t bits = 0;       ///< of all coordinates: bits_of()
+  std::uint64_t bits = 0;       ///< sum of bits_of() over all coordinates
   double largest = 0;           ///< absolute value of a coordinate
   friend auto operator<=>(const CaseSize&, const CaseSize&) = default;
 };

@@ -275,7 +275,7 @@ std::vector<std::size_t> choose_candidates(const std::vector<ManifoldCandidate>&
     chosen.push_back(best);
     return true;
   };
-  // The deepest. Of several that are equally deep up to rounding, the farthest from the mean of all.
+  // The deepest point; among points equally deep up to rounding, the farthest from the mean of all.
   double depth = -std::numeric_limits<double>::infinity();
   Vector3d mean = Vector3d::Zero();
   for (const ManifoldCandidate& c : candidates) {

@@ -138,7 +138,8 @@ class ScaledPoints {
     const bool negative = (n.sign() < 0) != (d.sign() < 0);
     n = abs(n);
     d = abs(d);
-    // 56 or 57 bits of the quotient, the last of which is set if there is a remainder, round as all of it.
+    // Take 56 or 57 bits of the quotient. If there is a remainder, set the last bit: they then round as the
+    // exact quotient does.
     const int shift = 56 - (static_cast<int>(msb(n)) - static_cast<int>(msb(d)));
     shift >= 0 ? n <<= shift : d <<= -shift;
     Integer bits, remainder;

@@ -61,7 +61,7 @@ def arrays(answers: Any) -> _Arrays:
     """Return the arrays of a batch's answers, one entry for each pose.
 
     Results: relations, counts (of pairs of faces) and fingerprints; Distances: lower and upper; FirstContacts:
-    t0 and t1; a list of Clash: kinds, and depths (k, 2), NaN where there is none.
+    t0 and t1; a list of Clash: kinds, and depths (k, 2), NaN for bodies without a depth.
     """
     if isinstance(answers, Results):
         return {
@@ -107,7 +107,7 @@ def on_cluster(
 
     `client` is a `distributed.Client`, or has its `submit`, `scatter` and `cancel`. A body is a `Body`, copied
     to every worker, or the name of a file that every worker can read. Chunks of a worker that dies are
-    computed again by the others: no chunk is lost or comes twice, and the answers are those of one process,
+    computed again by the others: no chunk is lost or comes twice, and the answers equal those of one process,
     bit for bit. A body that was copied is lost with the last worker that has it; a file is read again.
     `ahead`: how many chunks are submitted before the first is awaited [four for each thread of the cluster].
     """

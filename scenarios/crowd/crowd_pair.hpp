@@ -17,7 +17,7 @@ BodyPair find_pair(const CrowdTrace& trace, const std::string& names);
 /// with the lower number, as in the crowd's queries.
 spec::Scenario scenario_of_pair(const CrowdTrace& trace, const BodyPair& pair, const std::string& path);
 
-/// Throws InputError unless the answers of the scenario's run are those of the trace.
+/// Throws InputError unless the scenario's run has the answers recorded in the trace.
 void check_answers(const CrowdTrace& trace, const BodyPair& pair, const run::Recording& recording);
 
 }  // namespace lrb::crowd

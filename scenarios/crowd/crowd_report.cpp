@@ -42,7 +42,7 @@ struct PairHistory {
   std::uint32_t first = 0, steps = 0;  ///< the first step at which they intersect, and the number of them
   std::uint64_t most_pairs = 0;        ///< of faces at a step
   std::uint32_t at = 0;                ///< that step
-  std::uint64_t face_tests = 0;        ///< of all steps
+  std::uint64_t face_tests = 0;        ///< sum over all steps
   const trace::StepResult* last = nullptr;  ///< of the last step at which they intersect
 };
 

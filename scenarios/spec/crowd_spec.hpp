@@ -13,7 +13,7 @@
 namespace lrb::spec {
 
 inline constexpr std::uint32_t kMaxCrowdBodies = 10'000;
-inline constexpr std::size_t kMaxCrowdPoses = 10'000'000;  ///< of all bodies and steps: 1 GB
+inline constexpr std::size_t kMaxCrowdPoses = 10'000'000;  ///< bodies times steps: 1 GB of poses
 inline constexpr double kFar = 1e150;                      ///< maximum coordinate: its square is still finite
 
 /// Bodies of one shape, which share one LRB-rep.
