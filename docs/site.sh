@@ -52,7 +52,8 @@ def target(page, link):
         return path + ("#" + anchor if anchor else "")
     name = os.path.normpath(path[len("../"):])
     if name in renamed:
-        return renamed[name] + ("#" + anchor if anchor else "")
+        keep = anchor and name != "README.md"  # the index, which is not the README, has other headings
+        return renamed[name] + ("#" + anchor if keep else "")
     copy = "source/" + name.replace("/", "_") + ".txt"
     source = os.path.join(tree, name)
     if os.path.isdir(source):
@@ -76,6 +77,11 @@ for file in glob.glob(pages + "/*.md"):
                 lines.append("\n")
         lines.append(line)
     open(file, "w").writelines(lines)
+
+main = pages + "/api/index.html"  # made from library.md, like one of the pages
+if os.path.exists(main):
+    text = re.sub(r'href="(\.\./(?:(?!\.html)[^"])+)"', lambda m: 'href="../' + target("library.md", m.group(1)) + '"', open(main).read())
+    open(main, "w").write(text)
 P
 
 # Omits missing pages from the menu.
@@ -90,23 +96,23 @@ python3 - "$out/html" <<'P'
 import glob, os, re, sys, urllib.parse
 
 site, bad, count = sys.argv[1], [], 0
-texts = {f: open(f, encoding="utf-8").read() for f in glob.glob(site + "/*.html")}
+texts = {f: open(f, encoding="utf-8").read() for f in glob.glob(site + "/*.html") + glob.glob(site + "/api/index.html")}
 ids = {f: set(re.findall(r'\bid="([^"]+)"', t)) for f, t in texts.items()}
 for file, text in texts.items():
     if file.endswith("/404.html"):
         continue  # its links are absolute
     for fetched in re.findall(r'<(?:script|img|link)[^>]+(?:src|href)="((?:https?:)?//[^"]+)"', text):
-        bad.append("%s loads %s" % (os.path.basename(file), fetched))
+        bad.append("%s loads %s" % (os.path.relpath(file, site), fetched))
     for link in re.findall(r'(?:href|src)="([^"]+)"', text):
         if re.match(r"[a-z]+:|//|#$", link):
             continue
         path, _, anchor = urllib.parse.unquote(link).partition("#")
-        at = os.path.normpath(os.path.join(site, path)) if path else file
+        at = os.path.normpath(os.path.join(os.path.dirname(file), path)) if path else file
         count += 1
         if not os.path.exists(at):
-            bad.append("%s: no %s" % (os.path.basename(file), link))
+            bad.append("%s: no %s" % (os.path.relpath(file, site), link))
         elif anchor and at in ids and anchor not in ids[at]:
-            bad.append("%s: no heading %s" % (os.path.basename(file), link))
+            bad.append("%s: no heading %s" % (os.path.relpath(file, site), link))
 print("\n".join(sorted(set(bad))) or "%d pages, %d links: all have a target" % (len(texts), count))
 sys.exit(bool(bad))
 P
