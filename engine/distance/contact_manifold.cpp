@@ -132,23 +132,30 @@ class ManifoldMaker {
     return regions;
   }
 
-  /// Merges regions that enclose a common part of a surface, and adds the enclosed parts.
+  /// Merges groups of pairs that enclose a common part of a surface, and adds the enclosed parts.
   std::vector<Region> merged(const std::vector<std::vector<std::uint32_t>>& connected) {
+    // Unite each group with the first one that encloses the same simplex.
+    DisjointSets sets(connected.size());
+    std::vector<Region> groups;
+    std::unordered_map<SimplexId, std::uint32_t> first_around[2];
+    for (std::uint32_t g = 0; g < connected.size(); ++g) {
+      groups.push_back({connected[g], enclosed_by(connected[g])});
+      for (int side = 0; side < 2; ++side)
+        for (const SimplexId s : groups[g].enclosed[side])
+          if (const auto [at, is_new] = first_around[side].try_emplace(s, g); !is_new)
+            sets.join(g, at->second);
+    }
+    // The first group of each set becomes the region.
     std::vector<Region> regions;
-    std::unordered_map<SimplexId, std::size_t> region_of[2];
-    for (const std::vector<std::uint32_t>& pairs : connected) {
-      Region region{pairs, enclosed_by(pairs)};
-      std::size_t into = regions.size();
-      for (int side = 0; side < 2; ++side)
-        for (const SimplexId s : region.enclosed[side])
-          if (const auto known = region_of[side].find(s); known != region_of[side].end())
-            into = std::min(into, known->second);
-      if (into == regions.size())
-        regions.push_back(std::move(region));
-      else
-        regions[into].add(region);
-      for (int side = 0; side < 2; ++side)
-        for (const SimplexId s : regions[into].enclosed[side]) region_of[side].try_emplace(s, into);
+    std::vector<std::size_t> region_of(groups.size());
+    for (std::uint32_t g = 0; g < groups.size(); ++g) {
+      const std::uint32_t leader = sets.leader(g);
+      if (leader == g) {
+        region_of[g] = regions.size();
+        regions.push_back(std::move(groups[g]));
+      } else {
+        regions[region_of[leader]].add(groups[g]);
+      }
     }
     for (Region& region : regions) std::sort(region.pairs.begin(), region.pairs.end());
     return regions;

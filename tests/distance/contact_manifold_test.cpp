@@ -245,6 +245,36 @@ TEST_CASE("manifolds of a ring on a peg: radial normals; of a box in an inner co
   }
 }
 
+TEST_CASE("manifolds: two regions that a third one connects are one region, in any order of faces") {
+  // A rod through a plate, with a blind hole from above. The rod's wall connects its lower and upper curve of
+  // intersection, and the plate connects the upper one with that of the hole.
+  const Mesh rod =
+      shapes::revolve({{0, -1}, {0.4, -1}, {0.4, -0.25}, {0.4, 0.5}, {0.2, 0.5}, {0.2, -0.1}, {0, -0.1}}, 24);
+  const LrbRep plate = closed(fine_plate(40));
+  const auto group_of = [&](FaceId f) {
+    double radius = 0, low = 1;
+    for (const VertexId v : rod.face(f)) {
+      radius = std::max(radius, rod.vertices[v].head<2>().norm());
+      low = std::min(low, rod.vertices[v].z());
+    }
+    return radius < 0.3 ? 0 : low > -0.5 ? 1 : 2;
+  };
+  std::array order{0, 1, 2};
+  do {
+    CAPTURE(order[0]);
+    CAPTURE(order[1]);
+    Mesh sorted;
+    sorted.vertices = rod.vertices;
+    for (const int group : order)
+      for (FaceId f = 0; f < rod.face_count(); ++f)
+        if (group_of(f) == group) sorted.add_face(rod.face(f));
+    const ManifoldResult r =
+        contact_manifolds(closed(sorted), Pose::translation({0.013, 0.017, 0}), plate, {}, with_margin(0));
+    REQUIRE(!r.manifolds.empty());
+    for (const ContactManifold& m : r.manifolds) CHECK(m.region == 0);
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
 TEST_CASE("manifold of overlapping corners: the axis of least depth alone, at any depth") {
   const LrbRep box = closed(shapes::box()), quads = closed(shapes::quad_box());
   for (const double depth : {0.25, 0.0625, 0.001})
