@@ -89,6 +89,8 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
 int run_collide(const CollideOptions& o, const Globals& globals) {
   if (!o.poses.empty()) io::open_poses(o.poses);  // check the file before an expensive build
   if (!o.picture.animation.empty()) run::check_animation(o.picture.animation);
+  if (o.more.near) check_request(NearPairsRequest{.within = *o.more.near});
+  if (o.more.manifold) check_request(ManifoldRequest{.margin = *o.more.manifold});
   const run::ProgressReport progress = progress_report(globals.quiet);
   progress("build", 0, 2);
   auto both = bodies::load_two_bodies(o.a, o.b, {}, o.corners);
@@ -128,6 +130,13 @@ Command add_collide(CLI::App& root, const Globals& globals) {
   app->add_flag("--distance", o->more.distance, "Also compute the distance between the bodies at each step");
   app->add_flag("--clash", o->more.clash,
                 "Also classify the contact and compute its penetration depth at each step");
+  app->add_option("--near", o->more.near,
+                  "Also list the pairs of triangles at most this far apart at each step, in mesh units")
+      ->type_name("D");
+  app->add_option("--manifold", o->more.manifold,
+                  "Also find the contact manifolds at each step, with speculative contacts up to this "
+                  "distance, in mesh units")
+      ->type_name("D");
   add_events_option(*app, o->events);
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);

@@ -263,6 +263,51 @@ void read_value(const TraceNode& node, MeasuredClash& m) {
   read_history(node.at("course"), m.history);
 }
 
+/// Reads an array of rows of numbers.
+template <class Row>
+void read_rows(const TraceNode& node, std::size_t columns, const Row& row) {
+  const std::size_t count = node.array_size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const TraceNode item = node.at(i);
+    if (item.array_size() != columns) item.fail(std::to_string(columns) + " numbers");
+    row(item);
+  }
+}
+
+template <std::size_t n>
+void read_columns(const TraceNode& row, std::size_t first, std::array<double, n>& out) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = row.at(first + i).number();
+}
+
+void read_value(const TraceNode& node, MeasuredNearPairs& m) {
+  m.within = node.at("within").least(0);
+  m.pairs = node.at("pairs").integer<std::uint64_t>();
+  read_rows(node.at("nearest"), 10, [&](const TraceNode& row) {
+    MeasuredNearPairs::Pair& p = m.nearest.emplace_back();
+    p.a = SimplexId(row.at(std::size_t{0}).integer<std::uint32_t>(kMaxId));
+    p.b = SimplexId(row.at(std::size_t{1}).integer<std::uint32_t>(kMaxId));
+    p.lower = row.at(std::size_t{2}).least(0);
+    p.upper = row.at(std::size_t{3}).least(0);
+    read_columns(row, 4, p.points[0]);
+    read_columns(row, 7, p.points[1]);
+  });
+}
+
+void read_value(const TraceNode& node, MeasuredManifolds& m) {
+  m.margin = node.at("margin").least(0);
+  m.manifolds = node.at("manifolds").integer<std::uint64_t>();
+  m.found = node.at("points").integer<std::uint64_t>();
+  read_rows(node.at("contacts"), 12, [&](const TraceNode& row) {
+    MeasuredManifolds::Point& p = m.contacts.emplace_back();
+    p.id = row.at(std::size_t{0}).integer<std::uint64_t>();
+    p.manifold = row.at(std::size_t{1}).integer<std::uint32_t>();
+    p.depth = row.at(std::size_t{2}).number();
+    read_columns(row, 3, p.normal);
+    read_columns(row, 6, p.points[0]);
+    read_columns(row, 9, p.points[1]);
+  });
+}
+
 void read_marks(const TraceNode& node, std::vector<EngineReport::Mark>& marks, bool with_value) {
   const std::size_t count = node.array_size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -308,6 +353,8 @@ void read_field(const TraceNode& node, const Field<Record, Value>& field, Value&
   else if constexpr (std::is_same_v<Value, std::optional<Separation>> ||
                      std::is_same_v<Value, std::optional<MeasuredDistance>> ||
                      std::is_same_v<Value, std::optional<MeasuredClash>> ||
+                     std::is_same_v<Value, std::optional<MeasuredNearPairs>> ||
+                     std::is_same_v<Value, std::optional<MeasuredManifolds>> ||
                      std::is_same_v<Value, std::optional<EngineReport>>)
     read_value(node, value.emplace());
   else if constexpr (std::is_same_v<Value, Counters>)

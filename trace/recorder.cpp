@@ -241,6 +241,16 @@ void Recorder::add(MeasuredClash clash) {
   trace_.steps.back().result.clash = std::move(clash);
 }
 
+void Recorder::add(MeasuredNearPairs near) {
+  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
+  trace_.steps.back().result.near = std::move(near);
+}
+
+void Recorder::add(MeasuredManifolds manifold) {
+  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
+  trace_.steps.back().result.manifold = std::move(manifold);
+}
+
 void Recorder::add(EngineReport report) {
   if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
   trace_.steps.back().result.engine = std::move(report);

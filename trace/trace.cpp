@@ -2,6 +2,7 @@
 #include <bit>
 #include <charconv>
 #include <initializer_list>
+#include <tuple>
 #include <utility>
 
 #include <lrbscope/error.hpp>
@@ -50,6 +51,32 @@ MeasuredClash measured(const ClashResult& result, std::vector<Bounds> history) {
           std::move(history)};
 }
 
+MeasuredNearPairs measured(const NearPairsResult& result, double within) {
+  MeasuredNearPairs out{within, result.found, {}};
+  std::vector<NearPair> nearest(std::min(MeasuredNearPairs::kMaxListed, result.pairs.size()));
+  // Ties are resolved by the order of pairs, so that the list is reproducible.
+  std::partial_sort_copy(result.pairs.begin(), result.pairs.end(), nearest.begin(), nearest.end(),
+                         [](const NearPair& x, const NearPair& y) {
+                           return std::tuple(x.lower, x.a, x.b) < std::tuple(y.lower, y.a, y.b);
+                         });
+  for (const NearPair& p : nearest)
+    out.nearest.push_back({p.a, p.b, p.lower, p.upper, {array_of(p.point[0]), array_of(p.point[1])}});
+  return out;
+}
+
+MeasuredManifolds measured(const ManifoldResult& result, double margin) {
+  MeasuredManifolds out{margin, result.manifolds.size(), 0, {}};
+  for (std::uint32_t i = 0; i < result.manifolds.size(); ++i) {
+    const ContactManifold& m = result.manifolds[i];
+    out.found += m.points.size();
+    for (const ManifoldPoint& p : m.points)
+      if (out.contacts.size() < MeasuredManifolds::kMaxListed)
+        out.contacts.push_back(
+            {p.id, i, p.depth, array_of(m.normal), {array_of(p.point[0]), array_of(p.point[1])}});
+  }
+  return out;
+}
+
 MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> history) {
   return {result.outcome, result.t0, result.t1, std::nullopt, std::nullopt, std::move(history)};
 }
@@ -62,6 +89,19 @@ std::string to_text(const MeasuredClash& m) {
   std::string out(name_of(m.kind));
   if (m.reason != ClashReason::none) out += ": " + std::string(name_of(m.reason));
   if (m.depth) out += ", depth " + interval_text((*m.depth)[0], (*m.depth)[1], m.history.size());
+  return out;
+}
+
+std::string to_text(const MeasuredNearPairs& m) {
+  std::string out = std::to_string(m.pairs) + " pairs within " + digits(m.within);
+  if (!m.nearest.empty())
+    out += ", nearest [" + digits(m.nearest[0].lower) + ", " + digits(m.nearest[0].upper) + "]";
+  return out;
+}
+
+std::string to_text(const MeasuredManifolds& m) {
+  std::string out = std::to_string(m.manifolds) + " manifolds, " + std::to_string(m.found) + " points";
+  if (!m.contacts.empty()) out += ", the first at depth " + digits(m.contacts[0].depth);
   return out;
 }
 

@@ -30,6 +30,8 @@ void write_value(JsonWriter& w, const T& value, Form form) {
     write_json(w, value.value());
   else if constexpr (std::is_same_v<T, std::optional<MeasuredDistance>> ||
                      std::is_same_v<T, std::optional<MeasuredClash>> ||
+                     std::is_same_v<T, std::optional<MeasuredNearPairs>> ||
+                     std::is_same_v<T, std::optional<MeasuredManifolds>> ||
                      std::is_same_v<T, std::optional<EngineReport>>)
     write_json(w, value.value());
   else if constexpr (std::is_same_v<T, Counters>)
@@ -119,6 +121,29 @@ void write_json(JsonWriter& w, const MeasuredClash& m) {
   }
   write_history(w, m.history);
   w.end_object();
+}
+
+void write_json(JsonWriter& w, const MeasuredNearPairs& m) {
+  w.begin_object().member("within", m.within).member("pairs", m.pairs).key("nearest").begin_array();
+  for (const MeasuredNearPairs::Pair& p : m.nearest) {
+    w.begin_array().value(p.a.value()).value(p.b.value()).value(p.lower).value(p.upper);
+    for (const std::array<double, 3>& point : p.points)
+      for (const double x : point) w.value(x);
+    w.end_array();
+  }
+  w.end_array().end_object();
+}
+
+void write_json(JsonWriter& w, const MeasuredManifolds& m) {
+  w.begin_object().member("margin", m.margin).member("manifolds", m.manifolds).member("points", m.found);
+  w.key("contacts").begin_array();
+  for (const MeasuredManifolds::Point& p : m.contacts) {
+    w.begin_array().value(p.id).value(p.manifold).value(p.depth);
+    for (const std::array<double, 3>& vector : {p.normal, p.points[0], p.points[1]})
+      for (const double x : vector) w.value(x);
+    w.end_array();
+  }
+  w.end_array().end_object();
 }
 
 void write_answer(JsonWriter& w, const MeasuredApproach& m) {

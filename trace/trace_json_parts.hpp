@@ -20,6 +20,8 @@ void write_history(JsonWriter& w, const std::vector<Bounds>& history);
 void write_history(JsonWriter& w, const std::vector<ContactBounds>& history);
 void write_json(JsonWriter& w, const MeasuredDistance& m);
 void write_json(JsonWriter& w, const MeasuredClash& m);
+void write_json(JsonWriter& w, const MeasuredNearPairs& m);
+void write_json(JsonWriter& w, const MeasuredManifolds& m);
 /// Writes the members of a first contact except its bound history, without brackets.
 void write_answer(JsonWriter& w, const MeasuredApproach& m);
 void write_json(JsonWriter& w, const MeasuredApproach& m);

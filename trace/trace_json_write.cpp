@@ -670,11 +670,22 @@ class TraceWriter {
     }
   }
 
+  void write_count(std::string_view name, EventId i, std::string_view unit, std::uint64_t count) {
+    begin_counter_within(name, i, 1);
+    out_.raw("\"");
+    out_.raw(unit);
+    out_.raw("\":");
+    out_.number(count);
+    out_.raw("}}");
+  }
+
   /// Writes the measurements of a step before its result, which is its last event.
   void write_measured(EventId i) {
     const StepResult& r = t_.steps[t_.step_of(i)].result;
     if (r.distance) write_history("distance", i, 0, r.distance->history);
     if (r.clash) write_history("depth", i, 0.5, r.clash->history);
+    if (r.near) write_count("near pairs", i, "pairs", r.near->pairs);
+    if (r.manifold) write_count("manifold points", i, "points", r.manifold->found);
   }
 
   /// Writes the search for the first contact, which precedes all steps, within the first event.

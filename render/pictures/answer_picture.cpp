@@ -181,23 +181,13 @@ Image picture_of(const NearPairsResult& result, double within, const PosedBodies
   std::vector<NearPair> drawn(std::min(kMaxSegments, result.pairs.size()));
   std::partial_sort_copy(result.pairs.begin(), result.pairs.end(), drawn.begin(), drawn.end(),
                          [](const NearPair& x, const NearPair& y) { return x.lower < y.lower; });
+  std::vector<NearMark> marks;
   for (const NearPair& pair : drawn) {
-    DrawLine segment;
-    segment.points = {pair.point[0], pair.point[1]};
-    segment.colour = kGapColour;
-    segment.width = 0.8F;
-    segment.layer = Layer::on_top;
-    if (pair.upper > 0)
-      p.scene.list.lines.push_back(segment);
-    else
-      add_mark(p.scene.list, pair.point[0], palette::kContact, 2);
+    marks.push_back({{pair.point[0], pair.point[1]}, pair.upper == 0});
     p.detail.insert(p.detail.end(), {pair.point[0], pair.point[1]});
     p.across += pair.point[1] - pair.point[0];
   }
-  if (!drawn.empty() && drawn.back().upper > 0)
-    p.scene.key.push_back(
-        {Mark::line, kGapColour,
-         drawn.size() < result.pairs.size() ? "closest points of the nearest pairs" : "closest points"});
+  add_near_pairs(p.scene, marks, drawn.size() == result.pairs.size(), style_of(look.style));
   p.overlay.event_colour = palette::kContact;
   p.overlay.event = group_digits(result.found) + (result.found == 1 ? " pair" : " pairs") +
                     " of triangles at most " + short_number(within) + " apart";
@@ -260,32 +250,15 @@ Image picture_of(const ClashResult& result, const PosedBodies& bodies, const Loo
 Image picture_of(const ManifoldResult& result, double margin, const PosedBodies& bodies, const Look& look) {
   AnswerPicture p(bodies);
   make_translucent(p.scene.list, 140);
-  // Arrows are as long as the contact is large, within limits set by the bodies.
-  Eigen::AlignedBox3d points;
-  std::size_t count = 0;
+  std::vector<ContactMark> marks;
   for (const ContactManifold& manifold : result.manifolds)
     for (const ManifoldPoint& point : manifold.points) {
-      points.extend(point.point[1]);
-      ++count;
-    }
-  const double size = bounds(p.whole).diagonal().norm();
-  const double length = std::clamp(count > 0 ? 0.35 * points.diagonal().norm() : 0, 0.03 * size, 0.1 * size);
-  bool has_gaps = false, has_contacts = false;
-  for (const ContactManifold& manifold : result.manifolds)
-    for (const ManifoldPoint& point : manifold.points) {
-      const bool is_gap = point.depth < 0;
-      has_gaps = has_gaps || is_gap;
-      has_contacts = has_contacts || !is_gap;
-      add_arrow(p.scene.list, point.point[1], point.point[1] + length * manifold.normal, kSeparationColour);
-      add_mark(p.scene.list, point.point[1], is_gap ? kGapColour : palette::kContact, 4);
+      marks.push_back({point.point[1], manifold.normal, point.depth < 0});
       p.detail.push_back(point.point[1]);
     }
+  const std::size_t count = marks.size();
+  add_contact_points(p.scene, marks, margin, size_of(bodies), style_of(look.style));
   if (count > 0) p.across = result.manifolds[0].normal;
-  if (has_contacts) p.scene.key.push_back({Mark::point, palette::kContact, "contact points"});
-  if (has_gaps)
-    p.scene.key.push_back(
-        {Mark::point, kGapColour, "speculative, at most " + short_number(margin) + " apart"});
-  if (count > 0) p.scene.key.push_back({Mark::line, kSeparationColour, "normals, from A to B"});
   const std::size_t manifolds = result.manifolds.size();
   p.overlay.event_colour = palette::kContact;
   p.overlay.event = group_digits(manifolds) + (manifolds == 1 ? " manifold, " : " manifolds, ") +

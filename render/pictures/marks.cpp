@@ -185,6 +185,54 @@ void add_gap(render::Scene& scene, const MarkedSegment& gap, const render::Style
   scene.key.push_back({render::LegendItem::Mark::line, colour, "nearest points"});
 }
 
+void add_near_pairs(render::Scene& scene, std::span<const NearMark> pairs, bool all,
+                    const render::Style& style) {
+  constexpr float kThin = 0.8F;
+  const render::Rgba colour = style.of(kGapColour);
+  bool has_segments = false;
+  for (const NearMark& pair : pairs) {
+    if (pair.intersects) {
+      add_mark(scene.list, pair.points[0], render::palette::kContact, 2, style.paper);
+      continue;
+    }
+    has_segments = true;
+    render::DrawLine segment;
+    segment.points = {pair.points[0], pair.points[1]};
+    segment.colour = colour;
+    segment.width = kThin;
+    segment.layer = render::Layer::on_top;
+    scene.list.lines.push_back(segment);
+  }
+  if (has_segments)
+    scene.key.push_back({render::LegendItem::Mark::line, colour,
+                         all ? "closest points" : "closest points of the nearest pairs"});
+}
+
+double normal_length(std::span<const ContactMark> contacts, double size) {
+  Eigen::AlignedBox3d box;
+  for (const ContactMark& c : contacts) box.extend(c.point);
+  return std::clamp(contacts.empty() ? 0 : 0.35 * box.diagonal().norm(), 0.03 * size, 0.1 * size);
+}
+
+void add_contact_points(render::Scene& scene, std::span<const ContactMark> contacts, double margin,
+                        double size, const render::Style& style) {
+  const double length = normal_length(contacts, size);
+  const render::Rgba of_gap = style.of(kGapColour);
+  bool has_gaps = false, has_contacts = false;
+  for (const ContactMark& c : contacts) {
+    (c.is_gap ? has_gaps : has_contacts) = true;
+    add_arrow(scene.list, c.point, c.point + length * c.normal, kSeparationColour);
+    add_mark(scene.list, c.point, c.is_gap ? of_gap : render::palette::kContact, 4, style.paper);
+  }
+  if (has_contacts)
+    scene.key.push_back({render::LegendItem::Mark::point, render::palette::kContact, "contact points"});
+  if (has_gaps)
+    scene.key.push_back({render::LegendItem::Mark::point, of_gap,
+                         "speculative, at most " + render::short_number(margin) + " apart"});
+  if (!contacts.empty())
+    scene.key.push_back({render::LegendItem::Mark::line, kSeparationColour, "normals, from A to B"});
+}
+
 void add_separation_vector(render::Scene& scene, const MarkedSegment& way, int dim) {
   outline(scene.list, {way.from, way.to}, kSeparationColour, kSegmentWidth);
   const Vector3d along = (way.to - way.from).normalized();

@@ -60,6 +60,28 @@ std::optional<MarkedSegment> separation_vector_of(const std::optional<ProvedInte
 void add_gap(render::Scene& scene, const MarkedSegment& gap, const render::Style& style);
 void add_separation_vector(render::Scene& scene, const MarkedSegment& vector, int dim);
 
+/// A pair of faces that are near: their closest points, which are equal if the faces intersect.
+struct NearMark {
+  std::array<Eigen::Vector3d, 2> points;
+  bool intersects = false;
+};
+/// Adds a thin segment between the closest points of each pair, or a point where the faces intersect.
+/// `all`: no pair is missing, for the key.
+void add_near_pairs(render::Scene& scene, std::span<const NearMark> pairs, bool all,
+                    const render::Style& style);
+
+/// A point of a contact manifold, on B's surface.
+struct ContactMark {
+  Eigen::Vector3d point, normal;
+  bool is_gap = false;
+};
+/// Returns the length of the arrows for normals: that of the contact, within limits set by the size of the
+/// bodies.
+double normal_length(std::span<const ContactMark> contacts, double size);
+/// Adds the points with their normals as arrows. `margin`: of speculative contacts. `size`: of the bodies.
+void add_contact_points(render::Scene& scene, std::span<const ContactMark> contacts, double margin,
+                        double size, const render::Style& style);
+
 /// Adds the separating plane, or otherwise the closest pair of separated boxes and a plane between them. Adds
 /// nothing without plane and boxes. `through`: boxes are visible through faces in front of them.
 void add_separating_plane(render::DrawList& list, const WalkExplanation& walk, const PosedBodies& bodies,

@@ -118,6 +118,10 @@ std::vector<Eigen::Vector3d> real_corners(const LrbRep& rep, const Pose& pose = 
 std::vector<Eigen::Vector3d> region_corners(const LrbRep& rep, RegionId region);
 /// Returns the box around a body's real faces.
 Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose = {});
+/// Returns the diagonal of the box around both bodies.
+inline double size_of(const PosedBodies& bodies) {
+  return box_of(bodies.a, bodies.pose_a).merged(box_of(bodies.b, bodies.pose_b)).diagonal().norm();
+}
 
 /// Returns a direction that shows a box from its longer horizontal side, obliquely and slightly from above.
 /// `up` is an axis.

@@ -73,6 +73,8 @@ class FrameState {
     /// The segment between the closest points, and the separating translation of B, of a step that ends here;
     /// nullopt if they were not requested.
     std::optional<MarkedSegment> gap, separation_vector;
+    std::vector<NearMark> near;         ///< of the same step
+    std::vector<ContactMark> contacts;  ///< points of its contact manifolds
     /// The wrong pairs of another engine in the step; empty before the step's end.
     std::span<const WrongPair> wrong;
     /// The pass of a construction that the event belongs to; null before the first, and for other runs.
@@ -161,5 +163,23 @@ inline std::optional<MarkedSegment> separation_vector_of(const trace::MeasuredCl
   if (clash.depth) depth = {(*clash.depth)[0], (*clash.depth)[1]};
   return separation_vector_of(depth, vector_of(clash.translation), bodies, contacts);
 }
+
+inline std::vector<NearMark> near_marks(const trace::MeasuredNearPairs& near) {
+  std::vector<NearMark> out;
+  for (const trace::MeasuredNearPairs::Pair& p : near.nearest)
+    out.push_back({{vector_of(p.points[0]), vector_of(p.points[1])}, p.upper == 0});
+  return out;
+}
+
+inline std::vector<ContactMark> contact_marks(const trace::MeasuredManifolds& manifolds) {
+  std::vector<ContactMark> out;
+  for (const trace::MeasuredManifolds::Point& p : manifolds.contacts)
+    out.push_back({vector_of(p.points[1]), vector_of(p.normal), p.depth < 0});
+  return out;
+}
+
+/// Return "12 pairs of faces within 0.05" and "2 contact manifolds with 8 points".
+std::string text_of(const trace::MeasuredNearPairs& near);
+std::string text_of(const trace::MeasuredManifolds& manifolds);
 
 }  // namespace lrb::run

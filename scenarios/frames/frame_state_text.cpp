@@ -191,6 +191,16 @@ std::string FrameState::node_pair_text(const trace::Event& e) {
          render::counted(work.met - work.rejected, "left to test", "left to test");
 }
 
+std::string text_of(const trace::MeasuredNearPairs& near) {
+  return render::counted(near.pairs, "pair", "pairs") + " of faces within " +
+         render::short_number(near.within);
+}
+
+std::string text_of(const trace::MeasuredManifolds& manifolds) {
+  return render::counted(manifolds.manifolds, "contact manifold", "contact manifolds") + " with " +
+         render::counted(manifolds.found, "point", "points");
+}
+
 std::string FrameState::measured_text() const {
   if (now_.answer == nullptr) return {};
   std::string out;
@@ -198,6 +208,8 @@ std::string FrameState::measured_text() const {
   if (now_.answer->clash && now_.answer->clash->kind != ClashKind::apart)
     out += (out.empty() ? "" : ", ") + kind_text(now_.answer->clash->kind, now_.answer->clash->reason);
   if (now_.separation_vector) out += ", depth " + now_.separation_vector->text;
+  if (now_.answer->near) out += (out.empty() ? "" : ", ") + text_of(*now_.answer->near);
+  if (now_.answer->manifold) out += (out.empty() ? "" : ", ") + text_of(*now_.answer->manifold);
   return out;
 }
 

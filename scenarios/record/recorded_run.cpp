@@ -220,7 +220,7 @@ class StepQueries {
   }
 
  private:
-  void ask_more(const Pose& pose_a, const Pose& pose_b, trace::Recorder& recorder) const {
+  void ask_more(const Pose& pose_a, const Pose& pose_b, trace::Recorder& recorder) {
     if (s_.more.distance) {
       BoundsHistory reported;
       const DistanceResult found = distance(a_, pose_a, b_, pose_b, {}, reported);
@@ -231,11 +231,23 @@ class StepQueries {
       const ClashResult found = clash(a_, pose_a, b_, pose_b, {}, reported);
       recorder.add(trace::measured(found, std::move(reported.of_depth)));
     }
+    if (s_.more.near) {
+      NearPairsRequest request;
+      request.within = *s_.more.near;
+      recorder.add(trace::measured(near_pairs(a_, pose_a, b_, pose_b, request), request.within));
+    }
+    if (s_.more.manifold) {
+      ManifoldRequest request;
+      request.margin = *s_.more.manifold;
+      manifolds_ = contact_manifolds(a_, pose_a, b_, pose_b, request, manifolds_ ? &*manifolds_ : nullptr);
+      recorder.add(trace::measured(*manifolds_, request.margin));
+    }
   }
 
   const spec::Scenario& s_;
   const LrbRep &a_, &b_;
   std::optional<CoherentQuery> coherent_;
+  std::optional<ManifoldResult> manifolds_;  ///< of the previous step, whose ids continue
   Workspace workspace_;
 };
 

@@ -52,6 +52,13 @@ void add_measured(const trace::StepResult& r, const std::string& at, std::vector
     out.push_back({"Distance", interval_text(r.distance->lower, r.distance->upper),
                    at + "; of the surfaces, proven" +
                        (r.distance->solids_meet && r.distance->upper > 0 ? ". The solids overlap" : "")});
+  if (r.near)
+    out.push_back({"Near pairs", render::group_digits(r.near->pairs),
+                   at + "; pairs of triangles at most " + render::short_number(r.near->within) +
+                       " apart, none missed"});
+  if (r.manifold)
+    out.push_back({"Contact manifolds", render::group_digits(r.manifold->manifolds),
+                   at + "; " + render::counted(r.manifold->found, "point", "points")});
   if (!r.clash) return;
   const std::string reason(name_of(r.clash->reason));
   out.push_back({"Contact kind", kind_text(r.clash->kind), reason.empty() ? at : at + "; " + reason});
@@ -206,6 +213,10 @@ report::Table steps_table(const trace::Trace& trace) {
   const bool has_clash = was_measured(trace, &trace::StepResult::clash);
   if (has_distance) t.columns.emplace_back("distance");
   if (has_clash) t.columns.insert(t.columns.end(), {"contact kind", "depth"});
+  const bool has_near = was_measured(trace, &trace::StepResult::near);
+  const bool has_manifold = was_measured(trace, &trace::StepResult::manifold);
+  if (has_near) t.columns.emplace_back("near pairs");
+  if (has_manifold) t.columns.insert(t.columns.end(), {"contact manifolds", "points"});
   for (const trace::Step& s : trace.steps) {
     t.rows.push_back(
         {std::to_string(s.index), io::in_words(name_of(s.result.relation)),
@@ -221,6 +232,10 @@ report::Table steps_table(const trace::Trace& trace) {
     if (const auto& c = s.result.clash; has_clash)
       row.insert(row.end(), {c ? kind_text(c->kind, c->reason) : "",
                              c && c->depth ? interval_text((*c->depth)[0], (*c->depth)[1]) : ""});
+    if (const auto& n = s.result.near; has_near) row.push_back(n ? render::group_digits(n->pairs) : "");
+    if (const auto& m = s.result.manifold; has_manifold)
+      row.insert(row.end(),
+                 {m ? render::group_digits(m->manifolds) : "", m ? render::group_digits(m->found) : ""});
   }
   t.note = "The fingerprint is FNV-1a 64 over the sorted pairs: equal answers, equal fingerprints.";
   if (request.is_coarse()) t.note += " An error bound of 0: the answer is exact.";

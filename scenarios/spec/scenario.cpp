@@ -146,7 +146,7 @@ CollideRequest read_query(const io::JsonNode& node, StepQuestions* more) {
   std::vector<std::string> keys;
   for_each_field<CollideRequest>([&](const auto& field) { keys.emplace_back(field.name); });
   std::erase(keys, "max_time");
-  if (more != nullptr) keys.insert(keys.end(), {"coherent", "distance", "clash"});
+  if (more != nullptr) keys.insert(keys.end(), {"coherent", "distance", "clash", "near", "manifold"});
   node.object(keys);
   const auto read_flag = [&](const char* key, bool& flag) {
     if (node.has(key)) flag = node.at(key).boolean();
@@ -155,6 +155,8 @@ CollideRequest read_query(const io::JsonNode& node, StepQuestions* more) {
     read_flag("coherent", more->coherent);
     read_flag("distance", more->distance);
     read_flag("clash", more->clash);
+    if (const auto n = node.get("near")) read_value(*n, more->near.emplace());
+    if (const auto n = node.get("manifold")) read_value(*n, more->manifold.emplace());
   }
   CollideRequest r;
   for_each_field<CollideRequest>([&](const auto& field) {

@@ -85,9 +85,11 @@ using render::FrameSpec;
 
 /// Further queries at each step, and whether steps are coherent.
 struct StepQuestions {
-  bool coherent = false;  ///< each step continues from the previous one: engine/collide
-  bool distance = false;  ///< query the distance of the bodies
-  bool clash = false;     ///< query the kind and depth of their contact
+  bool coherent = false;           ///< each step continues from the previous one: engine/collide
+  bool distance = false;           ///< query the distance of the bodies
+  bool clash = false;              ///< query the kind and depth of their contact
+  std::optional<double> near;      ///< list the pairs of faces at most this far apart
+  std::optional<double> manifold;  ///< find the contact manifolds, with this margin
 };
 
 struct Expectation {

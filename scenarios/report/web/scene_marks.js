@@ -197,20 +197,28 @@ function squareBetween(p, q, half) {
   return [u, v, u.clone().negate(), v.clone().negate()].map((way) => midpoint.clone().add(way).toArray());
 }
 
-// ---- in the view: the distance of the bodies in the current step, or the separation vector where they
-// overlap
+// ---- in the view: the distance of the bodies in the current step, the separation vector where they overlap,
+// near pairs and contact manifolds
+const MEASURED = [
+  { colour: "ink", key: "between the nearest points of the bodies", width: 3.5, isArrow: false },
+  { colour: "separationVector", key: "B leaves A this way", width: 3.5, isArrow: true },
+  { colour: "ink", key: "between the closest points of near pairs", width: 1.5, isArrow: false },
+  { colour: "separationVector", key: "normals of contacts, from A to B", width: 2.5, isArrow: true },
+];
+
 class MeasuredMarks {
   /** `measured`: as the page has it; null: not requested. */
   constructor(view, measured) {
     Object.assign(this, { view, group: new THREE.Group(), shown: null });
-    this.ofStep = new Map(); // by number: {separationVector, from, to, words}
+    this.ofStep = new Map(); // by number: a list of {kind, from, to, words}, the first of which has the text
     if (measured) {
       const ends = unpack(measured.ends),
-        separationVector = unpack(measured.separationVector),
+        kinds = unpack(measured.kind),
         at = (i) => new THREE.Vector3(...ends.subarray(i, i + 3));
-      unpack(measured.step).forEach((step, i) =>
-        this.ofStep.set(step, { separationVector: separationVector[i] === 1, from: at(6 * i), to: at(6 * i + 3), words: measured.words[i] }),
-      );
+      unpack(measured.step).forEach((step, i) => {
+        if (!this.ofStep.has(step)) this.ofStep.set(step, []);
+        this.ofStep.get(step).push({ kind: kinds[i], from: at(6 * i), to: at(6 * i + 3), words: measured.words[i] });
+      });
     }
     view.stage.add(this.group);
   }
@@ -218,25 +226,27 @@ class MeasuredMarks {
   /** Rebuilds the lines if the step has changed. */
   draw() {
     const { events, selection, legend, colours } = this.view,
-      now = this.ofStep.get(events.stepNumber(selection.event)) || null;
-    if (now === this.shown) return;
-    this.shown = now;
+      now = this.ofStep.get(events.stepNumber(selection.event)) || [];
+    if ((now[0] || null) === this.shown) return;
+    this.shown = now[0] || null;
     for (const object of this.group.children.slice()) discard(this.group, object);
-    if (now) {
-      const colour = now.separationVector ? colours.separationVector : colours.ink;
-      this.addLines(now.separationVector ? arrowOf(now.from, now.to, events.dim) : [now.from, now.to], colour);
-    }
-    const separationVector = [colours.separationVector, "B leaves A this way"],
-      gap = [colours.ink, "between the nearest points of the bodies", WHITE];
-    legend.also(now ? [now.separationVector ? separationVector : gap] : [], "measured");
+    const key = [];
+    MEASURED.forEach(({ colour, key: text, width, isArrow }, kind) => {
+      const marks = now.filter((mark) => mark.kind === kind);
+      if (marks.length === 0) return;
+      const lines = marks.flatMap(({ from, to }) => (isArrow ? arrowOf(from, to, events.dim) : [from, to]));
+      this.addLines(lines, colours[colour], width);
+      key.push(colour === "ink" ? [colours.ink, text, WHITE] : [colours[colour], text]);
+    });
+    legend.also(key, "measured");
   }
 
   /** A pale line under each, so that they are visible on bodies of any colour. */
-  addLines(points, colour) {
+  addLines(points, colour, lineWidth) {
     const ends = points.flatMap((p) => p.toArray());
     for (const [c, width, order] of [
-      [WHITE, 7, 8],
-      [colour, 3.5, 9],
+      [WHITE, 2 * lineWidth, 8],
+      [colour, lineWidth, 9],
     ]) {
       const lines = thickLines(ends, thickMaterial(c, width, this.view.size));
       lines.renderOrder = order;

@@ -46,6 +46,8 @@ inline constexpr auto kFields<trace::StepResult> =
                field("separation", &trace::StepResult::separation, Kept::if_set),
                field("distance", &trace::StepResult::distance, Kept::if_set),
                field("clash", &trace::StepResult::clash, Kept::if_set),
+               field("near", &trace::StepResult::near, Kept::if_set),
+               field("manifold", &trace::StepResult::manifold, Kept::if_set),
                field("engine", &trace::StepResult::engine, Kept::if_set),
                field("counters", &trace::StepResult::counters)};
 

@@ -72,6 +72,8 @@ class Recorder final : public CollideProbe {
   /// Adds a measurement to the current step. Call before end_step().
   void add(MeasuredDistance distance);
   void add(MeasuredClash clash);
+  void add(MeasuredNearPairs near);
+  void add(MeasuredManifolds manifold);
   void add(EngineReport report);
   void end_step(const CollideResult& result);
 

@@ -17,6 +17,7 @@
 #include <lrbscope/build.hpp>
 #include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
+#include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/enum_names.hpp>
 #include <lrbscope/explain.hpp>
 #include <lrbscope/first_contact.hpp>
@@ -27,7 +28,8 @@
 
 namespace lrb::trace {
 
-// Recorded results of further queries: distance, clash and the convergence of their bounds per step, and the
+// Recorded results of further queries: distance, clash and the convergence of their bounds, near pairs and
+// contact manifolds per step, and the
 // first contact of a whole motion.
 
 /// A DistanceResult without its features.
@@ -53,6 +55,45 @@ struct MeasuredClash {
   friend bool operator==(const MeasuredClash&, const MeasuredClash&) = default;
 };
 
+/// A NearPairsResult: the number of pairs, and the nearest of them.
+struct MeasuredNearPairs {
+  struct Pair {
+    SimplexId a = kNull, b = kNull;
+    double lower = 0, upper = 0;                    ///< bounds of the distance
+    std::array<std::array<double, 3>, 2> points{};  ///< on A and B
+
+    friend bool operator==(const Pair&, const Pair&) = default;
+  };
+
+  double within = 0;          ///< the requested distance
+  std::uint64_t pairs = 0;    ///< number of pairs found
+  std::vector<Pair> nearest;  ///< at most kMaxListed, by ascending lower bounds
+
+  static constexpr std::size_t kMaxListed = 1000;
+  friend bool operator==(const MeasuredNearPairs&, const MeasuredNearPairs&) = default;
+};
+
+/// A ManifoldResult without its pairs.
+struct MeasuredManifolds {
+  struct Point {
+    std::uint64_t id = 0;                           ///< the same from step to step
+    std::uint32_t manifold = 0;                     ///< number of its manifold
+    double depth = 0;                               ///< negative: a gap
+    std::array<double, 3> normal{};                 ///< from A to B
+    std::array<std::array<double, 3>, 2> points{};  ///< on A and B
+
+    friend bool operator==(const Point&, const Point&) = default;
+  };
+
+  double margin = 0;            ///< the requested distance of speculative contacts
+  std::uint64_t manifolds = 0;  ///< number of manifolds found
+  std::uint64_t found = 0;      ///< number of points found
+  std::vector<Point> contacts;  ///< the first points, at most kMaxListed
+
+  static constexpr std::size_t kMaxListed = 1000;
+  friend bool operator==(const MeasuredManifolds&, const MeasuredManifolds&) = default;
+};
+
 /// First contact of the motion that the steps sample. Times are shares of the motion.
 struct MeasuredApproach {
   MotionOutcome outcome = MotionOutcome::undecided;
@@ -68,12 +109,16 @@ struct MeasuredApproach {
 
 MeasuredDistance measured(const DistanceResult& result, std::vector<Bounds> history);
 MeasuredClash measured(const ClashResult& result, std::vector<Bounds> history);
+MeasuredNearPairs measured(const NearPairsResult& result, double within);
+MeasuredManifolds measured(const ManifoldResult& result, double margin);
 /// Converts a result. `step` and `length` stay empty, because they depend on the steps of the trace.
 MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> history);
 
 /// Return a one-line summary: "[0.25, 0.25] in 31 looks".
 std::string to_text(const MeasuredDistance& m);
 std::string to_text(const MeasuredClash& m);
+std::string to_text(const MeasuredNearPairs& m);
+std::string to_text(const MeasuredManifolds& m);
 std::string to_text(const MeasuredApproach& m);
 
 // The answer of another engine, as it reported it.
@@ -431,9 +476,11 @@ struct StepResult {
   double error_bound = 0;  ///< as in CollideResult; kept, like `finished`, for coarse queries only
   bool finished = true;
   std::optional<Separation> separation = {};
-  std::optional<MeasuredDistance> distance = {};  ///< if requested
-  std::optional<MeasuredClash> clash = {};        ///< if requested
-  std::optional<EngineReport> engine = {};        ///< if another engine reported its answer
+  std::optional<MeasuredDistance> distance = {};   ///< if requested
+  std::optional<MeasuredClash> clash = {};         ///< if requested
+  std::optional<MeasuredNearPairs> near = {};      ///< if requested
+  std::optional<MeasuredManifolds> manifold = {};  ///< if requested
+  std::optional<EngineReport> engine = {};         ///< if another engine reported its answer
 
   friend bool operator==(const StepResult&, const StepResult&) = default;
 };
