@@ -37,8 +37,8 @@ class NearestPairs {
   double size() const { return size_; }
 
   /// Lets the best pair's slab suffice for pairs whose distance equals the least one up to rounding, without
-  /// their closest points. The last digits of upper() then depend on the order of the pairs, so the promise of
-  /// distance(), that more steps only narrow the interval, does not hold.
+  /// their closest points. The last digits of upper() then depend on the order of the pairs, so the promise
+  /// of distance(), that more steps only narrow the interval, does not hold.
   void spare_equal_pairs() { spares_ = true; }
   /// Allows intervals of this width (world units), for traversals whose bounds are no more accurate.
   void allow_width(double width) { allowed_ = width; }
