@@ -97,7 +97,7 @@ inline void add_quantity_option(CLI::App& app, methods::Quantity& quantity) {
       ->type_name("Q");
 }
 
-/// Adds an option that takes one of an enum's words.
+/// Adds an option whose value is the name of an enumerator.
 template <class Enum, class Target>
 void add_choice(CLI::App& app, const std::string& name, Target& target, const std::string& what) {
   std::vector<std::string> words;
@@ -124,8 +124,8 @@ void add_repeat_option(CLI::App& app, std::uint32_t& repeat, const std::string& 
 /// Adds --patch, --max-outer, --lean, --seed and --threads.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
-/// The options --from, --look-at, --zoom, --projection and --up, and --orbit if added: the cameras of
-/// pictures. They override the scenario.
+/// Camera options of pictures: --from, --look-at, --zoom, --projection and --up, and --orbit if added. They
+/// override the scenario.
 struct CameraOptions {
   std::string from, look_at, up;
   std::optional<double> orbit;
@@ -135,8 +135,8 @@ struct CameraOptions {
 void add_camera_options(CLI::App& app, CameraOptions& options);
 /// Adds --orbit, for pictures of several frame states.
 void add_orbit_option(CLI::App& app, CameraOptions& options);
-/// Changes all views. --up rotates existing views; --from and --look-at are given in the axes of the bodies'
-/// files, and are not rotated. Throws InputError for an invalid camera.
+/// Applies the options to all views. --up rotates existing views; --from and --look-at are given in the axes
+/// of the bodies' files, and are not rotated. Throws InputError for an invalid camera.
 void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& views);
 
 /// The camera options, and --size, --dpi, --style, --no-title, --no-legend, --transparent, --format,
@@ -166,7 +166,7 @@ void apply(const PictureOptions& options, render::FrameSpec& spec);
 
 /// Adds --animate, for commands that call animate_frames().
 void add_animation_option(CLI::App& app, PictureOptions& options);
-/// Makes the animation, if requested, of the frames in a folder.
+/// Encodes the frames in a folder as an animation, if one was requested.
 void animate_frames(const PictureOptions& options, const std::string& folder);
 
 /// Adds --up, which takes x, y or z.
@@ -178,8 +178,8 @@ render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
 /// Both use the direction of the first given view.
 std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as = {});
 
-/// Selects the view direction that hides least of the contacts unless one was given, and omits a close-up
-/// that would show almost everything.
+/// Selects the view direction from which the bodies hide least of the contacts, unless one was given. Omits a
+/// close-up that would show almost the entire scene.
 void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Recording& recording);
 
 /// Returns the number of hardware threads, at least 1.

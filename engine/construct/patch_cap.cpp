@@ -1,15 +1,15 @@
 // Simplifies a patch into its cap by edge collapses that only move the surface outward (progressive hulls:
 // Sander, Gu, Gortler, Hoppe and Snyder 2000).
-// 1. Propose a collapse for every edge with an interior end: to a new vertex, or onto its other end
-//    if that is on the ring.
+// 1. Propose a collapse for every edge with an interior end: to a new vertex, or onto its other end if that
+//    is on the ring, the boundary loop of the patch.
 // 2. Pop the cheapest one from a priority queue; evaluate it again if its star has changed, and put it back
 //    if its cost has risen.
 // 3. Collapse the edge, and propose the edges around the new vertex. Repeat until no collapse is accepted.
 //
-// A collapse is rejected in find_star(), if the result would not be a surface; in measure_star(), for its
-// position, deviation, added volume or shape; or in confirm(), for its deviation in between or by an exact
-// test. A rejection, unless by EmbedCheck, is recorded in the surface and remains valid until the star or its
-// neighbours change.
+// Three functions reject collapses: find_star() if the result would not be a surface; measure_star() by the
+// position of the vertex, its deviation, the added volume or the shape of triangles; confirm() by the
+// deviation at sample points or by an exact test. Rejections, except those by EmbedCheck, are recorded in the
+// surface and remain valid until the star or its neighbours change.
 
 #include "engine/construct/patch_cap.hpp"
 
@@ -55,7 +55,7 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
       }
       if (confirm(*now) == CapVerdict::accepted)
         collapse(*now);
-      else if (!limits_.check)  // the check's verdict may change by events far away
+      else if (!limits_.check)  // its verdict may change with distant collapses
         cap_.reject(star_);
     }
   }
@@ -77,8 +77,8 @@ void PatchCap::collapse(const Candidate& c) {
   for (std::size_t k = 0; k < rim_.size(); ++k) {
     if (cap_.is_ring(rim_[k].a)) continue;
     propose(rim_[k].a, w);
-    // Lean bodies keep the order of earlier versions: they continue with the rim that was evaluated last. The
-    // edges that are skipped wait for the next round.
+    // Lean builds keep the order of earlier versions, which read the next edges from the rim of the star
+    // evaluated last. The next round proposes the skipped edges.
     if (!fits()) std::copy_n(star_.rim.begin(), std::min(rim_.size(), star_.rim.size()), rim_.begin());
   }
 }
@@ -112,8 +112,8 @@ void PatchCap::propose(int u, int v) {
 
 /// Evaluates the collapse of an edge; leaves the edge's star in star_.
 std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
-  // Cheap rejection before the star is gathered.
-  if (fits() && cap_.is_ring(v) && cap_.is_behind_a_face_at(u, v)) return std::nullopt;  // four in five
+  // Cheap rejection of about four in five edges, before the star is gathered.
+  if (fits() && cap_.is_ring(v) && cap_.is_behind_a_face_at(u, v)) return std::nullopt;
   if (!cap_.find_star(u, v, star_) || cap_.was_rejected(star_)) return std::nullopt;
   return evaluate_star(u, v);
 }
@@ -133,7 +133,7 @@ std::optional<PatchCap::Candidate> PatchCap::evaluate_star(int u, int v) {
   return c;
 }
 
-/// Evaluates it without recording rejections.
+/// As evaluate_star(), but does not record a rejection; its reason is in why_.
 std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
   // Step 1: centre and radius of the rim set the scale of all tolerances.
   Vector3 centre = Vector3::Zero();
@@ -168,10 +168,10 @@ std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
   return c;
 }
 
-/// Returns the position of the new vertex, or nullopt if no position is feasible: projects a target,
-/// limits_.depth radii behind the star's centre, onto the polyhedron in front of the planes, so that the
-/// vertex is above the middle of the star and as low as possible. (The lowest vertex by a linear program
-/// drifts sideways where the star is flat.)
+/// Returns the position of the new vertex, or nullopt if no position is feasible. Projects a target,
+/// limits_.depth radii below the star's centre, onto the intersection of the half-spaces in front of the
+/// planes, so that the vertex is as low as possible and above the centre. (The lowest vertex by a linear
+/// program drifts sideways where the star is flat.)
 std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   // The margin keeps the floating-point position strictly in front, so that the exact confirmation succeeds.
   const double margin = kPlacementMargin * radius, slack = kPlacementSlack * radius;
@@ -260,7 +260,7 @@ CapVerdict PatchCap::confirm(const Candidate& c) const {
     const auto& v = cap_.faces()[f].v;
     if (v[0] == c.v && cap_.is_ring(c.v)) continue;
     if ((v[1] == c.v || v[2] == c.v) && cap_.is_ring(c.v)) continue;
-    // Strictly in front of every triangle that it covers. Exact.
+    // Exact: the vertex must be strictly in front of every triangle that the fan covers.
     if (exact::PlaneSide(cap_.x(v[0]).data(), cap_.x(v[1]).data(), cap_.x(v[2]).data()).side(c.w.data()) <= 0)
       return CapVerdict::no_place;
   }
@@ -276,8 +276,8 @@ CapVerdict PatchCap::verdict_on_edge(int u, int v) {
 }
 
 CapVerdict PatchCap::what_holds_back() {
-  // Count the verdicts of all remaining edges, then return the most frequent one of the first non-empty
-  // class.
+  // Count the verdicts of all remaining edges. Return the most frequent one of the limits or, if there is
+  // none, of the geometric reasons.
   std::array<std::uint32_t, kEnumNames<CapVerdict>.size()> edges{};
   for (int u = cap_.ring_size(); u < cap_.vertex_count(); ++u) {
     if (!cap_.is_used(u)) continue;

@@ -37,11 +37,11 @@ class PatchCap {
   CapVerdict what_holds_back();
 
  private:
-  /// A collapse and its cost; w is set only if v is not on the ring.
+  /// A collapse of the edge (u, v) into a vertex at w, and its cost. If v is on the ring, w is its position.
   struct Candidate {
     double cost;
     int u, v;
-    std::uint32_t version;  ///< the surface's when it was evaluated
+    std::uint32_t version;  ///< version of the surface at the evaluation
     Eigen::Vector3d w;
     bool operator<(const Candidate& other) const {  // orders the cheapest last, for heaps
       if (cost != other.cost) return cost > other.cost;
@@ -75,7 +75,7 @@ class PatchCap {
   const Patch* patch_ = nullptr;
   std::vector<Candidate> queue_;
   CapSurface::Star star_;
-  std::vector<CapSurface::Star::Rim> rim_;  ///< a copy of the star's
+  std::vector<CapSurface::Star::Rim> rim_;  ///< copy of star_.rim for collapse()
   std::vector<HalfSpace> half_spaces_;
   CapVerdict why_ = CapVerdict::accepted;  ///< why measure_star() returned nullopt
 };

@@ -1,5 +1,5 @@
-/// Narrows the distance interval using the pairs that the traversal did not drop, by increasingly expensive
-/// means:
+/// Narrows the distance interval by measuring the pairs that the traversal did not prune, by increasingly
+/// expensive means:
 /// 1. Bound each pair in double, with proven rounding errors (pair_bounds.hpp).
 /// 2. If the interval is still too wide or contains 0, decide by the exact query whether the surfaces
 ///    intersect.
@@ -102,7 +102,7 @@ bool NearestPairs::measure(SimplexId a, SimplexId b, double lower) {
   // Both lower bounds are valid; rounding must not raise them above the upper one.
   pairs_.push_back({a, b, std::min(std::max(bounds.lower, lower), bounds.upper)});
   see(pairs_.back(), bounds);
-  // Not positive: contact is not excluded.
+  // A lower bound of 0 does not exclude contact.
   return pairs_.back().lower > 0;
 }
 
@@ -154,7 +154,7 @@ double NearestPairs::min_lower() const {
 
 /// Measures pairs exactly if doubles left too wide an interval. `rest`: lower bound for all unmeasured pairs.
 void NearestPairs::narrow(double rest) {
-  // Exact arithmetic is needed if the interval is too wide, or if contact is not excluded.
+  // Exact distances are needed if the interval is too wide or contains 0, and the surfaces are disjoint.
   const double least = std::min(min_lower(), rest);
   const bool is_wide = !(upper() - least <= width()) || !(least > 0);
   if (!is_wide || surfaces_meet()) return;
@@ -173,8 +173,8 @@ void NearestPairs::narrow(double rest) {
   }
 }
 
-/// Decides exactly whether the distance is at most `within`. finished: the unmeasured pairs are farther than
-/// that.
+/// Decides exactly whether the distance is at most `within`. `finished`: all unmeasured pairs are farther
+/// than that.
 void NearestPairs::decide_within(double rest, bool finished, DistanceResult& result) {
   const double most = *request_.within;
   // The bounds already decide, or the surfaces intersect.
@@ -236,7 +236,7 @@ void NearestPairs::write_relation(DistanceResult& result) {
 }
 
 void NearestPairs::finish(double rest, bool finished, DistanceResult& result) {
-  // Only after a complete traversal: after an early stop, `rest` may be the limiting bound.
+  // Not after an early stop: then `rest` may be the smallest bound, which exact distances cannot raise.
   if (!meet_ && finished && !request_.within) narrow(rest);
   if (request_.within && !meet_) decide_within(rest, finished, result);
   result.meet = meet_;

@@ -36,11 +36,11 @@ class NearestPairs {
   /// Returns an upper bound on the radius of the larger body in the world.
   double size() const { return size_; }
 
-  /// Accepts a slab as the measurement of a pair whose distance equals the least one up to rounding. The last
-  /// digits of upper() then depend on the order of the pairs, so that more steps may not narrow the interval
-  /// as distance() promises.
+  /// Lets the best pair's slab suffice for pairs whose distance equals the least one up to rounding, without
+  /// their closest points. The last digits of upper() then depend on the order of the pairs, so the promise
+  /// of distance(), that more steps only narrow the interval, does not hold.
   void spare_equal_pairs() { spares_ = true; }
-  /// Allows intervals of this width, for a traversal that is not more accurate.
+  /// Allows intervals of this width (world units), for traversals whose bounds are no more accurate.
   void allow_width(double width) { allowed_ = width; }
   /// Returns the pruning distance: pairs at least this far need not be measured.
   double dropped_from() const;

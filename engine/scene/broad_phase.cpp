@@ -1,6 +1,6 @@
 /// Sort and sweep (Baraff 1992) along one axis.
 ///
-/// 1. Choose the axis with the fewest overlaps.
+/// 1. Choose the axis with the lowest density of boxes: crowding().
 /// 2. Sort the boxes by their lower ends: by insertion, because bodies move little from step to step.
 /// 3. Sweep: compare each box on the other axes with those that begin before it ends.
 
@@ -30,7 +30,7 @@ double crowding(std::span<const Box> boxes, int axis) {
   for (const Box& b : boxes) {
     if (b.isEmpty()) continue;
     const double from = b.min()[axis] / 2, to = b.max()[axis] / 2;
-    // An infinite box would mask the distribution of the others.
+    // Infinite boxes are left out, because the density over an infinite length is undefined.
     if (!std::isfinite(from) || !std::isfinite(to)) continue;
     low = any ? std::min(low, from) : from;
     high = any ? std::max(high, to) : to;

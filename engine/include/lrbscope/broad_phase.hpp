@@ -18,7 +18,7 @@ struct BodyPair {
 /// Sort and sweep (D. Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992, section 2.4.1)
 /// along one axis; the other two axes are compared for overlapping pairs. The order of the boxes is kept
 /// between steps, so that an insertion sort is cheap if bodies move little. The sweep axis is the one with
-/// the fewest overlaps; it changes only if another is twice as good.
+/// the lowest density of boxes; it changes only if another has less than half its density.
 class SweepAndPrune {
  public:
   /// The cost of the last update.
