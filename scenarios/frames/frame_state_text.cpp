@@ -197,6 +197,7 @@ std::string text_of(const trace::MeasuredNearPairs& near) {
 }
 
 std::string text_of(const trace::MeasuredManifolds& manifolds) {
+  if (manifolds.manifolds == 0) return "no contact manifold";
   return render::counted(manifolds.manifolds, "contact manifold", "contact manifolds") + " with " +
          render::counted(manifolds.found, "point", "points");
 }

@@ -1,5 +1,7 @@
 // Scenarios with distances and kinds of contact: records, texts, pictures and charts.
 #include <algorithm>
+#include <optional>
+#include <set>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -113,6 +115,53 @@ TEST_CASE("measured runs: only their pages have the numbers, columns and charts"
   }
   CHECK(count(page, "<h2>Search for the first contact</h2>") == 1);
   CHECK(count(plain, "<h2>Search for the first contact</h2>") == 0);
+}
+
+TEST_CASE("measured runs: near pairs and contact manifolds of each step are those of the library") {
+  const run::Recording r = recorded(R"({"near": 0.6, "manifold": 0.05})"), plain = recorded("{}");
+  const LrbRep &a = r.bodies[0].rep, &b = r.bodies[1].rep;
+  std::optional<ManifoldResult> before;
+  std::size_t near_steps = 0, kept_ids = 0;
+  std::set<std::uint64_t> ids;
+  for (const trace::Step& step : r.trace.steps) {
+    REQUIRE(step.result.near.has_value());
+    REQUIRE(step.result.manifold.has_value());
+    const trace::MeasuredNearPairs& near = *step.result.near;
+    const NearPairsResult all = near_pairs(a, step.pose_a, b, step.pose_b, {.within = 0.6});
+    CHECK(near.pairs == all.found);
+    REQUIRE(near.nearest.size() == std::min(all.pairs.size(), trace::MeasuredNearPairs::kMaxListed));
+    CHECK(near.nearest.empty() == (near.pairs == 0));
+    for (std::size_t i = 1; i < near.nearest.size(); ++i)
+      CHECK(near.nearest[i - 1].lower <= near.nearest[i].lower);
+    near_steps += near.pairs > 0 && step.result.relation == Relation::separate;
+    const trace::MeasuredManifolds& found = *step.result.manifold;
+    before = contact_manifolds(a, step.pose_a, b, step.pose_b, {.margin = 0.05}, before ? &*before : nullptr);
+    CHECK(found == trace::measured(*before, 0.05));
+    CHECK(found.contacts.size() == found.found);
+    for (const trace::MeasuredManifolds::Point& p : found.contacts) kept_ids += !ids.insert(p.id).second;
+  }
+  CHECK(near_steps > 0);
+  CHECK(kept_ids > 0);
+  CHECK_FALSE(plain.trace.steps[0].result.near.has_value());
+  CHECK_FALSE(plain.trace.steps[0].result.manifold.has_value());
+  const render::FrameSpec spec;
+  const run::FrameState met = at_end(r, 6, spec);
+  CHECK(draws_line(met.scene().list, run::kSeparationColour));
+  CHECK(met.caption().find(" pairs of faces within 0.6, ") != std::string::npos);
+  CHECK(met.caption().find("contact manifold") != std::string::npos);
+  CHECK(at_end(r, 0, spec).caption().find("no contact manifold") != std::string::npos);
+  const std::string page = page_of(r), without = page_of(plain);
+  for (const char* part :
+       {">near pairs</th>", "<dt>Near pairs</dt>", ">contact manifolds</th>", "<dt>Contact manifolds</dt>"}) {
+    CHECK_MESSAGE(count(page, part) == 1, std::string(part));
+    CHECK_MESSAGE(count(without, part) == 0, std::string(part));
+  }
+}
+
+TEST_CASE("measured runs: a negative or infinite distance of near pairs or manifolds is rejected") {
+  for (const char* query :
+       {R"({"near": -1})", R"({"manifold": -0.5})", R"({"near": 1e999})", R"({"near": "far"})"})
+    CHECK_THROWS_AS(recorded(query), InputError);
 }
 
 TEST_CASE("B2: frames and page state the reason of an undecided contact kind") {

@@ -10,6 +10,7 @@
 #include "render/pictures/marks.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/record/recorded_run.hpp"
+#include "scenarios/report/assets.hpp"
 #include <lrbscope/trace/trace.hpp>
 
 using namespace lrb;
@@ -279,4 +280,7 @@ TEST_CASE("page data of a run has a segment for each measured step with separate
   REQUIRE(measured["words"].size() == wanted.size());
   for (std::size_t i = 0; i < wanted.size(); ++i)
     CHECK(measured["words"][i].get<std::string>().starts_with(wanted[i]));
+  std::vector<std::uint32_t> kinds;
+  for (const std::string& text : wanted) kinds.push_back(text == "depth " ? 1 : 0);
+  CHECK(measured["kind"] == report::packed(kinds));
 }
