@@ -5,13 +5,13 @@
 //   const tree = addMeshBVH(capture, "cow", bvh);
 //   capture.begin(ANY, tree, null, 0, null);
 //   const met = bvh.shapecast(watched(capture, callbacks));
-//   capture.end(met ? MEET : APART, met ? 1 : 0);
+//   capture.end(met ? INTERSECTING : SEPARATE, met ? 1 : 0);
 //   fs.writeFileSync("run.lrbcap", capture.close());          // or a Blob to download
 //
 // MIT licence, as lrbscope_capture.h. docs/capture.md describes calls and format.
 
 export const ALL_PAIRS = 1, ANY = 2, DISTANCE = 3, FIRST_CONTACT = 4, SELF = 5;
-export const APART = 0, MEET = 1, UNTOLD = 2;
+export const SEPARATE = 0, INTERSECTING = 1, UNREPORTED = 2;
 export const AABB = 1, SPHERE = 2, OBB = 3, RSS = 4, KDOP = 5;
 export const NO_AXIS = 255;
 
