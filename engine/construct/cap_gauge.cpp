@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 
 namespace lrb::construct {
@@ -42,13 +43,13 @@ bool CapGauge::flatten(const CapSurface& cap, const CapSurface::Star& star) {
   Vector3d outward = Vector3d::Zero();
   // The area-weighted normal of the star.
   for (const int f : star.faces) outward += cap.faces()[f].plane.n * cap.faces()[f].plane.area;
-  const double length = outward.norm();
+  const double length = norm3(outward);
   if (!(length > 0)) return false;
   outward /= length;
   // An orthonormal frame; the axis with the smallest component makes the cross product accurate.
   int least = 0;
   outward.cwiseAbs().minCoeff(&least);
-  along_x_ = outward.cross(Vector3d::Unit(least)).normalized();
+  along_x_ = normalized3(outward.cross(Vector3d::Unit(least)));
   along_y_ = outward.cross(along_x_);
   flat_rim_.clear();
   for (const auto& r : star.rim) flat_rim_.push_back(flat(cap.x(r.a)));
@@ -99,7 +100,7 @@ bool CapGauge::may_stand(const CapSurface& cap, const CapSurface::Star& star, co
     const auto& r = star.rim[sector(flat_covered_[i], centre)];
     const Vector3d &a = cap.x(r.a), &p = cap.x(covered_[i]);
     const Vector3d normal = (cap.x(r.b) - a).cross(w - a);
-    const double square = normal.squaredNorm(), height = normal.dot(w - p);  // times the normal's length
+    const double square = squared_norm3(normal), height = dot3(normal, w - p);  // times the normal's length
     const double left = most_ - cap.off(covered_[i]);
     if (!(square > 0) || height <= 0 || (left > 0 && height * height <= left * left * square)) continue;
     // The vertex's own bound does not suffice: search for a closer floor triangle.
@@ -138,7 +139,7 @@ void CapGauge::raise_excess(CapSurface& cap, int face, int covered) const {
   // The deviation shown by p: its height below the face, plus its own deviation.
   const auto& f = cap.faces()[face];
   const Vector3d& p = cap.x(covered);
-  const double height = f.plane.d - f.plane.n.dot(p);
+  const double height = f.plane.d - dot3(f.plane.n, p);
   const SimplexPoint foot = nearest_on_triangle(p, cap.x(f.v[0]), cap.x(f.v[1]), cap.x(f.v[2]));
   double by_corners = 0;
   for (int i = 0; i < 3; ++i) by_corners += foot.weight[i] * cap.off(f.v[i]);
@@ -202,7 +203,7 @@ void PatchFloor::load(const FrontMesh& front, const Patch& patch, double most) {
     t.off_c = off[2] - off[0];
     t.least = *std::min_element(off.begin(), off.end());
     t.centroid = (t.x[0] + t.x[1] + t.x[2]) / 3;
-    for (const Vector3d& x : t.x) radius_sq = std::max(radius_sq, (x - t.centroid).squaredNorm());
+    for (const Vector3d& x : t.x) radius_sq = std::max(radius_sq, squared_norm3(x - t.centroid));
     t.radius = std::sqrt(radius_sq);
     set_weights(t);
     triangles_.push_back(t);
@@ -214,7 +215,7 @@ void PatchFloor::load(const FrontMesh& front, const Patch& patch, double most) {
 
 void PatchFloor::set_weights(Triangle& t) {
   const Vector3d ab = t.x[1] - t.x[0], ac = t.x[2] - t.x[0], normal = ab.cross(ac);
-  const double square = normal.squaredNorm();
+  const double square = squared_norm3(normal);
   // Degenerate: no weights, so that off_by() always computes the closest point.
   if (!(square > 0)) {
     t.normal = t.to_b = t.to_c = Vector3d::Zero();
@@ -226,17 +227,17 @@ void PatchFloor::set_weights(Triangle& t) {
   // Gradients of the barycentric coordinates; the height of a corner is the inverse of its gradient's length.
   t.to_b = ac.cross(normal) / square;
   t.to_c = normal.cross(ab) / square;
-  t.height = {1 / (t.to_b + t.to_c).norm(), 1 / t.to_b.norm(), 1 / t.to_c.norm()};
+  t.height = {1 / norm3(t.to_b + t.to_c), 1 / norm3(t.to_b), 1 / norm3(t.to_c)};
   t.weight = 1 / 3.;
 }
 
 /// Returns the deviation of q according to the triangle, or possibly infinity if it exceeds `most`.
 double PatchFloor::off_by(const Triangle& t, const Vector3d& q, double most) {
   const Vector3d from_centroid = q - t.centroid;
-  const double left = most - t.least, up = std::abs(t.normal.dot(from_centroid));
+  const double left = most - t.least, up = std::abs(dot3(t.normal, from_centroid));
   // The distance is at least the distance from the plane.
   if (up > left) return kFar;
-  const double b = t.to_b.dot(from_centroid) + t.weight, c = t.to_c.dot(from_centroid) + t.weight;
+  const double b = dot3(t.to_b, from_centroid) + t.weight, c = dot3(t.to_c, from_centroid) + t.weight;
   // The foot is in the triangle: the distance is the height.
   if (b >= 0 && c >= 0 && b + c <= 1) return up + t.off + b * t.off_b + c * t.off_c;
   // The distance within the plane is at least the distance from each edge's line that the foot is beyond.
@@ -252,7 +253,7 @@ double PatchFloor::off(const Vector3d& q) const {
   for (const Triangle& t : triangles_) {
     const double left = best - t.least, reach = left + t.radius;
     // Branch and bound over the triangles with the best value so far.
-    if (left <= 0 || (q - t.centroid).squaredNorm() >= reach * reach) continue;
+    if (left <= 0 || squared_norm3(q - t.centroid) >= reach * reach) continue;
     best = std::min(best, off_by(t, q, best));
   }
   return best;

@@ -10,6 +10,7 @@
 
 #include "engine/construct/cap_surface.hpp"
 #include "engine/construct/patch_grow.hpp"
+#include "engine/core/geometry.hpp"
 
 namespace lrb::construct {
 
@@ -47,7 +48,7 @@ class PatchFloor {
   struct Ball {
     Eigen::Vector3d centre;
     double radius_sq;  ///< negative: empty
-    bool holds(const Eigen::Vector3d& q) const { return (q - centre).squaredNorm() <= radius_sq; }
+    bool holds(const Eigen::Vector3d& q) const { return squared_norm3(q - centre) <= radius_sq; }
   };
 
   static void set_weights(Triangle& t);
@@ -92,7 +93,7 @@ class CapGauge {
 
   void find_covered(const CapSurface& cap, const CapSurface::Star& star);
   bool flatten(const CapSurface& cap, const CapSurface::Star& star);
-  Flat flat(const Eigen::Vector3d& q) const { return {q.dot(along_x_), q.dot(along_y_)}; }
+  Flat flat(const Eigen::Vector3d& q) const { return {dot3(q, along_x_), dot3(q, along_y_)}; }
   std::size_t sector(const Flat& q, const Flat& centre) const;
   void raise_excess(CapSurface& cap, int face, int covered) const;
 

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include "engine/exact/predicates.hpp"
 
 namespace lrb::construct {
@@ -93,9 +94,9 @@ void CapSurface::load_surroundings(const FrontMesh& front, const Patch& patch) {
                           &c = front.x(front[s].v[2]);
     const Eigen::Vector3d normal = (b - a).cross(c - a);
     // A degenerate triangle has no plane: its normal is zero.
-    const double length = normal.norm();
+    const double length = norm3(normal);
     beyond_[k].plane.n = length > 0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d(0, 0, 0);
-    beyond_[k].plane.d = beyond_[k].plane.n.dot(a);
+    beyond_[k].plane.d = dot3(beyond_[k].plane.n, a);
     beyond_[k].plane.area = length / 2;
     // Record the edges from this vertex to others of the ring that are neither ring edges nor in the patch.
     front.for_each_around(patch.ring[k], [&](FrontMesh::Slot t, int j) {
@@ -109,10 +110,10 @@ void CapSurface::load_surroundings(const FrontMesh& front, const Patch& patch) {
 
 CapSurface::Plane CapSurface::plane_of(int a, int b, int c) const {
   const Eigen::Vector3d normal = (x(b) - x(a)).cross(x(c) - x(a));
-  const double length = normal.norm();
+  const double length = norm3(normal);
   Plane p;
   p.n = length > 0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d(0, 0, 0);
-  p.d = p.n.dot(x(a));
+  p.d = dot3(p.n, x(a));
   p.area = length / 2;
   return p;
 }
@@ -188,7 +189,7 @@ bool CapSurface::is_behind_a_face_at(int u, int v) const {
   do {
     const Face& t = faces_[f];
     // Collapsing u onto v would cut below this triangle.
-    if (t.v[0] != v && t.v[1] != v && t.v[2] != v && t.plane.n.dot(x(v)) < t.plane.d) return true;
+    if (t.v[0] != v && t.v[1] != v && t.v[2] != v && dot3(t.plane.n, x(v)) < t.plane.d) return true;
     f = t.across[(index_of(f, u) + 2) % 3];
   } while (f != face_of_[u]);
   return false;

@@ -18,6 +18,7 @@
 #include "engine/construct/chain_cap.hpp"
 #include "engine/construct/complex_builder.hpp"
 #include "engine/construct/convex_hull.hpp"
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/mesh/nesting.hpp"
 #include "engine/mesh/point_inside.hpp"
@@ -123,8 +124,8 @@ class ChainBuilder {
       const Vector3 &a = polygon_[i], &b = polygon_[(i + 1) % polygon_.size()];
       // The inward normal of a side. The front keeps a small distance, so that rounding cannot move it
       // outside.
-      const Vector3 n = Vector3(a.y() - b.y(), b.x() - a.x(), 0).normalized();
-      bounds_.push_back({n, n.dot(a) + kFrontDistance * box.sizes().maxCoeff()});
+      const Vector3 n = normalized3(Vector3(a.y() - b.y(), b.x() - a.x(), 0));
+      bounds_.push_back({n, dot3(n, a) + kFrontDistance * box.sizes().maxCoeff()});
     }
   }
 

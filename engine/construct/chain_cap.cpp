@@ -33,8 +33,8 @@ int turn(const Vector3& a, const Vector3& b, const Vector3& c) {
 /// `origin`.
 HalfSpace in_front(const Vector3& a, const Vector3& b, const Vector3& origin, double margin) {
   // The solid is to the left of a -> b, so the outer normal points to the right.
-  const Vector3 n = Vector3(b.y() - a.y(), a.x() - b.x(), 0).normalized();
-  return {n, n.dot(a - origin) + margin};
+  const Vector3 n = normalized3(Vector3(b.y() - a.y(), a.x() - b.x(), 0));
+  return {n, dot3(n, a - origin) + margin};
 }
 
 /// Returns true if p is strictly inside the sector between the rays from `centre` through `from` and,
@@ -129,9 +129,9 @@ std::optional<Vector3> find_apex(const FrontLoops& front, const std::vector<Slot
   if (turn(front.start(chain.back()), b, front.end(after)) < 0)
     half_spaces.push_back(in_front(b, front.end(after), centre, kPlacementMargin * radius));
   // Within the planned wrapper.
-  for (const HalfSpace& h : bounds) half_spaces.push_back({h.n, h.d - h.n.dot(centre)});
+  for (const HalfSpace& h : bounds) half_spaces.push_back({h.n, h.d - dot3(h.n, centre)});
   // Project a point behind the chord: the apex is above the midpoint and as low as possible.
-  const Vector3 inward = Vector3(a.y() - b.y(), b.x() - a.x(), 0).normalized();
+  const Vector3 inward = normalized3(Vector3(a.y() - b.y(), b.x() - a.x(), 0));
   auto apex = nearest_point(inward * radius, half_spaces, kPlacementSlack * radius);
   if (!apex) return std::nullopt;
   *apex += centre;
@@ -157,7 +157,7 @@ std::optional<ChainCap> find_cap(const FrontLoops& front, Slot first, std::uint3
   double size = 0;
   bool chord = true;
   for (const Slot s : chain) {
-    size += (front.end(s) - front.start(s)).norm();
+    size += norm3(front.end(s) - front.start(s));
     // Strictly behind the chord; a vertex on it would touch.
     if (s != chain.front()) chord = chord && turn(a, b, front.start(s)) > 0;
     cap.area -= cross_2d(front.start(s) - a, front.end(s) - a) / 2;

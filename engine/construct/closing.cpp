@@ -22,6 +22,7 @@
 #include "engine/construct/front_update.hpp"
 #include "engine/construct/half_spaces.hpp"
 #include "engine/construct/patch_cap.hpp"
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/predicates.hpp"
 #include <lrbscope/core/random.hpp>
@@ -191,7 +192,7 @@ class PolytopeStep {
     surface_.load(front_, all_, 0);
     Eigen::AlignedBox3d box;
     for (const Vector3& p : points) box.extend(p);
-    size_sq_ = box.sizes().squaredNorm();
+    size_sq_ = squared_norm3(box.sizes());
   }
 
   void collapse(std::size_t wanted_faces, double depth) {
@@ -256,15 +257,15 @@ class PolytopeStep {
     const Vector3& origin = points_[0];
     for (const auto& f : surface_.faces())
       if (f.alive)
-        sixfold += (surface_.x(f.v[0]) - origin)
-                       .dot((surface_.x(f.v[1]) - origin).cross(surface_.x(f.v[2]) - origin));
+        sixfold += dot3(surface_.x(f.v[0]) - origin,
+                        (surface_.x(f.v[1]) - origin).cross(surface_.x(f.v[2]) - origin));
     return sixfold / 6;
   }
 
   double cone_volume(const Vector3& w) const {
     double sixfold = 0;
     // The base of the cone is arbitrary, because only differences of these volumes are compared.
-    for (const Edge& e : rim_) sixfold += (w - rim_[0].a).dot((e.a - rim_[0].a).cross(e.b - rim_[0].a));
+    for (const Edge& e : rim_) sixfold += dot3(w - rim_[0].a, (e.a - rim_[0].a).cross(e.b - rim_[0].a));
     return sixfold / 6;
   }
 
@@ -280,14 +281,14 @@ class PolytopeStep {
     half_spaces_.clear();
     for (const Edge& e : rim_) {
       area += (e.a - centre).cross(e.b - centre);
-      radius_sq = std::max(radius_sq, (e.a - centre).squaredNorm());
+      radius_sq = std::max(radius_sq, squared_norm3(e.a - centre));
       // The faces over this edge must have all points behind them.
-      for (const Vector3& n : touching_normals(e)) half_spaces_.push_back({n, n.dot(e.a - centre)});
+      for (const Vector3& n : touching_normals(e)) half_spaces_.push_back({n, dot3(n, e.a - centre)});
     }
     // The volume is linear in w. Its gradient is the loop's area vector, so the best w is the extreme point
     // of the feasible polyhedron against that vector. Projecting a far target approximates this linear
     // programme, and stays bounded where the linear programme is unbounded.
-    const double radius = std::sqrt(radius_sq), length = area.norm();
+    const double radius = std::sqrt(radius_sq), length = norm3(area);
     if (!(length > 0)) return std::nullopt;
     const auto w = nearest_point(area * (-kDepth * radius / length), half_spaces_, kPlacementSlack * radius);
     if (!w) return std::nullopt;
@@ -304,11 +305,12 @@ class PolytopeStep {
     // of the first, and none behind the second. O(points) for each edge.
     for (const Vector3& p : points_) {
       const Vector3 to = p - e.a, normal = along.cross(to);
-      if (normal.squaredNorm() <= kParallelSineSq * along.squaredNorm() * size_sq_) continue;  // on the edge
-      if (normals[0].dot(to) > 0 || normals[0].isZero(0)) normals[0] = normal;
-      if (normals[1].dot(to) < 0 || normals[1].isZero(0)) normals[1] = normal;
+      if (squared_norm3(normal) <= kParallelSineSq * squared_norm3(along) * size_sq_)
+        continue;  // on the edge
+      if (dot3(normals[0], to) > 0 || normals[0].isZero(0)) normals[0] = normal;
+      if (dot3(normals[1], to) < 0 || normals[1].isZero(0)) normals[1] = normal;
     }
-    return {normals[0].normalized(), normals[1].normalized()};
+    return {normalized3(normals[0]), normalized3(normals[1])};
   }
 
   static constexpr double kSwell = 0.4;  ///< see BodyBounds; only keeps vertices from moving far away
@@ -427,8 +429,8 @@ double volume_of(const Mesh& mesh) {
   const Vector3 origin = mesh.vertices[0];
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     const auto c = mesh.face(f);
-    sixfold += (mesh.vertices[c[0]] - origin)
-                   .dot((mesh.vertices[c[1]] - origin).cross(mesh.vertices[c[2]] - origin));
+    sixfold += dot3(mesh.vertices[c[0]] - origin,
+                    (mesh.vertices[c[1]] - origin).cross(mesh.vertices[c[2]] - origin));
   }
   return sixfold / 6;
 }

@@ -14,6 +14,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/mesh/point_inside.hpp"
 #include <lrbscope/contact.hpp>
@@ -68,16 +69,16 @@ TriangleReach::TriangleReach(const CheckedTriangle& t)
   normal_ = u.cross(v);
   // The error of the normal is below 2^-50 |u| |v|; the error of a product with it is below this times the
   // other factor. The slack of 2^-40 far exceeds their sum.
-  slack_ = 0x1p-40 * u.norm() * v.norm();
+  slack_ = 0x1p-40 * norm3(u) * norm3(v);
 }
 
 bool TriangleReach::may_meet(const Box& other) const {
   if (!box_.intersects(other)) return false;
   // Plane against box (Ericson 2005): the radius of the box along the normal, plus the rounding slack.
   const Vector3 half = other.sizes() / 2, from_corner = other.center() - corner_;
-  const double reach = normal_.cwiseAbs().dot(half) + slack_ * (half.norm() + from_corner.norm());
+  const double reach = dot3(normal_.cwiseAbs(), half) + slack_ * (norm3(half) + norm3(from_corner));
   // Written so that NaN and infinity keep the box.
-  return !(std::abs(normal_.dot(from_corner)) > reach);
+  return !(std::abs(dot3(normal_, from_corner)) > reach);
 }
 
 CapVerdict EmbedCheck::judge_cap(const Patch& patch, const CapSurface& cap) {

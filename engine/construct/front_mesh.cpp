@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include "engine/mesh/polygon_shape.hpp"
 
 namespace lrb::construct {
@@ -190,7 +191,7 @@ double FrontMesh::volume_sixfold(std::span<const Slot> slots) const {
   double sum = 0;
   for (const Slot s : slots) {
     const auto& v = triangles_[s].v;
-    sum += (x(v[0]) - origin).dot((x(v[1]) - origin).cross(x(v[2]) - origin));
+    sum += dot3(x(v[0]) - origin, (x(v[1]) - origin).cross(x(v[2]) - origin));
   }
   return sum;
 }

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include <lrbscope/core/disjoint_sets.hpp>
 #include <lrbscope/ids.hpp>
 
@@ -204,7 +205,7 @@ std::vector<double> volumes_of(const RegionPieces& pieces, std::span<const Point
   // Only signs and order are used.
   const Eigen::Vector3d origin = points[added.empty() ? old[0][0] : added[0][0]];
   const auto volume = [&](const PointTriangle& t) {
-    return (points[t[0]] - origin).dot((points[t[1]] - origin).cross(points[t[2]] - origin));
+    return dot3(points[t[0]] - origin, (points[t[1]] - origin).cross(points[t[2]] - origin));
   };
   std::vector<double> volumes(pieces.count, 0);
   for (std::size_t i = 0; i < added.size(); ++i) volumes[pieces.of_added[i]] += volume(added[i]);

@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 
 namespace lrb::construct {
@@ -17,12 +18,12 @@ BodyBounds::BodyBounds(std::span<const Eigen::Vector3d> points, double swell) {
   // The 26 directions of the 3 x 3 x 3 stencil: 6 axes, 12 edge diagonals, 8 corner diagonals.
   for (int i = 0; i < 27; ++i) {
     if (i == 13) continue;  // the centre of the stencil has no direction
-    const Eigen::Vector3d n = Eigen::Vector3d(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1).normalized();
+    const Eigen::Vector3d n = normalized3(Eigen::Vector3d(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1));
     // The extent of the points along n. The upper end is the bound of -n, which is in the list as well.
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Eigen::Vector3d& p : points) {
-      low = std::min(low, n.dot(p));
-      high = std::max(high, n.dot(p));
+      low = std::min(low, dot3(n, p));
+      high = std::max(high, dot3(n, p));
     }
     half_spaces_.push_back({n, low - swell * (high - low)});
   }
@@ -33,8 +34,8 @@ BodyBounds::BodyBounds(const Mesh& convex, double distance) {
     const auto c = convex.face(f);
     const Eigen::Vector3d &p = convex.vertices[c[0]], &q = convex.vertices[c[1]], &r = convex.vertices[c[2]];
     // The inward normal: the body is on the positive side of each plane.
-    const Eigen::Vector3d n = -(q - p).cross(r - p).normalized();
-    half_spaces_.push_back({n, n.dot(p) + distance});
+    const Eigen::Vector3d n = -normalized3((q - p).cross(r - p));
+    half_spaces_.push_back({n, dot3(n, p) + distance});
   }
 }
 
@@ -60,12 +61,12 @@ Frame frame_on(const HalfSpace& h, const Vector3& target) {
   Frame f;
   // With the origin at the target's foot, squared distances to the target and to the origin differ by a
   // constant: the nearest point on the plane is the one nearest to the origin.
-  f.origin = target + h.n * (h.d - h.n.dot(target));
+  f.origin = target + h.n * (h.d - dot3(h.n, target));
   // The coordinate axis closest to the plane: its sine to n is at least sqrt(2/3), so that the cross product
   // is accurate.
   int least = 0;
   h.n.cwiseAbs().minCoeff(&least);
-  f.x = h.n.cross(Vector3::Unit(least)).normalized();
+  f.x = normalized3(h.n.cross(Vector3::Unit(least)));
   // Both factors have unit length and are orthogonal, so y needs no normalisation.
   f.y = h.n.cross(f.x);
   return f;
@@ -80,8 +81,8 @@ struct HalfPlane {
 
 HalfPlane cut(const HalfSpace& h, const Frame& f) {
   // Substitute origin + x p.x + y p.y into n.x >= d. The length of `a` is the sine between the two planes.
-  const Vector2 a(h.n.dot(f.x), h.n.dot(f.y));
-  return {a, h.d - h.n.dot(f.origin), a.squaredNorm() < kParallelSineSq};
+  const Vector2 a(dot3(h.n, f.x), dot3(h.n, f.y));
+  return {a, h.d - dot3(h.n, f.origin), a.squaredNorm() < kParallelSineSq};
 }
 
 /// Returns the point nearest to the origin on the boundary line `edge` of a half-plane that is in the
@@ -142,7 +143,7 @@ std::optional<Vector3> nearest_point(const Vector3& target, std::span<const Half
   for (std::size_t i = 0; i < half_spaces.size(); ++i) {
     const HalfSpace& h = half_spaces[i];
     // In random order, half-space i is violated with probability at most 3 / i: expected linear time.
-    if (h.n.dot(p) >= h.d - slack) continue;
+    if (dot3(h.n, p) >= h.d - slack) continue;
     // Violated: the optimum is on this plane, subject to the half-spaces before it.
     const auto q = nearest_on_plane(h, half_spaces.first(i), target, slack);
     if (!q) return std::nullopt;
@@ -161,7 +162,7 @@ std::optional<Vector3> nearest_point_worst_first(const Vector3& target, std::spa
     double most = slack;
     // Pricing step, as in an active-set method: the most violated constraint enters.
     for (std::size_t i = used; i < half_spaces.size(); ++i) {
-      const double behind = half_spaces[i].d - half_spaces[i].n.dot(p);
+      const double behind = half_spaces[i].d - dot3(half_spaces[i].n, p);
       if (behind > most) most = behind, worst = i;
     }
     // Nothing is violated: the optimum of a subset that satisfies all constraints is the optimum of all.

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "engine/core/geometry.hpp"
 #include <lrbscope/mesh.hpp>
 
 namespace lrb::construct {
@@ -48,7 +49,7 @@ class BodyBounds {
   std::span<const HalfSpace> half_spaces() const { return half_spaces_; }
   bool contains(const Eigen::Vector3d& p) const {
     for (const HalfSpace& h : half_spaces_)
-      if (h.n.dot(p) < h.d) return false;
+      if (dot3(h.n, p) < h.d) return false;
     return true;
   }
 

@@ -21,6 +21,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/plane_side.hpp"
 
@@ -140,7 +141,7 @@ std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
   for (const auto& r : star_.rim) centre += cap_.x(r.a);
   centre /= static_cast<double>(star_.rim.size());
   double radius_sq = 0;
-  for (const auto& r : star_.rim) radius_sq = std::max(radius_sq, (cap_.x(r.a) - centre).squaredNorm());
+  for (const auto& r : star_.rim) radius_sq = std::max(radius_sq, squared_norm3(cap_.x(r.a) - centre));
   const double radius = std::sqrt(radius_sq);
   // Step 2: the position of the fan's centre: the ring vertex, or a new vertex.
   Candidate c{0, u, v, cap_.version(), {}};
@@ -158,7 +159,7 @@ std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
   double volume = 0, area = 0;
   for (const int f : star_.faces) {
     const auto& plane = cap_.faces()[f].plane;
-    volume += (plane.n.dot(c.w) - plane.d) * plane.area;
+    volume += (dot3(plane.n, c.w) - plane.d) * plane.area;
     area += plane.area;
   }
   c.cost = volume / 3;
@@ -177,7 +178,7 @@ std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   const double margin = kPlacementMargin * radius, slack = kPlacementSlack * radius;
   Vector3 outward = Vector3::Zero();
   for (const int f : star_.faces) outward += cap_.faces()[f].plane.n * cap_.faces()[f].plane.area;
-  const double length = outward.norm();
+  const double length = norm3(outward);
   if (!(length > 0)) return std::nullopt;
   collect_half_spaces(centre, margin);
   const Vector3 target = outward * (-limits_.depth * radius / length);
@@ -194,7 +195,7 @@ std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   if (w->cwiseAbs().maxCoeff() > reach || !bounds_.contains(*w + centre)) {
     for (int i = 0; i < 3; ++i)
       for (const double sign : {-1.0, 1.0}) half_spaces_.push_back({sign * Vector3::Unit(i), -reach});
-    for (const HalfSpace& h : bounds_.half_spaces()) half_spaces_.push_back({h.n, h.d - h.n.dot(centre)});
+    for (const HalfSpace& h : bounds_.half_spaces()) half_spaces_.push_back({h.n, h.d - dot3(h.n, centre)});
     w = nearest();
     if (!w) return std::nullopt;
   }
@@ -208,23 +209,23 @@ void PatchCap::collect_half_spaces(const Vector3& centre, double margin) {
   // In front of the star itself.
   for (const int f : star_.faces) {
     const auto& p = cap_.faces()[f].plane;
-    half_spaces_.push_back({p.n, p.d - p.n.dot(centre) + margin});
+    half_spaces_.push_back({p.n, p.d - dot3(p.n, centre) + margin});
   }
   for (const auto& r : star_.rim) {
     const auto& own = cap_.faces()[r.face].plane;
     // In front of the neighbour at a reflex rim edge, where the fan could intersect it.
     if (r.across < 0) {
       const auto& p = cap_.plane_beyond(-1 - r.across);
-      if (own.n.dot(cap_.tip_beyond(-1 - r.across)) > own.d)
-        half_spaces_.push_back({p.n, p.d - p.n.dot(centre) + margin});
+      if (dot3(own.n, cap_.tip_beyond(-1 - r.across)) > own.d)
+        half_spaces_.push_back({p.n, p.d - dot3(p.n, centre) + margin});
       continue;
     }
     const auto& other = cap_.faces()[r.across];
     const int tip = other.v[0] != r.a && other.v[0] != r.b   ? other.v[0]
                     : other.v[1] != r.a && other.v[1] != r.b ? other.v[1]
                                                              : other.v[2];
-    if (own.n.dot(cap_.x(tip)) > own.d)
-      half_spaces_.push_back({other.plane.n, other.plane.d - other.plane.n.dot(centre) + margin});
+    if (dot3(own.n, cap_.x(tip)) > own.d)
+      half_spaces_.push_back({other.plane.n, other.plane.d - dot3(other.plane.n, centre) + margin});
   }
 }
 
@@ -234,7 +235,7 @@ bool PatchCap::ring_vertex_is_in_front(int r, double radius) const {
   for (const int f : star_.faces) {
     const auto& face = cap_.faces()[f];
     if (face.v[0] == r || face.v[1] == r || face.v[2] == r) continue;
-    if (face.plane.n.dot(x) - face.plane.d < kPlacementMargin * radius) return false;
+    if (dot3(face.plane.n, x) - face.plane.d < kPlacementMargin * radius) return false;
   }
   return true;
 }
@@ -246,8 +247,8 @@ double PatchCap::shape_of_fan(const Vector3& w) const {
   // Quality: area over the sum of squared edges, scaled so that an equilateral triangle has 1.
   for (const auto& r : star_.rim) {
     const Vector3 a = cap_.x(r.a) - w, b = cap_.x(r.b) - w;
-    const double twice_area = a.cross(b).norm();
-    worst = std::min(worst, twice_area / (a.squaredNorm() + b.squaredNorm() + (a - b).squaredNorm()));
+    const double twice_area = norm3(a.cross(b));
+    worst = std::min(worst, twice_area / (squared_norm3(a) + squared_norm3(b) + squared_norm3(a - b)));
   }
   return worst * (2 * std::sqrt(3.0));
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/core/geometry.hpp"
+
 namespace lrb::construct {
 namespace {
 
@@ -58,7 +60,7 @@ bool PatchGrower::grow(Corner seed, Patch& patch) {
   met_batch_ = is_in_batch(seed);
   if (!add_star(seed, patch)) return false;
   double reach_sq = 0;
-  for (const Corner v : rim_) reach_sq = std::max(reach_sq, (front_.x(v) - front_.x(seed)).squaredNorm());
+  for (const Corner v : rim_) reach_sq = std::max(reach_sq, squared_norm3(front_.x(v) - front_.x(seed)));
   // A star that does not fit now is not tried again for this patch.
   while (patch.interior.size() < limits_.interior) {
     const Corner v = best_candidate(seed, reach_sq, patch);
@@ -169,7 +171,7 @@ Corner PatchGrower::best_candidate(Corner seed, double reach_sq, const Patch& pa
     const std::uint32_t missing = front_.degree(v) - inside_[v];
     if (patch.slots.size() + missing > limits_.triangles) continue;
     const double score =
-        missing + kDistancePenalty * ((front_.x(v) - front_.x(seed)).squaredNorm() / reach_sq);
+        missing + kDistancePenalty * (squared_norm3(front_.x(v) - front_.x(seed)) / reach_sq);
     if (best == kNull || score < least || (score == least && v < best)) {
       best = v;
       least = score;

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include "engine/lrb/complex.hpp"
 #include "engine/lrb/surface_graph.hpp"
 #include "engine/mesh/self_intersections.hpp"
@@ -69,13 +70,13 @@ void check(const LrbData& d) {
 /// Returns the area of a face (2D: its length), to compare lids; mesh units squared (2D: mesh units).
 double face_size(const LrbData& d, FaceId f) {
   const auto c = d.face(f);
-  if (d.dim == 2) return (d.vertices[c[1]] - d.vertices[c[0]]).norm();
+  if (d.dim == 2) return norm3(d.vertices[c[1]] - d.vertices[c[0]]);
   // Twice the vector area of the fan. It underestimates polygons that are not planar, which affects only the
   // choice of parents.
   Eigen::Vector3d twice = Eigen::Vector3d::Zero();
   for (std::size_t i = 1; i + 1 < c.size(); ++i)
     twice += (d.vertices[c[i]] - d.vertices[c[0]]).cross(d.vertices[c[i + 1]] - d.vertices[c[0]]);
-  return 0.5 * twice.norm();
+  return 0.5 * norm3(twice);
 }
 
 }  // namespace
@@ -348,7 +349,7 @@ double cone(const LrbRep& rep, FaceId f, const Eigen::Vector3d& origin) {
   if (rep.dim() == 2) return 0.5 * (at(0).x() * at(1).y() - at(0).y() * at(1).x());
   // Six times the volume of a tetrahedron is the determinant of its three edges from the apex.
   double sum = 0;
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) sum += at(0).dot(at(i).cross(at(i + 1)));
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) sum += dot3(at(0), at(i).cross(at(i + 1)));
   return sum / 6;
 }
 
@@ -358,11 +359,11 @@ double size_of(const LrbRep& rep, FaceId f) {
   const auto side = [&](std::size_t i) -> Eigen::Vector3d {
     return rep.vertices()[corners[i]] - rep.vertices()[corners[0]];
   };
-  if (rep.dim() == 2) return side(1).norm();
+  if (rep.dim() == 2) return norm3(side(1));
   // Twice the vector area of the fan.
   Eigen::Vector3d sum(0, 0, 0);
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) sum += side(i).cross(side(i + 1));
-  return sum.norm() / 2;
+  return norm3(sum) / 2;
 }
 
 }  // namespace

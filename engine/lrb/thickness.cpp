@@ -29,6 +29,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/wrapper.hpp>
@@ -197,7 +198,7 @@ std::pair<Cut, double> longest_edge(const Simplex& x, int corners) {
   double length_sq = 0;
   for (int i = 0; i < corners; ++i)
     for (int j = 0; j < i; ++j)
-      if (const double d = (x[i] - x[j]).squaredNorm(); d > length_sq) length_sq = d, longest = {j, i, 0.5};
+      if (const double d = squared_norm3(x[i] - x[j]); d > length_sq) length_sq = d, longest = {j, i, 0.5};
   return {longest, length_sq};
 }
 
@@ -209,8 +210,8 @@ Vector3d border_normal(const Simplex& t, int corners, int e) {
   // 3D: perpendicular to the edge, away from the third corner, with the triangle's height as its length. An
   // edge of length 0 has no normal; the zero vector then never counts as crossed.
   const Vector3d edge = t[(e + 1) % 3] - t[e], other = t[(e + 2) % 3] - t[e];
-  const double square = edge.squaredNorm();
-  return square > 0 ? Vector3d(edge * (edge.dot(other) / square) - other) : Vector3d(0, 0, 0);
+  const double square = squared_norm3(edge);
+  return square > 0 ? Vector3d(edge * (dot3(edge, other) / square) - other) : Vector3d(0, 0, 0);
 }
 
 /// Returns the cut along the border of a face that separates the piece's corner `worst` from another corner.
@@ -221,7 +222,7 @@ Cut cut_at_border(const Simplex& piece, int worst, const Simplex& face, int corn
   for (int e = 0; e < corners; ++e) {
     const Vector3d outward = border_normal(face, corners, e);
     // Both `beyond` and `there` are scaled by the normal's length, which cancels in their quotient.
-    const double beyond = outward.dot(piece[worst] - face[e]);
+    const double beyond = dot3(outward, piece[worst] - face[e]);
     if (!(beyond > furthest)) continue;
     furthest = beyond;
     // Discard the cut at an earlier border: only the border that is exceeded most is considered.
@@ -230,7 +231,7 @@ Cut cut_at_border(const Simplex& piece, int worst, const Simplex& face, int corn
     // border.
     double least = 0;
     for (int k = 0; k < corners; ++k) {
-      const double there = outward.dot(piece[k] - face[e]);
+      const double there = dot3(outward, piece[k] - face[e]);
       if (!(there < least)) continue;
       least = there;
       best = {worst, k, beyond / (beyond - there)};

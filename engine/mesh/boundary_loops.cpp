@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "engine/core/geometry.hpp"
 #include "engine/mesh/polygon_shape.hpp"
 #include <lrbscope/mesh_repair.hpp>
 
@@ -143,7 +144,7 @@ class LoopFinder {
   void measure(BoundaryLoop& loop) const {
     const auto& x = mesh_.vertices;
     for (std::size_t i = 0; i < loop.edges(); ++i)
-      loop.length += (x[loop.vertices[(i + 1) % loop.vertices.size()]] - x[loop.vertices[i]]).norm();
+      loop.length += norm3(x[loop.vertices[(i + 1) % loop.vertices.size()]] - x[loop.vertices[i]]);
     // Exact predicates need finite coordinates; without them planarity stays false.
     bool finite = true;
     for (const VertexId v : loop.vertices) {

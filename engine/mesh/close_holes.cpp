@@ -13,6 +13,7 @@
 #include <set>
 #include <utility>
 
+#include "engine/core/geometry.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/mesh/lid_triangles.hpp"
 #include "engine/mesh/polygon_shape.hpp"
@@ -111,7 +112,7 @@ class HoleCloser {
   /// none.
   std::optional<std::size_t> home_of(std::size_t i) const {
     if (!views_[i] || !out_.holes[i].loop.planar) return std::nullopt;
-    const auto size = [&](std::size_t k) { return out_.holes[k].loop.box.diagonal().norm(); };
+    const auto size = [&](std::size_t k) { return norm3(out_.holes[k].loop.box.diagonal()); };
     std::optional<std::size_t> home;
     for (std::size_t k = 0; k < rims_.size(); ++k) {
       // Swapped projections: the same axis and opposite orientation.

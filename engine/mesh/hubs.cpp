@@ -27,7 +27,7 @@ Box directions(const Mesh& mesh, FaceId f, VertexId v) {
                         q = (mesh.vertices[corners[(at + n - 1) % n]] - centre).stableNormalized();
   const auto is_direction = [](const Eigen::Vector3d& d) {  // excludes overflow and neighbours that coincide
                                                             // with v
-    return d.allFinite() && std::abs(d.squaredNorm() - 1) < 0x1p-40;
+    return d.allFinite() && std::abs(squared_norm3(d) - 1) < 0x1p-40;
   };
   // No usable direction: a box around the entire sphere, which overlaps all others.
   if (!is_direction(p) || !is_direction(q))
@@ -35,7 +35,7 @@ Box directions(const Mesh& mesh, FaceId f, VertexId v) {
   // The chord's box, enlarged by the bound on the distance between arc and chord.
   Box box(p);
   box.extend(q);
-  const Eigen::Vector3d room = Eigen::Vector3d::Constant((p - q).squaredNorm() / 4 + kRoom);
+  const Eigen::Vector3d room = Eigen::Vector3d::Constant(squared_norm3(p - q) / 4 + kRoom);
   return {box.min() - room, box.max() + room};
 }
 
@@ -151,8 +151,8 @@ bool proven_disjoint(const OrientedBox& a, const OrientedBox& b) {
   const Eigen::Vector3d seen_by_a = a.axes * between, seen_by_b = b.axes * between;
   // Face normals of a and of b: 6 axes.
   for (int i = 0; i < 3; ++i) {
-    if (std::abs(seen_by_a[i]) > a.half[i] + size.row(i).dot(b.half) + kRoom) return true;
-    if (std::abs(seen_by_b[i]) > b.half[i] + size.col(i).dot(a.half) + kRoom) return true;
+    if (std::abs(seen_by_a[i]) > a.half[i] + dot3(size.row(i), b.half) + kRoom) return true;
+    if (std::abs(seen_by_b[i]) > b.half[i] + dot3(size.col(i), a.half) + kRoom) return true;
   }
   // Cross products of an axis of a and one of b: 9 axes. Without normalisation, which only makes the test
   // more conservative.
@@ -191,7 +191,7 @@ std::uint32_t TriangleTree::build(const Mesh& mesh, const UnitCube& cube, std::u
   const Eigen::Vector3d along = nodes_[index].box.axes.row(axis);
   // Three times the centroid's coordinate along that axis.
   const auto place = [&](const Triangle& t) {
-    return along.dot(cube(mesh.vertices[t[0]]) + cube(mesh.vertices[t[1]]) + cube(mesh.vertices[t[2]]));
+    return dot3(along, cube(mesh.vertices[t[0]]) + cube(mesh.vertices[t[1]]) + cube(mesh.vertices[t[2]]));
   };
   const std::uint32_t median = first + (last - first) / 2;
   const auto at = [&](std::uint32_t i) { return triangles_.begin() + static_cast<std::ptrdiff_t>(i); };

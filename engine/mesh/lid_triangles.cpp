@@ -90,8 +90,8 @@ class CornerCutter {
         return 0;
     const auto& x = mesh_.vertices;
     // Shape: height divided by the longest edge, 0 for needles, 0.87 for equilateral triangles.
-    const double longest = std::max({(x[a] - x[b]).norm(), (x[b] - x[c]).norm(), (x[c] - x[a]).norm()});
-    const double area = (x[b] - x[a]).cross(x[c] - x[a]).norm();
+    const double longest = std::max({norm3(x[a] - x[b]), norm3(x[b] - x[c]), norm3(x[c] - x[a])});
+    const double area = norm3((x[b] - x[a]).cross(x[c] - x[a]));
     const double shape = area / longest / longest;
     // Ears are proven by exact tests, so numerical errors must not exclude one.
     return std::isfinite(shape) && shape > 0 ? shape : std::numeric_limits<double>::min();
@@ -162,7 +162,7 @@ std::optional<Bridge> find_bridge(const Mesh& mesh, std::span<const VertexId> ri
   for (std::size_t h = 0; h < holes.size(); ++h)
     for (std::size_t k = 0; k < holes[h].size(); ++k)
       for (std::size_t i = 0; i < rim.size(); ++i)
-        bridges.push_back({h, i, k, (mesh.vertices[rim[i]] - mesh.vertices[holes[h][k]]).squaredNorm()});
+        bridges.push_back({h, i, k, squared_norm3(mesh.vertices[rim[i]] - mesh.vertices[holes[h][k]])});
   std::stable_sort(bridges.begin(), bridges.end(),
                    [](const Bridge& a, const Bridge& b) { return a.length_sq < b.length_sq; });
   // The first visible pair: it starts into the polygon and intersects no edge of the polygon or of any hole.
@@ -204,7 +204,7 @@ std::optional<HoleFill> least_area(const Mesh& mesh, std::span<const VertexId> r
   // Twice the area, which orders triangulations equally. Triangles without area are excluded exactly.
   const auto area = [&](std::size_t i, std::size_t k, std::size_t j) {
     if (exact::collinear3d(x(i).data(), x(k).data(), x(j).data())) return kInfinity;
-    return (x(k) - x(i)).cross(x(j) - x(i)).norm();
+    return norm3((x(k) - x(i)).cross(x(j) - x(i)));
   };
   // cost[i n + j]: minimum area between the polygon from i to j and the edge that closes it (Klincsek 1980).
   std::vector<double> cost(n * n, 0);

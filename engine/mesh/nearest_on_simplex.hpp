@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "engine/core/geometry.hpp"
+
 namespace lrb {
 
 /// A point of a simplex by barycentric coordinates, which are at least 0 and add up to 1 up to rounding.
@@ -17,11 +19,11 @@ struct SimplexPoint {
 inline SimplexPoint nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                        const Eigen::Vector3d& b) {
   const Eigen::Vector3d ab = b - a, ap = p - a;
-  const double along = ab.dot(ap), length_sq = ab.squaredNorm();
-  if (!(along > 0)) return {{1, 0, 0}, ap.squaredNorm()};
-  if (!(along < length_sq)) return {{0, 1, 0}, (p - b).squaredNorm()};
+  const double along = dot3(ab, ap), length_sq = squared_norm3(ab);
+  if (!(along > 0)) return {{1, 0, 0}, squared_norm3(ap)};
+  if (!(along < length_sq)) return {{0, 1, 0}, squared_norm3(p - b)};
   const double t = along / length_sq;
-  return {{1 - t, t, 0}, (ap - t * ab).squaredNorm()};
+  return {{1 - t, t, 0}, squared_norm3(ap - t * ab)};
 }
 
 /// Returns the closest point of a triangle, possibly without area (Ericson, "Real-Time Collision Detection",
@@ -29,26 +31,26 @@ inline SimplexPoint nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Ve
 inline SimplexPoint nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                         const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return {{1, 0, 0}, ap.squaredNorm()};
+  const double d1 = dot3(ab, ap), d2 = dot3(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return {{1, 0, 0}, squared_norm3(ap)};
   const Eigen::Vector3d bp = p - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return {{0, 1, 0}, bp.squaredNorm()};
+  const double d3 = dot3(ab, bp), d4 = dot3(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return {{0, 1, 0}, squared_norm3(bp)};
   const Eigen::Vector3d cp = p - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return {{0, 0, 1}, cp.squaredNorm()};
+  const double d5 = dot3(ab, cp), d6 = dot3(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return {{0, 0, 1}, squared_norm3(cp)};
   const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
   if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) {
     const double t = d1 / (d1 - d3);
-    return {{1 - t, t, 0}, (ap - t * ab).squaredNorm()};
+    return {{1 - t, t, 0}, squared_norm3(ap - t * ab)};
   }
   if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) {
     const double t = d2 / (d2 - d6);
-    return {{1 - t, 0, t}, (ap - t * ac).squaredNorm()};
+    return {{1 - t, 0, t}, squared_norm3(ap - t * ac)};
   }
   if (va <= 0 && d4 >= d3 && d5 >= d6 && (d4 - d3) + (d5 - d6) > 0) {
     const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {{0, 1 - t, t}, (bp - t * (c - b)).squaredNorm()};
+    return {{0, 1 - t, t}, squared_norm3(bp - t * (c - b))};
   }
   const double sum = va + vb + vc;
   if (!(va >= 0 && vb >= 0 && vc >= 0 && sum > 0)) {  // rounding, or no area
@@ -59,7 +61,7 @@ inline SimplexPoint nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::V
     return best;
   }
   const double v = vb / sum, w = vc / sum;
-  return {{1 - v - w, v, w}, (ap - v * ab - w * ac).squaredNorm()};
+  return {{1 - v - w, v, w}, squared_norm3(ap - v * ab - w * ac)};
 }
 
 }  // namespace lrb

@@ -285,7 +285,7 @@ void FittedCuts::localise() {
   Box bounds;
   for (const std::uint32_t i : along(0)) bounds.extend(soup_.box[simplices_[i]]);
   origin_ = bounds.center();
-  scale_ = 1 / bounds.sizes().norm();
+  scale_ = 1 / norm3(bounds.sizes());
   if (!std::isfinite(scale_)) scale_ = 1;
   for (const std::uint32_t i : along(0)) {
     GrowingBox<float> box;
@@ -314,7 +314,7 @@ void FittedCuts::order_along(const Vector3d& direction, std::vector<std::uint32_
   const std::span<const std::uint32_t> some = along(0);
   for (std::uint32_t k = 0; k < size_; ++k) {
     const Vector3d seen = centre_[some[k]] - origin_;
-    const float x = positions_[k] = static_cast<float>(scale_ * direction.dot(seen));
+    const float x = positions_[k] = static_cast<float>(scale_ * dot3(direction, seen));
     places_[k] = place_at(x, some[k]);
     low = x < low ? x : low;
     high = x > high ? x : high;
@@ -430,7 +430,7 @@ Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, doubl
   Box bounds;
   for (const Box& some : bounds_of) bounds.extend(some);
   origin_ = bounds.center();
-  scale_ = 1 / bounds.sizes().norm();
+  scale_ = 1 / norm3(bounds.sizes());
   if (!std::isfinite(scale_)) scale_ = 1;
 }
 
@@ -453,7 +453,7 @@ Spread::Spread(const std::array<Vector3d, 3>& corners, const Vector3d& origin, d
                  r = scale * (corners[2] - origin);
   // Exact integrals over the triangle: mean (p + q + r) / 3, and second moments (sum^2 + p^2 + q^2 + r^2) /
   // 12.
-  const double weight = (q - p).cross(r - p).norm() + kFrameCornerWeight;
+  const double weight = norm3((q - p).cross(r - p)) + kFrameCornerWeight;
   const Vector3d sum = p + q + r;
   sums[0] = weight;
   sums.segment<3>(1) = weight / 3 * sum;
@@ -493,7 +493,7 @@ Frame principal_frame(const Soup& soup, std::span<const std::uint32_t> which, co
                       const Box& bounds) {
   const Frame straight{Matrix3d::Identity(), 0.5 * (bounds.min() + bounds.max())};
   // Without extent there are no principal axes: 1 / 0 is not finite.
-  const double scale = 1 / bounds.sizes().norm();
+  const double scale = 1 / norm3(bounds.sizes());
   if (!std::isfinite(scale)) return straight;
   Spread measured = spread;
   // Small compared with the body: measure again, with a closer origin and scale.

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/box_kernel.hpp"
 #include <lrbscope/ids.hpp>
@@ -45,7 +46,7 @@ struct Spread {
   /// Returns the covariance of the points.
   Eigen::Matrix3d covariance() const;
   /// Returns the mean squared distance of the points from their mean.
-  double variance() const { return sums.segment<3>(4).sum() / sums[0] - mean().squaredNorm(); }
+  double variance() const { return ((sums[4] + sums[5]) + sums[6]) / sums[0] - squared_norm3(mean()); }
 };
 
 /// The corners of a simplex. The constructor leaves them as they are: arrays are filled by several threads.
@@ -115,7 +116,7 @@ inline double half_area(const Eigen::AlignedBox3d& b) {
 /// Returns the cost of a box to a query by the surface area heuristic: half its surface area, plus a small
 /// term for its length.
 inline double box_cost(const Eigen::Vector3d& sides) {
-  return half_area(sides) + kLengthCost * sides.squaredNorm();
+  return half_area(sides) + kLengthCost * squared_norm3(sides);
 }
 inline double box_cost(const Eigen::AlignedBox3d& b) {
   return box_cost(Eigen::Vector3d(b.sizes()));

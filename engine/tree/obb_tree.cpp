@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/binary_tree.hpp"
 #include "engine/tree/fitted_cut.hpp"
@@ -123,7 +124,7 @@ class ObbTreeBuilder {
       // Absent simplices repeat the last one, so that all eight lanes contain valid coordinates.
       const std::uint32_t s = soup_.order[std::min(b.begin + k, b.end - 1)];
       for (int corner = 0; corner < 3; ++corner) {
-        const Vector3d x = frame.axes * (soup_.corners[s][corner] - frame.origin);
+        const Vector3d x = product3(frame.axes, soup_.corners[s][corner] - frame.origin);
         for (int axis = 0; axis < 3; ++axis) block.corner[corner][axis][k] = static_cast<float>(x[axis]);
       }
       if (b.begin + k < b.end) block.simplex[k] = soup_.simplices[s];
@@ -157,7 +158,7 @@ class ObbTreeBuilder {
     // The origin is 0 in this frame, so the farthest corner of the common box bounds the radius.
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner)
-      farthest = std::max(farthest, all.corner(static_cast<Box::CornerType>(corner)).norm());
+      farthest = std::max(farthest, norm3(all.corner(static_cast<Box::CornerType>(corner))));
     node.radius = std::nextafter(static_cast<float>(farthest + 2 * margin), INFINITY);
   }
 
@@ -295,7 +296,7 @@ bool holds(const TreeNode& node, std::uint32_t k, const Eigen::Vector3d& x) {
     const double base = node.base[i], scale = node.scale[i];
     if (!(at[i] >= base + scale * node.lo[i][k] && at[i] <= base + scale * node.hi[i][k])) return false;
   }
-  return at.norm() <= node.radius;
+  return norm3(at) <= node.radius;
 }
 
 /// Returns true if a leaf's copy of a corner equals the corner, up to the rounding that the query allows for.
