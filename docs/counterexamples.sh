@@ -58,19 +58,18 @@ done <<<"$cases"
   cat <<'P'
 # Ten counterexamples
 
-The smallest cases of each kind that [`stability --minimise`](stability.md#minimise-a-case) found for two other ways to intersect triangles: FCL 0.7.0
-(Debian 12's package, `BVHModel<OBBRSS>`, `collide()` for all pairs) in double and in float, and brute force over all pairs of triangles by Moeller's
-test in double with its usual epsilon of 1e-6. Made by [counterexamples.sh](counterexamples.sh), which also compiles and runs a program without
-lrbscope for each case of FCL.
+The smallest failure of each kind that [`stability --minimise`](stability.md#minimise-a-case) found in two other methods: FCL 0.7.0 (Debian 12's
+package, `BVHModel<OBBRSS>`, `collide()` for all pairs) in double and in float, and brute force with Moeller's triangle test in double, with its usual
+epsilon of 1e-6. [counterexamples.sh](counterexamples.sh) writes this page, and compiles and runs a program without lrbscope for each case of FCL.
 
-Triangles and segments have area and length: degenerate ones give smaller cases, but many engines do not accept them.
+No triangle or segment is degenerate. Degenerate ones would give smaller cases, but many engines do not accept them.
 
-**Which of these are faults?** Pairs that cross and are missed (1 to 3) are wrong by any definition. Whether touching counts (4 to 6) is a convention.
-FCL's documentation does not state one; its triangle test rejects only intervals that are strictly apart (`project6()`), and finds most touching pairs.
-Moeller's test is meant to find them. Pairs that do not intersect (7 to 10): FCL's triangle test has no tolerance, so those that it returns are due to
-rounding, also where the distance is not small. Those that brute force returns are due to its epsilon, which is compared with areas and products, not with
-distances. Neither FCL nor the textbook's test promises exact answers, and most of these cases are extreme: a needle thousands of times as long as wide,
-or a gap near the resolution of the numbers. Cases 5 and 6 are not.
+**Which of these are faults?** Missing a pair that crosses (1 to 3) is wrong by any definition. Whether touching pairs intersect (4 to 6) is a
+convention. FCL's documentation does not state one, but its triangle test (`project6()`) rejects only strictly disjoint intervals, and finds most
+touching pairs. Moeller's test is meant to find them. Some returned pairs do not intersect (7 to 10). FCL's triangle test has no tolerance, so its
+false pairs are due to rounding, even at large distances. Those of brute force are due to its epsilon, which is compared with areas and products, not
+with distances. Neither FCL nor Moeller's test promises exact answers, and most of these cases are extreme: a needle thousands of times as long as
+wide, or a gap near the resolution of the numbers. Cases 5 and 6 are not extreme.
 
 | case | failure | vertices | bits |
 | --- | --- | --- | --- |

@@ -82,7 +82,7 @@ struct HalfPlane {
 HalfPlane cut(const HalfSpace& h, const Frame& f) {
   // Substitute origin + x p.x + y p.y into n.x >= d. The length of `a` is the sine between the two planes.
   const Vector2 a(dot3(h.n, f.x), dot3(h.n, f.y));
-  return {a, h.d - dot3(h.n, f.origin), a.squaredNorm() < kParallelSineSq};
+  return {a, h.d - dot3(h.n, f.origin), dot2(a, a) < kParallelSineSq};
 }
 
 /// Returns the point nearest to the origin on the boundary line `edge` of a half-plane that is in the
@@ -90,14 +90,14 @@ HalfPlane cut(const HalfSpace& h, const Frame& f) {
 std::optional<Vector2> nearest_on_line(const HalfPlane& edge, std::span<const HalfSpace> before,
                                        const Frame& frame, double slack) {
   // Parametrise the line by arc length from its point nearest to the origin: the optimum is the smallest |t|.
-  const double length_sq = edge.a.squaredNorm();
+  const double length_sq = dot2(edge.a, edge.a);
   const Vector2 start = edge.a * (edge.b / length_sq);
   const Vector2 along = Vector2(-edge.a.y(), edge.a.x()) / std::sqrt(length_sq);
   double low = -std::numeric_limits<double>::infinity(), high = -low;
   // Each earlier half-space leaves a ray of the line. The rays intersect in [low, high].
   for (const HalfSpace& h : before) {
     const HalfPlane c = cut(h, frame);
-    const double slope = c.a.dot(along), needed = c.b - c.a.dot(start);
+    const double slope = dot2(c.a, along), needed = c.b - dot2(c.a, start);
     if (slope * slope < kParallelSineSq) {
       // Parallel to the line: the entire line satisfies it, or none of it.
       if (needed > slack) return std::nullopt;
@@ -123,7 +123,7 @@ std::optional<Vector3> nearest_on_plane(const HalfSpace& last, std::span<const H
   for (std::size_t i = 0; i < before.size(); ++i) {
     const HalfPlane c = cut(before[i], frame);
     // The point satisfies this half-plane: it remains the optimum.
-    if (c.a.dot(p) >= c.b - slack) continue;
+    if (dot2(c.a, p) >= c.b - slack) continue;
     // The planes are parallel and the half-space does not contain this one: infeasible.
     if (c.parallel) return std::nullopt;
     // Violated: the optimum moves to the boundary line.
