@@ -201,8 +201,8 @@ class PaperWork {
   double done_ = 0, total_ = 0;
 };
 
-/// Describes the run whose collisions can be continued: what they depend on, except for the number of seeds
-/// and collisions, which may grow.
+/// Describes the run whose collisions can be continued: the bodies and settings, except for the number of
+/// seeds and collisions, which may grow.
 std::string head_of(const paper::SweepOptions& sweep, std::span<const paper::PaperObject> objects) {
   nlohmann::ordered_json head = {{"lrbscope", trace::lrbscope_version()},
                                  {"steps_after", sweep.protocol.steps_after},

@@ -34,9 +34,9 @@ report::Chart figure_3_1(std::span<const Run> runs) {
              {},
              {},
              {report::Line::none}};
-  const auto add = [](report::Series& s, double size, double middle, double low, double high) {
+  const auto add = [](report::Series& s, double size, double centre, double low, double high) {
     s.x.push_back(size);
-    s.y.push_back(middle);
+    s.y.push_back(centre);
     s.low.push_back(low);
     s.high.push_back(high);
   };
@@ -233,8 +233,7 @@ report::Table counters(std::span<const ObjectRow> rows, std::size_t recursion) {
 }
 
 std::string text_of(const Band& b) {
-  const std::string median = fixed(b.median, 2);
-  return b.low == b.high ? median : median + " (" + fixed(b.low, 2) + " to " + fixed(b.high, 2) + ")";
+  return fixed(b.median, 2) + " (" + fixed(b.low, 2) + " to " + fixed(b.high, 2) + ")";
 }
 
 std::string seeds_text(const PaperProtocol& p) {
@@ -246,7 +245,9 @@ report::Table ratio_table(std::span<const Run> runs, const PaperProtocol& protoc
   report::Table t{"Measured over published", {"object", "minimum", "average", "maximum"}};
   for (const ObjectRow& row : runs.front().rows) {
     const RatioBands b = ratios(runs, row.object);
-    t.rows.push_back({row.object, text_of(b[0]), text_of(b[1]), text_of(b[2])});
+    t.rows.push_back({row.object});
+    for (const Band& band : b)
+      t.rows.back().push_back(runs.size() > 1 ? text_of(band) : fixed(band.median, 2));
   }
   t.note = runs.size() > 1
                ? "Median over the " + seeds_text(protocol) + ", and in brackets the lowest and the highest."
