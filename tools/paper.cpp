@@ -1,8 +1,9 @@
-#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
 
 #include <nlohmann/json.hpp>
 
@@ -25,7 +26,7 @@ namespace lrb::cli {
 
 namespace {
 
-// The series: reads its options and runs it.
+// The series: its options and its files.
 
 struct PaperSeriesOptions {
   std::vector<std::string> meshes;
@@ -51,34 +52,10 @@ void add_series_options(CLI::App& app, PaperSeriesOptions& o) {
   app.add_flag("--lean", o.lean, "Build these bodies with fewer pseudo faces; wrappers fit less tightly");
 }
 
-/// Makes the bodies from the given meshes, or generated ones; A is the paper's object.
-std::vector<paper::SeriesObject> make_series(const PaperSeriesOptions& o, const LrbRep& a,
-                                             const Globals& globals) {
+/// Returns the given meshes, or generated ones.
+std::vector<Mesh> series_meshes(const PaperSeriesOptions& o, std::vector<std::string>& notes) {
   if (o.resolutions.most == 0) return {};
-  std::vector<std::string> notes;
-  const std::vector<Mesh> bodies =
-      o.meshes.empty() ? paper::own_series_bodies() : paper::read_series_bodies(o.meshes, notes);
-  note(globals, notes);
-  Progress progress("resolutions", 0, globals.quiet);
-  std::uint64_t done = 0;
-  BuildOptions building;
-  building.lean = o.lean;
-  return paper::make_series(bodies, o.resolutions, building, paper::diagonal(a),
-                            [&] { progress.set(++done); });
-}
-
-/// Runs the collisions.
-std::vector<paper::ContactStep> run_series(const LrbRep& a, std::span<const paper::SeriesObject> objects,
-                                           const paper::SweepOptions& sweep, const paper::PartRunner& part,
-                                           const Globals& globals) {
-  Progress progress("resolutions collide", 0, globals.quiet);
-  return paper::run_series(
-      a, objects, sweep,
-      [&](std::uint64_t done, std::uint64_t of) {
-        progress.set_total(of);
-        progress.set(done);
-      },
-      part);
+  return o.meshes.empty() ? paper::own_series_bodies() : paper::read_series_bodies(o.meshes, notes);
 }
 
 /// Writes a shard's series, to be merged later: series.jsonl and series_times.jsonl.
@@ -87,20 +64,27 @@ void write_series_shard(const std::vector<paper::ContactStep>& steps, const std:
   io::write_text(folder + "/series_times.jsonl", paper::times_to_json_lines(steps));
 }
 
-/// Reads the series next to the shards' records.jsonl.
-std::vector<paper::ContactStep> read_series_shards(const std::vector<std::string>& records) {
-  const auto beside = [](const std::string& file, const char* name) {
-    return (std::filesystem::path(file).parent_path() / name).string();
-  };
+std::vector<paper::ContactStep> read_shards(const std::vector<std::string>& files) {
   std::vector<paper::ContactStep> steps;
-  for (const std::string& file : records) {
-    const std::string path = beside(file, "series.jsonl");
-    for (paper::ContactStep& s : paper::read_json_lines(io::read_text(path), path))
+  for (const std::string& file : files)
+    for (paper::ContactStep& s : paper::read_json_lines(io::read_text(file), file))
       steps.push_back(std::move(s));
-  }
-  steps = paper::merged(std::move(steps));
+  return paper::merged(std::move(steps));
+}
+
+/// Reads the files of this name beside the shards' records.jsonl.
+std::vector<paper::ContactStep> read_beside(const std::vector<std::string>& records, const char* name) {
+  std::vector<std::string> files;
+  for (const std::string& file : records)
+    files.push_back((std::filesystem::path(file).parent_path() / name).string());
+  return read_shards(files);
+}
+
+/// Reads the series of the shards.
+std::vector<paper::ContactStep> read_series_shards(const std::vector<std::string>& records) {
+  std::vector<paper::ContactStep> steps = read_beside(records, "series.jsonl");
   for (const std::string& file : records) {
-    const std::string path = beside(file, "series_times.jsonl");
+    const std::string path = (std::filesystem::path(file).parent_path() / "series_times.jsonl").string();
     paper::read_times(io::read_text(path), path, steps);
   }
   return steps;
@@ -111,7 +95,7 @@ std::vector<paper::ContactStep> read_series_shards(const std::vector<std::string
 struct PaperOptions {
   std::string folder = "out/paper", experiment = "paper", shard;
   std::vector<std::string> merge;
-  std::optional<std::uint32_t> collisions, steps_after;  ///< these override the experiment
+  std::optional<std::uint32_t> collisions, steps_after, seeds;  ///< these override the experiment
   std::optional<double> step;
   std::optional<std::uint64_t> seed;
   std::uint32_t jobs = 0;  ///< 0: all cores
@@ -125,6 +109,10 @@ paper::PaperExperiment experiment_of(const PaperOptions& o) {
   if (o.steps_after) e.protocol.steps_after = *o.steps_after;
   if (o.step) e.protocol.step = *o.step;
   if (o.seed) e.protocol.seed = *o.seed;
+  if (o.seeds) e.protocol.seeds = *o.seeds;
+  if (e.protocol.seed > spec::kAnySeed - (e.protocol.seeds - 1))
+    throw InputError("--seed " + std::to_string(e.protocol.seed) + ": expected seeds up to " +
+                     std::to_string(spec::kAnySeed));
   return e;
 }
 
@@ -137,75 +125,86 @@ paper::Shard read_shard(const std::string& text) {
   return s;
 }
 
-std::vector<paper::ContactStep> read_shards(const std::vector<std::string>& files) {
-  std::vector<paper::ContactStep> steps;
-  for (const std::string& file : files)
-    for (paper::ContactStep& s : paper::read_json_lines(io::read_text(file), file))
-      steps.push_back(std::move(s));
-  return paper::merged(std::move(steps));
-}
-
-/// Runs a part of the command, and records its duration.
-class PartTimes {
- public:
-  template <class Part>
-  auto run(const std::string& name, const Part& part) {
-    const auto begin = std::chrono::steady_clock::now();
-    auto result = part();
-    taken.emplace_back(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    return result;
-  }
-  std::vector<std::pair<std::string, double>> taken;
-};
-
-std::vector<paper::ContactStep> sweep_objects(std::span<const paper::PaperObject> objects,
-                                              const paper::SweepOptions& sweep, const Globals& globals) {
-  Progress progress("paper", 0, globals.quiet);
-  return paper::run_sweep(objects, sweep, [&](std::uint64_t done, std::uint64_t of) {
-    progress.set_total(of);
-    progress.set(done);
-  });
-}
-
-/// The parts that an interrupted run had finished.
-class FinishedParts {
+/// The work of a run: keeps each collision at once, so that an interrupted run can be continued, and shows
+/// how much of the whole is done. Work is measured in seconds on one core, as expected from measurements.
+class PaperWork {
  public:
   /// An empty folder: nothing is kept.
-  FinishedParts(const std::string& folder, const std::string& head)
-      : path_(folder.empty() ? "" : folder + "/unfinished.jsonl"), file_(path_, head) {
+  PaperWork(const std::string& folder, const std::string& head, const Globals& globals)
+      : path_(folder.empty() ? "" : folder + "/unfinished.jsonl"),
+        file_(path_, head, io::UnfinishedFile::Other::refused),
+        bar_("paper", 0, globals.quiet) {
     for (const std::string& line : file_.lines()) {
       const auto value = nlohmann::json::parse(line, nullptr, false);
       if (!value.is_object()) continue;
       std::vector<paper::ContactStep> steps = paper::read_json_lines(value.value("records", ""), path_);
       paper::read_times(value.value("times", ""), path_, steps);
-      known_[value.value("part", "")] = std::move(steps);
+      known_[value.value("collision", "")] = std::move(steps);
     }
+    if (!known_.empty())
+      note(globals, {"continues an interrupted run, of which " + std::to_string(known_.size()) +
+                     " collisions are in " + path_});
+    if (!path_.empty())
+      say_when_interrupted("finished collisions are kept in " + path_ +
+                           "; the same command goes on from there");
   }
 
-  /// Returns the steps of a part: those of the earlier run, or of run().
-  std::vector<paper::ContactStep> steps(const std::string& name,
-                                        const std::function<std::vector<paper::ContactStep>()>& run) {
-    if (const auto it = known_.find(name); it != known_.end()) return it->second;
-    std::vector<paper::ContactStep> steps = run();
-    file_.add(nlohmann::ordered_json{{"part", name},
+  /// `mesh_faces` 0: an object of the paper, instead of a mesh.
+  static double expected_seconds(const paper::PaperProtocol& p, double mesh_faces, bool with_itself) {
+    const double six_steps = mesh_faces == 0 ? 0.007
+                             : with_itself   ? 5.3e-4 * std::pow(mesh_faces, 0.65)
+                                             : 0.03;
+    return six_steps * (1 + p.steps_after) / 6;
+  }
+  void plan(double seconds) { total_ += seconds; }
+  void advance(double seconds, const std::string& what) {
+    done_ += seconds;
+    bar_.set_share(done_ / total_, what);
+  }
+
+  /// Runs a collision, or returns the steps that the earlier run had of it. Called from several threads.
+  std::vector<paper::ContactStep> collide(const paper::CollisionTask& task, Workspace& workspace) {
+    const std::uint64_t a = task.a.rep.hash(), x = task.x.rep.hash();
+    const std::string key = nlohmann::json(task.protocol.step).dump() + " " +
+                            std::to_string(task.protocol.steps_after) + " " +
+                            std::to_string(task.protocol.seed) + " " + task.x.name + " " + trace::to_hex(a) +
+                            trace::to_hex(x) + " " + std::to_string(task.collision);
+    const double seconds =
+        expected_seconds(task.protocol, task.x.draws.empty() ? 0 : task.x.rep.real_face_count(), a == x);
+    const auto known = known_.find(key);
+    std::vector<paper::ContactStep> steps =
+        known != known_.end() ? known->second : paper::run(task, workspace);
+    const std::lock_guard lock(one_at_a_time_);
+    if (known != known_.end()) {
+      total_ -= seconds;
+      return steps;
+    }
+    file_.add(nlohmann::ordered_json{{"collision", key},
                                      {"records", paper::to_json_lines(steps)},
                                      {"times", paper::times_to_json_lines(steps)}}
                   .dump());
+    advance(seconds, (task.a.name.empty() ? "" : task.a.name + " and ") + task.x.name);
     return steps;
   }
 
-  void remove() const { file_.remove(); }
+  void finish() {
+    bar_.finish();
+    file_.remove();
+  }
 
  private:
   std::string path_;
   io::UnfinishedFile file_;
-  std::map<std::string, std::vector<paper::ContactStep>> known_;
+  Progress bar_;
+  std::map<std::string, std::vector<paper::ContactStep>> known_;  ///< by key
+  std::mutex one_at_a_time_;
+  double done_ = 0, total_ = 0;
 };
 
-/// Describes the run whose parts can be continued: the version, the protocol, the shard and the bodies.
+/// Describes the run whose collisions can be continued: the bodies and settings, except for the number of
+/// seeds and collisions, which may grow.
 std::string head_of(const paper::SweepOptions& sweep, std::span<const paper::PaperObject> objects) {
   nlohmann::ordered_json head = {{"lrbscope", trace::lrbscope_version()},
-                                 {"collisions", sweep.protocol.collisions},
                                  {"steps_after", sweep.protocol.steps_after},
                                  {"step", sweep.protocol.step},
                                  {"seed", sweep.protocol.seed},
@@ -231,15 +230,10 @@ void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
   }
 }
 
-/// `series_steps`: null if there is no series.
-void write_shard(const PaperOptions& o, const paper::SweepOptions& sweep,
-                 const std::vector<paper::ContactStep>& steps,
-                 const std::vector<paper::ContactStep>* series_steps) {
-  paper::write_shard_file({sweep.shard, sweep.protocol, o.series.resolutions, o.series.lean}, o.folder);
-  io::write_text(o.folder + "/records.jsonl", paper::to_json_lines(steps));
-  if (series_steps != nullptr) write_series_shard(*series_steps, o.folder);
-  print(o.folder + "/records.jsonl\n");
-}
+/// The counted steps of all parts.
+struct PaperSteps {
+  std::vector<paper::ContactStep> objects, settings, series;
+};
 
 int run_paper(PaperOptions o, const Globals& globals) {
   if (o.print) {
@@ -248,50 +242,87 @@ int run_paper(PaperOptions o, const Globals& globals) {
   }
   paper::PaperExperiment experiment = experiment_of(o);
   settle(o, experiment);
+  const paper::PaperProtocol& protocol = experiment.protocol;
   const bool merging = !o.merge.empty();
-  paper::SweepOptions sweep{experiment.protocol, {}, o.jobs > 0 ? o.jobs : all_cores()};
+  paper::SweepOptions sweep{protocol, {}, o.jobs > 0 ? o.jobs : all_cores()};
   if (!o.shard.empty()) sweep.shard = read_shard(o.shard);
-  const bool with_series = o.series.resolutions.most > 0;
-  std::vector<paper::ContactStep> steps = read_shards(o.merge), series_steps;
-  if (merging && with_series) series_steps = read_series_shards(o.merge);
-  PartTimes clock;
   std::vector<std::string> notes;
-  const std::vector<paper::PaperObject> objects =
-      clock.run("the paper's objects", [&] { return paper::make_objects(experiment, notes); });
-  note(globals, notes);
-  if (merging) paper::check_records({objects, steps, experiment, globals.command_line});
-  const report::Folder folder(o.folder);
+  const std::vector<paper::PaperObject> objects = paper::make_objects(experiment, notes);
   const LrbRep& a = objects[0].rep;
-  const bool computes = !merging && experiment.collides();
-  FinishedParts parts(computes ? o.folder : "", head_of(sweep, objects));
-  if (computes)
-    steps = clock.run("their collisions", [&] {
-      return parts.steps("objects", [&] { return sweep_objects(objects, sweep, globals); });
-    });
-  if (computes && with_series &&
-      o.shard.empty()) {  // so that an interruption of the rest leaves these results
-    paper::write_paper_report({objects, steps, experiment, globals.command_line, nullptr, clock.taken},
-                              folder);
-    note(globals,
-         {"wrote " + o.folder + "/index.html; bodies at several resolutions follow (--resolutions 0: none)"});
+  const std::vector<Mesh> meshes = series_meshes(o.series, notes);
+  note(globals, notes);
+  std::vector<paper::PaperProtocol> settings;
+  if (experiment.reports(paper::PaperPart::settings) && paper::as_published(objects))
+    settings = paper::other_settings(protocol);
+  PaperSteps steps;
+  if (merging) {
+    steps.objects = read_shards(o.merge);
+    if (!settings.empty()) steps.settings = read_beside(o.merge, "settings.jsonl");
+    if (!meshes.empty()) steps.series = read_series_shards(o.merge);
+    paper::check_records({objects, steps.objects, steps.settings, experiment, globals.command_line});
   }
-  const std::vector<paper::SeriesObject> series =
-      clock.run("bodies at several resolutions", [&] { return make_series(o.series, a, globals); });
-  if (!merging && with_series)
-    series_steps = clock.run("their collisions", [&] {
-      const auto part = [&](const std::string& name, const auto& run) { return parts.steps(name, run); };
-      return run_series(a, series, sweep, part, globals);
-    });
+  const report::Folder folder(o.folder);
+  const bool computes = !merging && experiment.collides();
+  PaperWork work(computes ? o.folder : "", head_of(sweep, objects), globals);
+  sweep.runner = [&](const paper::CollisionTask& task, Workspace& w) { return work.collide(task, w); };
+
+  // Plan the whole, so that the time left is that of the whole.
+  const auto plan = [&](const paper::PaperProtocol& p, double pairs, double mesh_faces = 0,
+                        bool with_itself = false) {
+    work.plan(pairs * p.seeds * p.collisions / sweep.shard.count *
+              PaperWork::expected_seconds(p, mesh_faces, with_itself));
+  };
+  const auto building_seconds = [&](double faces) { return 5.5e-5 * faces * sweep.jobs; };  // on one thread
+  if (computes) {
+    const auto others = static_cast<double>(objects.size() - 1);
+    plan(protocol, others);
+    for (const paper::PaperProtocol& p : settings) plan(p, others);
+  }
+  paper::PaperProtocol of_series = protocol;
+  of_series.seeds = 1;
+  for (const Mesh& mesh : meshes)
+    for (const std::uint32_t faces : resolutions::resolution_sizes(mesh, o.series.resolutions)) {
+      work.plan(building_seconds(faces));
+      if (merging) continue;
+      plan(of_series, 1, faces);
+      plan(of_series, 1, faces, true);
+    }
+
+  const auto write = [&](const paper::SeriesReport* series) {
+    return paper::write_paper_report(
+        {objects, steps.objects, steps.settings, experiment, globals.command_line, series}, folder);
+  };
+  if (computes) {
+    steps.objects = paper::merged(paper::run_seeds(objects, sweep));
+    for (const paper::PaperProtocol& p : settings) {
+      paper::SweepOptions other = sweep;
+      other.protocol = p;
+      for (paper::ContactStep& s : paper::run_sweep(objects, other)) steps.settings.push_back(std::move(s));
+    }
+    if (!meshes.empty() && o.shard.empty()) {  // so that an interruption of the rest leaves these results
+      write(nullptr);
+      note(globals, {"wrote " + o.folder +
+                     "/index.html; bodies at several resolutions follow (--resolutions 0: none)"});
+    }
+  }
+  BuildOptions building;
+  building.lean = o.series.lean;
+  const std::vector<paper::SeriesObject> series = paper::make_series(
+      meshes, o.series.resolutions, building, paper::diagonal(a),
+      [&](const LrbRep& rep) { work.advance(building_seconds(rep.real_face_count()), "resolutions"); });
+  if (!merging) steps.series = paper::run_series(a, series, sweep);
   if (!o.shard.empty()) {
-    write_shard(o, sweep, steps, with_series ? &series_steps : nullptr);
-    parts.remove();
+    paper::write_shard_file({sweep.shard, protocol, o.series.resolutions, o.series.lean}, o.folder);
+    io::write_text(o.folder + "/records.jsonl", paper::to_json_lines(steps.objects));
+    if (!settings.empty()) io::write_text(o.folder + "/settings.jsonl", paper::to_json_lines(steps.settings));
+    if (!meshes.empty()) write_series_shard(steps.series, o.folder);
+    work.finish();
+    print(o.folder + "/records.jsonl\n");
     return kOk;
   }
-  const paper::SeriesReport series_report{a, series, series_steps, sweep.jobs};
-  note(globals, paper::write_paper_report({objects, steps, experiment, globals.command_line,
-                                           with_series ? &series_report : nullptr, clock.taken},
-                                          folder));
-  parts.remove();
+  const paper::SeriesReport series_report{a, series, steps.series, sweep.jobs};
+  note(globals, write(meshes.empty() ? nullptr : &series_report));
+  work.finish();
   print(o.json ? io::read_text(o.folder + "/tables.json") : o.folder + "/index.html\n");
   return kOk;
 }
@@ -320,6 +351,10 @@ Command add_paper(CLI::App& root, const Globals& globals) {
       ->check(CLI::Range(0u, paper::kMaxStepsAfter))
       ->type_name("N");
   app->add_option("--seed", o->seed, "Random seed for directions and rotations [1]")->type_name("N");
+  app->add_option("--seeds", o->seeds,
+                  "Number of repetitions, with seed, seed + 1, and so on; the tables then show a band [1]")
+      ->check(CLI::Range(1u, paper::kMaxSeeds))
+      ->type_name("N");
   app->add_option("--jobs", o->jobs, "Number of threads [all cores]; the result does not depend on it")
       ->check(CLI::Range(1u, 1024u))
       ->type_name("N");
@@ -333,8 +368,8 @@ Command add_paper(CLI::App& root, const Globals& globals) {
                            ->type_name("records.jsonl...")
                            ->excludes(shard);
   add_series_options(*app, o->series);
-  for (const char* of_shards :
-       {"--collisions", "--step", "--steps-after", "--seed", "--resolutions", "--subdivide", "--lean"})
+  for (const char* of_shards : {"--collisions", "--step", "--steps-after", "--seed", "--seeds",
+                                "--resolutions", "--subdivide", "--lean"})
     merge->excludes(app->get_option(of_shards));
   app->add_flag("--json", o->json, "Print the tables as JSON instead of the page's path");
   return {app, [o, &globals] { return run_paper(*o, globals); }};

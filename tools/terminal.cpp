@@ -1,11 +1,13 @@
 #include "tools/terminal.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <string>
 #include <string_view>
@@ -57,7 +59,8 @@ void Progress::set(std::uint64_t done, const std::string& detail) {
     std::string bar;
     for (std::uint64_t i = 0; i < kWidth; ++i) bar += i < full ? "#" : ".";
     if (terminal_) line += (colour_ ? "\033[36m" + bar + "\033[0m" : bar) + " ";
-    line += std::to_string(done) + "/" + std::to_string(total_);
+    line += shares_ ? std::to_string(100 * done / total_) + " %"
+                    : std::to_string(done) + "/" + std::to_string(total_);
     const double elapsed = std::chrono::duration<double>(now - begin_).count();
     if (done > 0 && elapsed > 1) {
       const double left =
@@ -72,6 +75,13 @@ void Progress::set(std::uint64_t done, const std::string& detail) {
     std::cerr << "\r\033[K" << line << std::flush;
   else
     std::cerr << "progress: " << line << std::endl;
+}
+
+void Progress::set_share(double share, const std::string& detail) {
+  constexpr double kWhole = 100'000;
+  shares_ = true;
+  total_ = static_cast<std::uint64_t>(kWhole);
+  set(static_cast<std::uint64_t>(kWhole * std::clamp(share, 0.0, 1.0)), detail);
 }
 
 void Progress::finish() {
@@ -116,11 +126,21 @@ void die_of(int signal) {
   std::raise(signal);
 }
 
+struct Farewell {
+  std::mutex lock;
+  std::string end = "files written so far are complete, the others are missing; run it again";
+};
+/// Never destroyed, because a signal may arrive at the end of the program.
+Farewell& farewell_words() {
+  static auto* words = new Farewell;
+  return *words;
+}
+
 std::string farewell(int signal) {
   const char* name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
   const char* clear = isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";  // there may be a progress bar
-  return std::string(clear) + "lrbscope: interrupted by " + name +
-         ": files written so far are complete, the others are missing; run it again\n";
+  const std::lock_guard lock(farewell_words().lock);
+  return std::string(clear) + "lrbscope: interrupted by " + name + ": " + farewell_words().end + "\n";
 }
 
 /// The descriptor of a StopSignal; -1: none.
@@ -178,6 +198,11 @@ void end_cleanly_on_signals() {
   } catch (const std::system_error&) {  // no thread: the signals then end the process immediately
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
   }
+}
+
+void say_when_interrupted(const std::string& what) {
+  const std::lock_guard lock(farewell_words().lock);
+  farewell_words().end = what;
 }
 
 StopSignal::StopSignal() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {

@@ -21,12 +21,14 @@ class Progress {
 
   void set(std::uint64_t done, const std::string& detail = {});
   void set_total(std::uint64_t total) { total_ = total; }
+  /// Shows a share of the work, from 0 to 1, as a percentage instead of a number out of the total.
+  void set_share(double share, const std::string& detail = {});
   void finish();
 
  private:
   std::string label_;
   std::uint64_t total_;
-  bool enabled_, terminal_, colour_, drawn_ = false;
+  bool enabled_, terminal_, colour_, drawn_ = false, shares_ = false;
   std::chrono::steady_clock::time_point begin_, last_;
 };
 
@@ -37,6 +39,9 @@ run::ProgressReport progress_report(bool quiet);
 /// the program by the same signal, so that a shell sees the cause. Finished files stay. Signals that the
 /// caller ignores stay ignored. Call it once, before any thread is started.
 void end_cleanly_on_signals();
+
+/// Replaces the end of that line, which says what an interrupted command leaves and how to continue it.
+void say_when_interrupted(const std::string& what);
 
 /// While an object of this class exists, the first of these signals is noted instead of ending the program;
 /// the next one ends it. At most one object exists at a time.

@@ -73,6 +73,16 @@ Mesh subdivide(const Mesh& mesh) {
   return out;
 }
 
+std::vector<std::uint32_t> resolution_sizes(const Mesh& mesh, const ResolutionOptions& options) {
+  std::uint32_t n = 0;
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
+    n += static_cast<std::uint32_t>(mesh.face(FaceId(f)).size()) - 2;
+  n <<= 2 * options.subdivisions;
+  std::vector<std::uint32_t> sizes = {n};
+  for (n /= 2; n >= options.min_faces && sizes.size() < options.most; n /= 2) sizes.push_back(n);
+  return sizes;
+}
+
 std::vector<Mesh> resolutions(const Mesh& mesh, const ResolutionOptions& options) {
   const MeshReport report = check_mesh(mesh, false).when_turned();
   if (mesh.dim != 3) throw InputError(mesh.name + ": expected a 3D body, found a 2D body");
@@ -84,11 +94,8 @@ std::vector<Mesh> resolutions(const Mesh& mesh, const ResolutionOptions& options
   Mesh finest = decimate(mesh, all).front();  // without any collapse: only triangulates polygons
   for (std::uint32_t i = 0; i < options.subdivisions; ++i) finest = subdivide(finest);
   orient_outward(finest);
-  std::vector<std::uint32_t> targets;
-  for (auto n = static_cast<std::uint32_t>(finest.face_count() / 2);
-       n >= options.min_faces && targets.size() + 1 < options.most; n /= 2)
-    targets.push_back(n);
-  std::vector<Mesh> out = decimate(finest, targets);
+  const std::vector<std::uint32_t> sizes = resolution_sizes(mesh, options);
+  std::vector<Mesh> out = decimate(finest, std::span(sizes).subspan(1));
   out.insert(out.begin(), std::move(finest));
   return out;
 }

@@ -29,9 +29,15 @@ void LineAppender::add(const std::string& line) {
     throw EnvironmentError(printable_name(path_) + ": cannot write the file: " + std::strerror(errno));
 }
 
-UnfinishedFile::UnfinishedFile(std::string path, const std::string& head) : path_(std::move(path)) {
+UnfinishedFile::UnfinishedFile(std::string path, const std::string& head, Other other)
+    : path_(std::move(path)) {
   if (path_.empty()) return;
   lines_ = complete_lines(path_);
+  if (other == Other::refused && !lines_.empty() && lines_.front() != head)
+    throw InputError(
+        printable_name(path_) +
+        ": belongs to an interrupted run with other settings or of another version; finish that run, "
+        "remove the file, or give another folder (-o)");
   if (lines_.empty() || lines_.front() != head)
     lines_.clear();
   else

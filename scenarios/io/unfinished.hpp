@@ -1,6 +1,7 @@
 #pragma once
 /// The results of a long computation while it runs, so that an interrupted one can be continued.
 
+#include <cstdint>
 #include <fstream>
 #include <optional>
 #include <string>
@@ -23,10 +24,13 @@ class LineAppender {
 /// A file to which lines are appended as results come. Its first line, the head, describes the computation.
 class UnfinishedFile {
  public:
-  /// Reads the complete lines of an earlier computation with the same head, and drops those of others. `head`
-  /// and lines have no line breaks. An empty path: nothing is kept. Throws EnvironmentError if the file
-  /// cannot be written.
-  UnfinishedFile(std::string path, const std::string& head);
+  /// What happens to a file with another head.
+  enum class Other : std::uint8_t { dropped, refused };
+
+  /// Reads the complete lines of an earlier computation with the same head. `head` and lines have no line
+  /// breaks. An empty path: nothing is kept. Throws EnvironmentError if the file cannot be written, and
+  /// InputError if it is refused.
+  UnfinishedFile(std::string path, const std::string& head, Other other = Other::dropped);
 
   /// Returns the lines of the earlier computation.
   const std::vector<std::string>& lines() const { return lines_; }

@@ -12,12 +12,12 @@
 namespace lrb::paper {
 namespace {
 
-constexpr std::array<PaperPart, 6> kAllParts = {PaperPart::table1,     PaperPart::table2,
-                                                PaperPart::figure_3_1, PaperPart::figure_3_2,
-                                                PaperPart::heat_maps,  PaperPart::refinement_tree};
+constexpr std::array<PaperPart, 7> kAllParts = {
+    PaperPart::table1,   PaperPart::table2,    PaperPart::figure_3_1,     PaperPart::figure_3_2,
+    PaperPart::settings, PaperPart::heat_maps, PaperPart::refinement_tree};
 
 PaperProtocol read_protocol(const io::JsonNode& node) {
-  node.object({"collisions", "steps_after", "step", "seed"});
+  node.object({"collisions", "steps_after", "step", "seed", "seeds"});
   PaperProtocol p;
   if (const auto n = node.get("collisions"))
     p.collisions = static_cast<std::uint32_t>(n->integer(1, kMaxCollisions));
@@ -25,6 +25,7 @@ PaperProtocol read_protocol(const io::JsonNode& node) {
     p.steps_after = static_cast<std::uint32_t>(n->integer(0, kMaxStepsAfter));
   if (const auto n = node.get("step")) p.step = n->number(kMinStep, kMaxStep);
   if (const auto n = node.get("seed")) p.seed = n->integer(0, spec::kAnySeed);
+  if (const auto n = node.get("seeds")) p.seeds = static_cast<std::uint32_t>(n->integer(1, kMaxSeeds));
   return p;
 }
 

@@ -14,13 +14,22 @@
 
 namespace lrb::paper {
 
-/// Parts of the report.
-enum class PaperPart : std::uint8_t { table1, table2, figure_3_1, figure_3_2, heat_maps, refinement_tree };
+/// Parts of the report. `settings`: table 2 for other time steps and numbers of steps.
+enum class PaperPart : std::uint8_t {
+  table1,
+  table2,
+  figure_3_1,
+  figure_3_2,
+  settings,
+  heat_maps,
+  refinement_tree
+};
 constexpr auto enum_names(PaperPart) {
   return std::to_array<EnumName<PaperPart>>({{PaperPart::table1, "table1"},
                                              {PaperPart::table2, "table2"},
                                              {PaperPart::figure_3_1, "figure3.1"},
                                              {PaperPart::figure_3_2, "figure3.2"},
+                                             {PaperPart::settings, "settings"},
                                              {PaperPart::heat_maps, "heat_maps"},
                                              {PaperPart::refinement_tree, "refinement_tree"}});
 }
@@ -65,7 +74,7 @@ inline constexpr auto kFields<paper::PaperProtocol> =
     std::tuple{field("collisions", &paper::PaperProtocol::collisions),
                field("time_step_of_diagonal", &paper::PaperProtocol::step),
                field("steps_after_first_contact", &paper::PaperProtocol::steps_after),
-               field("seed", &paper::PaperProtocol::seed)};
+               field("seed", &paper::PaperProtocol::seed), field("seeds", &paper::PaperProtocol::seeds)};
 static_assert(covers_all_fields<paper::PaperProtocol>);
 
 /// Without the duration of a recursion, which is not reproducible and has a separate file.

@@ -22,36 +22,58 @@ namespace {
 constexpr double kBinWidth = 250;  // comparisons
 
 /// Figure 3.1: the other object's size (real and pseudo faces, log axis) against comparisons: minimum,
-/// average and maximum, measured with the paper's recursion and as published.
-report::Chart figure_3_1(std::span<const ObjectRow> rows) {
-  constexpr double kBeside = 1.06;  // factor by which published bars are shifted to the right of the measured
-                                    // ones
-  report::Series measured{"measured: average, minimum, maximum", {}, {}},
-      paper{"published", {}, {}, {report::Line::dashed}};
-  const auto add = [](report::Series& s, double size, double average, double min, double max) {
+/// average and maximum, measured with the paper's recursion and as published; and the maxima of several
+/// seeds.
+report::Chart figure_3_1(std::span<const Run> runs) {
+  constexpr double kBeside = 1.06;  // factor by which the bars of the next series are shifted to the right
+  const std::string seed = std::to_string(runs.front().protocol.seed);
+  report::Series measured{
+      "measured: average, minimum, maximum" + (runs.size() > 1 ? ", seed " + seed : ""), {}, {}},
+      paper{"published", {}, {}, {report::Line::dashed}},
+      maxima{"maxima of " + std::to_string(runs.size()) + " seeds: median, lowest, highest",
+             {},
+             {},
+             {report::Line::none}};
+  const auto add = [](report::Series& s, double size, double centre, double low, double high) {
     s.x.push_back(size);
-    s.y.push_back(average);
-    s.low.push_back(min);
-    s.high.push_back(max);
+    s.y.push_back(centre);
+    s.low.push_back(low);
+    s.high.push_back(high);
   };
-  report::Axis sizes{"the other object: its real and pseudo faces", true, 80, 90000};
-  for (const ObjectRow& row : rows) {
+  report::Axis sizes{"the other object, by its number of faces", true, 80, 90000};
+  for (std::size_t i = 0; i < runs.front().rows.size(); ++i) {
+    const ObjectRow& row = runs.front().rows[i];
     const Spread& s = row.recursions[kPaper].comparisons;
     add(measured, row.total_faces, s.average, s.min, s.max);
     if (const PublishedRow* p = published(row.object))
       add(paper, row.total_faces * kBeside, p->average, p->min, p->max);
-    sizes.ticks.push_back(
-        {static_cast<double>(row.total_faces), row.object + ": " + std::to_string(row.total_faces)});
+    if (runs.size() > 1) {
+      std::vector<double> values;
+      for (const Run& run : runs) values.push_back(run.rows[i].recursions[kPaper].comparisons.max);
+      const Band band = band_of(std::move(values));
+      add(maxima, row.total_faces * kBeside * kBeside, band.median, band.low, band.high);
+    }
+    sizes.ticks.push_back({static_cast<double>(row.total_faces), row.object});
   }
+  std::vector<report::Series> series = {measured, paper};
+  if (!maxima.x.empty()) series.push_back(maxima);
   return {
-      "Figure 3.1", sizes, {"face comparisons in a time step"}, {measured, paper}, "The paper's recursion."};
+      "Figure 3.1: object size and face comparisons",
+      sizes,
+      {"face comparisons"},
+      series,
+      "Comparisons in a time step by the paper's recursion, and all faces, real and pseudo. Bars of one object are side by "
+      "side."};
 }
 
 /// Figure 3.2: the number of time steps for each number of comparisons, a line for each object, with the
 /// paper's recursion.
-report::Chart figure_3_2(std::span<const ObjectRow> rows, std::span<const ContactStep> steps) {
+report::Chart figure_3_2(std::span<const ObjectRow> rows, std::span<const ContactStep> steps,
+                         bool as_published) {
+  constexpr double kPublishedCentre = 2000;
+  double highest = 0;
   report::Chart chart{
-      "Figure 3.2",
+      "Figure 3.2: distribution of face comparisons",
       {"face comparisons in a time step (bins of " + io::fixed_text(kBinWidth) + ")", false, 0, 8000},
       {"time steps"},
       {},
@@ -68,7 +90,17 @@ report::Chart figure_3_2(std::span<const ObjectRow> rows, std::span<const Contac
       line.x.push_back((static_cast<double>(b) + 0.5) * kBinWidth);
       line.y.push_back(bins[b]);
     }
+    highest = std::max(highest, *std::max_element(line.y.begin(), line.y.end()));
     chart.series.push_back(std::move(line));
+  }
+  if (as_published) {
+    chart.series.push_back({"published: centre of the major grouping",
+                            {kPublishedCentre, kPublishedCentre},
+                            {0, highest},
+                            {report::Line::dashed, "#808080", "none"}});
+    chart.note +=
+        " The published curves are a picture, without numbers; the text says that the major grouping "
+        "is around the 2000 mark.";
   }
   return chart;
 }
@@ -76,6 +108,13 @@ report::Chart figure_3_2(std::span<const ObjectRow> rows, std::span<const Contac
 const PaperObject& object_called(const PaperReport& r, const std::string& name) {
   return *std::find_if(r.objects.begin(), r.objects.end(),
                        [&](const PaperObject& o) { return o.name == name; });
+}
+
+std::vector<ContactStep> of_first_seed(const PaperReport& r) {
+  std::vector<ContactStep> out;
+  std::copy_if(r.steps.begin(), r.steps.end(), std::back_inserter(out),
+               [&](const ContactStep& s) { return s.seed == r.experiment.protocol.seed; });
+  return out;
 }
 
 std::string collision_text(const CloseUp& c) {
@@ -115,9 +154,10 @@ std::optional<CloseUps> close_ups_of(const PaperReport& r) {
   if (!r.experiment.reports(PaperPart::heat_maps) && !r.experiment.reports(PaperPart::refinement_tree))
     return std::nullopt;
   const PaperPair pair{r.objects.front(), object_called(r, r.experiment.close_up)};
-  const auto [least, most] = easiest_and_hardest(r.steps, pair.x.name);
-  return CloseUps{pair, close_up(pair, least, r.experiment.protocol, r.steps),
-                  close_up(pair, most, r.experiment.protocol, r.steps)};
+  const std::vector<ContactStep> steps = of_first_seed(r);
+  const auto [least, most] = easiest_and_hardest(steps, pair.x.name);
+  return CloseUps{pair, close_up(pair, least, r.experiment.protocol, steps),
+                  close_up(pair, most, r.experiment.protocol, steps)};
 }
 
 }  // namespace
@@ -138,22 +178,10 @@ constexpr std::array<const char*, 3> kTitles = {"the paper's recursion, each pai
                                                 "the paper's recursion, each region once (strict)",
                                                 "complete"};
 
-/// Returns true if an object of the paper has exactly these numbers of faces.
-bool as_published(const PaperObject& o) {
-  const auto published = generators::paper_objects();
-  return std::any_of(published.begin(), published.end(), [&](const generators::FractalSpec& p) {
-    return p.name == o.name && p.real_faces == o.rep.real_face_count() && p.total_faces == o.rep.face_count();
-  });
-}
-
-bool all_as_published(const PaperReport& r) {
-  return std::all_of(r.objects.begin(), r.objects.end(), as_published);
-}
-
 report::Table table1(const PaperReport& r) {
   report::Table t{
       "Table 1: object sizes", {"object", "real faces", "total faces", "outermost wrapper"}, {}, {}};
-  t.note = all_as_published(r)
+  t.note = as_published(r.objects)
                ? "Equal to the paper's, face by face: the generator is given its numbers. The bodies' shapes "
                  "are ours: the paper says only that they are fractal, with a basic non-convex shape."
                : "Not the paper's objects, or not all of them.";
@@ -164,167 +192,201 @@ report::Table table1(const PaperReport& r) {
   return t;
 }
 
-report::Table table2(std::span<const ObjectRow> rows, std::size_t recursion) {
-  report::Table t{std::string("Table 2, ") + kTitles[recursion],
-                  {"A against", "steps", "minimum", "average", "maximum", "published min", "avg", "max",
-                   "refinements (avg)", "pairs missed", "n log n", "n²"}};
-  if (kRecursions[recursion] == Recursion::complete)
-    t.columns.insert(t.columns.begin() + 9, "bound tests (avg)");
+/// Table 2 as in the paper, each number beside the published one.
+report::Table table2(std::span<const ObjectRow> rows) {
+  report::Table t{
+      "Table 2: face comparisons of A with the other objects",
+      {"object", "minimum", "published", "average", "published", "maximum", "published", "n log n", "n²"}};
+  for (const ObjectRow& row : rows) {
+    const PublishedRow* p = published(row.object);
+    const auto number = [&](double PublishedRow::*of) { return p ? whole(p->*of) : "–"; };
+    const Spread& n = row.recursions[kPaper].comparisons;
+    t.rows.push_back({row.object, whole(n.min), number(&PublishedRow::min), whole(n.average),
+                      number(&PublishedRow::average), whole(n.max), number(&PublishedRow::max),
+                      whole(row.n_log_n), whole(row.n_squared)});
+  }
+  t.note =
+      "By the paper's recursion, each pair of regions once: exact comparisons of faces in a time step with a "
+      "contact of real faces.";
+  return t;
+}
+
+/// All counters of one recursion.
+report::Table counters(std::span<const ObjectRow> rows, std::size_t recursion) {
+  const bool complete = kRecursions[recursion] == Recursion::complete;
+  report::Table t{std::string("Counters, ") + kTitles[recursion],
+                  {"object", "steps", "minimum", "average", "maximum", "refinements (avg)", "pairs missed"}};
+  if (complete) t.columns.push_back("bound tests (avg)");
   for (const ObjectRow& row : rows) {
     const RecursionRow& x = row.recursions[recursion];
-    const PublishedRow* p = published(row.object);
-    std::vector<std::string> cells = {row.object, render::group_digits(row.steps), whole(x.comparisons.min),
-                                      whole(x.comparisons.average), whole(x.comparisons.max)};
-    for (const double n : {p ? p->min : 0, p ? p->average : 0, p ? p->max : 0})
-      cells.push_back(p ? whole(n) : "–");
-    cells.push_back(fixed(x.refinements.average, 1));
-    if (kRecursions[recursion] == Recursion::complete) cells.push_back(whole(x.bound_tests));
     const auto all = static_cast<double>(x.pairs + x.missed);
-    cells.push_back(all > 0 ? fixed(100 * static_cast<double>(x.missed) / all, 2) + " %" : "–");
-    cells.push_back(whole(row.n_log_n));
-    cells.push_back(whole(row.n_squared));
-    t.rows.push_back(std::move(cells));
+    t.rows.push_back({row.object, render::group_digits(row.steps), whole(x.comparisons.min),
+                      whole(x.comparisons.average), whole(x.comparisons.max), fixed(x.refinements.average, 1),
+                      all > 0 ? fixed(100 * static_cast<double>(x.missed) / all, 2) + " %" : "–"});
+    if (complete) t.rows.back().push_back(whole(x.bound_tests));
   }
-  t.note = kRecursions[recursion] == Recursion::complete
+  t.note = complete
                ? "Comparisons of triangles, exact; what decides before them are the bound tests. Nothing is "
                  "missed."
-               : "Comparisons of faces, exact, over the time steps with a contact of real faces.";
+               : "Comparisons of faces, exact. The paper does not count missed pairs.";
   return t;
+}
+
+std::string text_of(const Band& b) {
+  return fixed(b.median, 2) + " (" + fixed(b.low, 2) + " to " + fixed(b.high, 2) + ")";
+}
+
+std::string seeds_text(const PaperProtocol& p) {
+  return p.seeds == 1 ? "seed " + std::to_string(p.seed)
+                      : "seeds " + std::to_string(p.seed) + " to " + std::to_string(p.seed + p.seeds - 1);
+}
+
+report::Table ratio_table(std::span<const Run> runs, const PaperProtocol& protocol) {
+  report::Table t{"Measured over published", {"object", "minimum", "average", "maximum"}};
+  for (const ObjectRow& row : runs.front().rows) {
+    const RatioBands b = ratios(runs, row.object);
+    t.rows.push_back({row.object});
+    for (const Band& band : b)
+      t.rows.back().push_back(runs.size() > 1 ? text_of(band) : fixed(band.median, 2));
+  }
+  t.note = runs.size() > 1
+               ? "Median over the " + seeds_text(protocol) + ", and in brackets the lowest and the highest."
+               : "Of one seed; --seeds N gives the band over N seeds. Minimum and maximum are of "
+                 "single time steps.";
+  return t;
+}
+
+report::Table settings_table(std::span<const Run> settings, const PaperProtocol& protocol) {
+  report::Table t{"Other time steps and numbers of steps",
+                  {"time step, %", "steps after contact", "last step, %", "minimum", "average", "maximum",
+                   "growth of the average"}};
+  for (const Run& run : settings) {
+    const RatioBands b = ratios(run);
+    const double first = run.rows.front().recursions[kPaper].comparisons.average,
+                 last = run.rows.back().recursions[kPaper].comparisons.average;
+    t.rows.push_back({io::fixed_text(100 * run.protocol.step, 3),
+                      render::group_digits(run.protocol.steps_after),
+                      io::fixed_text(100 * run.protocol.step * run.protocol.steps_after, 3), text_of(b[0]),
+                      text_of(b[1]), text_of(b[2]), first > 0 ? fixed(last / first, 2) : "–"});
+  }
+  t.note =
+      "Measured over published as above, now the median over the objects and the span from the lowest to the "
+      "highest object, with seed " +
+      std::to_string(protocol.seed) +
+      ". Steps are in percent of the diagonal; the last step is how far the bodies moved on after the first "
+      "contact. Growth is from " +
+      settings.front().rows.front().object + " to " + settings.front().rows.back().object +
+      "; the published one is 2.18.";
+  return t;
+}
+
+std::string protocol_text(const PaperProtocol& p) {
+  return render::group_digits(p.collisions) +
+         " collisions per object; random rotations of both bodies, equal diagonals; the other body comes in "
+         "along a random line through both centres in steps of " +
+         fixed(100 * p.step, 2) +
+         " % of the diagonal; every step with a contact of real faces counts, from the first one through " +
+         std::to_string(p.steps_after) + " more; " + seeds_text(p) + ".";
 }
 
 /// Returns the differences to the paper's setup that matter for a comparison.
 std::vector<std::string> differences(const PaperReport& r, std::span<const ObjectRow> rows) {
-  std::vector<std::string> out;
-  if (!all_as_published(r))
+  std::vector<std::string> out = {"Protocol: " + protocol_text(r.experiment.protocol)};
+  if (!as_published(r.objects))
     out.push_back("Not all objects are the paper's, so the published numbers are for others.");
+  out.push_back(
+      "The paper names neither the length of a time step nor the number of steps after the first contact; both "
+      "decide how deep bodies meet, and with it the numbers. The defaults, 0.5 % of the diagonal and 5 steps, are "
+      "round numbers that this program has had from its first version, with no reason on record. Agreement with "
+      "the published numbers at one setting is therefore no evidence for it" +
+      std::string(r.settings.empty() ? " (--step, --steps-after)."
+                                     : "; the table of other settings shows how much they change."));
   const RecursionRow &first = rows.front().recursions[0], &last = rows.back().recursions[0];
-  std::string over;
-  for (const ObjectRow& row : rows)
-    if (const PublishedRow* p = published(row.object);
-        p && row.recursions[0].comparisons.average > p->average)
-      over += (over.empty() ? "" : ", ") + row.object;
-  out.push_back(
-      over.empty()
-          ? "The averages of the paper's recursion are at or under the published ones for all objects."
-          : "The averages of the paper's recursion are above the published ones for " + over + ".");
-  std::string ratios;
-  for (const ObjectRow& row : rows)
-    if (const PublishedRow* p = published(row.object)) {
-      const Spread& s = row.recursions[0].comparisons;
-      ratios += (ratios.empty() ? "" : "; ") + row.object + " " + fixed(s.min / p->min, 2) + ", " +
-                fixed(s.average / p->average, 2) + ", " + fixed(s.max / p->max, 2);
-    }
-  if (!ratios.empty() && all_as_published(r))
-    out.push_back("Measured over published, minimum, average and maximum: " + ratios +
-                  ". Minima and maxima are of single time steps, and differ from seed to seed (--seed).");
-  out.push_back(
-      "The length of a time step and the number of steps after the first contact are a choice of this "
-      "program, because the paper names neither: deeper contact has more comparisons (--step, --steps-after).");
   if (first.comparisons.max > 0 && rows.size() > 1)
     out.push_back("From " + rows.front().object + " to " + rows.back().object + " the average grows " +
                   fixed(last.comparisons.average / first.comparisons.average, 2) +
                   "-fold (published: 2.18), the maximum " +
                   fixed(last.comparisons.max / first.comparisons.max, 2) +
                   "-fold (published: 3.57 to its highest row).");
-  std::string missed;
-  for (const ObjectRow& row : rows)
-    missed += (missed.empty() ? "" : ", ") + row.object + " " +
-              render::group_digits(row.recursions[0].missed) + "/" +
-              render::group_digits(row.recursions[1].missed);
-  out.push_back("Pairs that the paper's recursion misses, in its two readings: " + missed +
-                ". The paper does not count misses.");
+  if (r.series) out.push_back(growth_text(*r.series));
   out.push_back(
-      "The shapes, the approach and the depth of contact are not in the paper; they decide the numbers as "
-      "much as the algorithm does. See the protocol.");
+      "The shapes and the approach of the bodies are not in the paper either, and decide the numbers as much as "
+      "the algorithm does.");
   return out;
 }
 
-std::string protocol_text(const PaperProtocol& p) {
-  return render::group_digits(p.collisions) +
-         " collisions per object; random rotations of both bodies, equal diagonals; the "
-         "other body comes in along a random line through both centres in steps of " +
-         fixed(100 * p.step, 2) +
-         " % of the diagonal; every step with a contact of real faces counts, from the first one through " +
-         std::to_string(p.steps_after) + " more; seed " + std::to_string(p.seed) + ".";
-}
+/// A report as a page and as Markdown.
+class Pages {
+ public:
+  Pages(const std::string& title, const std::string& purpose)
+      : page(title, purpose), markdown("# " + title + "\n\n" + purpose + "\n") {}
 
-report::Table time_table(const std::vector<std::pair<std::string, double>>& seconds) {
-  report::Table t{"Running time", {"part", "seconds"}, {}, "Wall-clock time."};
-  double sum = 0;
-  for (const auto& [part, took] : seconds) {
-    t.rows.push_back({part, fixed(took, 1)});
-    sum += took;
+  void table(const report::Table& t) {
+    page.table(t);
+    markdown += "\n## " + t.title + "\n\n|";
+    for (const std::string& c : t.columns) markdown += " " + c + " |";
+    markdown += "\n|";
+    for (std::size_t i = 0; i < t.columns.size(); ++i) markdown += i == 0 ? " --- |" : " ---: |";
+    for (const auto& row : t.rows) {
+      markdown += "\n|";
+      for (const std::string& c : row) markdown += " " + c + " |";
+    }
+    markdown += "\n" + (t.note.empty() ? "" : "\n" + t.note + "\n");
   }
-  t.rows.push_back({"together", fixed(sum, 1)});
-  return t;
-}
+  void chart(const report::Chart& c, const std::string& name, const report::PrintLayout& layout) {
+    if (!page.chart(c).print(name, c.title, report::gnuplot({&c, 1}, layout)).empty())
+      figure(c.title, name + ".svg", c.note);
+  }
+  /// Adds a picture to the Markdown.
+  void figure(const std::string& title, const std::string& file, const std::string& caption) {
+    markdown += "\n## " + title + "\n\n![" + title + "](" + file + ")\n" +
+                (caption.empty() ? "" : "\n" + caption + "\n");
+  }
 
-void add_markdown(std::string& md, const report::Table& t) {
-  md += "\n## " + t.title + "\n\n|";
-  for (const std::string& c : t.columns) md += " " + c + " |";
-  md += "\n|";
-  for (std::size_t i = 0; i < t.columns.size(); ++i) md += i == 0 ? " --- |" : " ---: |";
-  for (const auto& row : t.rows) {
-    md += "\n|";
-    for (const std::string& c : row) md += " " + c + " |";
-  }
-  md += "\n\n" + t.note + "\n";
-}
+  report::Document page;
+  std::string markdown;
+};
 
 }  // namespace
 
 std::vector<std::string> write_paper_report(const PaperReport& r, const report::Folder& folder) {
   const auto wants = [&](PaperPart part) { return r.experiment.reports(part); };
-  const std::vector<ObjectRow> rows =
-      r.experiment.collides() ? make_table(r.objects, r.steps) : std::vector<ObjectRow>();
-  const std::string purpose =
+  const PaperProtocol& protocol = r.experiment.protocol;
+  const std::vector<Run> runs = r.experiment.collides() ? runs_of_seeds(r.objects, r.steps, protocol)
+                                                        : std::vector<Run>(),
+                         settings = r.settings.empty() ? std::vector<Run>()
+                                                       : runs_of_settings(r.objects, r.settings, protocol);
+  const std::span<const ObjectRow> rows = runs.empty() ? std::span<const ObjectRow>() : runs.front().rows;
+  Pages out(
+      "The paper's experiment",
       r.experiment.name != "paper"
           ? r.experiment.purpose
-          : "C. Gonzalez-Ochoa, \"2-Body Collision Detection using LRB-reps\", tables 1 and 2 and figures 3.1 and "
-            "3.2, measured beside the published numbers.";
-  report::Document doc("The paper's experiment", purpose);
+          : "C. Gonzalez-Ochoa, \"2-Body Collision Detection using LRB-reps\", tables 1 and 2 and figures 3.1 "
+            "and 3.2, measured beside the published numbers.");
+  report::Document& doc = out.page;
   doc.command(r.command);
-  std::string md = "# " + doc.title() + "\n\n" + purpose + "\n\n", figures;
+  // The paper's own tables and figures first; each chart has the whole width, because a table follows it.
+  if (wants(PaperPart::table1)) out.table(table1(r));
+  if (wants(PaperPart::table2)) out.table(table2(rows));
+  if (wants(PaperPart::figure_3_1)) out.chart(figure_3_1(runs), "figure3-1", {1, 135, 85, 8, "top left"});
+  const bool published = as_published(r.objects) && !runs.empty();
+  if (published) out.table(ratio_table(runs, protocol));
+  if (wants(PaperPart::figure_3_2)) out.chart(figure_3_2(rows, of_first_seed(r), published), "figure3-2", {});
+  if (!settings.empty()) out.table(settings_table(settings, protocol));
   if (!rows.empty()) {
-    const std::string protocol = "Protocol: " + protocol_text(r.experiment.protocol);
-    md += protocol + "\n\nMade by `" + r.command + "`.\n\n## Differences from the paper\n\n";
-    report::Table remarks{"Differences from the paper", {"remark"}, {}, protocol};
-    for (const std::string& s : differences(r, rows)) {
-      md += "- " + s + "\n";
-      remarks.rows.push_back({s});
-    }
-    doc.table(remarks);
+    report::Table remarks{"Differences from the paper", {"remark"}};
+    for (const std::string& s : differences(r, rows)) remarks.rows.push_back({s});
+    out.table(remarks);
   }
-  const auto figure = [&](const std::string& title, const std::string& file, const std::string& caption) {
-    figures += "\n## " + title + "\n\n![" + title + "](" + file + ")\n\n" + caption + "\n";
-  };
-  const auto chart = [&](const report::Chart& c, const std::string& name, const report::PrintLayout& layout) {
-    if (!doc.chart(c).print(name, c.title, report::gnuplot({&c, 1}, layout)).empty())
-      figure(c.title, name + ".svg", c.note);
-  };
-  if (wants(PaperPart::figure_3_1)) chart(figure_3_1(rows), "figure3-1", {1, 135, 85, 8, "top left"});
-  if (wants(PaperPart::figure_3_2)) chart(figure_3_2(rows, r.steps), "figure3-2", {});
-  std::vector<report::Table> tables;
-  if (wants(PaperPart::table1)) tables.push_back(table1(r));
   if (wants(PaperPart::table2))
-    for (std::size_t i = 0; i < kRecursions.size(); ++i) tables.push_back(table2(rows, i));
-  if (r.series) {
-    for (report::Table& t : add_series(*r.series, doc)) tables.push_back(std::move(t));
-    if (doc.notes().empty())
-      for (const char* name : {"series-comparisons", "series-time"})
-        figures += std::string("\n![") + name + "](" + name + ".svg)\n";
-  }
-  if (!r.seconds.empty()) tables.push_back(time_table(r.seconds));
-  for (const report::Table& t : tables) add_markdown(md, t);
-  doc.each(tables, &report::Document::table);
-  std::vector<std::string> notes = doc.notes();
+    for (std::size_t i = 0; i < kRecursions.size(); ++i) out.table(counters(rows, i));
+  std::vector<std::string> notes;
   if (const std::optional<CloseUps> c = close_ups_of(r)) {
     if (wants(PaperPart::heat_maps)) try {
         const std::string title = "Face tests over the bodies",
-                          caption =
-                              heat_caption(c->pair, c->easiest, c->hardest, r.experiment.protocol.collisions);
+                          caption = heat_caption(c->pair, c->easiest, c->hardest, protocol.collisions);
         doc.picture("heat_maps.png", draw_heat_maps(c->pair, c->easiest, c->hardest), title, caption);
-        figure(title, "heat_maps.png", caption);
+        out.figure(title, "heat_maps.png", caption);
       } catch (const EnvironmentError& e) {
         notes.push_back(std::string("heat maps were not drawn: ") + e.what());
       }
@@ -332,12 +394,33 @@ std::vector<std::string> write_paper_report(const PaperReport& r, const report::
       const std::string title = "The refinement tree of one collision",
                         caption = tree_caption(c->pair, c->hardest);
       doc.picture("refinement_tree.svg", icicle_svg(c->pair, c->hardest), title, caption, true);
-      figure(title, "refinement_tree.svg", caption);
+      out.figure(title, "refinement_tree.svg", caption);
     }
   }
-  if (!rows.empty()) doc.file("records.jsonl", to_json_lines(r.steps), "every counted time step");
-  doc.file("tables.json", tables_json(r.objects, rows, r.experiment.protocol), "both tables as data");
-  doc.file("report.md", md + figures, "this report as Markdown").write(folder);
+  if (r.series) {
+    const std::vector<report::Table> tables = add_series(*r.series, doc);
+    if (doc.notes().empty())
+      for (const char* name : {"series-comparisons", "series-time"})
+        out.figure(name, std::string(name) + ".svg", "");
+    for (const report::Table& t : tables) out.table(t);
+  }
+  doc.file("table1.csv", table1_csv(r.objects), "table 1 as CSV");
+  if (!rows.empty()) {
+    doc.file("table2.csv", table2_csv(runs), "table 2 as CSV, for each seed and recursion");
+    if (published)
+      doc.file("ratios.csv", ratios_csv(runs),
+               "measured over published as CSV, with the band over the seeds");
+    doc.file("records.jsonl", to_json_lines(r.steps), "every counted time step");
+  }
+  if (!settings.empty()) {
+    doc.file("settings.csv", table2_csv(settings),
+             "table 2 as CSV, for other time steps and numbers of steps");
+    doc.file("settings.jsonl", to_json_lines(r.settings), "their time steps");
+  }
+  doc.file("tables.json", tables_json(r.objects, runs, protocol), "both tables as data");
+  doc.file("report.md", out.markdown + "\nMade by `" + r.command + "`.\n", "this report as Markdown")
+      .write(folder);
+  notes.insert(notes.begin(), doc.notes().begin(), doc.notes().end());
   return notes;
 }
 

@@ -11,17 +11,18 @@
 namespace lrb::paper {
 
 struct PaperReport {
-  std::span<const PaperObject> objects;  ///< A first
-  std::span<const ContactStep> steps;
+  std::span<const PaperObject> objects;   ///< A first
+  std::span<const ContactStep> steps;     ///< of all seeds, in the order of merged()
+  std::span<const ContactStep> settings;  ///< of other_settings(); may be empty
   const PaperExperiment& experiment;
-  std::string command;                                       ///< the command that made it
-  const SeriesReport* series = nullptr;                      ///< bodies at several resolutions; may be null
-  std::vector<std::pair<std::string, double>> seconds = {};  ///< duration of each part; may be empty
+  std::string command;                   ///< the command that made it
+  const SeriesReport* series = nullptr;  ///< bodies at several resolutions; may be null
 };
 
-/// Writes records.jsonl, tables.json, report.md, index.html, with gnuplot figure3-1 and figure3-2 as SVG and
-/// PNG, heat_maps.png and refinement_tree.svg, each if the experiment reports it; for a series, the output of
-/// add_series(). Returns notes on pictures that could not be drawn. Throws EnvironmentError.
+/// Writes records.jsonl, table1.csv, table2.csv, ratios.csv, tables.json, report.md, index.html, with gnuplot
+/// figure3-1 and figure3-2 as SVG and PNG, settings.csv and settings.jsonl, heat_maps.png and
+/// refinement_tree.svg, each if the experiment reports it; for a series, the output of add_series(). Returns
+/// notes on pictures that could not be drawn. Throws EnvironmentError.
 std::vector<std::string> write_paper_report(const PaperReport& report, const report::Folder& folder);
 
 /// Throws InputError if the numbers of collisions or the close-ups show that the steps are from another

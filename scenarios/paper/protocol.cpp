@@ -98,6 +98,8 @@ std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const s
     met |= !result.pairs.empty();
     if (!result.pairs.empty()) {
       ContactStep step = count_step(a, pose_a, x, pose_x, result, nanoseconds, workspace);
+      step.seed = protocol.seed;
+      step.time_step = protocol.step;
       step.object = object;
       step.collision = collision;
       step.step = since_contact;

@@ -24,8 +24,9 @@ struct PaperProtocol {
   std::uint32_t steps_after = 5;
   double step = 0.005;  ///< as a share of the diagonal
   std::uint64_t seed = 1;
+  std::uint32_t seeds = 1;  ///< number of repetitions, with seed, seed + 1, ...
 };
-inline constexpr std::uint32_t kMaxCollisions = 100'000, kMaxStepsAfter = 1000;
+inline constexpr std::uint32_t kMaxCollisions = 100'000, kMaxStepsAfter = 1000, kMaxSeeds = 1000;
 inline constexpr double kMinStep = 1e-5, kMaxStep = 0.5;
 
 inline constexpr std::array<Recursion, 3> kRecursions = {Recursion::paper, Recursion::paper_strict,
@@ -47,6 +48,8 @@ struct RecursionCount {
 
 /// One time step with a face contact.
 struct ContactStep {
+  std::uint64_t seed = 0;
+  double time_step = 0;         ///< as a share of the diagonal
   std::string object;           ///< the one that A collides with
   std::uint32_t collision = 0;  ///< 0 .. collisions - 1
   std::uint32_t step = 0;       ///< number of steps since the first contact

@@ -75,13 +75,6 @@ std::string obstacle(const Mesh& mesh) {
   return report.buildable() ? "" : "an LRB-rep cannot be built (see `lrbscope inspect`)";
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto median = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), median, values.end());
-  return *median;
-}
-
 auto key(const ContactStep& s) {
   return std::tie(s.object, s.collision, s.step);
 }
@@ -126,42 +119,27 @@ std::vector<Mesh> read_series_bodies(const std::vector<std::string>& paths, std:
 std::vector<SeriesObject> make_series(std::span<const Mesh> bodies,
                                       const resolutions::ResolutionOptions& options,
                                       const BuildOptions& building, double diagonal_of_a,
-                                      const std::function<void()>& progress) {
+                                      const std::function<void(const LrbRep&)>& progress) {
   std::vector<SeriesObject> objects;
   for (const Mesh& body : bodies) {
     for (const Mesh& mesh : resolutions::resolutions(body, options)) {
       const LrbRep rep = build_lrb(mesh, building);
       objects.push_back({body.name, scaled(rep, diagonal_of_a / diagonal(rep))});
-      if (progress) progress();
+      if (progress) progress(objects.back().rep);
     }
   }
   return objects;
 }
 
 std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObject> objects,
-                                    const SweepOptions& options,
-                                    const std::function<void(std::uint64_t, std::uint64_t)>& progress,
-                                    const PartRunner& part) {
+                                    const SweepOptions& options) {
   std::vector<ContactStep> steps;
-  std::uint64_t sweeps = 0, done_before = 0;
-  for (const SeriesPartner partner : kSeriesPartners) {
+  for (const SeriesPartner partner : kSeriesPartners)
     for (const SeriesObject& object : objects) {
-      const LrbRep& first = partner == SeriesPartner::a ? a : object.rep;
-      const PaperObject pair[] = {{"", first}, {series_name(object, partner), object.rep, object.body}};
-      std::uint64_t last = 0;
-      const auto run = [&] {
-        return run_sweep(pair, options, [&](std::uint64_t done, std::uint64_t of) {
-          last = of;  // about equal for all sweeps
-          if (progress) progress(done_before + done, done_before + of * (2 * objects.size() - sweeps));
-        });
-      };
-      const std::string name =
-          pair[1].name + " " + trace::to_hex(object.rep.hash()) + trace::to_hex(first.hash());
-      for (ContactStep& s : part(name, run)) steps.push_back(std::move(s));
-      done_before += last;
-      ++sweeps;
+      const PaperObject pair[] = {{"", partner == SeriesPartner::a ? a : object.rep},
+                                  {series_name(object, partner), object.rep, object.body}};
+      for (ContactStep& s : run_sweep(pair, options)) steps.push_back(std::move(s));
     }
-  }
   return merged(std::move(steps));
 }
 
@@ -219,7 +197,7 @@ std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject
         std::vector<double> microseconds;
         for (const ContactStep& s : own)
           microseconds.push_back(static_cast<double>(s.counts[i].nanoseconds) / 1000);
-        row.microseconds[i] = median(std::move(microseconds));
+        row.microseconds[i] = band_of(std::move(microseconds)).median;
       }
       rows.push_back(std::move(row));
     }

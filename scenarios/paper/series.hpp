@@ -53,22 +53,16 @@ std::vector<Mesh> own_series_bodies();
 /// no mesh is left, or if two have the same name.
 std::vector<Mesh> read_series_bodies(const std::vector<std::string>& paths, std::vector<std::string>& notes);
 
-/// Returns the bodies in order, the finest resolution of each first, scaled to this diagonal.
+/// Returns the bodies in order, the finest resolution of each first, scaled to this diagonal; calls
+/// `progress` for each.
 std::vector<SeriesObject> make_series(std::span<const Mesh> bodies,
                                       const resolutions::ResolutionOptions& options,
                                       const BuildOptions& building, double diagonal,
-                                      const std::function<void()>& progress);
+                                      const std::function<void(const LrbRep&)>& progress);
 
-/// Runs a part of an experiment, or returns the steps that an earlier run had of it. The name is unique to
-/// the part and its bodies.
-using PartRunner = std::function<std::vector<ContactStep>(
-    const std::string& name, const std::function<std::vector<ContactStep>()>& run)>;
-
-/// Runs all collisions of the shard, those of two bodies as a part; returns them in the order of merged().
-std::vector<ContactStep> run_series(
-    const LrbRep& a, std::span<const SeriesObject> objects, const SweepOptions& options,
-    const std::function<void(std::uint64_t, std::uint64_t)>& progress,
-    const PartRunner& part = [](const std::string&, const auto& run) { return run(); });
+/// Runs all collisions of the shard, with the first seed; returns them in the order of merged().
+std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObject> objects,
+                                    const SweepOptions& options);
 
 /// Returns the times of the steps, which are not in their records: one JSON object on a line for each step.
 std::string times_to_json_lines(std::span<const ContactStep> steps);

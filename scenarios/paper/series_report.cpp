@@ -207,6 +207,30 @@ std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows) {
   return fits;
 }
 
+std::string growth_text(const SeriesReport& report) {
+  const std::vector<SeriesRow> rows = series_rows(report.a, report.objects, report.steps);
+  std::string out;
+  for (const SeriesFit& f : series_fits(rows)) {
+    if (f.partner != SeriesPartner::itself || !f.comparisons ||
+        kRecursions[f.recursion] == Recursion::paper_strict)
+      continue;
+    // Rows begin with the finest resolution.
+    const auto finest = std::find_if(rows.begin(), rows.end(), [&](const SeriesRow& row) {
+      return row.partner == f.partner && row.body == f.body;
+    });
+    const std::string text = power_text(*f.comparisons) + ", to " +
+                             whole(finest->counts.recursions[f.recursion].comparisons.average);
+    out += f.recursion == kPaper ? (out.empty() ? "" : "; ") + f.body + " " + text +
+                                       " at n = " + whole(finest->counts.total_faces)
+                                 : " (complete: " + text + ")";
+  }
+  return out.empty()
+             ? out
+             : "Meshes of n faces against themselves: the average number of comparisons by the paper's recursion "
+               "grows as " +
+                   out + ".";
+}
+
 std::vector<report::Table> add_series(const SeriesReport& report, report::Document& doc) {
   const std::vector<SeriesRow> rows = series_rows(report.a, report.objects, report.steps);
   const std::vector<SeriesFit> fits = series_fits(rows);

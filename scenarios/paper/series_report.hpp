@@ -25,6 +25,9 @@ struct SeriesFit {
 };
 std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows);
 
+/// Returns a sentence on the growth of comparisons for bodies that collide with themselves.
+std::string growth_text(const SeriesReport& report);
+
 /// Adds charts, on the page and for print (series-comparisons, series-time), series.jsonl (records),
 /// series_times.jsonl and series.json (rows and fits, without times). Returns the tables.
 std::vector<report::Table> add_series(const SeriesReport& report, report::Document& doc);

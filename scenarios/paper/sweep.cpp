@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <tuple>
 
@@ -146,8 +145,9 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 ordered_json to_json(const ContactStep& s) {
-  ordered_json j = {
-      {"object", s.object}, {"collision", s.collision}, {"step", s.step}, {"relation", name_of(s.relation)}};
+  ordered_json j = {{"seed", s.seed},     {"time_step", s.time_step},
+                    {"object", s.object}, {"collision", s.collision},
+                    {"step", s.step},     {"relation", name_of(s.relation)}};
   for (std::size_t i = 0; i < kRecursions.size(); ++i) {
     j[std::string(name_of(kRecursions[i]))] = io::record_to_json(s.counts[i]);
   }
@@ -156,6 +156,8 @@ ordered_json to_json(const ContactStep& s) {
 
 ContactStep from_json(const json& j) {
   ContactStep s;
+  s.seed = j.at("seed").get<std::uint64_t>();
+  s.time_step = j.at("time_step").get<double>();
   s.object = j.at("object").get<std::string>();
   s.collision = j.at("collision").get<std::uint32_t>();
   s.step = j.at("step").get<std::uint32_t>();
@@ -168,8 +170,15 @@ ContactStep from_json(const json& j) {
 
 }  // namespace
 
-std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const SweepOptions& options,
-                                   const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+std::vector<ContactStep> run(const CollisionTask& task, Workspace& workspace) {
+  const PaperObject& x = task.x;
+  std::vector<ContactStep> steps = run_collision(task.a.rep, x.rep, x.draws.empty() ? x.name : x.draws,
+                                                 task.collision, task.protocol, workspace);
+  for (ContactStep& s : steps) s.object = x.name;
+  return steps;
+}
+
+std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const SweepOptions& options) {
   std::vector<std::pair<std::size_t, std::uint32_t>> tasks;  // object, collision
   std::uint64_t number = 0;
   for (std::size_t k = 1; k < objects.size(); ++k)
@@ -179,19 +188,33 @@ std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const S
   std::vector<std::vector<ContactStep>> found(tasks.size());
   Workers workers(options.jobs);
   std::vector<Workspace> workspaces(workers.count());
-  std::mutex one_at_a_time;
-  std::uint64_t done = 0;
   workers.for_each(tasks.size(), [&](std::size_t i, unsigned worker) {
-    const PaperObject& x = objects[tasks[i].first];
-    found[i] = run_collision(objects[0].rep, x.rep, x.draws.empty() ? x.name : x.draws, tasks[i].second,
-                             options.protocol, workspaces[worker]);
-    for (ContactStep& s : found[i]) s.object = x.name;
-    const std::lock_guard lock(one_at_a_time);
-    if (progress) progress(++done, tasks.size());
+    found[i] = options.runner({objects[0], objects[tasks[i].first], options.protocol, tasks[i].second},
+                              workspaces[worker]);
   });
   std::vector<ContactStep> steps;
   for (auto& part : found) std::move(part.begin(), part.end(), std::back_inserter(steps));
   return steps;
+}
+
+std::vector<ContactStep> run_seeds(std::span<const PaperObject> objects, const SweepOptions& options) {
+  std::vector<ContactStep> steps;
+  SweepOptions one = options;
+  for (std::uint32_t i = 0; i < options.protocol.seeds; ++i, ++one.protocol.seed)
+    for (ContactStep& s : run_sweep(objects, one)) steps.push_back(std::move(s));
+  return steps;
+}
+
+std::vector<PaperProtocol> other_settings(const PaperProtocol& protocol) {
+  std::vector<PaperProtocol> out;
+  for (const double factor : {0.5, 1.0, 2.0, 4.0}) {
+    PaperProtocol p = protocol;
+    p.step *= factor;
+    p.steps_after = std::min(2 * p.steps_after, kMaxStepsAfter);
+    p.seeds = 1;
+    if (p.step >= kMinStep && p.step <= kMaxStep) out.push_back(p);
+  }
+  return out;
 }
 
 std::string to_json_lines(std::span<const ContactStep> steps) {
@@ -219,13 +242,15 @@ std::vector<ContactStep> read_json_lines(const std::string& text, const std::str
 }
 
 std::vector<ContactStep> merged(std::vector<ContactStep> steps) {
-  const auto key = [](const ContactStep& s) { return std::tie(s.object, s.collision, s.step); };
+  const auto key = [](const ContactStep& s) {
+    return std::tie(s.seed, s.time_step, s.object, s.collision, s.step);
+  };
   std::sort(steps.begin(), steps.end(), [&](const auto& x, const auto& y) { return key(x) < key(y); });
   for (std::size_t i = 1; i < steps.size(); ++i)
     if (key(steps[i - 1]) == key(steps[i]))
-      throw InputError("object " + steps[i].object + ", collision " + std::to_string(steps[i].collision) +
-                       ", step " + std::to_string(steps[i].step) +
-                       " occurs twice; give each shard's records once");
+      throw InputError("seed " + std::to_string(steps[i].seed) + ", object " + steps[i].object +
+                       ", collision " + std::to_string(steps[i].collision) + ", step " +
+                       std::to_string(steps[i].step) + " occurs twice; give each shard's records once");
   return steps;
 }
 

@@ -12,6 +12,7 @@
 #include "scenarios/bodies/resolutions.hpp"
 #include "scenarios/paper/protocol.hpp"
 #include <lrbscope/trace/trace.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::paper {
 
@@ -26,22 +27,37 @@ struct Shard {
   std::uint32_t index = 0, count = 1;
 };
 
+/// One collision of a sweep.
+struct CollisionTask {
+  const PaperObject &a, &x;
+  const PaperProtocol& protocol;
+  std::uint32_t collision;
+};
+std::vector<ContactStep> run(const CollisionTask& task, Workspace& workspace);
+
 struct SweepOptions {
   PaperProtocol protocol;
   Shard shard;
   std::uint32_t jobs = 1;  ///< number of threads
+  /// Called for each collision, from several threads; run(), or what an earlier run() of it returned.
+  std::function<std::vector<ContactStep>(const CollisionTask&, Workspace&)> runner = run;
 };
 
-/// Collides objects[0] with each of the others; returns the steps in the order (object, collision, step).
-/// `progress(done, of)` is called from one thread at a time.
-std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const SweepOptions& options,
-                                   const std::function<void(std::uint64_t, std::uint64_t)>& progress);
+/// Collides objects[0] with each of the others, with the first seed; returns the steps in the order (object,
+/// collision, step).
+std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const SweepOptions& options);
+/// The same with all seeds of the protocol.
+std::vector<ContactStep> run_seeds(std::span<const PaperObject> objects, const SweepOptions& options);
+
+/// Returns the protocols of the report's part `settings`: other time steps, each with twice as many steps
+/// after the first contact, and the first seed.
+std::vector<PaperProtocol> other_settings(const PaperProtocol& protocol);
 
 /// Returns one JSON object on a line for each step.
 std::string to_json_lines(std::span<const ContactStep> steps);
 /// Parses them; throws InputError that names `file` and the line.
 std::vector<ContactStep> read_json_lines(const std::string& text, const std::string& file);
-/// Sorts the steps of several shards. Throws InputError if a step occurs twice.
+/// Sorts the steps of several sweeps and shards. Throws InputError if a step occurs twice.
 std::vector<ContactStep> merged(std::vector<ContactStep> steps);
 
 // Repeats single collisions of the sweep by the paper's recursion and records every event.

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
+#include "scenarios/bodies/generators.hpp"
 #include "scenarios/paper/experiment.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/trace/trace.hpp>
@@ -84,8 +88,130 @@ const PublishedRow* published(const std::string& object) {
   return nullptr;
 }
 
-std::string tables_json(std::span<const PaperObject> objects, std::span<const ObjectRow> rows,
+bool as_published(std::span<const PaperObject> objects) {
+  const auto published = generators::paper_objects();
+  return std::all_of(objects.begin(), objects.end(), [&](const PaperObject& o) {
+    return std::any_of(published.begin(), published.end(), [&](const generators::FractalSpec& p) {
+      return p.name == o.name && p.real_faces == o.rep.real_face_count() &&
+             p.total_faces == o.rep.face_count();
+    });
+  });
+}
+
+std::vector<Run> runs_of_seeds(std::span<const PaperObject> objects, std::span<const ContactStep> steps,
+                               const PaperProtocol& protocol) {
+  std::map<std::uint64_t, std::vector<ContactStep>> by_seed;
+  for (const ContactStep& s : steps) by_seed[s.seed].push_back(s);
+  std::vector<Run> runs;
+  for (std::uint32_t i = 0; i < protocol.seeds; ++i) {
+    PaperProtocol p = protocol;
+    p.seed += i;
+    runs.push_back({p, make_table(objects, by_seed[p.seed])});
+  }
+  return runs;
+}
+
+std::vector<Run> runs_of_settings(std::span<const PaperObject> objects, std::span<const ContactStep> steps,
+                                  const PaperProtocol& protocol) {
+  std::vector<Run> runs;
+  for (PaperProtocol p : other_settings(protocol)) {
+    const std::set<std::uint32_t> numbers = {protocol.steps_after / 2, protocol.steps_after, p.steps_after};
+    for (const std::uint32_t steps_after : numbers) {
+      p.steps_after = steps_after;
+      std::vector<ContactStep> counted;
+      std::copy_if(steps.begin(), steps.end(), std::back_inserter(counted),
+                   [&](const ContactStep& s) { return s.time_step == p.step && s.step <= steps_after; });
+      runs.push_back({p, make_table(objects, counted)});
+    }
+  }
+  return runs;
+}
+
+Band band_of(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return {(values[(n - 1) / 2] + values[n / 2]) / 2, values.front(), values.back()};
+}
+
+namespace {
+
+constexpr std::array<double PublishedRow::*, 3> kPublished = {&PublishedRow::min, &PublishedRow::average,
+                                                              &PublishedRow::max};
+constexpr std::array<double Spread::*, 3> kMeasured = {&Spread::min, &Spread::average, &Spread::max};
+
+RatioBands bands_of(std::span<const ObjectRow* const> rows) {
+  RatioBands bands;
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    std::vector<double> values;
+    for (const ObjectRow* row : rows)
+      if (const PublishedRow* p = published(row->object))
+        values.push_back(row->recursions[kPaper].comparisons.*kMeasured[i] / p->*kPublished[i]);
+    bands[i] = band_of(std::move(values));
+  }
+  return bands;
+}
+
+std::string text_of(double x) {
+  return nlohmann::json(x).dump();
+}
+
+}  // namespace
+
+RatioBands ratios(std::span<const Run> runs, const std::string& object) {
+  std::vector<const ObjectRow*> rows;
+  for (const Run& run : runs)
+    for (const ObjectRow& row : run.rows)
+      if (row.object == object) rows.push_back(&row);
+  return bands_of(rows);
+}
+
+RatioBands ratios(const Run& run) {
+  std::vector<const ObjectRow*> rows;
+  for (const ObjectRow& row : run.rows) rows.push_back(&row);
+  return bands_of(rows);
+}
+
+std::string table1_csv(std::span<const PaperObject> objects) {
+  std::string out = "object,real_faces,total_faces,outermost_faces\n";
+  for (const PaperObject& o : objects)
+    out += o.name + "," + std::to_string(o.rep.real_face_count()) + "," + std::to_string(o.rep.face_count()) +
+           "," + std::to_string(o.rep.outermost_faces().size()) + "\n";
+  return out;
+}
+
+std::string table2_csv(std::span<const Run> runs) {
+  std::string out =
+      "seed,time_step,steps_after,object,recursion,steps,minimum,average,maximum,published_minimum,"
+      "published_average,published_maximum\n";
+  for (const Run& run : runs)
+    for (const ObjectRow& row : run.rows)
+      for (std::size_t i = 0; i < kRecursions.size(); ++i) {
+        out += std::to_string(run.protocol.seed) + "," + text_of(run.protocol.step) + "," +
+               std::to_string(run.protocol.steps_after) + "," + row.object + "," +
+               std::string(trace::name_of(kRecursions[i])) + "," + std::to_string(row.steps);
+        for (const auto member : kMeasured) out += "," + text_of(row.recursions[i].comparisons.*member);
+        const PublishedRow* p = i == kPaper ? published(row.object) : nullptr;
+        for (const auto member : kPublished) out += "," + (p ? text_of(p->*member) : std::string());
+        out += "\n";
+      }
+  return out;
+}
+
+std::string ratios_csv(std::span<const Run> runs) {
+  std::string out = "object,number,seeds,median,lowest,highest\n";
+  for (const ObjectRow& row : runs.front().rows) {
+    const RatioBands bands = ratios(runs, row.object);
+    for (std::size_t i = 0; i < bands.size(); ++i)
+      out += row.object + "," + kRatioNames[i] + "," + std::to_string(runs.size()) + "," +
+             text_of(bands[i].median) + "," + text_of(bands[i].low) + "," + text_of(bands[i].high) + "\n";
+  }
+  return out;
+}
+
+std::string tables_json(std::span<const PaperObject> objects, std::span<const Run> runs,
                         const PaperProtocol& protocol) {
+  const std::vector<ObjectRow> rows = runs.empty() ? std::vector<ObjectRow>() : runs.front().rows;
   nlohmann::ordered_json j;
   j["source"] = "measured by lrbscope paper";
   j["protocol"] = io::record_to_json(protocol);
@@ -110,6 +236,13 @@ std::string tables_json(std::span<const PaperObject> objects, std::span<const Ob
                             {"steps", row.steps}};
     }
   }
+  if (as_published(objects))
+    for (const ObjectRow& row : rows) {
+      const RatioBands bands = ratios(runs, row.object);
+      for (std::size_t i = 0; i < bands.size(); ++i)
+        j["ratio_to_published"][row.object][kRatioNames[i]] = {
+            {"median", bands[i].median}, {"lowest", bands[i].low}, {"highest", bands[i].high}};
+    }
   return j.dump(2) + "\n";
 }
 

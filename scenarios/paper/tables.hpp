@@ -61,9 +61,47 @@ std::span<const PublishedRow> published_table2();
 /// Returns the row of an object; null if the paper does not have it.
 const PublishedRow* published(const std::string& object);
 
+/// Returns true if these are objects of the paper, with its numbers of faces.
+bool as_published(std::span<const PaperObject> objects);
+
+/// Table 2 of one seed, time step and number of steps.
+struct Run {
+  PaperProtocol protocol;
+  std::vector<ObjectRow> rows;
+};
+/// Returns a run for each seed of the protocol.
+std::vector<Run> runs_of_seeds(std::span<const PaperObject> objects, std::span<const ContactStep> steps,
+                               const PaperProtocol& protocol);
+/// Returns a run for each of other_settings() and for half, once and twice the steps after first contact.
+std::vector<Run> runs_of_settings(std::span<const PaperObject> objects, std::span<const ContactStep> steps,
+                                  const PaperProtocol& protocol);
+
+struct Band {
+  double median = 0, low = 0, high = 0;
+};
+/// Returns zeros for no values.
+Band band_of(std::vector<double> values);
+
+/// Ratios of the measured minimum, average and maximum, by the paper's recursion, to the published ones.
+using RatioBands = std::array<Band, 3>;
+inline constexpr std::array<const char*, 3> kRatioNames = {"minimum", "average", "maximum"};
+/// Over the runs, for one object that is published.
+RatioBands ratios(std::span<const Run> runs, const std::string& object);
+/// Over the published objects of one run.
+RatioBands ratios(const Run& run);
+
+// As CSV, with numbers in full.
+
+std::string table1_csv(std::span<const PaperObject> objects);
+/// A line for each run, object and recursion.
+std::string table2_csv(std::span<const Run> runs);
+/// A line for each object and each of kRatioNames.
+std::string ratios_csv(std::span<const Run> runs);
+
 /// Returns both tables as JSON: "table1_object_sizes", and "table2_face_comparisons_of_object_A_with" by the
-/// paper's recursion; for the other recursions the same with the suffixes "_paper_strict" and "_complete".
-std::string tables_json(std::span<const PaperObject> objects, std::span<const ObjectRow> rows,
+/// paper's recursion with the first seed; for the other recursions the same with the suffixes "_paper_strict"
+/// and "_complete"; for published objects also "ratio_to_published", over the seeds.
+std::string tables_json(std::span<const PaperObject> objects, std::span<const Run> runs,
                         const PaperProtocol& protocol);
 
 }  // namespace lrb::paper

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/support/program.hpp"
+#include <lrbscope/error.hpp>
 
 namespace lrb::test {
 namespace {
@@ -26,6 +27,12 @@ TEST_CASE("unfinished files: complete lines of the same computation are continue
     file.add("third");
   }
   CHECK(slurp(path) == "one\nfirst\nsecond\nthird\n");
+  using Other = io::UnfinishedFile::Other;
+  CHECK_THROWS_WITH_AS(
+      io::UnfinishedFile(path, "another", Other::refused),
+      doctest::Contains("unfinished.jsonl: belongs to an interrupted run with other settings"), InputError);
+  CHECK(slurp(path) == "one\nfirst\nsecond\nthird\n");
+  CHECK(io::UnfinishedFile(path, "one", Other::refused).lines().size() == 3);
   {
     const io::UnfinishedFile file(path, "another");
     CHECK(file.lines().empty());

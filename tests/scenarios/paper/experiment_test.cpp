@@ -76,6 +76,7 @@ TEST_CASE(
     CHECK(e.protocol.steps_after == paper::PaperProtocol{}.steps_after);
     CHECK(e.protocol.step == paper::PaperProtocol{}.step);
     CHECK(e.protocol.seed == paper::PaperProtocol{}.seed);
+    CHECK(e.protocol.seeds == paper::PaperProtocol{}.seeds);
     if (name != "close_up") CHECK(e.objects.size() == generators::paper_objects().size());
     for (const paper::PaperExperiment::Object& o : e.objects) {
       const auto p = std::find_if(generators::paper_objects().begin(), generators::paper_objects().end(),
@@ -105,8 +106,11 @@ TEST_CASE("experiments: schema and reader agree on valid and invalid files") {
       experiment_with("/protocol", json{{"steps_after", -1}}),
       experiment_with("/protocol", json{{"steps", 1}}),
       experiment_with("/protocol", json{{"seed", 7}, {"step", 0.01}, {"steps_after", 0}}),
+      experiment_with("/protocol", json{{"seeds", 10}}),
+      experiment_with("/protocol", json{{"seeds", 0}}),
+      experiment_with("/protocol", json{{"seeds", 1001}}),
       experiment_with("/report", json::array()),
-      experiment_with("/report", json{"table2", "heat_maps"}),
+      experiment_with("/report", json{"table2", "settings", "heat_maps"}),
       experiment_with("/report", json{"table3"}),
       experiment_with("/report", json{"table1", "table1"}),
       experiment_with("/close_up", "rock"),
@@ -161,7 +165,7 @@ TEST_CASE("a close-up is the recorded collision, event by event; records of anot
   const auto objects = small_objects();
   paper::SweepOptions sweep;
   sweep.protocol.collisions = 3;
-  const auto records = paper::run_sweep(objects, sweep, {});
+  const auto records = paper::run_sweep(objects, sweep);
   const paper::PaperPair pair{objects[0], objects[1]};
   const paper::CloseUp c = paper::close_up(pair, 1, sweep.protocol, records);
   std::uint64_t sum = 0;
@@ -182,7 +186,7 @@ TEST_CASE("the icicle chart has a box for each visited region") {
   const auto objects = small_objects();
   paper::SweepOptions sweep;
   sweep.protocol.collisions = 1;
-  const auto records = paper::run_sweep(objects, sweep, {});
+  const auto records = paper::run_sweep(objects, sweep);
   const paper::PaperPair pair{objects[0], objects[1]};
   const paper::CloseUp c = paper::close_up(pair, 0, sweep.protocol, records);
   const std::string svg = paper::icicle_svg(pair, c);

@@ -1,4 +1,11 @@
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <tuple>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +18,7 @@
 #include <lrbscope/mesh.hpp>
 
 using namespace lrb;
+using nlohmann::json;
 
 namespace {
 
@@ -33,16 +41,19 @@ paper::SweepOptions few_collisions() {
 TEST_CASE("the paper's sweep: jobs and shards change nothing") {
   const auto objects = few_objects();
   paper::SweepOptions options = few_collisions();
-  const std::string whole = paper::to_json_lines(paper::run_sweep(objects, options, {}));
+  const std::string whole = paper::to_json_lines(paper::run_sweep(objects, options));
   options.jobs = 3;
-  std::uint64_t calls = 0;
-  CHECK(paper::to_json_lines(paper::run_sweep(
-            objects, options, [&](std::uint64_t, std::uint64_t of) { calls += of == 12; })) == whole);
+  std::atomic<int> calls = 0;
+  options.runner = [&](const paper::CollisionTask& task, Workspace& workspace) {
+    ++calls;
+    return paper::run(task, workspace);
+  };
+  CHECK(paper::to_json_lines(paper::run_sweep(objects, options)) == whole);
   CHECK(calls == 12);
   std::vector<paper::ContactStep> parts;
   for (std::uint32_t i = 0; i < 5; ++i) {
     options.shard = {4 - i, 5};
-    for (paper::ContactStep& s : paper::run_sweep(objects, options, {})) parts.push_back(std::move(s));
+    for (paper::ContactStep& s : paper::run_sweep(objects, options)) parts.push_back(std::move(s));
   }
   CHECK(paper::to_json_lines(paper::merged(parts)) == whole);
   parts.push_back(parts.front());
@@ -51,7 +62,7 @@ TEST_CASE("the paper's sweep: jobs and shards change nothing") {
 
 TEST_CASE("the paper's sweep: every collision ends in contact, and the complete recursion misses nothing") {
   const auto objects = few_objects();
-  const auto steps = paper::run_sweep(objects, few_collisions(), {});
+  const auto steps = paper::run_sweep(objects, few_collisions());
   std::vector<std::uint32_t> firsts;
   for (const paper::ContactStep& s : steps) {
     CHECK(s.step <= 5);
@@ -66,7 +77,7 @@ TEST_CASE("the paper's sweep: every collision ends in contact, and the complete 
 }
 
 TEST_CASE("the paper's records: round trip as JSON Lines; other lines are rejected by line") {
-  const auto steps = paper::run_sweep(few_objects(), few_collisions(), {});
+  const auto steps = paper::run_sweep(few_objects(), few_collisions());
   const std::string text = paper::to_json_lines(steps);
   CHECK(paper::to_json_lines(paper::read_json_lines(text, "r.jsonl")) == text);
   for (const std::string bad : {"{}", "[1]", "{\"object\":\"B\"", "\xff", ""}) {
@@ -97,7 +108,7 @@ TEST_CASE("the paper's tables: averages, and the paper's own columns") {
   CHECK(rows[0].recursions[0].missed == 3);
   CHECK(rows[0].n_squared == 2532.0 * 168);
   CHECK(rows[1].steps == 0);
-  const auto j = nlohmann::json::parse(paper::tables_json(objects, rows, {}));
+  const auto j = nlohmann::json::parse(paper::tables_json(objects, {{paper::Run{{}, rows}}}, {}));
   CHECK(j["table1_object_sizes"]["D"]["total_faces"] == 2532);
   CHECK(j["table2_face_comparisons_of_object_A_with"]["B"]["avg"] == 20);
   CHECK(j["table2_face_comparisons_of_object_A_with_complete"].contains("C"));
@@ -121,14 +132,17 @@ TEST_CASE("paper: the program's shards make the report of the whole, and bad inp
     return test::run(folder, args);
   };
   const auto shard = [&](const char* collisions, const std::string& i, const std::string& out) {
-    CHECK(run({"--collisions", collisions, "--resolutions", "0", "--shard", i, "-o", out}).code == 0);
+    CHECK(run({"--collisions", collisions, "--seeds", "2", "--resolutions", "0", "--shard", i, "-o", out})
+              .code == 0);
   };
-  CHECK(run({"--collisions", "2", "--resolutions", "0", "-o", "whole", "--jobs", "2"}).code == 0);
+  CHECK(run({"--collisions", "2", "--seeds", "2", "--resolutions", "0", "-o", "whole", "--jobs", "2"}).code ==
+        0);
   shard("2", "0/2", "part0");
   shard("2", "1/2", "part1");
   shard("3", "1/2", "other");
   CHECK(run({"--merge", "part1/records.jsonl", "part0/records.jsonl", "-o", "all"}).code == 0);
-  for (const char* file : {"/records.jsonl", "/tables.json"})
+  for (const char* file :
+       {"/records.jsonl", "/tables.json", "/ratios.csv", "/settings.csv", "/settings.jsonl"})
     CHECK(test::slurp(folder / (std::string("all") + file)) ==
           test::slurp(folder / (std::string("whole") + file)));
   const auto rejected = [&](std::vector<std::string> args, const char* why) {
@@ -145,6 +159,11 @@ TEST_CASE("paper: the program's shards make the report of the whole, and bad inp
   rejected({"--merge", "whole/records.jsonl"}, "whole/shard.json");
   rejected({"--collisions", "2", "--merge", "part0/records.jsonl"}, "--collisions");
   rejected({"--lean", "--merge", "part0/records.jsonl"}, "--lean");
+  rejected({"--seeds", "2", "--merge", "part0/records.jsonl"}, "--seeds");
+  rejected({"--seeds", "0"}, "--seeds");
+  rejected({"--seeds", "1001"}, "--seeds");
+  rejected({"--seeds", "2", "--seed", "9223372036854775807"},
+           "--seed 9223372036854775807: expected seeds up to");
   folder.write("part0/shard.json", "{\"shard\": -1}");
   rejected({"--merge", "part0/records.jsonl", "part1/records.jsonl"}, "part0/shard.json");
   for (const char* bad : {"2/2", "x", "1", "0/0", "-1/2", "0/2x"})
@@ -180,12 +199,14 @@ TEST_CASE("the series: rows and powers from records; records of other bodies are
   CHECK(objects[0].rep.real_face_count() == 2000);
   CHECK(objects[2].rep.real_face_count() == 500);
   CHECK(paper::diagonal(objects[2].rep) == doctest::Approx(paper::diagonal(a)));
+  CHECK(resolutions::resolution_sizes(rock, {0, 3, 100}) == std::vector<std::uint32_t>{2000, 1000, 500});
+  CHECK(resolutions::resolution_sizes(rock, {1, 9, 3000}) == std::vector<std::uint32_t>{8000, 4000});
   paper::SweepOptions options;
   options.protocol.collisions = 3;
-  auto steps = paper::run_series(a, objects, options, {});
+  auto steps = paper::run_series(a, objects, options);
   const std::string whole = paper::to_json_lines(steps);
   options.jobs = 3;
-  CHECK(paper::to_json_lines(paper::run_series(a, objects, options, {})) == whole);
+  CHECK(paper::to_json_lines(paper::run_series(a, objects, options)) == whole);
   const auto rows = paper::series_rows(a, objects, steps);
   REQUIRE(rows.size() == 6);
   for (const paper::SeriesRow& row : rows) {
@@ -200,6 +221,12 @@ TEST_CASE("the series: rows and powers from records; records of other bodies are
   CHECK(fits[5].comparisons->exponent > 0.1);  // complete, against itself: about the square root
   CHECK(fits[5].comparisons->exponent < 0.9);
 
+  const std::string growth = paper::growth_text({a, objects, steps});
+  CHECK(growth.find("rock " + paper::power_text(*fits[3].comparisons) + ", to " +
+                    paper::whole(rows[3].counts.recursions[0].comparisons.average) + " at n = ") !=
+        std::string::npos);
+  CHECK(growth.find("(complete: " + paper::power_text(*fits[5].comparisons)) != std::string::npos);
+
   auto again = steps;
   for (paper::ContactStep& s : again)
     for (paper::RecursionCount& n : s.counts) n.nanoseconds = 0;
@@ -212,48 +239,189 @@ TEST_CASE("the series: rows and powers from records; records of other bodies are
   CHECK_THROWS_AS(paper::series_rows(a, objects, steps), InputError);
 }
 
-TEST_CASE("paper: an interrupted run keeps the results of the objects, and goes on with the resolutions") {
-  const test::Folder folder;
-  write_mesh(generators::generate("ball", {{"frequency", 4}}), folder / "ball.ply");
-  folder.write("few.json",
-               R"({"name": "few", "purpose": "Few.", "report": ["table2"], "protocol": {"collisions": 2},
-    "objects": [{"name": "A", "body": {"generator": "ball", "parameters": {"frequency": 3}}},
-                {"name": "B", "body": {"generator": "rock", "parameters": {"frequency": 4}}}]})");
-  const auto paper = [&](const std::string& out) {
-    return test::run(folder, {"paper", "--experiment", "few.json", "--meshes", "ball.ply", "--resolutions",
-                              "2", "-o", out});
-  };
-  REQUIRE(paper("whole").code == 0);
-  CHECK(!std::filesystem::exists(folder / "whole/unfinished.jsonl"));
-  // The run ends when it writes the series, because there is a folder of that name.
-  std::filesystem::create_directories(folder / "out/series.jsonl/in the way");
-  CHECK(paper("out").code != 0);
-  CHECK(test::slurp(folder / "out/index.html").find("Table 2") != std::string::npos);
-  const std::string records = test::slurp(folder / "whole/records.jsonl");
-  CHECK(test::slurp(folder / "out/records.jsonl") == records);
-  const std::string unfinished = test::slurp(folder / "out/unfinished.jsonl");
-  CHECK(std::count(unfinished.begin(), unfinished.end(), '\n') == 1 + 1 + 2);  // head, objects, series
-  // Without the last step of the objects, to see that the parts are those of the interrupted run.
-  std::istringstream in(unfinished);
-  std::string text;
-  for (std::string line; std::getline(in, line);) {
-    auto value = nlohmann::ordered_json::parse(line);
-    if (value.value("part", "") == "objects")
-      for (const char* key : {"records", "times"}) {
-        std::string lines = value[key];
-        lines.pop_back();
-        value[key] = lines.substr(0, lines.rfind('\n') + 1);
-      }
-    text += value.dump() + "\n";
+namespace {
+
+/// Small objects of the paper with its names, and a mesh.
+void write_few(const test::Folder& folder) {
+  json few = {{"name", "few"},
+              {"purpose", "Few."},
+              {"protocol", {{"collisions", 12}, {"seeds", 4}}},
+              {"report", {"table1", "table2", "figure3.1", "figure3.2", "settings"}}};
+  for (const std::size_t i : {3u, 1u, 2u}) {
+    const generators::FractalSpec& o = generators::paper_objects()[i];
+    few["objects"].push_back(
+        {{"name", o.name},
+         {"body",
+          {{"generator", "fractal"},
+           {"parameters", {{"real_faces", o.real_faces}, {"total_faces", o.total_faces}}}}}});
   }
-  folder.write("out/unfinished.jsonl", text);
-  std::filesystem::remove_all(folder / "out/series.jsonl");
-  REQUIRE(paper("out").code == 0);
-  CHECK(!std::filesystem::exists(folder / "out/unfinished.jsonl"));
-  const std::string again = test::slurp(folder / "out/records.jsonl");
-  CHECK(again.size() < records.size());
-  CHECK(records.compare(0, again.size(), again) == 0);
-  CHECK(test::slurp(folder / "out/series.jsonl") == test::slurp(folder / "whole/series.jsonl"));
+  folder.write("few.json", few.dump());
+  write_mesh(generators::generate("ball", {{"frequency", 4}}), folder / "ball.ply");
+}
+
+std::vector<std::string> few_command(const std::string& out, const std::string& jobs) {
+  return {"paper", "--experiment", "few.json", "--meshes", "ball.ply", "--resolutions",
+          "2",     "--jobs",       jobs,       "-o",       out};
+}
+
+std::vector<json> lines_of(const std::string& path) {
+  std::istringstream in(test::slurp(path));
+  std::vector<json> out;
+  for (std::string line; std::getline(in, line);) out.push_back(json::parse(line));
+  return out;
+}
+
+std::size_t line_count(const std::string& path) {
+  const std::string text = test::slurp(path);
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+/// Starts the program and ends it by a signal, once it has kept so many collisions.
+void interrupt(const test::Folder& folder, const std::vector<std::string>& command, const char* signal,
+               const std::string& file, std::size_t collisions) {
+  std::string line = "cd '" + folder.path.string() + "' && env --default-signal=INT '" LRBSCOPE_BINARY "'";
+  for (const std::string& word : command) line += " '" + word + "'";
+  line += " >stdout 2>stderr </dev/null & pid=$!; while kill -0 $pid 2>/dev/null && [ $(cat '" +
+          folder / file + "' 2>/dev/null | wc -l) -lt " + std::to_string(collisions + 1) +
+          " ]; do sleep 0.01; done; kill -" + signal + " $pid; { wait $pid; } 2>/dev/null";
+  CHECK(std::system(line.c_str()) != 0);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "paper: an interrupted run goes on where it stopped, and gives the same bytes for any number of jobs") {
+  const test::Folder folder;
+  write_few(folder);
+  REQUIRE(test::run(folder, few_command("whole", "1")).code == 0);
+  CHECK(!std::filesystem::exists(folder / "whole/unfinished.jsonl"));
+  const std::string kept = folder / "out/unfinished.jsonl";
+  interrupt(folder, few_command("out", "2"), "INT", "out/unfinished.jsonl", 10);
+  CHECK(test::slurp(folder / "stderr")
+            .find("interrupted by SIGINT: finished collisions are kept in "
+                  "out/unfinished.jsonl; the same command goes on from there\n") != std::string::npos);
+  const std::size_t first = line_count(kept);
+  CHECK(first > 10);
+  interrupt(folder, few_command("out", "3"), "KILL", "out/unfinished.jsonl", first + 40);
+  const std::size_t second = line_count(kept);
+  CHECK(second > first + 40);
+  // Other settings are refused, and nothing is lost.
+  const std::string before = test::slurp(kept);
+  for (const std::vector<std::string>& other :
+       {std::vector<std::string>{"--seed", "2"}, {"--step", "0.01"}, {"--steps-after", "4"}}) {
+    std::vector<std::string> command = few_command("out", "2");
+    command.insert(command.end(), other.begin(), other.end());
+    const test::Outcome o = test::run(folder, command);
+    CHECK(o.code == 2);
+    CHECK(o.error_lines() == 1);
+    CHECK(o.err.find("out/unfinished.jsonl: belongs to an interrupted run with other settings") !=
+          std::string::npos);
+  }
+  CHECK(test::slurp(kept) == before);
+  // The first collision loses its last step, to see that it is not run again.
+  {
+    std::vector<json> lines = lines_of(kept);
+    std::string text = before.substr(0, before.find('\n') + 1);
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+      for (const char* key : {"records", "times"}) {
+        std::string& records = lines[i][key].get_ref<std::string&>();
+        records.pop_back();
+        if (i == 1) records.resize(records.rfind('\n'));
+        records += '\n';
+      }
+      text += lines[i].dump() + "\n";
+    }
+    std::filesystem::copy(folder / "out", folder / "marked");
+    folder.write("marked/unfinished.jsonl", text + "{\"collision\": \"cut o");
+  }
+  REQUIRE(test::run(folder, few_command("marked", "2")).code == 0);
+  CHECK(line_count(folder / "marked/records.jsonl") + line_count(folder / "marked/settings.jsonl") + 1 ==
+        line_count(folder / "whole/records.jsonl") + line_count(folder / "whole/settings.jsonl"));
+
+  const test::Outcome rest = test::run(folder, few_command("out", "2"));
+  REQUIRE(rest.code == 0);
+  CHECK(rest.err.find("continues an interrupted run, of which " + std::to_string(second - 1) +
+                      " collisions") != std::string::npos);
+  CHECK(!std::filesystem::exists(kept));
+  for (const char* file : {"/records.jsonl", "/settings.jsonl", "/series.jsonl", "/series.json",
+                           "/tables.json", "/table1.csv", "/table2.csv", "/ratios.csv", "/settings.csv"})
+    CHECK(test::slurp(folder / (std::string("out") + file)) ==
+          test::slurp(folder / (std::string("whole") + file)));
+  // Results first.
+  const std::string page = test::slurp(folder / "out/index.html");
+  std::size_t at = 0;
+  for (const char* title : {"Table 1: ", "Table 2: ", "Figure 3.1: ", "Measured over published",
+                            "Figure 3.2: ", "Other time steps", "Differences from the paper", "Counters, ",
+                            "Comparisons against A"}) {
+    CAPTURE(title);
+    const std::size_t next = page.find(std::string("<h2>") + title);
+    REQUIRE(next != std::string::npos);
+    CHECK(next > at);
+    at = next;
+  }
+}
+
+TEST_CASE("paper: the band over the seeds and the tables of other settings follow from the records") {
+  const test::Folder folder;
+  write_few(folder);
+  REQUIRE(test::run(folder, {"paper", "--experiment", "few.json", "--seed", "7", "-o", "out"}).code == 0);
+  using Key = std::tuple<double, int, std::uint64_t, std::string>;  // time step, steps after, seed, object
+  std::map<Key, std::vector<double>> counts;
+  const auto add = [&](const json& r, const std::vector<int>& steps_after) {
+    for (const int last : steps_after)
+      if (r["step"] <= last)
+        counts[{r["time_step"], last, r["seed"], r["object"]}].push_back(r["paper"]["comparisons"]);
+  };
+  std::set<std::uint64_t> seeds;
+  for (const json& r : lines_of(folder / "out/records.jsonl")) {
+    add(r, {5});
+    seeds.insert(r["seed"].get<std::uint64_t>());
+  }
+  CHECK(seeds == std::set<std::uint64_t>{7, 8, 9, 10});
+  const auto numbers = [](const std::vector<double>& x) {
+    return std::array{*std::min_element(x.begin(), x.end()),
+                      std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size()),
+                      *std::max_element(x.begin(), x.end())};
+  };
+  // The band: of four seeds, the median is the mean of the middle two.
+  const json tables = json::parse(test::slurp(folder / "out/tables.json"));
+  CHECK(tables["ratio_to_published"].size() == 2);
+  const std::string csv = test::slurp(folder / "out/ratios.csv");
+  for (const std::string object : {"B", "C"})
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::array<double, 3> rows[] = {{744, 1229, 1705}, {674, 1162, 1848}};
+      const double published = rows[object == "C"][i];
+      std::vector<double> ratios;
+      for (const std::uint64_t seed : seeds)
+        ratios.push_back(numbers(counts.at({0.005, 5, seed, object}))[i] / published);
+      std::sort(ratios.begin(), ratios.end());
+      const json& band = tables["ratio_to_published"][object][paper::kRatioNames[i]];
+      CHECK(band["lowest"] == ratios[0]);
+      CHECK(band["highest"] == ratios[3]);
+      CHECK(band["median"] == (ratios[1] + ratios[2]) / 2);
+      CHECK(ratios[0] < ratios[3]);
+      CHECK(csv.find(object + "," + paper::kRatioNames[i] + ",4," + band["median"].dump() + "," +
+                     band["lowest"].dump() + "," + band["highest"].dump() + "\n") != std::string::npos);
+    }
+  // Other settings: those of the first seed, and at the run's own setting its own table.
+  counts.clear();
+  for (const json& r : lines_of(folder / "out/settings.jsonl")) add(r, {2, 5, 10});
+  CHECK(counts.size() == 4 * 3 * 2);
+  const std::string settings = test::slurp(folder / "out/settings.csv"),
+                    table2 = test::slurp(folder / "out/table2.csv");
+  for (const auto& entry : counts) {
+    const double step = std::get<0>(entry.first);
+    const int last = std::get<1>(entry.first);
+    CHECK(std::get<2>(entry.first) == 7);
+    const std::vector<double>& values = entry.second;
+    const std::array<double, 3> n = numbers(values);
+    const std::string line = "7," + json(step).dump() + "," + std::to_string(last) + "," +
+                             std::get<3>(entry.first) + ",paper," + std::to_string(values.size()) + "," +
+                             json(n[0]).dump() + "," + json(n[1]).dump() + "," + json(n[2]).dump() + ",";
+    CAPTURE(line);
+    CHECK(settings.find("\n" + line) != std::string::npos);
+    CHECK((table2.find("\n" + line) != std::string::npos) == (step == 0.005 && last == 5));
+  }
 }
 
 TEST_CASE("paper: meshes at several resolutions, in shards and as a whole" * doctest::test_suite("long")) {
