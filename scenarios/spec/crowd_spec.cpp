@@ -172,7 +172,7 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   if (const auto n = root.get("query")) {
     for (const char* key : {"tolerance", "max_tests", "separation"})
       if (n->has(key)) n->fail_key(key, "queries of a crowd are exact; remove it, or use a scenario");
-    for (const char* key : {"clash", "distance", "coherent"})
+    for (const char* key : {"clash", "distance", "near", "manifold", "coherent"})
       if (n->has(key)) n->fail_key(key, "not supported for a crowd; remove it, or use a scenario");
     n->object(crowd_query_keys());
     c.request = read_query(*n);
