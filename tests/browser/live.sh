@@ -7,7 +7,7 @@ lrbscope=$(realpath "$1")
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/chromium.sh"
 
-if ! "$lrbscope" --quiet run "$here/meet.json" --live --no-frames -o "$work/out" >/dev/null 2>"$work/error"; then
+if ! "$lrbscope" --quiet run "$here/meet.json" --live --frames none -o "$work/out" >/dev/null 2>"$work/error"; then
   if grep -q 'LRB_WASM=ON' "$work/error"; then
     echo "live.sh: skipped: $(cat "$work/error")"
     exit 77

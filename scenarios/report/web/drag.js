@@ -281,8 +281,16 @@ class LivePage {
     }
     this.write(rows);
     this.draw();
-    clearTimeout(this.timer); // browsers limit how often the address changes
-    this.timer = setTimeout(() => history.replaceState(null, "", `#pose=${rows.join(",")}`), 250);
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.rested(rows), 250);
+  }
+
+  /** Called once B stays where it is: measures the time again, for longer, and puts the pose into the address,
+      which browsers let change only now and then. */
+  rested(rows) {
+    this.answer.micros = this.engine.query([this.poseA, rows], 0.05).micros;
+    this.writeTime();
+    history.replaceState(null, "", `#pose=${rows.join(",")}`);
   }
 
   /** Queries once per picture, however often the mouse moves. */
@@ -304,13 +312,11 @@ class LivePage {
       count = answer.pairs[0].length,
       put = (id, text) => (byId(id).textContent = text),
       faces = answer.pairs.map((list, side) => new Set([...list].map((s) => bodies[side].faceOfSimplex(s))).size);
-    const time = answer.micros < 10 ? answer.micros.toFixed(1) : digits(Math.round(answer.micros));
     put("relation", answer.relation.replace(/_/g, " "));
     put("relation-cell", answer.relation.replace(/_/g, " "));
     put("pairs", digits(count));
     put("faces", `${digits(faces[0])} of A, ${digits(faces[1])} of B`);
     put("fingerprint", answer.fingerprint);
-    put("time", `${time} \u00b5s`);
     put("tests", `${digits(answer.faceTests)} of ${digits(this.simplices[0] * this.simplices[1])} pairs`);
     put("box-tests", digits(answer.boxTests));
     put("node-pairs", digits(answer.nodePairs));
@@ -321,11 +327,16 @@ class LivePage {
     byId("pose").value = rows.join(" ");
     byId("pose").removeAttribute("aria-invalid");
     put("pose-state", "");
-    put(
-      "view-caption",
-      `${answer.relation.replace(/_/g, " ")}: ${plural(count, "pair")}, ${plural(answer.faceTests, "face test")}, ${time} \u00b5s`,
-    );
+    this.writeTime();
     this.writePairs();
+  }
+
+  writeTime() {
+    const { micros, relation, pairs, faceTests } = this.answer,
+      time = `${micros < 10 ? micros.toFixed(1) : digits(Math.round(micros))} \u00b5s`;
+    byId("time").textContent = time;
+    byId("view-caption").textContent =
+      `${relation.replace(/_/g, " ")}: ${plural(pairs[0].length, "pair")}, ${plural(faceTests, "face test")}, ${time}`;
   }
 
   writePairs() {
